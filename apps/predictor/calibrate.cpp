@@ -105,11 +105,11 @@ class Commissioner {
     commissioning::Session session = Begin();
     const commissioning::BaseCalibration found =
         commissioning::MeasureBases(&session, a, b, options_.tip);
-    const Pose X_WA = a.spec().arm.base.ToPose();
-    options_.Tell(commissioning::BasesText(found, X_WA.Inverse() * b.spec().arm.base.ToPose()));
-    const Pose X_WB = X_WA * found.X_AB;
-    return Keep(&session, moved, ToJson(found, X_WB), [&](Machine* machine) {
-      ArmOf(machine, moved).arm.base = {X_WB.p, RpyOf(X_WB.q)};
+    const Pose X_RA = a.spec().arm.base.X_RB();
+    options_.Tell(commissioning::BasesText(found, X_RA.Inverse() * b.spec().arm.base.X_RB()));
+    const Pose X_RB = X_RA * found.X_AB;
+    return Keep(&session, moved, ToJson(found, X_RB), [&](Machine* machine) {
+      ArmOf(machine, moved).arm.base = {X_RB.p, RpyOf(X_RB.q)};
     });
   }
 
@@ -260,7 +260,8 @@ class Commissioner {
   // The file's hash covers the model's path but not the model, which may have changed.
   int JointsOf(int hand) const try {
     const char* name = HandName(hand);
-    return LoadArmModel(machine_.arm(hand)->arm, {}, std::string("arms.") + name + ".arm")->dof();
+    const ArmSpec& arm = machine_.arm(hand)->arm;
+    return LoadArmModel(arm, arm.base.X_RB(), {}, std::string("arms.") + name + ".arm")->dof();
   } catch (const InputError& error) {
     throw Located(error, machine_);
   }

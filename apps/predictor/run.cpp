@@ -381,7 +381,8 @@ void CheckArms(const Machine& machine, const RealDevice& device) {
     if (facts == nullptr) continue;
     for (const std::string& remark : facts->remarks) TheScreen().Tell(facts->name + ": " + remark);
     const MachineArm& side = *machine.arm(hand);
-    const auto model = LoadArmModel(side.arm, {}, std::string("arms.") + HandName(hand) + ".arm");
+    const auto model = LoadArmModel(side.arm, side.arm.base.X_RB(), {},
+                                    std::string("arms.") + HandName(hand) + ".arm");
     for (const std::string& refusal : {commissioning::KinematicsRefusal(*facts, side.arm, *model),
                                        commissioning::PayloadRefusal(*facts, side)})
       if (!refusal.empty()) throw DeviceError(facts->name + ": " + refusal);

@@ -61,7 +61,7 @@ std::string KinematicsRefusal(const DeviceFacts& facts, const ArmSpec& arm,
   RobotData data(model);
   data.UpdateKinematics(model, told.q, JointVector::Zero(model.dof()));
   const std::string link = FlangeOf(model, arm, told.link);
-  const Pose X_BF = arm.base.ToPose().Inverse() * data.FramePose(model, model.Frame(link));
+  const Pose X_BF = arm.base.X_RB().Inverse() * data.FramePose(model, model.Frame(link));
   const Pose turned = PoseFromXyzRpy(Vector3::Zero(), {0, 0, std::numbers::pi}) * X_BF;
   if (Fits(X_BF, told.X_BF) || Fits(turned, told.X_BF)) return "";
   const bool nearer = (told.X_BF.p - turned.p).norm() < (told.X_BF.p - X_BF.p).norm();

@@ -46,7 +46,7 @@ Vector3 TakePoint(Session* session, const Station& station, const Vector3& tip) 
       session->Step();
       if (!station.fresh_joints()) continue;
       const Vector3 p =
-          station.spec().arm.base.ToPose().Inverse() * (station.EndEffectorPose() * tip);
+          station.spec().arm.base.X_RB().Inverse() * (station.EndEffectorPose() * tip);
       if (n == 0) first = p;
       moved = std::max(moved, (p - first).norm());
       sum += p;

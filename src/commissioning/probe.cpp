@@ -194,7 +194,7 @@ void CompareModel(const Machine& machine, int hand, const DeviceFacts& facts, Pr
   const ArmSpec& spec = machine.arm(hand)->arm;
   const std::string key = std::string("arms.") + HandName(hand) + ".arm";
   try {
-    const auto model = LoadArmModel(spec, {}, key);
+    const auto model = LoadArmModel(spec, spec.base.X_RB(), {}, key);
     if (facts.joints != model->dof())
       return probed->mismatches.push_back(
           Located(InputError::At(

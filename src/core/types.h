@@ -2,8 +2,8 @@
 //
 // Frame names use monogram notation: X_AB is the pose of frame B in frame A, V_WB is the twist of B
 // in W (linear, then angular), and F_B_W is the wrench acting at B's origin in the axes of W
-// (force, then torque). W world, H real handle, D virtual handle, E end-effector, B base, O object,
-// S sensor.
+// (force, then torque). W world, R rig (frame of the arms' bases), H real handle, D virtual handle,
+// E end-effector, B base, O object, S sensor.
 #pragma once
 
 #include <Eigen/Core>

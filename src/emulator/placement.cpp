@@ -20,8 +20,9 @@ InputError Unreachable(const Scenario& s, int hand, const Pose& X_WD) {
   std::snprintf(
       text, sizeof text,
       ": the arm cannot move its handle to the start of the scenario: (%.3f, %.3f, %.3f) m in the "
-      "world, %.3f m from its base. Move the base. `predictor check` proposes a position.",
-      X_WD.p.x(), X_WD.p.y(), X_WD.p.z(), (X_WD.p - s.arm(hand).base.xyz).norm());
+      "world, %.3f m from its base. %s `predictor check` proposes a position.",
+      X_WD.p.x(), X_WD.p.y(), X_WD.p.z(), (X_WD.p - s.X_WB(hand).p).norm(),
+      s.HasFixedArms() ? "Change environment.shift." : "Move the base.");
   return InputError::At(key, key + text);
 }
 
@@ -39,7 +40,7 @@ JointVector StartingJoints(const ArmSpec& spec, const RobotModel& model) {
 }
 
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& s, int hand) {
-  auto model = LoadArmModel(s.arm(hand), s.folder(), DeviceArmKey(hand));
+  auto model = LoadArmModel(s.arm(hand), s.X_WB(hand), s.folder(), DeviceArmKey(hand));
   try {
     (void)LimitsOf(s.arm(hand), *model);
   } catch (const InputError& error) {

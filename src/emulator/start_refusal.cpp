@@ -8,15 +8,15 @@
 namespace predictor {
 namespace {
 
-InputError JointRefusal(const BeyondPlace& at, const std::string& joint, double security) {
+InputError JointRefusal(const Scenario& s, const BeyondPlace& at, const std::string& joint) {
   const std::string key = DeviceArmKey(at.arm) + ".posture";
   return InputError::At(
       key,
       key + Formatted(": the arm starts with joint %s at %.3f rad, but must start between %.3f and "
                       "%.3f rad (its limits, reduced by rendering.joint_security, %g rad). Choose "
-                      "another posture, or move %s.base. `predictor check` shows details.",
-                      Quote(joint).c_str(), at.value, at.low, at.high, security,
-                      DeviceArmKey(at.arm).c_str()));
+                      "another posture, or %s. `predictor check` shows details.",
+                      Quote(joint).c_str(), at.value, at.low, at.high, s.rendering.joint_security,
+                      PlacementRemedy(s, at.arm).c_str()));
 }
 
 InputError LinkRefusal(const BeyondPlace& at, const std::array<std::string, 2>& links) {
@@ -49,9 +49,7 @@ std::string StartRefusal(const Scenario& scenario, const BeyondPlace& at,
     case Beyond::kNothing:
       return Sentence(refusal);
     case Beyond::kJoint:
-      return Located(JointRefusal(at, model(at.arm).joint_name(at.joint),
-                                  scenario.rendering.joint_security),
-                     scenario)
+      return Located(JointRefusal(scenario, at, model(at.arm).joint_name(at.joint)), scenario)
           .what();
     case Beyond::kLinks:
       return Located(

@@ -36,10 +36,10 @@ JointVector PostureOf(const std::vector<double>& posture, const RobotModel& mode
   return q;
 }
 
-std::shared_ptr<const RobotModel> LoadArmModel(const ArmSpec& spec,
+std::shared_ptr<const RobotModel> LoadArmModel(const ArmSpec& spec, const Pose& base,
                                                const std::filesystem::path& folder,
                                                const std::string& key) {
-  auto model = RobotModel::Load({spec.model, folder, spec.remove_links, spec.base.ToPose(), key});
+  auto model = RobotModel::Load({spec.model, folder, spec.remove_links, base, key});
   if (model->dof() > kMaxArmJoints)
     throw InputError::At(key + ".model", key + ".model has " + std::to_string(model->dof()) +
                                              " joints; at most " + std::to_string(kMaxArmJoints) +

@@ -15,9 +15,10 @@ std::string Use(int hand, const char* what) {
   return std::string("rig.") + HandName(hand) + "." + what;
 }
 
-std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, const ArmSpec& spec) {
+std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, int hand) {
+  const ArmSpec& spec = scenario.arm(hand);
   return RobotModel::Load(
-      {spec.model, scenario.file.parent_path(), spec.remove_links, spec.base.ToPose()});
+      {spec.model, scenario.file.parent_path(), spec.remove_links, scenario.X_WB(hand)});
 }
 
 Wrench Bias(const RigSpec& rig) { return Wrench(rig.sensor_bias.data()); }
@@ -31,7 +32,7 @@ SimulatedArm::SimulatedArm(const Scenario& scenario, int hand, const JointVector
       dt_(dt),
       X_ES_(spec_.sensor.pose.ToPose()),
       X_EH_(spec_.handle.ToPose()),
-      model_(LoadArm(scenario, spec_)),
+      model_(LoadArm(scenario, hand)),
       end_effector_(model_->Frame(spec_.end_effector)),
       data_(*model_),
       q_(start),

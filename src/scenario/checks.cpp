@@ -18,12 +18,15 @@ namespace {
 constexpr double kMostHandleDistance = 0.3;  // maximum distance of a handle's origin from its body
                                              // [m]
 
+constexpr double kMaxShift = 10;  // of the scene [m]
+
 class Checker {
  public:
   Checker(const Scenario& scenario, const YamlNode& root, Problems* problems)
       : s_(scenario), root_(root), problems_(problems) {}
 
   void Object() const;
+  void Environment() const;
   void Handles() const;
   void Device() const;
   void Operator() const;
@@ -94,6 +97,21 @@ void Checker::Object() const {
     Below((*joint.range)[0], "object.attachment.range.0", (*joint.range)[1],
           "object.attachment.range.1", "");
   }
+}
+
+// Weight compensation and people assume that gravity points down in the rig too.
+void Checker::Environment() const {
+  if (!s_.environment.shift) return;
+  const std::string path = "environment.shift.";
+  const PoseSpec& shift = *s_.environment.shift;
+  for (int i = 0; i < 2; ++i)
+    Unless(shift.rpy[i] == 0, path + "rpy." + std::to_string(i),
+           "is " + FormatNumber(shift.rpy[i]) +
+               " rad, but the scene can only be turned about the vertical, because gravity points "
+               "down for the arms too. Give [0, 0, yaw]. If an arm is tilted, give its base.rpy.");
+  Unless(shift.xyz.norm() <= kMaxShift, path + "xyz",
+         "is " + FormatNumber(shift.xyz.norm()) + " m long; it must be at most " +
+             FormatNumber(kMaxShift) + " m. Give metres.");
 }
 
 void Checker::Handles() const {
@@ -253,6 +271,7 @@ void Checker::Controller() const {
 void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* problems) {
   const Checker checker(scenario, root, problems);
   checker.Object();
+  checker.Environment();
   checker.Handles();
   checker.Device();
   checker.Operator();

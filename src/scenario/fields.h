@@ -25,11 +25,21 @@ inline std::vector<std::string> NamesOf(JointType) {
   return {"spherical", "fixed", "revolute", "prismatic"};
 }
 
-template <class V>
-void Fields(V& v, PoseSpec& s) {
+template <class V, class Spec>
+void PoseFields(V& v, Spec& s) {
   v("xyz", s.xyz, Number("m", "position", Within(100)));
   v("rpy", s.rpy,
     Number("rad", "roll, pitch, yaw about the fixed axes x, y, z", Within(kFullTurn)));
+}
+
+template <class V>
+void Fields(V& v, PoseSpec& s) {
+  PoseFields(v, s);
+}
+
+template <class V>
+void Fields(V& v, BaseSpec& s) {
+  PoseFields(v, s);
 }
 
 template <class V>
@@ -190,6 +200,9 @@ void Fields(V& v, EnvironmentSpec& s) {
   v("floor", s.floor, Flag("a floor with contact at z = 0"));
   v("table", s.table, Part("a table with contact; null: none"));
   v("friction", s.friction, Number("", "sliding friction of contacts", From(0, 10)));
+  v("shift", s.shift,
+    Part("pose of W in the frame of the arms' bases: moved, and turned about the vertical; "
+         "null: the same frame"));
 }
 
 template <class V>
@@ -242,7 +255,7 @@ void Fields(V& v, ArmSpec& s) {
   v("model", s.model,
     Required(Word("URDF: package://..., or, in a scenario, relative to its file")));
   v("remove_links", s.remove_links, Word("links to remove, with everything attached to them"));
-  v("base", s.base, Part("pose of the base in W"));
+  v("base", s.base, Part("pose of the base in W, if environment.shift is null"));
   v("end_effector", s.end_effector, Required(Word("link that carries sensor and handle")));
   v("handle", s.handle, Part("pose of the handle on the end-effector"));
   v("posture", s.posture,

@@ -13,6 +13,11 @@ std::string ArmKey(const Scenario& scenario, int hand) {
   return on_machine ? "arms." + name + ".arm" : DeviceArmKey(hand);
 }
 
+std::string PlacementRemedy(const Scenario& scenario, int hand) {
+  return scenario.HasFixedArms() ? "change environment.shift"
+                                 : "move " + ArmKey(scenario, hand) + ".base";
+}
+
 InputError Located(const InputError& error, const Scenario& scenario) {
   if (error.key().empty() || scenario.tree == nullptr) return error;
   const YamlNode* machine = scenario.tree->Find(kMachineKey);

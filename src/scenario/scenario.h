@@ -24,6 +24,15 @@ struct PoseSpec {
   Pose ToPose() const { return PoseFromXyzRpy(xyz, rpy); }
 };
 
+// Pose of a haptic arm's base in the rig's frame R, as a file gives it and `calibrate bases`
+// measures it. It is deliberately not a PoseSpec: its pose in W also depends on environment.shift,
+// see Scenario::X_WB.
+struct BaseSpec {
+  Vector3 xyz = Vector3::Zero();
+  Vector3 rpy = Vector3::Zero();
+  Pose X_RB() const { return PoseFromXyzRpy(xyz, rpy); }
+};
+
 enum class Mode { kEmulate, kDirect };
 
 // ---- the virtual cobot -----------------------------------------------------------------------
@@ -177,6 +186,9 @@ struct EnvironmentSpec {
   bool floor = true;      // plane z = 0 with contact
   std::optional<TableSpec> table;
   double friction = 0.8;  // sliding friction of contacts
+  // X_RW, pose of the virtual world in the frame of the arms' bases; roll and pitch are 0, so that
+  // gravity points down in both. Absent: W is R, and the arms' bases may be chosen freely.
+  std::optional<PoseSpec> shift;
 };
 
 // How far a real handle may deviate from the virtual one before the virtual handle is coupled to it
@@ -224,7 +236,7 @@ struct SensorSpec {
 struct ArmSpec {
   std::string model;
   std::vector<std::string> remove_links;
-  PoseSpec base;                       // X_WB
+  BaseSpec base;                       // X_RB
   std::string end_effector;            // link E
   PoseSpec handle;                     // X_EH
   std::vector<double> posture;         // initial joints for the inverse kinematics [rad]
@@ -437,6 +449,13 @@ struct Scenario {
   bool HasRealArms() const { return mode == Mode::kEmulate && device.type != "simulated"; }
   const HandleSpec& handle(int hand) const { return hand == 0 ? *left_handle : *right_handle; }
   const ArmSpec& arm(int hand) const { return hand == 0 ? *device.left : *device.right; }
+  // Pose of an arm's base in the virtual world.
+  Pose X_WB(int hand) const {
+    const Pose X_RB = arm(hand).base.X_RB();
+    return environment.shift ? environment.shift->ToPose().Inverse() * X_RB : X_RB;
+  }
+  // True if the arms' bases are given and the virtual world is placed around them.
+  bool HasFixedArms() const { return device.type != "simulated" || environment.shift.has_value(); }
 };
 
 // Element `i` of `values`, or the only value for all.

@@ -33,14 +33,14 @@ const char* Name(Shape shape) {
 
 // Describes a cobot or an arm. Links to be removed are already cut off.
 Json DescribeRobot(const std::string& model, const std::vector<std::string>& remove_links,
-                   const PoseSpec& base, const std::string& end_effector,
+                   const Pose& X_WB, const std::string& end_effector,
                    const std::filesystem::path& folder, AssetStore* assets) {
   const UrdfModel urdf = ReadUrdf(ResolveModelPath(model, folder), remove_links, folder);
-  const auto robot = RobotModel::Build(urdf, base.ToPose());
+  const auto robot = RobotModel::Build(urdf, X_WB);
   Json joints = Json::array();
   for (int j = 0; j < robot->dof(); ++j) joints.push_back(robot->joint_name(j));
   return {{"urdf", assets->AddModel(urdf)},
-          {"base", ToJson(base.ToPose())},
+          {"base", ToJson(X_WB)},
           {"joints", joints},
           {"remove_links", Json::array()},
           {"end_effector", end_effector}};
@@ -49,7 +49,7 @@ Json DescribeRobot(const std::string& model, const std::vector<std::string>& rem
 Json DescribeArm(const Scenario& scenario, int hand, AssetStore* assets) {
   const auto& arm = hand == 0 ? scenario.device.left : scenario.device.right;
   if (!arm || !scenario.Has(hand)) return nullptr;
-  Json json = DescribeRobot(arm->model, arm->remove_links, arm->base, arm->end_effector,
+  Json json = DescribeRobot(arm->model, arm->remove_links, scenario.X_WB(hand), arm->end_effector,
                             scenario.file.parent_path(), assets);
   json["handle"] = ToJson(arm->handle.ToPose());
   return json;
@@ -136,7 +136,7 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
                {"operator", scenario.operator_.type},
                {"rate", scenario.rate}};
   json["cobot"] =
-      DescribeRobot(scenario.cobot.model, scenario.cobot.remove_links, scenario.cobot.base,
+      DescribeRobot(scenario.cobot.model, scenario.cobot.remove_links, scenario.cobot.base.ToPose(),
                     scenario.cobot.end_effector, scenario.file.parent_path(), assets);
   json["object"] = DescribeObject(scenario, assets);
   json["handles"] = Json::object();

@@ -263,6 +263,40 @@ TEST(BaseSearch, FindsBetterBasesAndTheSameAgain) {
   EXPECT_EQ(proposal.xyz[1], again.xyz[1]);
 }
 
+// The scene is 0.5 m away from arms that cannot move, and turned.
+TEST(ShiftSearch, BringsTheSceneToFixedArms) {
+  const Scenario s =
+      Load("box_9kg.yaml", {"environment.shift={xyz: [0.3, -0.4, 0.1], rpy: [0, 0, 50 deg]}"});
+  const CheckReport report = Check(s, {});
+  EXPECT_FALSE(report.fit());
+  EXPECT_TRUE(Mentions(report.problems, "Change environment.shift, or shorten"));
+  EXPECT_FALSE(report.proposal);
+  ASSERT_TRUE(report.shift_proposal);
+  const ShiftProposal& proposal = *report.shift_proposal;
+  EXPECT_GT(proposal.comfort, 0.9);
+  EXPECT_EQ(proposal.shift.rpy.head<2>(), Eigen::Vector2d::Zero());
+  const std::string text = CheckText(report);
+  const std::size_t at = text.find("  environment.shift: {");
+  ASSERT_NE(at, std::string::npos) << text;
+  // What it prints can be copied, and has the comfort that it promises.
+  const std::string copied = text.substr(at + 21, text.find('}', at) - at - 20);
+  const Scenario moved = Load("box_9kg.yaml", {"environment.shift=" + copied});
+  const DeviceReach device(moved);
+  EXPECT_NEAR(
+      Comfort(device.Over(TaskPaths(moved, StartOfObject(moved), kPathStep)), moved.rendering),
+      proposal.comfort, 1e-6);
+}
+
+TEST(ShiftSearch, OfTheSameScenarioFindsTheSame) {
+  const Scenario s = Load("single_arm.yaml", {"environment.shift={xyz: [0, 0.5, 0]}"});
+  const auto paths = TaskPaths(s, StartOfObject(s), 0.1);
+  const ShiftProposal a = SearchShift(s, paths, [](double) {});
+  const ShiftProposal b = SearchShift(s, paths, [](double) {});
+  EXPECT_GT(a.comfort, 0.9);
+  EXPECT_EQ(a.shift.xyz, b.shift.xyz);
+  EXPECT_EQ(a.shift.rpy, b.shift.rpy);
+}
+
 // Exit code and output of `check --quiet`, which prints only problems.
 std::pair<int, std::string> RunCheck(const std::string& arguments) {
   const std::string command =

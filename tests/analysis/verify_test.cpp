@@ -76,6 +76,16 @@ TEST_F(VerifyTest, ARunIsTheSameAgain) {
   EXPECT_EQ(result.missing + result.skipped, 0U);
 }
 
+// The arms' joints are recorded, and their handles are computed again in the shifted world.
+TEST_F(VerifyTest, ARunInAShiftedWorldIsTheSameAgain) {
+  scenario_ =
+      LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml",
+                   {"duration=2", "environment.shift={xyz: [0.01, 0, 0.02], rpy: [0, 0, 3 deg]}"});
+  const Verification result = VerifyFile(Record([](TickRecord*) { return true; }));
+  EXPECT_GT(result.ticks, 2000U);
+  EXPECT_FALSE(result.departure);
+}
+
 // Neither the library nor the program is used again: their recorded answers stand for them.
 TEST_F(VerifyTest, ARunWithAControllerOutsideTheProgramIsTheSameWithoutIt) {
   struct OutsideCase {

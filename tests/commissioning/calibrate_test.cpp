@@ -120,7 +120,7 @@ TEST(MeasureBases, OfTwoLedArmsFindsWhereOneStands) {
   const Vector3 tip(0.01, 0.02, 0.15);
   const auto joints = [&](const Scenario& scenario, const Vector3& point) {
     const ArmSpec& spec = *scenario.device.left;
-    const auto model = RobotModel::Load({spec.model, {}, spec.remove_links, spec.base.ToPose()});
+    const auto model = RobotModel::Load({spec.model, {}, spec.remove_links, spec.base.X_RB()});
     const Quaternion down = RotationFromVector({M_PI, 0, 0});
     JointVector q = ArmStart(1)[0];
     EXPECT_TRUE(SolveInverseKinematics(*model, model->Frame(spec.end_effector, {tip, {1, 0, 0, 0}}),
@@ -150,7 +150,7 @@ TEST(MeasureBases, OfTwoLedArmsFindsWhereOneStands) {
   });
   Session session(&time, &person, {&a, &b});
   const BaseCalibration found = MeasureBases(&session, a, b, tip);
-  const Pose truth = first.device.left->base.ToPose().Inverse() * second.device.left->base.ToPose();
+  const Pose truth = first.device.left->base.X_RB().Inverse() * second.device.left->base.X_RB();
   // The leader stops within 0.2 mrad of the goal, which moves the tip by less than a millimetre.
   EXPECT_LT(PoseError(found.X_AB, truth).head<3>().norm(), 0.004) << person.All();
   EXPECT_LT(PoseError(found.X_AB, truth).tail<3>().norm(), 0.006);

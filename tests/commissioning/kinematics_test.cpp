@@ -47,7 +47,7 @@ DeviceFacts Told(const UrGeometry& arm, const UrVector& q) {
 }
 
 std::string Refusal(const DeviceFacts& facts, const ArmSpec& spec) {
-  return KinematicsRefusal(facts, spec, *LoadArmModel(spec, {}, "arm"));
+  return KinematicsRefusal(facts, spec, *LoadArmModel(spec, spec.base.X_RB(), {}, "arm"));
 }
 
 // The data that an arm reports when the program connects at these joint angles.
@@ -65,7 +65,7 @@ TEST(KinematicsRefusal, LetsNoArmOfUniversalRobotsPassAsAnother) {
   for (const auto& [urdf, own] :
        {std::pair{"ur5_robot.urdf", "ur5"}, {"ur10_robot.urdf", "ur10"}}) {
     const ArmSpec spec = UrSpec(urdf);
-    const auto model = LoadArmModel(spec, {}, "arm");
+    const auto model = LoadArmModel(spec, spec.base.X_RB(), {}, "arm");
     RandomStream random(1, "joints");
     for (int i = 0; i < 300; ++i) {
       const UrVector q = Anywhere(&random);

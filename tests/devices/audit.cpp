@@ -23,7 +23,8 @@ void Put(std::ofstream* out, std::uint64_t time, std::uint32_t hand, const void*
   out->write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
 }
 
-Json PoseJson(const PoseSpec& pose) {
+template <class Spec>
+Json PoseJson(const Spec& pose) {
   return {{"xyz", {pose.xyz.x(), pose.xyz.y(), pose.xyz.z()}},
           {"rpy", {pose.rpy.x(), pose.rpy.y(), pose.rpy.z()}}};
 }

@@ -280,7 +280,7 @@ TEST(LinkPairs, AreOfWhicheverArmTheyName) {
   s.device.left = Panda(0.25);
   s.left_handle = HandleSpec{};
   const auto load = [](const ArmSpec& a) {
-    return RobotModel::Load({a.model, "", a.remove_links, a.base.ToPose()});
+    return RobotModel::Load({a.model, "", a.remove_links, a.base.X_RB()});
   };
   std::array<std::shared_ptr<const RobotModel>, kHands> models = {load(*s.device.left), nullptr};
   EXPECT_TRUE(LinkPairs(s, models).empty());  // no second elbow to avoid
@@ -315,7 +315,7 @@ TEST(LinkDistance, OfOneArmIsTheRateOfItsOwnDistance) {
   s.left_handle = HandleSpec{};
   s.rendering.link_pairs = {{"left:panda_link2", "left:panda_link7"}};
   const ArmSpec& spec = s.arm(0);
-  const auto model = RobotModel::Load({spec.model, "", spec.remove_links, spec.base.ToPose()});
+  const auto model = RobotModel::Load({spec.model, "", spec.remove_links, spec.base.X_RB()});
   const RenderSetup setup(s, {model, nullptr}, 0, kDt);
   const std::array<const char*, 1> limits = {"link_distance"};
   Assembler assembler(setup, {}, limits);

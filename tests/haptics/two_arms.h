@@ -35,7 +35,7 @@ class TwoArms {
     scenario_.left_handle = scenario_.right_handle = HandleSpec{};
     for (int i = 0; i < kHands; ++i) {
       const ArmSpec& spec = scenario_.arm(i);
-      models_[i] = RobotModel::Load({spec.model, "", spec.remove_links, spec.base.ToPose()});
+      models_[i] = RobotModel::Load({spec.model, "", spec.remove_links, spec.base.X_RB()});
       handles_[i] = models_[i]->Frame(spec.end_effector, Pose{{0, 0, 0.1}, Quaternion::Identity()});
       limits_[i] = LimitsOf(spec, *models_[i]);
       data_.emplace_back(*models_[i]);

@@ -152,7 +152,7 @@ TEST_F(Commissioning, TheBasesAreFoundByTouchingCommonPoints) {
   const Vector3 tip(0, 0, 0.18);
   const auto joints = [&](int hand, const Vector3& point) {
     const ArmSpec& spec = scenario_.arm(hand);
-    const auto model = RobotModel::Load({spec.model, {}, spec.remove_links, spec.base.ToPose()});
+    const auto model = RobotModel::Load({spec.model, {}, spec.remove_links, spec.base.X_RB()});
     JointVector q = Joints(kHandNames[static_cast<std::size_t>(hand)]);
     const FrameId end = model->Frame(spec.end_effector, {tip, {1, 0, 0, 0}});
     EXPECT_TRUE(SolveInverseKinematics(
@@ -180,8 +180,8 @@ TEST_F(Commissioning, TheBasesAreFoundByTouchingCommonPoints) {
   ASSERT_TRUE(terminal.Says("Write these values to")) << terminal.Screen();
   terminal.Type("y");
   EXPECT_EQ(terminal.Wait(), 0);
-  const Pose found = folder_.machine().right->arm.base.ToPose();
-  const Pose truth = scenario_.arm(1).base.ToPose();
+  const Pose found = folder_.machine().right->arm.base.X_RB();
+  const Pose truth = scenario_.arm(1).base.X_RB();
   EXPECT_LT((found.p - truth.p).norm(), 0.001) << terminal.Screen();
   EXPECT_LT(RotationError(found.q, truth.q).norm(), 0.002) << terminal.Screen();
   EXPECT_LT(NumberIn(terminal.Screen(), "([0-9.]+) mm rms"), 1) << terminal.Screen();

@@ -20,7 +20,7 @@ ArmSpec Panda() {
 
 std::string Refusal(const ArmSpec& arm) {
   try {
-    LoadArmModel(arm, {}, "arm");
+    LoadArmModel(arm, arm.base.X_RB(), {}, "arm");
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()).rfind(error.key(), 0), 0u) << error.what();
     return error.what();

@@ -135,5 +135,36 @@ TEST(Degrees, AreRefusedElsewhereAndBeyondTheRange) {
         << bad;
 }
 
+// The scene's place relative to the arms: moved and turned about the vertical, nothing else.
+TEST(Shift, PutsTheBasesIntoTheWorld) {
+  const Scenario scenario =
+      Fixture({"environment.shift={xyz: [1, 2, 3], rpy: [0, 0, 90 deg]}",
+               "device.arms.left.base={xyz: [1, 3, 3.5], rpy: [0, 0, 120 deg]}"});
+  const Pose X_WB = scenario.X_WB(0);
+  EXPECT_LT((X_WB.p - Vector3(1, 0, 0.5)).norm(), 1e-12);
+  EXPECT_LT((RpyOf(X_WB.q) - Vector3(0, 0, std::numbers::pi / 6)).norm(), 1e-12);
+  EXPECT_TRUE(scenario.HasFixedArms());
+  EXPECT_FALSE(Fixture().HasFixedArms());
+}
+
+TEST(Shift, RefusesWhatTiltsGravityOrIsFarOff) {
+  const auto error = [](const std::string& shift) {
+    return ErrorOfOverride("environment.shift=" + shift);
+  };
+  EXPECT_EQ(error("{rpy: [0.1, 0, 0]}")
+                .find("--set environment.shift:1:8: environment.shift.rpy.0 is "
+                      "0.1 rad, but the scene can only be turned about"),
+            0U)
+      << error("{rpy: [0.1, 0, 0]}");
+  EXPECT_NE(error("{rpy: [0, -5 deg, 0]}").find("environment.shift.rpy.1 is -0.087"),
+            std::string::npos);
+  EXPECT_NE(error("{xyz: [0, 9, 9]}").find("environment.shift.xyz is 12.7"), std::string::npos);
+  EXPECT_NE(error("{xyz: [0, 0, .nan]}").find("must be a finite number"), std::string::npos);
+  EXPECT_NE(error("{xyz: [400, 0, 0]}").find("from -100 to 100 m"), std::string::npos);
+  EXPECT_NE(error("{yaw: 1}").find("yaw"), std::string::npos);
+  EXPECT_EQ(error("{xyz: [0, 6, -7], rpy: [0, 0, -180 deg]}"), "");
+  EXPECT_EQ(error("null"), "");
+}
+
 }  // namespace
 }  // namespace predictor

@@ -27,7 +27,7 @@ class Bench {
       : dt_(1 / scenario.rate),
         spec_(*scenario.device.left),
         rig_(scenario, ArmStart(1), std::move(person)),
-        model_(RobotModel::Load({spec_.model, {}, spec_.remove_links, spec_.base.ToPose()})),
+        model_(RobotModel::Load({spec_.model, {}, spec_.remove_links, spec_.base.X_RB()})),
         data_(*model_),
         frame_(model_->Frame(spec_.end_effector)),
         differentiator_(dt_),

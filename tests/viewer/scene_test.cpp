@@ -75,6 +75,22 @@ TEST(Scene, TellsWhereTheOperatorStands) {
   EXPECT_DOUBLE_EQ(guess["eye"][0].get<double>(), 0.5 + 0.62);
 }
 
+// A page draws everything in W, so it receives the arms' bases there.
+TEST(Scene, HasTheBasesInTheWorldWhereverItIs) {
+  Scenario scenario = Load("box_9kg.yaml");
+  scenario.environment.shift = PoseSpec{{1, 2, 0.5}, {0, 0, 0.5 * std::numbers::pi}};
+  AssetStore assets;
+  const auto scene = DescribeScene(scenario, {0.5, 0.1, 0.3}, &assets);
+  // The base of the right arm is at (0.1, 0.25, -0.25) in R; W is turned by 90° about z.
+  const auto& base = scene["arms"]["right"]["base"];
+  EXPECT_NEAR(base["p"][0].get<double>(), 0.25 - 2, 1e-12);
+  EXPECT_NEAR(base["p"][1].get<double>(), -(0.1 - 1), 1e-12);
+  EXPECT_NEAR(base["p"][2].get<double>(), -0.25 - 0.5, 1e-12);
+  EXPECT_NEAR(base["q"][0].get<double>(), std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(base["q"][3].get<double>(), -std::sqrt(0.5), 1e-12);
+  EXPECT_EQ(scene["cobot"]["base"]["p"].dump(), "[0.0,0.0,0.0]");
+}
+
 // The guidance centre is sent in W, although the scenario specifies it relative to the object's
 // start.
 TEST(Scene, TellsGuidanceInTheWorld) {

@@ -5,24 +5,12 @@
 namespace predictor {
 namespace {
 
-using Paths = std::vector<std::vector<IntendedSample>>;
-
-constexpr std::size_t kEvery = 5;  // every n-th sample of a path is sufficient for comparing bases
-constexpr int kSweeps = 6;         // maximum number of sweeps over the arms per step width
+constexpr int kSweeps = 6;  // maximum number of sweeps over the arms per step width
 constexpr std::array<double, 3> kSteps = {0.1, 0.05, 0.025};  // [m]
 // Initial bases behind, beside and below the handle [m].
 constexpr std::array<double, 3> kBehind = {0.35, 0.45, 0.55};
 constexpr std::array<double, 3> kOutside = {-0.05, 0.1, 0.25};
 constexpr std::array<double, 4> kBelow = {0.2, 0.3, 0.4, 0.5};
-
-Paths Thinned(const Paths& paths) {
-  Paths thin;
-  for (const auto& path : paths) {
-    thin.emplace_back();
-    for (std::size_t k = 0; k < path.size(); k += kEvery) thin.back().push_back(path[k]);
-  }
-  return thin;
-}
 
 // Both arms with their bases at the same position relative to their handles.
 struct Placed {
@@ -33,7 +21,7 @@ struct Placed {
 
 class Search {
  public:
-  Search(const Scenario& s, const DeviceReach& device, const Paths& paths,
+  Search(const Scenario& s, const DeviceReach& device, const TaskPathList& paths,
          const OnProgress& progress)
       : s_(s), device_(device), paths_(Thinned(paths)), progress_(progress) {}
 
@@ -123,13 +111,23 @@ class Search {
   static constexpr double kWork = 80;         // approximate number of positions tried
   const Scenario& s_;
   const DeviceReach& device_;
-  Paths paths_;
+  TaskPathList paths_;
   const OnProgress& progress_;
   Placed best_;
   double done_ = 0;
 };
 
 }  // namespace
+
+TaskPathList Thinned(const TaskPathList& paths) {
+  constexpr std::size_t kEvery = 5;  // every n-th sample is sufficient for comparing placements
+  TaskPathList thin;
+  for (const auto& path : paths) {
+    thin.emplace_back();
+    for (std::size_t k = 0; k < path.size(); k += kEvery) thin.back().push_back(path[k]);
+  }
+  return thin;
+}
 
 double Comfort(const ArmReach& r, const RenderingSpec& rendering) {
   if (r.lost) return r.reached - 1;
@@ -152,8 +150,8 @@ double Comfort(const Reach& reach, const RenderingSpec& rendering) {
   return comfort;
 }
 
-BaseProposal SearchBases(const Scenario& scenario, const DeviceReach& device, const Paths& paths,
-                         const OnProgress& progress) {
+BaseProposal SearchBases(const Scenario& scenario, const DeviceReach& device,
+                         const TaskPathList& paths, const OnProgress& progress) {
   BaseProposal proposal;
   proposal.xyz = Search(scenario, device, paths, progress).Run();
   std::array<Vector3, kHands> shift = {Vector3::Zero(), Vector3::Zero()};

@@ -10,6 +10,8 @@ namespace predictor {
 // Called with the completed share of the work [0, 1].
 using OnProgress = std::function<void(double)>;
 
+using TaskPathList = std::vector<std::vector<IntendedSample>>;
+
 // Comfort of an arm or a link pair on its path: its smallest result, each divided by a comfortable
 // value (kComfortable... below). A value of at least 1 is comfortable. A negative value means that
 // the path leaves the reach; the later it does, the closer the value is to 0.
@@ -33,7 +35,9 @@ struct BaseProposal {
 // grid behind, beside and below the handles, then moves along x, y and z in steps of 0.1, 0.05 and
 // 0.025 m. The result is repeatable and rounded to 5 mm.
 BaseProposal SearchBases(const Scenario& scenario, const DeviceReach& device,
-                         const std::vector<std::vector<IntendedSample>>& paths,
-                         const OnProgress& progress);
+                         const TaskPathList& paths, const OnProgress& progress);
+
+// Fewer samples of the paths, which suffice to compare placements.
+TaskPathList Thinned(const TaskPathList& paths);
 
 }  // namespace predictor

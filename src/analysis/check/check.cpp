@@ -1,6 +1,7 @@
 #include "analysis/check/check.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "core/error.h"
@@ -58,7 +59,7 @@ void DescribeArms(const Scenario& s, const DeviceReach& device, ModelsReport* re
     arm.mass = model.mass();
     arm.joints = model.dof();
     arm.payload_mass = s.arm(i).payload.mass;
-    arm.reach = ((report->X_WO * s.handle(i).pose.ToPose()).p - s.arm(i).base.xyz).norm();
+    arm.reach = ((report->X_WO * s.handle(i).pose.ToPose()).p - s.X_WB(i).p).norm();
     for (int j = 0; j < model.dof(); ++j) arm.joint_names.push_back(model.joint_name(j));
     report->arms[static_cast<std::size_t>(i)] = arm;
   }
@@ -122,33 +123,35 @@ class Judge {
 
   void Arm(std::size_t h, const ArmReach& r) {
     const char* name = kHandNames[h];
-    const char* key = report_->arm_key[h].c_str();
+    std::string placement = PlacementRemedy(s_, static_cast<int>(h));
+    placement[0] = static_cast<char>(std::toupper(placement[0]));
+    const char* remedy = placement.c_str();
     const auto joint = [&](int j) {
       return j < 0 ? "" : report_->models.arms[h]->joint_names[static_cast<std::size_t>(j)].c_str();
     };
     if (r.lost) {
       Bad(
           Formatted("The %s arm cannot follow the operator's path: its handle is out of reach from "
-                    "%.2f s. Move %s.base, or shorten the motions of the script.",
-                    name, *r.lost, key));
+                    "%.2f s. %s, or shorten the motions of the script.",
+                    name, *r.lost, remedy));
       return;
     }
     if (r.singular_value.value < kMinSingularValue)
-      Bad(
-          Formatted("The %s arm comes too close to a singularity: its smallest singular value is "
-                    "%.3f m at %.2f s, but at least %.2f m is required. Move %s.base.",
-                    name, r.singular_value.value, r.singular_value.time, kMinSingularValue, key));
-    if (r.joint_margin.value < s_.rendering.joint_security)
       Bad(Formatted(
-          "The %s arm's joint %s comes within %.3f rad of its limit at %.2f s, but "
-          "rendering.joint_security requires %.3f rad. Move %s.base or choose another posture.",
-          name, joint(r.joint_margin.joint), r.joint_margin.value, r.joint_margin.time,
-          s_.rendering.joint_security, key));
+          "The %s arm comes too close to a singularity: its smallest singular value is "
+          "%.3f m at %.2f s, but at least %.2f m is required. %s.",
+          name, r.singular_value.value, r.singular_value.time, kMinSingularValue, remedy));
+    if (r.joint_margin.value < s_.rendering.joint_security)
+      Bad(
+          Formatted("The %s arm's joint %s comes within %.3f rad of its limit at %.2f s, but "
+                    "rendering.joint_security requires %.3f rad. %s or choose another posture.",
+                    name, joint(r.joint_margin.joint), r.joint_margin.value, r.joint_margin.time,
+                    s_.rendering.joint_security, remedy));
     if (r.joint_speed.value > 1)
       Bad(Formatted(
-          "The %s arm's joint %s would need %.1f times its allowed speed at %.2f s. Move %s.base "
+          "The %s arm's joint %s would need %.1f times its allowed speed at %.2f s. %s "
           "or slow the script down.",
-          name, joint(r.joint_speed.joint), r.joint_speed.value, r.joint_speed.time, key));
+          name, joint(r.joint_speed.joint), r.joint_speed.value, r.joint_speed.time, remedy));
   }
 
   void Pair(const PairReach& pair) {
@@ -221,10 +224,15 @@ void CheckDevice(const Scenario& s, const World& world, const CheckOptions& opti
   report->handle_speed = s.safety.handle_speed;
   const double begin = 0.05;
   const double middle = options.search ? 0.6 : begin;
-  if (options.search)
-    report->proposal = SearchBases(s, device, paths, [&](double share) {
-      options.progress(begin + share * (middle - begin), "bases");
-    });
+  report->shift = s.environment.shift.value_or(PoseSpec());
+  const char* what = s.HasFixedArms() ? "shift" : "bases";
+  const OnProgress searching = [&](double share) {
+    options.progress(begin + share * (middle - begin), what);
+  };
+  if (options.search && s.HasFixedArms())
+    report->shift_proposal = SearchShift(s, paths, searching);
+  else if (options.search)
+    report->proposal = SearchBases(s, device, paths, searching);
   report->stability = CheckStability(
       s, world.Linearise(), {0.8, 1.5, 3}, {100, 250, 500, 1000},
       [&](double share) { options.progress(middle + share * (1 - middle), "stability"); });

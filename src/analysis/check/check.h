@@ -8,6 +8,7 @@
 
 #include "analysis/check/base_search.h"
 #include "analysis/check/reach.h"
+#include "analysis/check/shift_search.h"
 #include "core/messages.h"
 #include "haptics/stability.h"
 #include "scenario/machine.h"
@@ -63,8 +64,11 @@ struct CheckReport {
   double comfort = 0;                       // comfort of the reach, see Comfort
   std::array<std::string, kHands> arm_key;  // key of an arm's base and loop
   std::array<Vector3, kHands> base = {Vector3::Zero(), Vector3::Zero()};  // current bases [m]
-  std::optional<BaseProposal> proposal;                                   // set after a search
-  std::optional<StabilityReport> stability;                               // empty without a device
+  PoseSpec shift;                                                         // current one
+  // Set after a search: the first, or the second if the arms are fixed (Scenario::HasFixedArms).
+  std::optional<BaseProposal> proposal;
+  std::optional<ShiftProposal> shift_proposal;
+  std::optional<StabilityReport> stability;  // empty without a device
   // A stop from `handle_speed` [m/s] as the arms execute it (StopOfArms), and the same with a joint
   // at its speed limit (MinStopAcceleration). Empty without a device.
   std::optional<StopBudget> stop, longest_stop;

@@ -75,11 +75,21 @@ void AddHandles(const Reach& reach, std::string* text) {
                  reach.handles[h].rotation_speed.time);
 }
 
-void AddProposal(const CheckReport& report, std::string* text) {
-  constexpr double kWorthIt = 1.05;  // a smaller improvement does not justify moving an arm
-  const BaseProposal& p = *report.proposal;
+bool IsWorthIt(const CheckReport& report, double comfort) {
+  constexpr double kWorthIt = 1.05;  // a smaller improvement does not justify moving anything
+  return comfort > report.comfort + (kWorthIt - 1) * std::fabs(report.comfort);
+}
+
+void AddComfort(const CheckReport& report, double comfort, std::string* text) {
+  AppendLine(text,
+             "  comfort          %.2f instead of %.2f (the smallest ratio of a value to its "
+             "comfortable value; below 0: out of reach)",
+             comfort, report.comfort);
+}
+
+void AddProposal(const CheckReport& report, const BaseProposal& p, std::string* text) {
   AppendLine(text, "%s", "");
-  if (p.comfort <= report.comfort + (kWorthIt - 1) * std::fabs(report.comfort)) {
+  if (!IsWorthIt(report, p.comfort)) {
     AppendLine(text,
                "Bases: no better positions were found nearby (comfort %.2f; 1 is comfortable).",
                report.comfort);
@@ -91,10 +101,27 @@ void AddProposal(const CheckReport& report, std::string* text) {
       AppendLine(text, "  %s.base.xyz: [%.3f, %.3f, %.3f]   (now [%.3f, %.3f, %.3f])",
                  report.arm_key[h].c_str(), p.xyz[h].x(), p.xyz[h].y(), p.xyz[h].z(),
                  report.base[h].x(), report.base[h].y(), report.base[h].z());
-  AppendLine(text,
-             "  comfort          %.2f instead of %.2f (the smallest ratio of a value to its "
-             "comfortable value; below 0: out of reach)",
-             p.comfort, report.comfort);
+  AddComfort(report, p.comfort, text);
+}
+
+// A shift as the scenario takes it.
+std::string ShiftText(const PoseSpec& shift) {
+  return Formatted("{xyz: [%.3f, %.3f, %.3f], rpy: [0, 0, %.4g deg]}", shift.xyz.x(), shift.xyz.y(),
+                   shift.xyz.z(), kDegrees * shift.rpy.z());
+}
+
+void AddProposal(const CheckReport& report, const ShiftProposal& p, std::string* text) {
+  AppendLine(text, "%s", "");
+  if (!IsWorthIt(report, p.comfort)) {
+    AppendLine(text,
+               "Scene: no better place for these arms was found (comfort %.2f; 1 is comfortable).",
+               report.comfort);
+    return;
+  }
+  AddReach(report, p.reach, "Better place of the scene", text);
+  AppendLine(text, "  environment.shift: %s   (now %s)", ShiftText(p.shift).c_str(),
+             ShiftText(report.shift).c_str());
+  AddComfort(report, p.comfort, text);
 }
 
 void AddStability(const StabilityReport& r, std::string* text) {
@@ -179,6 +206,11 @@ Json ToJson(const CheckReport& report, const BaseProposal& p) {
   return json;
 }
 
+Json ToJson(const CheckReport& report, const ShiftProposal& p) {
+  return {{"shift", {{"xyz_m", ToJson(p.shift.xyz)}, {"yaw_rad", p.shift.rpy.z()}}},
+          {"reach", ToJson(report, p.reach, p.comfort)}};
+}
+
 Json ToJson(const StabilityReport& r) {
   Json json = {{"lag_s", r.lag},
                {"lead_s", r.lead},
@@ -223,7 +255,8 @@ std::string CheckText(const CheckReport& report) {
                "Reach, bases and stability do not apply, because in `mode: direct` the hands act "
                "on the object itself.");
   }
-  if (report.proposal) AddProposal(report, &text);
+  if (report.proposal) AddProposal(report, *report.proposal, &text);
+  if (report.shift_proposal) AddProposal(report, *report.shift_proposal, &text);
   if (report.stability) AddStability(*report.stability, &text);
   if (report.stop) AddStop(report, &text);
   AppendLine(&text, "%s", "");
@@ -242,7 +275,9 @@ std::string CheckJson(const CheckReport& report) {
                {"warnings", report.warnings},
                {"models", ToJson(report.models)}};
   json["reach"] = report.reach ? ToJson(report, *report.reach, report.comfort) : Json(nullptr);
-  json["proposal"] = report.proposal ? ToJson(report, *report.proposal) : Json(nullptr);
+  json["proposal"] = report.proposal         ? ToJson(report, *report.proposal)
+                     : report.shift_proposal ? ToJson(report, *report.shift_proposal)
+                                             : Json(nullptr);
   json["stop"] = report.stop ? Json{{"handle_speed", report.handle_speed},
                                     {"time", report.stop->time},
                                     {"way", report.stop->way},

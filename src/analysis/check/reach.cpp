@@ -151,14 +151,14 @@ void DeviceReach::Distances(const ArmFollower::Track& left, const ArmFollower::T
 }
 
 Reach DeviceReach::Over(const std::vector<std::vector<IntendedSample>>& paths,
-                        const std::array<Vector3, kHands>& shift) const {
+                        const std::array<Vector3, kHands>& shift, bool give_up) const {
   Reach reach;
   reach.pairs = NoDistances();
   for (const auto& path : paths) {
     std::array<ArmFollower::Track, kHands> track;
     for (std::size_t h = 0; h < kHands; ++h) {
       if (!arms_[h]) continue;
-      track[h] = arms_[h]->Follow(path, shift[h], false);
+      track[h] = arms_[h]->Follow(path, shift[h], give_up);
       if (reach.arms[h])
         Merge(track[h].reach, &*reach.arms[h]);
       else

@@ -105,9 +105,11 @@ class DeviceReach {
     return arms_[static_cast<std::size_t>(hand)];
   }
 
-  // The worst values over all paths, with the bases moved by `shift` [m].
+  // The worst values over all paths, with the bases moved by `shift` [m]. With `give_up`, a path
+  // ends as soon as a handle is lost.
   Reach Over(const std::vector<std::vector<IntendedSample>>& paths,
-             const std::array<Vector3, kHands>& shift = {Vector3::Zero(), Vector3::Zero()}) const;
+             const std::array<Vector3, kHands>& shift = {Vector3::Zero(), Vector3::Zero()},
+             bool give_up = false) const;
   // Reduces the distances of the link pairs, starting with the first of `pairs`, to those of two
   // tracks along the same path.
   void Distances(const ArmFollower::Track& left, const ArmFollower::Track& right,

@@ -206,7 +206,7 @@ class Scenery {
       if (scenario.Has(h)) {
         const ArmSpec& arm = scenario.arm(h);
         arms_[static_cast<std::size_t>(h)] =
-            std::make_unique<Figure>(scenario, arm.model, arm.remove_links, arm.base.ToPose());
+            std::make_unique<Figure>(scenario, arm.model, arm.remove_links, scenario.X_WB(h));
       }
   }
 

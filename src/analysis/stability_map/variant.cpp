@@ -49,9 +49,11 @@ void ReplaceObject(Scenario* s, double mass) {
   s->object.primitive = ScaledObject(*s, mass);
   s->object.model.clear();
   const World after(*s);
+  const Quaternion R_RW = s->environment.shift.value_or(PoseSpec()).ToPose().q;
   for (std::size_t i = 0; i < kHands; ++i) {
     auto& arm = i == 0 ? s->device.left : s->device.right;
-    if (arm) arm->base.xyz += after.state().handle[i].X_W.p - before.state().handle[i].X_W.p;
+    if (arm)
+      arm->base.xyz += R_RW * (after.state().handle[i].X_W.p - before.state().handle[i].X_W.p);
   }
 }
 

@@ -20,8 +20,9 @@ std::shared_ptr<const RobotModel> Load(const Scenario& scenario, const std::stri
                              scenario.cobot.base.ToPose()});
   if (robot != "left" && robot != "right")
     throw InputError("\"" + robot + "\" is none of cobot, left, right.");
-  const ArmSpec& arm = scenario.arm(robot == "left" ? 0 : 1);
-  return RobotModel::Load({arm.model, scenario.folder(), arm.remove_links, arm.base.ToPose()});
+  const int hand = robot == "left" ? 0 : 1;
+  const ArmSpec& arm = scenario.arm(hand);
+  return RobotModel::Load({arm.model, scenario.folder(), arm.remove_links, scenario.X_WB(hand)});
 }
 
 int Print(int argc, char** argv) {
