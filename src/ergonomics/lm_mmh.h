@@ -10,7 +10,7 @@
 // Not for: injury risk (acceptability was judged by people, not by tissue), one hand, or sitting.
 #pragma once
 
-#include "ergonomics/sex.h"
+#include "core/sex.h"
 
 namespace predictor::ergonomics {
 

@@ -1,9 +1,9 @@
 // REBA, Rapid Entire Body Assessment (Hignett & McAtamney 2000), for one arm.
 //
-// Sources: the tables agree cell by cell with two stored copies of the worksheet, with memory, and
-// are monotone in every score (verified). Other public code holds invented tables. The definitions
-// of group A were compared with a stored handbook chapter (verified). Thresholds of measured angles
-// are a design choice (posture.h).
+// Sources: the tables agree cell by cell with two copies of the worksheet (tested), with memory,
+// and are monotone in every score (verified). Other public code holds invented tables. The
+// definitions of group A were compared with a stored handbook chapter (verified). Thresholds of
+// measured angles are a design choice (posture.h).
 //
 // Not for: the risk of a person, or the choice between designs with the same score.
 #pragma once

@@ -1,11 +1,12 @@
 // RULA, Rapid Upper Limb Assessment (McAtamney & Corlett 1993), for one arm.
 //
-// Sources: the tables agree cell by cell with a stored copy of the worksheet, with memory, and are
-// monotone in every score (verified). An older worksheet that is also in circulation prints smaller
-// values in some cells of table A, and limits of 15° for the upper arm. The force score follows the
-// text of the paper (verified in a stored copy): a common worksheet gives 3 instead of 2 to an
-// intermittent load above 10 kg. "Static" is the paper's one minute; a common worksheet says ten.
-// Thresholds of measured angles are a design choice (posture.h).
+// Sources: the tables agree cell by cell with public copies (tested), with memory, and are monotone
+// in every score (verified). Some copies differ in one cell of table A. An older worksheet that is
+// also in circulation prints smaller values in some cells of table A, and limits of 15° for the
+// upper arm. The force score follows the text of the paper (verified in a stored copy): a common
+// worksheet gives 3 instead of 2 to an intermittent load above 10 kg. "Static" is the paper's one
+// minute; a common worksheet says ten. Thresholds of measured angles are a design choice
+// (posture.h).
 //
 // Not for: the risk of a person, loads that differ within a posture, or the trend over a shift.
 #pragma once

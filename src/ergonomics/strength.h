@@ -11,7 +11,7 @@
 #include <array>
 
 #include "core/random.h"
-#include "ergonomics/sex.h"
+#include "core/sex.h"
 
 namespace predictor::ergonomics {
 
