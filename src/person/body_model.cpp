@@ -70,7 +70,7 @@ void BodyModel::AddTrunk() {
                 z = Vector3::UnitZ();
   Set(kPelvisX, -1, {0, 0, a.hip_height()}, x, -0.3, 0.3);
   Set(kPelvisY, kPelvisX, none, y, -0.2, 0.2);
-  Set(kPelvisZ, kPelvisY, none, z, -0.6, 0.03);
+  Set(kPelvisZ, kPelvisY, none, z, -0.6, 0);
   Set(kPelvisYaw, kPelvisZ, none, z, -0.8, 0.8);
   Set(kPelvisTilt, kPelvisYaw, none, y, -0.35, 1.2);
   Set(kPelvisList, kPelvisTilt, none, x, -0.35, 0.35);
@@ -109,8 +109,8 @@ void BodyModel::AddArm(int hand) {
   Set(at(ArmJoint::kPronation), at(ArmJoint::kElbowFlexion), {0, 0, -a.forearm.length},
       Along(0, 0, -side), -1.57, 1.57);
   Set(at(ArmJoint::kWristFlexion), at(ArmJoint::kPronation), none, Along(-side, 0, 0), -1.2, 1.2);
-  Set(at(ArmJoint::kWristDeviation), at(ArmJoint::kWristFlexion), none, Along(0, 1, 0), -0.17,
-      0.44);
+  Set(at(ArmJoint::kWristDeviation), at(ArmJoint::kWristFlexion), none, Along(0, 1, 0), -0.35,
+      0.52);
   Carry(at(ArmJoint::kWristDeviation), a.hand, {0, 0, -a.hand.com});
 }
 

@@ -17,6 +17,7 @@ ArmAngles ArmAnglesOf(const BodyModel& model, const Placement& at, const BodyVec
   arm.upper_arm_flexion = std::atan2(in_torso.x(), -in_torso.z());
   arm.upper_arm_abduction = std::asin(std::clamp(side * in_torso.y(), -1.0, 1.0));
   arm.upper_arm_elevation = std::acos(std::clamp(-upper_arm.z(), -1.0, 1.0));
+  arm.upper_arm_rotation = q[Of(hand, ArmJoint::kShoulderRotation)];
   arm.elbow_flexion = q[Of(hand, ArmJoint::kElbowFlexion)];
   arm.wrist_flexion = q[Of(hand, ArmJoint::kWristFlexion)];
   arm.wrist_deviation = q[Of(hand, ArmJoint::kWristDeviation)];

@@ -15,10 +15,11 @@ struct ArmAngles {
   double upper_arm_abduction = 0;
   // Of the upper arm against the vertical, 0 hanging ... π up (ISO 11226) [rad].
   double upper_arm_elevation = 0;
-  double elbow_flexion = 0;    // 0 straight [rad]
-  double wrist_flexion = 0;    // positive towards the palm, negative extension [rad]
-  double wrist_deviation = 0;  // positive ulnar, negative radial [rad]
-  double forearm_twist = 0;    // 0 with the thumb up, positive pronation (palm down) [rad]
+  double upper_arm_rotation = 0;  // about its own axis, positive inward [rad]
+  double elbow_flexion = 0;       // 0 straight [rad]
+  double wrist_flexion = 0;       // positive towards the palm, negative extension [rad]
+  double wrist_deviation = 0;     // positive ulnar, negative radial [rad]
+  double forearm_twist = 0;       // 0 with the thumb up, positive pronation (palm down) [rad]
   // Of the knuckles from the torso's midplane to the arm's own side [m]: negative if the forearm
   // crosses the midline; beyond the shoulder's distance if it is out to the side.
   double hand_beside_midline = 0;
@@ -52,6 +53,7 @@ void ForEachAngle(Angles& angles, F f) {
       arm.upper_arm_abduction);
     f(hand == 0 ? "left_upper_arm_elevation" : "right_upper_arm_elevation",
       arm.upper_arm_elevation);
+    f(hand == 0 ? "left_upper_arm_rotation" : "right_upper_arm_rotation", arm.upper_arm_rotation);
     f(hand == 0 ? "left_elbow_flexion" : "right_elbow_flexion", arm.elbow_flexion);
     f(hand == 0 ? "left_wrist_flexion" : "right_wrist_flexion", arm.wrist_flexion);
     f(hand == 0 ? "left_wrist_deviation" : "right_wrist_deviation", arm.wrist_deviation);

@@ -75,8 +75,9 @@ PosturePrior VariedPrior(const PosturePrior& prior, std::span<const double> z,
   p.comfort[kPelvisY] += spread.pelvis_sideways * *next++;
   p.comfort[kPelvisTilt] += spread.pelvis_tilt * *next++;
   p.comfort[kTorsoFlexion] += spread.pelvis_tilt * *next++;
-  for (const int joint : {kPelvisX, kPelvisZ, kPelvisTilt, kTorsoFlexion})
+  for (const int joint : {kPelvisX, kPelvisTilt, kTorsoFlexion})
     p.weight[joint] *= std::exp(spread.spine_share * *next++);
+  p.lowering *= std::exp(spread.spine_share * *next++);
   for (const int joint : {kNeckFlexion, kNeckTwist}) p.comfort[joint] += spread.neck * *next++;
   for (int i = 0; i < kHands * kArmJoints; ++i) p.comfort[kLeftArm + i] += spread.comfort * *next++;
   return p;

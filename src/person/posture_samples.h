@@ -11,13 +11,14 @@
 
 namespace predictor::person {
 
-// Standard deviations of what is not measured (all D; a swivel of ±15° is the reference's).
+// Standard deviations of everything that must be assumed (all D; a swivel of ±15° is the
+// reference's).
 struct PostureSpread {
   double swivel = 0.262;           // of each elbow (15°), half of it common to both [rad]
   double pelvis_forward = 0.03;    // [m]
   double pelvis_sideways = 0.02;   // [m]
   double pelvis_tilt = 0.087;      // 5° [rad]
-  double spine_share = 0.7;        // of the logarithm of the weights of torso and pelvis
+  double spine_share = 0.7;        // of the logarithm of the weights of torso, pelvis and lowering
   double neck = 0.26;              // 15° [rad]
   double comfort = 0.12;           // of each arm joint's comfort [rad]
   double length = 0.05;            // of each segment's length that is not measured, as a fraction

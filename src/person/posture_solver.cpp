@@ -1,6 +1,7 @@
 #include "person/posture_solver.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "person/posture_tasks.h"
@@ -50,7 +51,7 @@ class Descent {
       if (trial_cost < cost) {
         *q = trial;
         damping = std::max(stage.min_damping, damping * 0.1);
-        if ((step.cwiseAbs().maxCoeff()) < stage.step) break;
+        if (step.cwiseAbs().maxCoeff() < stage.step) break;
         cost = Cost(stage, *q, true);
       } else {
         if (step.cwiseAbs().maxCoeff() < stage.step) break;
@@ -67,7 +68,8 @@ class Descent {
     tasks_.Rows(q, stage.hands_only, with_jacobian, &rows_);
     double cost = rows_.error().squaredNorm();
     if (!stage.hands_only)
-      cost += (prior_.weight.array() * (q - prior_.comfort).array().square()).sum();
+      cost += (prior_.weight.array() * (q - prior_.comfort).array().square()).sum() +
+              prior_.lowering * std::hypot(q[kPelvisZ], kLoweringSmooth);
     return cost;
   }
 
@@ -80,6 +82,10 @@ class Descent {
     if (!stage.hands_only) {
       qp_.H().diagonal() += prior_.weight;
       qp_.f() += prior_.weight.cwiseProduct(q - prior_.comfort);
+      // The parabola that touches the cost of lowering at q and lies above it elsewhere.
+      const double curvature = prior_.lowering / (2 * std::hypot(q[kPelvisZ], kLoweringSmooth));
+      qp_.H()(kPelvisZ, kPelvisZ) += curvature;
+      qp_.f()[kPelvisZ] += curvature * q[kPelvisZ];
     }
     qp_.lower() = (lower_ - q).cwiseMax(-kLargestStep).cwiseMin(0.0);
     qp_.upper() = (upper_ - q).cwiseMin(kLargestStep).cwiseMax(0.0);
@@ -103,8 +109,8 @@ PosturePrior DefaultPrior() {
   PosturePrior prior;
   prior.comfort.setZero();
   prior.weight.setConstant(1);
-  prior.weight.segment<6>(kPelvisX) << 30, 60, 20, 20, 8, 30;
-  prior.weight.segment<3>(kTorsoFlexion) << 4, 12, 8;
+  prior.weight.segment<6>(kPelvisX) << 30, 60, 20, 20, 20, 30;
+  prior.weight.segment<3>(kTorsoFlexion) << 10, 15, 10;
   prior.weight.segment<3>(kNeckFlexion) << 2, 2, 2;
   prior.comfort[kNeckFlexion] = 0.2;
   for (int hand = 0; hand < kHands; ++hand) {

@@ -17,7 +17,12 @@ struct PosturePrior {
   // direction 30° behind straight down [rad], and its weight [1/m² of the elbow's displacement].
   std::array<double, kHands> swivel = {0.35, 0.35};
   double swivel_weight = 0.1;
+  // Cost of lowering the hips [1/m]. It is nearly linear, like the squared knee angle (8 d / length
+  // of the leg for hips lowered by d; twice the weight of another joint), so that the knees stay
+  // straight unless bending them pays: lowering · (√(z² + s²) - s) with s = kLoweringSmooth.
+  double lowering = 2e-2;
 };
+inline constexpr double kLoweringSmooth = 0.01;  // [m]
 PosturePrior DefaultPrior();
 
 struct Posture {

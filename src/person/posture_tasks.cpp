@@ -177,7 +177,8 @@ void PostureTasks::Judge(Posture* posture) const {
     const Vector6 error = HandError(at, hand);
     posture->position_error[k] = error.head<3>().norm();
     posture->rotation_error[k] = error.tail<3>().norm();
-    if (posture->position_error[k] > 1e-6 || posture->rotation_error[k] > 1e-6)
+    // Also false for measurements that are not finite.
+    if (!(posture->position_error[k] <= 1e-6 && posture->rotation_error[k] <= 1e-6))
       posture->reached = false;
   }
   if (head_goal_)
