@@ -51,6 +51,7 @@ int Main(int argc, char** argv) {
   const std::map<std::string, double> parts = TimeParts(box, &argc, argv);
   const RunTimes runs = TimeRuns("box_9kg", quick ? 1 : 5);
   TimeDriversAndSupervisor(quick);
+  TimePerson(quick);
   CompareRecordings(quick ? std::vector<std::string>{"box_9kg"}
                           : std::vector<std::string>{"box_9kg", "bar_circle", "dual_ur5"});
   std::vector<ProblemSet> sets;

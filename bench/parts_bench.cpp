@@ -63,7 +63,8 @@ struct Inputs {
 
 // The scene at its equilibrium, with the torques that keep it there.
 struct Still {
-  explicit Still(const Scenario& scenario) : scene(scenario), data(mj_makeData(scene.model())) {
+  explicit Still(const Scenario& scenario)
+      : scene(scenario, EventSequence(scenario)), data(mj_makeData(scene.model())) {
     FindEquilibrium(&scene, data.get());
     start.resize(static_cast<std::size_t>(mj_stateSize(scene.model(), kState)));
     scene.Update(data.get());

@@ -25,6 +25,9 @@ RunTimes TimeRuns(const std::string& scenario, int runs);
 // no sockets.
 void TimeDriversAndSupervisor(bool quick);
 
+// Prints the time of the evaluation of the person. quick: fewer samples.
+void TimePerson(bool quick);
+
 // Isolated benchmarks of the stages' parts by google-benchmark: name → median [µs].
 std::map<std::string, double> TimeParts(const Recording& recording, int* argc, char** argv);
 

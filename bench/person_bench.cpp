@@ -1,0 +1,68 @@
+// What the evaluation of the person costs: posture, loads, and 64 possible persons.
+#include <cmath>
+
+#include "person/posture_samples.h"
+#include "samples.h"
+#include "sections.h"
+
+namespace predictor::bench {
+namespace {
+
+constexpr double kRate = 100;  // [Hz]
+
+// Handles on a circle of 0.1 m once in 4 s, each carrying 40 N.
+person::BodySample HandlesAt(const person::Stance& stance, double time) {
+  person::BodySample sample;
+  sample.time = time;
+  const double phase = 1.5 * time;
+  for (int hand = 0; hand < kHands; ++hand) {
+    Pose X_SD = person::GripOn({0.2, 0, 1}, {-1, 0, 0});
+    X_SD.p = {0.4 + 0.1 * std::cos(phase), hand == 0 ? 0.2 : -0.2, 1.05 + 0.1 * std::sin(phase)};
+    person::HandSample& measured = sample.hands[static_cast<std::size_t>(hand)];
+    measured.present = true;
+    measured.X_WD = stance.X_WS * X_SD;
+    measured.F_D_W[2] = 40;
+  }
+  return sample;
+}
+
+}  // namespace
+
+void TimePerson(bool quick) {
+  const int count = quick ? 200 : 2000;
+  const person::PersonSpec spec;
+  const person::Stance stance = person::StanceAt({0, 0, 0}, {1, 0, 0});
+  const std::array<person::Grip, kHands> grips;
+  const person::BodyModel model(spec);
+  const person::PostureSolver solver(model, stance, grips);
+  const person::BodyDynamics dynamics(model, stance);
+  const person::PostureSampler sampler(spec, stance, grips);
+  person::BodyMotion motion;
+  motion.q = solver.prior().comfort;
+  std::vector<double> next, cold, loads, persons;
+  double check = 0;  // so that nothing is optimised away
+  for (int i = 0; i < count; ++i) {
+    const person::BodySample sample = HandlesAt(stance, i / kRate);
+    next.push_back(Microseconds([&] { motion.q = solver.Solve(sample, motion.q).q; }));
+    cold.push_back(Microseconds([&] { check += solver.Solve(sample).q[0]; }));
+    loads.push_back(Microseconds([&] {
+      check += dynamics.Evaluate(motion, sample).l5s1.compression;
+      check += person::AnglesOf(model, motion.q, stance.width).trunk_flexion;
+    }));
+    if (i % 50 == 0)
+      persons.push_back(Microseconds([&] { check += sampler.Evaluate(sample, motion).reached; }));
+  }
+  Heading("Evaluation of the person, by the clock, one core");
+  std::printf("%-42s %9s %9s\n", "part", "p50 us", "p99 us");
+  const auto row = [](const char* name, const std::vector<double>& us) {
+    std::printf("%-42s %9.1f %9.1f\n", name, Median(us), Quantile(us, 0.99));
+  };
+  row("posture, starting at the one before", next);
+  row("posture, starting at the comfort", cold);
+  row("inverse dynamics, loads and angles", loads);
+  row("64 possible persons", persons);
+  std::printf("nominal chain: %.0f Hz%s\n", 1e6 / (Median(next) + Median(loads)),
+              std::isfinite(check) ? "" : " (not finite)");
+}
+
+}  // namespace predictor::bench
