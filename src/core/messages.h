@@ -101,7 +101,7 @@ struct WorldState {
   double energy = 0;  // kinetic + potential, set-point spring in [J]
   ControllerOutcome controller = ControllerOutcome::kComputed;  // in the last step
   std::uint16_t events = 0;       // that act: bit = entry of the scenario's `events`
-  std::uint8_t latest_event = 0;  // 1 + hazard, by name, that began last; 0: none
+  std::uint8_t latest_event = 0;  // 1 + number of the hazard that began last; 0: none
   std::uint8_t cobot_stop = 0;    // the cobot's own protective stop: CobotStop
 };
 

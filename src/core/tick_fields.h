@@ -113,9 +113,9 @@ constexpr void VisitRun(V& v, R& r) {
           r.controller);
   v.Value({"events", "", "", "bits: entries of the scenario's events that act", "events"},
           r.events);
-  v.Value({"latest_event", "", "", "1 + hazard, in the order of names, that began last; 0 none",
-           "latest_event"},
-          r.latest_event);
+  v.Value(
+      {"latest_event", "", "", "1 + number of the hazard that began last; 0 none", "latest_event"},
+      r.latest_event);
   v.Value({"cobot_stop", "", "",
            "protective stop of the virtual cobot itself: 0 none, then: force, speed, momentum, "
            "joint torque",

@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "models/arm_model.h"
 #include "scenario/operating_rules.h"
+#include "simulation/landing.h"
 #include "simulation/smooth_friction.h"
 #include "simulation/taped_controller.h"
 
@@ -75,6 +76,10 @@ std::unique_ptr<Controller> MakeStandby(const ControllerContext& context) {
 
 }  // namespace
 
+ControlledScene::LooseObject::LooseObject(const Scenario& scenario, const RobotModel& robot)
+    : scene(ComposeScene(scenario, robot, false, Holding::kFree)),
+      attachment(scenario.object.attachment, scene) {}
+
 ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& events)
     : robot_(RobotModel::Load(Source(scenario))),
       end_effector_(EndEffectorOf(scenario.cobot, *robot_)),
@@ -86,7 +91,10 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
                    ? MakeStandby(ContextOf(*scenario.cobot.standby_controller, scenario, *robot_,
                                            end_effector_, posture_))
                    : nullptr),
+      joint_(scenario.object.attachment.joint),
       scene_(ComposeScene(scenario, *robot_, has_wrist_sensor())),
+      loose_(events.loosens_attachment() ? std::make_unique<LooseObject>(scenario, *robot_)
+                                         : nullptr),
       wrist_(scenario.cobot.wrist_sensor, scene_.model->opt.timestep, scenario.seed),
       timing_(scenario.cobot.control, scene_.model->opt.timestep, events.longest_delay()),
       effort_limit_(EffortLimit(scenario.cobot, *robot_)),
@@ -103,8 +111,8 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
 bool ControlledScene::Update(mjData* data) noexcept {
   if (!Guarded(mj_step1, model(), data)) return false;
   for (int j = 0; j < q_.size(); ++j) {
-    q_[j] = data->qpos[scene_.qpos[static_cast<std::size_t>(j)]];
-    v_[j] = data->qvel[scene_.dof[static_cast<std::size_t>(j)]];
+    q_[j] = data->qpos[scene().qpos[static_cast<std::size_t>(j)]];
+    v_[j] = data->qvel[scene().dof[static_cast<std::size_t>(j)]];
   }
   robot_data_.UpdateDynamics(*robot_, q_, v_, gravity_);
   return true;
@@ -146,7 +154,7 @@ void ControlledScene::AddModelErrors(JointVector* torque) const noexcept {
 
 void ControlledScene::WriteTorque(mjData* data) const noexcept {
   for (int j = 0; j < torque_.size(); ++j) {
-    data->qfrc_applied[scene_.dof[static_cast<std::size_t>(j)]] = torque_[j];
+    data->qfrc_applied[scene().dof[static_cast<std::size_t>(j)]] = torque_[j];
   }
 }
 
@@ -217,12 +225,49 @@ void ControlledScene::Disturb(const Disturbance& disturbance, double t) noexcept
   if (disturbance.brakes != before.brakes) SetBrakes(disturbance.brakes);
   if (disturbance.delay != before.delay) timing_.AddDelay(disturbance.delay);
   if (disturbance.standby != before.standby) Acting().TakeOver(Input(t));
+  if (loose_) loose_->attachment.SetLimits(disturbance.grip);
 }
 
 void ControlledScene::Resume(const Disturbance& disturbance) noexcept {
   disturbance_ = disturbance;
   SetBrakes(disturbance.brakes);
   timing_.AddDelay(disturbance.delay);
+  if (loose_) loose_->attachment.SetLimits(disturbance.grip);
+}
+
+void ControlledScene::Loosen(const mjData& carried, mjData* loose) noexcept {
+  const FrameMotion O = Object(carried);
+  const Scene& to = loose_->scene;
+  mj_resetData(to.model.get(), loose);
+  loose->time = carried.time;
+  for (std::size_t j = 0; j < static_cast<std::size_t>(q_.size()); ++j) {
+    loose->qpos[to.qpos[j]] = carried.qpos[scene_.qpos[j]];
+    loose->qvel[to.dof[j]] = carried.qvel[scene_.dof[j]];
+  }
+  const Quaternion& q = O.X_W.q;
+  double* X = loose->qpos + to.object_qpos;
+  Eigen::Map<Vector3>{X} = O.X_W.p;
+  X[3] = q.w(), X[4] = q.x(), X[5] = q.y(), X[6] = q.z();
+  // The engine's free joint: linear velocity of O in axes of W, angular velocity in axes of O.
+  Eigen::Map<Vector3>{loose->qvel + to.object_dof} = O.V_W.head<3>();
+  Eigen::Map<Vector3>{loose->qvel + to.object_dof + 3} = q.conjugate() * Vector3(O.V_W.tail<3>());
+  is_loose_ = true;
+  WriteTorque(loose);
+  Update(loose);
+  loose_->attachment.Grip(*loose);
+  loose_->landing = LandingHeight(loose->xipos[3 * to.object + 2]);
+}
+
+bool ControlledScene::HoldObject(mjData* data) noexcept {
+  return !is_loose_ || loose_->attachment.Hold(data);
+}
+
+void ControlledScene::FollowObject(const mjData& data) noexcept {
+  if (is_loose_) loose_->attachment.Follow(data);
+}
+
+Wrench ControlledScene::LandingOf(const FrameMotion& object) const noexcept {
+  return LandingWrench(scene_.object_model, object, loose_->landing);
 }
 
 // A closed brake is friction in the joint that holds as much as the motor can give.
@@ -231,12 +276,14 @@ void ControlledScene::SetBrakes(bool closed) noexcept {
     DofFriction friction = friction_[static_cast<std::size_t>(j)];
     if (closed) friction = {friction.torque + effort_limit_[j], kBrakeImpedance};
     SetFriction(scene_, j, friction);
+    if (loose_) SetFriction(loose_->scene, j, friction);
   }
 }
 
 void ControlledScene::CheckEvents(const EventSequence& events) const {
   for (std::size_t i = 0; i < events.size(); ++i) {
     const std::string path = "events." + std::to_string(i) + ".event";
+    CheckAttachmentEvent(events, i);
     const std::string missing = Missing(events.kind(i).needs);
     if (missing.empty()) continue;
     throw InputError::At(
@@ -244,6 +291,21 @@ void ControlledScene::CheckEvents(const EventSequence& events) const {
                     missing, ". Remove the event, or change the cobot."},
                    ""));
   }
+}
+
+void ControlledScene::CheckAttachmentEvent(const EventSequence& events, std::size_t i) const {
+  const HazardKind& kind = events.kind(i);
+  const std::string path = "events." + std::to_string(i);
+  const std::string is = path + ".event is " + kind.name;
+  const bool can_slip = joint_ == JointType::kFixed || joint_ == JointType::kSpherical;
+  if (kind.needs == HazardNeeds::kSlipping && !can_slip)
+    throw InputError::At(path + ".event",
+                         is + ", but only a fixed or a spherical attachment can slip. Change "
+                              "object.attachment.joint, or use object_breaks_loose.");
+  if (kind.needs == HazardNeeds::kNoEnd && events.duration(i) > 0)
+    throw InputError::At(path + ".duration",
+                         is + " with a duration, but an object that broke loose does not return to "
+                              "the cobot. Remove the duration, or use object_slips.");
 }
 
 // What an event needs and this cobot lacks; "" if it lacks nothing.
@@ -268,6 +330,7 @@ std::string ControlledScene::Missing(HazardNeeds needs) const {
 }
 
 Wrench ControlledScene::WristWrench(const mjData& data) const noexcept {
+  if (is_loose_) return loose_->attachment.load();
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data.site_xmat +
                                                                          9 * scene_.wrist_site);
   const Eigen::Map<const Vector3> at(data.site_xpos + 3 * scene_.wrist_site);
@@ -296,6 +359,7 @@ void ControlledScene::AdvanceController(double t) noexcept {
 void ControlledScene::Archive(StateArchive& a) noexcept {
   a(torque_, timing_, computed_, tuning_, safety_);
   if (has_wrist_sensor()) a(wrist_);
+  a(loose_);
   for (Controller* controller : {controller_.get(), standby_.get()}) {
     if (controller == nullptr) continue;
     for (double& x : controller->memory()) a(x);
@@ -312,11 +376,12 @@ FrameMotion ControlledScene::EndEffector() const {
 
 FrameMotion ControlledScene::Object(const mjData& data) const {
   FrameMotion motion;
-  const double* q = data.xquat + 4 * scene_.object;
-  motion.X_W = {Eigen::Map<const Vector3>(data.xpos + 3 * scene_.object),
+  const int object = scene().object;
+  const double* q = data.xquat + 4 * object;
+  motion.X_W = {Eigen::Map<const Vector3>(data.xpos + 3 * object),
                 Quaternion(q[0], q[1], q[2], q[3])};
   double velocity[6];  // angular, then linear
-  mj_objectVelocity(model(), &data, mjOBJ_XBODY, scene_.object, velocity, 0);
+  mj_objectVelocity(model(), &data, mjOBJ_XBODY, object, velocity, 0);
   motion.V_W << Eigen::Map<Vector3>(velocity + 3), Eigen::Map<Vector3>(velocity);
   return motion;
 }
@@ -324,7 +389,7 @@ FrameMotion ControlledScene::Object(const mjData& data) const {
 double ControlledScene::Energy(double t, mjData* data) const noexcept {
   if (const ControllerAnswer* played = taped() ? taped()->played() : nullptr) return played->energy;
   mj_energyVel(model(), data);
-  const double height = data->xipos[3 * scene_.object + 2];
+  const double height = data->xipos[3 * scene().object + 2];
   return data->energy[1] + scene_.object_model.mass * gravity_ * height +
          Acting().StoredEnergy(Input(t));
 }

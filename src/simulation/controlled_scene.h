@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "models/robot.h"
+#include "simulation/attachment.h"
 #include "simulation/cobot_safety.h"
 #include "simulation/control_timing.h"
 #include "simulation/controller.h"
@@ -25,8 +26,11 @@ class ControlledScene {
   // no effect on this cobot.
   ControlledScene(const Scenario& scenario, const EventSequence& events);
 
-  mjModel* model() const { return scene_.model.get(); }
-  const Scene& scene() const { return scene_; }
+  // The scene at present: the one in which the cobot carries the object, or, from the first event
+  // of the attachment on, the one with a free object.
+  mjModel* model() const { return scene().model.get(); }
+  const Scene& scene() const { return is_loose_ ? loose_->scene : scene_; }
+  const Scene& start_scene() const { return scene_; }
   const RobotModel& robot() const { return *robot_; }
   const JointVector& posture() const { return posture_; }
   const JointVector& effort_limit() const { return effort_limit_; }  // [N·m]
@@ -70,6 +74,22 @@ class ControlledScene {
   // The same, before a state is restored in which they already acted.
   void Resume(const Disturbance& disturbance) noexcept;
   CobotStop cobot_stop() const noexcept { return safety_.stop(); }
+  // The scene with a free object; null unless an event lets it slip or break loose.
+  const Scene* loose_scene() const noexcept { return loose_ ? &loose_->scene : nullptr; }
+  bool is_loose() const noexcept { return is_loose_; }
+  // Whether what hazards do requires the scene with a free object now.
+  bool must_loosen() const noexcept { return !is_loose_ && disturbance_.grip != GripLimits(); }
+  // Frees the object: from now on, the scene is the loose one, and `loose` has the state of
+  // `carried`: the same poses, velocities and torques.
+  void Loosen(const mjData& carried, mjData* loose) noexcept;
+  // Before a state of that scene is restored.
+  void SetLoose(bool loose) noexcept { is_loose_ = loose && loose_; }
+  // For a free object, in each sub-step: HoldObject adds the attachment's forces after all others
+  // are applied, and returns false on an error of the engine; FollowObject after Update.
+  // LandingOf: wrench about its centre of mass that ends a fall.
+  bool HoldObject(mjData* data) noexcept;
+  void FollowObject(const mjData& data) noexcept;
+  Wrench LandingOf(const FrameMotion& object) const noexcept;
   // How the last step of the controller that acts went, and the status of a refused step.
   ControllerOutcome outcome() const noexcept {
     return disturbance_.frozen ? ControllerOutcome::kComputed : Acting().outcome();
@@ -93,6 +113,13 @@ class ControlledScene {
   double Energy(double t, mjData* data) const noexcept;
 
  private:
+  struct LooseObject {
+    LooseObject(const Scenario& scenario, const RobotModel& robot);
+    Scene scene;
+    Attachment attachment;
+    double landing = 0;  // height at which a fall ends [m]
+    void Archive(StateArchive& a) noexcept { a(attachment, landing); }
+  };
   ControllerInput Input(double t) const;
   // The controller's torques at time t [s], within the effort limits [N·m]. Returns false if they
   // are not finite.
@@ -102,6 +129,7 @@ class ControlledScene {
   void SetBrakes(bool closed) noexcept;
   void CheckEvents(const EventSequence& events) const;
   std::string Missing(HazardNeeds needs) const;
+  void CheckAttachmentEvent(const EventSequence& events, std::size_t i) const;
   Controller& Acting() const noexcept { return disturbance_.standby ? *standby_ : *controller_; }
   double step() const noexcept { return scene_.model->opt.timestep; }
   void WriteTorque(mjData* data) const noexcept;
@@ -111,7 +139,10 @@ class ControlledScene {
   double gravity_;  // [m/s²]
   JointVector posture_;
   std::unique_ptr<Controller> controller_, standby_;  // standby_ may be null
+  JointType joint_;                                   // of the attachment
   Scene scene_;
+  std::unique_ptr<LooseObject> loose_;  // may be null
+  bool is_loose_ = false;
   WristSensor wrist_;
   ControlTiming timing_;
   Wrench wrist_at_start_ = Wrench::Zero();

@@ -1,10 +1,20 @@
 // What the hazards that act at present do to the virtual cobot.
 #pragma once
 
+#include <cmath>
+
 #include "core/messages.h"
 #include "core/types.h"
 
 namespace predictor {
+
+// What the attachment's grip on the object holds.
+struct GripLimits {
+  double force = HUGE_VAL;   // beyond it, the object slides [N]; 0 with a torque of 0: open
+  double torque = HUGE_VAL;  // beyond it, it turns [N·m]
+  double reach = HUGE_VAL;   // if it slid farther, it left the grip for good [m]
+  bool operator==(const GripLimits&) const = default;
+};
 
 // The default values are those of an undisturbed cobot.
 struct Disturbance {
@@ -19,6 +29,7 @@ struct Disturbance {
   Wrench sensor = Wrench::Zero();       // added to the wrist sensor's reading [N], [N·m]
   Vector6 set_point = Vector6::Zero();  // shift of the set-point in W [m], [rad]
   ControllerTuning gains;               // factors of the controller's values
+  GripLimits grip;                      // of the attachment
 };
 
 }  // namespace predictor

@@ -58,6 +58,14 @@ double EventSequence::longest_delay() const {
   return sum;
 }
 
+bool EventSequence::loosens_attachment() const {
+  return std::ranges::any_of(events_, [](const Event& event) {
+    Disturbance d;
+    event.kind->disturb(*event.parameters, 0, &d);
+    return d.grip != GripLimits();
+  });
+}
+
 void EventSequence::Reset() noexcept {
   for (Event& event : events_) {
     event.begun = event.ended = false;

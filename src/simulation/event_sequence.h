@@ -19,7 +19,9 @@ class EventSequence {
   bool empty() const { return events_.empty(); }
   std::size_t size() const { return events_.size(); }
   const HazardKind& kind(std::size_t i) const { return *events_[i].kind; }
-  double longest_delay() const;  // sum of all that events add [s]
+  double duration(std::size_t i) const { return events_[i].duration; }  // [s]; 0: until the end
+  double longest_delay() const;     // sum of all that events add [s]
+  bool loosens_attachment() const;  // an event lets the object slip or break loose
 
   // No event has begun. Draws the times again, since a person knows those of the last run.
   void Reset() noexcept;
@@ -29,7 +31,7 @@ class EventSequence {
   Disturbance disturbance() const noexcept;
 
   std::uint16_t active() const noexcept;  // bit: number of the event
-  // 1 + number of the hazard (in the order of their names) that began last; 0: none.
+  // 1 + number of the hazard (in the order of hazards.h) that began last; 0: none.
   std::uint8_t latest() const noexcept { return latest_; }
 
   void Archive(StateArchive& a) noexcept;

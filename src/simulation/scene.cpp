@@ -23,6 +23,7 @@ constexpr double kFrictionTime = 0.004;  // [s]
 constexpr double kFrictionImpedance = 0.99;
 constexpr const char* kCobotPrefix = "cobot/";
 constexpr const char* kObjectName = "object";
+constexpr const char* kObjectJoint = "object_motion";
 constexpr std::array<const char*, kHands> kHandleSites = {"left_handle", "right_handle"};
 constexpr const char* kWristSite = "wrist";
 constexpr std::array<const char*, kHands> kHandBodies = {"left_hand", "right_hand"};
@@ -191,20 +192,25 @@ void AddAttachmentJoint(mjsBody* object, const AttachmentSpec& spec) {
   }
 }
 
+// `end_effector` is null for a free object.
 mjsBody* AddObject(mjSpec* spec, mjsBody* end_effector, const Scenario& scenario,
                    const ObjectModel& model) {
   const AttachmentSpec& attachment = scenario.object.attachment;
-  mjsBody* object = mjs_addBody(end_effector, nullptr);
+  mjsBody* object = mjs_addBody(end_effector ? end_effector : mjs_findBody(spec, "world"), nullptr);
   mjs_setName(object->element, kObjectName);
-  SetPose(object->pos, object->quat,
-          attachment.on_end_effector.ToPose() * attachment.on_object.ToPose().Inverse());
+  if (end_effector) {
+    SetPose(object->pos, object->quat,
+            attachment.on_end_effector.ToPose() * attachment.on_object.ToPose().Inverse());
+    AddAttachmentJoint(object, attachment);
+  } else {
+    mjs_setName(mjs_addFreeJoint(object)->element, kObjectJoint);
+  }
   object->explicitinertial = 1;
   object->mass = model.mass;
   SetVector(object->ipos, model.com);
   const Matrix3& I = model.inertia;
   const double inertia[6] = {I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)};
   std::copy_n(inertia, 6, object->fullinertia);
-  AddAttachmentJoint(object, attachment);
   for (std::size_t i = 0; i < model.collisions.size(); ++i) {
     AddShape(spec, object, model.collisions[i], i, scenario.environment.friction);
   }
@@ -247,6 +253,11 @@ void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cob
       mj_name2id(&model, mjOBJ_BODY, (kCobotPrefix + scenario.cobot.end_effector).c_str());
   scene->object = mj_name2id(&model, mjOBJ_BODY, kObjectName);
   scene->wrist_site = mj_name2id(&model, mjOBJ_SITE, kWristSite);
+  const int free_joint = mj_name2id(&model, mjOBJ_JOINT, kObjectJoint);
+  if (free_joint >= 0) {
+    scene->object_qpos = model.jnt_qposadr[free_joint];
+    scene->object_dof = model.jnt_dofadr[free_joint];
+  }
   for (std::size_t h = 0; h < kHands; ++h) {
     scene->hand[h] = mj_name2id(&model, mjOBJ_BODY, kHandBodies[h]);
   }
@@ -311,7 +322,8 @@ void CheckHandles(const Scene& scene, const Scenario& scenario) {
 
 }  // namespace
 
-Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor) {
+Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor,
+                   Holding holding) {
   SilenceMujoco();
   Scene scene;
   scene.spec.reset(mj_makeSpec());
@@ -320,8 +332,9 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist
   AddEnvironment(mjs_findBody(spec, "world"), scenario.environment);
   mjsBody* end_effector = AddCobot(spec, scenario, cobot);
   scene.object_model = LoadObject(scenario.object, scenario.folder());
-  mjsBody* object = AddObject(spec, end_effector, scenario, scene.object_model);
-  if (wrist_sensor) AddWristSensor(spec, object, scenario.object.attachment);
+  const bool carried = holding == Holding::kJoint;
+  mjsBody* object = AddObject(spec, carried ? end_effector : nullptr, scenario, scene.object_model);
+  if (wrist_sensor && carried) AddWristSensor(spec, object, scenario.object.attachment);
   for (int hand = 0; hand < kHands; ++hand) {
     if (scenario.Has(hand)) AddHandle(object, scenario, hand);
   }
@@ -333,7 +346,7 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist
                      ". Check masses, inertias and shapes of the cobot and the object.");
   }
   FindAddresses(&scene, scenario, cobot);
-  CheckHandles(scene, scenario);
+  if (carried) CheckHandles(scene, scenario);
   return scene;
 }
 

@@ -22,15 +22,22 @@ struct Scene {
   std::array<int, kHands> hand = {-1, -1};     // direct mode: point masses on the handles
   std::array<int, kMaxCobotJoints> qpos = {};  // address in qpos of RobotModel's joint j
   std::array<int, kMaxCobotJoints> dof = {};   // address in qvel of RobotModel's joint j
+  int object_qpos = -1, object_dof = -1;       // of a free object; −1: the cobot carries it
 };
+
+// How the object is part of the scene: a body that the attachment's joint connects to the
+// end-effector, or a free body.
+enum class Holding { kJoint, kFree };
 
 // Composes and compiles the scene. The attachment's joint connects the object's body to the
 // end-effector's, so that only contacts need the constraint solver. Object, floor and table collide
 // with each other if at least one of the two can move; the cobot's links collide with nothing. In
 // direct mode, each handle has a body without weight whose mass is set at run time. Throws
 // InputError.
-// wrist_sensor: whether a sensor measures the wrench between the end-effector and the object.
-Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor = false);
+// wrist_sensor: whether a sensor measures the wrench between the end-effector and the object that
+// it carries.
+Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor = false,
+                   Holding holding = Holding::kJoint);
 
 // Text of the scene (MJCF). Throws InputError if the engine cannot write it.
 std::string SceneText(const Scene& scene);

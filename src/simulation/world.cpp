@@ -44,14 +44,19 @@ struct World::Impl {
   explicit Impl(const Scenario& scenario)
       : events(scenario),
         controlled(scenario, events),
-        data(mj_makeData(controlled.model())),
+        carried(mj_makeData(controlled.model())),
+        data(carried.get()),
         hands(scenario.hands()) {
     for (const int h : hands) X_OD[h] = scenario.handle(h).pose.ToPose();
     SetCoupling(scenario);
-    FindEquilibrium(&controlled, data.get());
-    controlled.StartController(data.get());
+    FindEquilibrium(&controlled, data);
+    controlled.StartController(data);
     start.resize(static_cast<std::size_t>(mj_stateSize(controlled.model(), kState)));
     saved.resize(start.size());
+    if (const Scene* scene = controlled.loose_scene()) {
+      loose.reset(mj_makeData(scene->model.get()));
+      saved_loose.resize(static_cast<std::size_t>(mj_stateSize(scene->model.get(), kState)));
+    }
     PrepareStart();
     Reset();
     SetUp(false);
@@ -79,16 +84,31 @@ struct World::Impl {
     std::fill_n(data->qvel, m->nv, 0.0);
     std::fill_n(data->qacc_warmstart, m->nv, 0.0);
     data->time = 0;
-    mj_getState(m, data.get(), start.data(), kState);
+    mj_getState(m, data, start.data(), kState);
+  }
+
+  // Whether the object is carried or free. To be followed by Restore.
+  void SetLoose(bool is_loose) noexcept {
+    controlled.SetLoose(is_loose);
+    data = controlled.is_loose() ? loose.get() : carried.get();
+  }
+  std::vector<double>& Saved() noexcept { return controlled.is_loose() ? saved_loose : saved; }
+
+  void TakeHandsOff() noexcept {
+    for (int hand = 0; hand < kHands; ++hand) {
+      SetHandMass(controlled.start_scene(), hand, 0);
+      if (loose) SetHandMass(*controlled.loose_scene(), hand, 0);
+    }
   }
 
   void Reset() noexcept {
-    for (int hand = 0; hand < kHands; ++hand) SetHandMass(controlled.scene(), hand, 0);
+    SetLoose(false);
+    TakeHandsOff();
     events.Reset();
     controlled.Resume({});
     Restore(start);
     controlled.ResetController();
-    controlled.ApplyController(0, data.get());
+    controlled.ApplyController(0, data);
     state = {};
     object = {};
     end_effector = {};
@@ -98,17 +118,23 @@ struct World::Impl {
 
   // Restores a state and updates all dependent quantities.
   void Restore(const std::vector<double>& from) noexcept {
-    mj_resetData(controlled.model(), data.get());  // clears warnings, and the stack after an error
-    mj_setState(controlled.model(), data.get(), from.data(), kState);
-    controlled.Update(data.get());
+    mj_resetData(controlled.model(), data);  // clears warnings, and the stack after an error
+    mj_setState(controlled.model(), data, from.data(), kState);
+    controlled.Update(data);
   }
 
   // Archives the engine's state, and the hands' masses, by which direct mode changes the engine's
   // model.
   void Archive(StateArchive& a) noexcept {
+    bool is_loose = controlled.is_loose();
+    if (loose) a(is_loose);
+    if (!a.saves()) {
+      SetLoose(is_loose);
+      TakeHandsOff();
+    }
     mjModel* m = controlled.model();
-    mj_getState(m, data.get(), saved.data(), kState);
-    a(saved);
+    mj_getState(m, data, Saved().data(), kState);
+    a(Saved());
     for (int hand = 0; hand < kHands; ++hand) {
       const int body = controlled.scene().hand[static_cast<std::size_t>(hand)];
       double mass = body < 0 ? 0 : m->body_mass[body];
@@ -116,24 +142,44 @@ struct World::Impl {
       if (!a.saves()) SetHandMass(controlled.scene(), hand, mass);
     }
     // These are sums, archived with their rounding errors.
-    for (int body = 0; body < m->nbody; ++body) a(m->body_subtreemass[body]);
+    ArchiveMasses(controlled.start_scene(), a);
+    if (loose) ArchiveMasses(*controlled.loose_scene(), a);
     a(controlled, events, object, end_effector, state);
     if (state.cobot_dof != static_cast<int>(controlled.q().size())) a.Fail();
     if (a.saves() || !a.ok()) return;
     controlled.Resume(events.disturbance());
-    Restore(saved);
+    Restore(Saved());
+  }
+
+  static void ArchiveMasses(const Scene& scene, StateArchive& a) noexcept {
+    for (int body = 0; body < scene.model->nbody; ++body) a(scene.model->body_subtreemass[body]);
+  }
+
+  // Frees the object, with its motion and the masses of the hands on it. A step that fails returns
+  // to this moment.
+  void Loosen() noexcept {
+    for (int hand = 0; hand < kHands; ++hand) {
+      const int body = controlled.scene().hand[static_cast<std::size_t>(hand)];
+      if (body < 0) continue;
+      SetHandMass(*controlled.loose_scene(), hand, controlled.model()->body_mass[body]);
+      SetHandMass(controlled.start_scene(), hand, 0);
+    }
+    controlled.Loosen(*data, loose.get());
+    data = loose.get();
+    mj_getState(controlled.model(), data, saved_loose.data(), kState);
   }
 
   Status Step(const WorldInput& input, double dt) noexcept {
     const double timestep = controlled.model()->opt.timestep;
-    mj_getState(controlled.model(), data.get(), saved.data(), kState);
+    mj_getState(controlled.model(), data, Saved().data(), kState);
     bool changed = false;
     for (int hand = 0; hand < kHands; ++hand) {
       const double mass = input.hand_mass[static_cast<std::size_t>(hand)];
       changed = SetHandMass(controlled.scene(), hand, mass) || changed;
     }
-    if (changed) controlled.Update(data.get());
+    if (changed) controlled.Update(data);
     if (!events.empty()) controlled.Disturb(events.Update(state, input), data->time);
+    if (controlled.must_loosen()) Loosen();
     const FrameMotion object_before = object;
     const FrameMotion end_effector_before = end_effector;
     const auto wrench_before = state.coupling;
@@ -141,7 +187,7 @@ struct World::Impl {
     for (long i = 0; i < steps; ++i) {
       const Status status = SubStep(input);
       if (status.ok()) continue;
-      Restore(saved);
+      Restore(Saved());
       object = object_before;
       end_effector = end_effector_before;
       state.coupling = wrench_before;
@@ -155,16 +201,18 @@ struct World::Impl {
 
   Status SubStep(const WorldInput& input) noexcept {
     mjModel* m = controlled.model();
-    if (!controlled.StepController(data->time, data.get())) return controlled.failure();
+    if (!controlled.StepController(data->time, data)) return controlled.failure();
     ApplyWrenches(input);
-    if (!Guarded(mj_step2, m, data.get())) return Failure(std::nan(""), 0);
+    if (!controlled.HoldObject(data)) return Failure(std::nan(""), 0);
+    if (!Guarded(mj_step2, m, data)) return Failure(std::nan(""), 0);
     const double acceleration = Largest(data->qacc, m->nv);
     if (!(acceleration <= kMaxAcceleration)) return Failure(acceleration, kMaxAcceleration);
     const double velocity = Largest(data->qvel, m->nv);
     if (!(velocity <= kMaxVelocity)) return Failure(velocity, kMaxVelocity);
     if (!std::isfinite(Largest(data->qpos, m->nq))) return Failure(std::nan(""), 0);
     controlled.SenseWrist(*data);
-    if (!controlled.Update(data.get())) return Failure(std::nan(""), 0);
+    if (!controlled.Update(data)) return Failure(std::nan(""), 0);
+    controlled.FollowObject(*data);
     controlled.AdvanceController(data->time);
     UpdateMotion(1 / m->opt.timestep);
     return Status::Ok();
@@ -174,7 +222,7 @@ struct World::Impl {
   // the object's body.
   void ApplyWrenches(const WorldInput& input) noexcept {
     const Eigen::Map<const Vector3> com(data->xipos + 3 * controlled.scene().object);
-    Wrench sum = Wrench::Zero();
+    Wrench sum = controlled.is_loose() ? controlled.LandingOf(object) : Wrench::Zero();
     for (Wrench& wrench : state.coupling) wrench.setZero();
     for (const int h : hands) {
       if (!input.present.Has(h)) continue;
@@ -210,17 +258,19 @@ struct World::Impl {
     state.events = events.active();
     state.latest_event = events.latest();
     state.cobot_stop = static_cast<std::uint8_t>(controlled.cobot_stop());
-    state.energy = controlled.Energy(data->time, data.get());
+    state.energy = controlled.Energy(data->time, data);
     state.controller = controlled.outcome();
   }
 
   EventSequence events;
   ControlledScene controlled;
-  DataPtr data;  // at state.time, after its position and velocity stages
+  DataPtr carried, loose;  // of the scenes with a carried and with a free object (may be null)
+  mjData* data;            // one of them, at state.time, after its position and velocity stages
   Hands hands;
   std::array<Pose, kHands> X_OD;
   std::array<Coupling, kHands> coupling;
-  std::vector<double> start, saved;  // engine states: at the start, before the present step
+  // Engine states: at the start, before the present step.
+  std::vector<double> start, saved, saved_loose;
   FrameMotion object, end_effector;
   WorldState state;
 };
@@ -246,7 +296,7 @@ std::vector<std::string> World::joint_names() const {
 }
 double World::object_mass() const { return impl_->controlled.scene().object_model.mass; }
 const JointVector& World::effort_limit() const { return impl_->controlled.effort_limit(); }
-std::string World::SceneXml() const { return SceneText(impl_->controlled.scene()); }
+std::string World::SceneXml() const { return SceneText(impl_->controlled.start_scene()); }
 
 void World::SetRealTime(bool real_time) noexcept { impl_->controlled.SetRealTime(real_time); }
 void World::Play(const ControllerAnswer& answer) noexcept {
@@ -261,11 +311,11 @@ std::vector<double> World::ControllerTape() const {
 LinearModel World::Linearise() const {
   Impl& impl = *impl_;
   impl.SetUp(true);
-  const DataPtr copy(mj_copyData(nullptr, impl.controlled.model(), impl.data.get()));
+  const DataPtr copy(mj_copyData(nullptr, impl.controlled.model(), impl.data));
   const JointVector torque = impl.controlled.torque();
   LinearModel model =
       predictor::Linearise(&impl.controlled, copy.get(), impl.state.time, impl.hands, impl.X_OD);
-  impl.controlled.Update(impl.data.get());  // the workspace is shared
+  impl.controlled.Update(impl.data);  // the workspace is shared
   impl.controlled.SetTorque(torque);
   impl.SetUp(false);
   return model;

@@ -7,33 +7,13 @@
 
 #include "core/archive.h"
 #include "core/error.h"
+#include "event_fixtures.h"
 #include "scenes.h"
 #include "simulation/event_sequence.h"
 #include "world_fixtures.h"
 
 namespace predictor {
 namespace {
-
-EventSpec Event(const std::string& name, double after = 0,
-                const std::vector<std::string>& parameters = {}) {
-  EventSpec event;
-  event.event = name;
-  event.trigger.after = after;
-  for (const std::string& p : parameters) event.Set(p);
-  return event;
-}
-
-// A box of 2 kg fixed to the flange, so that nothing swings.
-Scenario RigidBox() {
-  Scenario s = BoxScene(2);
-  s.object.attachment.joint = JointType::kFixed;
-  return s;
-}
-
-void RunWith(World* world, const WorldInput& input, double time) {
-  for (int k = 0; k < std::lround(time / kTick); ++k)
-    ASSERT_TRUE(world->Step(input, kTick).ok()) << world->state().time;
-}
 
 Vector3 EndEffector(const World& world) { return world.state().end_effector.X_W.p; }
 
@@ -141,7 +121,10 @@ TEST(Events, EndAfterTheirDurationAndDoNotRepeat) {
     const Disturbance d = sequence.Update(state, HandsOff(s));
     EXPECT_EQ(d.payload, k >= 100 && k < 150 ? 2 : 0) << k;
     EXPECT_EQ(d.brakes, k >= 200) << k;
-    EXPECT_EQ(sequence.latest(), k < 100 ? 0 : k < 200 ? 12 : 1) << k;  // by name
+    EXPECT_EQ(sequence.latest(), k < 100   ? 0
+                                 : k < 200 ? 12
+                                           : 1)
+        << k;  // the last of the first twelve, and the first
   }
 }
 
@@ -326,6 +309,14 @@ std::vector<Scenario> Disturbed() {
     all.push_back(RigidBox());
     all.back().cobot.controller = {"admittance", {}};
     all.back().events = {Event(event, 0.05)};
+  }
+  for (const bool senses : {false, true}) {
+    all.push_back(RigidBox());
+    if (senses) all.back().cobot.controller = {"admittance", {}};
+    all.back().events = {Event("object_breaks_loose", 0.05)};
+    all.push_back(all.back());
+    all.back().events = {Event("object_slips", 0.05, {"slip_force=12", "slip_torque=0.1"})};
+    all.back().events[0].duration = 0.08;
   }
   return all;
 }

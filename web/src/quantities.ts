@@ -44,7 +44,7 @@ export interface RunQuantities {
   causeLimit: number;  // allowed, SI
   causeQuantity: Quantity;  // that value and limit measure
   events: number;  // bits: entries of the scenario's events that act
-  latestEvent: number;  // 1 + hazard, in the order of names, that began last; 0 none
+  latestEvent: number;  // 1 + number of the hazard that began last; 0 none
   cobotStop: number;  // protective stop of the virtual cobot itself: 0 none, then: force, speed, momentum, joint torque
   harderCause: StopCause;
   harderCauseHand: number;  // 0 left, 1 right, -1 neither or both

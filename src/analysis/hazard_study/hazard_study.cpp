@@ -28,6 +28,8 @@ const std::vector<std::string> kCobotSafety = {"cobot.safety.force=100", "cobot.
                                                "cobot.safety.joint_torque=60"};
 
 constexpr const char* kLoadSharing = "load_sharing";
+constexpr const char* kSlips = "object_slips";
+constexpr double kGripShare = 0.5;  // of the object's weight, which the grip holds; a design choice
 
 std::vector<std::string> Controller(const std::string& parameters) {
   return {"cobot.controller={" + parameters + "}"};
@@ -98,6 +100,13 @@ void SetLoad(Scenario* scenario) {
       Formatted("object_center_of_mass=[%.9g, %.9g, %.9g]", com.x(), com.y(), com.z()));
 }
 
+// A grip that is too weak for the object, even while the person carries a part of it.
+void SetGrip(Scenario* scenario) {
+  const ObjectModel object = LoadObject(scenario->object, scenario->folder());
+  scenario->events.front().Set(
+      Formatted("slip_force=%.9g", kGripShare * object.mass * scenario->environment.gravity));
+}
+
 Piece PieceOf(const std::filesystem::path& file, const StudyChoice& controller,
               const StudyChoice& hazard, double duration) {
   Piece piece;
@@ -110,6 +119,7 @@ Piece PieceOf(const std::filesystem::path& file, const StudyChoice& controller,
   try {
     piece.scenario = LoadScenario(file, set);
     if (controller.name == kLoadSharing) SetLoad(&piece.scenario);
+    if (hazard.name == kSlips) SetGrip(&piece.scenario);
     // The first run shows the program's behaviour, so that no outdated run is used.
     piece.first = Run(piece.scenario, 1);
     piece.key = HashOf(SaveScenario(piece.scenario) + TextOf(piece.first));
@@ -139,10 +149,11 @@ std::vector<StudyChoice> StudiedHazards() {
   StudyChoice takeover = Hazard("takeover");
   takeover.set.emplace_back(
       "cobot.standby_controller={type: joint_impedance, joint_stiffness: [300]}");
-  return {Hazard("brakes_close"),   Hazard("power_loss"),     Hazard("set_point_jump"),
-          Hazard("stiffness_step"), Hazard("damping_step"),   Hazard("wrong_payload"),
-          Hazard("wrong_friction"), Hazard("sensor_bias"),    Hazard("sensor_drift"),
-          Hazard("control_delay"),  Hazard("control_freeze"), takeover};
+  return {Hazard("brakes_close"),   Hazard("power_loss"),         Hazard("set_point_jump"),
+          Hazard("stiffness_step"), Hazard("damping_step"),       Hazard("wrong_payload"),
+          Hazard("wrong_friction"), Hazard("sensor_bias"),        Hazard("sensor_drift"),
+          Hazard("control_delay"),  Hazard("control_freeze"),     takeover,
+          Hazard(kSlips),           Hazard("object_breaks_loose")};
 }
 
 HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {

@@ -7,8 +7,9 @@
 
 namespace predictor {
 
-// A part of the cobot without which a hazard would have no effect.
-enum class HazardNeeds { kNothing, kWristSensor, kSetPoint, kSprings, kStandby };
+// What a hazard needs: a part of the cobot without which it would have no effect, an attachment
+// that can slip (kSlipping), or that it lasts until the end (kNoEnd).
+enum class HazardNeeds { kNothing, kWristSensor, kSetPoint, kSprings, kStandby, kSlipping, kNoEnd };
 
 // The registry's description of a hazard. Sentence: what happens, in a report ("the brakes close").
 struct HazardKind : ParameterKind {

@@ -1,4 +1,4 @@
-// The hazards: one line each, sorted by name.
+// The hazards: one line each. A recording contains their numbers, so a new one is the last.
 #pragma once
 
 #include "simulation/hazards/hazard.h"
@@ -16,7 +16,9 @@
   add(kStiffnessStep)          \
   add(kTakeover)               \
   add(kWrongFriction)          \
-  add(kWrongPayload)
+  add(kWrongPayload)           \
+  add(kObjectBreaksLoose)      \
+  add(kObjectSlips)
 // clang-format on
 
 namespace predictor::hazards {

@@ -1,0 +1,205 @@
+#include "simulation/attachment.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kCorrection = 200;  // of the place where the grip holds [1/s]
+constexpr int kMaxTurns = 100;       // between force and torque
+constexpr double kConverged = 1e-12;
+constexpr int kMaxPasses = 8;  // of Newton's method with contacts and friction
+constexpr double kSettled = 1e-9;
+
+Pose BodyPose(const mjData& data, int body) {
+  const double* q = data.xquat + 4 * body;
+  return {Eigen::Map<const Vector3>(data.xpos + 3 * body), Quaternion(q[0], q[1], q[2], q[3])};
+}
+
+void UpdateForces(const mjModel* model, mjData* data) {
+  mj_forwardSkip(model, data, mjSTAGE_VEL, 1);
+}
+
+// The x with |x| ≤ radius that minimises ½ xᵀ A x + bᵀ x, for a positive definite A. With a
+// multiplier μ ≥ 0, (A + μ) x = −b; Newton's method on 1/|x| finds μ (Moré & Sorensen 1983).
+Vector3 MinimumInBall(const Matrix3& A, const Vector3& b, double radius, bool* at_limit) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(A);
+  const Vector3 a = eigen.eigenvalues(), c = eigen.eigenvectors().transpose() * b;
+  const auto solution = [&](double mu) -> Vector3 { return -c.array() / (a.array() + mu); };
+  Vector3 x = solution(0);
+  *at_limit = x.norm() > radius;
+  if (*at_limit && radius <= 0) return Vector3::Zero();
+  double mu = 0;
+  for (int i = 0; *at_limit && i < kMaxTurns; ++i) {
+    const double size = x.norm();
+    if (std::fabs(size - radius) <= kConverged * radius) break;
+    const double slope = -(x.array().square() / (a.array() + mu)).sum() / size;
+    mu += size * (1 - size / radius) / slope;
+    x = solution(mu);
+  }
+  return eigen.eigenvectors() * x;
+}
+
+}  // namespace
+
+Attachment::Attachment(const AttachmentSpec& spec, const Scene& scene)
+    : scene_(scene),
+      p_OA_(spec.on_object.xyz),
+      is_fixed_(spec.joint == JointType::kFixed),
+      damping_(spec.joint == JointType::kSpherical ? spec.damping : 0),
+      first_(spec.on_end_effector.xyz) {
+  const auto nv = static_cast<int>(model()->nv);
+  if (nv > kMaxDof) {
+    throw InputError::At("cobot.model", "cobot.model has " + std::to_string(nv - 6) +
+                                            " movable joints; an event of the attachment needs " +
+                                            "at most " + std::to_string(kMaxCobotJoints) +
+                                            ". Remove links with cobot.remove_links.");
+  }
+  J_.setZero(6, nv);
+  other_.setZero(6, nv);
+  M_.setZero(nv, nv);
+}
+
+// X_EA, with the rotation of O instead of A.
+Pose Attachment::PlaceOf(const mjData& data) const noexcept {
+  const Pose X_EO = BodyPose(data, scene_.end_effector).Inverse() * BodyPose(data, scene_.object);
+  return {X_EO * p_OA_, X_EO.q};
+}
+
+void Attachment::Grip(const mjData& data) noexcept {
+  grip_ = PlaceOf(data);
+  first_ = grip_.p;
+  lost_ = slides_ = turns_ = false;
+  wrench_.setZero();
+  load_.setZero();
+}
+
+bool Attachment::Hold(mjData* data) noexcept {
+  slides_ = turns_ = false;
+  Eigen::Map<DofVector> applied(data->qfrc_applied, model()->nv);
+  applied.segment<6>(scene_.object_dof).setZero();
+  if (is_open()) {
+    wrench_.setZero();
+    load_.setZero();
+    return true;
+  }
+  Prepare(*data);
+  const DofVector others = applied;
+  const auto apply = [&] {
+    applied = others;
+    applied.noalias() += J_.transpose().lazyProduct(wrench_);
+  };
+  // Contacts and joint friction react to the attachment, and it reacts to them: Newton's method.
+  for (int pass = 0; pass < kMaxPasses; ++pass) {
+    apply();
+    if (data->nefc > 0 && !Guarded(UpdateForces, model(), data)) return false;
+    const Wrench before = wrench_;
+    UpdateMobility(*data);
+    wrench_ = Solve(data);
+    if (data->nefc == 0 || (wrench_ - before).norm() <= kSettled * (1 + wrench_.norm())) break;
+  }
+  apply();
+  load_ = ShiftWrench(wrench_, p_WA_ - BodyPose(*data, scene_.end_effector).p);
+  return true;
+}
+
+// Jacobian, its rate and inertia at the present state.
+void Attachment::Prepare(const mjData& data) noexcept {
+  const Eigen::Index nv = model()->nv;
+  const Eigen::Map<const DofVector> v(data.qvel, nv);
+  p_WA_ = BodyPose(data, scene_.object) * p_OA_;
+  const auto difference = [&](auto* jacobian, DofJacobian* J) {
+    jacobian(model(), &data, J->data(), J->data() + 3 * nv, p_WA_.data(), scene_.end_effector);
+    jacobian(model(), &data, other_.data(), other_.data() + 3 * nv, p_WA_.data(), scene_.object);
+    *J -= other_;
+  };
+  difference(mj_jacDot, &J_);
+  bias_ = J_.lazyProduct(v);
+  difference(mj_jac, &J_);
+  mj_fullM(model(), &data, M_.data());  // symmetric: the storage order does not matter
+  // The engine integrates the joints' damping implicitly.
+  for (Eigen::Index i = 0; i < nv; ++i) M_(i, i) += model()->opt.timestep * model()->dof_damping[i];
+  factor_.compute(M_);
+}
+
+// G, with contacts and friction that hold at present. They act like inertia: each is a force of
+// −efc_D times the acceleration along its row.
+void Attachment::UpdateMobility(const mjData& data) noexcept {
+  const Eigen::Index nv = model()->nv;
+  holding_ = M_;
+  for (int i = 0; i < data.nefc; ++i) {
+    if (data.efc_state[i] != mjCNSTRSTATE_QUADRATIC) continue;
+    const Eigen::Map<const DofVector> row(data.efc_J + i * nv, nv);
+    holding_ += data.efc_D[i] * row.lazyProduct(row.transpose());
+  }
+  holding_factor_.compute(holding_);
+  for (int i = 0; i < 6; ++i) {
+    const DofVector column = holding_factor_.solve(DofVector(J_.row(i).transpose()));
+    G_.col(i) = J_.lazyProduct(column);
+  }
+}
+
+// The wrench on E about A, if the others react to its change from the present one, wrench_, as
+// UpdateMobility determined.
+Wrench Attachment::Solve(mjData* data) noexcept {
+  const Eigen::Index nv = model()->nv;
+  const double dt = model()->opt.timestep;
+  const auto map = [nv](const double* x) { return Eigen::Map<const DofVector>(x, nv); };
+  DofVector force = map(data->qfrc_passive) - map(data->qfrc_bias) + map(data->qfrc_applied);
+  if (data->nefc > 0) force += map(data->qfrc_constraint);
+  const double* hands = data->xfrc_applied + 6 * scene_.object;
+  mj_applyFT(model(), data, hands, hands + 3, data->xipos + 3 * scene_.object, scene_.object,
+             force.data());
+  const DofVector v = map(data->qvel) + dt * DofVector(factor_.solve(force));
+  const Pose E = BodyPose(*data, scene_.end_effector);
+  Vector6 error;  // of the object from the place where the grip holds
+  error << p_WA_ - E * grip_.p, RotationError(BodyPose(*data, scene_.object).q, E.q * grip_.q);
+  if (!is_fixed_) error.tail<3>().setZero();
+  // The relative position changes by dt J v + ½ dt² J̇ v in the step.
+  Vector6 b = (J_.lazyProduct(v) + dt / 2 * bias_ - kCorrection * error) / dt - G_ * wrench_;
+  if (!is_fixed_ && damping_ > 0) {
+    b.tail<3>() -= bias_.tail<3>() / 2;  // a damper acts on the velocity
+    G_.bottomRightCorner<3, 3>().diagonal().array() += 1 / (dt * damping_);
+  } else if (!is_fixed_) {
+    b.tail<3>().setZero();
+    G_.topRightCorner<3, 3>().setZero();
+    G_.bottomLeftCorner<3, 3>().setZero();
+    G_.bottomRightCorner<3, 3>().setIdentity();
+  }
+  const Wrench wrench = -G_.llt().solve(b);
+  const bool holds = wrench.head<3>().norm() <= limits_.force &&
+                     (!is_fixed_ || wrench.tail<3>().norm() <= limits_.torque);
+  slides_ = turns_ = false;
+  return holds ? wrench : WithinLimits(b, wrench);
+}
+
+// Minimises ½ λᵀ G λ + bᵀ λ within the limits, from a first λ, by turns over force and torque.
+Wrench Attachment::WithinLimits(const Vector6& b, Wrench wrench) noexcept {
+  const double torque = is_fixed_ ? limits_.torque : HUGE_VAL;
+  for (int i = 0; i < kMaxTurns; ++i) {
+    const Wrench before = wrench;
+    wrench.head<3>() = MinimumInBall(G_.topLeftCorner<3, 3>(),
+                                     b.head<3>() + G_.topRightCorner<3, 3>() * wrench.tail<3>(),
+                                     limits_.force, &slides_);
+    wrench.tail<3>() = MinimumInBall(G_.bottomRightCorner<3, 3>(),
+                                     b.tail<3>() + G_.bottomLeftCorner<3, 3>() * wrench.head<3>(),
+                                     torque, &turns_);
+    if ((wrench - before).norm() <= kConverged * (1 + wrench.norm())) break;
+  }
+  return wrench;
+}
+
+void Attachment::Follow(const mjData& data) noexcept {
+  if (is_open()) return;
+  const Pose now = PlaceOf(data);
+  if (slides_) grip_.p = now.p;
+  if (turns_) grip_.q = now.q;
+  lost_ = (grip_.p - first_).norm() > limits_.reach;
+}
+
+}  // namespace predictor

@@ -1,0 +1,76 @@
+// The attachment of an object that is a body of its own: a grip with limits, which holds, slips or
+// is open.
+#pragma once
+
+#include "core/archive.h"
+#include "core/types.h"
+#include "scenario/scenario.h"
+#include "simulation/disturbance.h"
+#include "simulation/scene.h"
+
+namespace predictor {
+
+// Holds the object's attachment frame A at a place in the end-effector's frame E. In each step, the
+// wrench λ of the object on E, about A, is the one with which E and the object have the same
+// velocity at A after the step, as long as its force and its torque are within the grip's limits.
+// Beyond them, they act at the limit against the sliding: λ minimises ½ λᵀ G λ + λᵀ V/dt over both
+// balls, where G = J M⁻¹ Jᵀ, and V is the relative velocity that would result without λ (maximum
+// dissipation, Moreau 1977; Stewart & Trinkle 1996). Where it slid, it holds again.
+//
+// A spherical attachment transmits no torque except that of its damping, so only its mount slips.
+class Attachment {
+ public:
+  // `scene`: with a free object (Holding::kFree); must outlive this. Throws InputError if its
+  // cobot has too many joints.
+  Attachment(const AttachmentSpec& spec, const Scene& scene);
+
+  // Grips the object where it is in `data`.
+  void Grip(const mjData& data) noexcept;
+  void SetLimits(const GripLimits& limits) noexcept { limits_ = limits; }
+
+  // Adds the attachment's forces to those in qfrc_applied and xfrc_applied, which must be complete.
+  // Uses the state of the last mj_step1. Returns false on an error of the engine. No heap.
+  bool Hold(mjData* data) noexcept;
+  // Moves the place of the grip as far as the object slid, at the state after the step.
+  void Follow(const mjData& data) noexcept;
+
+  // Wrench of the object on the end-effector in the last Hold, about E, in axes of W [N, N·m].
+  const Wrench& load() const noexcept { return load_; }
+
+  void Archive(StateArchive& a) noexcept { a(grip_, first_, lost_, wrench_); }
+
+ private:
+  static constexpr int kMaxDof = kMaxCobotJoints + 6;
+  using DofVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxDof, 1>;
+  using DofMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxDof, kMaxDof>;
+  using DofJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, kMaxDof>;
+
+  bool is_open() const noexcept { return lost_ || (limits_.force <= 0 && limits_.torque <= 0); }
+  const mjModel* model() const noexcept { return scene_.model.get(); }
+  Pose PlaceOf(const mjData& data) const noexcept;
+  void Prepare(const mjData& data) noexcept;
+  void UpdateMobility(const mjData& data) noexcept;
+  Wrench Solve(mjData* data) noexcept;
+  Wrench WithinLimits(const Vector6& b, Wrench wrench) noexcept;
+
+  const Scene& scene_;
+  Vector3 p_OA_;
+  bool is_fixed_;
+  double damping_;  // of a spherical joint [N·m·s/rad]
+  GripLimits limits_;
+  Pose grip_;      // X_EA where the grip holds; its rotation is that of O
+  Vector3 first_;  // p_EA where it held first [m]
+  bool lost_ = false;
+  bool slides_ = false, turns_ = false;  // in the last Hold
+  Wrench load_ = Wrench::Zero();
+  Wrench wrench_ = Wrench::Zero();  // λ in the last Hold: on E, about A, in axes of W
+  // Workspace.
+  Vector3 p_WA_ = Vector3::Zero();
+  DofJacobian J_, other_;           // V_WE − V_WO at A, by the velocities
+  Vector6 bias_ = Vector6::Zero();  // J̇ v
+  DofMatrix M_, holding_;           // without and with contacts and friction
+  Eigen::LLT<DofMatrix> factor_, holding_factor_;
+  Matrix6 G_;  // mobility at A
+};
+
+}  // namespace predictor
