@@ -67,6 +67,40 @@ void AddCompare(CLI::App* app, Request* r) {
   compare->footer("Example:\n  predictor compare real_*.mcap --with emulated_*.mcap\n");
 }
 
+void AddEvaluate(CLI::App* app, Request* r) {
+  EvaluateOptions* o = &r->evaluate;
+  CLI::App* evaluate = AddCommand(
+      app, kGroup, "evaluate",
+      "Judge the person in a recording: posture, joint loads, scores, lifts, damage, fatigue", r,
+      [o] { return EvaluateCommand(*o); });
+  AddRecording(evaluate, &o->recording);
+  AddOption(evaluate, "Person", "--set", &o->set, "KEY=VALUE",
+            "Override a value of the recorded scenario, for example operator.body.height=1.62 "
+            "(repeatable)")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  AddOption(evaluate, "Person", "--against", &o->against, "RECORDING",
+            "Also compare with this recording of another design, for the same person");
+  evaluate
+      ->add_flag("--intervals,!--no-intervals", o->intervals,
+                 "Also evaluate 64 possible postures and bodies, for intervals and probabilities "
+                 "[default: on]")
+      ->group("Person");
+  evaluate
+      ->add_flag("--repeated", o->repeated,
+                 "In the real work this posture recurs four times a minute or more")
+      ->group("Work");
+  evaluate->add_flag("--held", o->held, "In the real work a posture is held for over a minute")
+      ->group("Work");
+  AddOption(evaluate, "Output", "-o,--output", &o->page, "FILE.html",
+            "Page to write [default: NAME.person.html]");
+  AddOption(evaluate, "Output", "--csv", &o->csv, "FILE.csv", "Also write all values over time");
+  AddOutput(evaluate, o);
+  evaluate->footer(
+      "Example:\n  predictor evaluate runs/box_9kg_2026-01-31_14-05-09.mcap --csv person.csv\n");
+}
+
 void AddVerify(CLI::App* app, Request* r) {
   RecordingOptions* o = &r->recording;
   CLI::App* verify =
@@ -196,6 +230,7 @@ void AddAnalysisCommands(CLI::App* app, Request* r) {
   AddCheck(app, r);
   AddReport(app, r);
   AddCompare(app, r);
+  AddEvaluate(app, r);
   AddVerify(app, r);
   AddTrial(app, r);
   AddIdentify(app, r);

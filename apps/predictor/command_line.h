@@ -22,6 +22,7 @@ struct Request {
   ReportOptions report;
   CompareOptions compare;
   ReproduceCommandOptions reproduce;
+  EvaluateOptions evaluate;
   HazardsCommandOptions hazards;
   SurveyOptions survey;
   DevicesOptions devices;

@@ -124,6 +124,17 @@ struct ReproduceCommandOptions : OutputOptions {
   std::string only;  // name of a single experiment; empty: all
 };
 
+// Input and output of `evaluate`.
+struct EvaluateOptions : OutputOptions {
+  std::string recording;
+  std::string against;           // a recording of another design; empty: none
+  std::vector<std::string> set;  // overrides of the recorded scenario, for body and stance
+  bool intervals = true;
+  bool repeated = false, held = false;  // see assessment::WorkPattern
+  std::string page;                     // empty: NAME.person.html
+  std::string csv;                      // empty: none
+};
+
 // Input and output of `hazards`.
 struct HazardsCommandOptions : OutputOptions {
   std::vector<std::string> scenarios;
@@ -182,6 +193,7 @@ int VerifyCommand(const RecordingOptions& options);
 int TrialCommand(const ScenarioOptions& options, const std::string& recording);
 // Returns the exit code kUnfit if a joint was rejected.
 int IdentifyCommand(const IdentifyCommandOptions& options);
+int EvaluateCommand(const EvaluateOptions& options);
 int HazardsCommand(const HazardsCommandOptions& options);
 int ReproduceCommand(const ReproduceCommandOptions& options);
 int SurveyAskCommand(const SurveyOptions& options);

@@ -1,6 +1,7 @@
 // The commands that convert, print and describe.
 #include <algorithm>
 
+#include "assessment/output.h"
 #include "command_line.h"
 #include "evaluation/summary.h"
 #include "scenario/machine.h"
@@ -88,6 +89,8 @@ void AddSchema(CLI::App* app, Request* r) {
   AddPrint(schema, "Commands", "machine", "Schema of machine files", r, MachineSchema);
   AddPrint(schema, "Commands", "summary", "Schema of the summary of a run (--json)", r,
            SummarySchema);
+  AddPrint(schema, "Commands", "evaluation", "Schema of the evaluation of a person (--json)", r,
+           assessment::AssessmentSchema);
 }
 
 // Prints the help of the command that `words` name.

@@ -181,26 +181,44 @@ def quantities_page(program, recording):
     return "\n\n".join(parts)
 
 
+def result_rows(part, path=""):
+    for key, value in part["properties"].items():
+        name = f"{path}.{key}" if path else key
+        if "properties" in value:
+            yield from result_rows(value, name)
+            continue
+        kind = value.get("$ref", "").rpartition("/")[2] or value["type"]
+        if isinstance(kind, list):
+            kind = " or ".join(kind)
+        yield (f"`{name}`", value.get("unit", ""), kind, value["description"])
+
+
 def summary_page(schema):
-    def rows(part, path=""):
-        for key, value in part["properties"].items():
-            name = f"{path}.{key}" if path else key
-            if "properties" in value:
-                yield from rows(value, name)
-                continue
-            kind = value.get("$ref", "").rpartition("/")[2] or value["type"]
-            if isinstance(kind, list):
-                kind = " or ".join(kind)
-            yield (f"`{name}`", value.get("unit", ""), kind, value["description"])
     head = ("key", "unit", "value", "meaning")
     defined = schema["$defs"]
     return "\n\n".join([
         "# Summary JSON", "What `--json` writes about a run, from `predictor schema summary`. "
         "A missing value is null, and so is a group in which every value is missing.",
-        table(head, rows(schema)),
+        table(head, result_rows(schema)),
         "A value *statistics* is a group: " + defined["statistics"]["description"] + " (`mean`, `std`, `max`). "
         "*Quantiles* are the median, 99 %, 99.9 % and the largest value (`p50`, `p99`, `p999`, `max`).",
-        "## A stop", "`stop` is the first stop, and `stops` lists all of them.", table(head, rows(defined["stop"]))])
+        "## A stop", "`stop` is the first stop, and `stops` lists all of them.", table(head, result_rows(defined["stop"]))])
+
+
+def evaluation_page(schema):
+    properties = schema["properties"]
+    quantities = [(f"`{name}`", value["description"]) for name, value in properties["quantities"]["properties"].items()]
+    one = next(iter(properties["quantities"]["properties"].values()))
+    sheet = next(iter(properties["worksheets"]["properties"].values()))
+    rest = {key: value for key, value in properties.items() if key not in ("quantities", "worksheets")}
+    head = ("key", "unit", "value", "meaning")
+    return "\n\n".join([
+        "# Evaluation JSON", "What `predictor evaluate --json` writes about the person, from `predictor schema evaluation`. "
+        "[Evaluate the person](../../how-to/evaluate-the-person.md) explains it.",
+        table(head, result_rows({"properties": rest})),
+        "## quantities", table(("key", "quantity and SI unit"), quantities),
+        "Each of them has these members:", table(head, result_rows(one)),
+        "## worksheets", "`RULA`, `REBA` and `OWAS` have these members each:", table(head, result_rows(sheet))])
 
 
 # ---- from the sources ----------------------------------------------------------------------------------------------
@@ -279,6 +297,7 @@ def main():
         "modules": modules_page(),
         "stop-causes": stop_causes_page(),
         "summary-json": summary_page(json_schema(program, "summary")),
+        "evaluation-json": evaluation_page(json_schema(program, "evaluation")),
         "cpp": "\n\n".join(["# C++ interface",
                             "The headers with which a program embeds the emulator, and those that an extension uses.",
                             *(f"## {h}\n\n```{{doxygenfile}} {pathlib.Path(h).name}\n```" for h in HEADERS)]),

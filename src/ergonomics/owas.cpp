@@ -34,9 +34,11 @@ OwasScore AssessOwas(OwasBack back, OwasArms arms, OwasLegs legs, OwasLoad load)
   score.category = Cell(kOwas[static_cast<int>(back) - 1][static_cast<int>(arms) - 1], column);
   score.contested = back == OwasBack::kTwisted && arms == OwasArms::kBothAboveShoulder &&
                     legs == OwasLegs::kWalking && load == OwasLoad::kAbove20Kg;
-  score.action = {score.category, kOwasActions[score.category - 1]};
+  score.action = OwasAction(score.category);
   return score;
 }
+
+Action OwasAction(int category) { return {category, kOwasActions[category - 1]}; }
 
 OwasScore AssessOwas(const BodyPosture& body, const ArmPosture& left, const ArmPosture& right,
                      double load, const PostureThresholds& thresholds) {

@@ -33,6 +33,9 @@ struct OwasScore {
   Action action;           // level = category
 };
 
+// The action for a category of 1 … 4.
+Action OwasAction(int category);
+
 OwasScore AssessOwas(OwasBack back, OwasArms arms, OwasLegs legs, OwasLoad load);
 
 // The classes of a measured posture. Kneeling and walking cannot be seen in it: pass them to the

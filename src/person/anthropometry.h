@@ -4,27 +4,13 @@
 // recalled from the literature; D, our choice.
 #pragma once
 
-#include <optional>
-
 #include "core/types.h"
+#include "scenario/scenario.h"
 
 namespace predictor::person {
 
-enum class Sex { kFemale, kMale };
-
 // What is known about a person. A measured length replaces the estimate from the height.
-struct PersonSpec {
-  Sex sex = Sex::kMale;
-  double height = 1.75;                     // standing, without shoes [m]
-  double mass = 75;                         // [kg]
-  std::optional<double> upper_arm;          // shoulder to elbow joint [m]
-  std::optional<double> forearm;            // elbow to wrist joint [m]
-  std::optional<double> hand;               // wrist joint to the third knuckle [m]
-  std::optional<double> shoulder_distance;  // between the shoulder joints [m]
-  std::optional<double> trunk;              // middle of the hip joints to the vertebra C7 [m]
-  std::optional<double> thigh;              // hip to knee joint [m]
-  std::optional<double> shank;              // knee to ankle joint [m]
-};
+using PersonSpec = BodySpec;
 
 // A rigid segment. Its axes, in the upright posture with hanging arms and thumbs forward: x
 // forward, y left, z up.

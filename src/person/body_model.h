@@ -70,12 +70,6 @@ struct BodyJoint {
   Vector3 inertia = Vector3::Zero();  // about the centre of mass, about x, y, z [kg·m²]
 };
 
-// How a hand holds its handle.
-enum class GripKind {
-  kPower,  // the fingers and the palm close around a bar
-  kHook,   // the bar hangs in the bent fingers
-};
-
 // The grip frame G in the axes of the hand: x along the bar towards the thumb, z from the knuckles
 // to the wrist. Its origin is the centre of the bar: power grip 0.9 of the hand's length from the
 // wrist and 0.025 m on the palm's side; hook grip 1.2 of the length and 0.02 m (D).

@@ -185,9 +185,11 @@ void RequirePushTests(const Machine& machine, const Scenario& scenario) {
 
 // A scenario cannot know where the ground of a laboratory is. A wrong height would falsify every
 // judgement of the person's posture.
-void StandOnGround(const Machine& machine, OperatorSpec* person) {
-  if (!machine.ground) person->stance.reset();
-  if (person->stance) person->stance->ground.z() = *machine.ground;
+void StandOnGround(const Machine& machine, Scenario* scenario) {
+  std::optional<StanceSpec>& stance = scenario->operator_.stance;
+  const std::optional<PoseSpec>& shift = scenario->environment.shift;
+  if (!machine.ground) stance.reset();
+  if (stance) stance->ground.z() = *machine.ground - (shift ? shift->xyz.z() : 0);
 }
 
 void ApplyMachine(const Machine& machine, Scenario* scenario) {
@@ -205,7 +207,7 @@ void ApplyMachine(const Machine& machine, Scenario* scenario) {
       !why.empty())
     Refuse(*scenario, "safety.stop_acceleration", "and safety.stop_jerk " + why);
   scenario->device.type = "real";
-  StandOnGround(machine, &scenario->operator_);
+  StandOnGround(machine, scenario);
   for (int hand = 0; hand < kHands; ++hand) {
     std::optional<ArmSpec>& arm = hand == 0 ? scenario->device.left : scenario->device.right;
     arm.reset();

@@ -117,7 +117,8 @@ void Fields(V& v, Machine& s) {
   });
   v("limits", s.limits, Part("limits that no scenario may exceed"));
   v("ground", s.ground,
-    Number("m", "height in W of the ground on which the person stands; null: not measured",
+    Number("m",
+           "height of the ground under the person, in the frame R of the bases; null: not measured",
            Within(10)));
   v("enabling", s.enabling,
     Part("device that a person holds while the arms may move; null: a key at the console"));

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "safety/stop.h"
+#include "scenario/scenario_io.h"
 #include "scenario/stop_budget.h"
 #include "scenario/two_arm_machine.h"
 
@@ -149,12 +150,18 @@ TEST(Machine, AnEnablingDeviceIsAtAnArmThatTellsItsInputs) {
 
 // Only a laboratory knows how high its handles are above the ground on which the person stands.
 TEST(Machine, TellsTheGroundOnWhichThePersonStands) {
-  Scenario scenario = Load("box_9kg.yaml");
+  Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/box_9kg.yaml",
+                                   {"safety.force=20", "safety.handle_speed=0.2"});
   ASSERT_TRUE(scenario.operator_.stance);
   const double x = scenario.operator_.stance->ground.x();
   Scenario measured = scenario;
   ApplyMachine(ParseMachine(std::string(kMachine) + "ground: -0.62\n", "lab.yaml"), &measured);
   EXPECT_EQ(measured.operator_.stance->ground, Vector3(x, 0.05, -0.62));
+  // The scene is 0.2 m above the frame of the bases.
+  Scenario shifted = scenario;
+  shifted.environment.shift = PoseSpec{.xyz = {0, 0, 0.2}};
+  ApplyMachine(ParseMachine(std::string(kMachine) + "ground: -0.62\n", "lab.yaml"), &shifted);
+  EXPECT_NEAR(shifted.operator_.stance->ground.z(), -0.82, 1e-12);
   ApplyMachine(ParseMachine(kMachine, "lab.yaml"), &scenario);
   EXPECT_FALSE(scenario.operator_.stance);
 }

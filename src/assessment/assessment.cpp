@@ -1,0 +1,243 @@
+#include "assessment/assessment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "assessment/person_chain.h"
+#include "core/error.h"
+
+namespace predictor::assessment {
+namespace {
+
+constexpr std::size_t kSampledStride = 20;  // samples between two evaluations of all persons: 5 Hz
+
+// The value below which a share p of the values lies.
+template <class T>
+T QuantileOf(std::vector<T> values, double p) {
+  const auto n = static_cast<double>(values.size());
+  const auto k = std::min(static_cast<std::size_t>(p * n), values.size() - 1);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
+  return values[k];
+}
+
+double MeanOf(const std::vector<double>& values) {
+  return std::reduce(values.begin(), values.end()) / static_cast<double>(values.size());
+}
+
+// Values of one quantity: values[time][person].
+using Table = std::vector<std::vector<double>>;
+
+// One value for each person, from that person's values over time.
+std::vector<double> OfEachPerson(const Table& table,
+                                 double (*of_time)(const std::vector<double>&)) {
+  std::vector<double> results;
+  for (std::size_t person = 0; person < table.front().size(); ++person) {
+    std::vector<double> values;
+    for (const auto& row : table) values.push_back(row[person]);
+    results.push_back(of_time(values));
+  }
+  return results;
+}
+
+void AddIntervals(const SampledChain& sampled, std::span<const PersonSample> samples,
+                  QuantityResult* result) {
+  Table table;
+  for (std::size_t k = 0; k < sampled.at.size(); ++k) {
+    std::vector<double>& row = table.emplace_back();
+    for (const Frame& frame : sampled.frames[k])
+      row.push_back(result->kind->of({frame, samples[sampled.at[k]]}));
+    std::vector<double> sorted = row;
+    const person::Interval interval = person::IntervalOf(sorted);
+    result->low.push_back(interval.low);
+    result->high.push_back(interval.high);
+  }
+  std::vector<double> means = OfEachPerson(table, MeanOf);
+  result->mean_interval = person::IntervalOf(means);
+  result->person_p95 = OfEachPerson(
+      table, [](const std::vector<double>& values) { return QuantileOf(values, 0.95); });
+  std::vector<double> sorted = result->person_p95;
+  result->p95_interval = person::IntervalOf(sorted);
+}
+
+QuantityResult QuantityOf(const QuantityKind& kind, const NominalChain& nominal,
+                          const SampledChain& sampled, std::span<const PersonSample> samples) {
+  QuantityResult result;
+  result.kind = &kind;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    result.values.push_back(kind.of({nominal.frames[i], samples[i]}));
+  result.mean = MeanOf(result.values);
+  result.p5 = QuantileOf(result.values, 0.05);
+  result.p95 = QuantileOf(result.values, 0.95);
+  result.max = *std::max_element(result.values.begin(), result.values.end());
+  if (!sampled.at.empty() && kind.origin != Origin::kMeasured)
+    AddIntervals(sampled, samples, &result);
+  return result;
+}
+
+void AddProbabilities(const SampledChain& sampled, WorksheetResult* result) {
+  for (const std::vector<Frame>& frames : sampled.frames) {
+    std::vector<double> scores;
+    const double weight =
+        1.0 / (static_cast<double>(frames.size()) * static_cast<double>(sampled.frames.size()));
+    for (const Frame& frame : frames) {
+      const int score = result->kind->of(frame);
+      result->probability[static_cast<std::size_t>(score)] += weight;
+      scores.push_back(score);
+    }
+    const person::Interval interval = person::IntervalOf(scores);
+    result->likely_low.push_back(interval.low);
+    result->likely_high.push_back(interval.high);
+  }
+}
+
+WorksheetResult WorksheetOf(const WorksheetKind& kind, const NominalChain& nominal,
+                            const SampledChain& sampled) {
+  WorksheetResult result;
+  result.kind = &kind;
+  const auto classes = static_cast<std::size_t>(kind.most) + 1;
+  result.share.assign(classes, 0);
+  result.probability.assign(sampled.at.empty() ? 0 : classes, 0);
+  for (const Frame& frame : nominal.frames) {
+    const int score = kind.of(frame);
+    result.values.push_back(score);
+    result.share[static_cast<std::size_t>(score)] +=
+        1.0 / static_cast<double>(nominal.frames.size());
+  }
+  result.worst = *std::max_element(result.values.begin(), result.values.end());
+  result.p95 = QuantileOf(result.values, 0.95);
+  if (!sampled.at.empty()) AddProbabilities(sampled, &result);
+  return result;
+}
+
+std::vector<double> SeriesOf(const NominalChain& nominal, double (*of)(const Frame&)) {
+  std::vector<double> values;
+  for (const Frame& frame : nominal.frames) values.push_back(of(frame));
+  return values;
+}
+
+// Every part without interruption begins and ends at rest, as the tools for damage expect.
+std::vector<double> WithRests(const std::vector<double>& values,
+                              std::span<const PersonSample> samples) {
+  std::vector<double> rested;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i == 0 || !samples[i].continues) rested.push_back(0);
+    rested.push_back(values[i]);
+  }
+  rested.push_back(0);
+  return rested;
+}
+
+void AddExposure(const NominalChain& nominal, std::span<const PersonSample> samples,
+                 Assessment* a) {
+  // The moment of the hands' forces alone about the lower back, without the weight of the trunk.
+  const std::vector<double> back = SeriesOf(
+      nominal, [](const Frame& f) { return std::abs(f.loads.overload[person::kTorsoFlexion]); });
+  a->damage.push_back(DamageOfMoment("LiFFT", "lower back", WithRests(back, samples), a->duration,
+                                     ergonomics::LiftDamage, ergonomics::kLiftRisk));
+  for (std::size_t h = 0; h < kHands; ++h) {
+    std::vector<double> moment;
+    for (const auto& of_both : nominal.shoulder_moment) moment.push_back(of_both[h]);
+    a->damage.push_back(DamageOfMoment("Shoulder Tool", std::string(kHandNames[h]) + " shoulder",
+                                       WithRests(moment, samples), a->duration,
+                                       ergonomics::ShoulderDamage, ergonomics::kShoulderRisk));
+  }
+}
+
+// A load over the whole run. While no hand holds a handle, the arms hang and rest.
+std::vector<double> OverRun(const std::vector<double>& held, std::span<const PersonSample> all) {
+  std::vector<double> load;
+  std::size_t next = 0;
+  for (const PersonSample& sample : all) load.push_back(IsHeld(sample) ? held[next++] : 0);
+  return load;
+}
+
+void AddFatigue(const NominalChain& nominal, std::span<const PersonSample> all, Assessment* a) {
+  using ergonomics::FatigueJoint;
+  const auto add = [&](const char* joint, FatigueJoint kind, double (*use)(const Frame&)) {
+    a->fatigue.push_back(FatigueOfLoad(joint, kind, OverRun(SeriesOf(nominal, use), all)));
+  };
+  add("left shoulder", FatigueJoint::kShoulder, [](const Frame& f) { return f.shoulder_use[0]; });
+  add("right shoulder", FatigueJoint::kShoulder, [](const Frame& f) { return f.shoulder_use[1]; });
+  add("left elbow", FatigueJoint::kElbow, [](const Frame& f) { return f.elbow_use[0]; });
+  add("right elbow", FatigueJoint::kElbow, [](const Frame& f) { return f.elbow_use[1]; });
+}
+
+void AddReach(const NominalChain& nominal, const SampledChain& sampled, Assessment* a) {
+  std::size_t reaching = 0;
+  for (const person::Posture& posture : nominal.postures) {
+    reaching += posture.reached ? 1 : 0;
+    a->worst_miss = std::max({a->worst_miss, posture.position_error[0], posture.position_error[1]});
+  }
+  a->reached = static_cast<double>(reaching) / static_cast<double>(nominal.postures.size());
+  double reached = 0, all = 0;
+  for (const auto& frames : sampled.frames)
+    for (const Frame& frame : frames) {
+      reached += frame.reached ? 1 : 0;
+      all += 1;
+    }
+  a->sampled_reached = all > 0 ? reached / all : 0;
+}
+
+void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) {
+  a->assumptions = {
+      "The feet stay where operator.stance puts them.",
+      "No head or elbow was measured: the posture follows from the hands and from comfort.",
+      std::string("For RULA and REBA, the postures are ") + (work.repeated ? "" : "not ") +
+          "repeated four times a minute and " + (work.held ? "" : "not ") +
+          "held for more than a minute.",
+      "Lifts occur as often as in this run, for at most one hour.",
+      "Strength is the mean of the person's sex."};
+  if (scenario.operator_.type == "virtual")
+    a->assumptions.emplace_back("The operator was simulated, without a body of its own.");
+  a->not_evaluable = {{"muscle forces", "no arm model with muscles is part of this version"},
+                      {"DUET (hand and forearm)", "the effort of the grip is not measured"},
+                      {"raised shoulders", "the shoulder girdle does not move in the model"}};
+  if (scenario.operator_.type == "browser")
+    a->not_evaluable.push_back({"the person at the page",
+                                "a mouse moved the handles, so the posture is that of a person "
+                                "who would have held them"});
+}
+
+}  // namespace
+
+Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
+                  const SampleCollector& run, const AssessOptions& options) {
+  if (run.samples().empty())
+    throw InputError(
+        "No simulated time passed in this run, so there is nothing to evaluate. Record a run that "
+        "reaches RUN.");
+  const std::vector<PersonSample> samples = Held(run.samples());
+  if (samples.empty())
+    throw InputError("No hand held a handle in this run, so there is nothing to evaluate.");
+  Assessment a;
+  a.scenario = scenario.name;
+  a.operator_is_simulated = scenario.operator_.type == "virtual";
+  a.setup = SetupOf(scenario, run.first());
+  a.duration = static_cast<double>(run.samples().size()) / kSampleRate;
+  a.held = static_cast<double>(samples.size()) / kSampleRate;
+  const double share = options.intervals ? 0.3 : 1;  // of the time that the nominal chain takes
+  const NominalChain nominal = RunNominal(a.setup, samples, options.work,
+                                          [&](double done) { options.progress(share * done); });
+  SampledChain sampled;
+  if (options.intervals)
+    sampled = RunSampled(a.setup, samples, nominal, kSampledStride, options.work,
+                         [&](double done) { options.progress(share + (1 - share) * done); });
+  for (const PersonSample& sample : samples) a.times.push_back(sample.body.time);
+  for (const std::size_t i : sampled.at) a.sampled_times.push_back(a.times[i]);
+  for (const QuantityKind& kind : Quantities())
+    a.quantities.push_back(QuantityOf(kind, nominal, sampled, samples));
+  for (const WorksheetKind& kind : Worksheets())
+    a.worksheets.push_back(WorksheetOf(kind, nominal, sampled));
+  AddReach(nominal, sampled, &a);
+  AddExposure(nominal, samples, &a);
+  AddFatigue(nominal, run.samples(), &a);
+  AddWords(scenario, options.work, &a);
+  if (object_mass)
+    a.lifts = LiftsOf(run.samples(), a.setup.stance, *object_mass, a.setup.body.sex);
+  else
+    a.not_evaluable.push_back({"lifting equations", "the mass of the object is not known"});
+  return a;
+}
+
+}  // namespace predictor::assessment

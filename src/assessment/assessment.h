@@ -1,0 +1,68 @@
+// What a recorded run means for the person: posture, loads, scores, lifts, damage and fatigue, each
+// with its origin and, where the posture is not determined by what is measured, with its
+// uncertainty.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "assessment/exposure.h"
+#include "assessment/lifts.h"
+#include "assessment/person_setup.h"
+#include "assessment/quantities.h"
+#include "person/posture_samples.h"
+
+namespace predictor::assessment {
+
+struct QuantityResult {
+  const QuantityKind* kind = nullptr;
+  double mean = 0, p5 = 0, p95 = 0, max = 0;  // of the nominal posture over time
+  // 90 % intervals over possible postures and bodies, of the mean and the 95th percentile.
+  std::optional<person::Interval> mean_interval, p95_interval;
+  std::vector<double> person_p95;  // of each possible person; the same persons in every assessment
+  std::vector<double> values;      // at Assessment::times
+  std::vector<double> low, high;   // 90 % interval at Assessment::sampled_times
+};
+
+struct WorksheetResult {
+  const WorksheetKind* kind = nullptr;
+  int worst = 0, p95 = 0;                       // of the nominal posture
+  std::vector<double> share;                    // of time, by score (index 0: score 0)
+  std::vector<double> probability;              // mean over time of the probability of each score
+  std::vector<int> values;                      // at Assessment::times
+  std::vector<double> likely_low, likely_high;  // 90 % of the postures, at sampled_times
+};
+
+struct Assessment {
+  std::string recording, scenario;
+  bool operator_is_simulated = false;
+  PersonSetup setup;
+  double duration = 0;         // simulated [s]
+  double held = 0;             // of it, while a hand held a handle; only this is judged [s]
+  double reached = 0;          // share of the time in which the body reaches the handles
+  double sampled_reached = 0;  // the same over the possible postures
+  double worst_miss = 0;       // largest distance that is missing [m]
+  std::vector<double> times, sampled_times;  // [s]
+  std::vector<QuantityResult> quantities;    // in the order of Quantities()
+  std::vector<WorksheetResult> worksheets;   // in the order of Worksheets()
+  std::vector<Lift> lifts;
+  std::vector<DamageResult> damage;
+  std::vector<FatigueResult> fatigue;
+  std::vector<std::string> assumptions;
+  std::vector<NotEvaluable> not_evaluable;
+};
+
+struct AssessOptions {
+  bool intervals = true;  // otherwise only the nominal posture
+  WorkPattern work;
+  std::function<void(double share)> progress = [](double) {};
+};
+
+// Judges the samples of a run. Throws InputError if the person or the place is not known, no adult
+// has such a body, or there are no samples.
+Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
+                  const SampleCollector& run, const AssessOptions& options);
+
+}  // namespace predictor::assessment

@@ -1,0 +1,31 @@
+// The difference between two designs for the same person.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "assessment/assessment.h"
+
+namespace predictor::assessment {
+
+struct Difference {
+  const QuantityKind* kind = nullptr;
+  double a = 0, b = 0;  // 95th percentiles over time, of the nominal posture
+  // 90 % interval of a - b over the possible persons. Each of them is compared with itself, so most
+  // of the uncertainty about the posture cancels.
+  std::optional<person::Interval> interval;
+  double share_lower = 0;  // of the possible persons for whom a < b
+};
+
+struct Comparison {
+  std::string a, b;  // recordings
+  std::vector<Difference> differences;
+};
+
+// Throws InputError if the bodies differ: then the difference would not be that of the designs.
+Comparison Compare(const Assessment& a, const Assessment& b);
+
+std::string ComparisonText(const Comparison& comparison);
+
+}  // namespace predictor::assessment

@@ -1,0 +1,63 @@
+#include "assessment/exposure.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "assessment/hand_samples.h"
+
+namespace predictor::assessment {
+namespace {
+
+constexpr double kShift = 8 * 3600;  // [s]
+constexpr std::size_t kStride = 10;  // samples per step of fatigue, which changes within minutes
+
+// Loads at 10 Hz, as means of the samples at 100 Hz.
+std::vector<double> Coarse(std::span<const double> load) {
+  std::vector<double> coarse;
+  for (std::size_t i = 0; i < load.size(); i += kStride) {
+    const auto part = load.subspan(i, std::min(kStride, load.size() - i));
+    coarse.push_back(std::reduce(part.begin(), part.end()) / static_cast<double>(part.size()));
+  }
+  return coarse;
+}
+
+}  // namespace
+
+DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
+                            std::span<const double> moment, double duration,
+                            double (*per_cycle)(double), const ergonomics::DamageRisk& risk) {
+  DamageResult result = {tool, part};
+  const auto cycles = ergonomics::CountRainflow(moment, kMinRange);
+  result.per_run = ergonomics::DamageOf(cycles, per_cycle);
+  result.day_share = ergonomics::ShareOfReferenceDay(result.per_run, risk);
+  const double shift = ergonomics::DamageOfShift(result.per_run, duration, kShift);
+  result.shift_share = ergonomics::ShareOfReferenceDay(shift, risk);
+  result.probability = risk.Probability(shift);
+  return result;
+}
+
+FatigueResult FatigueOfLoad(const std::string& joint, ergonomics::FatigueJoint kind,
+                            std::span<const double> load) {
+  FatigueResult result = {joint};
+  const std::vector<double> coarse = Coarse(load);
+  const auto rates = ergonomics::FatigueRatesOf(kind);
+  constexpr double kStep = kStride / kSampleRate;  // [s]
+  ergonomics::Compartments state;
+  result.time_to_limit = std::numeric_limits<double>::infinity();
+  double time = 0;
+  const auto run = [&] {
+    for (const double u : coarse) {
+      if (u > state.capacity() && time < result.time_to_limit) result.time_to_limit = time;
+      state = ergonomics::Fatigued(state, std::min(u, 1.0), kStep, rates);
+      time += kStep;
+    }
+  };
+  run();
+  result.capacity = state.capacity();
+  result.mean_load = std::reduce(coarse.begin(), coarse.end()) / static_cast<double>(coarse.size());
+  while (time < kShift && time <= result.time_to_limit) run();
+  return result;
+}
+
+}  // namespace predictor::assessment

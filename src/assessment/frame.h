@@ -1,0 +1,45 @@
+// Everything that is judged of the person at one time, from posture and loads.
+#pragma once
+
+#include <array>
+
+#include "ergonomics/owas.h"
+#include "ergonomics/reba.h"
+#include "ergonomics/rula.h"
+#include "person/body_loads.h"
+#include "person/posture_angles.h"
+#include "scenario/scenario.h"
+
+namespace predictor::assessment {
+
+// What no recording contains about the work. These are assumptions.
+struct WorkPattern {
+  bool repeated = false;  // the same posture at least four times a minute
+  bool held = false;      // a posture static for more than a minute
+  ergonomics::Coupling coupling = ergonomics::Coupling::kGood;
+};
+
+struct Frame {
+  person::PostureAngles angles;
+  person::BodyLoads loads;
+  // The worse one of both arms that hold a handle; without one, of both arms.
+  ergonomics::RulaScores rula;
+  ergonomics::RebaScores reba;
+  ergonomics::OwasScore owas;
+  // Torque over the mean strength of the sex in its direction (flexion or extension).
+  std::array<double, kHands> elbow_use = {}, shoulder_use = {};
+  bool reached = false;  // the hands of the posture reach the handles
+};
+
+struct FrameInput {
+  const person::BodySample& sample;
+  std::array<double, kHands> force_rate;  // of each hand, of the force at 100 Hz [N/s]
+};
+
+Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,
+              const person::BodyLoads& loads, bool reached, Sex sex, const WorkPattern& work);
+
+// A force that rises faster counts as a shock in RULA and REBA (design choice) [N/s].
+inline constexpr double kShockRate = 300;
+
+}  // namespace predictor::assessment

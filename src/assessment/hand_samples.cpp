@@ -1,0 +1,84 @@
+#include "assessment/hand_samples.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace predictor::assessment {
+namespace {
+
+Vector3 ForceIn(const HandRecord& hand) {
+  return Eigen::Map<const Vector6>(hand.wrench.data()).head<3>();
+}
+
+person::HandSample MeanOf(const std::vector<TickRecord>& ticks, std::size_t hand) {
+  person::HandSample mean;
+  const auto n = static_cast<double>(ticks.size());
+  double gripping = 0;
+  for (const TickRecord& tick : ticks) {
+    const HandRecord& h = tick.hands[hand];
+    if (!h.present) return mean;
+    gripping += h.gripping;
+    mean.X_WD.p += FromRecord(h.real.pose).p / n;
+    mean.F_D_W += Eigen::Map<const Vector6>(h.wrench.data()) / n;
+  }
+  mean.X_WD.q = FromRecord(ticks[ticks.size() / 2].hands[hand].real.pose).q;
+  mean.present = gripping > n / 2;
+  return mean;
+}
+
+}  // namespace
+
+SampleCollector::SampleCollector(const Scenario& scenario)
+    : ticks_per_sample_(
+          static_cast<std::uint64_t>(std::max(1.0, std::round(scenario.rate / kSampleRate)))),
+      dt_(1 / scenario.rate) {
+  pending_.reserve(ticks_per_sample_);
+}
+
+void SampleCollector::Add(const TickRecord& record) {
+  const bool follows = pending_.empty() || record.run_time < pending_.back().run_time + 1.5 * dt_;
+  if (!record.ran || !follows) {
+    // A part of a sample would have another bandwidth, so it is dropped.
+    interrupted_ = interrupted_ || !samples_.empty() || !pending_.empty();
+    pending_.clear();
+  }
+  if (!record.ran) return;
+  if (first_.tick == 0) first_ = record;
+  pending_.push_back(record);
+  if (pending_.size() == ticks_per_sample_) Close();
+}
+
+void SampleCollector::Close() {
+  PersonSample sample;
+  sample.body.time = pending_[pending_.size() / 2].run_time;
+  for (std::size_t h = 0; h < kHands; ++h) {
+    sample.body.hands[h] = MeanOf(pending_, h);
+    for (const TickRecord& tick : pending_)
+      if (tick.hands[h].present)
+        sample.peak_force[h] = std::max(sample.peak_force[h], ForceIn(tick.hands[h]).norm());
+  }
+  const auto same = [&](std::size_t h) {
+    return sample.body.hands[h].present == samples_.back().body.hands[h].present;
+  };
+  sample.continues = !interrupted_ && (samples_.empty() || (same(0) && same(1)));
+  interrupted_ = false;
+  samples_.push_back(sample);
+  pending_.clear();
+}
+
+std::vector<PersonSample> Held(const std::vector<PersonSample>& samples) {
+  std::vector<PersonSample> held;
+  bool gap = false;
+  for (const PersonSample& sample : samples) {
+    if (!IsHeld(sample)) {
+      gap = true;
+      continue;
+    }
+    held.push_back(sample);
+    if (gap) held.back().continues = false;
+    gap = false;
+  }
+  return held;
+}
+
+}  // namespace predictor::assessment

@@ -1,0 +1,133 @@
+#include <cmath>
+
+#include "assessment/output.h"
+#include "core/format.h"
+#include "core/text.h"
+#include "core/units.h"
+
+namespace predictor::assessment {
+namespace {
+
+std::string Value(const QuantityKind& kind, double x) {
+  const std::string text = Formatted("%.*f", kind.unit.decimals, kind.unit.factor * x);
+  return text == "-0" ? "0" : text;
+}
+
+std::string RangeText(const QuantityKind& kind, const std::optional<person::Interval>& range) {
+  if (!range) return "";
+  return Value(kind, range->low) + " … " + Value(kind, range->high);
+}
+
+void AppendQuantities(const Assessment& a, std::string* text) {
+  AppendLine(text, "%-34s %8s %8s %8s %8s  %-17s %s", "", "mean", "p5", "p95", "max", "p95 (90 %)",
+             "origin");
+  std::string group;
+  for (const QuantityResult& q : a.quantities) {
+    const QuantityKind& kind = *q.kind;
+    if (group != kind.group) AppendLine(text, "%s", kind.group);
+    group = kind.group;
+    const std::string name = WithUnit(std::string("  ") + kind.label, kind.unit);
+    AppendLine(text, "%-34s %8s %8s %8s %8s  %-17s %s", name.c_str(), Value(kind, q.mean).c_str(),
+               Value(kind, q.p5).c_str(), Value(kind, q.p95).c_str(), Value(kind, q.max).c_str(),
+               RangeText(kind, q.p95_interval).c_str(), Name(kind.origin));
+  }
+}
+
+void AppendWorksheets(const Assessment& a, std::string* text) {
+  AppendLine(text, "\nScores (standard)");
+  for (const WorksheetResult& w : a.worksheets) {
+    AppendLine(text, "  %s: %d at worst, %d for 95 %% of the time. %s", w.kind->name, w.worst,
+               w.p95, w.kind->action(w.p95).sentence);
+    std::string shares;
+    for (std::size_t score = 1; score < w.share.size(); ++score) {
+      const double likely = w.probability.empty() ? 0 : w.probability[score];
+      if (w.share[score] < 0.005 && likely < 0.005) continue;
+      shares += shares.empty() ? "    score " : ", ";
+      Append(&shares, "%zu: %.0f %%", score, 100 * w.share[score]);
+      if (!w.probability.empty()) Append(&shares, " (probability %.0f %%)", 100 * likely);
+    }
+    AppendLine(text, "%s", shares.c_str());
+  }
+}
+
+template <class T>
+void AppendSentences(const char* title, const std::vector<T>& list, std::string* text) {
+  if (list.empty()) return;
+  AppendLine(text, "\n%s", title);
+  for (const T& entry : list) AppendLine(text, "  %s", Sentence(entry).c_str());
+}
+
+std::string Index(double index) {
+  return std::isfinite(index) ? Formatted("%.2f", index) : "outside the equation's range";
+}
+
+}  // namespace
+
+std::string OriginWords() {
+  return "Measured: by the sensors of the arms; modelled: by the model of the body; standard: by a "
+         "published method, from measured and modelled values";
+}
+
+std::string OperatorSentence(const Assessment& a) {
+  return a.operator_is_simulated ? "The operator was simulated." : "A person held the handles.";
+}
+
+std::string ReachSentence(const Assessment& a) {
+  std::string text = Formatted(
+      "A hand held a handle for %.1f of %.1f s, and only this time is judged. The body reaches the "
+      "handles for %.0f %% of it",
+      a.held, a.duration, 100 * a.reached);
+  if (a.worst_miss > 5e-4) Append(&text, " and misses them by up to %.0f mm", 1e3 * a.worst_miss);
+  if (!a.sampled_times.empty())
+    Append(&text, ", for %.0f %% of the possible postures", 100 * a.sampled_reached);
+  return text + ".";
+}
+
+std::string Sentence(const Lift& lift) {
+  return Formatted(
+      "%.1f to %.1f s, from %.2f to %.2f m above the ground: the hands carry %.1f kg. Lifting "
+      "index "
+      "%s (%s), %s without the cobot. %.0f %% of this sex accept it for a day (LM-MMH%s).",
+      lift.begin, lift.end, lift.origin.height, lift.destination.height,
+      lift.vertical_force / kStandardGravity, Index(lift.niosh.carried.index).c_str(),
+      ergonomics::AssistedLift::kCarriedLabel, Index(lift.niosh.unassisted.index).c_str(),
+      100 * lift.share_that_accepts, lift.acceptable.outside ? ", limited to its range" : "");
+}
+
+std::string Sentence(const DamageResult& damage) {
+  return Formatted(
+      "%s, %s: one run costs %.3g %% of a reference day, a shift of such runs %.3g %%.",
+      damage.tool.c_str(), damage.part.c_str(), 100 * damage.day_share, 100 * damage.shift_share);
+}
+
+std::string Sentence(const FatigueResult& fatigue) {
+  std::string text =
+      Formatted("%s: %.1f %% of strength on average, %.1f %% of strength left.",
+                fatigue.joint.c_str(), 100 * fatigue.mean_load, 100 * fatigue.capacity);
+  if (std::isfinite(fatigue.time_to_limit))
+    Append(&text, " Repeated without a break, the run is too much after %.0f min.",
+           fatigue.time_to_limit / 60);
+  else
+    text += " Repeated without a break, the run stays possible for 8 h.";
+  return text;
+}
+
+std::string AssessmentText(const Assessment& a) {
+  std::string text;
+  AppendLine(&text, "%s", Printable(a.scenario).c_str());
+  AppendLine(&text, "%s %s", OperatorSentence(a).c_str(), ReachSentence(a).c_str());
+  AppendLine(&text, "%s.\n", OriginWords().c_str());
+  AppendQuantities(a, &text);
+  AppendWorksheets(a, &text);
+  AppendSentences("Lifts (standard)", a.lifts, &text);
+  AppendSentences("Cumulative damage (standard)", a.damage, &text);
+  AppendSentences("Fatigue, 3CC-r (modelled)", a.fatigue, &text);
+  AppendLine(&text, "\nAssumptions");
+  for (const std::string& line : a.assumptions) AppendLine(&text, "  %s", line.c_str());
+  AppendLine(&text, "Not evaluable");
+  for (const NotEvaluable& n : a.not_evaluable)
+    AppendLine(&text, "  %s: %s.", n.what.c_str(), n.why.c_str());
+  return text;
+}
+
+}  // namespace predictor::assessment

@@ -1,0 +1,106 @@
+#include "assessment/person_chain.h"
+
+#include "person/body_model.h"
+#include "person/posture_solver.h"
+
+namespace predictor::assessment {
+namespace {
+
+using person::ArmJoint;
+
+std::vector<person::Posture> PosturesOf(const PersonSetup& setup,
+                                        std::span<const PersonSample> samples,
+                                        const std::function<void(double)>& progress) {
+  const person::PostureSolver solver(person::BodyModel(setup.body), setup.stance, setup.grips);
+  std::vector<person::Posture> postures;
+  postures.reserve(samples.size());
+  for (const PersonSample& sample : samples) {
+    postures.push_back(postures.empty() ? solver.Solve(sample.body)
+                                        : solver.Solve(sample.body, postures.back().q));
+    progress(static_cast<double>(postures.size()) / static_cast<double>(samples.size()));
+  }
+  return postures;
+}
+
+// Smooths each part without interruption by itself.
+std::vector<person::BodyMotion> MotionsOf(const std::vector<person::Posture>& postures,
+                                          std::span<const PersonSample> samples) {
+  std::vector<person::BodyMotion> motions;
+  for (std::size_t begin = 0, end = 0; begin < postures.size(); begin = end) {
+    end = begin + 1;
+    while (end < postures.size() && samples[end].continues) ++end;
+    std::vector<person::BodyVector> q;
+    for (std::size_t i = begin; i < end; ++i) q.push_back(postures[i].q);
+    const auto part = person::SmoothMotion(q, 1 / kSampleRate);
+    motions.insert(motions.end(), part.begin(), part.end());
+  }
+  return motions;
+}
+
+std::array<double, kHands> ForceRates(std::span<const PersonSample> samples, std::size_t i) {
+  std::array<double, kHands> rates = {};
+  if (i == 0 || !samples[i].continues) return rates;
+  for (std::size_t h = 0; h < kHands; ++h) {
+    const auto& now = samples[i].body.hands[h];
+    const auto& before = samples[i - 1].body.hands[h];
+    if (now.present && before.present)
+      rates[h] = (now.F_D_W - before.F_D_W).head<3>().norm() * kSampleRate;
+  }
+  return rates;
+}
+
+std::array<double, kHands> ShoulderMoments(const person::BodyModel& model,
+                                           const person::BodyMotion& motion,
+                                           const person::BodySample& sample,
+                                           const person::Stance& stance) {
+  const auto wrenches = person::WrenchesOn(sample, stance);
+  const auto loads = person::InverseDynamics(model, motion.q, motion.v, motion.a, wrenches);
+  std::array<double, kHands> moments;
+  for (int hand = 0; hand < kHands; ++hand) {
+    const auto shoulder = static_cast<std::size_t>(person::Of(hand, ArmJoint::kShoulderFlexion));
+    moments[static_cast<std::size_t>(hand)] = loads.moment[shoulder].norm();
+  }
+  return moments;
+}
+
+}  // namespace
+
+NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> samples,
+                        const WorkPattern& work, const std::function<void(double)>& progress) {
+  NominalChain chain;
+  chain.postures = PosturesOf(setup, samples, progress);
+  chain.motions = MotionsOf(chain.postures, samples);
+  const person::BodyModel model(setup.body);
+  const person::BodyDynamics dynamics(model, setup.stance);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const person::BodySample& sample = samples[i].body;
+    const person::BodyMotion& motion = chain.motions[i];
+    chain.frames.push_back(FrameOf(
+        {sample, ForceRates(samples, i)}, person::AnglesOf(model, motion.q, setup.stance.width),
+        dynamics.Evaluate(motion, sample), chain.postures[i].reached, setup.body.sex, work));
+    chain.shoulder_moment.push_back(ShoulderMoments(model, motion, sample, setup.stance));
+  }
+  return chain;
+}
+
+SampledChain RunSampled(const PersonSetup& setup, std::span<const PersonSample> samples,
+                        const NominalChain& nominal, std::size_t stride, const WorkPattern& work,
+                        const std::function<void(double)>& progress) {
+  const person::PostureSampler sampler(setup.body, setup.stance, setup.grips);
+  SampledChain chain;
+  for (std::size_t i = 0; i < samples.size(); i += stride) {
+    const person::BodySample& sample = samples[i].body;
+    const person::SampledBody body = sampler.Evaluate(sample, nominal.motions[i]);
+    std::vector<Frame> frames;
+    frames.reserve(body.samples.size());
+    for (const person::SampledPosture& one : body.samples)
+      frames.push_back(FrameOf({sample, ForceRates(samples, i)}, one.angles, one.loads, one.reached,
+                               setup.body.sex, work));
+    chain.at.push_back(i);
+    chain.frames.push_back(std::move(frames));
+    progress(static_cast<double>(i + 1) / static_cast<double>(samples.size()));
+  }
+  return chain;
+}
+
+}  // namespace predictor::assessment

@@ -1,0 +1,34 @@
+// The chain from the samples of a run to frames: posture, motion, loads, scores.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "assessment/frame.h"
+#include "assessment/hand_samples.h"
+#include "assessment/person_setup.h"
+#include "person/posture_samples.h"
+
+namespace predictor::assessment {
+
+// The nominal person at each sample.
+struct NominalChain {
+  std::vector<person::Posture> postures;
+  std::vector<person::BodyMotion> motions;
+  std::vector<Frame> frames;
+  std::vector<std::array<double, kHands>> shoulder_moment;  // of all that hangs on it [N·m]
+};
+NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> samples,
+                        const WorkPattern& work, const std::function<void(double)>& progress);
+
+// All possible persons at every `stride`-th sample: frames[time][person].
+struct SampledChain {
+  std::vector<std::size_t> at;  // samples
+  std::vector<std::vector<Frame>> frames;
+};
+SampledChain RunSampled(const PersonSetup& setup, std::span<const PersonSample> samples,
+                        const NominalChain& nominal, std::size_t stride, const WorkPattern& work,
+                        const std::function<void(double)>& progress);
+
+}  // namespace predictor::assessment

@@ -1,0 +1,157 @@
+#include "assessment/assessment.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "assessment/output.h"
+#include "assessment/person_chain.h"
+#include "assessment/samples.h"
+#include "core/error.h"
+
+namespace predictor::assessment {
+namespace {
+
+Assessment Judge(double force, bool intervals = false, const BodySpec& body = {}) {
+  Scenario scenario = PersonScenario();
+  scenario.operator_.body = body;
+  const SampleCollector run =
+      Collect(scenario, 1, [&](std::uint64_t tick) { return RecordOf(tick, 1.0, force); });
+  return Assess(scenario, 9, run, {.intervals = intervals});
+}
+
+const QuantityResult& Find(const Assessment& a, const std::string& path) {
+  for (const QuantityResult& q : a.quantities)
+    if (path == q.kind->path) return q;
+  throw std::out_of_range(path);
+}
+
+// Equilibrium: what both hands carry turns the upper body forward about the disc, with the
+// horizontal distance as its lever. The posture does not depend on the force.
+TEST(Assessment, TheBackHoldsTheForceTimesItsLever) {
+  const Scenario scenario = PersonScenario();
+  const SampleCollector run =
+      Collect(scenario, 1, [&](std::uint64_t tick) { return RecordOf(tick, 1.0, 40); });
+  const PersonSetup setup = SetupOf(scenario, run.first());
+  const NominalChain chain = RunNominal(setup, run.samples(), {}, [](double) {});
+  const person::BodyModel model(setup.body);
+  const person::BodyVector& q = chain.postures.back().q;
+  ASSERT_TRUE(chain.postures.back().reached);
+  const Vector3 disc = person::Place(model, q).p[person::kTorsoFlexion];
+  const double lever = 0.45 - disc.x();  // the hands are 0.45 m before the middle of the ankles
+  const double moment = Find(Judge(40), "lower_back.flexion_moment_nm").mean -
+                        Find(Judge(0), "lower_back.flexion_moment_nm").mean;
+  EXPECT_NEAR(moment, 2 * 40 * lever * std::cos(q[person::kPelvisYaw]), 1e-6);
+  EXPECT_NEAR(std::abs(chain.frames.back().loads.overload[person::kTorsoFlexion]), moment, 1e-6);
+}
+
+TEST(Assessment, MeasuredForcesHaveNoIntervalAndModelledValuesHaveOne) {
+  const Assessment a = Judge(20, true);
+  const QuantityResult& force = Find(a, "hands.left.force_n");
+  EXPECT_NEAR(force.mean, 20, 1e-9);
+  EXPECT_FALSE(force.p95_interval);
+  for (const QuantityResult& q : a.quantities) {
+    if (q.kind->origin == Origin::kMeasured) continue;
+    ASSERT_TRUE(q.p95_interval) << q.kind->path;
+    EXPECT_LT(q.p95_interval->low, q.p95_interval->high) << q.kind->path;
+  }
+  for (const WorksheetResult& w : a.worksheets) {
+    double sum = 0, time = 0;
+    for (const double p : w.probability) sum += p;
+    for (const double p : w.share) time += p;
+    EXPECT_NEAR(sum, 1, 1e-9) << w.kind->name;
+    EXPECT_NEAR(time, 1, 1e-9) << w.kind->name;
+  }
+}
+
+TEST(Assessment, AHigherForceScoresNoBetter) {
+  const Assessment light = Judge(5), heavy = Judge(120);
+  for (std::size_t i = 0; i < light.worksheets.size(); ++i)
+    EXPECT_LE(light.worksheets[i].worst, heavy.worksheets[i].worst);
+  EXPECT_GT(heavy.worksheets[0].worst, light.worksheets[0].worst);
+}
+
+TEST(Assessment, RefusesAnAbsurdBodyAndAnEmptyRun) {
+  EXPECT_THROW(Judge(0, false, {.height = 5, .mass = 75}), InputError);
+  const Scenario scenario = PersonScenario();
+  EXPECT_THROW(Assess(scenario, 9, SampleCollector(scenario), {}), InputError);
+}
+
+TEST(Assessment, SaysWhatItCouldNotJudge) {
+  Scenario scenario = PersonScenario();
+  const SampleCollector run =
+      Collect(scenario, 1, [&](std::uint64_t tick) { return RecordOf(tick, 1.0, 5); });
+  const Assessment a = Assess(scenario, {}, run, {.intervals = false});
+  bool lifting = false;
+  for (const NotEvaluable& n : a.not_evaluable) lifting = lifting || n.what == "lifting equations";
+  EXPECT_TRUE(lifting);
+}
+
+// A possible person with more force in the hands has the larger load of the back, in each posture.
+TEST(Assessment, DesignsAreComparedForTheSamePossiblePersons) {
+  const Comparison comparison = Compare(Judge(5, true), Judge(40, true));
+  for (const Difference& d : comparison.differences) {
+    if (std::string(d.kind->path) != "lower_back.flexion_moment_nm") continue;
+    ASSERT_TRUE(d.interval);
+    EXPECT_LT(d.interval->high, 0);
+    EXPECT_NEAR(d.share_lower, 1, 1e-9);
+    // Narrower than the difference of independent persons would be.
+    const person::Interval heavy = *Find(Judge(40, true), d.kind->path).p95_interval;
+    EXPECT_LT(d.interval->high - d.interval->low, heavy.high - heavy.low);
+  }
+  EXPECT_THROW(Compare(Judge(5), Judge(5, false, {.height = 1.6, .mass = 60})), InputError);
+}
+
+// ---- output -----------------------------------------------------------------------------------
+
+using Json = nlohmann::json;
+
+// Every member of `value` is described, and every required member is present.
+void ExpectDescribed(const Json& value, const Json& schema, const std::string& path) {
+  if (value.is_object() && schema.contains("properties")) {
+    for (const auto& [key, member] : value.items()) {
+      ASSERT_TRUE(schema["properties"].contains(key)) << path << '/' << key;
+      ExpectDescribed(member, schema["properties"][key], path + '/' + key);
+    }
+    for (const auto& key : schema["required"])
+      EXPECT_TRUE(value.contains(key.get<std::string>())) << path << '/' << key;
+  }
+  if (value.is_array() && schema.contains("items"))
+    for (const Json& item : value) ExpectDescribed(item, schema["items"], path + "/…");
+}
+
+TEST(AssessmentOutput, JsonIsWhatItsSchemaDescribes) {
+  const Json schema = Json::parse(AssessmentSchema());
+  const Json json = Json::parse(AssessmentJson(Judge(20, true)));
+  ExpectDescribed(json, schema, "");
+  EXPECT_EQ(json["quantities"]["hands.left.force_n"]["origin"], "measured");
+  EXPECT_NEAR(json["quantities"]["hands.left.force_n"]["mean"].get<double>(), 20, 1e-9);
+}
+
+TEST(AssessmentOutput, CsvHasARowForEachTimeAndEqualColumns) {
+  const Assessment a = Judge(20, true);
+  const std::string csv = AssessmentCsv(a);
+  std::vector<long> commas;
+  std::size_t begin = 0;
+  for (std::size_t end; (end = csv.find('\n', begin)) != std::string::npos; begin = end + 1)
+    commas.push_back(std::count(csv.begin() + static_cast<long>(begin),
+                                csv.begin() + static_cast<long>(end), ','));
+  ASSERT_EQ(commas.size(), a.times.size() + 1);
+  for (const long n : commas) EXPECT_EQ(n, commas[0]);
+}
+
+TEST(AssessmentOutput, TextAndPageLabelEveryNumber) {
+  const Assessment a = Judge(20, true);
+  const std::string text = AssessmentText(a), page = AssessmentPage(a, "1.0");
+  for (const QuantityResult& q : a.quantities) {
+    EXPECT_NE(text.find(q.kind->label), std::string::npos) << q.kind->label;
+    EXPECT_NE(page.find(q.kind->label), std::string::npos) << q.kind->label;
+  }
+  for (const char* word : {"measured", "modelled", "standard", "Not evaluable", "simulated"}) {
+    EXPECT_NE(text.find(word), std::string::npos) << word;
+    EXPECT_NE(page.find(word), std::string::npos) << word;
+  }
+}
+
+}  // namespace
+}  // namespace predictor::assessment

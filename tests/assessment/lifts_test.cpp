@@ -1,0 +1,66 @@
+#include "assessment/lifts.h"
+
+#include <gtest/gtest.h>
+
+#include "assessment/samples.h"
+
+namespace predictor::assessment {
+namespace {
+
+// Heights over time; both hands together carry 98.1 N.
+std::vector<Lift> LiftsIn(
+    double duration, const std::function<double(double)>& height,
+    const std::function<bool(double)>& holds = [](double) { return true; }) {
+  const Scenario scenario = PersonScenario();
+  const SampleCollector run = Collect(scenario, duration, [&](std::uint64_t tick) {
+    const double t = 1e-3 * static_cast<double>(tick);
+    TickRecord record = RecordOf(tick, height(t), 49.05);
+    for (HandRecord& hand : record.hands) hand.gripping = holds(t) ? 1 : 0;
+    return record;
+  });
+  const PersonSetup setup = SetupOf(scenario, run.first());
+  return LiftsOf(run.samples(), setup.stance, 18, Sex::kMale);
+}
+
+// From 0.7 to 1.1 m within two seconds.
+double OneLift(double t) {
+  const double s = std::clamp((t - 1) / 2, 0.0, 1.0);
+  return 0.7 + 0.4 * s * s * s * (10 + s * (6 * s - 15));
+}
+
+TEST(Lifts, HaveOriginDestinationAndTheCarriedWeight) {
+  const std::vector<Lift> lifts = LiftsIn(6, OneLift);
+  ASSERT_EQ(lifts.size(), 1U);
+  EXPECT_NEAR(lifts[0].origin.height, 0.7, 0.001);
+  EXPECT_NEAR(lifts[0].destination.height, 1.1, 0.011);
+  EXPECT_NEAR(lifts[0].origin.horizontal, 0.45, 1e-9);
+  EXPECT_NEAR(lifts[0].origin.asymmetry, 0, 1e-9);
+  EXPECT_NEAR(lifts[0].vertical_force, 98.1, 1e-9);
+}
+
+// The recommended weight limit by hand, for ten lifts a minute (one in 6 s), less than an hour:
+// 23 kg · 25/45 · (1 − 0.003·|70 − 75|) · (0.82 + 4.5/40) · 0.45.
+TEST(Lifts, AreJudgedByNioshsEquation) {
+  const std::vector<Lift> lifts = LiftsIn(6, OneLift);
+  ASSERT_EQ(lifts.size(), 1U);
+  const double limit = 23 * (25.0 / 45) * (1 - 0.003 * 5) * (0.82 + 4.5 / 40) * 0.45;
+  EXPECT_NEAR(lifts[0].niosh.carried.index, 10 / limit, 0.02);
+  EXPECT_NEAR(lifts[0].niosh.unassisted.index, 18 / limit, 0.03);
+}
+
+TEST(Lifts, AreRisesThatEndInAReversalAndNotNoise) {
+  const auto twice = [](double t) {
+    return t < 3 ? OneLift(t) : t < 6 ? OneLift(6 - t) : OneLift(t - 6);
+  };
+  EXPECT_EQ(LiftsIn(12, twice).size(), 2U);
+  EXPECT_TRUE(LiftsIn(4, [](double t) { return 1 + 0.02 * std::sin(10 * t); }).empty());
+  EXPECT_TRUE(LiftsIn(4, [](double t) { return 1.2 - 0.1 * t; }).empty());  // lowered
+}
+
+TEST(Lifts, EndWhereTheHandsLetGo) {
+  const auto holds = [](double t) { return t < 1.5 || t > 3.5; };
+  EXPECT_EQ(LiftsIn(6, OneLift, holds).size(), 0U);  // it had risen by 0.04 m, and rests later
+}
+
+}  // namespace
+}  // namespace predictor::assessment
