@@ -97,8 +97,7 @@ struct Machine {
   std::string name;
   std::optional<MachineArm> left, right;
   MachineLimits limits;
-  std::optional<double>
-      ground;  // height in R of the ground under the person [m]
+  std::optional<double> ground;           // height in R of the ground under the person [m]
   std::optional<EnablingInput> enabling;  // empty: a key held at the console is used instead
 
   std::filesystem::path file;
