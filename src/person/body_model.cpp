@@ -72,7 +72,7 @@ void BodyModel::AddTrunk() {
   Set(kPelvisY, kPelvisX, none, y, -0.2, 0.2);
   Set(kPelvisZ, kPelvisY, none, z, -0.6, 0);
   Set(kPelvisYaw, kPelvisZ, none, z, -0.8, 0.8);
-  Set(kPelvisTilt, kPelvisYaw, none, y, -0.35, 1.2);
+  Set(kPelvisTilt, kPelvisYaw, none, y, -0.1, 1.2);
   Set(kPelvisList, kPelvisTilt, none, x, -0.35, 0.35);
   Carry(kPelvisList, a.pelvis, {0, 0, a.pelvis.com});
   const Vector3 l5s1(-a.l5s1_behind, 0, a.l5s1_height);

@@ -23,8 +23,8 @@ Stance StanceAt(const Vector3& ground, const Vector3& direction, double width = 
 struct Grip {
   GripKind kind = GripKind::kPower;
   Pose X_DG;
-  // The hand may have closed at any angle about the bar (x of G), so that this angle follows from
-  // the arm's comfort.
+  // The hand may have closed at any angle about the bar (x of G), and the bar may lie obliquely in
+  // it, so that these angles follow from the arm's comfort.
   bool turns = true;
 };
 // X_DG of a hand that holds a bar along `bar` (towards the thumb) at D's origin, with the wrist in

@@ -82,10 +82,10 @@ class Descent {
     if (!stage.hands_only) {
       qp_.H().diagonal() += prior_.weight;
       qp_.f() += prior_.weight.cwiseProduct(q - prior_.comfort);
-      // The parabola that touches the cost of lowering at q and lies above it elsewhere.
-      const double curvature = prior_.lowering / (2 * std::hypot(q[kPelvisZ], kLoweringSmooth));
-      qp_.H()(kPelvisZ, kPelvisZ) += curvature;
-      qp_.f()[kPelvisZ] += curvature * q[kPelvisZ];
+      const double root = std::hypot(q[kPelvisZ], kLoweringSmooth);
+      qp_.f()[kPelvisZ] += prior_.lowering / 2 * q[kPelvisZ] / root;
+      qp_.H()(kPelvisZ, kPelvisZ) +=
+          prior_.lowering / 2 * kLoweringSmooth * kLoweringSmooth / (root * root * root);
     }
     qp_.lower() = (lower_ - q).cwiseMax(-kLargestStep).cwiseMin(0.0);
     qp_.upper() = (upper_ - q).cwiseMin(kLargestStep).cwiseMax(0.0);
@@ -109,8 +109,8 @@ PosturePrior DefaultPrior() {
   PosturePrior prior;
   prior.comfort.setZero();
   prior.weight.setConstant(1);
-  prior.weight.segment<6>(kPelvisX) << 30, 60, 20, 20, 20, 30;
-  prior.weight.segment<3>(kTorsoFlexion) << 10, 15, 10;
+  prior.weight.segment<6>(kPelvisX) << 30, 60, 20, 20, 30, 30;
+  prior.weight.segment<3>(kTorsoFlexion) << 15, 20, 12;
   prior.weight.segment<3>(kNeckFlexion) << 2, 2, 2;
   prior.comfort[kNeckFlexion] = 0.2;
   for (int hand = 0; hand < kHands; ++hand) {

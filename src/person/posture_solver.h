@@ -18,19 +18,20 @@ struct PosturePrior {
   std::array<double, kHands> swivel = {0.35, 0.35};
   double swivel_weight = 0.1;
   // Cost of lowering the hips [1/m]. It is nearly linear, like the squared knee angle (8 d / length
-  // of the leg for hips lowered by d; twice the weight of another joint), so that the knees stay
-  // straight unless bending them pays: lowering · (√(z² + s²) - s) with s = kLoweringSmooth.
-  double lowering = 2e-2;
+  // of the leg for hips lowered by d; four times the weight of an arm's joint), so that the knees
+  // stay straight unless bending them pays: lowering · (√(z² + s²) - s) with s = kLoweringSmooth.
+  double lowering = 3.5e-2;
 };
 inline constexpr double kLoweringSmooth = 0.01;  // [m]
 PosturePrior DefaultPrior();
 
 struct Posture {
   BodyVector q;
-  // What is missing of the handles' poses; 0 for an absent hand. Rotation about the bar is not
-  // counted for a grip that turns.
+  // What is missing of the handles' poses; 0 for an absent hand. Of a grip that turns, only what
+  // the bar lies more obliquely in the hand than 0.7 rad counts as missing rotation.
   std::array<double, kHands> position_error = {};  // [m]
   std::array<double, kHands> rotation_error = {};  // [rad]
+  std::array<double, kHands> oblique = {};         // of the bar in a grip that turns [rad]
   std::array<double, kHands> elbow_error = {};     // [m]; 0 if not measured
   double head_error = 0;                           // [m]; 0 if not measured
   int iterations = 0;

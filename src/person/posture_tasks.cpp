@@ -1,5 +1,6 @@
 #include "person/posture_tasks.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace predictor::person {
@@ -74,7 +75,7 @@ void PostureTasks::Rows(const BodyVector& q, bool hands_only, bool with_jacobian
   rows->count = 0;
   const Placement at = Place(model_, q);
   for (int hand = 0; hand < kHands; ++hand) {
-    AddHand(at, hand, with_jacobian, rows);
+    AddHand(at, hand, hands_only, with_jacobian, rows);
     if (hands_only) continue;
     AddElbow(at, hand, with_jacobian, rows);
     AddSwivel(at, hand, with_jacobian, rows);
@@ -89,34 +90,36 @@ Vector6 PostureTasks::HandError(const Placement& at, int hand) const {
   Vector6 error;
   error.head<3>() = goal.q.conjugate() * (goal.p - now.p);
   if (turns_[k]) {
-    // Only the direction of the bar counts: the shortest rotation between the two directions.
-    const Vector3 bar = goal.q.conjugate() * (now.q * Vector3::UnitX());
-    const double angle = std::atan2(std::hypot(bar.y(), bar.z()), bar.x());
-    const Vector3 axis = bar.cross(Vector3::UnitX());
-    const double sine = axis.norm();
-    error.tail<3>() = sine > 1e-12 ? Vector3(axis * (angle / sine)) : Vector3(axis);
-    if (sine <= 1e-12 && bar.x() < 0) error.tail<3>() = Vector3::UnitZ() * angle;
+    // Only the direction of the bar counts: the chord between the unit vectors.
+    error.tail<3>() = Vector3::UnitX() - goal.q.conjugate() * (now.q * Vector3::UnitX());
   } else {
     error.tail<3>() = goal.q.conjugate() * RotationError(goal.q, now.q);
   }
   return error;
 }
 
-void PostureTasks::AddHand(const Placement& at, int hand, bool with_jacobian,
+void PostureTasks::AddHand(const Placement& at, int hand, bool hands_only, bool with_jacobian,
                            TaskRows* rows) const {
   const auto k = static_cast<std::size_t>(hand);
   if (!grip_goal_[k]) return;
+  const int count = turns_[k] && hands_only ? 3 : 6;
+  const double rotation = turns_[k] ? std::sqrt(kObliqueWeight) : kRotationLength;
   Vector6 e = HandError(at, hand);
-  e.tail<3>() *= kRotationLength;
-  if (!with_jacobian) return Append(1, static_cast<const BodyJacobian*>(nullptr), e, rows);
-  const int joint = Of(hand, ArmJoint::kWristDeviation);
-  const Vector3 p = at.FrameOf(joint) * X_JG_[k].p;
-  BodyJacobian J = JacobianAt(model_, at, joint, p);
-  const Matrix3 to_goal = grip_goal_[k]->q.conjugate().toRotationMatrix();
-  J.topRows<3>() = to_goal * J.topRows<3>();
-  J.bottomRows<3>() = kRotationLength * to_goal * J.bottomRows<3>();
-  if (turns_[k]) J.row(3).setZero();
-  Append(1, &J, e, rows);
+  e.tail<3>() *= rotation;
+  rows->e.segment(rows->count, count) = e.head(count);
+  if (with_jacobian) {
+    const int joint = Of(hand, ArmJoint::kWristDeviation);
+    BodyJacobian J = JacobianAt(model_, at, joint, at.FrameOf(joint) * X_JG_[k].p);
+    const Matrix3 to_goal = grip_goal_[k]->q.conjugate().toRotationMatrix();
+    J.topRows<3>() = to_goal * J.topRows<3>();
+    J.bottomRows<3>() = rotation * to_goal * J.bottomRows<3>();
+    if (turns_[k]) {
+      const Vector3 bar = Vector3::UnitX() - HandError(at, hand).tail<3>();
+      J.bottomRows<3>() = -Skew(bar) * J.bottomRows<3>();
+    }
+    rows->J.middleRows(rows->count, count) = J.topRows(count);
+  }
+  rows->count += count;
 }
 
 void PostureTasks::AddElbow(const Placement& at, int hand, bool with_jacobian,
@@ -177,6 +180,10 @@ void PostureTasks::Judge(Posture* posture) const {
     const Vector6 error = HandError(at, hand);
     posture->position_error[k] = error.head<3>().norm();
     posture->rotation_error[k] = error.tail<3>().norm();
+    if (turns_[k]) {
+      posture->oblique[k] = 2 * std::asin(std::min(1.0, posture->rotation_error[k] / 2));
+      posture->rotation_error[k] = std::max(0.0, posture->oblique[k] - kMaxOblique);
+    }
     // Also false for measurements that are not finite.
     if (!(posture->position_error[k] <= 1e-6 && posture->rotation_error[k] <= 1e-6))
       posture->reached = false;

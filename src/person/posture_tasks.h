@@ -9,6 +9,9 @@
 namespace predictor::person {
 
 inline constexpr double kRotationLength = 0.2;  // weighs rotation against translation [m/rad]
+// Weight of a bar that lies obliquely in a hand that turns about it [1/rad²], and the largest angle
+// (D).
+inline constexpr double kObliqueWeight = 5e-3, kMaxOblique = 0.7;
 inline constexpr int kMaxTaskRows = 28;
 
 // Error e = goal - value and Jacobian of the value. Rows are scaled by the root of their weight.
@@ -27,14 +30,16 @@ class PostureTasks {
   PostureTasks(const BodyModel& model, const Stance& stance, const std::array<Grip, kHands>& grips,
                const PosturePrior& prior, const BodySample& sample);
 
-  // Rows of the hands alone, or of all tasks. Jacobians only if asked for.
+  // Rows of the hands alone (of a hand that turns, its position), or of all tasks. Jacobians only
+  // if asked for.
   void Rows(const BodyVector& q, bool hands_only, bool with_jacobian, TaskRows* rows) const;
   // Writes the errors of all tasks.
   void Judge(Posture* posture) const;
 
  private:
-  Vector6 HandError(const Placement& at, int hand) const;  // [m], [rad], in the axes of G's goal
-  void AddHand(const Placement& at, int hand, bool with_jacobian, TaskRows* rows) const;
+  Vector6 HandError(const Placement& at, int hand) const;  // [m], [rad], in the goal's axes
+  void AddHand(const Placement& at, int hand, bool hands_only, bool with_jacobian,
+               TaskRows* rows) const;
   void AddElbow(const Placement& at, int hand, bool with_jacobian, TaskRows* rows) const;
   void AddSwivel(const Placement& at, int hand, bool with_jacobian, TaskRows* rows) const;
   void AddHead(const Placement& at, bool with_jacobian, TaskRows* rows) const;

@@ -30,13 +30,20 @@ TEST(PostureSolver, BringsTheHandsBackToWhereTheyWere) {
       for (std::size_t k = 0; k < kHands; ++k)
         error = std::max(error, (again.hands[k].X_WD.p - sample.hands[k].X_WD.p).norm());
       EXPECT_NEAR(error, *std::ranges::max_element(posture.position_error), 1e-12);
-      if (!posture.reached) continue;
-      ++reached;
+      for (std::size_t k = 0; k < kHands; ++k) {
+        const Vector3 bar = sample.hands[k].X_WD.q * Vector3::UnitX();
+        const Vector3 held = again.hands[k].X_WD.q * Vector3::UnitX();
+        const double angle = std::atan2(bar.cross(held).norm(), bar.dot(held));
+        EXPECT_NEAR(angle, turns ? posture.oblique[k] : 0, posture.reached ? 1e-6 : 3.2);
+        EXPECT_NEAR(posture.rotation_error[k], turns ? std::max(0.0, angle - 0.7) : 0, 1e-6);
+      }
       worst = std::max(worst, error);
-      EXPECT_LT(error, 1e-6);
+      reached += posture.reached;
     }
     std::printf("turns %d: reached %d of %d, worst %.2g m\n", turns, reached, kPostures, worst);
-    EXPECT_GE(reached, kPostures * 98 / 100);
+    EXPECT_LT(worst, 1e-6);
+    // A hand that turns may prefer a posture in which the bar lies too obliquely.
+    EXPECT_GE(reached, kPostures * (turns ? 95 : 98) / 100);
   }
 }
 
@@ -67,16 +74,13 @@ TEST(PostureSolver, SaysWhatIsMissingToAHandleOutOfReach) {
   for (std::size_t k = 0; k < kHands; ++k)
     EXPECT_NEAR((hands.hands[k].X_WD.p - sample.hands[k].X_WD.p).norm(), posture.position_error[k],
                 1e-12);
-  // No posture nearby has its hands nearer, when position and rotation count as they do.
+  // No posture nearby has its hands nearer.
   RandomStream random(2, "nearby");
   const auto distance = [&](const BodyVector& q) {
     const BodySample at = SampleAt(model, SomeStance(), q);
     double sum = 0;
-    for (std::size_t k = 0; k < kHands; ++k) {
-      const Vector3 bar = at.hands[k].X_WD.q * Vector3::UnitX();
-      const double angle = std::acos(bar.dot(sample.hands[k].X_WD.q * Vector3::UnitX()));
-      sum += (at.hands[k].X_WD.p - sample.hands[k].X_WD.p).squaredNorm() + 0.04 * angle * angle;
-    }
+    for (std::size_t k = 0; k < kHands; ++k)
+      sum += (at.hands[k].X_WD.p - sample.hands[k].X_WD.p).squaredNorm();
     return sum;
   };
   const double found = distance(posture.q);
