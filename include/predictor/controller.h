@@ -34,7 +34,7 @@ typedef struct PredictorControllerInput {
   double dt;                           /*    8: period of the controller [s] */
   int32_t dof;                         /*   16: number of joints */
   int32_t reserved;                    /*   20: 0 */
-  double q[PREDICTOR_MAX_JOINTS];      /*   24: joint positions [rad] */
+  double q[PREDICTOR_MAX_JOINTS];      /*   24: joint positions [rad], of a prismatic joint [m] */
   double v[PREDICTOR_MAX_JOINTS];      /*  152: joint velocities [rad/s] */
   double g[PREDICTOR_MAX_JOINTS];      /*  280: torques that carry the cobot's own weight [N·m] */
   double h[PREDICTOR_MAX_JOINTS];      /*  408: Coriolis and centrifugal torques, plus g [N·m] */

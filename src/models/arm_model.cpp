@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "scenario/field_rules.h"
 
 namespace predictor {
 namespace {
@@ -14,6 +15,13 @@ void CheckLink(const RobotModel& model, const std::string& link, const std::stri
   }
 }
 
+// Units of the joints' positions: "rad", or "rad or m".
+std::string UnitsOf(const RobotModel& model) {
+  for (int j = 0; j < model.dof(); ++j)
+    if (model.is_prismatic(j)) return kAngleOrLength;
+  return "rad";
+}
+
 }  // namespace
 
 JointVector PostureOf(const std::vector<double>& posture, const RobotModel& model,
@@ -21,19 +29,34 @@ JointVector PostureOf(const std::vector<double>& posture, const RobotModel& mode
   if (static_cast<int>(posture.size()) != model.dof())
     throw InputError::At(key, key + " has " + std::to_string(posture.size()) +
                                   " values; the arm has " + std::to_string(model.dof()) +
-                                  " joints. Give one value per joint in rad.");
+                                  " joints. Give one value per joint in " + UnitsOf(model) + ".");
   const JointVector q = Eigen::Map<const Eigen::VectorXd>(posture.data(), model.dof());
   for (int j = 0; j < model.dof(); ++j) {
     const double lower = model.position_lower()[j], upper = model.position_upper()[j];
     if (q[j] >= lower && q[j] <= upper) continue;
     const std::string entry = key + "." + std::to_string(j);
+    const std::string unit = std::string(" ") + model.position_unit(j);
     throw InputError::At(entry, entry + ": joint " + Quote(model.joint_name(j)) + " at " +
-                                    FormatNumber(q[j]) + " rad is outside its limits, " +
-                                    FormatNumber(lower) + " to " + FormatNumber(upper) +
-                                    " rad. Give a value within the limits." +
-                                    DegreesHint(q[j], lower, upper));
+                                    FormatNumber(q[j]) + unit + " is outside its limits, " +
+                                    FormatNumber(lower) + " to " + FormatNumber(upper) + unit +
+                                    ". Give a value within the limits." +
+                                    (model.is_prismatic(j) ? "" : DegreesHint(q[j], lower, upper)));
   }
   return q;
+}
+
+void CheckPostureUnits(const YamlNode& tree, const RobotModel& model, const std::string& key) {
+  for (int j = 0; j < model.dof(); ++j) {
+    const std::string entry = key + "." + std::to_string(j);
+    const YamlNode* node = NodeAt(entry, tree);
+    if (node == nullptr) return;
+    const bool is_prismatic = model.is_prismatic(j);
+    if (!node->text.ends_with(is_prismatic ? " deg" : " m")) continue;
+    throw InputError::At(entry, entry + " is " + Quote(node->text) + ", but joint " +
+                                    Quote(model.joint_name(j)) +
+                                    (is_prismatic ? " slides. Give its position in m."
+                                                  : " turns. Give its angle in rad or deg."));
+  }
 }
 
 std::shared_ptr<const RobotModel> LoadArmModel(const ArmSpec& spec, const Pose& base,
@@ -44,6 +67,13 @@ std::shared_ptr<const RobotModel> LoadArmModel(const ArmSpec& spec, const Pose& 
     throw InputError::At(key + ".model", key + ".model has " + std::to_string(model->dof()) +
                                              " joints; at most " + std::to_string(kMaxArmJoints) +
                                              " are possible. Remove links or choose another arm.");
+  for (int j = 0; j < model->dof(); ++j)
+    if (model->is_prismatic(j))
+      throw InputError::At(key + ".model",
+                           key + ".model: joint " + Quote(model->joint_name(j)) +
+                               " is prismatic, but the joints of a haptic arm must be revolute, "
+                               "because their limits and errors are angles. Make the joint fixed "
+                               "in the URDF, or remove its link with remove_links.");
   CheckLink(*model, spec.end_effector, key + ".end_effector");
   if (!spec.elbow.empty()) CheckLink(*model, spec.elbow, key + ".elbow");
   if (!spec.posture.empty()) PostureOf(spec.posture, *model, key + ".posture");

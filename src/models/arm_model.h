@@ -17,6 +17,10 @@ namespace predictor {
 JointVector PostureOf(const std::vector<double>& posture, const RobotModel& model,
                       const std::string& key);
 
+// Refuses an angle for a prismatic joint and a length for a revolute one, in the list at `key` of
+// the tree from which a scenario was read. Throws InputError at the entry.
+void CheckPostureUnits(const YamlNode& tree, const RobotModel& model, const std::string& key);
+
 // Loads the model of an arm and checks its links and posture. `base`: its pose in the frame in
 // which the model shall compute, which is W for an emulation (Scenario::X_WB) and the rig's frame R
 // for commissioning (BaseSpec::X_RB). `folder`: start of relative paths. Throws InputError at the

@@ -20,6 +20,7 @@ void ReadJoints(const UrdfModel& urdf, const std::vector<int>& body, RobotModel:
     const auto child = static_cast<std::size_t>(body[static_cast<std::size_t>(joint.child)]);
     impl->support[child] = impl->support[parent] | (1u << (child - 1));
     impl->joint_names.push_back(joint.name);
+    impl->prismatic.push_back(joint.type == UrdfJointType::kPrismatic);
     append(&impl->lower, joint.lower);
     append(&impl->upper, joint.upper);
     append(&impl->velocity, joint.velocity);
@@ -104,6 +105,7 @@ int RobotModel::dof() const { return static_cast<int>(impl_->joint_names.size())
 const std::string& RobotModel::joint_name(int j) const {
   return impl_->joint_names[static_cast<std::size_t>(j)];
 }
+bool RobotModel::is_prismatic(int j) const { return impl_->prismatic[static_cast<std::size_t>(j)]; }
 const JointVector& RobotModel::position_lower() const { return impl_->lower; }
 const JointVector& RobotModel::position_upper() const { return impl_->upper; }
 const JointVector& RobotModel::velocity_limit() const { return impl_->velocity; }

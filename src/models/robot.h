@@ -46,6 +46,9 @@ class RobotModel {
 
   int dof() const;
   const std::string& joint_name(int j) const;
+  bool is_prismatic(int j) const;
+  const char* position_unit(int j) const { return is_prismatic(j) ? "m" : "rad"; }
+  const char* effort_unit(int j) const { return is_prismatic(j) ? "N" : "N·m"; }
   const JointVector& position_lower() const;  // [rad] or [m]; −inf for continuous joints
   const JointVector& position_upper() const;  // [rad] or [m]; +inf for continuous joints
   const JointVector& velocity_limit() const;  // [rad/s] or [m/s]; +inf if the URDF sets none

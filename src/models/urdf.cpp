@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "models/urdf_planar.h"
 #include "models/urdf_tree.h"
 #include "models/urdf_xml.h"
 
@@ -163,6 +164,7 @@ UrdfModel ParseUrdf(const std::string& text, const std::string& name,
   const UrdfSource source{name, folder, scenario_folder};
   tinyxml2::XMLDocument doc;
   XmlElement* robot = ParseXml(text, source, &doc);
+  SplitPlanarJoints(source, robot);
   UrdfDocument urdf;
   urdf.model.file = name;
   urdf.model.name = robot->Attribute("name") ? robot->Attribute("name") : "";

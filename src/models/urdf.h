@@ -56,7 +56,8 @@ struct UrdfModel {
   std::vector<UrdfLink> links;
   std::vector<UrdfJoint> joints;
   int root = -1;     // index into links
-  std::string text;  // the checked URDF: with links removed, absolute mesh paths and no mimic
+  std::string text;  // the checked URDF: with links removed, absolute mesh paths, and without
+                     // mimic and planar joints
 
   std::vector<std::string> LinkNames() const;
   double Mass() const;  // of all links [kg]
@@ -72,6 +73,8 @@ struct UrdfModel {
 // mesh files, mesh paths outside the readable folders (scenario/paths.h), and unsupported joint
 // types. `scenario_folder`: folder of the scenario that refers to the URDF; if empty, the URDF's
 // own folder.
+//
+// A planar joint becomes two prismatic joints and a continuous one (models/urdf_planar.h).
 //
 // A mimic joint becomes an independent joint: it is a degree of freedom and does not follow the
 // other joint. (Grippers have mimic joints, but an arm's end-effector does not move with them. If

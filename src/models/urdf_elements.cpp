@@ -169,9 +169,10 @@ UrdfJointType ReadType(const UrdfSource& source, const XmlElement& joint, const 
   const std::string type = source.Text(joint, "type");
   const auto found = kTypes.find(type);
   if (found == kTypes.end()) {
-    source.Fail(joint, "Joint " + Quote(name) + " has the type " + Quote(type) +
-                           ", which is not supported. " +
-                           Suggestion(type, {"fixed", "revolute", "continuous", "prismatic"}));
+    source.Fail(joint,
+                "Joint " + Quote(name) + " has the type " + Quote(type) +
+                    ", which is not supported. " +
+                    Suggestion(type, {"fixed", "revolute", "continuous", "prismatic", "planar"}));
   }
   return found->second;
 }

@@ -56,6 +56,7 @@ class Checker {
            "is " + FormatNumber(a) + " " + unit + "; it must be below " + path_b + ", which is " +
                FormatNumber(b) + " " + unit + ".");
   }
+  void RangeUnits(JointType joint) const;
   void Action(std::size_t i) const;
   void ActionOverlap(const std::vector<ActionSpan>& spans, std::size_t i) const;
 
@@ -72,6 +73,19 @@ double DistanceFrom(const PrimitiveSpec& body, const Vector3& p) {
   }
   const double radial = std::max(0.0, p.head<2>().norm() - body.size.x());
   return std::hypot(radial, std::max(0.0, std::abs(p.z()) - body.size.y() / 2));
+}
+
+void Checker::RangeUnits(JointType joint) const {
+  for (int i = 0; i < 2; ++i) {
+    const std::string path = "object.attachment.range." + std::to_string(i);
+    const YamlNode* node = NodeAt(path, root_);
+    const bool slides = joint == JointType::kPrismatic;
+    if (node == nullptr || !node->text.ends_with(slides ? " deg" : " m")) continue;
+    Unless(false, path,
+           "is " + Quote(node->text) +
+               (slides ? ", but the joint is prismatic. Give its position in m."
+                       : ", but the joint is not prismatic. Give its angle in rad or deg."));
+  }
 }
 
 void Checker::Object() const {
@@ -94,6 +108,7 @@ void Checker::Object() const {
   Unless(!has_axis || joint.axis.norm() > 1e-3, "object.attachment.axis",
          "is zero. It must have a direction, for example [0, 0, 1].");
   if (joint.range) {
+    RangeUnits(joint.joint);
     Below((*joint.range)[0], "object.attachment.range.0", (*joint.range)[1],
           "object.attachment.range.1", "");
   }

@@ -16,6 +16,7 @@ namespace {
 using Kind = YamlNode::Kind;
 
 constexpr std::string_view kDegreesSuffix = " deg";
+constexpr std::string_view kMetresSuffix = " m";
 
 std::string WithUnit(const std::string& text, const std::string& unit) {
   return unit.empty() ? text : text + " " + unit;
@@ -25,15 +26,24 @@ std::string WithUnit(const std::string& text, const std::string& unit) {
 // replaces it.
 std::string End(double x) { return x == 0x1p64 ? std::to_string(UINT64_MAX) : FormatNumber(x); }
 
-// The number of a scalar in the rule's unit. An angle may be given in degrees: "30 deg".
+// Whether a value of this unit may be an angle.
+bool TakesAngles(const Rule& rule) { return rule.unit == "rad" || rule.unit == kAngleOrLength; }
+
+// The number of a scalar in the rule's unit. An angle may be given in degrees ("30 deg"), and where
+// a joint may turn or slide, a length may be marked as such ("0.3 m").
 bool ReadInUnit(const YamlNode& node, const Rule& rule, double* number) {
   if (node.kind != Kind::kScalar) return false;
-  if (rule.unit != "rad" || !node.text.ends_with(kDegreesSuffix))
-    return KindOf(node) == ScalarKind::kNumber && ReadNumber(node.text, number);
-  if (!ReadNumber(node.text.substr(0, node.text.size() - kDegreesSuffix.size()), number))
-    return false;
-  *number *= std::numbers::pi / 180;
-  return true;
+  const auto before = [&node](std::string_view suffix) {
+    return node.text.substr(0, node.text.size() - suffix.size());
+  };
+  if (TakesAngles(rule) && node.text.ends_with(kDegreesSuffix)) {
+    if (!ReadNumber(before(kDegreesSuffix), number)) return false;
+    *number *= std::numbers::pi / 180;
+    return true;
+  }
+  if (rule.unit == kAngleOrLength && node.text.ends_with(kMetresSuffix))
+    return ReadNumber(before(kMetresSuffix), number);
+  return KindOf(node) == ScalarKind::kNumber && ReadNumber(node.text, number);
 }
 
 // Reads a number within the rule's range. Returns false after reporting a problem.
@@ -46,7 +56,7 @@ bool ReadOne(const PathNode& at, const Rule& rule, Problems* problems, double* v
     Complain(at, rule, "a finite number, " + Allowed(rule), problems);
   } else if (!rule.range.Contains(number) || !is_step) {
     Complain(at, rule, Allowed(rule), problems,
-             rule.unit == "rad" ? DegreesHint(number, rule.range.low, rule.range.high) : "");
+             TakesAngles(rule) ? DegreesHint(number, rule.range.low, rule.range.high) : "");
   } else {
     *value = number;
     return true;

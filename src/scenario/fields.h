@@ -45,10 +45,11 @@ void Fields(V& v, BaseSpec& s) {
 template <class V>
 void Fields(V& v, JointFriction& s) {
   v("viscous", s.viscous,
-    OneOrList(Number("N·m·s/rad", "viscous friction, for all joints or one each", From(0, 1e4)), 1,
-              kMaxCobotJoints));
+    OneOrList(
+        Number("N·m·s/rad or N·s/m", "viscous friction, for all joints or one each", From(0, 1e4)),
+        1, kMaxCobotJoints));
   v("coulomb", s.coulomb,
-    OneOrList(Number("N·m", "Coulomb friction, for all joints or one each", From(0, 1e3)), 1,
+    OneOrList(Number("N·m or N", "Coulomb friction, for all joints or one each", From(0, 1e3)), 1,
               kMaxCobotJoints));
 }
 
@@ -91,9 +92,9 @@ void Fields(V& v, CobotSafetySpec& s) {
   v("momentum", s.momentum,
     Number("kg·m/s", "of the arm at the end-effector; null: off", Above(0, 1000)));
   v("joint_torque", s.joint_torque,
-    Number("N·m", "external torque estimated in a joint; null: off", Above(0, 1e4)));
+    Number("N·m", "external torque estimated in a joint that turns; null: off", Above(0, 1e4)));
   v("stop_deceleration", s.stop_deceleration,
-    Number("rad/s²", "of each joint in a protective stop", Above(0, 1000)));
+    Number("rad/s² or m/s²", "of each joint in a protective stop", Above(0, 1000)));
   v("force_cap", s.force_cap,
     Number("N", "of the controller's force at the end-effector; null: off", Above(0, 1e4)));
   v("speed_cap", s.speed_cap,
@@ -108,11 +109,13 @@ void Fields(V& v, CobotSpec& s) {
   v("base", s.base, Part("pose of the base in W"));
   v("end_effector", s.end_effector, Required(Word("link that carries the object")));
   v("posture", s.posture,
-    List(Number("rad", "joints at the start, before sagging", Within(100)), 0, kMaxCobotJoints));
+    List(Number(kAngleOrLength, "joints at the start, before sagging", Within(100)), 0,
+         kMaxCobotJoints));
   v("joint_friction", s.joint_friction, Part("friction of the joints"));
   v("effort_limit", s.effort_limit,
-    OneOrList(Number("N·m", "of the joints, for all or one each; none: the model's", Above(0, 1e6)),
-              0, kMaxCobotJoints));
+    OneOrList(
+        Number("N·m or N", "of the joints, for all or one each; none: the model's", Above(0, 1e6)),
+        0, kMaxCobotJoints));
   v("controller", s.controller, Part("what drives the joints"));
   v("control", s.control, Part("rate and delay of the controller"));
   v("wrist_sensor", s.wrist_sensor, Part("force sensor of controllers that use one"));
@@ -166,7 +169,8 @@ void Fields(V& v, AttachmentSpec& s) {
   v("axis", s.axis,
     Number("", "of a revolute or prismatic joint, in the joint's frame", Within(1)));
   v("damping", s.damping, Number("N·m·s/rad or N·s/m", "of the joint", From(0, 1e4)));
-  v("range", s.range, Number("rad or m", "lowest and highest position of the joint", Within(100)));
+  v("range", s.range,
+    Number(kAngleOrLength, "lowest and highest position of the joint", Within(100)));
 }
 
 template <class V>

@@ -37,10 +37,12 @@ Json NumberSchema(const Rule& rule, const char* type = "number") {
   if (!rule.steps.empty()) return {{"enum", rule.steps}};
   schema[rule.range.excludes_low ? "exclusiveMinimum" : "minimum"] = rule.range.low;
   schema["maximum"] = rule.range.high;
-  if (rule.unit != "rad") return schema;
+  const bool takes_lengths = rule.unit == kAngleOrLength;
+  if (rule.unit != "rad" && !takes_lengths) return schema;
   const std::string sign = rule.range.low < 0 ? "^[+-]?" : "^[+]?";
   const Json degrees = {{"type", "string"},
-                        {"pattern", sign + R"(([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)? deg$)"}};
+                        {"pattern", sign + R"(([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?)" +
+                                        (takes_lengths ? " (deg|m)$" : " deg$")}};
   return {{"anyOf", Json::array({schema, degrees})}};
 }
 

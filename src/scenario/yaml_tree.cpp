@@ -92,6 +92,21 @@ void WriteBlock(const YamlNode& node, std::size_t indent, bool indented, std::st
   }
 }
 
+// The innermost existing node on the path, and whether it is the path's end.
+const YamlNode* Innermost(const std::string& path, const YamlNode& root, bool* is_found) {
+  const YamlNode* node = &root;
+  *is_found = false;
+  for (std::size_t begin = 0; begin < path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    const YamlNode* next = Step(path.substr(begin, end - begin), *node);
+    if (next == nullptr) return node;
+    node = next;
+    begin = end + 1;
+  }
+  *is_found = true;
+  return node;
+}
+
 }  // namespace
 
 std::string Place::Text() const {
@@ -111,16 +126,15 @@ YamlNode* YamlNode::Find(const std::string& name) {
   return const_cast<YamlNode*>(std::as_const(*this).Find(name));
 }
 
+const YamlNode* NodeAt(const std::string& path, const YamlNode& root) {
+  bool is_found = false;
+  const YamlNode* node = Innermost(path, root, &is_found);
+  return is_found ? node : nullptr;
+}
+
 Place PlaceOf(const std::string& path, const YamlNode& root) {
-  const YamlNode* node = &root;
-  for (std::size_t begin = 0; begin < path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    const YamlNode* next = Step(path.substr(begin, end - begin), *node);
-    if (next == nullptr) break;
-    node = next;
-    begin = end + 1;
-  }
-  return node->place;
+  bool is_found = false;
+  return Innermost(path, root, &is_found)->place;
 }
 
 void ApplyOverride(const std::string& assignment, YamlNode* root) {

@@ -45,6 +45,9 @@ std::string ReadYamlText(const std::filesystem::path& file, const std::string& w
 // or nodes than the limits above. It does so before a larger tree exists.
 YamlNode ParseYaml(const std::string& text, const std::string& source);
 
+// The value at "path.to.key" (list entries by index from 0); null if it does not exist.
+const YamlNode* NodeAt(const std::string& path, const YamlNode& root);
+
 // The place of the value at "path.to.key", or of the innermost existing group around it.
 Place PlaceOf(const std::string& path, const YamlNode& root);
 

@@ -72,7 +72,8 @@ CobotStop CobotSafety::Exceeded(const ControllerInput& input) noexcept {
     return CobotStop::kMomentum;
   if (!spec_.joint_torque) return CobotStop::kNone;
   for (int j = 0; j < external_.size(); ++j)
-    if (std::abs(external_[j] - J_.col(j).dot(payload_)) > *spec_.joint_torque)
+    if (!input.model->is_prismatic(j) &&
+        std::abs(external_[j] - J_.col(j).dot(payload_)) > *spec_.joint_torque)
       return CobotStop::kJointTorque;
   return CobotStop::kNone;
 }

@@ -17,6 +17,12 @@ RobotSource Source(const Scenario& scenario) {
           scenario.cobot.base.ToPose(), "cobot"};
 }
 
+JointVector StartPosture(const Scenario& scenario, const RobotModel& robot) {
+  const char* key = "cobot.posture";
+  if (scenario.tree) CheckPostureUnits(*scenario.tree, robot, key);
+  return PostureOf(scenario.cobot.posture, robot, key);
+}
+
 FrameId EndEffectorOf(const CobotSpec& spec, const RobotModel& robot) {
   try {
     return robot.Frame(spec.end_effector);
@@ -84,7 +90,7 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
     : robot_(RobotModel::Load(Source(scenario))),
       end_effector_(EndEffectorOf(scenario.cobot, *robot_)),
       gravity_(scenario.environment.gravity),
-      posture_(PostureOf(scenario.cobot.posture, *robot_, "cobot.posture")),
+      posture_(StartPosture(scenario, *robot_)),
       controller_(MakeController(
           ContextOf(scenario.cobot.controller, scenario, *robot_, end_effector_, posture_))),
       standby_(scenario.cobot.standby_controller

@@ -134,9 +134,9 @@ Obstacle ObstacleIn(const ControlledScene& scene) {
   for (int j = 0; j < robot.dof(); ++j) {
     const double limit = scene.effort_limit()[j];
     if (std::fabs(scene.torque()[j]) < limit) continue;
-    return {"cobot.effort_limit", "joint " + Quote(robot.joint_name(j)) +
-                                      " would need more than its effort limit of " +
-                                      FormatNumber(limit) + " N·m (set by this key)"};
+    return {"cobot.effort_limit",
+            "joint " + Quote(robot.joint_name(j)) + " would need more than its effort limit of " +
+                FormatNumber(limit) + " " + robot.effort_unit(j) + " (set by this key)"};
   }
   for (int j = 0; j < robot.dof(); ++j) {
     const double q = scene.q()[j];

@@ -117,7 +117,7 @@ TEST(Check, AStartOutOfReachIsUnfitAndNoError) {
 
 TEST(Check, ScenariosAreInReachWithRoom) {
   for (const char* name : {"bar_circle.yaml", "box_18kg.yaml", "box_9kg.yaml", "dual_ur5.yaml",
-                           "push.yaml", "single_arm.yaml", "underdamped.yaml"}) {
+                           "linear_axis.yaml", "push.yaml", "single_arm.yaml", "underdamped.yaml"}) {
     const Scenario s = Load(name);
     const Reach reach = DeviceReach(s).Over(TaskPaths(s, StartOfObject(s), kPathStep));
     for (const auto& arm : reach.arms) {

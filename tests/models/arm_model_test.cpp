@@ -44,6 +44,18 @@ TEST(ArmModel, HasTheLinksAndThePostureThatAreNamed) {
   EXPECT_NE(Refusal(arm).find("arm.end_effector: \"tool0\" is not a link"), std::string::npos);
 }
 
+// The Panda's fingers slide.
+TEST(ArmModel, RefusesAHapticArmWithASlidingJoint) {
+  ArmSpec arm = Panda();
+  arm.remove_links.clear();
+  arm.posture.clear();
+  EXPECT_EQ(Refusal(arm).rfind("arm.model: joint \"panda_finger_joint1\" is prismatic, but the "
+                               "joints of a haptic arm must be revolute",
+                               0),
+            0U)
+      << Refusal(arm);
+}
+
 TEST(ArmModel, RefusesAPostureBeyondItsLimitsAndSeesDegrees) {
   ArmSpec arm = Panda();
   arm.posture[3] = -90;

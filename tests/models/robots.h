@@ -46,9 +46,33 @@ inline constexpr const char* kTreeUrdf = R"(<robot name="tree">
     <limit lower="-1" upper="1" velocity="2" effort="20"/></joint>
 </robot>)";
 
+// A mobile base on a slanted plane that carries a slanted lift and two joints that turn.
+inline constexpr const char* kMobileUrdf = R"(<robot name="mobile">
+  <link name="ground"/>
+  <link name="base"><inertial><origin xyz="0.02 0 0.2"/><mass value="40"/>
+    <inertia ixx="1.1" iyy="1.2" izz="0.9" ixy="0.01" ixz="-0.02" iyz="0.05"/></inertial></link>
+  <joint name="drive" type="planar"><parent link="ground"/><child link="base"/>
+    <origin xyz="0.1 0.2 0.3" rpy="0.4 0.5 -0.6"/><axis xyz="0.2 -0.1 1"/>
+    <limit lower="-2" upper="3" velocity="1" effort="300"/></joint>
+  <link name="column"><inertial><origin xyz="0 0.02 0.3"/><mass value="8"/>
+    <inertia ixx="0.2" iyy="0.22" izz="0.04" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="lift" type="prismatic"><parent link="base"/><child link="column"/>
+    <origin xyz="0.1 0 0.4" rpy="0.1 0 0"/><axis xyz="0.1 0 1"/>
+    <limit lower="0" upper="0.4" velocity="0.1" effort="2000"/></joint>
+  <link name="arm"><inertial><origin xyz="0 0 0.1"/><mass value="2"/>
+    <inertia ixx="0.02" iyy="0.02" izz="0.01"/></inertial></link>
+  <joint name="shoulder" type="revolute"><parent link="column"/><child link="arm"/>
+    <origin xyz="0 0 0.6"/><axis xyz="0 1 0"/>
+    <limit lower="-2" upper="1" velocity="2" effort="100"/></joint>
+  <link name="hand"><inertial><origin xyz="0 0 0.1"/><mass value="1"/>
+    <inertia ixx="0.01" iyy="0.01" izz="0.005"/></inertial></link>
+  <joint name="wrist" type="continuous"><parent link="arm"/><child link="hand"/>
+    <origin xyz="0 0 0.4"/><axis xyz="1 0 0.3"/></joint>
+</robot>)";
+
 struct RobotCase {
   std::string name;
-  std::string uri;  // if empty, kTreeUrdf is used
+  std::string uri;  // if empty, kTreeUrdf is used; may be the URDF itself
   std::vector<std::string> remove_links;
   std::string end_effector;
   int dof;
@@ -66,11 +90,13 @@ inline std::vector<RobotCase> RobotCases() {
           {"PandaWithHand", panda, {}, "panda_hand_tcp", 9},
           {"UR5", ur + "ur5_robot.urdf", {}, "tool0", 6},
           {"UR10", ur + "ur10_robot.urdf", {}, "tool0", 6},
-          {"Tree", "", {}, "tip", 4}};
+          {"Tree", "", {}, "tip", 4},
+          {"Mobile", kMobileUrdf, {}, "hand", 6}};
 }
 
 inline UrdfModel UrdfOf(const RobotCase& robot) {
   if (robot.uri.empty()) return ParseUrdf(kTreeUrdf, "tree.urdf", ".");
+  if (robot.uri[0] == '<') return ParseUrdf(robot.uri, "robot.urdf", ".");
   return ReadUrdf(ResolveModelPath(robot.uri, "."), robot.remove_links);
 }
 

@@ -48,6 +48,7 @@ ModelsReport DescribeWorld(const Scenario& s, const World& world) {
     report.torque = torque;
     report.torque_limit = world.effort_limit()[j];
     report.torque_joint = cobot->joint_name(j);
+    report.torque_is_force = cobot->is_prismatic(j);
   }
   return report;
 }
@@ -95,13 +96,14 @@ class Judge {
 
   void Torques() {
     const ModelsReport& m = report_->models;
+    const char* unit = m.torque_is_force ? "N" : "N·m";
     // Beyond its torque limit the world has no equilibrium.
     if (m.torque_share < kNearTorqueLimit) return;
     Warn(
-        Formatted("Holding the object at rest needs %.1f N·m at the cobot's joint %s, whose limit "
-                  "is %.1f N·m. Little torque is left for motion. Use a lighter object, start in a "
+        Formatted("Holding the object at rest needs %.1f %s at the cobot's joint %s, whose limit "
+                  "is %.1f %s. Little torque is left for motion. Use a lighter object, start in a "
                   "posture closer to the base, or raise cobot.effort_limit.",
-                  m.torque, m.torque_joint.c_str(), m.torque_limit));
+                  m.torque, unit, m.torque_joint.c_str(), m.torque_limit, unit));
   }
 
   void Script() {

@@ -32,7 +32,8 @@ struct ModelsReport {
   Vector3 sag = Vector3::Zero();  // object at equilibrium minus object at the set-point, in W [m]
   Pose X_WO;                      // object at equilibrium
   double torque_share = 0;        // static torque divided by its limit, for the worst joint
-  double torque = 0, torque_limit = 0;  // of that joint [N·m]
+  double torque = 0, torque_limit = 0;  // of that joint [N·m], or a force [N] if it is prismatic
+  bool torque_is_force = false;
   std::string torque_joint;
   struct Arm {
     double mass = 0;  // [kg]

@@ -25,8 +25,9 @@ void AddModels(const CheckReport& report, std::string* text) {
              "(%.0f mm to its side), %.3f m above the ground",
              m.object_mass, -1e3 * m.sag.z(), 1e3 * m.sag.head<2>().norm(), m.X_WO.p.z());
   if (std::isfinite(m.torque_limit) && m.torque_limit > 0)
-    AppendLine(text, "  torque at rest   at most %.0f %% of its limit (%s: %.1f of %.0f N·m)",
-               100 * m.torque_share, m.torque_joint.c_str(), m.torque, m.torque_limit);
+    AppendLine(text, "  torque at rest   at most %.0f %% of its limit (%s: %.1f of %.0f %s)",
+               100 * m.torque_share, m.torque_joint.c_str(), m.torque, m.torque_limit,
+               m.torque_is_force ? "N" : "N·m");
   for (std::size_t h = 0; h < kHands; ++h)
     if (m.arms[h])
       AppendLine(
@@ -164,7 +165,9 @@ Json ToJson(const ModelsReport& m) {
       {"object",
        {{"mass_kg", m.object_mass}, {"sag_m", ToJson(m.sag)}, {"position_m", ToJson(m.X_WO.p)}}},
       {"static_torque",
-       {{"joint", m.torque_joint}, {"value_nm", m.torque}, {"limit_nm", Number(m.torque_limit)}}}};
+       {{"joint", m.torque_joint},
+        {m.torque_is_force ? "value_n" : "value_nm", m.torque},
+        {m.torque_is_force ? "limit_n" : "limit_nm", Number(m.torque_limit)}}}};
   for (std::size_t h = 0; h < kHands; ++h) {
     json["arms"][kHandNames[h]] = nullptr;
     if (m.arms[h])

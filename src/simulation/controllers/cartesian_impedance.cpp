@@ -25,7 +25,8 @@ struct CartesianImpedanceParameters {
   Vector3 stiffness_translation = {500, 500, 500};  // [N/m]
   Vector3 stiffness_rotation = {100, 100, 100};     // [N·m/rad]
   std::vector<double> damping_ratio = {0.7};        // one, or six: x y z, rotation x y z
-  double posture_stiffness = 10;                    // null space, towards cobot.posture [N·m/rad]
+  double posture_stiffness = 10;                    // null space, towards cobot.posture
+                                                    // [N·m/rad], [N/m]
   double posture_damping_ratio = 1.0;
   std::vector<Waypoint> trajectory;  // empty: the set-point stays at the cobot's start
   std::string trajectory_file;       // empty after loading, which reads it into `trajectory`
@@ -40,7 +41,7 @@ void Fields(V& v, CartesianImpedanceParameters& p) {
   v("damping_ratio", p.damping_ratio,
     OneOrList(Number("", "one, or x y z, rotation x y z", From(0, 5)), 6, 6));
   v("posture_stiffness", p.posture_stiffness,
-    Number("N·m/rad", "null space, towards cobot.posture", From(0, 1e4)));
+    Number("N·m/rad or N/m", "null space, towards cobot.posture", From(0, 1e4)));
   v("posture_damping_ratio", p.posture_damping_ratio, Number("", "null space", From(0, 5)));
   v("trajectory", p.trajectory,
     List(Part("points that the set-point passes; none: it stays where the cobot starts"), 0,

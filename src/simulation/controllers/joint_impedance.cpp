@@ -9,14 +9,15 @@ namespace predictor::controllers {
 namespace {
 
 struct JointImpedanceParameters {
-  std::vector<double> stiffness = {100};      // one for all, or one per joint [N·m/rad]
+  std::vector<double> stiffness = {100};      // one for all, or one per joint [N·m/rad], [N/m]
   std::vector<double> damping_ratio = {0.7};  // one for all, or one per joint
 };
 
 template <class V>
 void Fields(V& v, JointImpedanceParameters& p) {
   v("joint_stiffness", p.stiffness,
-    OneOrList(Number("N·m/rad", "for all joints or one each", From(0, 1e5)), 1, kMaxCobotJoints));
+    OneOrList(Number("N·m/rad or N/m", "for all joints or one each", From(0, 1e5)), 1,
+              kMaxCobotJoints));
   v("joint_damping_ratio", p.damping_ratio,
     OneOrList(Number("", "for all joints or one each", From(0, 5)), 1, kMaxCobotJoints));
 }
@@ -34,11 +35,13 @@ class JointImpedance final : public Controller {
     posture_spec_ = posture_;
   }
 
-  // K' (q_0' − q) = K (q_0 − q). Joints rotate, so they use the factor of the rotational stiffness.
+  // K' (q_0' − q) = K (q_0 − q). A joint uses the factor of the stiffness of its kind.
   void Tune(const ControllerTuning& tuning, const ControllerInput& input,
             bool keeps_force) noexcept override {
     for (int j = 0; j < K_.size(); ++j) {
-      const double K = tuning.stiffness_rotation * K_spec_[j];
+      const double K = (input.model->is_prismatic(j) ? tuning.stiffness_translation
+                                                     : tuning.stiffness_rotation) *
+                       K_spec_[j];
       const double q = (*input.q)[j];
       if (K > 0 && keeps_force) posture_[j] = q + K_[j] / K * (posture_[j] - q);
       K_[j] = K;
@@ -70,8 +73,8 @@ class JointImpedance final : public Controller {
   }
 
  private:
-  JointVector posture_;  // [rad]
-  JointVector K_;        // [N·m/rad]
+  JointVector posture_;  // [rad], [m]
+  JointVector K_;        // [N·m/rad], [N/m]
   JointVector ratio_;
   JointVector posture_spec_, K_spec_, ratio_spec_;  // from the scenario
   // Workspace.
