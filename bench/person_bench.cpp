@@ -30,7 +30,7 @@ person::BodySample HandlesAt(const person::Stance& stance, double time) {
 
 void TimePerson(bool quick) {
   const int count = quick ? 200 : 2000;
-  const person::PersonSpec spec;
+  const BodySpec spec;
   const person::Stance stance = person::StanceAt({0, 0, 0}, {1, 0, 0});
   const std::array<person::Grip, kHands> grips;
   const person::BodyModel model(spec);

@@ -6,6 +6,7 @@
 
 #include "assessment/person_chain.h"
 #include "core/error.h"
+#include "core/format.h"
 
 namespace predictor::assessment {
 namespace {
@@ -54,10 +55,12 @@ void AddIntervals(const SampledChain& sampled, std::span<const PersonSample> sam
   }
   std::vector<double> means = OfEachPerson(table, MeanOf);
   result->mean_interval = person::IntervalOf(means);
-  result->person_p95 = OfEachPerson(
-      table, [](const std::vector<double>& values) { return QuantileOf(values, 0.95); });
-  std::vector<double> sorted = result->person_p95;
-  result->p95_interval = person::IntervalOf(sorted);
+  result->person_tail =
+      result->kind->bad == Bad::kHigh
+          ? OfEachPerson(table, [](const std::vector<double>& x) { return QuantileOf(x, 0.95); })
+          : OfEachPerson(table, [](const std::vector<double>& x) { return QuantileOf(x, 0.05); });
+  std::vector<double> sorted = result->person_tail;
+  result->tail_interval = person::IntervalOf(sorted);
 }
 
 QuantityResult QuantityOf(const QuantityKind& kind, const NominalChain& nominal,
@@ -69,7 +72,9 @@ QuantityResult QuantityOf(const QuantityKind& kind, const NominalChain& nominal,
   result.mean = MeanOf(result.values);
   result.p5 = QuantileOf(result.values, 0.05);
   result.p95 = QuantileOf(result.values, 0.95);
-  result.max = *std::max_element(result.values.begin(), result.values.end());
+  const auto [min, max] = std::ranges::minmax(result.values);
+  result.min = min;
+  result.max = max;
   if (!sampled.at.empty() && kind.origin != Origin::kMeasured)
     AddIntervals(sampled, samples, &result);
   return result;
@@ -116,34 +121,6 @@ std::vector<double> SeriesOf(const NominalChain& nominal, double (*of)(const Fra
   return values;
 }
 
-// Every part without interruption begins and ends at rest, as the tools for damage expect.
-std::vector<double> WithRests(const std::vector<double>& values,
-                              std::span<const PersonSample> samples) {
-  std::vector<double> rested;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i == 0 || !samples[i].continues) rested.push_back(0);
-    rested.push_back(values[i]);
-  }
-  rested.push_back(0);
-  return rested;
-}
-
-void AddExposure(const NominalChain& nominal, std::span<const PersonSample> samples,
-                 Assessment* a) {
-  // The moment of the hands' forces alone about the lower back, without the weight of the trunk.
-  const std::vector<double> back = SeriesOf(
-      nominal, [](const Frame& f) { return std::abs(f.loads.overload[person::kTorsoFlexion]); });
-  a->damage.push_back(DamageOfMoment("LiFFT", "lower back", WithRests(back, samples), a->duration,
-                                     ergonomics::LiftDamage, ergonomics::kLiftRisk));
-  for (std::size_t h = 0; h < kHands; ++h) {
-    std::vector<double> moment;
-    for (const auto& of_both : nominal.shoulder_moment) moment.push_back(of_both[h]);
-    a->damage.push_back(DamageOfMoment("Shoulder Tool", std::string(kHandNames[h]) + " shoulder",
-                                       WithRests(moment, samples), a->duration,
-                                       ergonomics::ShoulderDamage, ergonomics::kShoulderRisk));
-  }
-}
-
 // A load over the whole run. While no hand holds a handle, the arms hang and rest.
 std::vector<double> OverRun(const std::vector<double>& held, std::span<const PersonSample> all) {
   std::vector<double> load;
@@ -152,15 +129,74 @@ std::vector<double> OverRun(const std::vector<double>& held, std::span<const Per
   return load;
 }
 
-void AddFatigue(const NominalChain& nominal, std::span<const PersonSample> all, Assessment* a) {
+void AddDamage(const Scenario& scenario, const NominalChain& nominal,
+               std::span<const PersonSample> all, Assessment* a) {
+  // The moment of the hands' forces alone about the lower back, without the weight of the trunk.
+  const std::vector<double> back = SeriesOf(
+      nominal, [](const Frame& f) { return std::abs(f.loads.overload[person::kTorsoFlexion]); });
+  a->damage.push_back(DamageOfMoment("LiFFT", "lower back", OverRun(back, all),
+                                     ergonomics::LiftDamage, ergonomics::kLiftRisk));
+  for (int hand = 0; hand < kHands; ++hand) {
+    if (!scenario.Has(hand)) continue;
+    std::vector<double> moment;
+    for (const auto& of_both : nominal.shoulder_moment)
+      moment.push_back(of_both[static_cast<std::size_t>(hand)]);
+    a->damage.push_back(DamageOfMoment("Shoulder Tool", std::string(HandName(hand)) + " shoulder",
+                                       OverRun(moment, all), ergonomics::ShoulderDamage,
+                                       ergonomics::kShoulderRisk));
+  }
+}
+
+void AddFatigue(const Scenario& scenario, const NominalChain& nominal,
+                std::span<const PersonSample> all, Assessment* a) {
   using ergonomics::FatigueJoint;
-  const auto add = [&](const char* joint, FatigueJoint kind, double (*use)(const Frame&)) {
-    a->fatigue.push_back(FatigueOfLoad(joint, kind, OverRun(SeriesOf(nominal, use), all)));
+  const auto add = [&](int hand, const char* joint, FatigueJoint kind,
+                       double (*use)(const Frame&)) {
+    if (scenario.Has(hand))
+      a->fatigue.push_back(FatigueOfLoad(joint, kind, OverRun(SeriesOf(nominal, use), all)));
   };
-  add("left shoulder", FatigueJoint::kShoulder, [](const Frame& f) { return f.shoulder_use[0]; });
-  add("right shoulder", FatigueJoint::kShoulder, [](const Frame& f) { return f.shoulder_use[1]; });
-  add("left elbow", FatigueJoint::kElbow, [](const Frame& f) { return f.elbow_use[0]; });
-  add("right elbow", FatigueJoint::kElbow, [](const Frame& f) { return f.elbow_use[1]; });
+  add(0, "left shoulder", FatigueJoint::kShoulder,
+      [](const Frame& f) { return f.shoulder_use[0]; });
+  add(1, "right shoulder", FatigueJoint::kShoulder,
+      [](const Frame& f) { return f.shoulder_use[1]; });
+  add(0, "left elbow", FatigueJoint::kElbow, [](const Frame& f) { return f.elbow_use[0]; });
+  add(1, "right elbow", FatigueJoint::kElbow, [](const Frame& f) { return f.elbow_use[1]; });
+}
+
+// A wrong place of the person would make every number wrong. Throws InputError if it is impossible.
+void CheckPlace(std::span<const PersonSample> samples, Assessment* a) {
+  Vector3 mean = Vector3::Zero();  // of the gripping hands, in S
+  double hands = 0, highest = 0;
+  for (const PersonSample& sample : samples)
+    for (const person::HandSample& hand : sample.body.hands) {
+      if (!hand.present) continue;
+      const Vector3 p = a->setup.stance.X_WS.Inverse() * hand.X_WD.p;
+      mean += p;
+      hands += 1;
+      highest = std::max(highest, p.z());
+    }
+  mean /= hands;
+  if (mean.z() < 0)
+    throw InputError(
+        Formatted("The handles are %.2f m below the ground on which the operator stands. Correct "
+                  "operator.stance.ground, or ground in the machine file.",
+                  -mean.z()));
+  if (mean.x() < 0)
+    a->warnings.emplace_back("The handles are behind the operator. Check operator.stance.facing.");
+  if (std::hypot(mean.x(), mean.y()) > 0.8)
+    a->warnings.push_back(Formatted(
+        "The handles are %.2f m away from the operator's feet. Check operator.stance.ground.",
+        std::hypot(mean.x(), mean.y())));
+}
+
+void AddBalanceWarning(const NominalChain& nominal, Assessment* a) {
+  const auto falling = std::ranges::count_if(
+      nominal.frames, [](const Frame& f) { return f.loads.balance.margin < 0; });
+  constexpr double kShort = 0.1;  // a person balances for so long [s]
+  if (static_cast<double>(falling) < kShort * kSampleRate) return;
+  a->warnings.push_back(Formatted(
+      "For %.1f s the centre of pressure is outside the feet: a person could not stand like this.",
+      static_cast<double>(falling) / kSampleRate));
 }
 
 void AddReach(const NominalChain& nominal, const SampledChain& sampled, Assessment* a) {
@@ -182,14 +218,19 @@ void AddReach(const NominalChain& nominal, const SampledChain& sampled, Assessme
 void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) {
   a->assumptions = {
       "The feet stay where operator.stance puts them.",
-      "No head or elbow was measured: the posture follows from the hands and from comfort.",
+      "Head, elbows, hips and knees were not measured: the posture follows from the hands and from "
+      "comfort.",
+      "The trunk moves slowly, so that its acceleration loads nothing.",
       std::string("For RULA and REBA, the postures are ") + (work.repeated ? "" : "not ") +
           "repeated four times a minute and " + (work.held ? "" : "not ") +
-          "held for more than a minute.",
-      "Lifts occur as often as in this run, for at most one hour.",
-      "Strength is the mean of the person's sex."};
+          "held for more than a minute, and the handles are good to grip.",
+      "For the lifting index, lifts occur as often as in this run, for at most one hour.",
+      "Strength is the mean of the person's sex, for flexion and extension only."};
   if (scenario.operator_.type == "virtual")
     a->assumptions.emplace_back("The operator was simulated, without a body of its own.");
+  if (scenario.operator_.type == "person")
+    a->assumptions.emplace_back(
+        "The hands held the handles throughout: real arms cannot feel whether a hand is there.");
   a->not_evaluable = {{"muscle forces", "no arm model with muscles is part of this version"},
                       {"DUET (hand and forearm)", "the effort of the grip is not measured"},
                       {"raised shoulders", "the shoulder girdle does not move in the model"}};
@@ -197,6 +238,13 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
     a->not_evaluable.push_back({"the person at the page",
                                 "a mouse moved the handles, so the posture is that of a person "
                                 "who would have held them"});
+}
+
+void AddLifts(std::optional<double> object_mass, const SampleCollector& run, Assessment* a) {
+  if (object_mass)
+    a->lifts = LiftsOf(run.samples(), a->setup.stance, *object_mass, a->setup.body.sex);
+  else
+    a->not_evaluable.push_back({"lifting equations", "the mass of the object is not known"});
 }
 
 }  // namespace
@@ -212,10 +260,11 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
     throw InputError("No hand held a handle in this run, so there is nothing to evaluate.");
   Assessment a;
   a.scenario = scenario.name;
-  a.operator_is_simulated = scenario.operator_.type == "virtual";
+  a.operator_type = scenario.operator_.type;
   a.setup = SetupOf(scenario, run.first());
   a.duration = static_cast<double>(run.samples().size()) / kSampleRate;
   a.held = static_cast<double>(samples.size()) / kSampleRate;
+  CheckPlace(samples, &a);
   const double share = options.intervals ? 0.3 : 1;  // of the time that the nominal chain takes
   const NominalChain nominal = RunNominal(a.setup, samples, options.work,
                                           [&](double done) { options.progress(share * done); });
@@ -226,17 +275,16 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
   for (const PersonSample& sample : samples) a.times.push_back(sample.body.time);
   for (const std::size_t i : sampled.at) a.sampled_times.push_back(a.times[i]);
   for (const QuantityKind& kind : Quantities())
-    a.quantities.push_back(QuantityOf(kind, nominal, sampled, samples));
+    if (kind.hand < 0 || scenario.Has(kind.hand))
+      a.quantities.push_back(QuantityOf(kind, nominal, sampled, samples));
   for (const WorksheetKind& kind : Worksheets())
     a.worksheets.push_back(WorksheetOf(kind, nominal, sampled));
   AddReach(nominal, sampled, &a);
-  AddExposure(nominal, samples, &a);
-  AddFatigue(nominal, run.samples(), &a);
+  AddBalanceWarning(nominal, &a);
+  AddDamage(scenario, nominal, run.samples(), &a);
+  AddFatigue(scenario, nominal, run.samples(), &a);
   AddWords(scenario, options.work, &a);
-  if (object_mass)
-    a.lifts = LiftsOf(run.samples(), a.setup.stance, *object_mass, a.setup.body.sex);
-  else
-    a.not_evaluable.push_back({"lifting equations", "the mass of the object is not known"});
+  AddLifts(object_mass, run, &a);
   return a;
 }
 

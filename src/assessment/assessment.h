@@ -18,12 +18,16 @@ namespace predictor::assessment {
 
 struct QuantityResult {
   const QuantityKind* kind = nullptr;
-  double mean = 0, p5 = 0, p95 = 0, max = 0;  // of the nominal posture over time
-  // 90 % intervals over possible postures and bodies, of the mean and the 95th percentile.
-  std::optional<person::Interval> mean_interval, p95_interval;
-  std::vector<double> person_p95;  // of each possible person; the same persons in every assessment
-  std::vector<double> values;      // at Assessment::times
-  std::vector<double> low, high;   // 90 % interval at Assessment::sampled_times
+  double mean = 0, p5 = 0, p95 = 0, min = 0, max = 0;  // of the nominal posture over time
+  // 90 % intervals over possible postures and bodies, of the mean and of the bad tail.
+  std::optional<person::Interval> mean_interval, tail_interval;
+  std::vector<double> person_tail;  // of each possible person; the same persons in all assessments
+  std::vector<double> values;       // at Assessment::times
+  std::vector<double> low, high;    // 90 % interval at Assessment::sampled_times
+
+  // The value that is worse in 5 % of the time: p95, or p5 if low values are bad.
+  double tail() const { return kind->bad == Bad::kHigh ? p95 : p5; }
+  double worst() const { return kind->bad == Bad::kHigh ? max : min; }
 };
 
 struct WorksheetResult {
@@ -37,7 +41,7 @@ struct WorksheetResult {
 
 struct Assessment {
   std::string recording, scenario;
-  bool operator_is_simulated = false;
+  std::string operator_type;  // as in the scenario
   PersonSetup setup;
   double duration = 0;         // simulated [s]
   double held = 0;             // of it, while a hand held a handle; only this is judged [s]
@@ -45,11 +49,12 @@ struct Assessment {
   double sampled_reached = 0;  // the same over the possible postures
   double worst_miss = 0;       // largest distance that is missing [m]
   std::vector<double> times, sampled_times;  // [s]
-  std::vector<QuantityResult> quantities;    // in the order of Quantities()
+  std::vector<QuantityResult> quantities;    // in the order of Quantities(), of existing handles
   std::vector<WorksheetResult> worksheets;   // in the order of Worksheets()
   std::vector<Lift> lifts;
   std::vector<DamageResult> damage;
   std::vector<FatigueResult> fatigue;
+  std::vector<std::string> warnings;  // about doubtful input
   std::vector<std::string> assumptions;
   std::vector<NotEvaluable> not_evaluable;
 };

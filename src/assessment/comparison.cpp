@@ -1,7 +1,12 @@
 #include "assessment/comparison.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "assessment/output.h"
 #include "core/error.h"
 #include "core/format.h"
+#include "core/text.h"
 
 namespace predictor::assessment {
 namespace {
@@ -11,17 +16,17 @@ bool SameBody(const BodySpec& a, const BodySpec& b) {
 }
 
 Difference DifferenceOf(const QuantityResult& a, const QuantityResult& b) {
-  Difference result;
-  result.kind = a.kind;
-  result.a = a.p95;
-  result.b = b.p95;
-  if (a.person_p95.empty() || a.person_p95.size() != b.person_p95.size()) return result;
+  Difference result = {a.kind, a.tail(), b.tail(), {}, {}};
+  if (a.person_tail.empty() || a.person_tail.size() != b.person_tail.size()) return result;
   std::vector<double> differences;
-  const auto n = static_cast<double>(a.person_p95.size());
-  for (std::size_t i = 0; i < a.person_p95.size(); ++i) {
-    differences.push_back(a.person_p95[i] - b.person_p95[i]);
-    result.share_lower += differences.back() < 0 ? 1 / n : 0;
+  const auto n = static_cast<double>(a.person_tail.size());
+  const double sign = a.kind->bad == Bad::kHigh ? 1 : -1;
+  double better = 0;
+  for (std::size_t i = 0; i < a.person_tail.size(); ++i) {
+    differences.push_back(a.person_tail[i] - b.person_tail[i]);
+    better += sign * differences.back() < 0 ? 1 / n : 0;
   }
+  result.share_better = better;
   result.interval = person::IntervalOf(differences);
   return result;
 }
@@ -33,33 +38,47 @@ Comparison Compare(const Assessment& a, const Assessment& b) {
     throw InputError(b.recording,
                      "The operator's body differs from that of " + a.recording +
                          ". Give both the same one, for example --set operator.body.height=1.75.");
-  Comparison comparison = {a.recording, b.recording, {}};
-  for (std::size_t i = 0; i < a.quantities.size(); ++i)
-    comparison.differences.push_back(DifferenceOf(a.quantities[i], b.quantities[i]));
+  Comparison comparison = {a.recording, b.recording, {}, a.damage, b.damage, ""};
+  for (const QuantityResult& of_a : a.quantities)
+    for (const QuantityResult& of_b : b.quantities)
+      if (of_a.kind == of_b.kind) comparison.differences.push_back(DifferenceOf(of_a, of_b));
+  constexpr double kSameLength = 0.1;
+  if (std::abs(a.held - b.held) > kSameLength * std::max(a.held, b.held))
+    comparison.warning = Formatted(
+        "The hands held for %.1f s in one run and for %.1f s in the other. If one of them ended "
+        "early, it looks better than it is.",
+        a.held, b.held);
   return comparison;
 }
 
 std::string ComparisonText(const Comparison& comparison) {
   std::string text;
-  AppendLine(&text, "\n%s against %s: 95th percentiles of the same person", comparison.a.c_str(),
-             comparison.b.c_str());
+  AppendLine(&text, "\n%s against %s, for the same person", Printable(comparison.a).c_str(),
+             Printable(comparison.b).c_str());
+  if (!comparison.warning.empty()) AppendLine(&text, "%s", comparison.warning.c_str());
   AppendLine(&text, "%-52s %8s %8s  %-19s %s", "", "this", "other", "difference (90 %)",
-             "lower for");
+             "better for");
   for (const Difference& d : comparison.differences) {
     const Unit& unit = d.kind->unit;
-    const auto value = [&](double x) { return Formatted("%.*f", unit.decimals, unit.factor * x); };
+    const auto value = [&](double x) { return ValueText(*d.kind, x); };
     const std::string name = WithUnit(std::string(d.kind->group) + ", " + d.kind->label, unit);
     std::string line =
         Formatted("%-52s %8s %8s", name.c_str(), value(d.a).c_str(), value(d.b).c_str());
     if (d.interval)
       Append(&line, "  %-19s %3.0f %%",
              (value(d.interval->low) + " … " + value(d.interval->high)).c_str(),
-             100 * d.share_lower);
+             100 * *d.share_better);
     AppendLine(&text, "%s", line.c_str());
   }
+  for (const DamageResult& a : comparison.damage_a)
+    for (const DamageResult& b : comparison.damage_b)
+      if (a.tool == b.tool && a.part == b.part)
+        AppendLine(&text, "%-52s %8.3g %8.3g",
+                   (a.tool + ", " + a.part + ", reference day per run [%]").c_str(),
+                   100 * a.day_share, 100 * b.day_share);
   text +=
-      "\"Lower for\": the share of 64 possible postures and bodies for which this recording has "
-      "the lower value.\n";
+      "Values: 95th percentiles over time (of balance the 5th). \"Better for\": the share of 64 "
+      "possible postures and bodies for which this recording has the better value.\n";
   return text;
 }
 

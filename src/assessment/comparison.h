@@ -11,16 +11,18 @@ namespace predictor::assessment {
 
 struct Difference {
   const QuantityKind* kind = nullptr;
-  double a = 0, b = 0;  // 95th percentiles over time, of the nominal posture
+  double a = 0, b = 0;  // QuantityResult::tail()
   // 90 % interval of a - b over the possible persons. Each of them is compared with itself, so most
   // of the uncertainty about the posture cancels.
   std::optional<person::Interval> interval;
-  double share_lower = 0;  // of the possible persons for whom a < b
+  std::optional<double> share_better;  // of the possible persons for whom a is better than b
 };
 
 struct Comparison {
   std::string a, b;  // recordings
   std::vector<Difference> differences;
+  std::vector<DamageResult> damage_a, damage_b;
+  std::string warning;  // about runs that hardly can be compared; else empty
 };
 
 // Throws InputError if the bodies differ: then the difference would not be that of the designs.

@@ -1,7 +1,9 @@
 #include "assessment/exposure.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "assessment/hand_samples.h"
@@ -22,15 +24,34 @@ std::vector<double> Coarse(std::span<const double> load) {
   return coarse;
 }
 
+// First order, forward and backward, so without delay. Begins and ends at rest.
+std::vector<double> Smooth(std::span<const double> values, double cutoff) {
+  const auto rest = static_cast<std::size_t>(kSampleRate / cutoff);
+  std::vector<double> smooth(values.size() + 2 * rest, 0);
+  std::ranges::copy(values, smooth.begin() + static_cast<std::ptrdiff_t>(rest));
+  const double gain = 1 - std::exp(-2 * std::numbers::pi * cutoff / kSampleRate);
+  const auto pass = [&](auto begin, auto end) {
+    double state = 0;
+    for (auto value = begin; value != end; ++value) *value = state += gain * (*value - state);
+  };
+  pass(smooth.begin(), smooth.end());
+  pass(smooth.rbegin(), smooth.rend());
+  return smooth;
+}
+
 }  // namespace
 
 DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
-                            std::span<const double> moment, double duration,
-                            double (*per_cycle)(double), const ergonomics::DamageRisk& risk) {
+                            std::span<const double> moment, double (*per_cycle)(double),
+                            const ergonomics::DamageRisk& risk) {
   DamageResult result = {tool, part};
-  const auto cycles = ergonomics::CountRainflow(moment, kMinRange);
+  const std::vector<double> smooth = Smooth(moment, kDamageCutoff);
+  const auto [low, high] = std::ranges::minmax(smooth);
+  const auto cycles =
+      ergonomics::CountRainflow(smooth, std::max(kMinRange, kMinRangeShare * (high - low)));
   result.per_run = ergonomics::DamageOf(cycles, per_cycle);
   result.day_share = ergonomics::ShareOfReferenceDay(result.per_run, risk);
+  const double duration = static_cast<double>(moment.size()) / kSampleRate;
   const double shift = ergonomics::DamageOfShift(result.per_run, duration, kShift);
   result.shift_share = ergonomics::ShareOfReferenceDay(shift, risk);
   result.probability = risk.Probability(shift);

@@ -19,11 +19,16 @@ struct DamageResult {
   double probability = 0;  // of the tool's outcome for that shift
 };
 
-// `moment` [N·m]: during a run of `duration` [s]. Ranges below kMinRange do not count.
+// `moment` [N·m]: over a run, at 100 Hz, 0 at rest. It is low-passed at kDamageCutoff in both
+// directions, and smaller ranges than kMinRange or kMinRangeShare of the largest one do not count:
+// each cycle costs something even without a load, so tremor and noise would count as lifts.
 DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
-                            std::span<const double> moment, double duration,
-                            double (*per_cycle)(double), const ergonomics::DamageRisk& risk);
-inline constexpr double kMinRange = 1;  // a design choice, above the noise of the sensors [N·m]
+                            std::span<const double> moment, double (*per_cycle)(double),
+                            const ergonomics::DamageRisk& risk);
+// Design choices.
+inline constexpr double kDamageCutoff = 1;     // [Hz]
+inline constexpr double kMinRange = 5;         // [N·m]
+inline constexpr double kMinRangeShare = 0.2;  // of the largest range
 
 // Fatigue of one joint by 3CC-r.
 struct FatigueResult {

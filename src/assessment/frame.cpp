@@ -39,11 +39,16 @@ ergonomics::ArmPosture ArmOf(const person::ArmAngles& a) {
   return arm;
 }
 
-ergonomics::Exertion ExertionOf(const FrameInput& input, std::size_t hand,
-                                const WorkPattern& work) {
+// What both hands exert together: a squeeze between them is no load.
+ergonomics::Exertion ExertionOf(const FrameInput& input, const WorkPattern& work) {
   ergonomics::Exertion exertion;
-  exertion.load = input.sample.hands[hand].F_D_W.head<3>().norm() / kStandardGravity;
-  exertion.shock = input.force_rate[hand] > kShockRate;
+  Vector3 force = Vector3::Zero();
+  for (std::size_t h = 0; h < kHands; ++h) {
+    if (!input.sample.hands[h].present) continue;
+    force += input.sample.hands[h].F_D_W.head<3>();
+    exertion.shock = exertion.shock || input.force_rate[h] > kShockRate;
+  }
+  exertion.load = force.norm() / kStandardGravity;
   exertion.held = work.held;
   exertion.repeated = work.repeated;
   exertion.coupling = work.coupling;
@@ -52,22 +57,17 @@ ergonomics::Exertion ExertionOf(const FrameInput& input, std::size_t hand,
 
 void Score(const FrameInput& input, const WorkPattern& work, Frame* frame) {
   const ergonomics::BodyPosture body = BodyOf(frame->angles);
-  std::array<ergonomics::ArmPosture, kHands> arms;
-  double load = 0;  // of both hands [kg]
-  const auto& hands = input.sample.hands;
-  const bool none = !hands[0].present && !hands[1].present;
+  const ergonomics::Exertion exertion = ExertionOf(input, work);
+  const std::array<ergonomics::ArmPosture, kHands> arms = {ArmOf(frame->angles.arms[0]),
+                                                           ArmOf(frame->angles.arms[1])};
   for (std::size_t h = 0; h < kHands; ++h) {
-    arms[h] = ArmOf(frame->angles.arms[h]);
-    ergonomics::Exertion exertion;
-    if (hands[h].present) exertion = ExertionOf(input, h, work);
-    load += exertion.load;
-    if (!hands[h].present && !none) continue;
+    if (!input.sample.hands[h].present) continue;
     const auto rula = ergonomics::AssessRula(body, arms[h], exertion);
     const auto reba = ergonomics::AssessReba(body, arms[h], exertion);
     if (rula.grand > frame->rula.grand) frame->rula = rula;
     if (reba.reba > frame->reba.reba) frame->reba = reba;
   }
-  frame->owas = ergonomics::AssessOwas(body, arms[0], arms[1], load);
+  frame->owas = ergonomics::AssessOwas(body, arms[0], arms[1], exertion.load);
 }
 
 double UseOf(double torque, StrengthDirection flexion, StrengthDirection extension, Sex sex,
@@ -75,7 +75,7 @@ double UseOf(double torque, StrengthDirection flexion, StrengthDirection extensi
   const StrengthDirection direction = torque > 0 ? flexion : extension;
   const double strength = ergonomics::MeanStrength(
       direction, sex, std::numbers::pi - arm.elbow_flexion, arm.upper_arm_flexion);
-  return strength > 0 ? std::abs(torque) / strength : 0;
+  return std::abs(torque) / std::max(strength, 1e-9);
 }
 
 }  // namespace

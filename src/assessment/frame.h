@@ -22,7 +22,7 @@ struct WorkPattern {
 struct Frame {
   person::PostureAngles angles;
   person::BodyLoads loads;
-  // The worse one of both arms that hold a handle; without one, of both arms.
+  // The worse one of the arms that hold a handle, with the force of both hands together.
   ergonomics::RulaScores rula;
   ergonomics::RebaScores reba;
   ergonomics::OwasScore owas;
@@ -33,7 +33,7 @@ struct Frame {
 
 struct FrameInput {
   const person::BodySample& sample;
-  std::array<double, kHands> force_rate;  // of each hand, of the force at 100 Hz [N/s]
+  std::array<double, kHands> force_rate;  // of each hand's force, over 0.1 s [N/s]
 };
 
 Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,

@@ -40,22 +40,32 @@ struct Rise {
   std::size_t from = 0, to = 0;  // samples
 };
 
-// Finds rises between turning points. A sample without hands ends the search and starts a new one.
-std::vector<Rise> RisesOf(const std::vector<std::optional<Vector3>>& middle) {
+// The last sample before the object leaves its lowest height: it may have waited there.
+std::size_t DepartureAt(const std::vector<std::optional<Vector3>>& middle, std::size_t low,
+                        std::size_t high) {
+  std::size_t last = low;
+  for (std::size_t i = low; i < high; ++i)
+    if (middle[i]->z() < middle[low]->z() + kReversal / 2) last = i;
+  return last;
+}
+
+// Finds rises between turning points. Where no hand holds, or another one, a new search begins.
+std::vector<Rise> RisesOf(const std::vector<std::optional<Vector3>>& middle,
+                          std::span<const PersonSample> samples) {
   std::vector<Rise> rises;
   std::size_t low = 0, high = 0;
   bool holding = false, rising = false;
   const auto height = [&](std::size_t i) { return middle[i]->z(); };
   const auto close = [&] {
     if (holding && rising && height(high) - height(low) >= kMinLift)
-      rises.push_back({low, ArrivalAt(middle, low, high)});
+      rises.push_back({DepartureAt(middle, low, high), ArrivalAt(middle, low, high)});
     rising = false;
   };
   for (std::size_t i = 0; i < middle.size(); ++i) {
-    if (!middle[i]) {
+    if (!middle[i] || !samples[i].continues) {
       close();
       holding = false;
-      continue;
+      if (!middle[i]) continue;
     }
     if (!holding) {
       low = high = i;
@@ -105,11 +115,13 @@ std::vector<Lift> LiftsOf(std::span<const PersonSample> samples, const person::S
   std::vector<std::optional<Vector3>> middle;
   middle.reserve(samples.size());
   for (const PersonSample& sample : samples) middle.push_back(MiddleOf(sample, stance));
-  const std::vector<Rise> rises = RisesOf(middle);
+  const std::vector<Rise> rises = RisesOf(middle, samples);
   const double minutes = static_cast<double>(samples.size()) / kSampleRate / 60;
   std::vector<Lift> lifts;
   for (const Rise& rise : rises) {
     Lift lift;
+    const auto& hands = samples[rise.from].body.hands;
+    lift.one_hand = !hands[0].present || !hands[1].present;
     lift.begin = samples[rise.from].body.time;
     lift.end = samples[rise.to].body.time;
     lift.origin = PlaceOf(*middle[rise.from]);

@@ -12,6 +12,7 @@
 namespace predictor::assessment {
 
 struct Lift {
+  bool one_hand = false;                      // then the equations do not apply
   double begin = 0, end = 0;                  // [s]
   ergonomics::HandPlace origin, destination;  // of the middle of the gripping hands
   double vertical_force = 0;                  // mean over the lift, of all hands, upwards [N]

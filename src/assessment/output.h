@@ -18,6 +18,8 @@ std::string AssessmentSchema();
 std::string AssessmentCsv(const Assessment& a);
 std::string AssessmentPage(const Assessment& a, const std::string& program_version);
 
+// A value in the unit that people read.
+std::string ValueText(const QuantityKind& kind, double x);
 // "measured by ...": what the words of Origin mean.
 std::string OriginWords();
 // One sentence for each lift, damage and fatigue result.
@@ -26,7 +28,7 @@ std::string Sentence(const DamageResult& damage);
 std::string Sentence(const FatigueResult& fatigue);
 // "The body reaches the handles 98 % of the time ..."
 std::string ReachSentence(const Assessment& a);
-// "The operator was simulated." or that a person held the handles.
+// Who moved the handles.
 std::string OperatorSentence(const Assessment& a);
 
 }  // namespace predictor::assessment

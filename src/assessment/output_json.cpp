@@ -2,7 +2,6 @@
 #include <nlohmann/json.hpp>
 
 #include "assessment/output.h"
-#include "core/format.h"
 
 namespace predictor::assessment {
 namespace {
@@ -22,9 +21,11 @@ Json ToJson(const QuantityResult& q) {
           {"mean", Number(q.mean)},
           {"p5", Number(q.p5)},
           {"p95", Number(q.p95)},
+          {"min", Number(q.min)},
           {"max", Number(q.max)},
+          {"bad", q.kind->bad == Bad::kHigh ? "high" : "low"},
           {"mean_interval_90", ToJson(q.mean_interval)},
-          {"p95_interval_90", ToJson(q.p95_interval)}};
+          {"tail_interval_90", ToJson(q.tail_interval)}};
 }
 
 Json ToJson(const WorksheetResult& w) {
@@ -48,19 +49,24 @@ Json ToJson(const ergonomics::HandPlace& place) {
 }
 
 Json ToJson(const Lift& lift) {
-  return {{"begin_s", lift.begin},
-          {"end_s", lift.end},
-          {"origin", ToJson(lift.origin)},
-          {"destination", ToJson(lift.destination)},
-          {"vertical_force_n", lift.vertical_force},
-          {"adapted_lifting_index", Number(lift.niosh.carried.index)},
-          {"unassisted_lifting_index", Number(lift.niosh.unassisted.index)},
-          {"share_that_accepts", lift.share_that_accepts},
-          {"outside_lm_mmh", lift.acceptable.outside}};
+  return {
+      {"origin_of_number", Name(Origin::kStandard)},
+      {"begin_s", lift.begin},
+      {"end_s", lift.end},
+      {"one_hand", lift.one_hand},
+      {"origin", ToJson(lift.origin)},
+      {"destination", ToJson(lift.destination)},
+      {"vertical_force_n", lift.vertical_force},
+      {"adapted_lifting_index", lift.one_hand ? Json(nullptr) : Number(lift.niosh.carried.index)},
+      {"unassisted_lifting_index",
+       lift.one_hand ? Json(nullptr) : Number(lift.niosh.unassisted.index)},
+      {"share_that_accepts", lift.one_hand ? Json(nullptr) : Json(lift.share_that_accepts)},
+      {"outside_lm_mmh", lift.acceptable.outside}};
 }
 
 Json ToJson(const DamageResult& d) {
-  return {{"tool", d.tool},
+  return {{"origin", Name(Origin::kStandard)},
+          {"tool", d.tool},
           {"part", d.part},
           {"damage_per_run", d.per_run},
           {"share_of_reference_day_per_run", d.day_share},
@@ -69,7 +75,8 @@ Json ToJson(const DamageResult& d) {
 }
 
 Json ToJson(const FatigueResult& f) {
-  return {{"joint", f.joint},
+  return {{"origin", Name(Origin::kModelled)},
+          {"joint", f.joint},
           {"mean_load", f.mean_load},
           {"capacity_at_end", f.capacity},
           {"time_to_limit_s", Number(f.time_to_limit)}};
@@ -83,18 +90,20 @@ Json ListOf(const std::vector<T>& list) {
 }
 
 Json ToJson(const Comparison& comparison) {
-  Json json = {{"recording", comparison.b}};
+  Json json = {{"recording", comparison.b}, {"warning", comparison.warning}};
   for (const Difference& d : comparison.differences)
-    json["quantities"][d.kind->path] = {{"p95", Number(d.a)},
-                                        {"p95_of_other", Number(d.b)},
-                                        {"difference_interval_90", ToJson(d.interval)},
-                                        {"share_lower", d.share_lower}};
+    json["quantities"][d.kind->path] = {
+        {"tail", Number(d.a)},
+        {"tail_of_other", Number(d.b)},
+        {"difference_interval_90", ToJson(d.interval)},
+        {"share_better", d.share_better ? Json(*d.share_better) : Json(nullptr)}};
   return json;
 }
 
 Json PersonOf(const Assessment& a) {
   const BodySpec& body = a.setup.body;
-  return {{"simulated", a.operator_is_simulated},
+  return {{"simulated", a.operator_type == "virtual"},
+          {"operator", a.operator_type},
           {"height_m", body.height},
           {"mass_kg", body.mass},
           {"sex", body.sex == Sex::kMale ? "male" : "female"},
@@ -134,9 +143,11 @@ Json QuantitySchema(const QuantityKind& kind) {
        {"mean", OrNull("number", "over time, of the nominal posture")},
        {"p5", OrNull("number", "5th percentile over time")},
        {"p95", OrNull("number", "95th percentile over time")},
+       {"min", OrNull("number", "smallest value")},
        {"max", OrNull("number", "largest value")},
+       {"bad", Described("string", "whether high or low values are bad")},
        {"mean_interval_90", OrNull("array", "90 % interval of the mean")},
-       {"p95_interval_90", OrNull("array", "90 % interval of the 95th percentile")}},
+       {"tail_interval_90", OrNull("array", "90 % interval of p95, or of p5 if low is bad")}},
       WithUnit(std::string(kind.group) + ", " + kind.label, {kind.unit.si, kind.unit.si}));
 }
 
@@ -177,6 +188,7 @@ std::string AssessmentJson(const Assessment& a, const Comparison* comparison) {
   json["lifts"] = ListOf(a.lifts);
   json["damage"] = ListOf(a.damage);
   json["fatigue"] = ListOf(a.fatigue);
+  json["warnings"] = a.warnings;
   json["assumptions"] = a.assumptions;
   json["not_evaluable"] = Json::array();
   for (const NotEvaluable& n : a.not_evaluable)
@@ -198,6 +210,7 @@ std::string AssessmentSchema() {
         Described("number", "of it, while a hand held a handle; only this is judged [s]")},
        {"person",
         Members({{"simulated", Described("boolean", "whether the operator was simulated")},
+                 {"operator", Described("string", "virtual, browser or person")},
                  {"height_m", Described("number", "height of the body [m]")},
                  {"mass_kg", Described("number", "mass of the body [kg]")},
                  {"sex", Described("string", "female or male")},
@@ -212,44 +225,16 @@ std::string AssessmentSchema() {
        {"lifts", ListSchema("lifts of the run", ToJson(Lift{}))},
        {"damage", ListSchema("cumulative damage", ToJson(DamageResult{}))},
        {"fatigue", ListSchema("fatigue of joints", ToJson(FatigueResult{}))},
+       {"warnings", ArrayOf(text, "doubtful input")},
        {"assumptions", ArrayOf(text, "what was assumed")},
        {"not_evaluable",
         ArrayOf(Members({{"what", text}, {"why", text}}, "one gap"), "what could not be judged")},
        {"against", OrNull("object",
-                          "95th percentiles of another recording, and the differences for "
+                          "tails of another recording, and the differences for "
                           "the same possible persons")}},
       "The assessment of the person in a run of PREDICTOR");
   schema["$schema"] = "http://json-schema.org/draft-07/schema#";
   return schema.dump(2) + "\n";
-}
-
-std::string AssessmentCsv(const Assessment& a) {
-  std::string text = "time [s]";
-  for (const QuantityResult& q : a.quantities) {
-    const std::string unit = *q.kind->unit.si ? std::string(" [") + q.kind->unit.si + "]" : "";
-    text += std::string(",") + q.kind->path + unit;
-    if (!q.low.empty())
-      text += std::string(",") + q.kind->path + ".low" + unit + "," + q.kind->path + ".high" + unit;
-  }
-  for (const WorksheetResult& w : a.worksheets) text += std::string(",") + w.kind->name;
-  text += "\n";
-  std::size_t k = 0;  // next of sampled_times
-  for (std::size_t i = 0; i < a.times.size(); ++i) {
-    const bool sampled = k < a.sampled_times.size() && a.sampled_times[k] == a.times[i];
-    Append(&text, "%.3f", a.times[i]);
-    for (const QuantityResult& q : a.quantities) {
-      Append(&text, ",%.6g", q.values[i]);
-      if (q.low.empty()) continue;
-      if (sampled)
-        Append(&text, ",%.6g,%.6g", q.low[k], q.high[k]);
-      else
-        text += ",,";
-    }
-    for (const WorksheetResult& w : a.worksheets) Append(&text, ",%d", w.values[i]);
-    text += "\n";
-    k += sampled ? 1 : 0;
-  }
-  return text;
 }
 
 }  // namespace predictor::assessment

@@ -107,14 +107,15 @@ Plot ScorePlot(const Assessment& a) {
 
 std::string QuantityTable(const Assessment& a) {
   std::vector<std::vector<std::string>> rows = {
-      {"Quantity", "Mean", "p5", "p95", "Largest", "p95, 90 %", "Origin"}};
+      {"Quantity", "Mean", "p5", "p95", "Worst", "Tail, 90 %", "Origin"}};
   for (const QuantityResult& q : a.quantities) {
     const Unit& unit = q.kind->unit;
-    const auto value = [&](double x) { return Formatted("%.*f", unit.decimals, unit.factor * x); };
+    const auto value = [&](double x) { return ValueText(*q.kind, x); };
     const std::string name = std::string(q.kind->group) + ", " + q.kind->label;
     rows.push_back(
-        {EscapeMarkup(WithUnit(name, unit)), value(q.mean), value(q.p5), value(q.p95), value(q.max),
-         q.p95_interval ? value(q.p95_interval->low) + " … " + value(q.p95_interval->high) : "–",
+        {EscapeMarkup(WithUnit(name, unit)), value(q.mean), value(q.p5), value(q.p95),
+         value(q.worst()),
+         q.tail_interval ? value(q.tail_interval->low) + " … " + value(q.tail_interval->high) : "–",
          Name(q.kind->origin)});
   }
   return HtmlTable(rows);
@@ -164,13 +165,14 @@ std::string AssessmentPage(const Assessment& a, const std::string& program_versi
   ReportPage page("The person in: " + a.scenario, words);
   page.Section("summary", "Summary");
   page.Paragraph(OperatorSentence(a) + " " + ReachSentence(a));
+  for (const std::string& line : a.warnings) page.Paragraph("Warning: " + line);
   page.Paragraph(Formatted("Body: %s, %.2f m, %.0f kg.", body.sex == Sex::kMale ? "male" : "female",
                            body.height, body.mass));
   page.Html(QuantityTable(a));
   page.Paragraph(
-      "p5 and p95: percentiles over the judged time, of the nominal posture. p95, 90 %: interval "
+      "p5 and p95: percentiles over the judged time, of the nominal posture. Tail: 90 % interval "
       "of "
-      "p95 over 64 possible postures and bodies.");
+      "p95 (of balance p5) over 64 possible postures and bodies.");
   page.Paragraph(OriginWords() + ".");
   page.Section("scores", "Scores");
   page.Html(ScoreTable(a));

@@ -8,36 +8,32 @@
 namespace predictor::assessment {
 namespace {
 
-std::string Value(const QuantityKind& kind, double x) {
-  const std::string text = Formatted("%.*f", kind.unit.decimals, kind.unit.factor * x);
-  return text == "-0" ? "0" : text;
-}
-
 std::string RangeText(const QuantityKind& kind, const std::optional<person::Interval>& range) {
   if (!range) return "";
-  return Value(kind, range->low) + " … " + Value(kind, range->high);
+  return ValueText(kind, range->low) + " … " + ValueText(kind, range->high);
 }
 
 void AppendQuantities(const Assessment& a, std::string* text) {
-  AppendLine(text, "%-34s %8s %8s %8s %8s  %-17s %s", "", "mean", "p5", "p95", "max", "p95 (90 %)",
-             "origin");
+  AppendLine(text, "%-36s %8s %8s %8s %8s  %-17s %s", "", "mean", "p5", "p95", "worst",
+             "tail (90 %)", "origin");
   std::string group;
   for (const QuantityResult& q : a.quantities) {
     const QuantityKind& kind = *q.kind;
     if (group != kind.group) AppendLine(text, "%s", kind.group);
     group = kind.group;
     const std::string name = WithUnit(std::string("  ") + kind.label, kind.unit);
-    AppendLine(text, "%-34s %8s %8s %8s %8s  %-17s %s", name.c_str(), Value(kind, q.mean).c_str(),
-               Value(kind, q.p5).c_str(), Value(kind, q.p95).c_str(), Value(kind, q.max).c_str(),
-               RangeText(kind, q.p95_interval).c_str(), Name(kind.origin));
+    AppendLine(text, "%-36s %8s %8s %8s %8s  %-17s %s", name.c_str(),
+               ValueText(kind, q.mean).c_str(), ValueText(kind, q.p5).c_str(),
+               ValueText(kind, q.p95).c_str(), ValueText(kind, q.worst()).c_str(),
+               RangeText(kind, q.tail_interval).c_str(), Name(kind.origin));
   }
 }
 
 void AppendWorksheets(const Assessment& a, std::string* text) {
   AppendLine(text, "\nScores (standard)");
   for (const WorksheetResult& w : a.worksheets) {
-    AppendLine(text, "  %s: %d at worst, %d for 95 %% of the time. %s", w.kind->name, w.worst,
-               w.p95, w.kind->action(w.p95).sentence);
+    AppendLine(text, "  %s: %d at worst, at most %d for 95 %% of the time. %s", w.kind->name,
+               w.worst, w.p95, w.kind->action(w.p95).sentence);
     std::string shares;
     for (std::size_t score = 1; score < w.share.size(); ++score) {
       const double likely = w.probability.empty() ? 0 : w.probability[score];
@@ -68,8 +64,16 @@ std::string OriginWords() {
          "published method, from measured and modelled values";
 }
 
+std::string ValueText(const QuantityKind& kind, double x) {
+  const std::string text = Formatted("%.*f", kind.unit.decimals, kind.unit.factor * x);
+  return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1)
+                                                                              : text;
+}
+
 std::string OperatorSentence(const Assessment& a) {
-  return a.operator_is_simulated ? "The operator was simulated." : "A person held the handles.";
+  if (a.operator_type == "virtual") return "The operator was simulated.";
+  if (a.operator_type == "browser") return "A mouse or a headset's hands moved the handles.";
+  return "A person held the handles.";
 }
 
 std::string ReachSentence(const Assessment& a) {
@@ -84,10 +88,15 @@ std::string ReachSentence(const Assessment& a) {
 }
 
 std::string Sentence(const Lift& lift) {
+  if (lift.one_hand)
+    return Formatted(
+        "%.1f to %.1f s, from %.2f to %.2f m above the ground, with one hand: the lifting "
+        "equations "
+        "are for two hands.",
+        lift.begin, lift.end, lift.origin.height, lift.destination.height);
   return Formatted(
       "%.1f to %.1f s, from %.2f to %.2f m above the ground: the hands carry %.1f kg. Lifting "
-      "index "
-      "%s (%s), %s without the cobot. %.0f %% of this sex accept it for a day (LM-MMH%s).",
+      "index %s (%s), %s without the cobot. %.0f %% of this sex accept it for a day (LM-MMH%s).",
       lift.begin, lift.end, lift.origin.height, lift.destination.height,
       lift.vertical_force / kStandardGravity, Index(lift.niosh.carried.index).c_str(),
       ergonomics::AssistedLift::kCarriedLabel, Index(lift.niosh.unassisted.index).c_str(),
@@ -116,7 +125,11 @@ std::string AssessmentText(const Assessment& a) {
   std::string text;
   AppendLine(&text, "%s", Printable(a.scenario).c_str());
   AppendLine(&text, "%s %s", OperatorSentence(a).c_str(), ReachSentence(a).c_str());
-  AppendLine(&text, "%s.\n", OriginWords().c_str());
+  for (const std::string& line : a.warnings) AppendLine(&text, "Warning: %s", line.c_str());
+  AppendLine(&text, "%s.", OriginWords().c_str());
+  text +=
+      "p5, p95: percentiles over time, of the nominal posture. Tail: 90 % interval of p95 (of "
+      "balance p5) over 64 possible postures and bodies.\n\n";
   AppendQuantities(a, &text);
   AppendWorksheets(a, &text);
   AppendSentences("Lifts (standard)", a.lifts, &text);

@@ -22,7 +22,9 @@ std::vector<person::Posture> PosturesOf(const PersonSetup& setup,
   return postures;
 }
 
-// Smooths each part without interruption by itself.
+// Smooths each part without interruption by itself. Trunk and head count as at rest at each time:
+// that they follow the hands at once is an assumption of the posture, and the acceleration that it
+// would cause was not observed.
 std::vector<person::BodyMotion> MotionsOf(const std::vector<person::Posture>& postures,
                                           std::span<const PersonSample> samples) {
   std::vector<person::BodyMotion> motions;
@@ -31,20 +33,27 @@ std::vector<person::BodyMotion> MotionsOf(const std::vector<person::Posture>& po
     while (end < postures.size() && samples[end].continues) ++end;
     std::vector<person::BodyVector> q;
     for (std::size_t i = begin; i < end; ++i) q.push_back(postures[i].q);
-    const auto part = person::SmoothMotion(q, 1 / kSampleRate);
+    auto part = person::SmoothMotion(q, 1 / kSampleRate);
+    for (person::BodyMotion& motion : part) {
+      motion.v.head<person::kLeftArm>().setZero();
+      motion.a.head<person::kLeftArm>().setZero();
+    }
     motions.insert(motions.end(), part.begin(), part.end());
   }
   return motions;
 }
 
+// Over 0.1 s, so that noise and tremor do not count.
 std::array<double, kHands> ForceRates(std::span<const PersonSample> samples, std::size_t i) {
+  constexpr std::size_t kWindow = 10;  // samples
   std::array<double, kHands> rates = {};
-  if (i == 0 || !samples[i].continues) return rates;
+  for (std::size_t k = 0; k < kWindow; ++k)
+    if (i < kWindow || !samples[i - k].continues) return rates;
   for (std::size_t h = 0; h < kHands; ++h) {
     const auto& now = samples[i].body.hands[h];
-    const auto& before = samples[i - 1].body.hands[h];
+    const auto& before = samples[i - kWindow].body.hands[h];
     if (now.present && before.present)
-      rates[h] = (now.F_D_W - before.F_D_W).head<3>().norm() * kSampleRate;
+      rates[h] = (now.F_D_W - before.F_D_W).head<3>().norm() * kSampleRate / kWindow;
   }
   return rates;
 }

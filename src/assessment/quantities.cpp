@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace predictor::assessment {
 namespace {
@@ -27,7 +28,11 @@ double Elbow(const Moment& m) {
 }
 template <int Hand>
 double Wrist(const Moment& m) {
-  return m.frame.angles.arms[Hand].wrist_flexion;
+  return std::abs(m.frame.angles.arms[Hand].wrist_flexion);
+}
+template <int Hand>
+double Abduction(const Moment& m) {
+  return m.frame.angles.arms[Hand].upper_arm_abduction;
 }
 template <int Hand>
 double ShoulderUse(const Moment& m) {
@@ -45,8 +50,10 @@ constexpr const char* kTrunk = "Trunk and neck";
 constexpr const char* kArms = "Arms";
 
 constexpr QuantityKind kQuantities[] = {
-    {"hands.left.force_n", kHandsGroup, "left force", kForce, Origin::kMeasured, Force<0>},
-    {"hands.right.force_n", kHandsGroup, "right force", kForce, Origin::kMeasured, Force<1>},
+    {"hands.left.force_n", kHandsGroup, "left force", kForce, Origin::kMeasured, Force<0>, 0, "",
+     0},
+    {"hands.right.force_n", kHandsGroup, "right force", kForce, Origin::kMeasured, Force<1>, 0, "",
+     1},
     {"lower_back.compression_n", kBack, "compression", kCompression, Origin::kModelled,
      [](const Moment& m) { return m.frame.loads.l5s1.compression; }, 3400,
      "NIOSH's limit for compression"},
@@ -55,34 +62,44 @@ constexpr QuantityKind kQuantities[] = {
      "Gallagher & Marras's limit for frequent shear"},
     {"lower_back.flexion_moment_nm", kBack, "extensor moment", kMoment, Origin::kModelled,
      [](const Moment& m) { return m.frame.loads.l5s1.flexion_moment; }},
-    {"strength.left_shoulder", kStrength, "left shoulder", kPercent, Origin::kModelled,
-     ShoulderUse<0>},
-    {"strength.right_shoulder", kStrength, "right shoulder", kPercent, Origin::kModelled,
-     ShoulderUse<1>},
-    {"strength.left_elbow", kStrength, "left elbow", kPercent, Origin::kModelled, ElbowUse<0>},
-    {"strength.right_elbow", kStrength, "right elbow", kPercent, Origin::kModelled, ElbowUse<1>},
+    {"strength.left_shoulder", kStrength, "left shoulder flexion", kPercent, Origin::kModelled,
+     ShoulderUse<0>, 0, "", 0},
+    {"strength.right_shoulder", kStrength, "right shoulder flexion", kPercent, Origin::kModelled,
+     ShoulderUse<1>, 0, "", 1},
+    {"strength.left_elbow", kStrength, "left elbow", kPercent, Origin::kModelled, ElbowUse<0>, 0,
+     "", 0},
+    {"strength.right_elbow", kStrength, "right elbow", kPercent, Origin::kModelled, ElbowUse<1>, 0,
+     "", 1},
     {"trunk.flexion_rad", kTrunk, "trunk flexion", kDegree, Origin::kModelled,
      [](const Moment& m) { return m.frame.angles.trunk_flexion; }},
     {"trunk.side_bend_rad", kTrunk, "trunk side bend", kDegree, Origin::kModelled,
-     [](const Moment& m) { return m.frame.angles.trunk_side_bend; }},
+     [](const Moment& m) { return std::abs(m.frame.angles.trunk_side_bend); }},
     {"trunk.twist_rad", kTrunk, "trunk twist", kDegree, Origin::kModelled,
-     [](const Moment& m) { return m.frame.angles.trunk_twist; }},
+     [](const Moment& m) { return std::abs(m.frame.angles.trunk_twist); }},
     {"neck.flexion_rad", kTrunk, "neck flexion", kDegree, Origin::kModelled,
      [](const Moment& m) { return m.frame.angles.neck_flexion; }},
+    {"legs.knee_flexion_rad", "Legs", "larger knee flexion", kDegree, Origin::kModelled,
+     [](const Moment& m) {
+       return std::max(m.frame.angles.knee_flexion[0], m.frame.angles.knee_flexion[1]);
+     }},
     {"arms.left.elevation_rad", kArms, "left upper arm elevation", kDegree, Origin::kModelled,
-     Elevation<0>},
+     Elevation<0>, 0, "", 0},
     {"arms.right.elevation_rad", kArms, "right upper arm elevation", kDegree, Origin::kModelled,
-     Elevation<1>},
+     Elevation<1>, 0, "", 1},
+    {"arms.left.abduction_rad", kArms, "left upper arm abduction", kDegree, Origin::kModelled,
+     Abduction<0>, 0, "", 0},
+    {"arms.right.abduction_rad", kArms, "right upper arm abduction", kDegree, Origin::kModelled,
+     Abduction<1>, 0, "", 1},
     {"arms.left.elbow_flexion_rad", kArms, "left elbow flexion", kDegree, Origin::kModelled,
-     Elbow<0>},
+     Elbow<0>, 0, "", 0},
     {"arms.right.elbow_flexion_rad", kArms, "right elbow flexion", kDegree, Origin::kModelled,
-     Elbow<1>},
-    {"arms.left.wrist_flexion_rad", kArms, "left wrist flexion", kDegree, Origin::kModelled,
-     Wrist<0>},
-    {"arms.right.wrist_flexion_rad", kArms, "right wrist flexion", kDegree, Origin::kModelled,
-     Wrist<1>},
-    {"balance.margin_m", "Balance", "distance of the centre of pressure from the feet's edge",
-     kCentimetre, Origin::kModelled, [](const Moment& m) { return m.frame.loads.balance.margin; }},
+     Elbow<1>, 0, "", 1},
+    {"arms.left.wrist_flexion_rad", kArms, "left wrist bend", kDegree, Origin::kModelled, Wrist<0>,
+     0, "", 0},
+    {"arms.right.wrist_flexion_rad", kArms, "right wrist bend", kDegree, Origin::kModelled,
+     Wrist<1>, 0, "", 1},
+    {"balance.margin_m", "Balance", "pressure to the feet's edge", kCentimetre, Origin::kModelled,
+     [](const Moment& m) { return m.frame.loads.balance.margin; }, 0, "", -1, Bad::kLow},
 };
 
 constexpr WorksheetKind kWorksheets[] = {

@@ -22,6 +22,9 @@ struct Moment {
   const PersonSample& sample;
 };
 
+// Which values are bad.
+enum class Bad { kHigh, kLow };
+
 struct QuantityKind {
   const char* path;   // key in JSON and CSV, ending in the SI unit
   const char* group;  // of a table and a plot
@@ -31,6 +34,8 @@ struct QuantityKind {
   double (*of)(const Moment&);
   double limit = 0;             // a published limit, SI; 0: none
   const char* limit_name = "";  // its source
+  int hand = -1;                // whose quantity it is; -1: of no single hand
+  Bad bad = Bad::kHigh;
 };
 std::span<const QuantityKind> Quantities();
 

@@ -112,7 +112,7 @@ Segment Combine(const Segment& proximal, const Segment& distal) {
   return s;
 }
 
-void CheckPerson(const PersonSpec& spec) {
+void CheckPerson(const BodySpec& spec) {
   CheckRange("height", spec.height, kMinHeight, kMaxHeight, "m");
   CheckRange("mass", spec.mass, kMinMass, kMaxMass, "kg");
   const double index = spec.mass / (spec.height * spec.height);
@@ -123,7 +123,7 @@ void CheckPerson(const PersonSpec& spec) {
                        " kg/m². Check both; 12 to 70 kg/m² is possible.");
 }
 
-void AddTrunk(const Table& table, const PersonSpec& spec, double mass, Anthropometry* a) {
+void AddTrunk(const Table& table, const BodySpec& spec, double mass, Anthropometry* a) {
   const double scale = spec.height / table.height;
   const double length =
       table.upper_trunk.length + table.middle_trunk.length + table.lower_trunk.length;
@@ -136,7 +136,7 @@ void AddTrunk(const Table& table, const PersonSpec& spec, double mass, Anthropom
   a->l5s1_behind = 0.018 * spec.height;
 }
 
-void AddHead(const Table& table, const PersonSpec& spec, double mass, Anthropometry* a) {
+void AddHead(const Table& table, const BodySpec& spec, double mass, Anthropometry* a) {
   const double c7 = a->hip_height() + a->pelvis.length + a->torso.length;
   const double left = spec.height - c7;
   if (left < kMinHeadHeight * spec.height || left > kMaxHeadHeight * spec.height) {
@@ -152,7 +152,7 @@ void AddHead(const Table& table, const PersonSpec& spec, double mass, Anthropome
 
 }  // namespace
 
-Anthropometry AnthropometryOf(const PersonSpec& spec) {
+Anthropometry AnthropometryOf(const BodySpec& spec) {
   CheckPerson(spec);
   const Table& t = spec.sex == Sex::kMale ? kMaleTable : kFemaleTable;
   const double scale = spec.height / t.height;

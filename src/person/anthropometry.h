@@ -9,9 +9,6 @@
 
 namespace predictor::person {
 
-// What is known about a person. A measured length replaces the estimate from the height.
-using PersonSpec = BodySpec;
-
 // A rigid segment. Its axes, in the upright posture with hanging arms and thumbs forward: x
 // forward, y left, z up.
 struct Segment {
@@ -48,7 +45,7 @@ struct Anthropometry {
 // Further lengths, as fractions of the height: ankle 0.039 (Winter, R), hip joints 0.05 and
 // shoulder joints 0.105 from the midplane (D), L5/S1 0.058 above (Chaffin & Andersson: a fifth of
 // the way from hip to shoulder, R) and 0.018 behind the hips (D), eyes at 0.936 (Drillis & Contini,
-// R). Throws InputError, with the key of PersonSpec, for values that no adult has.
-Anthropometry AnthropometryOf(const PersonSpec& spec);
+// R). Throws InputError, with the key of BodySpec, for values that no adult has.
+Anthropometry AnthropometryOf(const BodySpec& spec);
 
 }  // namespace predictor::person

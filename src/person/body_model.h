@@ -78,7 +78,7 @@ Pose GripInHand(const Anthropometry& a, int hand, GripKind kind);
 class BodyModel {
  public:
   explicit BodyModel(const Anthropometry& anthropometry);
-  explicit BodyModel(const PersonSpec& spec) : BodyModel(AnthropometryOf(spec)) {}
+  explicit BodyModel(const BodySpec& spec) : BodyModel(AnthropometryOf(spec)) {}
 
   const Anthropometry& anthropometry() const { return anthropometry_; }
   const BodyJoint& joint(int i) const { return joints_[static_cast<std::size_t>(i)]; }

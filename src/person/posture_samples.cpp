@@ -83,7 +83,7 @@ PosturePrior VariedPrior(const PosturePrior& prior, std::span<const double> z,
   return p;
 }
 
-Anthropometry VariedBody(const PersonSpec& spec, std::span<const double> z, double length,
+Anthropometry VariedBody(const BodySpec& spec, std::span<const double> z, double length,
                          double mass) {
   const auto factor = [&](std::size_t i, double spread) {
     return 1 + spread * std::clamp(z[i], -3.0, 3.0);
@@ -115,7 +115,7 @@ Anthropometry VariedBody(const PersonSpec& spec, std::span<const double> z, doub
   return a;
 }
 
-PostureSampler::PostureSampler(const PersonSpec& spec, const Stance& stance,
+PostureSampler::PostureSampler(const BodySpec& spec, const Stance& stance,
                                const std::array<Grip, kHands>& grips, const PosturePrior& prior,
                                const PostureSpread& spread, std::uint64_t seed) {
   for (const auto& numbers : DrawPersons(seed)) {

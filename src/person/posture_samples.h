@@ -62,9 +62,9 @@ struct SampledBody {
 // each time: common random numbers.
 class PostureSampler {
  public:
-  PostureSampler(const PersonSpec& spec, const Stance& stance,
-                 const std::array<Grip, kHands>& grips, const PosturePrior& prior = DefaultPrior(),
-                 const PostureSpread& spread = {}, std::uint64_t seed = 1);
+  PostureSampler(const BodySpec& spec, const Stance& stance, const std::array<Grip, kHands>& grips,
+                 const PosturePrior& prior = DefaultPrior(), const PostureSpread& spread = {},
+                 std::uint64_t seed = 1);
 
   // `nominal` is the motion of the nominal posture. Its velocities and accelerations are used for
   // all samples, whose posture is solved for this time alone, starting at the nominal one.
@@ -88,7 +88,7 @@ PosturePrior VariedPrior(const PosturePrior& prior, std::span<const double> z,
 // normal numbers for upper arm, forearm, hand, shoulder distance, trunk, and the masses of torso,
 // upper arm, forearm, hand). Lengths that are measured in `spec` stay. The mass of the whole body
 // stays: the pelvis takes the difference.
-Anthropometry VariedBody(const PersonSpec& spec, std::span<const double> z, double length,
+Anthropometry VariedBody(const BodySpec& spec, std::span<const double> z, double length,
                          double mass);
 inline constexpr int kBodyVariations = 9;
 

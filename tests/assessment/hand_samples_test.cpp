@@ -33,15 +33,16 @@ TEST(Samples, DoNotContinueAcrossAPauseOrLostTicks) {
 }
 
 TEST(Samples, TellWhichHandHolds) {
-  const SampleCollector run = Collect(PersonScenario(), 0.01, [](std::uint64_t tick) {
-    TickRecord record = RecordOf(tick, 1, 5);
-    record.hands[0].gripping = 0;
-    record.hands[1].present = 0;
-    return record;
-  });
-  ASSERT_EQ(run.samples().size(), 1U);
-  EXPECT_FALSE(run.samples()[0].body.hands[0].present);
-  EXPECT_FALSE(run.samples()[0].body.hands[1].present);
+  for (const std::size_t open : {0U, 1U}) {
+    const SampleCollector run = Collect(PersonScenario(), 0.01, [&](std::uint64_t tick) {
+      TickRecord record = RecordOf(tick, 1, 5);
+      record.hands[open].gripping = 0;
+      return record;
+    });
+    ASSERT_EQ(run.samples().size(), 1U);
+    EXPECT_FALSE(run.samples()[0].body.hands[open].present);
+    EXPECT_TRUE(run.samples()[0].body.hands[1 - open].present);
+  }
 }
 
 // A posture without a hand on a handle is unknown. The posture after it does not continue from it.

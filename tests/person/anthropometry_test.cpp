@@ -12,7 +12,7 @@ namespace predictor::person {
 namespace {
 
 TEST(Anthropometry, MassesSumToThePersons) {
-  for (const PersonSpec& spec : {Man(), Woman()}) {
+  for (const BodySpec& spec : {Man(), Woman()}) {
     const Anthropometry a = AnthropometryOf(spec);
     const double sum = a.head.mass + a.torso.mass + a.pelvis.mass +
                        2 * (a.upper_arm.mass + a.forearm.mass + a.hand.mass + a.thigh.mass +
@@ -22,7 +22,7 @@ TEST(Anthropometry, MassesSumToThePersons) {
 }
 
 TEST(Anthropometry, StandsAsTallAsThePerson) {
-  for (const PersonSpec& spec : {Man(), Woman()}) {
+  for (const BodySpec& spec : {Man(), Woman()}) {
     const Anthropometry a = AnthropometryOf(spec);
     EXPECT_NEAR(a.hip_height() + a.pelvis.length + a.torso.length + a.head.length, spec.height,
                 1e-12);
@@ -40,7 +40,7 @@ TEST(Anthropometry, StandsAsTallAsThePerson) {
 // radii of gyration 0.328, 0.306, 0.169 (women 0.4257, 0.4964, 614.8; 0.307, 0.292, 0.147).
 TEST(Anthropometry, PartsOfTheTrunkMakeTheWholeTrunk) {
   struct Whole {
-    PersonSpec spec;
+    BodySpec spec;
     double mass, com, length;
     Vector3 radii;
   };
@@ -66,7 +66,7 @@ TEST(Anthropometry, PartsOfTheTrunkMakeTheWholeTrunk) {
 }
 
 TEST(Anthropometry, MeasuredLengthsReplaceTheEstimate) {
-  PersonSpec spec = Man();
+  BodySpec spec = Man();
   spec.forearm = 0.3;
   const Anthropometry a = AnthropometryOf(spec), usual = AnthropometryOf(Man());
   EXPECT_EQ(a.forearm.length, 0.3);
@@ -75,7 +75,7 @@ TEST(Anthropometry, MeasuredLengthsReplaceTheEstimate) {
   EXPECT_EQ(a.forearm.mass, usual.forearm.mass);
 }
 
-std::string Refusal(const PersonSpec& spec) {
+std::string Refusal(const BodySpec& spec) {
   try {
     AnthropometryOf(spec);
   } catch (const InputError& error) {
@@ -85,7 +85,7 @@ std::string Refusal(const PersonSpec& spec) {
 }
 
 TEST(Anthropometry, RefusesWhatNoAdultHas) {
-  PersonSpec giant = Man(), feather = Man(), stone = Man(), arm = Man(), legs = Man(), nan = Man();
+  BodySpec giant = Man(), feather = Man(), stone = Man(), arm = Man(), legs = Man(), nan = Man();
   giant.height = 5;
   feather.mass = 31;
   stone.mass = 400;

@@ -107,7 +107,7 @@ TEST_F(Loads, GroundCarriesTheWholeBodyUnderItsCentre) {
 // ours. The ratios of these loads agree within 25 %. (Those to relaxed standing, 0.5 MPa, do not,
 // because co-contraction is neglected: docs/concepts/person.md.)
 TEST(LowerBack, LoadsHaveTheRatiosOfMeasuredPressures) {
-  PersonSpec spec;
+  BodySpec spec;
   spec.height = 1.74;
   spec.mass = 72;
   const BodyModel model(spec);

@@ -10,9 +10,9 @@ namespace predictor::person {
 
 inline constexpr double kPi = std::numbers::pi;
 
-inline PersonSpec Man() { return {}; }
-inline PersonSpec Woman() {
-  PersonSpec spec;
+inline BodySpec Man() { return {}; }
+inline BodySpec Woman() {
+  BodySpec spec;
   spec.sex = Sex::kFemale;
   spec.height = 1.62;
   spec.mass = 60;

@@ -33,7 +33,7 @@ std::vector<double> Normals(RandomStream* random, int count) {
 }
 
 // Drawn like the samples: the interval must contain 59/65 of them.
-VirtualPerson Inside(const PersonSpec& spec, RandomStream* random) {
+VirtualPerson Inside(const BodySpec& spec, RandomStream* random) {
   const PostureSpread spread;
   return {VariedBody(spec, Normals(random, kBodyVariations), spread.length, spread.segment_mass),
           VariedPrior(DefaultPrior(), Normals(random, kPriorVariations), spread),
@@ -42,7 +42,7 @@ VirtualPerson Inside(const PersonSpec& spec, RandomStream* random) {
 
 // Another law: no preference for an elbow's swivel; the joints prefer to be near other angles; this
 // person leans from the hips rather than the spine. Every length is 5 % too long or too short.
-VirtualPerson Outside(const PersonSpec& spec, RandomStream* random) {
+VirtualPerson Outside(const BodySpec& spec, RandomStream* random) {
   std::vector<double> signs;
   for (int i = 0; i < kBodyVariations; ++i) signs.push_back(random->Uniform() < 0.5 ? -1 : 1);
   VirtualPerson person;
@@ -175,7 +175,7 @@ Coverage CoverageOf(const std::vector<Judged>& values) {
 }
 
 Table Judge(bool inside, const Measured& measured, int people) {
-  const PersonSpec spec = Man();
+  const BodySpec spec = Man();
   const Stance stance = SomeStance();
   const PostureSampler sampler(spec, stance, Grips(true));
   const PostureSolver nominal(BodyModel{spec}, stance, Grips(true));
@@ -274,7 +274,7 @@ TEST(PostureSampler, VariesOnlyWhatIsNotMeasured) {
   EXPECT_EQ(same.comfort, DefaultPrior().comfort);
   EXPECT_EQ(same.weight, DefaultPrior().weight);
   EXPECT_EQ(same.swivel, DefaultPrior().swivel);
-  PersonSpec spec = Man();
+  BodySpec spec = Man();
   spec.forearm = 0.27;
   const std::vector<double> body(kBodyVariations, 1.0);
   const Anthropometry a = VariedBody(spec, body, 0.05, 0.1), nominal = AnthropometryOf(spec);

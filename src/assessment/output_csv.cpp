@@ -1,0 +1,50 @@
+#include <cstddef>
+
+#include "assessment/output.h"
+#include "core/format.h"
+
+namespace predictor::assessment {
+namespace {
+
+// ",trunk.flexion_rad.low [rad]".
+void AppendHead(const QuantityKind& kind, const char* part, std::string* text) {
+  Append(text, ",%s%s", kind.path, part);
+  if (*kind.unit.si != 0) Append(text, " [%s]", kind.unit.si);
+}
+
+std::string HeadOf(const Assessment& a) {
+  std::string text = "time [s]";
+  for (const QuantityResult& q : a.quantities) {
+    AppendHead(*q.kind, "", &text);
+    if (q.low.empty()) continue;
+    AppendHead(*q.kind, ".low", &text);
+    AppendHead(*q.kind, ".high", &text);
+  }
+  for (const WorksheetResult& w : a.worksheets) Append(&text, ",%s", w.kind->name);
+  return text + '\n';
+}
+
+}  // namespace
+
+std::string AssessmentCsv(const Assessment& a) {
+  std::string text = HeadOf(a);
+  std::size_t k = 0;  // next of sampled_times
+  for (std::size_t i = 0; i < a.times.size(); ++i) {
+    const bool sampled = k < a.sampled_times.size() && a.sampled_times[k] == a.times[i];
+    Append(&text, "%.3f", a.times[i]);
+    for (const QuantityResult& q : a.quantities) {
+      Append(&text, ",%.6g", q.values[i]);
+      if (q.low.empty()) continue;
+      if (sampled)
+        Append(&text, ",%.6g,%.6g", q.low[k], q.high[k]);
+      else
+        text += ",,";
+    }
+    for (const WorksheetResult& w : a.worksheets) Append(&text, ",%d", w.values[i]);
+    text += '\n';
+    k += sampled ? 1 : 0;
+  }
+  return text;
+}
+
+}  // namespace predictor::assessment
