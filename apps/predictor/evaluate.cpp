@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 
@@ -54,12 +53,6 @@ assessment::Assessment Evaluate(const EvaluateOptions& options, const std::strin
   progress.Finish();
   result.recording = std::filesystem::path(file).filename().string();
   return result;
-}
-
-void WriteFile(const std::string& name, const std::string& text) {
-  std::ofstream out(name, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw InputError(name, "The file could not be written.");
 }
 
 }  // namespace

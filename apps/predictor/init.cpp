@@ -3,7 +3,6 @@
 // end-effector.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -233,9 +232,7 @@ int InitCommand(const InitOptions& options) {
   if (options.urdf.empty() && !options.end_effector.empty())
     throw InputError("--end-effector is a link of your cobot. Give its URDF as well: --urdf FILE.");
   const Draft draft = Choose(options, file);
-  std::ofstream out(file);
-  out << TextOf(options, draft);
-  if (!out.flush()) throw InputError(file, "The file could not be written.");
+  WriteFile(file, TextOf(options, draft));
   for (const std::string& problem : draft.problems) TheScreen().Tell("Unfit: " + problem);
   options.Write(Told(options, draft, file), JsonOf(draft, file));
   return draft.problems.empty() ? kFinished : kUnfit;

@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -68,12 +67,6 @@ void NameRuns(const std::vector<std::string>& files, std::vector<RunData>* runs)
     (*runs)[k].info.name = names[k];
     (*runs)[k].info.file = files[k];
   }
-}
-
-void WriteFile(const std::string& name, const std::string& text) {
-  std::ofstream out(name, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw InputError(name, "The file could not be written.");
 }
 
 }  // namespace
