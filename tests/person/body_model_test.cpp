@@ -44,7 +44,10 @@ class AgainstMujoco : public testing::TestWithParam<Sex> {
   RandomStream random{1, "body"};
 };
 
-INSTANTIATE_TEST_SUITE_P(People, AgainstMujoco, testing::Values(Sex::kMale, Sex::kFemale));
+INSTANTIATE_TEST_SUITE_P(People, AgainstMujoco, testing::Values(Sex::kMale, Sex::kFemale),
+                         [](const auto& info) -> std::string {
+                           return info.param == Sex::kMale ? "Man" : "Woman";
+                         });
 
 TEST_P(AgainstMujoco, SameJointsAndMass) {
   ASSERT_EQ(mj->nv, kBodyJoints);

@@ -142,7 +142,7 @@ export class FakeServer {
       name: preset.name, file: this.file, mode: 'emulate', simulated: options.simulated,
       duration: options.operator === 'browser' ? 0 : preset.duration, ...(this.results && {results: this.results}),
       operator: options.operator, rate: 1000,
-      viewpoint: {eye: [this.start[0] + 0.62, this.start[1], this.start[2] + 0.55], forward: [-1, 0, 0], guess: true, ground: null, feet: 0.3},
+      viewpoint: {eye: [this.start[0] + 0.62, this.start[1], this.start[2] + 0.55], forward: [-1, 0, 0], guess: false, ground: [1, 0, 0], feet: 0.3},
       cobot: pandaSpec(0, [0, 0, 0]),
       object: preset.object, handles: {left: handle('left'), right: handle('right')},
       arms: {left: arm('left', 2), right: arm('right', 3)}, floor: true,
