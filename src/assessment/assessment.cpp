@@ -218,8 +218,7 @@ void AddReach(const NominalChain& nominal, const SampledChain& sampled, Assessme
 void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) {
   a->assumptions = {
       "The feet stay where operator.stance puts them.",
-      "Head, elbows, hips and knees were not measured: the posture follows from the hands and from "
-      "comfort.",
+      "Only the hands were measured: the rest of the posture follows from comfort.",
       "The trunk moves slowly, so that its acceleration loads nothing.",
       std::string("For RULA and REBA, the postures are ") + (work.repeated ? "" : "not ") +
           "repeated four times a minute and " + (work.held ? "" : "not ") +

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <ranges>
 
 #include "assessment/hand_samples.h"
 
@@ -30,12 +31,12 @@ std::vector<double> Smooth(std::span<const double> values, double cutoff) {
   std::vector<double> smooth(values.size() + 2 * rest, 0);
   std::ranges::copy(values, smooth.begin() + static_cast<std::ptrdiff_t>(rest));
   const double gain = 1 - std::exp(-2 * std::numbers::pi * cutoff / kSampleRate);
-  const auto pass = [&](auto begin, auto end) {
+  const auto pass = [gain](auto&& range) {
     double state = 0;
-    for (auto value = begin; value != end; ++value) *value = state += gain * (*value - state);
+    for (double& value : range) value = state += gain * (value - state);
   };
-  pass(smooth.begin(), smooth.end());
-  pass(smooth.rbegin(), smooth.rend());
+  pass(smooth);
+  pass(std::views::reverse(smooth));
   return smooth;
 }
 

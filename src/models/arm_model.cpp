@@ -36,11 +36,12 @@ JointVector PostureOf(const std::vector<double>& posture, const RobotModel& mode
     if (q[j] >= lower && q[j] <= upper) continue;
     const std::string entry = key + "." + std::to_string(j);
     const std::string unit = std::string(" ") + model.position_unit(j);
-    throw InputError::At(entry, entry + ": joint " + Quote(model.joint_name(j)) + " at " +
-                                    FormatNumber(q[j]) + unit + " is outside its limits, " +
-                                    FormatNumber(lower) + " to " + FormatNumber(upper) + unit +
-                                    ". Give a value within the limits." +
-                                    (model.is_prismatic(j) ? "" : DegreesHint(q[j], lower, upper)));
+    std::string sentence = entry + ": joint " + Quote(model.joint_name(j)) + " at ";
+    sentence.append(FormatNumber(q[j])).append(unit).append(" is outside its limits, ");
+    sentence.append(FormatNumber(lower)).append(" to ").append(FormatNumber(upper)).append(unit);
+    sentence += ". Give a value within the limits.";
+    if (!model.is_prismatic(j)) sentence += DegreesHint(q[j], lower, upper);
+    throw InputError::At(entry, sentence);
   }
   return q;
 }

@@ -30,7 +30,7 @@ struct PoseSpec {
 struct BaseSpec {
   Vector3 xyz = Vector3::Zero();
   Vector3 rpy = Vector3::Zero();
-  Pose X_RB() const { return PoseFromXyzRpy(xyz, rpy); }
+  Pose X_RB() const { return PoseFromXyzRpy(xyz, rpy); }  // NOLINT(readability-identifier-naming)
 };
 
 enum class Mode { kEmulate, kDirect };
@@ -450,7 +450,7 @@ struct Scenario {
   const HandleSpec& handle(int hand) const { return hand == 0 ? *left_handle : *right_handle; }
   const ArmSpec& arm(int hand) const { return hand == 0 ? *device.left : *device.right; }
   // Pose of an arm's base in the virtual world.
-  Pose X_WB(int hand) const {
+  Pose X_WB(int hand) const {  // NOLINT(readability-identifier-naming)
     const Pose X_RB = arm(hand).base.X_RB();
     return environment.shift ? environment.shift->ToPose().Inverse() * X_RB : X_RB;
   }
