@@ -45,8 +45,8 @@ class AgainstMujoco : public testing::TestWithParam<Sex> {
 };
 
 INSTANTIATE_TEST_SUITE_P(People, AgainstMujoco, testing::Values(Sex::kMale, Sex::kFemale),
-                         [](const auto& info) -> std::string {
-                           return info.param == Sex::kMale ? "Man" : "Woman";
+                         [](const auto& person) -> std::string {
+                           return person.param == Sex::kMale ? "Man" : "Woman";
                          });
 
 TEST_P(AgainstMujoco, SameJointsAndMass) {
