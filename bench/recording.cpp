@@ -43,7 +43,7 @@ WorldInput WorldInputAt(const Recording& recording, std::size_t k) {
   input.coupled = true;
   for (std::size_t i = 0; i < kHands; ++i) {
     const HandRecord& hand = recording.ticks[k].hands[i];
-    input.present[i] = hand.present != 0;
+    if (hand.present != 0) input.present.Add(static_cast<int>(i));
     input.F_H_W[i] = Eigen::Map<const Wrench>(hand.wrench.data());
     input.handle[i] = ToMotion(hand.real);
   }
