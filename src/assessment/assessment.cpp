@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "assessment/person_chain.h"
 #include "core/error.h"
 #include "core/format.h"
+#include "evaluation/statistics_samples.h"
 
 namespace predictor::assessment {
 namespace {
@@ -20,10 +20,6 @@ T QuantileOf(std::vector<T> values, double p) {
   const auto k = std::min(static_cast<std::size_t>(p * n), values.size() - 1);
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
   return values[k];
-}
-
-double MeanOf(const std::vector<double>& values) {
-  return std::reduce(values.begin(), values.end()) / static_cast<double>(values.size());
 }
 
 // Values of one quantity: values[time][person].
@@ -53,7 +49,8 @@ void AddIntervals(const SampledChain& sampled, std::span<const PersonSample> sam
     result->low.push_back(interval.low);
     result->high.push_back(interval.high);
   }
-  std::vector<double> means = OfEachPerson(table, MeanOf);
+  std::vector<double> means =
+      OfEachPerson(table, [](const std::vector<double>& x) { return Mean(x); });
   result->mean_interval = person::IntervalOf(means);
   result->person_tail =
       result->kind->bad == Bad::kHigh
@@ -69,7 +66,7 @@ QuantityResult QuantityOf(const QuantityKind& kind, const NominalChain& nominal,
   result.kind = &kind;
   for (std::size_t i = 0; i < samples.size(); ++i)
     result.values.push_back(kind.of({nominal.frames[i], samples[i]}));
-  result.mean = MeanOf(result.values);
+  result.mean = Mean(result.values);
   result.p5 = QuantileOf(result.values, 0.05);
   result.p95 = QuantileOf(result.values, 0.95);
   const auto [min, max] = std::ranges::minmax(result.values);
@@ -138,12 +135,12 @@ void AddDamage(const Scenario& scenario, const NominalChain& nominal,
                                      ergonomics::LiftDamage, ergonomics::kLiftRisk));
   for (int hand = 0; hand < kHands; ++hand) {
     if (!scenario.Has(hand)) continue;
-    std::vector<double> moment;
-    for (const auto& of_both : nominal.shoulder_moment)
-      moment.push_back(of_both[static_cast<std::size_t>(hand)]);
+    double (*const moment)(const Frame&) =
+        hand == 0 ? [](const Frame& f) { return f.loads.shoulder_moment[0]; }
+                  : [](const Frame& f) { return f.loads.shoulder_moment[1]; };
     a->damage.push_back(DamageOfMoment("Shoulder Tool", std::string(HandName(hand)) + " shoulder",
-                                       OverRun(moment, all), ergonomics::ShoulderDamage,
-                                       ergonomics::kShoulderRisk));
+                                       OverRun(SeriesOf(nominal, moment), all),
+                                       ergonomics::ShoulderDamage, ergonomics::kShoulderRisk));
   }
 }
 

@@ -1,13 +1,12 @@
 #include "assessment/exposure.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <ranges>
 
 #include "assessment/hand_samples.h"
+#include "core/filters.h"
 
 namespace predictor::assessment {
 namespace {
@@ -30,10 +29,9 @@ std::vector<double> Smooth(std::span<const double> values, double cutoff) {
   const auto rest = static_cast<std::size_t>(kSampleRate / cutoff);
   std::vector<double> smooth(values.size() + 2 * rest, 0);
   std::ranges::copy(values, smooth.begin() + static_cast<std::ptrdiff_t>(rest));
-  const double gain = 1 - std::exp(-2 * std::numbers::pi * cutoff / kSampleRate);
-  const auto pass = [gain](auto&& range) {
-    double state = 0;
-    for (double& value : range) value = state += gain * (value - state);
+  const auto pass = [cutoff](auto&& range) {
+    LowPass<double> filter(cutoff, 1 / kSampleRate, 0);
+    for (double& value : range) value = filter.Update(value);
   };
   pass(smooth);
   pass(std::views::reverse(smooth));

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/norm.h"
+
 namespace predictor::assessment {
 namespace {
-
-Vector3 ForceIn(const HandRecord& hand) {
-  return Eigen::Map<const Vector6>(hand.wrench.data()).head<3>();
-}
 
 person::HandSample MeanOf(const std::vector<TickRecord>& ticks, std::size_t hand) {
   person::HandSample mean;
@@ -55,7 +53,7 @@ void SampleCollector::Close() {
     sample.body.hands[h] = MeanOf(pending_, h);
     for (const TickRecord& tick : pending_)
       if (tick.hands[h].present)
-        sample.peak_force[h] = std::max(sample.peak_force[h], ForceIn(tick.hands[h]).norm());
+        sample.peak_force[h] = std::max(sample.peak_force[h], Norm(tick.hands[h].wrench.data()));
   }
   const auto same = [&](std::size_t h) {
     return sample.body.hands[h].present == samples_.back().body.hands[h].present;

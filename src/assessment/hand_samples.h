@@ -1,4 +1,4 @@
-// What is measured of the person in a run, at 100 Hz.
+// The measurements of the person in a run, at 100 Hz.
 #pragma once
 
 #include <array>

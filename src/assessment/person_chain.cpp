@@ -6,8 +6,6 @@
 namespace predictor::assessment {
 namespace {
 
-using person::ArmJoint;
-
 std::vector<person::Posture> PosturesOf(const PersonSetup& setup,
                                         std::span<const PersonSample> samples,
                                         const std::function<void(double)>& progress) {
@@ -58,20 +56,6 @@ std::array<double, kHands> ForceRates(std::span<const PersonSample> samples, std
   return rates;
 }
 
-std::array<double, kHands> ShoulderMoments(const person::BodyModel& model,
-                                           const person::BodyMotion& motion,
-                                           const person::BodySample& sample,
-                                           const person::Stance& stance) {
-  const auto wrenches = person::WrenchesOn(sample, stance);
-  const auto loads = person::InverseDynamics(model, motion.q, motion.v, motion.a, wrenches);
-  std::array<double, kHands> moments;
-  for (int hand = 0; hand < kHands; ++hand) {
-    const auto shoulder = static_cast<std::size_t>(person::Of(hand, ArmJoint::kShoulderFlexion));
-    moments[static_cast<std::size_t>(hand)] = loads.moment[shoulder].norm();
-  }
-  return moments;
-}
-
 }  // namespace
 
 NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> samples,
@@ -87,7 +71,6 @@ NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> 
     chain.frames.push_back(FrameOf(
         {sample, ForceRates(samples, i)}, person::AnglesOf(model, motion.q, setup.stance.width),
         dynamics.Evaluate(motion, sample), chain.postures[i].reached, setup.body.sex, work));
-    chain.shoulder_moment.push_back(ShoulderMoments(model, motion, sample, setup.stance));
   }
   return chain;
 }

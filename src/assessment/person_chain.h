@@ -17,7 +17,6 @@ struct NominalChain {
   std::vector<person::Posture> postures;
   std::vector<person::BodyMotion> motions;
   std::vector<Frame> frames;
-  std::vector<std::array<double, kHands>> shoulder_moment;  // of all that hangs on it [N·m]
 };
 NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> samples,
                         const WorkPattern& work, const std::function<void(double)>& progress);

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "scenario/stance.h"
 
 namespace predictor::person {
 namespace {
@@ -147,7 +148,7 @@ void AddHead(const Table& table, const BodySpec& spec, double mass, Anthropometr
   a->head = FromFarEnd(table.head, mass, table.head.length * spec.height / table.height);
   a->head.com *= left / a->head.length;
   a->head.length = left;
-  a->eyes = {0.05 * spec.height, 0, 0.936 * spec.height - c7};
+  a->eyes = {0.05 * spec.height, 0, kEyeHeight * spec.height - c7};
 }
 
 }  // namespace

@@ -52,6 +52,10 @@ BodyLoads BodyDynamics::Evaluate(const BodyMotion& motion, const BodySample& sam
   BodyLoads loads;
   loads.torque = with.torque;
   loads.overload = with.torque - without.torque;
+  for (int hand = 0; hand < kHands; ++hand) {
+    const auto shoulder = static_cast<std::size_t>(Of(hand, ArmJoint::kShoulderFlexion));
+    loads.shoulder_moment[static_cast<std::size_t>(hand)] = with.moment[shoulder].norm();
+  }
   loads.l5s1 = DiscOf(at, with);
   loads.balance = BalanceOf(motion, at, with);
   return loads;

@@ -1,6 +1,7 @@
 // Loads of the body in one posture and motion: joint torques, lower back, balance.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct Balance {
 struct BodyLoads {
   BodyVector torque;    // that the muscles produce [N·m], see JointLoads
   BodyVector overload;  // the part that the hands' wrenches cause: torque with them - without [N·m]
+  // Magnitude of the moment that the torso exerts on each upper arm at the shoulder [N·m].
+  std::array<double, kHands> shoulder_moment = {};
   DiscLoads l5s1;
   Balance balance;
 };

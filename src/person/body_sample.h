@@ -1,4 +1,4 @@
-// What is measured of a person at one time, and where the person stands.
+// The measurements of a person at one time, and where the person stands.
 #pragma once
 
 #include <array>

@@ -52,6 +52,7 @@ template <class F>
 void ForEachLoad(BodyLoads& loads, F f) {
   for (int i = 0; i < kBodyJoints; ++i) f("", loads.torque[i]);
   for (int i = 0; i < kBodyJoints; ++i) f("", loads.overload[i]);
+  for (auto& moment : loads.shoulder_moment) f("", moment);
   ForEachBodyValue(loads, f);
 }
 

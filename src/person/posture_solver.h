@@ -27,7 +27,7 @@ PosturePrior DefaultPrior();
 
 struct Posture {
   BodyVector q;
-  // What is missing of the handles' poses; 0 for an absent hand. Of a grip that turns, only what
+  // Remaining errors of the handles' poses; 0 for an absent hand. Of a grip that turns, only what
   // the bar lies more obliquely in the hand than 0.7 rad counts as missing rotation.
   std::array<double, kHands> position_error = {};  // [m]
   std::array<double, kHands> rotation_error = {};  // [rad]

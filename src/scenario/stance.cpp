@@ -6,7 +6,6 @@
 namespace predictor {
 namespace {
 
-constexpr double kEyeHeight = 0.936;       // share of the body's height (Drillis & Contini 1966)
 constexpr double kDistance = 0.62;         // horizontal distance of eyes and object, a guess [m]
 constexpr double kEyesAboveObject = 0.55;  // a guess [m]
 

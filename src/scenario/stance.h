@@ -6,6 +6,9 @@
 
 namespace predictor {
 
+// Height of the eyes, as a share of the body's height (Drillis & Contini 1966, recalled).
+inline constexpr double kEyeHeight = 0.936;
+
 // The place of the operator's head at the start, in W.
 struct Viewpoint {
   Vector3 eye;      // [m]

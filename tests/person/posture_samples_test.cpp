@@ -106,7 +106,7 @@ void Add(const std::string& group, T truth, Range<T> range, ForEach for_each, Ta
   });
 }
 
-// What is measured besides the hands.
+// Measurements besides the hands.
 struct Measured {
   const char* name;
   bool head, elbows;

@@ -323,14 +323,7 @@ TEST(AttachmentEvents, ContinueBitForBitWithTheMassesOfHands) {
     World world(s), other(s);
     RunWith(&other, input, 0.12);  // leaves traces that the loaded state must replace
     RunWith(&world, input, saved_at);
-    std::vector<std::byte> bytes(1 << 20);
-    StateArchive save = StateArchive::ToSave(bytes);
-    world.Archive(save);
-    ASSERT_TRUE(save.ok());
-    StateArchive load = StateArchive::ToLoad({bytes.data(), save.used()});
-    other.Archive(load);
-    ASSERT_TRUE(load.ok());
-    ASSERT_EQ(load.used(), save.used());
+    CopyState(&world, &other);
     for (int round = 0; round < 2; ++round) {
       RunWith(&world, input, 0.25);
       RunWith(&other, input, 0.25);

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "core/archive.h"
 #include "world_fixtures.h"
 
 namespace predictor {
@@ -30,6 +32,18 @@ inline Scenario RigidBox() {
 inline void RunWith(World* world, const WorldInput& input, double time) {
   for (int k = 0; k < std::lround(time / kTick); ++k)
     ASSERT_TRUE(world->Step(input, kTick).ok()) << world->state().time;
+}
+
+// Saves the state of one world and loads it into another one.
+inline void CopyState(World* from, World* to) {
+  std::vector<std::byte> bytes(1 << 20);
+  StateArchive save = StateArchive::ToSave(bytes);
+  from->Archive(save);
+  ASSERT_TRUE(save.ok());
+  StateArchive load = StateArchive::ToLoad({bytes.data(), save.used()});
+  to->Archive(load);
+  ASSERT_TRUE(load.ok());
+  ASSERT_EQ(load.used(), save.used());
 }
 
 }  // namespace predictor

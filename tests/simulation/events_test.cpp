@@ -340,13 +340,7 @@ TEST(Hazards, ContinueFromASavedStateBitForBit) {
       World world(s), other(s);
       const WorldInput push = Push(s, {1, 2, 3});
       RunWith(&world, push, saved_at);
-      std::vector<std::byte> bytes(1 << 20);
-      StateArchive save = StateArchive::ToSave(bytes);
-      world.Archive(save);
-      ASSERT_TRUE(save.ok());
-      StateArchive load = StateArchive::ToLoad({bytes.data(), save.used()});
-      other.Archive(load);
-      ASSERT_TRUE(load.ok());
+      CopyState(&world, &other);
       RunWith(&world, push, 0.15);
       RunWith(&other, push, 0.15);
       EXPECT_EQ((world.state().q - other.state().q).norm(), 0) << s.events[0].event << saved_at;
