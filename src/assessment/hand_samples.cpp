@@ -8,7 +8,7 @@
 namespace predictor::assessment {
 namespace {
 
-person::HandSample MeanOf(const std::vector<TickRecord>& ticks, std::size_t hand) {
+person::HandSample MeanOf(std::span<const TickRecord> ticks, std::size_t hand) {
   person::HandSample mean;
   const auto n = static_cast<double>(ticks.size());
   double gripping = 0;
@@ -25,6 +25,18 @@ person::HandSample MeanOf(const std::vector<TickRecord>& ticks, std::size_t hand
 }
 
 }  // namespace
+
+PersonSample SampleOf(std::span<const TickRecord> ticks) {
+  PersonSample sample;
+  sample.body.time = ticks[ticks.size() / 2].run_time;
+  for (std::size_t h = 0; h < kHands; ++h) {
+    sample.body.hands[h] = MeanOf(ticks, h);
+    for (const TickRecord& tick : ticks)
+      if (tick.hands[h].present)
+        sample.peak_force[h] = std::max(sample.peak_force[h], Norm(tick.hands[h].wrench.data()));
+  }
+  return sample;
+}
 
 SampleCollector::SampleCollector(const Scenario& scenario)
     : ticks_per_sample_(
@@ -47,14 +59,7 @@ void SampleCollector::Add(const TickRecord& record) {
 }
 
 void SampleCollector::Close() {
-  PersonSample sample;
-  sample.body.time = pending_[pending_.size() / 2].run_time;
-  for (std::size_t h = 0; h < kHands; ++h) {
-    sample.body.hands[h] = MeanOf(pending_, h);
-    for (const TickRecord& tick : pending_)
-      if (tick.hands[h].present)
-        sample.peak_force[h] = std::max(sample.peak_force[h], Norm(tick.hands[h].wrench.data()));
-  }
+  PersonSample sample = SampleOf(pending_);
   const auto same = [&](std::size_t h) {
     return sample.body.hands[h].present == samples_.back().body.hands[h].present;
   };

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/record.h"
@@ -19,6 +20,10 @@ struct PersonSample {
   // False: before it, simulated time was paused, ticks are lost, or a hand gripped or let go.
   bool continues = true;
 };
+
+// The sample of successive ticks: means of position and wrench, the orientation of the middle one.
+// A hand is present if it grips in most of them.
+PersonSample SampleOf(std::span<const TickRecord> ticks);
 
 // Means of position and wrench over all ticks of 10 ms. The middle tick gives the orientation. Only
 // ticks in RUN count.
