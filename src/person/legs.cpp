@@ -10,7 +10,7 @@ constexpr double kHeelToAnkle = 0.25;  // of the foot's length
 constexpr double kFootWidth = 0.055;   // of the height
 
 struct Leg {
-  std::array<Vector3, 3> com;
+  std::array<Vector3, 3> com, joints;
   double knee_flexion = 0, stretched = 0;
 };
 
@@ -29,6 +29,7 @@ Leg LegOf(const Anthropometry& a, const Vector3& hip, const Vector3& ankle, cons
   const Vector3 knee = hip + axis * along * apart / reach + forward * out;
   const double cosine = (thigh * thigh + shank * shank - reach * reach) / (2 * thigh * shank);
   leg.knee_flexion = std::acos(-1.0) - std::acos(std::clamp(cosine, -1.0, 1.0));
+  leg.joints = {hip, knee, ankle};
   leg.com[0] = hip + (knee - hip) * (a.thigh.com / thigh);
   leg.com[1] = knee + (ankle - knee) * (a.shank.com / shank);
   leg.com[2] = {ankle.x() + a.foot.com - kHeelToAnkle * a.foot.length, ankle.y(),
@@ -49,6 +50,7 @@ BodyLegs LegsOf(const BodyModel& model, const BodyVector& q, double width) {
     const Leg leg = LegOf(a, pelvis * Vector3(0, sign * a.half_hip_width, 0),
                           {0, sign * width / 2, a.ankle_height}, pelvis.q * Vector3::UnitX());
     legs.com[k] = leg.com;
+    legs.joints[k] = leg.joints;
     legs.knee_flexion[k] = leg.knee_flexion;
     legs.stretched = std::max(legs.stretched, leg.stretched);
   }

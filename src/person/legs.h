@@ -10,6 +10,8 @@ namespace predictor::person {
 struct BodyLegs {
   // Centres of mass of thigh, shank and foot of each leg, in S [m].
   std::array<std::array<Vector3, 3>, kHands> com;
+  // Hip, knee and ankle of each leg, in S [m].
+  std::array<std::array<Vector3, 3>, kHands> joints;
   std::array<double, kHands> knee_flexion = {};  // 0 straight [rad]
   // How much farther the hip joints are from the ankles than the legs are long [m]; 0 if they
   // reach.
