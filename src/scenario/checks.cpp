@@ -30,6 +30,7 @@ class Checker {
   void Handles() const;
   void Device() const;
   void Operator() const;
+  void Embodied() const;
   void Script() const;
   void Limits() const;
   void Formulation() const;
@@ -181,6 +182,22 @@ void Checker::Operator() const {
   Unless(needs_person || !is_person, "operator.type",
          "is person, but there are no real arms to hold. Set operator.type: virtual or browser, " +
              std::string("or give the arms with --machine FILE."));
+  Embodied();
+}
+
+// An operator with a body needs one, and the body takes the place of some parameters of the hand.
+void Checker::Embodied() const {
+  const OperatorSpec& person = s_.operator_;
+  if (!person.embodied) return;
+  Unless(person.type == "virtual", "operator.embodied",
+         "is true, but operator.type is " + person.type +
+             ". Only the virtual operator is simulated on a body. Remove operator.embodied.");
+  Unless(person.body && person.stance, "operator.embodied",
+         "is true, but the operator's body or its place is not known. Add operator.body: {height, "
+         "mass, sex} and operator.stance: {ground, facing}.");
+  Unless(person.hand.stiffness == HandSpec().stiffness, "operator.hand.stiffness",
+         "has no effect, because operator.embodied is true: the stiffness follows from the "
+         "posture. Remove it, or change operator.body.stiffness.");
 }
 
 void Checker::Script() const {

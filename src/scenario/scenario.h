@@ -324,6 +324,11 @@ struct BodySpec {
   std::optional<double> trunk;              // middle of the hip joints to the vertebra C7 [m]
   std::optional<double> thigh;              // hip to knee joint [m]
   std::optional<double> shank;              // knee to ankle joint [m]
+  // Strength as a multiple of the mean of the sex: elbow flexion and extension, shoulder flexion
+  // and extension.
+  std::array<double, 4> strength = {1, 1, 1, 1};
+  double stiffness = 1;  // of the arm's joints, as a multiple of the published mean
+  double fatigue = 0;    // share of the arm's muscles that is fatigued at the start of a run
 };
 
 // Where the operator stands. The ground under the feet is not the virtual floor: haptic arms stand
@@ -336,6 +341,9 @@ struct StanceSpec {
 
 struct OperatorSpec {
   std::string type = "virtual";  // virtual | browser | person
+  // Whether the virtual operator's reach, stiffness, strength, balance and fatigue follow from the
+  // body and its posture (docs/concepts/operator.md).
+  bool embodied = false;
   HandSpec hand;
   std::optional<BodySpec> body;      // absent: not known
   std::optional<StanceSpec> stance;  // absent: not known
