@@ -45,5 +45,7 @@ std::string PackFrame(const TickRecord& record, const Peaks& peaks, std::uint64_
 // The text of web/src/quantities.ts: names of states, causes and quantities, and the fields as
 // TypeScript types.
 std::string PageQuantities();
+// The text of web/src/person_state.ts: the type of a person's state, and its tables.
+std::string PagePerson();
 
 }  // namespace predictor::viewer

@@ -59,6 +59,13 @@ TEST(Frame, ThePagesTypesAreThoseOfTheTable) {
       << "Write it again: build/release/bin/page_quantities > web/src/quantities.ts";
 }
 
+TEST(Frame, ThePagesTypeOfAPersonIsThatOfTheTable) {
+  std::ifstream file(PREDICTOR_SOURCE_DIR "/web/src/person_state.ts");
+  const std::string source{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(source, PagePerson())
+      << "Write it again: build/release/bin/page_quantities person > web/src/person_state.ts";
+}
+
 // The fields have the names and sizes in docs/reference/viewer-protocol.md.
 TEST(Frame, HasTheFieldsOfTheProtocol) {
   const std::vector<std::tuple<std::string, std::string, std::uint32_t>> run = {

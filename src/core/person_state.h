@@ -1,0 +1,299 @@
+// What the evaluator says about the person at one time of a run: posture, loads, scores, damage.
+//
+// The page, the recording and the page's TypeScript derive from the tables of this file.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace predictor {
+
+enum class PersonStatus : std::uint8_t {
+  kJudged,
+  kWaiting,      // no simulated time passes
+  kNoHand,       // no hand holds a handle, so nothing is known of the posture
+  kBelowGround,  // the handles are below the ground: operator.stance.ground is wrong
+};
+inline constexpr std::array kPersonStatusNames = {"judged", "waiting", "no_hand", "below_ground"};
+inline constexpr std::size_t kPersonStatuses = kPersonStatusNames.size();
+
+// Points of the body, for drawing. Joints, except: eyes, the middle of both; head, its top; hand,
+// the middle of the bar in it; toes, the front of the foot on the ground.
+enum class BodyPoint : std::uint8_t {
+  kPelvis,  // middle of the hip joints
+  kL5S1,
+  kNeck,  // C7
+  kHead,
+  kEyes,
+  kLeftShoulder,
+  kLeftElbow,
+  kLeftWrist,
+  kLeftHand,
+  kRightShoulder,
+  kRightElbow,
+  kRightWrist,
+  kRightHand,
+  kLeftHip,
+  kLeftKnee,
+  kLeftAnkle,
+  kLeftToes,
+  kRightHip,
+  kRightKnee,
+  kRightAnkle,
+  kRightToes,
+};
+inline constexpr std::array kBodyPointNames = {
+    "pelvis",     "l5s1",        "neck",      "head",           "eyes",        "left_shoulder",
+    "left_elbow", "left_wrist",  "left_hand", "right_shoulder", "right_elbow", "right_wrist",
+    "right_hand", "left_hip",    "left_knee", "left_ankle",     "left_toes",   "right_hip",
+    "right_knee", "right_ankle", "right_toes"};
+inline constexpr std::size_t kBodyPoints = kBodyPointNames.size();
+static_assert(kBodyPoints == static_cast<std::size_t>(BodyPoint::kRightToes) + 1);
+
+// Parts of the body that have a load.
+enum class BodyPart : std::uint8_t {
+  kLowerBack,
+  kLeftShoulder,
+  kRightShoulder,
+  kLeftElbow,
+  kRightElbow
+};
+inline constexpr std::array kBodyPartNames = {"lower_back", "left_shoulder", "right_shoulder",
+                                              "left_elbow", "right_elbow"};
+inline constexpr std::size_t kBodyParts = kBodyPartNames.size();
+
+inline constexpr double kCompressionLimit = 3400;  // NIOSH's limit for L5/S1 [N]
+inline constexpr double kShearLimit = 700;  // Gallagher & Marras's limit for frequent shear [N]
+
+// Values with a nominal posture and an interval over possible ones.
+enum class PersonGauge : std::uint8_t {
+  kCompression,
+  kShear,
+  kMoment,
+  kBalance,
+  kTrunkFlexion,
+  kLeftShoulderUse,
+  kRightShoulderUse,
+  kLeftElbowUse,
+  kRightElbowUse,
+  kLeftHandForce,
+  kRightHandForce,
+};
+struct PersonGaugeRow {
+  const char *name, *unit, *meaning;
+  double limit;  // 0: none, except for the balance
+  bool low_is_bad;
+  bool measured;  // by the sensors of the arms; otherwise modelled, with an interval
+};
+inline constexpr std::array kPersonGaugeRows = {
+    PersonGaugeRow{"lower_back_compression", "N", "compression of the disc L5/S1",
+                   kCompressionLimit, false, false},
+    PersonGaugeRow{"lower_back_shear", "N", "forward shear of L5/S1", kShearLimit, false, false},
+    PersonGaugeRow{"lower_back_moment", "N m", "moment of the extensors of the back about L5/S1", 0,
+                   false, false},
+    PersonGaugeRow{"balance_margin", "m",
+                   "from the centre of pressure to the edge of the feet; negative: outside", 0,
+                   true, false},
+    PersonGaugeRow{"trunk_flexion", "rad", "of the torso against the vertical, forward", 0, false,
+                   false},
+    PersonGaugeRow{"left_shoulder_use", "", "torque over the mean strength of the sex, flexion", 1,
+                   false, false},
+    PersonGaugeRow{"right_shoulder_use", "", "torque over the mean strength of the sex, flexion", 1,
+                   false, false},
+    PersonGaugeRow{"left_elbow_use", "", "torque over the mean strength of the sex", 1, false,
+                   false},
+    PersonGaugeRow{"right_elbow_use", "", "torque over the mean strength of the sex", 1, false,
+                   false},
+    PersonGaugeRow{"left_hand_force", "N", "magnitude of the force on the handle", 0, false, true},
+    PersonGaugeRow{"right_hand_force", "N", "magnitude of the force on the handle", 0, false, true},
+};
+inline constexpr std::size_t kPersonGauges = kPersonGaugeRows.size();
+
+// Worksheets. A class is an action level of the worksheet, 1 the least.
+enum class PersonScore : std::uint8_t { kRula, kReba, kOwas };
+struct PersonScoreRow {
+  const char* name;
+  int most;     // highest score
+  int classes;  // action levels
+};
+inline constexpr std::array kPersonScoreRows = {
+    PersonScoreRow{"rula", 7, 4}, PersonScoreRow{"reba", 15, 5}, PersonScoreRow{"owas", 4, 4}};
+inline constexpr std::size_t kPersonScores = kPersonScoreRows.size();
+inline constexpr std::size_t kMostClasses = 5;
+
+// Warnings, as bits. A warning begins when its value has been at or beyond `on` for kWarnAfter, and
+// ends when it has been back beyond `off` for kCalmAfter (design choices).
+enum class PersonWarning : std::uint8_t {
+  kCompression,
+  kShear,
+  kBalance,
+  kLeftShoulder,
+  kRightShoulder,
+  kLeftElbow,
+  kRightElbow,
+  kRula,
+  kReba,
+  kOwas,
+  kReach,
+};
+struct PersonWarningRow {
+  const char* name;
+  double on, off;  // if on < off, low values are bad
+  const char* words;
+};
+// Of a use, half of the mean strength: with a standard deviation of 0.3 of the mean, one person in
+// twenty has no more. Of a worksheet, the highest action level.
+inline constexpr double kUseWarning = 0.5, kUseCalm = 0.4;
+inline constexpr std::array kPersonWarningRows = {
+    PersonWarningRow{"lower_back_compression", kCompressionLimit, 3100,
+                     "The compression of the lower back is above 3400 N."},
+    PersonWarningRow{"lower_back_shear", kShearLimit, 640,
+                     "The shear of the lower back is above 700 N."},
+    PersonWarningRow{"balance", 0, 0.01,
+                     "The centre of pressure is outside the feet: this person must step or lean."},
+    PersonWarningRow{"left_shoulder", kUseWarning, kUseCalm,
+                     "The left shoulder needs more than half of the mean strength."},
+    PersonWarningRow{"right_shoulder", kUseWarning, kUseCalm,
+                     "The right shoulder needs more than half of the mean strength."},
+    PersonWarningRow{"left_elbow", kUseWarning, kUseCalm,
+                     "The left elbow needs more than half of the mean strength."},
+    PersonWarningRow{"right_elbow", kUseWarning, kUseCalm,
+                     "The right elbow needs more than half of the mean strength."},
+    PersonWarningRow{"rula", 4, 3, "RULA asks for changes immediately."},
+    PersonWarningRow{"reba", 5, 4, "REBA asks for action now."},
+    PersonWarningRow{"owas", 4, 3, "OWAS asks for changes immediately."},
+    PersonWarningRow{"reach", 1, 0, "The body does not reach the handles."},
+};
+inline constexpr std::size_t kPersonWarnings = kPersonWarningRows.size();
+inline constexpr double kWarnAfter = 0.1, kCalmAfter = 1;  // [s]
+
+// A number that is not known.
+inline constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+struct GaugeState {
+  float value = kUnknown;                 // of the nominal posture, in the unit of its row
+  float low = kUnknown, high = kUnknown;  // 90 % interval, at PersonState::interval_time
+};
+struct ScoreState {
+  std::uint8_t score = 0;  // of the nominal posture; 0: not known
+  std::uint8_t level = 0;  // its action level
+  std::uint16_t reserved = 0;
+  // Of each action level, over the possible persons, at interval_time; the first: level 1.
+  std::array<float, kMostClasses> probability = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
+};
+struct PartState {
+  // For colouring: of the lower back compression over its limit, otherwise torque over the mean
+  // strength.
+  float load = kUnknown;
+  float capacity = kUnknown;   // strength that fatigue leaves (3CC-r), as a share
+  float damage = kUnknown;     // of the run so far: LiFFT for the lower back, Shoulder Tool
+  float day_share = kUnknown;  // the same as a share of the tool's reference day
+};
+
+// Times are simulated times since RUN began [s]. Loads and scores are older than the points by the
+// evaluator's delay, because the accelerations need later samples.
+struct PersonState {
+  std::uint64_t tick = 0;     // the newest one that is considered
+  std::uint64_t wall_ns = 0;  // monotonic clock at that tick
+  double run_time = 0;        // of that tick, and of the points
+  double load_time = 0;       // of loads, scores, warnings
+  double interval_time = 0;   // of intervals and probabilities; while there are none, not used
+  double since = 0;           // start of damage and fatigue: of the run, or of the evaluator
+  PersonStatus status = PersonStatus::kWaiting;
+  std::uint8_t reached = 0;          // 1: both hands of the posture reach their handles
+  std::uint16_t warnings = 0;        // bits by PersonWarning
+  float miss = 0;                    // largest distance that is missing to a handle [m]
+  float sampled_reached = kUnknown;  // share of the possible persons who reach both
+  float reserved = 0;
+  std::array<std::array<float, 3>, kBodyPoints> points = {};  // in W [m]; see status
+  std::array<PartState, kBodyParts> parts;
+  std::array<GaugeState, kPersonGauges> gauges;
+  std::array<ScoreState, kPersonScores> scores;
+};
+
+constexpr bool Has(const PersonState& state, PersonWarning warning) {
+  return (state.warnings >> static_cast<unsigned>(warning) & 1U) != 0;
+}
+
+// Calls the visitor for each quantity of a state, in the order of the message. Methods:
+//   Number(name, unit, meaning, x)      null if it is not finite
+//   Flag(name, meaning, x)
+//   Word(name, meaning, names, index)   one of the names
+//   Words(name, meaning, names, bits)   a list of the names
+//   Vector(name, meaning, x, known)     three numbers [m], or null
+//   List(name, meaning, x, count)       `count` numbers, or null if the first is not finite
+//   Group(name, meaning, f)             f(visitor) visits the content
+template <class V, class S>
+void VisitPerson(V& v, S& s);
+
+namespace person_rows {
+
+inline constexpr auto kWarningNames = [] {
+  std::array<const char*, kPersonWarnings> names{};
+  for (std::size_t i = 0; i < kPersonWarnings; ++i) names[i] = kPersonWarningRows[i].name;
+  return names;
+}();
+
+template <class V, class S>
+void VisitParts(V& v, S& s) {
+  for (std::size_t i = 0; i < kBodyParts; ++i)
+    v.Group(kBodyPartNames[i], "", [&, part = &s.parts[i]](V& in) {
+      in.Number("load", "", "for colouring: share of the limit, or of the mean strength",
+                part->load);
+      in.Number("capacity", "", "strength that fatigue leaves, as a share", part->capacity);
+      in.Number("damage", "", "of the run so far", part->damage);
+      in.Number("day_share", "", "damage as a share of the tool's reference day", part->day_share);
+    });
+}
+
+template <class V, class S>
+void VisitGauges(V& v, S& s) {
+  for (std::size_t i = 0; i < kPersonGauges; ++i) {
+    const PersonGaugeRow& row = kPersonGaugeRows[i];
+    v.Group(row.name, row.meaning, [&, gauge = &s.gauges[i], unit = row.unit](V& in) {
+      in.Number("value", unit, "nominal posture", gauge->value);
+      in.Number("low", unit, "90 % interval", gauge->low);
+      in.Number("high", unit, "90 % interval", gauge->high);
+    });
+  }
+}
+
+template <class V, class S>
+void VisitScores(V& v, S& s) {
+  for (std::size_t i = 0; i < kPersonScores; ++i)
+    v.Group(kPersonScoreRows[i].name, "", [&, score = &s.scores[i], i](V& in) {
+      in.Number("score", "", "nominal posture; 0: not known", score->score);
+      in.Number("level", "", "its action level, 1 the least", score->level);
+      in.List("probability", "of each action level", score->probability,
+              static_cast<std::size_t>(kPersonScoreRows[i].classes));
+    });
+}
+
+}  // namespace person_rows
+
+template <class V, class S>
+void VisitPerson(V& v, S& s) {
+  v.Number("tick", "", "the newest one that is considered", s.tick);
+  v.Number("run_time", "s", "of that tick and of the points", s.run_time);
+  v.Number("load_time", "s", "of loads, scores and warnings", s.load_time);
+  v.Number("interval_time", "s", "of intervals and probabilities", s.interval_time);
+  v.Number("since", "s", "start of damage and fatigue", s.since);
+  v.Word("status", "whether the person is judged, or why not", kPersonStatusNames,
+         static_cast<std::size_t>(s.status));
+  v.Flag("reached", "both hands reach their handles", s.reached);
+  v.Number("miss", "m", "largest distance that is missing to a handle", s.miss);
+  v.Number("sampled_reached", "", "share of the possible persons who reach both",
+           s.sampled_reached);
+  v.Words("warnings", "that are on", person_rows::kWarningNames, s.warnings);
+  v.Group("points", "in W [m]", [&](V& in) {
+    for (std::size_t i = 0; i < kBodyPoints; ++i)
+      in.Vector(kBodyPointNames[i], "", s.points[i], s.status == PersonStatus::kJudged);
+  });
+  v.Group("parts", "", [&](V& in) { person_rows::VisitParts(in, s); });
+  v.Group("gauges", "", [&](V& in) { person_rows::VisitGauges(in, s); });
+  v.Group("scores", "", [&](V& in) { person_rows::VisitScores(in, s); });
+}
+
+}  // namespace predictor
