@@ -93,7 +93,7 @@ void ResultCurves::Add(const TickRecord& record) {
     if (hand.present == 0) continue;
     std::array<double, 3> apart{};
     for (std::size_t i = 0; i < apart.size(); ++i)
-      apart[i] = hand.real.pose.p[i] - hand.virtual_.pose.p[i];
+      apart[i] = hand.real.pose.p[i] - hand.virtual_.pose.p[i] - record.perturbation[i];
     piece.force[h] = std::max(piece.force[h], Norm(hand.wrench.data()));
     piece.distance[h] = std::max(piece.distance[h], Norm(apart.data()));
   }

@@ -110,6 +110,8 @@ struct TickRecord {
   StatusRecord harder;
   std::array<RunInput, kInputsPerTick> inputs;  // from people and pages, taken in this tick
   std::array<double, kParameters> parameters;   // current values, by Parameter
+  // Commanded displacement of the real handles from the virtual ones, in W [m].
+  std::array<double, 3> perturbation;
   std::array<HandRecord, kHands> hands;
   std::uint8_t cobot_dof;
   std::uint8_t qp_relaxed, qp_failed, guard_altered;

@@ -136,6 +136,9 @@ constexpr void VisitRun(V& v, R& r) {
             "force [N] and torque [N m]",
             "parameters"},
            r.parameters);
+  v.Values({"perturbation", "m", "W",
+            "commanded displacement of the real handles from the virtual ones"},
+           r.perturbation);
 }
 
 template <class V, class R>

@@ -46,6 +46,7 @@ Pipeline::Pipeline(const Scenario& s)
   }
   start_ = StartJoints(0);
   lead_ = ChooseLead(HapticLoop(world_.Linearise(), s, dt_), s, dt_);
+  perturbation_.emplace(s, lead_.margin.gain, dt_);
   renderer_.emplace(s, models, lead_.lead, dt_);
   recovery_.emplace(s, models);
   guard_ = Guard(spec_.bounds, dt_, reaction);
@@ -116,6 +117,13 @@ void Pipeline::Simulate(const TickPlan& plan, TickData* data) noexcept {
   input.present = hands_;
   input.coupled = !direct_;
   input.handle = data->real;
+  // The coupling must not pull the virtual handles after a commanded displacement.
+  if (perturbation_) {
+    for (const int i : hands_) {
+      input.handle[i].X_W.p -= perturbation_->displacement();
+      input.handle[i].V_W.head<3>() -= perturbation_->velocity();
+    }
+  }
   for (const int i : hands_) {
     input.F_H_W[i] = direct_ ? data->person.F_H_W[i] : data->wrench[i].F_H_W;
     input.hand_mass[i] = direct_ ? data->person.hand_mass[i] : 0;
@@ -139,8 +147,23 @@ std::array<RenderArm, kHands> Pipeline::View() const noexcept {
   return view;
 }
 
+// Outside RUN, a stop or the alignment moves the arms alone.
+void Pipeline::Perturb(const TickPlan& plan, TickData* data) noexcept {
+  data->perturbation.setZero();
+  if (!perturbation_ || plan.state != RunState::kRun || !plan.time_passes) return;
+  PerturbationInput input;
+  input.run_time = plan.run_time;
+  input.present = hands_;
+  input.wrench = data->wrench;
+  input.virtual_ = data->before.handle;
+  input.limited = data->rendered.relaxed || data->rendered.failed;
+  perturbation_->Step(input);
+  data->perturbation = perturbation_->displacement();
+}
+
 void Pipeline::Render(const TickPlan& plan, TickData* data) noexcept {
   data->haptics = Status::Ok();
+  Perturb(plan, data);
   if (!plan.renders) return;
   RenderTarget target;
   target.aligning = plan.state == RunState::kAlign;
@@ -154,6 +177,10 @@ void Pipeline::Render(const TickPlan& plan, TickData* data) noexcept {
     target.handle[i] = data->before.handle[i];
     target.handle[i].V_W = target.aligning ? Twist(Twist::Zero()) : after.handle[i].V_W;
     target.handle[i].A_W = after.handle[i].A_W;
+    if (plan.state != RunState::kRun || !perturbation_) continue;
+    target.handle[i].X_W.p += perturbation_->displacement();
+    target.handle[i].V_W.head<3>() += perturbation_->velocity();
+    target.handle[i].A_W.head<3>() += perturbation_->acceleration();
   }
   data->haptics = renderer_->Render(View(), target, guard_.last(), &data->rendered);
 }
@@ -265,6 +292,7 @@ Status Pipeline::FinishTare() noexcept {
 void Pipeline::Reset(SentMotion* sent) noexcept {
   world_.Reset();
   guard_.Reset();
+  if (perturbation_) perturbation_->Reset();
   if (renderer_) renderer_->Reset();
   if (person_) person_->Reset();
   for (auto& arm : arms_)

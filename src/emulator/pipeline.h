@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "emulator/arm_side.h"
+#include "emulator/perturbation.h"
 #include "emulator/saved_state.h"
 #include "emulator/supervisor.h"
 #include "emulator/tick_data.h"
@@ -74,6 +75,7 @@ class Pipeline {
   void SenseDirectly(const TickPlan& plan, TickData* data) noexcept;
   void SenseArm(const TickPlan& plan, int hand, TickData* data) noexcept;
   std::array<RenderArm, kHands> View() const noexcept;
+  void Perturb(const TickPlan& plan, TickData* data) noexcept;
   int KeepToCap(const MotionOrder& order, const std::array<Jacobian, kHands>& J,
                 std::array<JointVector, kHands>* v) const noexcept;
 
@@ -88,6 +90,7 @@ class Pipeline {
   std::array<JointVector, kHands> start_;
   LeadChoice lead_;
   std::unique_ptr<Operator> person_;  // direct mode: holds the object's own handles
+  std::optional<Perturbation> perturbation_;
   std::optional<Renderer> renderer_;
   std::optional<Recovery> recovery_;
   Guard guard_;

@@ -20,6 +20,7 @@ void ArchiveState(StateArchive& a, const SavedState& state) noexcept {
     if ((d.sample.arms[i].present || d.wrench[i].present) && !p.hands_.Has(static_cast<int>(i)))
       a.Fail();
   if (state.device) state.device->Archive(a);
+  if (p.perturbation_) p.perturbation_->Archive(a);
   if (p.renderer_) p.renderer_->Archive(a);
   if (p.person_) p.person_->Archive(a);
   p.UpdateSent(&d.sent);

@@ -86,6 +86,7 @@ struct TickData {
   Status simulation;
   // Render
   RenderResult rendered;
+  Vector3 perturbation = Vector3::Zero();  // commanded displacement of the handles, in W [m]
   Status haptics;
   // Command and write
   DeviceCommand command;

@@ -136,6 +136,7 @@ void BuildRecord(const RecordSources& from, std::uint64_t wall_ns, TickRecord* r
   r.ran = from.plan.time_passes;
   r.action = ActionOf(from);
   r.guard_altered = static_cast<std::uint8_t>(from.data.guard_altered);
+  Eigen::Map<Vector3>(r.perturbation.data()) = from.data.perturbation;
   FillDecisions(from, record);
   FillHands(from, record);
   FillWorld(from.data, record);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/choice.h"
+#include "core/handle_target.h"
 #include "core/norm.h"
 #include "core/units.h"
 #include "core/words.h"
@@ -223,7 +224,8 @@ void RunCollector::Impl::AddHand(const TickRecord& record, int i) {
   using C = HandChannel;
   if (record.ran) {
     d_.present.Add(i);
-    const Pose real = FromRecord(h.real.pose), goal = FromRecord(h.virtual_.pose);
+    const Pose real = FromRecord(h.real.pose);
+    const Pose goal = HandleTarget(record, static_cast<std::size_t>(i));
     const double error = (real.p - goal.p).norm();
     const double rotation = RotationError(goal.q, real.q).norm();
     SetHand(i, C::kError, 1e3 * error);

@@ -11,6 +11,7 @@
 #include "scenario/formulation.h"
 #include "scenario/located.h"
 #include "scenario/operating_rules.h"
+#include "scenario/perturbation_force.h"
 
 namespace predictor {
 namespace {
@@ -35,6 +36,7 @@ class Checker {
   void Limits() const;
   void Formulation() const;
   void Controller() const;
+  void Perturbation() const;
 
  private:
   // Reports a problem unless `good`. `sentence` follows the path: "<path> is ...".
@@ -298,6 +300,27 @@ void Checker::Controller() const {
              " needs 1000 Hz. Set rate: 1000; cobot.control.rate may be lower.");
 }
 
+// A displacement's force on a person is predicted from the scenario's hand, which may be wrong: the
+// run measures it too.
+void Checker::Perturbation() const {
+  if (!s_.perturbation) return;
+  const PerturbationSpec& p = *s_.perturbation;
+  Unless(p.consent, "perturbation.consent",
+         "is false. Tell the person that the handles will move by a few millimetres and ask "
+         "whether this is acceptable. Then set it to true, or set perturbation: null.");
+  Unless(
+      s_.mode == Mode::kEmulate, "perturbation",
+      "displaces the handles of haptic arms, but mode: direct has none. Set perturbation: null.");
+  Unless(p.normal.norm() > 1e-3, "perturbation.normal",
+         "is zero. It must have a direction, for example [0, 0, 1].");
+  Below(p.speed, "perturbation.speed", s_.safety.handle_speed, "safety.handle_speed", "m/s");
+  const double force = PerturbationForce(p, s_.operator_.hand);
+  Unless(force <= p.force, "perturbation.amplitude",
+         "is " + FormatNumber(p.amplitude) + " m. The scenario's hand would resist with up to " +
+             FormatNumber(force) + " N, more than perturbation.force, " + FormatNumber(p.force) +
+             " N. Reduce it, or increase perturbation.ramp.");
+}
+
 }  // namespace
 
 void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* problems) {
@@ -311,6 +334,7 @@ void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* pro
   checker.Limits();
   checker.Formulation();
   checker.Controller();
+  checker.Perturbation();
 }
 
 }  // namespace predictor

@@ -14,6 +14,7 @@
 #include "scenario/formulation.h"
 #include "scenario/operator_fields.h"
 #include "scenario/own_parameters.h"
+#include "scenario/perturbation_fields.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
@@ -419,6 +420,8 @@ void Fields(V& v, Scenario& s) {
   v("safety", s.safety, Part("limits at which the run stops"));
   v("guidance", s.guidance, Part("what the person is asked to do"));
   v("events", s.events, List(Part("hazards on purpose"), 0, kMaxEvents));
+  v("perturbation", s.perturbation,
+    Part("small displacements of the handles that identify the operator's arm; null: none"));
 }
 
 }  // namespace predictor

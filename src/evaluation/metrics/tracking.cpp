@@ -1,6 +1,8 @@
-// Errors of the real handles relative to the virtual ones.
+// Errors of the real handles relative to the poses that they should follow: those of the virtual
+// handles, plus the displacement that a perturbation commands.
 #include <cmath>
 
+#include "core/handle_target.h"
 #include "core/motion.h"
 #include "evaluation/metrics/registry.h"
 
@@ -22,7 +24,7 @@ void TrackingErrors::Add(const TickRecord& record) noexcept {
     if (!hand.present) continue;
     ++present;
     real[i] = FromRecord(hand.real.pose);
-    goal[i] = FromRecord(hand.virtual_.pose);
+    goal[i] = HandleTarget(record, i);
     translation[i].Add((real[i].p - goal[i].p).norm());
     rotation[i].Add(RotationError(goal[i].q, real[i].q).norm());
   }

@@ -112,7 +112,8 @@ Json RunJson(const TickRecord& r) {
           {"read", StatusJson(r.read)},
           {"written", StatusJson(r.written)},
           {"harder", StatusJson(r.harder)},
-          {"parameters", Numbers(r.parameters.data(), kParameters)}};
+          {"parameters", Numbers(r.parameters.data(), kParameters)},
+          {"perturbation", Numbers(r.perturbation.data(), 3)}};
 }
 
 Json InputsJson(const TickRecord& r) {

@@ -1,0 +1,90 @@
+// Displaces the real handles by a few millimetres while a person holds them, so that the impedance
+// of the person's arm can be identified afterwards (docs/how-to/identify-arm.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "core/archive.h"
+#include "core/messages.h"
+#include "core/random.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// A motion along a line with continuous position, velocity and acceleration that ends at rest: a
+// polynomial of fifth order, from rest the one of minimum jerk (Flash & Hogan 1985).
+class QuinticMotion {
+ public:
+  struct Point {
+    double position = 0, velocity = 0, acceleration = 0;  // [m], [m/s], [m/s²]
+    void Archive(StateArchive& a) noexcept { a(position, velocity, acceleration); }
+  };
+  QuinticMotion() = default;
+  // Reaches `goal` [m] after `duration` [s].
+  QuinticMotion(const Point& from, double goal, double duration) noexcept
+      : from_(from), goal_(goal), duration_(duration) {}
+
+  Point At(double time) const noexcept;                   // time since its start [s]
+  double duration() const noexcept { return duration_; }  // [s]
+  void Archive(StateArchive& a) noexcept { a(from_, goal_, duration_); }
+
+ private:
+  Point from_;
+  double goal_ = 0, duration_ = 1;
+};
+
+// What decides whether a displacement may begin or must be taken back.
+struct PerturbationInput {
+  double run_time = 0;  // [s]
+  Hands present;
+  std::array<HandWrench, kHands> wrench;
+  std::array<FrameMotion, kHands> virtual_;
+  bool limited = false;  // a limit of rendering acts
+};
+
+class Perturbation {
+ public:
+  // `margin`: predicted stability margin of the run. dt: tick [s]. Throws InputError if the margin
+  // is smaller than the scenario requires.
+  Perturbation(const Scenario& scenario, double margin, double dt);
+
+  // One tick of RUN. No heap, lock or exception.
+  void Step(const PerturbationInput& input) noexcept;
+  // The handles are where the virtual ones are. Directions and times are drawn again, since a
+  // person may remember those of the last run.
+  void Reset() noexcept;
+  void Archive(StateArchive& a) noexcept;
+
+  // Displacement of the real handles from the virtual ones, in W [m], and its derivatives.
+  Vector3 displacement() const noexcept { return now_.position * direction_; }
+  Vector3 velocity() const noexcept { return now_.velocity * direction_; }
+  Vector3 acceleration() const noexcept { return now_.acceleration * direction_; }
+
+ private:
+  enum class Phase : std::uint8_t { kWait, kOut, kHold, kBack };
+  bool MayBegin(const PerturbationInput& input) const noexcept;
+  void Begin() noexcept;
+  void TakeBack() noexcept;
+  void Wait(double run_time) noexcept;
+
+  std::optional<PerturbationSpec> spec_;  // absent: there are no displacements
+  double dt_ = 0.001;                     // [s]
+  double expected_force_ = 0;             // of a displacement on a hand [N]
+  std::array<Vector3, 2> plane_ = {Vector3::UnitX(), Vector3::UnitY()};  // its axes
+
+  RandomStream random_;
+  // The directions not yet used since all had been: the last `left_` of these numbers.
+  std::array<std::uint8_t, 16> order_{};
+  int left_ = 0;
+  Phase phase_ = Phase::kWait;
+  double phase_time_ = 0;                 // time since the phase began [s]
+  double earliest_ = 0;                   // start of the next displacement, run time [s]
+  std::array<double, kHands> load_ = {};  // smoothed force of the hands [N]
+  Vector3 direction_ = Vector3::UnitX();  // of the present displacement
+  QuinticMotion motion_;                  // along it
+  QuinticMotion::Point now_;
+};
+
+}  // namespace predictor
