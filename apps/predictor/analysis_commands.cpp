@@ -31,6 +31,15 @@ void AddCheck(CLI::App* app, Request* r) {
       "Exit code 1: the scenario fails the check.\n");
 }
 
+void AddPersonOverrides(CLI::App* command, std::vector<std::string>* set) {
+  AddOption(command, "Person", "--set", set, "KEY=VALUE",
+            "Override a value of the recorded scenario, for example operator.body.height=1.62 "
+            "(repeatable)")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+}
+
 void AddReport(CLI::App* app, Request* r) {
   ReportOptions* o = &r->report;
   CLI::App* report =
@@ -41,6 +50,7 @@ void AddReport(CLI::App* app, Request* r) {
   AddOption(report, "Output", "-o,--output", &o->output, "FILE.html",
             "Page to write [default: NAME.html; for several recordings: comparison.html]");
   AddOutput(report, o);
+  AddPersonOverrides(report, &o->set);
   report->footer("Example:\n  predictor report runs/real.mcap runs/emulated.mcap -o both.html\n");
 }
 
@@ -74,12 +84,7 @@ void AddEvaluate(CLI::App* app, Request* r) {
       "Judge the person in a recording: posture, joint loads, scores, lifts, damage, fatigue", r,
       [o] { return EvaluateCommand(*o); });
   AddRecording(evaluate, &o->recording);
-  AddOption(evaluate, "Person", "--set", &o->set, "KEY=VALUE",
-            "Override a value of the recorded scenario, for example operator.body.height=1.62 "
-            "(repeatable)")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  AddPersonOverrides(evaluate, &o->set);
   AddOption(evaluate, "Person", "--against", &o->against, "RECORDING",
             "Also compare with this recording of another design, for the same person");
   evaluate

@@ -111,7 +111,8 @@ struct SurveyOptions : OutputOptions {
 // Input and output of `report`.
 struct ReportOptions : OutputOptions {
   std::vector<std::string> recordings;
-  std::string output;  // empty: named after the recording; for several: comparison.html
+  std::string output;            // empty: named after the recording; for several: comparison.html
+  std::vector<std::string> set;  // overrides of the recorded scenario, for body and stance
 };
 
 // Input and output of `compare`.

@@ -1,11 +1,13 @@
+#include "evaluate.h"
+
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include "assessment/comparison.h"
 #include "assessment/output.h"
-#include "commands.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "models/object_model.h"
 #include "progress.h"
 #include "recorded_run.h"
@@ -16,6 +18,10 @@
 
 namespace predictor {
 namespace {
+
+// Longest run of which a report computes the intervals, which take half of real time to compute on
+// a slow computer [s].
+constexpr double kMaxIntervals = 120;
 
 // Empty if the recorded models cannot be read; the reason is printed.
 std::optional<double> ObjectMass(const RecordingHeader& header) {
@@ -56,6 +62,41 @@ assessment::Assessment Evaluate(const EvaluateOptions& options, const std::strin
 }
 
 }  // namespace
+
+assessment::PersonOfRun PersonIn(const std::string& file, double duration,
+                                 const ReportOptions& options) {
+  const RecordingReader reader(file);
+  const RecordingHeader& header = reader.header();
+  assessment::PersonOfRun person;
+  if (header.scenario_yaml.empty()) {
+    person.why = "The recording has lost its scenario.";
+    return person;
+  }
+  const Scenario scenario = ParseScenario(header.scenario_yaml, file, ".", options.set);
+  if (const auto missing = assessment::MissingForPosture(scenario); !missing.empty()) {
+    person.why = Join(missing, " ") +
+                 " For this recording, give them to the report with --set, as "
+                 "for predictor evaluate.";
+    return person;
+  }
+  EvaluateOptions evaluate;
+  evaluate.set = options.set;
+  evaluate.quiet = options.quiet;
+  const bool too_long = duration > kMaxIntervals;
+  evaluate.intervals = !too_long;
+  try {
+    person.assessment = Evaluate(evaluate, file);
+  } catch (const InputError& error) {
+    person.why = error.what();
+    return person;
+  }
+  if (too_long)
+    person.assessment->warnings.push_back(
+        "This is a long run, so there are no intervals and probabilities. To compute them, run: "
+        "predictor evaluate " +
+        file);
+  return person;
+}
 
 int EvaluateCommand(const EvaluateOptions& options) {
   const std::string stem = std::filesystem::path(options.recording).replace_extension("").string();

@@ -3,9 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "assessment/output.h"
 #include "commands.h"
 #include "core/error.h"
 #include "core/format.h"
+#include "evaluate.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
 #include "report/report.h"
@@ -87,7 +89,14 @@ int ReportCommand(const ReportOptions& options) {
     runs.push_back(
         Read(file, kDetail / static_cast<double>(options.recordings.size()), options.quiet));
   NameRuns(options.recordings, &runs);
-  const ReportDocument report = MakeReport(runs, PREDICTOR_VERSION);
+  std::vector<assessment::PersonOfRun> persons;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    persons.push_back(PersonIn(options.recordings[k], runs[k].summary.duration(), options));
+    if (runs.size() > 1) persons.back().name = runs[k].info.name;
+  }
+  const ReportDocument report = MakeReport(runs, PREDICTOR_VERSION, [&](ReportPage* page) {
+    assessment::AddPersonChapter(persons, page);
+  });
   WriteFile(output, report.html);
   const nlohmann::json result = {{"page", output}, {"recordings", options.recordings}};
   options.Write("Wrote " + output + ". Open it in a browser.\n", result.dump(2) + "\n");

@@ -212,6 +212,15 @@ void AddReach(const NominalChain& nominal, const SampledChain& sampled, Assessme
   a->sampled_reached = all > 0 ? reached / all : 0;
 }
 
+void AddPictures(const NominalChain& nominal, std::span<const PersonSample> samples, bool possible,
+                 Assessment* a) {
+  a->worst = PictureAt(a->setup, samples, nominal, WorstSample(nominal), possible);
+  constexpr std::size_t kPictures = 6;
+  for (std::size_t k = 0; k < kPictures; ++k)
+    a->pictures.push_back(
+        PictureAt(a->setup, samples, nominal, k * (samples.size() - 1) / (kPictures - 1), false));
+}
+
 void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) {
   a->assumptions = {
       "The feet stay where operator.stance puts them.",
@@ -258,6 +267,7 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
   a.scenario = scenario.name;
   a.operator_type = scenario.operator_.type;
   a.setup = SetupOf(scenario, run.first());
+  a.hands = {scenario.Has(0), scenario.Has(1)};
   a.duration = static_cast<double>(run.samples().size()) / kSampleRate;
   a.held = static_cast<double>(samples.size()) / kSampleRate;
   CheckPlace(samples, &a);
@@ -279,6 +289,7 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
   AddBalanceWarning(nominal, &a);
   AddDamage(scenario, nominal, run.samples(), &a);
   AddFatigue(scenario, nominal, run.samples(), &a);
+  AddPictures(nominal, samples, options.intervals, &a);
   AddWords(scenario, options.work, &a);
   AddLifts(object_mass, run, &a);
   return a;

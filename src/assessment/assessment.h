@@ -3,6 +3,7 @@
 // uncertainty.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "assessment/exposure.h"
 #include "assessment/lifts.h"
 #include "assessment/person_setup.h"
+#include "assessment/picture.h"
 #include "assessment/quantities.h"
 #include "person/posture_samples.h"
 
@@ -43,7 +45,8 @@ struct Assessment {
   std::string recording, scenario;
   std::string operator_type;  // as in the scenario
   PersonSetup setup;
-  double duration = 0;         // simulated [s]
+  std::array<bool, kHands> hands = {};  // which handles the scenario has
+  double duration = 0;                  // simulated [s]
   double held = 0;             // of it, while a hand held a handle; only this is judged [s]
   double reached = 0;          // share of the time in which the body reaches the handles
   double sampled_reached = 0;  // the same over the possible postures
@@ -54,6 +57,8 @@ struct Assessment {
   std::vector<Lift> lifts;
   std::vector<DamageResult> damage;
   std::vector<FatigueResult> fatigue;
+  BodyPicture worst;                  // at WorstSample()
+  std::vector<BodyPicture> pictures;  // evenly over the judged time
   std::vector<std::string> warnings;  // about doubtful input
   std::vector<std::string> assumptions;
   std::vector<NotEvaluable> not_evaluable;

@@ -1,10 +1,16 @@
 // An assessment as text, JSON, CSV and as a page.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 
 #include "assessment/assessment.h"
 #include "assessment/comparison.h"
+
+namespace predictor {
+class ReportPage;
+}  // namespace predictor
 
 namespace predictor::assessment {
 
@@ -18,8 +24,20 @@ std::string AssessmentSchema();
 std::string AssessmentCsv(const Assessment& a);
 std::string AssessmentPage(const Assessment& a, const std::string& program_version);
 
+// The person of a run that a report shows: the assessment, or a sentence that says why there is
+// none.
+struct PersonOfRun {
+  std::string name;  // of the run, if the report compares several
+  std::optional<Assessment> assessment;
+  std::string why;
+};
+// Adds the chapter "person": of one run all that AssessmentPage shows, of several runs a table.
+void AddPersonChapter(std::span<const PersonOfRun> runs, ReportPage* page);
+
 // A value in the unit that people read.
 std::string ValueText(const QuantityKind& kind, double x);
+// "low … high" in the same unit; empty: there is no interval.
+std::string RangeText(const QuantityKind& kind, const std::optional<person::Interval>& range);
 // "measured by ...": what the words of Origin mean.
 std::string OriginWords();
 // One sentence for each lift, damage and fatigue result.

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "assessment/output.h"
+#include "assessment/output_picture.h"
 #include "core/format.h"
 #include "core/text.h"
 #include "report/page.h"
@@ -83,8 +85,8 @@ Plot GroupPlot(const Assessment& a, const std::string& group, const std::string&
 
 Plot ScorePlot(const Assessment& a) {
   Plot plot;
-  plot.id = "scores";
-  plot.title = "Scores of the worksheets";
+  plot.id = "person-scores";
+  plot.title = "Scores of the worksheets over time";
   plot.caption =
       "Lines: the nominal posture. Areas: between the 5th and 95th percentile of the possible "
       "postures.";
@@ -105,20 +107,71 @@ Plot ScorePlot(const Assessment& a) {
   return plot;
 }
 
+// How a page names the parts of an assessment: as chapters, or as parts of one chapter.
+class Outline {
+ public:
+  Outline(ReportPage* page, bool chapters) : page_(page), chapters_(chapters) {}
+  void Begin(const std::string& id, const std::string& title) {
+    if (chapters_)
+      page_->Section("person-" + id, title);
+    else
+      page_->Html("<h3 id=\"person-" + id + "\">" + EscapeMarkup(title) + "</h3>\n");
+  }
+  ReportPage& page() const { return *page_; }
+
+ private:
+  ReportPage* page_;
+  bool chapters_;
+};
+
+std::string RangeOrDash(const QuantityKind& kind, const std::optional<person::Interval>& range) {
+  return range ? RangeText(kind, range) : "–";
+}
+
 std::string QuantityTable(const Assessment& a) {
   std::vector<std::vector<std::string>> rows = {
-      {"Quantity", "Mean", "p5", "p95", "Worst", "Tail, 90 %", "Origin"}};
+      {"Quantity", "Mean", "p5", "p95", "Worst", "Tail, 90 %", "Limit", "Origin"}};
   for (const QuantityResult& q : a.quantities) {
-    const Unit& unit = q.kind->unit;
-    const auto value = [&](double x) { return ValueText(*q.kind, x); };
-    const std::string name = std::string(q.kind->group) + ", " + q.kind->label;
-    rows.push_back(
-        {EscapeMarkup(WithUnit(name, unit)), value(q.mean), value(q.p5), value(q.p95),
-         value(q.worst()),
-         q.tail_interval ? value(q.tail_interval->low) + " … " + value(q.tail_interval->high) : "–",
-         Name(q.kind->origin)});
+    const QuantityKind& kind = *q.kind;
+    const auto value = [&](double x) { return ValueText(kind, x); };
+    const std::string name = std::string(kind.group) + ", " + kind.label;
+    rows.push_back({EscapeMarkup(WithUnit(name, kind.unit)), value(q.mean), value(q.p5),
+                    value(q.p95), value(q.worst()), RangeOrDash(kind, q.tail_interval),
+                    kind.limit > 0 ? value(kind.limit) : "–", Name(kind.origin)});
   }
   return HtmlTable(rows);
+}
+
+std::string Percent(double share) { return Formatted("%.1f %%", 100 * share); }
+
+// A bar of a worksheet's scores, as wide as their shares and coloured by the advised action.
+std::string ScoreBar(const WorksheetResult& w, const std::vector<double>& shares) {
+  const int levels = w.kind->action(w.kind->most).level;
+  std::string html = "<div class=\"shares\">";
+  for (std::size_t score = 1; score < shares.size(); ++score) {
+    if (shares[score] < 0.0005) continue;
+    const int level = w.kind->action(static_cast<int>(score)).level;
+    const double severity = static_cast<double>(level - 1) / (levels - 1);
+    Append(&html,
+           "<span style=\"flex-grow: %.4f; background: %s%s\" title=\"score %zu: %s\">%s</span>",
+           shares[score], LoadColor(severity).c_str(), severity > 0.7 ? "; color: #fff" : "", score,
+           Percent(shares[score]).c_str(),
+           shares[score] < 0.03 ? "" : std::to_string(score).c_str());
+  }
+  return html + "</div>";
+}
+
+std::string ScoreBars(const Assessment& a) {
+  std::string html = "<div class=\"scores\">";
+  for (const WorksheetResult& w : a.worksheets) {
+    html +=
+        std::string("<b>") + w.kind->name + "</b><span>share of time</span>" + ScoreBar(w, w.share);
+    if (!w.probability.empty())
+      html += "<b></b><span>probability</span>" + ScoreBar(w, w.probability);
+  }
+  return html +
+         "</div>\n<p class=\"caption\">Colours: what the method advises, from no action "
+         "(light green) to action now (dark red).</p>\n";
 }
 
 std::string ScoreTable(const Assessment& a) {
@@ -128,64 +181,151 @@ std::string ScoreTable(const Assessment& a) {
     for (std::size_t score = 1; score < w.share.size(); ++score) {
       const double likely = w.probability.empty() ? 0 : w.probability[score];
       if (w.share[score] < 0.0005 && likely < 0.0005) continue;
-      rows.push_back({w.kind->name, std::to_string(score),
-                      Formatted("%.1f %%", 100 * w.share[score]),
-                      w.probability.empty() ? "–" : Formatted("%.1f %%", 100 * likely),
+      rows.push_back({w.kind->name, std::to_string(score), Percent(w.share[score]),
+                      w.probability.empty() ? "–" : Percent(likely),
                       EscapeMarkup(w.kind->action(static_cast<int>(score)).sentence)});
     }
   return HtmlTable(rows);
 }
 
-template <class T>
-void AddSentences(const std::string& id, const std::string& title, const std::vector<T>& list,
-                  ReportPage* page) {
-  if (list.empty()) return;
-  page->Section(id, title);
-  for (const T& entry : list) page->Paragraph(Sentence(entry));
+std::string DamageTable(const Assessment& a) {
+  std::vector<std::vector<std::string>> rows = {
+      {"Part", "Method", "One run", "A shift of such runs", "Probability"}};
+  for (const DamageResult& d : a.damage)
+    rows.push_back({EscapeMarkup(d.part), EscapeMarkup(d.tool),
+                    Formatted("%.3g %%", 100 * d.day_share),
+                    Formatted("%.3g %%", 100 * d.shift_share), Percent(d.probability)});
+  return HtmlTable(rows);
 }
 
-void AddGroups(const Assessment& a, ReportPage* page) {
+std::string FatigueTable(const Assessment& a) {
+  std::vector<std::vector<std::string>> rows = {
+      {"Joint", "Mean load", "Strength left", "Too much after"}};
+  for (const FatigueResult& f : a.fatigue)
+    rows.push_back({EscapeMarkup(f.joint), Percent(f.mean_load), Percent(f.capacity),
+                    std::isfinite(f.time_to_limit) ? Formatted("%.0f min", f.time_to_limit / 60)
+                                                   : "not within 8 h"});
+  return HtmlTable(rows);
+}
+
+void AddCosts(const Assessment& a, Outline* outline) {
+  ReportPage& page = outline->page();
+  if (!a.lifts.empty()) outline->Begin("lifts", "Lifts (standard)");
+  for (const Lift& lift : a.lifts) page.Paragraph(Sentence(lift));
+  outline->Begin("damage", "Cumulative damage (standard)");
+  page.Html(DamageTable(a));
+  page.Html(
+      "<p class=\"caption\">As shares of the reference day, whose damage the method connects with "
+      "a "
+      "probability of one half that the job is one of those with many injuries. Not the risk of a "
+      "person.</p>\n");
+  outline->Begin("fatigue", "Fatigue by 3CC-r (modelled)");
+  page.Html(FatigueTable(a));
+  page.Html(
+      "<p class=\"caption\">As shares of strength. Too much: when a repetition of the run, without "
+      "a "
+      "break, needs more strength than is left.</p>\n");
+}
+
+void AddGroups(const Assessment& a, Outline* outline) {
   std::string group;
   int number = 0;
   for (const QuantityResult& q : a.quantities) {
     if (group == q.kind->group) continue;
     group = q.kind->group;
     const std::string id = "group-" + std::to_string(++number);
-    page->Section(id, group);
-    page->Figure(GroupPlot(a, group, "plot-" + id));
+    outline->Begin(id, group);
+    outline->page().Figure(GroupPlot(a, group, "person-plot-" + id));
   }
+}
+
+void AddSummary(const Assessment& a, ReportPage* page) {
+  const BodySpec& body = a.setup.body;
+  page->Paragraph(OperatorSentence(a) + " " + ReachSentence(a));
+  for (const std::string& line : a.warnings)
+    page->Html("<p class=\"warning\">Warning: " + EscapeMarkup(line) + "</p>\n");
+  page->Paragraph(Formatted("Body: %s, %.2f m, %.0f kg.",
+                            body.sex == Sex::kMale ? "male" : "female", body.height, body.mass));
+  page->Html(PicturesHtml(a));
+}
+
+void AddParts(const Assessment& a, Outline* outline) {
+  ReportPage& page = outline->page();
+  outline->Begin("values", "Values");
+  page.Html(QuantityTable(a));
+  page.Paragraph(
+      "p5 and p95: percentiles over the judged time, of the nominal posture. Tail: 90 % interval "
+      "of p95 (of balance p5) over 64 possible postures and bodies.");
+  page.Paragraph(OriginWords() + ".");
+  outline->Begin("worksheets", "Scores (standard)");
+  page.Html(ScoreBars(a));
+  page.Html(ScoreTable(a));
+  page.Figure(ScorePlot(a));
+  AddGroups(a, outline);
+  AddCosts(a, outline);
+  outline->Begin("gaps", "Assumptions and gaps");
+  for (const std::string& line : a.assumptions) page.Paragraph(line);
+  for (const NotEvaluable& n : a.not_evaluable)
+    page.Paragraph("Not evaluable: " + n.what + ", because " + n.why + ".");
+}
+
+void AddReason(const PersonOfRun& run, ReportPage* page) {
+  page->Html("<p class=\"warning\">" + EscapeMarkup(run.name.empty() ? "" : run.name + ": ") +
+             "Not evaluable: posture, loads and scores of the person. " + EscapeMarkup(run.why) +
+             "</p>\n");
+}
+
+void AddComparison(std::span<const PersonOfRun> runs, ReportPage* page) {
+  std::vector<std::vector<std::string>> rows = {{"Tail (90 %)"}};
+  for (const PersonOfRun& run : runs)
+    if (run.assessment) {
+      rows[0].push_back(EscapeMarkup(run.name));
+    } else {
+      AddReason(run, page);
+    }
+  if (rows[0].size() < 2) return;
+  for (const QuantityKind& kind : Quantities()) {
+    std::vector<std::string> row = {
+        EscapeMarkup(WithUnit(std::string(kind.group) + ", " + kind.label, kind.unit) + ", " +
+                     Name(kind.origin))};
+    for (const PersonOfRun& run : runs) {
+      if (!run.assessment) continue;
+      const auto& all = run.assessment->quantities;
+      const auto q = std::ranges::find(all, &kind, &QuantityResult::kind);
+      row.push_back(q == all.end() ? "–"
+                                   : ValueText(kind, q->tail()) + " (" +
+                                         RangeOrDash(kind, q->tail_interval) + ")");
+    }
+    rows.push_back(row);
+  }
+  page->Html(HtmlTable(rows));
+  page->Paragraph(
+      "The 95th percentile over time (of balance the 5th) of the nominal posture, and its 90 % "
+      "interval over 64 possible postures and bodies. To compare two runs for the same possible "
+      "persons, use predictor evaluate with --against: its intervals of the differences are "
+      "narrower.");
 }
 
 }  // namespace
 
 std::string AssessmentPage(const Assessment& a, const std::string& program_version) {
-  const BodySpec& body = a.setup.body;
   std::string words = "<p>" + EscapeMarkup(a.recording) + " · evaluated by PREDICTOR " +
                       EscapeMarkup(program_version) + "</p>\n";
   ReportPage page("The person in: " + a.scenario, words);
-  page.Section("summary", "Summary");
-  page.Paragraph(OperatorSentence(a) + " " + ReachSentence(a));
-  for (const std::string& line : a.warnings) page.Paragraph("Warning: " + line);
-  page.Paragraph(Formatted("Body: %s, %.2f m, %.0f kg.", body.sex == Sex::kMale ? "male" : "female",
-                           body.height, body.mass));
-  page.Html(QuantityTable(a));
-  page.Paragraph(
-      "p5 and p95: percentiles over the judged time, of the nominal posture. Tail: 90 % interval "
-      "of "
-      "p95 (of balance p5) over 64 possible postures and bodies.");
-  page.Paragraph(OriginWords() + ".");
-  page.Section("scores", "Scores");
-  page.Html(ScoreTable(a));
-  page.Figure(ScorePlot(a));
-  AddGroups(a, &page);
-  AddSentences("lifts", "Lifts (standard)", a.lifts, &page);
-  AddSentences("damage", "Cumulative damage (standard)", a.damage, &page);
-  AddSentences("fatigue", "Fatigue by 3CC-r (modelled)", a.fatigue, &page);
-  page.Section("gaps", "Assumptions and gaps");
-  for (const std::string& line : a.assumptions) page.Paragraph(line);
-  for (const NotEvaluable& n : a.not_evaluable)
-    page.Paragraph("Not evaluable: " + n.what + ", because " + n.why + ".");
+  Outline outline(&page, true);
+  outline.Begin("summary", "Summary");
+  AddSummary(a, &page);
+  AddParts(a, &outline);
   return page.Finish();
+}
+
+void AddPersonChapter(std::span<const PersonOfRun> runs, ReportPage* page) {
+  page->Section("person", "Person");
+  if (runs.size() > 1) return AddComparison(runs, page);
+  if (!runs[0].assessment) return AddReason(runs[0], page);
+  AddSummary(*runs[0].assessment, page);
+  Outline outline(page, false);
+  AddParts(*runs[0].assessment, &outline);
 }
 
 }  // namespace predictor::assessment

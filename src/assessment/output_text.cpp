@@ -8,11 +8,6 @@
 namespace predictor::assessment {
 namespace {
 
-std::string RangeText(const QuantityKind& kind, const std::optional<person::Interval>& range) {
-  if (!range) return "";
-  return ValueText(kind, range->low) + " … " + ValueText(kind, range->high);
-}
-
 void AppendQuantities(const Assessment& a, std::string* text) {
   AppendLine(text, "%-36s %8s %8s %8s %8s  %-17s %s", "", "mean", "p5", "p95", "worst",
              "tail (90 %)", "origin");
@@ -58,6 +53,11 @@ std::string Index(double index) {
 }
 
 }  // namespace
+
+std::string RangeText(const QuantityKind& kind, const std::optional<person::Interval>& range) {
+  if (!range) return "";
+  return ValueText(kind, range->low) + " … " + ValueText(kind, range->high);
+}
 
 std::string OriginWords() {
   return "Measured: by the sensors of the arms; modelled: by the model of the body; standard: by a "

@@ -56,6 +56,17 @@ std::array<double, kHands> ForceRates(std::span<const PersonSample> samples, std
   return rates;
 }
 
+std::vector<Frame> FramesOf(const PersonSetup& setup, std::span<const PersonSample> samples,
+                            std::size_t i, const WorkPattern& work,
+                            const person::SampledBody& body) {
+  std::vector<Frame> frames;
+  frames.reserve(body.samples.size());
+  for (const person::SampledPosture& one : body.samples)
+    frames.push_back(FrameOf({samples[i].body, ForceRates(samples, i)}, one.angles, one.loads,
+                             one.reached, setup.body.sex, work));
+  return frames;
+}
+
 }  // namespace
 
 NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> samples,
@@ -81,18 +92,24 @@ SampledChain RunSampled(const PersonSetup& setup, std::span<const PersonSample> 
   const person::PostureSampler sampler(setup.body, setup.stance, setup.grips);
   SampledChain chain;
   for (std::size_t i = 0; i < samples.size(); i += stride) {
-    const person::BodySample& sample = samples[i].body;
-    const person::SampledBody body = sampler.Evaluate(sample, nominal.motions[i]);
-    std::vector<Frame> frames;
-    frames.reserve(body.samples.size());
-    for (const person::SampledPosture& one : body.samples)
-      frames.push_back(FrameOf({sample, ForceRates(samples, i)}, one.angles, one.loads, one.reached,
-                               setup.body.sex, work));
+    const person::SampledBody body = sampler.Evaluate(samples[i].body, nominal.motions[i]);
     chain.at.push_back(i);
-    chain.frames.push_back(std::move(frames));
+    chain.frames.push_back(FramesOf(setup, samples, i, work, body));
     progress(static_cast<double>(i + 1) / static_cast<double>(samples.size()));
   }
   return chain;
+}
+
+PossiblePersons PossibleAt(const PersonSetup& setup, std::span<const PersonSample> samples,
+                           const NominalChain& nominal, std::size_t i) {
+  const person::PostureSampler sampler(setup.body, setup.stance, setup.grips);
+  const person::SampledBody body = sampler.Evaluate(samples[i].body, nominal.motions[i]);
+  PossiblePersons persons;
+  persons.frames = FramesOf(setup, samples, i, {}, body);
+  for (std::size_t k = 0; k < body.samples.size(); ++k)
+    persons.skeletons.push_back(
+        person::SkeletonOf(sampler.model(k), body.samples[k].q, setup.stance.width));
+  return persons;
 }
 
 }  // namespace predictor::assessment

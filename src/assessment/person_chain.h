@@ -9,6 +9,7 @@
 #include "assessment/hand_samples.h"
 #include "assessment/person_setup.h"
 #include "person/posture_samples.h"
+#include "person/skeleton.h"
 
 namespace predictor::assessment {
 
@@ -29,5 +30,13 @@ struct SampledChain {
 SampledChain RunSampled(const PersonSetup& setup, std::span<const PersonSample> samples,
                         const NominalChain& nominal, std::size_t stride, const WorkPattern& work,
                         const std::function<void(double)>& progress);
+
+// All possible persons at sample `i` alone, with their joints in S.
+struct PossiblePersons {
+  std::vector<Frame> frames;
+  std::vector<person::Skeleton> skeletons;
+};
+PossiblePersons PossibleAt(const PersonSetup& setup, std::span<const PersonSample> samples,
+                           const NominalChain& nominal, std::size_t i);
 
 }  // namespace predictor::assessment

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/person_state.h"
+
 namespace predictor::assessment {
 namespace {
 
@@ -55,10 +57,10 @@ constexpr QuantityKind kQuantities[] = {
     {"hands.right.force_n", kHandsGroup, "right force", kForce, Origin::kMeasured, Force<1>, 0, "",
      1},
     {"lower_back.compression_n", kBack, "compression", kCompression, Origin::kModelled,
-     [](const Moment& m) { return m.frame.loads.l5s1.compression; }, 3400,
+     [](const Moment& m) { return m.frame.loads.l5s1.compression; }, kCompressionLimit,
      "NIOSH's limit for compression"},
     {"lower_back.shear_n", kBack, "shear", kCompression, Origin::kModelled,
-     [](const Moment& m) { return m.frame.loads.l5s1.shear; }, 700,
+     [](const Moment& m) { return m.frame.loads.l5s1.shear; }, kShearLimit,
      "Gallagher & Marras's limit for frequent shear"},
     {"lower_back.flexion_moment_nm", kBack, "extensor moment", kMoment, Origin::kModelled,
      [](const Moment& m) { return m.frame.loads.l5s1.flexion_moment; }},

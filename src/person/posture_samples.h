@@ -70,6 +70,9 @@ class PostureSampler {
   // all samples, whose posture is solved for this time alone, starting at the nominal one.
   SampledBody Evaluate(const BodySample& sample, const BodyMotion& nominal) const;
 
+  // The body of the k-th sample.
+  const BodyModel& model(std::size_t k) const { return persons_[k].solver.model(); }
+
  private:
   struct Person {
     PostureSolver solver;

@@ -87,7 +87,8 @@ void AddPath(const Runs& runs, ReportPage* page) {
   page->Figure(ObjectPlot(runs));
 }
 
-ReportDocument SingleReport(const RunData& run, const std::string& program_version) {
+ReportDocument SingleReport(const RunData& run, const std::string& program_version,
+                            const AddChapters& chapters) {
   const Runs runs = {RunCurves(run)};
   const RunCurves& curves = runs.front();
   const std::string title = run.info.scenario.name.empty() ? run.info.name : run.info.scenario.name;
@@ -103,6 +104,7 @@ ReportDocument SingleReport(const RunData& run, const std::string& program_versi
   page.Section("hands", "Forces");
   page.Html(ResultTables(run, Chapter::kForces));
   AddForces(runs, &page);
+  chapters(&page);
   AddPath(runs, &page);
   page.Section("joint-motion", "Joints");
   page.Figure(JointPlot(curves));
@@ -131,7 +133,8 @@ ReportDocument SingleReport(const RunData& run, const std::string& program_versi
   return {page.Finish(), page.plots()};
 }
 
-ReportDocument Comparison(const std::vector<RunData>& data, const std::string& program_version) {
+ReportDocument Comparison(const std::vector<RunData>& data, const std::string& program_version,
+                          const AddChapters& chapters) {
   Runs runs;
   for (const RunData& run : data) runs.emplace_back(run);
   std::string words = "<p>Differences are relative to the first, " +
@@ -147,6 +150,7 @@ ReportDocument Comparison(const std::vector<RunData>& data, const std::string& p
   page.Figure(TrackingPlot(runs));
   page.Section("hands", "Forces");
   AddForces(runs, &page);
+  chapters(&page);
   AddPath(runs, &page);
   page.Section("coupling-wrench", "Coupling and rendering");
   page.Figure(CouplingPlot(runs));
@@ -163,9 +167,10 @@ ReportDocument Comparison(const std::vector<RunData>& data, const std::string& p
 
 }  // namespace
 
-ReportDocument MakeReport(const std::vector<RunData>& runs, const std::string& program_version) {
-  return runs.size() == 1 ? SingleReport(runs.front(), program_version)
-                          : Comparison(runs, program_version);
+ReportDocument MakeReport(const std::vector<RunData>& runs, const std::string& program_version,
+                          const AddChapters& chapters) {
+  return runs.size() == 1 ? SingleReport(runs.front(), program_version, chapters)
+                          : Comparison(runs, program_version, chapters);
 }
 
 }  // namespace predictor

@@ -1,6 +1,7 @@
 // The report on one run, or on several runs side by side.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,15 @@ struct ReportDocument {
   std::vector<Plot> plots;  // the plots in the page
 };
 
-// `runs`: at least one. program_version: version of the program that makes the report.
-ReportDocument MakeReport(const std::vector<RunData>& runs, const std::string& program_version);
+class ReportPage;
+
+// Adds chapters of another module to the page.
+using AddChapters = std::function<void(ReportPage*)>;
+
+// `runs`: at least one. program_version: version of the program that makes the report. `chapters`:
+// come after the forces.
+ReportDocument MakeReport(
+    const std::vector<RunData>& runs, const std::string& program_version,
+    const AddChapters& chapters = [](ReportPage*) {});
 
 }  // namespace predictor

@@ -45,6 +45,45 @@ TEST_F(Evaluate, WritesTextPageJsonAndCsv) {
   EXPECT_NE(again.errors().find("--force"), std::string::npos) << again.errors();
 }
 
+// The text of a page that `report` makes of these recordings.
+std::string ReportOf(std::vector<std::string> arguments, const fs::path& page) {
+  arguments.insert(arguments.begin(), "report");
+  for (const std::string& more :
+       {std::string("-o"), page.string(), std::string("--quiet"), std::string("--force")})
+    arguments.push_back(more);
+  Child child(arguments);
+  EXPECT_EQ(child.Wait(), 0) << child.errors();
+  std::ifstream file(page);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool Contains(const std::string& text, const char* what) {
+  return text.find(what) != std::string::npos;
+}
+
+TEST_F(Evaluate, AReportShowsThePersonOrWhatIsMissing) {
+  const std::string known = Record("box_9kg");
+  const std::string page = folder_.path() / "page.html";
+  const std::string html = ReportOf({known}, page);
+  for (const char* part : {"<section id=\"person\"", "The operator was simulated", "from the side",
+                           "from the front", "modelled", "person-scores", "NIOSH"})
+    EXPECT_TRUE(Contains(html, part)) << part;
+  const std::string unknown = Record("box_18kg", {"--set", "operator.body=null"});
+  const std::string refused = ReportOf({unknown}, page);
+  EXPECT_TRUE(Contains(refused,
+                       "Not evaluable: posture, loads and scores of the person. The "
+                       "scenario does not describe the operator's body."));
+  EXPECT_FALSE(Contains(refused, "person-scores"));
+  const std::string given =
+      ReportOf({unknown, "--set", "operator.body={height: 1.62, mass: 58, sex: female}", "--set",
+                "operator.stance={ground: [1.0, 0.05, -0.85], facing: 180 deg}"},
+               page);
+  EXPECT_TRUE(Contains(given, "Body: female, 1.62 m, 58 kg."));
+  const std::string both = ReportOf({known, unknown}, page);
+  EXPECT_TRUE(Contains(both, "Lower back (L5/S1), compression [N], modelled"));
+  EXPECT_TRUE(Contains(both, ": Not evaluable: posture, loads"));
+}
+
 TEST_F(Evaluate, ComparesTwoDesigns) {
   const std::string light = Record("box_9kg"), heavy = Record("box_18kg");
   Child child({"evaluate", light, "--against", heavy, "--json", "-"});

@@ -1,0 +1,17 @@
+// The person in a recording, for other commands.
+#pragma once
+
+#include <string>
+
+#include "assessment/output.h"
+#include "commands.h"
+
+namespace predictor {
+
+// With the 90 % intervals if the run, of this duration [s], is not too long for a report. If the
+// person cannot be judged, the result says why. Throws InputError if the recording cannot be read
+// or an override is invalid.
+assessment::PersonOfRun PersonIn(const std::string& file, double duration,
+                                 const ReportOptions& options);
+
+}  // namespace predictor
