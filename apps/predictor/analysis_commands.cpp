@@ -98,6 +98,9 @@ void AddEvaluate(CLI::App* app, Request* r) {
       ->group("Work");
   evaluate->add_flag("--held", o->held, "In the real work a posture is held for over a minute")
       ->group("Work");
+  AddOption(evaluate, "Work", "--contact-limits", &o->contact_limits, "FILE.csv",
+            "Limits of force on the body for unintended contact, in the form of "
+            "assets/contact_limits_template.csv");
   AddOption(evaluate, "Output", "-o,--output", &o->page, "FILE.html",
             "Page to write [default: NAME.person.html]");
   AddOption(evaluate, "Output", "--csv", &o->csv, "FILE.csv", "Also write all values over time");

@@ -135,6 +135,7 @@ struct EvaluateOptions : OutputOptions {
   std::vector<std::string> set;  // overrides of the recorded scenario, for body and stance
   bool intervals = true;
   bool repeated = false, held = false;  // see assessment::WorkPattern
+  std::string contact_limits;           // file of limits for unintended contact; empty: none
   std::string page;                     // empty: NAME.person.html
   std::string csv;                      // empty: none
 };

@@ -9,10 +9,12 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "models/object_model.h"
+#include "models/urdf.h"
 #include "progress.h"
 #include "recorded_run.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
+#include "scenario/paths.h"
 #include "scenario/scenario_io.h"
 #include "screen.h"
 
@@ -24,13 +26,17 @@ namespace {
 constexpr double kMaxIntervals = 120;
 
 // Empty if the recorded models cannot be read; the reason is printed.
-std::optional<double> ObjectMass(const RecordingHeader& header) {
+std::optional<assessment::SceneMasses> MassesOf(const RecordingHeader& header) {
   try {
     const TemporaryFolder folder;
     const Scenario scenario = RestoreScenario(header, folder.path());
-    return LoadObject(scenario.object, scenario.folder()).mass;
+    const CobotSpec& cobot = scenario.cobot;
+    const UrdfModel urdf = ReadUrdf(ResolveModelPath(cobot.model, scenario.folder()),
+                                    cobot.remove_links, scenario.folder());
+    return assessment::SceneMasses{.cobot = urdf.MovingMass(),
+                                   .object = LoadObject(scenario.object, scenario.folder()).mass};
   } catch (const InputError& error) {
-    TheScreen().Tell(std::string("The object's mass is not known: ") + error.what());
+    TheScreen().Tell(std::string("The masses of the virtual scene are not known: ") + error.what());
     return {};
   }
 }
@@ -47,15 +53,24 @@ assessment::Assessment Evaluate(const EvaluateOptions& options, const std::strin
                                "--set 'operator.body={height: 1.75, mass: 75, sex: male}' --set "
                                "'operator.stance={ground: [1, 0, -0.85], facing: 180 deg}'.");
   assessment::SampleCollector samples(scenario);
-  ReadTicks(&reader, "Reading", options.quiet,
-            [&](const TickRecord& record) { samples.Add(record); });
+  assessment::SafetyCollector safety(scenario);
+  ReadTicks(&reader, "Reading", options.quiet, [&](const TickRecord& record) {
+    samples.Add(record);
+    safety.Add(record);
+  });
   if (!reader.problem().empty()) TheScreen().Tell(reader.problem());
   Progress progress("Evaluating", 1, options.quiet);
   assessment::AssessOptions how;
   how.intervals = options.intervals;
   how.work = {.repeated = options.repeated, .held = options.held};
   how.progress = [&](double share) { progress.Update(share); };
-  assessment::Assessment result = Assess(scenario, ObjectMass(header), samples, how);
+  const std::optional<assessment::SceneMasses> masses = MassesOf(header);
+  assessment::Assessment result =
+      Assess(scenario, masses ? std::optional(masses->object) : std::nullopt, samples, how);
+  assessment::SafetyOptions judge{.intervals = options.intervals, .masses = masses};
+  if (!options.contact_limits.empty())
+    judge.limits = ergonomics::ReadContactLimits(options.contact_limits);
+  result.safety = JudgeSafety(scenario, result.setup, safety, judge);
   progress.Finish();
   result.recording = std::filesystem::path(file).filename().string();
   return result;

@@ -14,6 +14,7 @@
 #include "assessment/person_setup.h"
 #include "assessment/picture.h"
 #include "assessment/quantities.h"
+#include "assessment/safety/safety.h"
 #include "person/posture_samples.h"
 
 namespace predictor::assessment {
@@ -57,9 +58,10 @@ struct Assessment {
   std::vector<Lift> lifts;
   std::vector<DamageResult> damage;
   std::vector<FatigueResult> fatigue;
-  BodyPicture worst;                  // at WorstSample()
-  std::vector<BodyPicture> pictures;  // evenly over the judged time
-  std::vector<std::string> warnings;  // about doubtful input
+  BodyPicture worst;                       // at WorstSample()
+  std::vector<BodyPicture> pictures;       // evenly over the judged time
+  std::optional<SafetyAssessment> safety;  // filled by JudgeSafety; empty: not judged
+  std::vector<std::string> warnings;       // about doubtful input
   std::vector<std::string> assumptions;
   std::vector<NotEvaluable> not_evaluable;
 };

@@ -34,7 +34,8 @@ struct PersonOfRun {
 // Adds the chapter "person": of one run all that AssessmentPage shows, of several runs a table.
 void AddPersonChapter(std::span<const PersonOfRun> runs, ReportPage* page);
 
-// A value in the unit that people read.
+// A value in the unit that people read, without it.
+std::string NumberText(const Unit& unit, double x);
 std::string ValueText(const QuantityKind& kind, double x);
 // "low … high" in the same unit; empty: there is no interval.
 std::string RangeText(const QuantityKind& kind, const std::optional<person::Interval>& range);

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "assessment/output.h"
+#include "assessment/safety/output.h"
 
 namespace predictor::assessment {
 namespace {
@@ -188,6 +189,7 @@ std::string AssessmentJson(const Assessment& a, const Comparison* comparison) {
   json["lifts"] = ListOf(a.lifts);
   json["damage"] = ListOf(a.damage);
   json["fatigue"] = ListOf(a.fatigue);
+  json["safety"] = a.safety ? SafetyJson(*a.safety) : Json(nullptr);
   json["warnings"] = a.warnings;
   json["assumptions"] = a.assumptions;
   json["not_evaluable"] = Json::array();
@@ -225,6 +227,7 @@ std::string AssessmentSchema() {
        {"lifts", ListSchema("lifts of the run", ToJson(Lift{}))},
        {"damage", ListSchema("cumulative damage", ToJson(DamageResult{}))},
        {"fatigue", ListSchema("fatigue of joints", ToJson(FatigueResult{}))},
+       {"safety", SafetySchema()},
        {"warnings", ArrayOf(text, "doubtful input")},
        {"assumptions", ArrayOf(text, "what was assumed")},
        {"not_evaluable",

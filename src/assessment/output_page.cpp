@@ -5,6 +5,7 @@
 
 #include "assessment/output.h"
 #include "assessment/output_picture.h"
+#include "assessment/safety/output.h"
 #include "core/format.h"
 #include "core/text.h"
 #include "report/page.h"
@@ -249,6 +250,21 @@ void AddSummary(const Assessment& a, ReportPage* page) {
   page->Html(PicturesHtml(a));
 }
 
+void AddSafety(const SafetyAssessment& safety, Outline* outline) {
+  ReportPage& page = outline->page();
+  int number = 0;
+  for (const SafetyTable& table : SafetyTables(safety)) {
+    outline->Begin("safety-" + std::to_string(++number), table.title + " (" + table.origin + ")");
+    std::vector<std::vector<std::string>> rows = table.rows;
+    for (auto& row : rows)
+      for (std::string& cell : row) cell = EscapeMarkup(cell);
+    if (!rows.empty()) page.Html(HtmlTable(rows));
+    for (const std::string& note : table.notes) page.Paragraph(note);
+  }
+  for (const NotEvaluable& gap : safety.not_evaluable)
+    page.Paragraph("Not evaluable: " + gap.what + ", because " + gap.why + ".");
+}
+
 void AddParts(const Assessment& a, Outline* outline) {
   ReportPage& page = outline->page();
   outline->Begin("values", "Values");
@@ -263,6 +279,7 @@ void AddParts(const Assessment& a, Outline* outline) {
   page.Figure(ScorePlot(a));
   AddGroups(a, outline);
   AddCosts(a, outline);
+  if (a.safety) AddSafety(*a.safety, outline);
   outline->Begin("gaps", "Assumptions and gaps");
   for (const std::string& line : a.assumptions) page.Paragraph(line);
   for (const NotEvaluable& n : a.not_evaluable)

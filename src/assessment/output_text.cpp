@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "assessment/output.h"
+#include "assessment/safety/output.h"
 #include "core/format.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -64,11 +65,13 @@ std::string OriginWords() {
          "published method, from measured and modelled values";
 }
 
-std::string ValueText(const QuantityKind& kind, double x) {
-  const std::string text = Formatted("%.*f", kind.unit.decimals, kind.unit.factor * x);
+std::string NumberText(const Unit& unit, double x) {
+  const std::string text = Formatted("%.*f", unit.decimals, unit.factor * x);
   return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1)
                                                                               : text;
 }
+
+std::string ValueText(const QuantityKind& kind, double x) { return NumberText(kind.unit, x); }
 
 std::string OperatorSentence(const Assessment& a) {
   if (a.operator_type == "virtual") return "The operator was simulated.";
@@ -135,6 +138,7 @@ std::string AssessmentText(const Assessment& a) {
   AppendSentences("Lifts (standard)", a.lifts, &text);
   AppendSentences("Cumulative damage (standard)", a.damage, &text);
   AppendSentences("Fatigue, 3CC-r (modelled)", a.fatigue, &text);
+  if (a.safety) text += SafetyText(*a.safety);
   AppendLine(&text, "\nAssumptions");
   for (const std::string& line : a.assumptions) AppendLine(&text, "  %s", line.c_str());
   AppendLine(&text, "Not evaluable");

@@ -144,6 +144,18 @@ double UrdfModel::Mass() const {
   return mass;
 }
 
+double UrdfModel::MovingMass() const {
+  std::vector<bool> moves(links.size(), false);
+  double mass = 0;
+  for (const UrdfJoint& joint : joints) {  // parents come before children
+    const auto child = static_cast<std::size_t>(joint.child);
+    moves[child] =
+        joint.type != UrdfJointType::kFixed || moves[static_cast<std::size_t>(joint.parent)];
+    if (moves[child]) mass += links[child].mass;
+  }
+  return mass;
+}
+
 UrdfModel ReadUrdf(const std::filesystem::path& file, const std::vector<std::string>& remove_links,
                    const std::filesystem::path& scenario_folder) {
   UrdfModel model =

@@ -60,7 +60,8 @@ struct UrdfModel {
                      // mimic and planar joints
 
   std::vector<std::string> LinkNames() const;
-  double Mass() const;  // of all links [kg]
+  double Mass() const;        // of all links [kg]
+  double MovingMass() const;  // of the links that its joints move [kg]
 };
 
 // Reads a URDF and removes `remove_links` with all their descendants.

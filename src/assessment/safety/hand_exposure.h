@@ -1,0 +1,60 @@
+// What the hands felt in a run: forces, their rate, energy, oscillation. From the records alone, so
+// that it can be judged without knowing the person.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "core/filters.h"
+#include "evaluation/metric.h"
+#include "evaluation/port_energy.h"
+#include "safety/oscillation.h"
+
+namespace predictor::assessment {
+
+// Collects the records of a run. Forces count in RUN, energies also while the arms stop.
+class HandExposure {
+ public:
+  static constexpr double kCutoff = 20;      // of the low-passed force and of its rate [Hz]
+  static constexpr double kMeanTime = 0.01;  // over which the means of the percentiles go [s]
+  static constexpr double kHighShare = 0.5;  // of the threshold of the stop: "high" force
+
+  explicit HandExposure(const Scenario& scenario);
+  // Adds the next record, in order.
+  void Add(const TickRecord& record);
+  // The results so far of the existing hands, then those of both hands. Each states in its meaning
+  // how it is filtered and at which rate.
+  std::vector<Result> results() const;
+
+ private:
+  struct Hand {
+    bool present = false;
+    LowPass<Vector3> low_pass;
+    bool started = false;           // the filter has a value
+    double peak = 0;                // of the force at the rate of the ticks [N]
+    double smooth_peak = 0;         // of the low-passed force [N]
+    double peak_torque = 0;         // [N·m]
+    double rate = 0;                // largest |dF/dt| of the low-passed force [N/s]
+    double impulse = 0;             // ∫ |F| dt [N·s]
+    double high_time = 0;           // with more than the high force [s]
+    Vector3 sum = Vector3::Zero();  // of the forces of the current mean [N]
+    int count = 0;
+    std::vector<double> means;  // magnitudes of the mean forces [N]
+    OscillationDetector growing;
+    int growing_cycles = 0;        // in rows of at least the set number of growing cycles
+    double growing_amplitude = 0;  // largest amplitude of such a cycle [N]
+    PortEnergy device, scene;      // at the real handle; at the virtual one
+  };
+
+  void AddForce(const HandRecord& record, Hand* hand) const;
+  void AppendHand(std::size_t i, std::vector<Result>* results) const;
+
+  double dt_, high_;  // [s], [N]
+  int ticks_a_mean_;
+  bool ran_ = false;
+  std::array<Hand, kHands> hands_;
+  std::vector<std::unique_ptr<Metric>> metrics_;  // of the summary
+};
+
+}  // namespace predictor::assessment

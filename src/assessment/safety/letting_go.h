@@ -1,0 +1,112 @@
+// What could happen to a person who lets go of the handles: the object falls, object or cobot hit
+// the person or clamp a part of the body, the person stands too close to the moving cobot.
+//
+// All of this is contact that nobody intends. It says nothing about the forces at the handles,
+// which the person intends.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "assessment/person_setup.h"
+#include "core/record.h"
+#include "ergonomics/contact_limits.h"
+#include "scenario/scenario.h"
+
+namespace predictor::assessment {
+
+// Masses of the virtual scene [kg].
+struct SceneMasses {
+  double cobot = 0;  // of the links that its joints move
+  double object = 0;
+};
+
+// The motion of the virtual object and the cobot's end-effector in RUN.
+class SceneMotion {
+ public:
+  struct Sample {
+    double time = 0;                                  // run time [s]
+    Vector3 object = Vector3::Zero();                 // its origin, in W [m]
+    Vector3 end_effector = Vector3::Zero();           // in W [m]
+    double object_speed = 0, end_effector_speed = 0;  // of the origins [m/s]
+    double speed() const { return std::max(object_speed, end_effector_speed); }
+  };
+
+  // Adds the next record, in order.
+  void Add(const TickRecord& record);
+
+  bool empty() const { return !any_; }
+  const Sample& fastest() const { return fastest_; }
+  const Sample& highest() const { return highest_; }  // of the object
+  // The moments at which a simulated operator's hand let go, and the fastest moment from there
+  // until the hands hold again.
+  const std::vector<Sample>& releases() const { return releases_; }
+  // The smallest upward force of a hand while it held [N]; infinite: it never did.
+  double least_lift(int hand) const { return least_lift_[static_cast<std::size_t>(hand)]; }
+
+ private:
+  bool any_ = false, released_ = false;
+  Sample fastest_, highest_;
+  std::vector<Sample> releases_;
+  std::array<double, kHands> least_lift_ = {INFINITY, INFINITY};  // [N]
+  int gripping_ = 0;
+};
+
+// The object falls from the highest place of the run because the cobot lets it go.
+struct Drop {
+  double time = 0;         // run time of the highest place [s]
+  double height = 0;       // of the object's origin above the ground [m]
+  double speed = 0;        // on the ground, √(2 g h) [m/s]
+  double energy = 0;       // m g h [J]
+  double beside_feet = 0;  // horizontal distance of the object's origin from the feet [m]; 0: above
+  // Weight that a hand would carry at once, and how much more that is than it carried at least in
+  // the run [N]; with both hands each takes half.
+  double weight_of_hand = 0, jump = 0;
+};
+
+// The distance that a person needs from a cobot that does not know that the hands let go, after
+// ISO 13855 (mark R): S = v_h (T_r + T_s) + v_r T_r + v_r² / 2a. Not included: the intrusion
+// distance C and the uncertainties Z, which belong to a sensor that this scene does not have.
+struct Separation {
+  double time = 0;      // run time [s]
+  double speed = 0;     // v_r, of the faster of object and end-effector [m/s]
+  double needed = 0;    // S [m]
+  double distance = 0;  // horizontal, from the middle of the feet to the nearer of both [m]
+};
+inline constexpr double kApproachSpeed = 1.6;   // v_h of a walking person (R) [m/s]
+inline constexpr double kReactionTime = 0.1;    // T_r (D) [s]
+inline constexpr double kStopDeceleration = 5;  // a, so that T_s = v_r / a (D) [m/s²]
+double NeededSeparation(double robot_speed);    // S [m]
+
+// A region of the body that the object or the cobot hits or clamps. Only its force is judged: the
+// pressure depends on the shape of what hits it.
+struct RegionCheck {
+  ergonomics::ContactLimit limit;
+  double max_speed = 0;  // at which the limit is reached [m/s]; 0: must not be hit
+  double share = 0;      // largest speed of the run / max_speed
+};
+
+struct UnintendedContact {
+  std::string edition;               // of the limits
+  double robot_mass = 0;             // effective [kg]
+  double speed = 0;                  // the largest of the run [m/s]
+  double time = 0;                   // its run time [s]
+  std::vector<RegionCheck> regions;  // transient contact, each region once
+  // Force with which the cobot clamps a part of the body at most; empty: the scenario sets no
+  // bound.
+  std::optional<double> clamping_force;  // [N]
+  std::vector<RegionCheck> clamped;      // `share`: clamping force / quasi-static limit
+};
+
+Drop DropOf(const SceneMotion& motion, const SceneMasses& masses, const PersonSetup& setup,
+            const Scenario& scenario);
+// Of the release at which most distance is missing, and if there was none, of the fastest moment.
+Separation SeparationOf(const SceneMotion& motion, const PersonSetup& setup);
+UnintendedContact ContactOf(const SceneMotion& motion, const SceneMasses& masses,
+                            const ergonomics::ContactLimits& limits, const Scenario& scenario);
+
+}  // namespace predictor::assessment

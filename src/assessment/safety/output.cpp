@@ -1,0 +1,191 @@
+#include "assessment/safety/output.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/format.h"
+#include "core/text.h"
+
+namespace predictor::assessment {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+long Letters(const std::string& text) {
+  return std::ranges::count_if(text, [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // not a continuation of UTF-8
+  });
+}
+
+// Numbers to the right, names and sentences to the left.
+void AppendTable(const std::vector<std::vector<std::string>>& rows, std::string* text) {
+  std::vector<long> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], Letters(row[c]));
+  }
+  for (const auto& row : rows) {
+    std::string line = "  ";
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string space(static_cast<std::size_t>(widths[c] - Letters(row[c])), ' ');
+      const bool left = c == 0 || row[c].find(" ") != std::string::npos;
+      line += (c == 0 ? "" : "  ") + (left ? row[c] + space : space + row[c]);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    *text += line + "\n";
+  }
+}
+
+Json NumberOrNull(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+Json ToJson(const Result& result) {
+  Json value = nullptr;
+  if (const auto* x = std::get_if<double>(&result.value)) value = NumberOrNull(*x);
+  if (const auto* n = std::get_if<std::uint64_t>(&result.value)) value = *n;
+  return {{"unit", result.unit.si}, {"value", value}, {"meaning", result.meaning}};
+}
+
+Json ToJson(const StopLoad& load) {
+  return {{"joint", load.joint},
+          {"before_nm", load.before},
+          {"change_nm", load.change},
+          {"change_90_nm",
+           load.change_90 ? Json({load.change_90->low, load.change_90->high}) : Json(nullptr)},
+          {"largest_nm", load.peak},
+          {"share_of_strength", load.use ? Json(*load.use) : Json(nullptr)}};
+}
+
+Json ToJson(const StopJudgement& judged) {
+  Json json = {{"time_s", judged.stop.time},
+               {"cause", Name(judged.stop.cause)},
+               {"duration_s", judged.stop.duration},
+               {"distance_m", judged.stop.distance},
+               {"joints", Json::array()}};
+  for (const StopLoad& load : judged.loads) json["joints"].push_back(ToJson(load));
+  return json;
+}
+
+Json ToJson(const Separation& s) {
+  return {{"time_s", s.time},
+          {"speed_m_per_s", s.speed},
+          {"needed_m", s.needed},
+          {"distance_m", s.distance}};
+}
+
+Json ToJson(const Drop& drop) {
+  return {{"time_s", drop.time},
+          {"height_m", drop.height},
+          {"speed_m_per_s", drop.speed},
+          {"energy_j", drop.energy},
+          {"beside_feet_m", drop.beside_feet},
+          {"weight_of_hand_n", drop.weight_of_hand},
+          {"jump_n", drop.jump}};
+}
+
+Json ToJson(const RegionCheck& check) {
+  return {{"region", check.limit.region},
+          {"max_speed_m_per_s", check.max_speed},
+          {"share", NumberOrNull(check.share)}};
+}
+
+Json ToJson(const UnintendedContact& contact) {
+  Json json = {
+      {"edition", contact.edition},
+      {"effective_mass_kg", contact.robot_mass},
+      {"time_s", contact.time},
+      {"speed_m_per_s", contact.speed},
+      {"transient", Json::array()},
+      {"clamping_force_n", contact.clamping_force ? Json(*contact.clamping_force) : Json(nullptr)},
+      {"clamped", Json::array()}};
+  for (const RegionCheck& check : contact.regions) json["transient"].push_back(ToJson(check));
+  for (const RegionCheck& check : contact.clamped) json["clamped"].push_back(ToJson(check));
+  return json;
+}
+
+Json ToJson(const RigLimit& limit) {
+  return {{"what", limit.what},
+          {"unit", limit.unit.si},
+          {"limit", limit.limit},
+          {"reached", limit.reached},
+          {"censored", limit.censored()}};
+}
+
+// The type of each value of an example.
+Json TypesOf(const Json& example) {
+  Json properties = Json::object();
+  for (const auto& [key, value] : example.items()) {
+    Json type = value.is_object()    ? Json("object")
+                : value.is_array()   ? Json("array")
+                : value.is_string()  ? Json("string")
+                : value.is_boolean() ? Json("boolean")
+                : value.is_null()    ? Json({"array", "number", "null"})
+                                     : Json({"number", "null"});
+    properties[key] = {{"type", std::move(type)}};
+  }
+  return {{"type", "object"}, {"properties", std::move(properties)}};
+}
+
+Json ListOf(const Json& example, const char* meaning) {
+  return {{"type", "array"}, {"description", meaning}, {"items", TypesOf(example)}};
+}
+
+Json WithMeaning(Json schema, const char* meaning) {
+  schema["description"] = meaning;
+  return schema;
+}
+
+Json OrNull(Json schema) {
+  schema["type"] = {"object", "null"};
+  return schema;
+}
+
+}  // namespace
+
+std::string SafetyText(const SafetyAssessment& safety) {
+  std::string text = "\nSafety of the collaboration\n";
+  for (const SafetyTable& table : SafetyTables(safety)) {
+    AppendLine(&text, "%s (%s)", table.title.c_str(), table.origin.c_str());
+    AppendTable(table.rows, &text);
+    for (const std::string& note : table.notes) AppendLine(&text, "  %s", note.c_str());
+  }
+  for (const NotEvaluable& gap : safety.not_evaluable)
+    AppendLine(&text, "Not evaluable: %s, because %s.", gap.what.c_str(), gap.why.c_str());
+  return text;
+}
+
+Json SafetyJson(const SafetyAssessment& safety) {
+  Json json = {{"measured", Json::object()}, {"stops", Json::array()}};
+  for (const Result& result : safety.exposure) json["measured"][result.path] = ToJson(result);
+  for (const StopJudgement& stop : safety.stops) json["stops"].push_back(ToJson(stop));
+  json["separation"] = ToJson(safety.separation);
+  json["drop"] = safety.drop ? ToJson(*safety.drop) : Json(nullptr);
+  json["unintended_contact"] = safety.contact ? ToJson(*safety.contact) : Json(nullptr);
+  json["rig"] = Json::array();
+  for (const RigLimit& limit : safety.rig) json["rig"].push_back(ToJson(limit));
+  json["not_evaluable"] = Json::array();
+  for (const NotEvaluable& gap : safety.not_evaluable)
+    json["not_evaluable"].push_back({{"what", gap.what}, {"why", gap.why}});
+  return json;
+}
+
+Json SafetySchema() {
+  Json measured = {{"type", "object"},
+                   {"description", "what the hands felt, by the result's name"},
+                   {"additionalProperties", TypesOf(ToJson(Result{}))}};
+  return {
+      {"type", {"object", "null"}},
+      {"description", "the safety of the collaboration"},
+      {"properties",
+       {{"measured", std::move(measured)},
+        {"stops", ListOf(ToJson(StopJudgement{}), "what each stop did to the joints; modelled")},
+        {"separation", WithMeaning(TypesOf(ToJson(Separation{})),
+                                   "distance after letting go, ISO 13855; standard")},
+        {"drop", OrNull(WithMeaning(TypesOf(ToJson(Drop{})), "the object falls; modelled"))},
+        {"unintended_contact",
+         OrNull(WithMeaning(TypesOf(ToJson(UnintendedContact{})),
+                            "object or cobot hit or clamp the person; standard"))},
+        {"rig", ListOf(ToJson(RigLimit{}), "what the rig renders, and what the run asked of it")},
+        {"not_evaluable", ListOf(Json{{"what", ""}, {"why", ""}}, "what could not be judged")}}}};
+}
+
+}  // namespace predictor::assessment

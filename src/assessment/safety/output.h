@@ -1,0 +1,25 @@
+// The safety of the collaboration as text, JSON and tables.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "assessment/safety/safety.h"
+
+namespace predictor::assessment {
+
+std::string SafetyText(const SafetyAssessment& safety);
+nlohmann::ordered_json SafetyJson(const SafetyAssessment& safety);
+nlohmann::ordered_json SafetySchema();  // of SafetyJson, JSON Schema (draft-07)
+
+// What text and page share.
+struct SafetyTable {
+  std::string title;
+  std::string origin;                          // "measured", ...
+  std::vector<std::vector<std::string>> rows;  // the first is the header, its first cell empty
+  std::vector<std::string> notes;              // sentences below
+};
+std::vector<SafetyTable> SafetyTables(const SafetyAssessment& safety);
+
+}  // namespace predictor::assessment

@@ -1,0 +1,90 @@
+#include "assessment/safety/safety.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace predictor::assessment {
+namespace {
+
+std::vector<RigLimit> RigLimits(const Scenario& scenario, const SafetyCollector::Largest& largest) {
+  constexpr Unit kRotationSpeed = {"rad/s", "rad/s", 1, 2};
+  const SafetySpec& safety = scenario.safety;
+  std::vector<RigLimit> limits = {
+      {"force of a hand", units::kNewton, safety.force, largest.force},
+      {"torque of a hand", units::kNewtonMetre, safety.torque, largest.torque}};
+  if (scenario.mode != Mode::kEmulate) return limits;
+  limits.push_back(
+      {"speed of a virtual handle", units::kMetrePerSecond, safety.handle_speed, largest.speed});
+  limits.push_back({"rotation of a virtual handle", kRotationSpeed, safety.handle_rotation_speed,
+                    largest.rotation_speed});
+  return limits;
+}
+
+void AddGaps(const Scenario& scenario, const SafetyOptions& options, SafetyAssessment* safety) {
+  const auto add = [&](const char* what, const char* why) {
+    safety->not_evaluable.push_back({what, why});
+  };
+  if (!options.masses) {
+    add("fall of the object", "the masses of the virtual scene are not known");
+    add("unintended contact", "the masses of the virtual scene are not known");
+  } else if (!options.limits) {
+    add("unintended contact",
+        "no limits of force on the body are given (--contact-limits FILE; "
+        "assets/contact_limits_template.csv is a template)");
+  } else {
+    add("pressure of an unintended contact", "the area of contact is not known");
+    if (!safety->contact->clamping_force)
+      add("clamping between object and fixture",
+          "the scenario bounds neither the cobot's force (cobot.safety.force_cap) nor stops it at "
+          "one (cobot.safety.force)");
+  }
+  add("distance between the person's body and the links of the cobot",
+      "the links have no shape in this simulation");
+  if (scenario.operator_.type == "person")
+    add("moments at which the person let go", "real arms cannot feel whether a hand is there");
+  if (scenario.mode == Mode::kEmulate)
+    add("jolts that are faster than the arms follow",
+        "the real handles low-pass the motion of the virtual ones");
+}
+
+}  // namespace
+
+SafetyCollector::SafetyCollector(const Scenario& scenario)
+    : exposure_(scenario), stops_(scenario) {}
+
+void SafetyCollector::Add(const TickRecord& record) {
+  exposure_.Add(record);
+  stops_.Add(record);
+  scene_.Add(record);
+  if (!record.ran) return;
+  for (const HandRecord& hand : record.hands) {
+    if (!hand.present) continue;
+    const auto raise = [](double* most, const std::array<double, 6>& v, std::size_t k) {
+      *most = std::max(*most, Vector3(v[k], v[k + 1], v[k + 2]).norm());
+    };
+    raise(&largest_.force, hand.wrench, 0);
+    raise(&largest_.torque, hand.wrench, 3);
+    raise(&largest_.speed, hand.virtual_.twist, 0);
+    raise(&largest_.rotation_speed, hand.virtual_.twist, 3);
+  }
+}
+
+SafetyAssessment JudgeSafety(const Scenario& scenario, const PersonSetup& setup,
+                             const SafetyCollector& run, const SafetyOptions& options) {
+  if (run.scene().empty())
+    throw InputError("No simulated time passed in this run, so there is nothing to judge.");
+  SafetyAssessment safety;
+  safety.exposure = run.exposure().results();
+  for (const StopWindow& window : run.stops().windows())
+    safety.stops.push_back(JudgeStop(setup, window, options.intervals));
+  safety.separation = SeparationOf(run.scene(), setup);
+  if (options.masses) safety.drop = DropOf(run.scene(), *options.masses, setup, scenario);
+  if (options.masses && options.limits)
+    safety.contact = ContactOf(run.scene(), *options.masses, *options.limits, scenario);
+  safety.rig = RigLimits(scenario, run.largest());
+  AddGaps(scenario, options, &safety);
+  return safety;
+}
+
+}  // namespace predictor::assessment

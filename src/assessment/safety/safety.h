@@ -1,0 +1,69 @@
+// Whether the collaboration was safe for the person: what the hands felt, what the stops did to the
+// joints, what could happen after letting go, and what this rig cannot show.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "assessment/safety/hand_exposure.h"
+#include "assessment/safety/letting_go.h"
+#include "assessment/safety/stop_loads.h"
+
+namespace predictor::assessment {
+
+// Collects the records of a run.
+class SafetyCollector {
+ public:
+  explicit SafetyCollector(const Scenario& scenario);
+  // Adds the next record, in order.
+  void Add(const TickRecord& record);
+
+  const HandExposure& exposure() const { return exposure_; }
+  const StopWindows& stops() const { return stops_; }
+  const SceneMotion& scene() const { return scene_; }
+
+  // Largest values of both hands in RUN: of the force [N] and torque [N·m], and of what the virtual
+  // handles did [m/s], [rad/s].
+  struct Largest {
+    double force = 0, torque = 0, speed = 0, rotation_speed = 0;
+  };
+  const Largest& largest() const { return largest_; }
+
+ private:
+  HandExposure exposure_;
+  StopWindows stops_;
+  SceneMotion scene_;
+  Largest largest_;
+};
+
+// A bound of what the rig renders, and what the run asked of it.
+struct RigLimit {
+  std::string what;  // "force of a hand"
+  Unit unit;
+  double limit = 0, reached = 0;  // SI
+  // The true value may have been larger: the emulator stopped the run or slowed the handles down.
+  bool censored() const { return reached >= limit; }
+};
+
+struct SafetyAssessment {
+  std::vector<Result> exposure;  // measured
+  std::vector<StopJudgement> stops;
+  Separation separation;
+  std::optional<Drop> drop;
+  std::optional<UnintendedContact> contact;
+  std::vector<RigLimit> rig;
+  std::vector<NotEvaluable> not_evaluable;
+};
+
+struct SafetyOptions {
+  bool intervals = true;                            // of the loads of stops
+  std::optional<SceneMasses> masses;                // empty: not known
+  std::optional<ergonomics::ContactLimits> limits;  // empty: the user gave none
+};
+
+// Throws InputError if no simulated time passed.
+SafetyAssessment JudgeSafety(const Scenario& scenario, const PersonSetup& setup,
+                             const SafetyCollector& run, const SafetyOptions& options);
+
+}  // namespace predictor::assessment

@@ -1,0 +1,170 @@
+// The tables and sentences that text and page share.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "assessment/output.h"
+#include "assessment/safety/output.h"
+#include "core/format.h"
+#include "core/words.h"
+
+namespace predictor::assessment {
+namespace {
+
+std::string ValueText(const Result& result) {
+  if (const auto* x = std::get_if<double>(&result.value)) return NumberText(result.unit, *x);
+  if (const auto* n = std::get_if<std::uint64_t>(&result.value)) return std::to_string(*n);
+  return "";
+}
+
+std::string PercentText(double share) {
+  return std::isfinite(share) ? Formatted("%.0f %%", 100 * share) : "must not be hit";
+}
+
+// The hand whose result this is, from its path ("hands.left.…"); −1: of no single hand.
+int HandOf(const Result& result) {
+  for (int hand = 0; hand < kHands; ++hand)
+    if (result.path.find(std::string(".") + HandName(hand) + ".") != std::string::npos) return hand;
+  return -1;
+}
+
+// "largest index of the left hand" without the hand.
+std::string LabelOf(const Result& result, int hand) {
+  std::string label = result.group == "Oscillation" ? "oscillation, " + result.label : result.label;
+  const std::string end = std::string(" of the ") + HandName(hand) + " hand";
+  if (label.ends_with(end)) label.resize(label.size() - end.size());
+  return WithUnit(label, result.unit);
+}
+
+// Results of the single hands side by side, then those of the whole run.
+SafetyTable HandTable(const std::vector<Result>& results) {
+  SafetyTable table{.title = "What the hands felt", .origin = "measured"};
+  table.rows.push_back({"", "left", "right", "how it was computed"});
+  std::map<std::string, std::size_t> row_of;
+  for (const Result& result : results) {
+    const int hand = HandOf(result);
+    if (hand < 0) {
+      table.notes.push_back(Formatted("%s: %s %s (%s).", result.group.c_str(),
+                                      ValueText(result).c_str(), result.unit.shown,
+                                      result.meaning.c_str()));
+      continue;
+    }
+    const std::string label = LabelOf(result, hand);
+    const auto [at, added] = row_of.emplace(label, table.rows.size());
+    if (added) table.rows.push_back({label, "–", "–", result.meaning});
+    table.rows[at->second][static_cast<std::size_t>(hand) + 1] = ValueText(result);
+  }
+  return table;
+}
+
+SafetyTable StopTable(const StopJudgement& judged) {
+  const StopSummary& stop = judged.stop;
+  SafetyTable table{.title = Formatted("What the stop at %.2f s did to the joints", stop.time),
+                    .origin = "modelled"};
+  std::string words = "The stop: " + StopCauseText(stop.cause, stop.quantity);
+  if (stop.hand >= 0) words += Formatted(" (%s hand)", HandName(stop.hand));
+  words += Formatted(". The handles rested after %.0f ms and %.1f mm.", 1e3 * stop.duration,
+                     1e3 * stop.distance);
+  table.notes.push_back(words);
+  if (judged.loads.empty()) {
+    table.notes.emplace_back("No hand held a handle, or the stop was too short to be judged.");
+    return table;
+  }
+  table.rows.push_back(
+      {"", "before [N·m]", "caused by the stop [N·m]", "90 %", "largest [N·m]", "of strength"});
+  for (const StopLoad& load : judged.loads)
+    table.rows.push_back(
+        {load.joint, Formatted("%.1f", load.before), Formatted("%.1f", load.change),
+         load.change_90 ? Formatted("%.1f … %.1f", load.change_90->low, load.change_90->high) : "–",
+         Formatted("%.1f", load.peak), load.use ? PercentText(*load.use) : "–"});
+  table.notes.emplace_back(
+      "Caused by the stop: largest change of the torque since its decision. 90 %: over 64 possible "
+      "postures and bodies. Of strength: of the mean of the sex, where a source was verified.");
+  return table;
+}
+
+SafetyTable LettingGoTable(const SafetyAssessment& safety) {
+  SafetyTable table{.title = "If the person or the cobot lets go", .origin = "modelled"};
+  if (safety.drop) {
+    const Drop& drop = *safety.drop;
+    table.notes.push_back(Formatted(
+        "The object would fall %.2f m from its highest place (%.1f s): %.1f m/s and %.0f J at the "
+        "ground, %s.",
+        drop.height, drop.time, drop.speed, drop.energy,
+        drop.beside_feet > 0
+            ? Formatted("its origin %.2f m beside the feet", drop.beside_feet).c_str()
+            : "its origin above the feet"));
+    table.notes.push_back(
+        Formatted("If the cobot lost its force, each hand would carry %.0f N, up to %.0f N more "
+                  "than it did in the run.",
+                  drop.weight_of_hand, drop.jump));
+  }
+  const Separation& s = safety.separation;
+  table.notes.push_back(Formatted(
+      "At %.1f s the scene moved at %.2f m/s. A person who walks towards it needs %.2f m (ISO "
+      "13855, without the intrusion distance of a sensor); the feet are %.2f m away%s.",
+      s.time, s.speed, s.needed, s.distance,
+      s.needed > s.distance ? ", which is too near for a cobot that does not know of the person"
+                            : ""));
+  return table;
+}
+
+SafetyTable ContactTable(const UnintendedContact& contact) {
+  SafetyTable table{.title = "Unintended contact", .origin = "standard"};
+  table.rows.push_back({"", "fastest allowed [m/s]", "share reached"});
+  if (contact.clamping_force) table.rows[0].emplace_back("share if clamped");
+  for (std::size_t i = 0; i < contact.regions.size(); ++i) {
+    const RegionCheck& region = contact.regions[i];
+    std::vector<std::string> row = {
+        region.limit.region,
+        region.max_speed > 0 ? Formatted("%.2f", region.max_speed) : "must not be hit",
+        PercentText(region.share)};
+    if (contact.clamping_force) row.push_back(PercentText(contact.clamped[i].share));
+    table.rows.push_back(std::move(row));
+  }
+  table.notes.push_back(Formatted(
+      "If object or cobot hit the person at the largest speed of this run, %.2f m/s (%.1f s), with "
+      "an effective mass of %.1f kg. Limits: %s.",
+      contact.speed, contact.time, contact.robot_mass, contact.edition.c_str()));
+  if (contact.clamping_force)
+    table.notes.push_back(Formatted(
+        "Clamped between object and fixture: with the %.0f N to which the scenario bounds the "
+        "cobot's force.",
+        *contact.clamping_force));
+  table.notes.emplace_back(
+      "These limits are not for the forces at the handles, and no number here states conformity: a "
+      "real application is measured.");
+  return table;
+}
+
+SafetyTable RigTable(const std::vector<RigLimit>& limits) {
+  SafetyTable table{.title = "What this rig renders", .origin = "measured"};
+  table.rows.push_back({"", "up to", "reached", "share"});
+  bool censored = false;
+  for (const RigLimit& limit : limits) {
+    censored = censored || limit.censored();
+    const Unit& unit = limit.unit;
+    table.rows.push_back({WithUnit(limit.what, unit), NumberText(unit, limit.limit),
+                          (limit.censored() ? "at least " : "") + NumberText(unit, limit.reached),
+                          PercentText(limit.reached / limit.limit)});
+  }
+  table.notes.emplace_back(
+      censored ? "The run reached a limit: what it would have been without the rig's limits is not "
+                 "known, and values with \"at least\" are lower bounds."
+               : "The run stayed inside. A hazard that needs more than these limits cannot be "
+                 "judged on this rig.");
+  return table;
+}
+
+}  // namespace
+
+std::vector<SafetyTable> SafetyTables(const SafetyAssessment& safety) {
+  std::vector<SafetyTable> tables = {HandTable(safety.exposure)};
+  for (const StopJudgement& stop : safety.stops) tables.push_back(StopTable(stop));
+  tables.push_back(LettingGoTable(safety));
+  if (safety.contact) tables.push_back(ContactTable(*safety.contact));
+  tables.push_back(RigTable(safety.rig));
+  return tables;
+}
+
+}  // namespace predictor::assessment
