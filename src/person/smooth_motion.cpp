@@ -1,41 +1,16 @@
 // Zero-phase smoothing and differentiation of postures.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/butterworth.h"
 #include "person/body_loads.h"
 
 namespace predictor::person {
 namespace {
 
-// Low-pass of second order by the bilinear transform with prewarped frequency; starts at rest at
-// its first sample.
-class Butterworth {
- public:
-  Butterworth(double cutoff, double dt, const BodyVector& start)
-      : x1_(start), x2_(start), y1_(start), y2_(start) {
-    const double w = std::tan(std::numbers::pi * cutoff * dt);
-    const double d = 1 + std::numbers::sqrt2 * w + w * w;
-    b_ = w * w / d;
-    a1_ = 2 * (w * w - 1) / d;
-    a2_ = (1 - std::numbers::sqrt2 * w + w * w) / d;
-  }
-  BodyVector Update(const BodyVector& x) {
-    const BodyVector y = b_ * (x + 2 * x1_ + x2_) - a1_ * y1_ - a2_ * y2_;
-    x2_ = x1_;
-    x1_ = x;
-    y2_ = y1_;
-    y1_ = y;
-    return y;
-  }
-
- private:
-  double b_ = 1, a1_ = 0, a2_ = 0;
-  BodyVector x1_, x2_, y1_, y2_;
-};
-
 void FilterForward(double cutoff, double dt, std::vector<BodyVector>* q) {
-  Butterworth filter(cutoff, dt, q->front());
+  using Filter = Butterworth<BodyVector>;
+  Filter filter(Filter::Pass::kLow, cutoff, dt, q->front());
   for (BodyVector& x : *q) x = filter.Update(x);
 }
 

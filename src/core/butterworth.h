@@ -1,0 +1,40 @@
+// Filters of second order with Butterworth's maximally flat pass band, for evenly sampled signals.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+namespace predictor {
+
+// Low-pass or high-pass by the bilinear transform with prewarped frequency. It starts as if its
+// first sample had been there for ever.
+template <class T>
+class Butterworth {
+ public:
+  enum class Pass { kLow, kHigh };
+  // cutoff [Hz], below half of the sampling rate; dt [s].
+  Butterworth(Pass pass, double cutoff, double dt, const T& start)
+      : x1_(start), x2_(start), y1_(start), y2_(start) {
+    const double w = std::tan(std::numbers::pi * cutoff * dt);
+    const double d = 1 + std::numbers::sqrt2 * w + w * w;
+    b0_ = (pass == Pass::kLow ? w * w : 1) / d;
+    b1_ = pass == Pass::kLow ? 2 * b0_ : -2 * b0_;
+    a1_ = 2 * (w * w - 1) / d;
+    a2_ = (1 - std::numbers::sqrt2 * w + w * w) / d;
+    if (pass == Pass::kHigh) y1_ = y2_ = start - start;
+  }
+  T Update(const T& x) {
+    const T y = b0_ * (x + x2_) + b1_ * x1_ - a1_ * y1_ - a2_ * y2_;
+    x2_ = x1_;
+    x1_ = x;
+    y2_ = y1_;
+    y1_ = y;
+    return y;
+  }
+
+ private:
+  double b0_ = 1, b1_ = 0, a1_ = 0, a2_ = 0;
+  T x1_, x2_, y1_, y2_;
+};
+
+}  // namespace predictor

@@ -1,0 +1,114 @@
+#include "muscles/activation.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace predictor::muscles {
+namespace {
+
+constexpr int kMostIterations = 200;
+constexpr double kTolerance = 1e-10;  // of the slope, relative to the largest torque
+
+// The dual at one λ, negated so that it is to be minimised.
+struct Dual {
+  double value = 0;
+  ArmVector slope;
+  MuscleVector activation;
+  MuscleVector gain;  // of the activation with Bᵀλ; 0 at a bound
+};
+
+double CostOf(const ActivationProblem& p, double square, int i, double a) {
+  const double effort = (p.power == 3 ? a * a * a / 3 : 0) + square * a * a / 2;
+  const double miss = a - p.measured[i];
+  return p.weight[i] * effort + p.trust[i] * miss * miss / 2;
+}
+
+// The activation at which the cost rises by `gain` for a little more activation, and how fast that
+// activation changes with it.
+double ActivationAt(const ActivationProblem& p, double square, int i, double gain, double* slope) {
+  const double w = p.weight[i];
+  const double pulled = gain + p.trust[i] * p.measured[i];
+  // Cost of the square of the activation, twice.
+  const double v = p.trust[i] + square * w;
+  if (p.power == 2) {
+    *slope = 1 / v;
+    return pulled / v;
+  }
+  const double root = std::sqrt(v * v + 4 * w * std::max(pulled, 0.0));
+  *slope = 1 / root;
+  return pulled > 0 ? 2 * pulled / (v + root) : pulled / v;
+}
+
+// reserve_scale: r²/c. square: weight of the activation's square in the cost.
+Dual DualAt(const ActivationProblem& p, const ArmVector& reserve_scale, double square,
+            const ArmVector& lambda) {
+  Dual dual;
+  const MuscleVector gains = p.torque.transpose() * lambda;
+  const ArmVector reserve = reserve_scale.cwiseProduct(lambda);
+  dual.value = lambda.dot(reserve) / 2 - lambda.dot(p.target);
+  for (int i = 0; i < kMuscles; ++i) {
+    double slope = 0;
+    const double free = ActivationAt(p, square, i, gains[i], &slope);
+    const double a = std::clamp(free, p.lower[i], p.upper[i]);
+    const bool bound = free < p.lower[i] || free > p.upper[i];
+    dual.activation[i] = a;
+    dual.gain[i] = bound ? 0 : slope;
+    dual.value += gains[i] * a - CostOf(p, square, i, a);
+  }
+  dual.slope = p.torque * dual.activation + reserve - p.target;
+  return dual;
+}
+
+// Newton's method from result->multiplier.
+void Minimise(const ActivationProblem& problem, double square, ActivationResult* result) {
+  const ArmVector reserve_scale = problem.reserve_unit.cwiseAbs2() / problem.reserve_cost;
+  const double small = kTolerance * std::max(1.0, problem.target.cwiseAbs().maxCoeff());
+  ArmVector& lambda = result->multiplier;
+  Dual dual = DualAt(problem, reserve_scale, square, lambda);
+  for (int n = 0; n < kMostIterations; ++n) {
+    result->residual = dual.slope.cwiseAbs().maxCoeff();
+    result->converged = result->residual <= small;
+    if (result->converged) break;
+    ++result->iterations;
+    ArmMatrix H = reserve_scale.asDiagonal();
+    for (int i = 0; i < kMuscles; ++i)
+      if (dual.gain[i] > 0)
+        H.noalias() += dual.gain[i] * problem.torque.col(i) * problem.torque.col(i).transpose();
+    const ArmVector step = -Eigen::LLT<ArmMatrix>(H).solve(dual.slope);
+    const double descent = dual.slope.dot(step);
+    constexpr double kLeastShare = 1e-4;  // of the descent that the slope promises
+    const double rounding = 1e-14 * (1 + std::abs(dual.value));
+    double share = 1;
+    Dual next = DualAt(problem, reserve_scale, square, lambda + step);
+    while (share > 1e-10 && next.value > dual.value + kLeastShare * share * descent + rounding) {
+      share /= 2;
+      next = DualAt(problem, reserve_scale, square, lambda + share * step);
+    }
+    lambda += share * step;
+    dual = next;
+  }
+  result->activation = dual.activation;
+  result->reserve = reserve_scale.cwiseProduct(lambda);
+}
+
+}  // namespace
+
+ActivationResult Activate(const ActivationProblem& problem) noexcept {
+  ActivationResult result;
+  result.multiplier.setZero();
+  double square = 1;
+  Minimise(problem, square, &result);
+  // Cubes come from squares by degrees, so that Newton's method starts near the solution.
+  while (problem.power == 3 && square > kSquareShare) {
+    square = std::max(square / 4, kSquareShare);
+    Minimise(problem, square, &result);
+  }
+  result.cost =
+      problem.reserve_cost / 2 * result.reserve.cwiseQuotient(problem.reserve_unit).squaredNorm();
+  for (int i = 0; i < kMuscles; ++i)
+    result.cost += CostOf(problem, square, i, result.activation[i]);
+  return result;
+}
+
+}  // namespace predictor::muscles

@@ -1,0 +1,77 @@
+// An arm with muscles on the joints of the body: lengths, moment arms and forces in one posture.
+#pragma once
+
+#include <array>
+
+#include "muscles/muscle.h"
+#include "muscles/muscle_table.h"
+#include "person/body_model.h"
+
+namespace predictor::muscles {
+
+using ArmVector = Eigen::Matrix<double, person::kArmJoints, 1>;
+using ArmMatrix = Eigen::Matrix<double, person::kArmJoints, person::kArmJoints>;
+using MuscleVector = Eigen::Matrix<double, kMuscles, 1>;
+using MomentArms = Eigen::Matrix<double, person::kArmJoints, kMuscles>;
+
+// The joints of a hand's arm within vectors of the whole body.
+inline ArmVector ArmOf(const person::BodyVector& q, int hand) {
+  return q.segment<person::kArmJoints>(person::Of(hand, person::ArmJoint::kShoulderFlexion));
+}
+
+// Lengths of the lines from origin to insertion [m], and moment arms R = -∂l/∂q [m]: a muscle with
+// the force F produces the torques R F, positive in the direction of the joints (person::ArmJoint).
+struct MuscleLines {
+  MuscleVector length;
+  MomentArms moment_arm;
+};
+
+// Forces along the tendons at full activation and without activation [N].
+struct MuscleForces {
+  MuscleVector active, passive;
+  MuscleVector fibre_length;  // relative to the optimal length; 0: slack
+};
+
+class ArmModel {
+ public:
+  // An arm of the body (hand 0: left). The lines scale with the lengths of upper arm, forearm and
+  // hand. Forces scale with mass times height over length, relative to 75 kg and 1.75 m (a muscle's
+  // volume goes with mass times height, R), are 0.7 of that for women (D), and are multiplied by
+  // the person's own strength. Tendons are as long as makes the longest fibres kLongestFibre over
+  // the corners of the working range, flexion 0 to 90°, abduction 0 to 60° and so on (D).
+  ArmModel(const BodySpec& spec, int hand);
+
+  int hand() const { return hand_; }
+  const person::BodyModel& body() const { return body_; }
+  const MuscleParameters& muscle(int i) const { return muscles_[static_cast<std::size_t>(i)]; }
+
+  // q [rad]. No heap.
+  MuscleLines LinesAt(const ArmVector& q) const noexcept;
+  // At the joints' velocities v [rad/s]. No heap.
+  MuscleForces ForcesAt(const MuscleLines& lines, const ArmVector& v) const noexcept;
+
+ private:
+  struct Node {
+    int level = 0;  // the last of the arm's joints that moves the point; -1: none
+    Vector3 p = Vector3::Zero();
+    Wrap wrap = Wrap::kNone;
+    double radius = 0;
+  };
+  struct Line {
+    std::array<Node, kMaxPathPoints> nodes;
+    int count = 0;
+  };
+
+  void PlaceMuscle(int i);
+  void SetTendons();
+
+  person::BodyModel body_;
+  int hand_;
+  std::array<MuscleParameters, kMuscles> muscles_;
+  std::array<Line, kMuscles> lines_;
+};
+
+// Longest fibres in the working range, relative to the optimal length (D).
+inline constexpr double kLongestFibre = 1.2;
+
+}  // namespace predictor::muscles

@@ -1,0 +1,29 @@
+// From the electromyogram of a muscle to its activation (Buchanan et al. 2004, R).
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace predictor::muscles {
+
+struct EmgProcessing {
+  double rate = 2000;                     // samples per second, above twice band_high
+  double band_low = 20, band_high = 450;  // [Hz]
+  double envelope = 6;                    // cutoff of the low-pass, 4 to 6 [Hz]
+  double mvc = 1;       // envelope of a maximum voluntary contraction, unit of the input
+  double shape = -2;    // A of ActivationOfEmg
+  double delay = 0.04;  // from the electrical to the mechanical onset, 0.01 to 0.08 [s]
+};
+
+// Band-pass, absolute value, low-pass; each filter is of second order, forward and backward, so
+// without delay. Unit of the input, at least 0. Throws InputError for an impossible rate or band.
+std::vector<double> EmgEnvelope(std::span<const double> raw, const EmgProcessing& processing);
+
+// a = (e^(A u) - 1) / (e^A - 1) of an envelope u relative to MVC, limited to 0 ... 1. shape: A, -3
+// (bent) to 0 (straight).
+double ActivationOfEmg(double u, double shape);
+
+// Activations of a raw signal, one for each sample: the envelope over mvc, bent, and delayed.
+std::vector<double> EmgActivation(std::span<const double> raw, const EmgProcessing& processing);
+
+}  // namespace predictor::muscles

@@ -1,0 +1,211 @@
+#include "muscles/activation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "muscles/arms.h"
+#include "qp/qp.h"
+#include "support/allocation_guard.h"
+
+namespace predictor::muscles {
+namespace {
+
+// Two muscles flex the elbow, with torques of 30 and 10 N·m at full activation.
+ActivationProblem TwoMuscles(double torque) {
+  ActivationProblem problem;
+  problem.torque(3, 0) = 30;
+  problem.torque(3, 1) = 10;
+  problem.target[3] = torque;
+  problem.reserve_unit.setConstant(1e-4);  // negligible
+  return problem;
+}
+
+// Activations in proportion to the torques of the muscles: a_i = b_i τ / Σ b².
+TEST(Activation, TwoMusclesShareByTheirTorque) {
+  const ActivationResult result = Activate(TwoMuscles(20));
+  ASSERT_TRUE(result.converged);
+  EXPECT_NEAR(result.activation[0], 30 * 20 / 1000.0, 1e-6);
+  EXPECT_NEAR(result.activation[1], 10 * 20 / 1000.0, 1e-6);
+  EXPECT_NEAR(result.cost, 20 * 20 / 1000.0 / 2, 1e-6);
+}
+
+// With p = 3 they share by the square root: a_i = τ √b_i / Σ b^(3/2).
+TEST(Activation, CubesSpreadTheLoad) {
+  ActivationProblem problem = TwoMuscles(20);
+  problem.power = 3;
+  const ActivationResult result = Activate(problem);
+  ASSERT_TRUE(result.converged);
+  const double sum = 30 * std::sqrt(30) + 10 * std::sqrt(10);
+  EXPECT_NEAR(result.activation[0], 20 * std::sqrt(30) / sum, kSquareShare);
+  EXPECT_NEAR(result.activation[1], 20 * std::sqrt(10) / sum, kSquareShare);
+}
+
+// The stronger one reaches its bound, and the other produces the rest.
+TEST(Activation, TheRestOfASaturatedMuscleGoesToTheOther) {
+  const ActivationResult result = Activate(TwoMuscles(36));
+  ASSERT_TRUE(result.converged);
+  EXPECT_EQ(result.activation[0], 1);
+  EXPECT_NEAR(result.activation[1], 0.6, 1e-6);
+}
+
+TEST(Activation, AnOpponentRests) {
+  ActivationProblem problem = TwoMuscles(9);
+  problem.torque(3, 1) = -10;
+  const ActivationResult result = Activate(problem);
+  EXPECT_NEAR(result.activation[0], 0.3, 1e-6);
+  EXPECT_EQ(result.activation[1], 0);
+}
+
+// A lower bound of the opponent costs the other one just as much torque.
+TEST(Activation, CoContractionIsBalanced) {
+  ActivationProblem problem = TwoMuscles(9);
+  problem.torque(3, 1) = -10;
+  problem.lower[1] = 0.3;
+  const ActivationResult result = Activate(problem);
+  EXPECT_EQ(result.activation[1], 0.3);
+  EXPECT_NEAR(result.activation[0], (9 + 3) / 30.0, 1e-6);
+}
+
+TEST(Activation, WhatTheMusclesCannotProduceIsInTheReserve) {
+  ActivationProblem problem = TwoMuscles(55);
+  problem.reserve_unit.setOnes();
+  const ActivationResult result = Activate(problem);
+  ASSERT_TRUE(result.converged);
+  EXPECT_EQ(result.activation[0], 1);
+  EXPECT_EQ(result.activation[1], 1);
+  EXPECT_NEAR(result.reserve[3], 15, 1e-9);
+  EXPECT_NEAR(result.reserve[0], 0, 1e-12);
+}
+
+// min a²/2 + v (a - e)²/2 with one muscle that is not needed: a = v e / (1 + v).
+TEST(Activation, MeasuredActivationsPull) {
+  ActivationProblem problem;
+  problem.measured[5] = 0.6;
+  problem.trust[5] = 2;
+  const ActivationResult result = Activate(problem);
+  EXPECT_NEAR(result.activation[5], 2 * 0.6 / 3, 1e-12);
+  // Together with an opponent's measured activation the torque stays what it must be.
+  ActivationProblem pair = TwoMuscles(9);
+  pair.torque(3, 1) = -10;
+  pair.measured[1] = 0.5;
+  pair.trust[1] = 1e6;
+  const ActivationResult both = Activate(pair);
+  EXPECT_NEAR(both.activation[1], 0.5, 1e-4);
+  EXPECT_NEAR(30 * both.activation[0] - 10 * both.activation[1], 9, 1e-6);
+}
+
+// A random problem of an arm; `share` of its strength is asked for.
+ActivationProblem RandomProblem(const ArmModel& arm, RandomStream* random) {
+  const ArmVector q = RandomArm(arm, random);
+  ArmVector torque;
+  const double scale = 40 * random->Uniform();
+  for (int i = 0; i < person::kArmJoints; ++i)
+    torque[i] = (i < 4 ? 1 : 0.15) * scale * random->Normal();
+  ActivationProblem problem = ProblemAt(arm, q, torque);
+  for (int i = 0; i < kMuscles; ++i) problem.weight[i] = 0.2 + random->Uniform();
+  return problem;
+}
+
+// Stationarity, complementarity and balance, written down without the solver.
+double KktViolation(const ActivationProblem& p, const ActivationResult& r) {
+  double worst = (p.torque * r.activation + r.reserve - p.target).cwiseAbs().maxCoeff();
+  worst = std::max(
+      worst, (p.reserve_cost * r.reserve.cwiseQuotient(p.reserve_unit.cwiseAbs2()) - r.multiplier)
+                 .cwiseAbs()
+                 .maxCoeff());
+  for (int i = 0; i < kMuscles; ++i) {
+    const double a = r.activation[i];
+    const double slope = p.weight[i] * (p.power == 2 ? a : a * a + kSquareShare * a) +
+                         p.trust[i] * (a - p.measured[i]) - p.torque.col(i).dot(r.multiplier);
+    worst = std::max({worst, p.lower[i] - a, a - p.upper[i]});
+    if (a > p.lower[i] + 1e-12) worst = std::max(worst, slope);   // would rather fall
+    if (a < p.upper[i] - 1e-12) worst = std::max(worst, -slope);  // would rather rise
+  }
+  return worst;
+}
+
+TEST(Activation, MeetsTheOptimalityConditions) {
+  const ArmModel arm({}, 1);
+  RandomStream random(7, "optimality");
+  int iterations = 0, saturated = 0;
+  for (int n = 0; n < 2000; ++n) {
+    ActivationProblem problem = RandomProblem(arm, &random);
+    problem.power = n % 2 == 0 ? 2 : 3;
+    if (n % 5 == 0) {
+      problem.lower.setConstant(0.05);
+      for (int i = 0; i < kMuscles; ++i) {
+        problem.measured[i] = random.Uniform();
+        problem.trust[i] = random.Uniform();
+      }
+    }
+    const ActivationResult result = Activate(problem);
+    ASSERT_TRUE(result.converged) << n << ": " << result.residual << " N·m after "
+                                  << result.iterations;
+    ASSERT_LT(KktViolation(problem, result), 1e-6) << n;
+    iterations += result.iterations;
+    saturated += result.activation.maxCoeff() >= 1 ? 1 : 0;
+  }
+  EXPECT_GT(saturated, 100);  // the hard ones occur
+  std::printf("%.1f iterations on average, %d of 2000 saturated\n", iterations / 2000.0, saturated);
+}
+
+// The same problem as a quadratic program in activations and reserves.
+Qp ProgramOf(const ActivationProblem& p) {
+  constexpr int kJoints = person::kArmJoints;
+  Qp qp(kMuscles + kJoints, kJoints);
+  for (int i = 0; i < kMuscles; ++i) {
+    qp.H()(i, i) = p.weight[i];
+    qp.lower()[i] = p.lower[i];
+    qp.upper()[i] = p.upper[i];
+  }
+  for (int j = 0; j < kJoints; ++j) {
+    qp.H()(kMuscles + j, kMuscles + j) = p.reserve_cost;
+    qp.A().row(j).head<kMuscles>() = p.torque.row(j);
+    qp.A()(j, kMuscles + j) = 1;
+    qp.b()[j] = qp.b_upper()[j] = p.target[j];
+  }
+  return qp;
+}
+
+TEST(Activation, AgreesWithAGeneralSolver) {
+  const ArmModel arm({}, 0);
+  RandomStream random(11, "general solver");
+  QpSolver solver(kMuscles + person::kArmJoints, person::kArmJoints);
+  double worst = 0;
+  for (int n = 0; n < 1000; ++n) {
+    const ActivationProblem problem = RandomProblem(arm, &random);
+    const ActivationResult result = Activate(problem);
+    const Qp qp = ProgramOf(problem);
+    QpSolution solution;
+    solver.Solve(qp, &solution);
+    ASSERT_TRUE(solution.solved) << n;
+    const Eigen::Map<const Eigen::VectorXd> x(solution.x.data(), qp.n());
+    const double cost = x.dot(qp.H() * x) / 2;
+    worst = std::max(worst, std::abs(cost - result.cost) / std::max(1.0, cost));
+    ASSERT_NEAR(result.cost, cost, 2e-5 * std::max(1.0, cost)) << n;
+  }
+  std::printf("largest relative difference of the cost: %.1e\n", worst);
+}
+
+TEST(Activation, IsDeterministicAndDoesNotAllocate) {
+  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
+  const ArmModel arm({}, 1);
+  RandomStream random(3, "allocation");
+  const ArmVector q = RandomArm(arm, &random);
+  const ActivationProblem problem = ProblemAt(arm, q, ArmVector::Constant(3));
+  const ActivationResult first = Activate(problem);
+  ActivationResult second;
+  {
+    const test::AllocationGuard guard;
+    const MuscleLines lines = arm.LinesAt(q);
+    const MuscleForces forces = arm.ForcesAt(lines, q);
+    second = Activate(problem);
+    EXPECT_EQ(guard.count(), 0) << forces.active[0];
+  }
+  EXPECT_EQ(first.activation, second.activation);
+}
+
+}  // namespace
+}  // namespace predictor::muscles
