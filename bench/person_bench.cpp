@@ -1,6 +1,7 @@
-// What the evaluation of the person costs: posture, loads, and 64 possible persons.
+// What the evaluation of the person costs: posture, loads, muscles, and 64 possible persons.
 #include <cmath>
 
+#include "muscles/stiffness.h"
 #include "person/posture_samples.h"
 #include "samples.h"
 #include "sections.h"
@@ -26,6 +27,24 @@ person::BodySample HandlesAt(const person::Stance& stance, double time) {
   return sample;
 }
 
+// Activations and stiffness of both arms; returns their sum, so that nothing is optimised away.
+double MusclesAt(const std::array<muscles::ArmModel, kHands>& arms,
+                 const person::BodyMotion& motion, const person::BodyLoads& loads) {
+  double sum = 0;
+  for (const muscles::ArmModel& arm : arms) {
+    const muscles::ArmVector q = muscles::ArmOf(motion.q, arm.hand());
+    const muscles::MuscleLines lines = arm.LinesAt(q);
+    const muscles::MuscleForces forces = arm.ForcesAt(lines, muscles::ArmOf(motion.v, arm.hand()));
+    muscles::ActivationProblem problem;
+    problem.torque = lines.moment_arm * forces.active.asDiagonal();
+    problem.target = muscles::ArmOf(loads.torque, arm.hand()) - lines.moment_arm * forces.passive;
+    const muscles::MuscleVector active =
+        muscles::Activate(problem).activation.cwiseProduct(forces.active);
+    sum += muscles::JointStiffness(arm, q, active, active + forces.passive).trace();
+  }
+  return sum;
+}
+
 }  // namespace
 
 void TimePerson(bool quick) {
@@ -39,7 +58,9 @@ void TimePerson(bool quick) {
   const person::PostureSampler sampler(spec, stance, grips);
   person::BodyMotion motion;
   motion.q = solver.prior().comfort;
-  std::vector<double> next, cold, loads, persons;
+  const std::array<muscles::ArmModel, kHands> arms = {muscles::ArmModel(spec, 0),
+                                                      muscles::ArmModel(spec, 1)};
+  std::vector<double> next, cold, loads, muscle, persons;
   double check = 0;  // so that nothing is optimised away
   for (int i = 0; i < count; ++i) {
     const person::BodySample sample = HandlesAt(stance, i / kRate);
@@ -49,6 +70,8 @@ void TimePerson(bool quick) {
       check += dynamics.Evaluate(motion, sample).l5s1.compression;
       check += person::AnglesOf(model, motion.q, stance.width).trunk_flexion;
     }));
+    const person::BodyLoads now = dynamics.Evaluate(motion, sample);
+    muscle.push_back(Microseconds([&] { check += MusclesAt(arms, motion, now); }));
     if (i % 50 == 0)
       persons.push_back(Microseconds([&] { check += sampler.Evaluate(sample, motion).reached; }));
   }
@@ -60,8 +83,9 @@ void TimePerson(bool quick) {
   row("posture, starting at the one before", next);
   row("posture, starting at the comfort", cold);
   row("inverse dynamics, loads and angles", loads);
+  row("muscles and stiffness of both arms", muscle);
   row("64 possible persons", persons);
-  std::printf("nominal chain: %.0f Hz%s\n", 1e6 / (Median(next) + Median(loads)),
+  std::printf("nominal chain: %.0f Hz%s\n", 1e6 / (Median(next) + Median(loads) + Median(muscle)),
               std::isfinite(check) ? "" : " (not finite)");
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "assessment/person_chain.h"
 #include "core/error.h"
@@ -60,19 +61,28 @@ void AddIntervals(const SampledChain& sampled, std::span<const PersonSample> sam
   result->tail_interval = person::IntervalOf(sorted);
 }
 
+// Of the times that have a value; not a number if none has.
+void SummariseOverTime(QuantityResult* result) {
+  std::vector<double> values;
+  for (const double x : result->values)
+    if (std::isfinite(x)) values.push_back(x);
+  if (values.empty()) values.push_back(std::numeric_limits<double>::quiet_NaN());
+  result->mean = Mean(values);
+  result->p5 = QuantileOf(values, 0.05);
+  result->p95 = QuantileOf(values, 0.95);
+  const auto [min, max] = std::ranges::minmax(values);
+  result->min = min;
+  result->max = max;
+}
+
 QuantityResult QuantityOf(const QuantityKind& kind, const NominalChain& nominal,
                           const SampledChain& sampled, std::span<const PersonSample> samples) {
   QuantityResult result;
   result.kind = &kind;
   for (std::size_t i = 0; i < samples.size(); ++i)
     result.values.push_back(kind.of({nominal.frames[i], samples[i]}));
-  result.mean = Mean(result.values);
-  result.p5 = QuantileOf(result.values, 0.05);
-  result.p95 = QuantileOf(result.values, 0.95);
-  const auto [min, max] = std::ranges::minmax(result.values);
-  result.min = min;
-  result.max = max;
-  if (!sampled.at.empty() && kind.origin != Origin::kMeasured)
+  SummariseOverTime(&result);
+  if (!sampled.at.empty() && kind.origin != Origin::kMeasured && !kind.nominal_only)
     AddIntervals(sampled, samples, &result);
   return result;
 }
@@ -236,8 +246,7 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
   if (scenario.operator_.type == "person")
     a->assumptions.emplace_back(
         "The hands held the handles throughout: real arms cannot feel whether a hand is there.");
-  a->not_evaluable = {{"muscle forces", "no arm model with muscles is part of this version"},
-                      {"DUET (hand and forearm)", "the effort of the grip is not measured"},
+  a->not_evaluable = {{"DUET (hand and forearm)", "the effort of the grip is not measured"},
                       {"raised shoulders", "the shoulder girdle does not move in the model"}};
   if (scenario.operator_.type == "browser")
     a->not_evaluable.push_back({"the person at the page",
@@ -272,8 +281,9 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
   a.held = static_cast<double>(samples.size()) / kSampleRate;
   CheckPlace(samples, &a);
   const double share = options.intervals ? 0.3 : 1;  // of the time that the nominal chain takes
-  const NominalChain nominal = RunNominal(a.setup, samples, options.work,
-                                          [&](double done) { options.progress(share * done); });
+  NominalChain nominal = RunNominal(a.setup, samples, options.work,
+                                    [&](double done) { options.progress(share * done); });
+  AddMuscles(a.setup, samples, &nominal);
   SampledChain sampled;
   if (options.intervals)
     sampled = RunSampled(a.setup, samples, nominal, kSampledStride, options.work,
@@ -291,6 +301,7 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
   AddFatigue(scenario, nominal, run.samples(), &a);
   AddPictures(nominal, samples, options.intervals, &a);
   AddWords(scenario, options.work, &a);
+  AddMuscleWords(nominal, &a.warnings, &a.assumptions, &a.not_evaluable);
   AddLifts(object_mass, run, &a);
   return a;
 }

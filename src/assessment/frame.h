@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "assessment/muscle_use.h"
 #include "ergonomics/owas.h"
 #include "ergonomics/reba.h"
 #include "ergonomics/rula.h"
@@ -29,6 +30,8 @@ struct Frame {
   // Torque over the mean strength of the sex in its direction (flexion or extension).
   std::array<double, kHands> elbow_use = {}, shoulder_use = {};
   bool reached = false;  // the hands of the posture reach the handles
+  // Of the nominal person; without values for the others.
+  std::array<ArmMuscleUse, kHands> muscles;
 };
 
 struct FrameInput {

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstddef>
 
 #include "assessment/output.h"
@@ -33,7 +34,8 @@ std::string AssessmentCsv(const Assessment& a) {
     const bool sampled = k < a.sampled_times.size() && a.sampled_times[k] == a.times[i];
     Append(&text, "%.3f", a.times[i]);
     for (const QuantityResult& q : a.quantities) {
-      Append(&text, ",%.6g", q.values[i]);
+      text += ',';
+      if (std::isfinite(q.values[i])) Append(&text, "%.6g", q.values[i]);
       if (q.low.empty()) continue;
       if (sampled)
         Append(&text, ",%.6g,%.6g", q.low[k], q.high[k]);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 #include "core/person_state.h"
 
@@ -117,7 +119,15 @@ const char* Name(Origin origin) {
   return kNames[static_cast<std::size_t>(origin)];
 }
 
-std::span<const QuantityKind> Quantities() { return kQuantities; }
+std::span<const QuantityKind> Quantities() {
+  static const std::vector<QuantityKind> kAll = [] {
+    std::vector<QuantityKind> all(std::begin(kQuantities), std::end(kQuantities));
+    const std::vector<QuantityKind> muscles = MuscleQuantities();
+    all.insert(all.end(), muscles.begin(), muscles.end());
+    return all;
+  }();
+  return kAll;
+}
 std::span<const WorksheetKind> Worksheets() { return kWorksheets; }
 
 }  // namespace predictor::assessment

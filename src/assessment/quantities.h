@@ -36,6 +36,7 @@ struct QuantityKind {
   const char* limit_name = "";  // its source
   int hand = -1;                // whose quantity it is; -1: of no single hand
   Bad bad = Bad::kHigh;
+  bool nominal_only = false;  // not computed for the possible postures
 };
 std::span<const QuantityKind> Quantities();
 

@@ -7,7 +7,7 @@
 namespace predictor::muscles {
 namespace {
 
-constexpr int kMostIterations = 200;
+constexpr int kMaxIterations = 200;
 constexpr double kTolerance = 1e-10;  // of the slope, relative to the largest torque
 
 // The dual at one λ, negated so that it is to be minimised.
@@ -66,7 +66,7 @@ void Minimise(const ActivationProblem& problem, double square, ActivationResult*
   const double small = kTolerance * std::max(1.0, problem.target.cwiseAbs().maxCoeff());
   ArmVector& lambda = result->multiplier;
   Dual dual = DualAt(problem, reserve_scale, square, lambda);
-  for (int n = 0; n < kMostIterations; ++n) {
+  for (int n = 0; n < kMaxIterations; ++n) {
     result->residual = dual.slope.cwiseAbs().maxCoeff();
     result->converged = result->residual <= small;
     if (result->converged) break;
@@ -77,11 +77,11 @@ void Minimise(const ActivationProblem& problem, double square, ActivationResult*
         H.noalias() += dual.gain[i] * problem.torque.col(i) * problem.torque.col(i).transpose();
     const ArmVector step = -Eigen::LLT<ArmMatrix>(H).solve(dual.slope);
     const double descent = dual.slope.dot(step);
-    constexpr double kLeastShare = 1e-4;  // of the descent that the slope promises
+    constexpr double kMinShare = 1e-4;  // of the descent that the slope promises
     const double rounding = 1e-14 * (1 + std::abs(dual.value));
     double share = 1;
     Dual next = DualAt(problem, reserve_scale, square, lambda + step);
-    while (share > 1e-10 && next.value > dual.value + kLeastShare * share * descent + rounding) {
+    while (share > 1e-10 && next.value > dual.value + kMinShare * share * descent + rounding) {
       share /= 2;
       next = DualAt(problem, reserve_scale, square, lambda + share * step);
     }

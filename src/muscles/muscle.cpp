@@ -28,11 +28,11 @@ double PassiveForceLength(double length) {
 }
 
 double ForceVelocity(double velocity) {
-  constexpr double kMost = 1.2, kGain = kMost - 1;
+  constexpr double kMaxForce = 1.2, kGain = kMaxForce - 1;
   if (velocity <= -1) return 0;
   if (velocity <= 0) return (1 + velocity) * (1 + velocity);
-  if (velocity < kGain) return kMost - (kGain - velocity) * (kGain - velocity) / kGain;
-  return kMost;
+  if (velocity < kGain) return kMaxForce - (kGain - velocity) * (kGain - velocity) / kGain;
+  return kMaxForce;
 }
 
 TendonForces ForcesOf(const MuscleParameters& muscle, const Fibre& fibre) {

@@ -36,7 +36,7 @@ std::optional<Contact> AroundBall(const Vector3& from, const Vector3& to, const 
 std::optional<Contact> AroundCylinder(const Vector3& from, const Vector3& to, const Vector3& center,
                                       const Vector3& axis, double radius) {
   constexpr double kPi = std::numbers::pi;
-  constexpr double kMostTurn = kPi * 7 / 6;
+  constexpr double kMaxTurn = kPi * 7 / 6;
   const Vector3 a = from - center, b = to - center;
   const double z_a = a.dot(axis), z_b = b.dot(axis);
   const Vector3 flat_a = a - z_a * axis, flat_b = b - z_b * axis;
@@ -46,7 +46,7 @@ std::optional<Contact> AroundCylinder(const Vector3& from, const Vector3& to, co
   const double between = std::atan2(flat_b.dot(e2), flat_b.dot(e1));
   const double before = TangentAngle(radius, rho_a);
   double turn = between - before - TangentAngle(radius, rho_b);
-  if (turn <= kMostTurn - 2 * kPi) turn += 2 * kPi;
+  if (turn <= kMaxTurn - 2 * kPi) turn += 2 * kPi;
   if (!(turn > 0)) return {};
   // Unrolled, the way is a straight line: it climbs along the axis in proportion to its flat
   // length.

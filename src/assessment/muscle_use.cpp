@@ -1,0 +1,194 @@
+#include "assessment/muscle_use.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "assessment/person_chain.h"
+#include "assessment/quantities.h"
+#include "core/format.h"
+#include "muscles/stiffness.h"
+
+namespace predictor::assessment {
+namespace {
+
+using muscles::ArmVector;
+using muscles::MuscleVector;
+
+constexpr int kFirstGroup = kGroupActivation;
+
+double& ValueOf(ArmMuscleUse* use, int value) {
+  return use->values[static_cast<std::size_t>(value)];
+}
+
+void SetActivations(const MuscleVector& activation, ArmMuscleUse* use) {
+  std::array<double, muscles::kMuscleGroups> largest = {};
+  for (int i = 0; i < muscles::kMuscles; ++i) {
+    const auto group =
+        static_cast<std::size_t>(muscles::MuscleTable()[static_cast<std::size_t>(i)].group);
+    largest[group] = std::max(largest[group], activation[i]);
+  }
+  for (int group = 0; group < muscles::kMuscleGroups; ++group)
+    if (!use->raised || !muscles::ActsAtShoulder(group))
+      ValueOf(use, kFirstGroup + group) = largest[static_cast<std::size_t>(group)];
+  if (use->raised) return;
+  ValueOf(use, kLargestActivation) = activation.maxCoeff();
+  ValueOf(use, kMeanActivation) = activation.mean();
+}
+
+void SetReserve(const ArmVector& reserve, const ArmVector& torque, ArmMuscleUse* use) {
+  ValueOf(use, kReserve) = reserve.cwiseAbs().maxCoeff();
+  bool weak = false;
+  for (int i = 0; i < person::kArmJoints; ++i)
+    weak =
+        weak || std::abs(reserve[i]) > std::max(kReserveLimit, kReserveShare * std::abs(torque[i]));
+  ValueOf(use, kTooWeak) = weak ? 1 : 0;
+}
+
+// One arm at one time.
+ArmMuscleUse MusclesOf(const muscles::ArmModel& arm, const person::BodyMotion& motion,
+                       const person::BodyVector& torques, const person::ExternalWrench& wrench,
+                       double elevation) {
+  ArmMuscleUse use;
+  use.raised = elevation > std::numbers::pi / 2;
+  const ArmVector q = muscles::ArmOf(motion.q, arm.hand());
+  const ArmVector torque = muscles::ArmOf(torques, arm.hand());
+  const muscles::MuscleLines lines = arm.LinesAt(q);
+  const muscles::MuscleForces forces = arm.ForcesAt(lines, muscles::ArmOf(motion.v, arm.hand()));
+  muscles::ActivationProblem problem;
+  problem.torque = lines.moment_arm * forces.active.asDiagonal();
+  problem.target = torque - lines.moment_arm * forces.passive;
+  const muscles::ActivationResult result = muscles::Activate(problem);
+  SetActivations(result.activation, &use);
+  if (use.raised) return use;
+  SetReserve(result.reserve, torque, &use);
+  const MuscleVector active = result.activation.cwiseProduct(forces.active);
+  const muscles::HandPoint point = muscles::HandPointAt(
+      arm.body(), person::Place(arm.body(), motion.q), arm.hand(), wrench.p, wrench.F.head<3>());
+  const auto stiffness = muscles::EndpointStiffness(
+      muscles::JointStiffness(arm, q, active, active + forces.passive), point);
+  if (stiffness) {
+    const Vector3 principal = muscles::PrincipalStiffness(*stiffness);
+    ValueOf(&use, kSoftest) = principal[0];
+    ValueOf(&use, kStiffest) = principal[2];
+  }
+  return use;
+}
+
+constexpr Unit kShare = {"", "%", 100, 0};
+constexpr Unit kTorque = {"N·m", "N·m", 1, 1};
+constexpr Unit kRate = {"N/m", "N/m", 1, 0};
+
+struct Row {
+  const char* path[kHands];
+  const char* label;
+  Unit unit;
+  Bad bad = Bad::kHigh;
+};
+
+// In the order of MuscleValue.
+constexpr Row kRows[kMuscleValues] = {
+    {{"muscles.left.largest", "muscles.right.largest"}, "largest activation", kShare},
+    {{"muscles.left.mean", "muscles.right.mean"}, "mean activation", kShare},
+    {{"muscles.left.shoulder_flexors", "muscles.right.shoulder_flexors"},
+     "shoulder flexors",
+     kShare},
+    {{"muscles.left.shoulder_extensors", "muscles.right.shoulder_extensors"},
+     "shoulder extensors",
+     kShare},
+    {{"muscles.left.shoulder_abductors", "muscles.right.shoulder_abductors"},
+     "shoulder abductors",
+     kShare},
+    {{"muscles.left.rotator_cuff", "muscles.right.rotator_cuff"}, "rotator cuff", kShare},
+    {{"muscles.left.elbow_flexors", "muscles.right.elbow_flexors"}, "elbow flexors", kShare},
+    {{"muscles.left.elbow_extensors", "muscles.right.elbow_extensors"}, "elbow extensors", kShare},
+    {{"muscles.left.forearm", "muscles.right.forearm"}, "forearm and wrist", kShare},
+    {{"muscles.left.reserve_nm", "muscles.right.reserve_nm"}, "torque that is missing", kTorque},
+    {{"muscles.left.too_weak", "muscles.right.too_weak"}, "share of time too weak", kShare},
+    {{"muscles.left.softest_n_per_m", "muscles.right.softest_n_per_m"},
+     "hand's smallest stiffness",
+     kRate,
+     Bad::kLow},
+    {{"muscles.left.stiffest_n_per_m", "muscles.right.stiffest_n_per_m"},
+     "hand's largest stiffness",
+     kRate,
+     Bad::kLow},
+};
+
+template <int Hand, int Value>
+double Of(const Moment& m) {
+  return m.frame.muscles[Hand].values[Value];
+}
+
+template <int Hand, int... Values>
+void AddRows(std::integer_sequence<int, Values...>, std::vector<QuantityKind>* kinds) {
+  const auto add = [&](const Row& row, double (*of)(const Moment&)) {
+    QuantityKind kind = {row.path[Hand],    Hand == 0 ? "Muscles, left arm" : "Muscles, right arm",
+                         row.label,         row.unit,
+                         Origin::kModelled, of};
+    kind.hand = Hand;
+    kind.bad = row.bad;
+    kind.nominal_only = true;
+    kinds->push_back(kind);
+  };
+  (add(kRows[Values], Of<Hand, Values>), ...);
+}
+
+}  // namespace
+
+void AddMuscles(const PersonSetup& setup, std::span<const PersonSample> samples,
+                NominalChain* chain) {
+  for (int hand = 0; hand < kHands; ++hand) {
+    const auto h = static_cast<std::size_t>(hand);
+    const muscles::ArmModel arm(setup.body, hand);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const person::BodySample& sample = samples[i].body;
+      if (!sample.hands[h].present) continue;
+      Frame& frame = chain->frames[i];
+      frame.muscles[h] = MusclesOf(arm, chain->motions[i], frame.loads.torque,
+                                   person::WrenchesOn(sample, setup.stance)[h],
+                                   frame.angles.arms[h].upper_arm_elevation);
+    }
+  }
+}
+
+std::vector<QuantityKind> MuscleQuantities() {
+  std::vector<QuantityKind> kinds;
+  AddRows<0>(std::make_integer_sequence<int, kMuscleValues>(), &kinds);
+  AddRows<1>(std::make_integer_sequence<int, kMuscleValues>(), &kinds);
+  return kinds;
+}
+
+void AddMuscleWords(const NominalChain& chain, std::vector<std::string>* warnings,
+                    std::vector<std::string>* assumptions, std::vector<NotEvaluable>* gaps) {
+  assumptions->emplace_back(
+      "Muscles share the torques with the least sum of squared activations and without "
+      "co-contraction, so activations and stiffness are at the low end.");
+  gaps->push_back({"muscles that grip, and the muscles' forces on the shoulder joint",
+                   "the effort of the grip is not measured, and the shoulder girdle does not move "
+                   "in the model"});
+  for (int hand = 0; hand < kHands; ++hand) {
+    double judged = 0, weak = 0, raised = 0, most = 0;
+    for (const Frame& frame : chain.frames) {
+      const ArmMuscleUse& use = frame.muscles[static_cast<std::size_t>(hand)];
+      raised += use.raised ? 1 : 0;
+      if (!std::isfinite(use.values[kTooWeak])) continue;
+      judged += 1;
+      weak += use.values[kTooWeak];
+      most = std::max(most, use.values[kReserve]);
+    }
+    if (weak > 0)
+      warnings->push_back(Formatted(
+          "For %.1f %% of the time the muscles of the %s arm cannot produce its torques in the "
+          "model: up to %.1f N·m are missing, and activations are too low there.",
+          100 * weak / judged, HandName(hand), most));
+    if (raised > 0)
+      gaps->push_back({std::string("muscles of the ") + HandName(hand) + " shoulder for " +
+                           Formatted("%.1f %% of the time", 100 * raised / (judged + raised)),
+                       "the upper arm is raised above 90°, where models of the shoulder disagree "
+                       "with measurements"});
+  }
+}
+
+}  // namespace predictor::assessment
