@@ -10,7 +10,8 @@
 
 namespace predictor::muscles {
 
-inline double Radians(double degrees) { return degrees * std::numbers::pi / 180; }
+inline constexpr double kPi = std::numbers::pi;
+inline double Radians(double degrees) { return degrees * kPi / 180; }
 
 inline int IndexOf(const std::string& key) {
   for (int i = 0; i < kMuscles; ++i)
@@ -24,7 +25,7 @@ inline ArmVector RandomArm(const ArmModel& arm, RandomStream* random, double sha
   for (int i = 0; i < person::kArmJoints; ++i) {
     const person::BodyJoint& joint =
         arm.body().joint(person::Of(arm.hand(), static_cast<person::ArmJoint>(i)));
-    const double upper = i == 0 ? std::numbers::pi / 2 : joint.upper;
+    const double upper = i == 0 ? kPi / 2 : joint.upper;
     q[i] = (joint.lower + upper) / 2 + share * (upper - joint.lower) * (random->Uniform() - 0.5);
   }
   return q;

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/error.h"
 #include "core/random.h"
+#include "muscles/arms.h"
 
 namespace predictor::muscles {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 std::vector<double> Sine(double frequency, double amplitude, double rate, double duration) {
   std::vector<double> values;

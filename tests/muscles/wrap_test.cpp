@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "muscles/arms.h"
 
 namespace predictor::muscles {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double LengthOf(const Vector3& from, const Vector3& to, const Contact& contact) {
   return (contact.begin - from).norm() + contact.length + (to - contact.end).norm();
