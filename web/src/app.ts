@@ -9,9 +9,11 @@ import {Invitation} from './panel/invitation';
 import {Overlay} from './panel/overlay';
 import {PairingPage} from './panel/pairing';
 import {Panel} from './panel/panel';
+import {PersonCard} from './panel/person';
 import {Plots} from './panel/plots';
 import {ResultsCard} from './panel/results';
 import {save} from './panel/save';
+import {PersonPlayer} from './person';
 import {Shown, StatePlayer} from './player';
 import {Headset, SceneSpec, scenarioOf, State, Welcome} from './protocol';
 import {View} from './scene/camera';
@@ -30,6 +32,8 @@ const kPageInVrMs = 150;  // between updates of the page, because the headset ne
 export class App {
   readonly connection: Connection;
   readonly player = new StatePlayer();
+  readonly person = new PersonPlayer();
+  readonly personCard = new PersonCard();
   readonly latency: LatencyLedger;
   readonly stage: Stage;
   readonly panel: Panel;
@@ -67,6 +71,7 @@ export class App {
       notice: (text) => this.overlay.warn(text),
       token: (token) => this.stage.setToken(token),
       headset: (headset) => this.headsetMoved(headset),
+      person: (person, receivedMs) => this.person.add(person, receivedMs),
     });
     this.latency = new LatencyLedger(this.connection.clock);
     this.hands = new Hands(this.connection);
@@ -82,6 +87,8 @@ export class App {
       ghosts: (on) => this.stage.setGhosts(on),
       trail: (on) => this.stage.guidance.setTrailVisible(on),
       bothHands: (on) => (this.mouse.bothHands = on),
+      body: (on) => (this.stage.bodyWanted = on),
+      mirror: (on) => this.setMirror(on),
       theme: () => this.theme.toggle(),
       enterVr: () => void this.enterVr(),
       picture: () => void this.savePicture(),
@@ -93,12 +100,12 @@ export class App {
         this.pairing.element);
     this.stage = new Stage(scene, (words) => this.overlay.warn(words));
     this.invitation = new Invitation(this.connection, this.hands, this.stage);
-    scene.append(this.invitation.gauges, this.overlay.hud, this.invitation.element);
+    scene.append(this.invitation.gauges, this.personCard.element, this.overlay.hud, this.invitation.element);
     this.mouse = new MouseHand(this.stage, this.hands, () => this.mayGrip);
     this.keyboard = new KeyboardHand(this.stage, this.hands, () => this.mayGrip);
     this.immersive = new Immersive(
         this.stage, this.hands, this.connection, () => this.mayGrip, () => this.stop(),
-        () => this.trouble);
+        () => this.trouble, () => this.setMirror(!this.stage.mirror.group.visible));
     void Immersive.supported().then((yes) => (this.overlay.vrButton.hidden = !yes));
     this.theme = new ThemeSwitch((theme) => {
       this.stage.paint(theme);
@@ -159,6 +166,7 @@ export class App {
     this.shown = state;
     if (state && this.spec) {
       this.stage.apply(state, this.hands.targets);
+      this.showBody(nowMs);
       this.mouse.update(state);
       this.keyboard.update(state);
     }
@@ -185,6 +193,7 @@ export class App {
           state, this.spec, this.stage.guidance.error(state.object.p), this.score.result);
     }
     if (state) this.plots.draw(nowMs);
+    this.personCard.show(this.person.latest, this.person.silent(nowMs), nowMs);
     this.panel.update(this.player.latest, this.spec, nowMs, this.trouble);
     this.invite();
     this.updateResults();
@@ -192,6 +201,16 @@ export class App {
     this.overlay.showOperator(this.mayGrip);
     this.overlay.showVr(this.immersive.session !== null, this.leavingStops);
     this.watchHeadset(nowMs);
+  }
+
+  private showBody(nowMs: number) {
+    const known = !this.spec?.results && !this.person.silent(nowMs);
+    this.stage.applyPerson(known ? this.person.sample(nowMs) : null, this.person.latest?.parts ?? null);
+  }
+
+  private setMirror(on: boolean) {
+    this.stage.mirror.group.visible = on;
+    this.overlay.showMirror(on);
   }
 
   private invite() {
@@ -254,6 +273,7 @@ export class App {
     this.plots.clear();
     this.stage.guidance.clear();
     this.score.clear();
+    this.person.reset();
   }
 
   private welcomed(welcome: Welcome) {
@@ -266,6 +286,7 @@ export class App {
     this.welcome = welcome;
     this.spec = welcome.scene;
     this.player.reset();
+    this.person.reset();
     this.latency.reset();
     this.pictures = 0;
     // The plots of a run stay visible beside its results.
@@ -277,6 +298,7 @@ export class App {
     this.results.build(welcome.scene);
     this.panel.build(welcome.scene);
     this.overlay.build(welcome.scene);
+    this.personCard.build(welcome.scene);
     if (welcome.scene.notice) this.overlay.warn(welcome.scene.notice);
     this.stage.build(welcome.scene, welcome.token);
   }
@@ -289,7 +311,10 @@ export class App {
     }
     this.reason = reason;
     this.watch.reset();
-    if (!['open', 'results', 'ended'].includes(phase)) this.player.reset();
+    if (!['open', 'results', 'ended'].includes(phase)) {
+      this.player.reset();
+      this.person.reset();
+    }
     // Updates immediately instead of with the next frame: the page must never show a stop button without
     // effect.
     this.tellTrouble();

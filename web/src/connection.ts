@@ -1,8 +1,8 @@
 // The WebSocket connection to the server: admission, reconnection, heartbeat and clock.
 import {ServerClock} from './clock';
 import {
-  Credential, Headset, kSubprotocol, Leases, PageMessage, Role, ServerMessage, State, StateDecoder,
-  Welcome,
+  Credential, Headset, kSubprotocol, Leases, PageMessage, PersonState, Role, ServerMessage, State,
+  StateDecoder, Welcome,
 } from './protocol';
 
 export type Phase =
@@ -31,6 +31,7 @@ export interface ConnectionEvents {
   notice(text: string): void;
   token(token: string): void;  // the previous token is no longer valid
   headset(headset: Headset): void;
+  person(person: PersonState, receivedMs: number): void;
 }
 
 export class Connection {
@@ -155,6 +156,7 @@ export class Connection {
         this.keep(message.token);
         return this.events.token(message.token);
       case 'headset': return this.events.headset(message);
+      case 'person': return this.events.person(message, nowMs);
     }
   }
 

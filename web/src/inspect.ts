@@ -30,6 +30,14 @@ export function inspection(app: App) {
     arrowColour: (side: Side, of: 'force' | 'torque' = 'force') => stage.arrows[side][of].level,
     arrowVisible: (side: Side, of: 'force' | 'torque' = 'force') =>
       stage.arrows[side].group.visible && stage.arrows[side][of].group.visible,
+    // The person: the newest state as received, the points of the body as drawn, and its colours.
+    person: () => app.person.latest,
+    personCount: () => app.person.count,
+    body: () => ({
+      points: app.person.sample(performance.now()), colors: {...stage.body.colors},
+      visible: stage.body.group.visible,
+      mirror: stage.mirror.group.visible && stage.mirror.body.group.visible,
+    }),
     scene: () => app.spec?.name ?? null,
     stateText: () => panel.stateText,
     stopText: () => panel.stopText,

@@ -1,11 +1,13 @@
 // Messages between page and server (docs/reference/viewer-protocol.md). Units are SI, the world frame W has Z
 // up, quaternions are scalar first.
 
+import {PersonState} from './person_state';
 import {
   HandQuantities, kHandFields, kQuantities, kRunFields, kRunStates, kStopCauses, ParameterName,
   Quantity, RunQuantities, StopCause,
 } from './quantities';
 
+export * from './person_state';
 export * from './quantities';
 
 export type Vec3 = [number, number, number];
@@ -76,6 +78,7 @@ export interface SceneSpec {
   hazards?: string[];  // what each one does; older servers omit it
   scenarios: {name: string; title: string}[];  // that may be chosen at rest
   notice?: string;                             // error of the last choice, if it failed
+  person?: {judged: boolean; why?: string};        // whether messages `person` come; older servers omit it
   replay?: {duration: number; first_tick: number};  // present for a recording [s]
   results?: Results;                                // present after the end of the run
 }
@@ -145,7 +148,8 @@ export type ServerMessage =
   | {type: 'notice'; text: string}
   | {type: 'ended'; text: string; results_follow?: boolean}
   | {type: 'token'; token: string}
-  | Headset;
+  | Headset
+  | PersonState;
 
 export type Credential = {code: string} | {pin: string} | {token: string};
 export type Command = 'align' | 'start' | 'end' | 'reset';

@@ -6,11 +6,13 @@ import {FakeServer, kFrame} from './fake_server.mjs';
 import {Client, Program} from './program.mjs';
 
 let program, fake, real, made;
+let judges;  // the program judges the person during the run
 
 before(async () => {
   program = await Program.run('box_9kg.yaml', {set: ['duration=3600']});
-  fake = await new FakeServer({scene: 'box'}).listen();
   real = await Client.join(program.url);
+  judges = real.welcome.features.includes('person');
+  fake = await new FakeServer({scene: 'box', older: !judges}).listen();
   made = await Client.join(fake.url);
 });
 
@@ -55,4 +57,12 @@ test('answers have the same parts', async () => {
     return all();
   };
   same(await answers(made), await answers(real));
+});
+
+test('messages about the person have the same parts', async (t) => {
+  if (!judges) return t.skip('this program judges no person during a run');
+  const whole = (client) => client.messages.findLast(
+      (m) => m.type === 'person' && m.status === 'judged' && m.scores.rula.probability && m.parts.lower_back.damage !== null);
+  for (let k = 0; k < 600 && !(whole(real) && whole(made)); k++) await new Promise((r) => setTimeout(r, 50));
+  same(whole(made), whole(real));
 });

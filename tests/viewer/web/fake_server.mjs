@@ -9,6 +9,7 @@ import {fileURLToPath, pathToFileURL} from 'node:url';
 import {
   kArmHandle, kArmPosture, kAttachment, kPosture, kScenes, pandaSpec,
 } from './fake_scenes.mjs';
+import {personMessage} from './fake_person.mjs';
 import {kCauses, kHandFields, kRunFields, kStates} from './names.mjs';
 import {
   fromPose, inverse, links, multiply, pose, position, quaternion, reach, transform,
@@ -59,9 +60,10 @@ const bearer = (request) => (request.headers.authorization ?? '').replace('Beare
 
 export class FakeServer {
   // Options: scene 'box' | 'circle', operator, simulated, state, table, light, object: the files of
-  // the object's model {name: text}, which must include model.urdf.
+  // the object's model {name: text}, which must include model.urdf; ground: where the operator stands in W;
+  // person: why nothing is judged of the person; older: a server that knows no person.
   constructor(options = {}) {
-    this.options = {scene: 'box', operator: 'virtual', simulated: true, state: 'RUN', ...options};
+    this.options = {scene: 'box', operator: 'virtual', simulated: true, state: 'RUN', ground: [1, 0, 0], ...options};
     this.preset = kScenes[this.options.scene];
     this.received = [];    // every message of every page
     this.hands = {left: null, right: null};
@@ -71,6 +73,8 @@ export class FakeServer {
     this.deaf = false;     // ignores stops
     this.full = false;     // refuses another page
     this.file = 'made_up'; // the scenario's file
+    this.personStatus = 'judged';
+    this.sendingPerson = true;
     this.parameters = [1, 1, 1, 30, 5];
     this.targets = [...this.parameters];
     this.state = this.options.state;
@@ -142,7 +146,7 @@ export class FakeServer {
       name: preset.name, file: this.file, mode: 'emulate', simulated: options.simulated,
       duration: options.operator === 'browser' ? 0 : preset.duration, ...(this.results && {results: this.results}),
       operator: options.operator, rate: 1000,
-      viewpoint: {eye: [this.start[0] + 0.62, this.start[1], this.start[2] + 0.55], forward: [-1, 0, 0], guess: false, ground: [1, 0, 0], feet: 0.3},
+      viewpoint: {eye: [this.start[0] + 0.62, this.start[1], this.start[2] + 0.55], forward: [-1, 0, 0], guess: false, ground: options.ground, feet: 0.3},
       cobot: pandaSpec(0, [0, 0, 0]),
       object: preset.object, handles: {left: handle('left'), right: handle('right')},
       arms: {left: arm('left', 2), right: arm('right', 3)}, floor: true,
@@ -159,6 +163,7 @@ export class FakeServer {
       script: preset.script.map(([action, start, duration, text]) =>
         ({action, start, duration, hand: 'both', text})),
       hazards: ['the cobot stumbles'],
+      ...(!options.older && {person: options.person ? {judged: false, why: options.person} : {judged: true}}),
       scenarios: ['made_up', 'made_up_too'].map((name) => ({name, title: preset.name})),
     };
   }
@@ -260,7 +265,7 @@ export class FakeServer {
     socket.role = role;
     this.send(socket, {
       type: 'welcome', client: socket.client, role, token, server: this.server, server_ns: now(),
-      leases: this.leaseMessage(), scene: this.scene, frame: kFrame, features: ['headset'],
+      leases: this.leaseMessage(), scene: this.scene, frame: kFrame, features: this.options.older ? ['headset'] : ['headset', 'person'],
     });
     this.broadcast({type: 'leases', ...this.leaseMessage()});
   }
@@ -373,6 +378,14 @@ export class FakeServer {
       if (socket.client === undefined || socket.bufferedAmount > 0) continue;
       socket.send(encode({...values, sent_ns: now()}));
     }
+    this.tellPerson();
+  }
+
+  tellPerson() {
+    if (this.options.person || this.options.older || !this.sendingPerson) return;
+    const hands = Object.fromEntries(kSides.map((side) => [side, position(this.handlePose(side))]));
+    const wrenches = Object.fromEntries(kSides.map((side) => [side, this.wrench(side)]));
+    this.broadcast(personMessage(this.scene, this.runTime, this.tick, hands, wrenches, this.personStatus));
   }
 
   advance(dt) {

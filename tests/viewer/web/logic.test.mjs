@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import {createRequire} from 'node:module';
 import {before, test} from 'node:test';
 import {join} from 'node:path';
+import {personMessage} from './fake_person.mjs';
 import {kFrame} from './fake_server.mjs';
 import {near, web} from './harness.mjs';
 import {capitalised, message} from './messages.mjs';
@@ -11,7 +12,7 @@ const esbuild = createRequire(join(web, 'package.json'))('esbuild');
 let page;
 
 before(async () => {
-  const names = ['clock', 'player', 'protocol', 'scene/numbers', 'watch', 'words', 'vr/lines', 'vr/registration'];
+  const names = ['clock', 'load', 'person', 'player', 'protocol', 'scene/numbers', 'watch', 'words', 'vr/lines', 'vr/registration'];
   const contents = names.map((name) => `export * from './src/${name}';`).join('\n');
   const {outputFiles} = await esbuild.build({
     stdin: {contents, resolveDir: web, loader: 'ts'}, bundle: true, format: 'esm', write: false,
@@ -385,4 +386,49 @@ test('a run that is done does not look like one that was stopped', () => {
     assert.equal(words(name, 'none', {right_arm_fault: 1}).tone, 'calm');  // the arm is absent
   }
   assert.equal(words('UNPOWERED', 'none').tone, 'stopped');  // lost power is never shown as calm
+});
+
+// ---- the person --------------------------------------------------------------------------------
+
+function personState(at, status = 'judged') {
+  const hands = {left: [0.5, -0.2, 1], right: [0.5, 0.2, 1]};
+  const message = personMessage(
+      {viewpoint: {ground: [1, 0, 0], forward: [-1, 0, 0], feet: 0.3}}, 1, 1, hands,
+      {left: [0, 0, 1, 0, 0, 0], right: [0, 0, 1, 0, 0, 0]}, status);
+  if (status === 'judged') message.points.pelvis = [at, 0, 1];
+  return message;
+}
+
+test('the body moves smoothly between two messages', () => {
+  const player = new page.PersonPlayer();
+  assert.equal(player.sample(0), null);
+  for (let k = 0; k < 6; k++) player.add(personState(k), 20 * k);
+  for (const nowMs of [60, 71, 89.5, 100]) near(player.sample(nowMs).pelvis, [nowMs / 20 - 1.5, 0, 1], 1e-9, `${nowMs}`);
+  near(player.sample(1000).pelvis, [5, 0, 1], 0, 'the last one stays');
+  assert.equal(player.silent(1000), false);
+  assert.equal(player.silent(2000), true);
+  player.add(personState(0, 'waiting'), 2010);
+  near(player.sample(2020).pelvis, [5, 0, 1], 0, 'and while no time passes');
+  assert.equal(player.silent(9000), false);
+  player.add(personState(0, 'no_hand'), 9010);
+  assert.equal(player.sample(9020), null);
+});
+
+test('a mirror keeps left at left, and turns the face to the person', () => {
+  const {points} = personState(1);
+  const ahead = page.mirrored(points, [1, 0, 0], [-1, 0, 0], {at: [0, 2, 0.5], toward: [-1, 0, 0], scale: 0.5});
+  const aside = page.mirrored(points, [1, 0, 0], [-1, 0, 0], {at: [0, 2, 0.5], toward: [0, 1, 0], scale: 0.5});
+  for (const [name, [x, y, z]] of Object.entries(points)) {
+    near(ahead[name], [-0.5 * (x - 1), 2 + 0.5 * y, 0.5 + 0.5 * z], 1e-12, name);
+    near(aside[name], [0.5 * y, 2 + 0.5 * (x - 1), 0.5 + 0.5 * z], 1e-12, name);  // turned clockwise by 90°
+  }
+});
+
+test('a higher load is darker, so that it shows without red and green', () => {
+  const bright = (color) => 0.2126 * (color >> 16) + 0.7152 * (color >> 8 & 255) + 0.0722 * (color & 255);
+  const shares = Array.from({length: 21}, (_, i) => i / 20);
+  const values = shares.map((share) => bright(page.loadColor(share)));
+  values.slice(1).forEach((value, i) => assert.ok(value < values[i], `${shares[i + 1]}`));
+  assert.equal(page.loadColor(3), page.loadColor(1));
+  assert.equal(page.loadColor(null), page.kNotJudged);
 });

@@ -91,7 +91,7 @@ test('a ring stays large enough on the page for a finger', async () => {
   await fresh({operator: 'browser'});
   const near = await predictor('ringOnScreen', 'left');
   const canvas = await page.locator('.scene canvas').boundingBox();
-  await page.mouse.move(canvas.x + 40, canvas.y + canvas.height - 40);
+  await page.mouse.move(canvas.x + canvas.width - 40, canvas.y + canvas.height - 40);
   await page.mouse.wheel(0, 900);
   await page.waitForTimeout(1000);
   const far = await predictor('ringOnScreen', 'left');

@@ -23,6 +23,8 @@ export interface OverlayActions {
   ghosts(on: boolean): void;
   trail(on: boolean): void;
   bothHands(on: boolean): void;
+  body(on: boolean): void;
+  mirror(on: boolean): void;
   theme(): void;
   enterVr(): void;
   picture(): void;
@@ -34,6 +36,8 @@ export class Overlay {
   readonly hud: HTMLElement;
   readonly banner = h('div', {class: 'banner', id: 'banner', role: 'alert', hidden: true});
   readonly vrButton: HTMLButtonElement;
+  private readonly bodyButton: HTMLButtonElement;
+  private readonly mirrorButton: HTMLButtonElement;
   private readonly name = h('span', {class: 'scene-name'});
   private readonly recording = h('span', {class: 'recording', id: 'recording', hidden: true},
                                  h('i', {}), 'Recording');
@@ -71,10 +75,13 @@ export class Overlay {
     this.bothButton = this.toggle('both-hands', 'Both hands', false, (on) => actions.bothHands(on));
     this.bothButton.title = 'Dragging one handle moves both (or hold Ctrl)';
     this.bothButton.hidden = true;
+    this.bodyButton = this.toggle('body', 'Body', true, (on) => actions.body(on));
+    this.mirrorButton = this.toggle('mirror', 'Mirror', false, (on) => actions.mirror(on));
+    this.mirrorButton.title = 'Shows the body from the front, beside the scene';
     this.tools = h('div', {class: 'tools', role: 'toolbar', 'aria-label': 'View'},
                    ...this.buildViews(), h('span', {class: 'gap'}), this.ghostButton,
                    this.toggle('trail', 'Trail', true, (on) => actions.trail(on)),
-                   this.bothButton, h('span', {class: 'spacer'}),
+                   this.bodyButton, this.mirrorButton, this.bothButton, h('span', {class: 'spacer'}),
                    h('button', {class: 'small', id: 'save-picture', title: 'Save the scene as an image (PNG)',
                                 onclick: () => actions.picture()}, 'Save picture'));
     this.hud = h('div', {class: 'hud'}, this.banner, this.instruction, this.guidance, this.score,
@@ -87,7 +94,13 @@ export class Overlay {
     this.mode.hidden = spec.simulated && spec.mode === 'emulate';
     setText(this.mode, spec.simulated ? spec.mode : 'real arms');
     this.ghostButton.hidden = !spec.arms.left && !spec.arms.right;
+    for (const button of [this.bodyButton, this.mirrorButton]) button.hidden = !spec.person?.judged;
     this.buildProgress(spec);
+  }
+
+  // The mirror was switched in the headset.
+  showMirror(on: boolean) {
+    setAttribute(this.mirrorButton, 'aria-pressed', String(on));
   }
 
   update(state: State, spec: SceneSpec, guidanceError: number, score: Score | null) {

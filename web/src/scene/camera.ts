@@ -110,8 +110,10 @@ export class CameraRig {
 
   private placeOf(view: View, spec: SceneSpec, object: Vec3): Place {
     const base = spec.cobot.base.p;
+    // The views contain the body, unless a pointer needs large handles.
+    const judged = spec.person?.judged === true && spec.operator !== 'browser';
     const middle: Vec3 = [
-      (base[0] + object[0]) / 2 + 0.08, (base[1] + object[1]) / 2, base[2] + 0.42,
+      (base[0] + object[0]) / 2 + (judged ? 0.2 : 0.08), (base[1] + object[1]) / 2, base[2] + (judged ? 0.2 : 0.42),
     ];
     const at = (eye: Vec3, target: Vec3): Place => ({
       eye: this.toThree(eye),
@@ -121,7 +123,7 @@ export class CameraRig {
       at([middle[0] + x, middle[1] + y, middle[2] + z], middle);
     switch (view) {
       case 'front': return from(1.8, 0, 0.2);
-      case 'side': return from(0, -1.8, 0.15);
+      case 'side': return judged ? from(0.2, -2.6, 0.25) : from(0, -1.8, 0.15);
       case 'top': return from(-0.001, 0, 1.9);
       case 'operator': {
         const {eye, forward} = spec.viewpoint;
@@ -129,7 +131,7 @@ export class CameraRig {
           object[0] + 0.1 * forward[0], object[1] + 0.1 * forward[1], object[2] + 0.05,
         ]);
       }
-      default: return from(0.97, -1.04, 0.54);
+      default: return judged ? from(0.7, -2.6, 0.7) : from(0.97, -1.04, 0.54);
     }
   }
 

@@ -13,6 +13,7 @@ const kGridStep = 0.1;    // [m]
 const kMajorEvery = 5;    // lines
 // The virtual floor where the ground is below it: a round table on a column.
 const kPlate = {radius: 1, thickness: 0.03, column: 0.12};  // [m]
+const kBesidePlate = 0.25, kMinPlate = 0.4;  // from the plate's edge to the operator's feet; its radius [m]
 const kFoot = [0.13, 0.05];  // half length and half width of a footprint [m]
 
 function gridLines(minor: boolean): BufferGeometry {
@@ -40,6 +41,8 @@ export class Room {
   private readonly ground = new Group();  // the floor with its grid, on which the operator stands
   private readonly plate = new Group();
   private readonly plateMaterial = new MeshLambertMaterial();
+  private readonly top = new Mesh(
+      new CylinderGeometry(kPlate.radius, kPlate.radius, kPlate.thickness, 96), this.plateMaterial);
   private readonly column = new Mesh(
       new CylinderGeometry(kPlate.column, kPlate.column, 1, 32), this.plateMaterial);
   private readonly feet = [1, -1].map(() => new Mesh(
@@ -59,9 +62,7 @@ export class Room {
     Object.assign(this.sun.shadow.camera, {left: -1.6, right: 1.6, top: 1.6, bottom: -1.6, far: 8});
     this.sun.target.position.set(0.3, 0, 0.3);
     this.fill.position.set(-2, 2.5, 1.5);
-    const top = new Mesh(
-        new CylinderGeometry(kPlate.radius, kPlate.radius, kPlate.thickness, 96),
-        this.plateMaterial);
+    const {top} = this;
     top.position.z = -kPlate.thickness / 2;
     top.receiveShadow = true;
     top.castShadow = true;
@@ -95,7 +96,12 @@ export class Room {
     const raised = ground !== null && ground[2] < 0;
     this.floor.visible = floor || ground !== null;
     this.plate.visible = floor && raised;
-    this.plate.position.set(cobot.base.p[0] + 0.25, cobot.base.p[1], 0);
+    const middle = [cobot.base.p[0] + 0.25, cobot.base.p[1]];
+    this.plate.position.set(middle[0], middle[1], 0);
+    // Not through the operator's legs.
+    const room = ground ? Math.hypot(ground[0] - middle[0], ground[1] - middle[1]) - kBesidePlate : kPlate.radius;
+    const radius = Math.min(Math.max(room, kMinPlate), kPlate.radius);
+    this.top.scale.set(radius / kPlate.radius, 1, radius / kPlate.radius);
     const depth = raised ? -ground[2] : 1;
     this.column.scale.y = depth;
     this.column.position.z = -depth / 2;

@@ -3,13 +3,16 @@ import {
   Box3, BufferGeometry, Group, Line, LineDashedMaterial, Mesh, MeshBasicMaterial,
   MeshStandardMaterial, Object3D, PCFShadowMap, Scene, SphereGeometry, Vector3, WebGLRenderer,
 } from 'three';
-import {kSides, Pose, SceneSpec, Side, State, Vec3} from '../protocol';
+import {BodyPoints} from '../person';
+import {kSides, PersonState, Pose, SceneSpec, Side, State, Vec3} from '../protocol';
 import {kMeaning, kSceneColors, Theme} from '../theme';
 import {WrenchArrows} from './arrows';
+import {Body} from './body';
 import {CameraRig} from './camera';
 import {place, poseIn, vector} from './frames';
 import {Guidance} from './guidance';
 import {Handle} from './handles';
+import {Mirror} from './mirror';
 import {Complaint, kPlaceholder, loadObject, makeGhost, Robot} from './models';
 import {Room} from './room';
 
@@ -90,12 +93,15 @@ export class Stage {
   readonly handles: Record<Side, Handle> = {left: new Handle('left'), right: new Handle('right')};
   readonly arrows = {left: new WrenchArrows(), right: new WrenchArrows()};
   readonly guidance = new Guidance();
+  readonly body = new Body();
+  readonly mirror = new Mirror();
   spec: SceneSpec | null = null;
   firstRenderMs = NaN;  // since the page was opened
   modelsLoaded = false;
   settled = false;  // the models are loaded and posed as in the last state
   frames = 0;
   ghosts = false;
+  bodyWanted = true;
   private readonly room = new Room();
   private readonly rubbers = {left: new Rubber('left'), right: new Rubber('right')};
   private cobot: Robot | null = null;
@@ -131,7 +137,7 @@ export class Stage {
     this.world.rotation.x = -Math.PI / 2;
     this.scene.add(this.root);
     this.root.add(this.world);
-    this.world.add(this.room.group, this.objectPlace, this.guidance.group);
+    this.world.add(this.room.group, this.objectPlace, this.guidance.group, this.body.group, this.mirror.group);
     for (const side of kSides) {
       this.world.add(
           this.handles[side].group, this.arrows[side].group, this.rubbers[side].group);
@@ -152,6 +158,7 @@ export class Stage {
     this.settled = false;
     this.room.build(spec);
     this.guidance.build(spec);
+    this.mirror.build(spec);
     this.guidance.paint(this.theme);
     this.clearModels();
     const cobot = new Robot(spec.cobot);
@@ -236,6 +243,18 @@ export class Stage {
       this.arms[side]?.setJoints(hand.armQ);
     }
     this.settled = this.modelsLoaded;
+  }
+
+  // The body of the person; null: it is not known. The wearer of a headset sees it in the mirror only, and the
+  // operator's view is from its head.
+  applyPerson(points: BodyPoints | null, parts: PersonState['parts'] | null) {
+    const {body, mirror} = this;
+    body.group.visible = points !== null && this.bodyWanted && !this.renderer.xr.isPresenting;
+    if (mirror.group.visible) mirror.set(points, parts);
+    if (!body.group.visible) return;
+    body.showTrunk(!['operator', 'headset'].includes(this.camera.view));
+    body.set(points!);
+    body.paint(parts);
   }
 
   paint(theme: Theme) {

@@ -25,11 +25,12 @@ export interface BoardContent extends BoardText {
   hands: HandLevel[];
 }
 
-export type PlateName = 'stop' | 'touch' | 'attach';
+export type PlateName = 'stop' | 'touch' | 'attach' | 'mirror';
 const kPlates: {name: PlateName; label: string; color: string; width: number}[] = [
   {name: 'stop', label: 'STOP', color: '#d81f30', width: 0.2},
   {name: 'touch', label: 'Register: touch points', color: '#2b5f99', width: 0.19},
   {name: 'attach', label: 'Register: controllers on handles', color: '#2b5f99', width: 0.19},
+  {name: 'mirror', label: 'Mirror on or off', color: '#2b5f99', width: 0.19},
 ];
 
 // A plane with a canvas as its texture.
@@ -99,10 +100,11 @@ export class Board {
 
   constructor() {
     this.group.add(this.picture.mesh);
-    let x = -kWidth / 2;
+    let x = -kWidth / 2, row = 0;
     this.plates = kPlates.map(({name, label, color, width}) => {
+      if (x + width > kWidth / 2 + 0.01) [x, row] = [-kWidth / 2, row + 1];
       const plate = new Plate(name, label, color, width - 0.01, 0.09);
-      plate.group.position.set(x + width / 2, -kHeight / 2 - 0.06, 0);
+      plate.group.position.set(x + width / 2, -kHeight / 2 - 0.06 - 0.1 * row, 0);
       x += width + 0.01;
       this.group.add(plate.group);
       return plate;

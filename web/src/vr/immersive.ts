@@ -49,7 +49,8 @@ export class Immersive {
   constructor(private readonly stage: Stage, private readonly hands: Hands,
               private readonly connection: Connection, private readonly mayGrip: () => boolean,
               private readonly stop: () => void,
-              private readonly troubleNow: () => Trouble | null) {
+              private readonly troubleNow: () => Trouble | null,
+              private readonly toggleMirror: () => void) {
     this.registrar = new Registrar((registration) => applyTo(stage.root, registration));
     stage.world.add(this.board.group);
     stage.scene.add(this.inputs.group);
@@ -174,6 +175,7 @@ export class Immersive {
     if (name === 'stop') this.stop();
     if (name === 'touch') this.registrar.toggleTouching(spec, state);
     if (name === 'attach') this.registrar.toggleMounting();
+    if (name === 'mirror') this.toggleMirror();
   }
 
   private pointedPlate(input: Input): PlateName | null {

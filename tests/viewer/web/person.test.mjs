@@ -1,0 +1,125 @@
+// The person on the page: the body in the scene, the gauges beside it, the mirror, and why nothing is judged.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {pointsOf} from './fake_person.mjs';
+import {
+  asker, launch, near, open, ownProblems, ready, screenshot, serve, shotsWanted, shows, until, waitForText,
+} from './harness.mjs';
+import {Headset, withHeadset} from './headset.mjs';
+
+let browser;
+let server;
+let page;
+const predictor = asker(() => page);
+
+async function fresh(options = {}, viewport = {width: 1280, height: 800}) {
+  await page?.context().close();
+  await server?.close();
+  server = await serve({light: !shotsWanted, ground: [1, 0, -0.45], ...options});
+  page = await open(browser, server.url, {viewport, before: options.before});
+  await ready(page);
+}
+
+before(async () => (browser = await launch({unpainted: true})));
+after(async () => {
+  await browser?.close();
+  await server?.close();
+});
+
+test('the body is drawn where the messages put it, coloured by its loads', async () => {
+  await fresh();
+  await until(page, () => window.predictor.body().visible);
+  server.frozen = true;  // the run time stands, so the messages repeat
+  const count = await predictor('personCount');
+  await until(page, (n) => window.predictor.personCount() > n + 12, count);
+  const {points, colors} = await predictor('body');
+  const {points: told, parts} = await predictor('person');
+  for (const [name, p] of Object.entries(told)) near(points[name], p, 1e-6, name);
+  const hands = {left: told.left_hand, right: told.right_hand};
+  near(told.left_shoulder, pointsOf(server.scene.viewpoint, hands).points.left_shoulder, 1e-9, 'shoulder');
+  assert.deepEqual(Object.keys(colors).sort(), Object.keys(parts).sort());
+  assert.notEqual(colors.lower_back, colors.left_elbow, 'different loads, different colours');
+  await screenshot(page, 'person');
+});
+
+test('gauges, scores, damage and fatigue show the message, and say where it comes from', async () => {
+  const {gauges} = await predictor('person');
+  const text = (selector) => page.locator(selector).innerText();
+  assert.equal((await text('#gauge-lower_back_compression output')).trim(),
+               `${gauges.lower_back_compression.value.toFixed(0)} N`);
+  assert.equal(await page.getAttribute('#gauge-trunk_flexion', 'data-interval'),
+               ['low', 'high'].map((end) => `${(gauges.trunk_flexion[end] * 180 / Math.PI).toFixed(0)} °`).join(' … '));
+  assert.equal(await page.getAttribute('#gauge-left_hand_force', 'data-interval'), '', 'measured');
+  assert.equal((await text('#score-rula output')).trim(), '4');
+  const widths = await page.$$eval('#score-rula i', (all) => all.map((i) => Number(i.style.flexGrow)));
+  near(widths, [0.1, 0.62, 0.24, 0.04], 1e-6, 'probabilities');
+  assert.match(await text('#person-damage'), /lower back [\d.e-]+ %/);
+  assert.match(await text('#person-fatigue'), /left shoulder 97 %/);
+  const words = (await text('#person')).toLowerCase();
+  for (const origin of ['measured', 'modelled', 'standard', 'operator is simulated']) assert.ok(words.includes(origin), origin);
+});
+
+test('a warning appears while the evaluation has it on', async () => {
+  server.frozen = false;
+  const warning = page.locator('[data-warning=left_shoulder]');
+  server.runTime = 6.2;  // the invented shoulder needs little
+  await warning.waitFor({state: 'detached'});
+  server.runTime = 13.2;  // and now much
+  await warning.waitFor();
+  assert.match(await warning.innerText(), /half of the mean strength/);
+});
+
+test('while nothing is known of the posture, no body is drawn, and the card says why', async () => {
+  server.personStatus = 'no_hand';
+  await until(page, () => !window.predictor.body().visible);
+  await waitForText(page.locator('#person-why'), /No hand holds a handle/);
+  assert.equal((await page.locator('#gauge-lower_back_shear output').innerText()).trim(), '–');
+  server.personStatus = 'judged';
+  await until(page, () => window.predictor.body().visible);
+  server.sendingPerson = false;
+  await until(page, () => !window.predictor.body().visible);
+  await waitForText(page.locator('#person-why'), /stopped sending/);
+  server.sendingPerson = true;
+  await until(page, () => window.predictor.body().visible);
+});
+
+test('body and mirror can be switched', async () => {
+  await page.click('#body');
+  await until(page, () => !window.predictor.body().visible);
+  await page.click('#mirror');
+  await until(page, () => window.predictor.body().mirror);
+  await page.click('#body');
+  await until(page, () => window.predictor.body().visible);
+  await screenshot(page, 'person-mirror');
+  await page.click('#mirror');
+  await until(page, () => !window.predictor.body().mirror);
+  assert.deepEqual(ownProblems(page), []);
+});
+
+test('a scenario without a body says what is missing, and offers no switches', async () => {
+  await fresh({person: 'The scenario does not describe the operator’s body.'});
+  await waitForText(page.locator('#person-why'), /Not judged: The scenario does not describe/);
+  await shows(page, '#body', false);
+  await shows(page, '#mirror', false);
+  assert.equal((await predictor('body')).visible, false);
+  assert.deepEqual(ownProblems(page), []);
+});
+
+test('an older server, which knows no person, gets a page without body and card', async () => {
+  await fresh({older: true});
+  await shows(page, '#person', false);
+  await shows(page, '#body', false);
+  assert.equal(await predictor('personCount'), 0);
+  assert.deepEqual(ownProblems(page), []);
+});
+
+test('in a headset the body appears in the mirror only, which a plate switches', async () => {
+  await fresh({before: withHeadset, operator: 'browser'}, {width: 640, height: 400});
+  const headset = new Headset(page);
+  await headset.enter();
+  await until(page, () => !window.predictor.body().visible);
+  await headset.touchPlate('mirror');
+  await until(page, () => window.predictor.body().mirror);
+  await headset.look([0.1, 1.6, 0.45], -0.7, -0.25);
+  await headset.screenshot('vr-mirror');
+});

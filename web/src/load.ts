@@ -1,0 +1,14 @@
+// Colours of a load, as in reports (LoadColor in src/assessment): light green, amber, dark red. They become
+// darker, so that they can be distinguished without seeing red and green.
+
+const kStops = [[0x8f, 0xd3, 0xb6], [0xf2, 0xa9, 0x1e], [0x9c, 0x0f, 0x2c]];
+export const kNotJudged = 0xb9c2cd;
+
+// share: of what a part bears; above 1 the colour remains. null: not judged.
+export function loadColor(share: number | null): number {
+  if (share === null || Number.isNaN(share)) return kNotJudged;
+  const x = 2 * Math.min(Math.max(share, 0), 1);
+  const low = x < 1 ? 0 : 1;
+  return kStops[low].reduce((color, from, k) =>
+    256 * color + Math.round(from + (kStops[low + 1][k] - from) * (x - low)), 0);
+}

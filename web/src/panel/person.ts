@@ -1,0 +1,213 @@
+// The person: gauges with their intervals, classes of the worksheets, damage, fatigue and warnings.
+import {h, setAttribute, setText} from '../dom';
+import {loadColor} from '../load';
+import {kArmParts, kWhyNot} from '../person';
+import {kPersonGauges, kPersonScores, kPersonWarnings, PersonState, SceneSpec} from '../protocol';
+import {hex} from '../theme';
+
+type GaugeName = keyof typeof kPersonGauges;
+type ScoreName = keyof typeof kPersonScores;
+
+const kRoom = [1100, 700];  // window in which the card is open at first [px]
+const kLateStart = 0.5;  // later than this, damage does not count from the start of the run [s]
+const kEveryMs = 100;  // between updates; warnings appear at once
+
+// How a gauge is shown: its words, the factor from SI, the decimals, and the ends of its bar in SI.
+interface GaugeLook {
+  words: string;
+  unit: string;
+  factor: number;
+  decimals: number;
+  low: number;
+  high: number;
+}
+const kDegrees = 180 / Math.PI;
+const share = (words: string): GaugeLook => ({words, unit: '%', factor: 100, decimals: 0, low: 0, high: 1.2});
+const force = (words: string): GaugeLook => ({words, unit: 'N', factor: 1, decimals: 0, low: 0, high: 50});
+export const kGaugeLooks: Record<GaugeName, GaugeLook> = {
+  left_hand_force: force('Left hand'),
+  right_hand_force: force('Right hand'),
+  lower_back_compression: {words: 'Back, compression', unit: 'N', factor: 1, decimals: 0, low: 0, high: 4200},
+  lower_back_shear: {words: 'Back, shear', unit: 'N', factor: 1, decimals: 0, low: 0, high: 850},
+  lower_back_moment: {words: 'Back, moment', unit: 'N m', factor: 1, decimals: 0, low: 0, high: 200},
+  left_shoulder_use: share('Left shoulder'),
+  right_shoulder_use: share('Right shoulder'),
+  left_elbow_use: share('Left elbow'),
+  right_elbow_use: share('Right elbow'),
+  trunk_flexion: {words: 'Trunk, forward', unit: '°', factor: kDegrees, decimals: 0, low: -0.35, high: 1.6},
+  balance_margin: {words: 'Balance margin', unit: 'cm', factor: 100, decimals: 1, low: -0.05, high: 0.15},
+};
+const kMeasured = (Object.keys(kGaugeLooks) as GaugeName[]).filter((name) => kPersonGauges[name].measured);
+const kModelled = (Object.keys(kGaugeLooks) as GaugeName[]).filter((name) => !kPersonGauges[name].measured);
+const kOperator: Record<SceneSpec['operator'], string> = {
+  virtual: 'The operator is simulated.',
+  browser: 'A mouse or a headset moves the handles: this is a person who would hold them.',
+  person: 'A person holds the handles.',
+};
+
+export function gaugeText(look: GaugeLook, value: number | null): string {
+  if (value === null) return '–';
+  const text = (look.factor * value).toFixed(look.decimals);
+  return `${/^-[0.]*$/.test(text) ? text.slice(1) : text} ${look.unit}`;
+}
+
+// A value on a bar, with its 90 % interval as a band and its limit as a mark.
+class Gauge {
+  readonly element: HTMLElement;
+  private readonly look: GaugeLook;
+  private readonly text = h('output', {}, '–');
+  private readonly band = h('i', {class: 'band'});
+  private readonly bar = h('i', {class: 'value'});
+  private readonly limit = h('i', {class: 'limit'});
+  private high: number;
+
+  constructor(private readonly name: GaugeName) {
+    this.look = kGaugeLooks[name];
+    this.high = this.look.high;
+    const {meaning, limit, lowIsBad} = kPersonGauges[name];
+    this.limit.hidden = limit === 0 && !lowIsBad;
+    this.element = h(
+        'div', {class: 'person-gauge', id: `gauge-${name}`, title: meaning}, h('span', {}, this.look.words),
+        h('div', {class: 'person-bar'}, this.band, this.bar, this.limit), this.text);
+    this.limit.style.left = this.at(limit);
+  }
+
+  show({value, low, high}: PersonState['gauges'][GaugeName]) {
+    setText(this.text, gaugeText(this.look, value));
+    const top = Math.max(value ?? 0, high ?? 0);
+    if (top > this.high) this.high = 1.2 * top;  // the bar grows with the largest value
+    const {limit, lowIsBad} = kPersonGauges[this.name];
+    this.limit.style.left = this.at(limit);
+    const beyond = value !== null && !this.limit.hidden && (lowIsBad ? value < limit : value > limit);
+    setAttribute(this.element, 'data-beyond', String(beyond));
+    this.bar.hidden = value === null;
+    this.band.hidden = low === null || high === null;
+    setAttribute(this.element, 'data-interval',
+                 low === null || high === null ? '' : `${gaugeText(this.look, low)} … ${gaugeText(this.look, high)}`);
+    this.bar.style.left = this.at(value ?? 0);
+    this.band.style.left = this.at(low ?? 0);
+    this.band.style.right = `calc(100% - ${this.at(high ?? 0)})`;
+  }
+
+  private at(x: number): string {
+    const part = (x - this.look.low) / (this.high - this.look.low);
+    return `${(100 * Math.min(Math.max(part, 0), 1)).toFixed(1)}%`;
+  }
+}
+
+// The present score of a worksheet, and the probability of each action level as a bar.
+class ScoreRow {
+  readonly element: HTMLElement;
+  private readonly score = h('output', {}, '–');
+  private readonly levels: HTMLElement[];
+
+  constructor(name: ScoreName) {
+    const {levels, most} = kPersonScores[name];
+    this.levels = Array.from({length: levels}, (_, i) => {
+      const part = h('i', {});
+      const severity = i / (levels - 1);
+      part.style.background = hex(loadColor(severity));
+      if (severity > 0.7) part.style.color = '#fff';
+      return part;
+    });
+    this.element = h(
+        'div', {class: 'person-score', id: `score-${name}`, title: `Scores of 1 to ${most}; action levels of 1 to ${levels}`},
+        h('b', {}, name.toUpperCase()), this.score, h('div', {class: 'person-levels'}, ...this.levels));
+  }
+
+  show({score, level, probability}: PersonState['scores'][ScoreName]) {
+    setText(this.score, score === 0 ? '–' : `${score}`);
+    this.levels.forEach((part, i) => {
+      const p = probability?.[i] ?? (probability === null && level === i + 1 ? 1 : 0);
+      part.style.flexGrow = String(p);
+      part.classList.toggle('now', level === i + 1);
+      setText(part, p > 0.2 ? `${i + 1}: ${(100 * p).toFixed(0)} %` : '');
+      part.title = `Action level ${i + 1}: ${(100 * p).toFixed(0)} %`;
+    });
+  }
+}
+
+export class PersonCard {
+  readonly element: HTMLElement;
+  private readonly why = h('p', {class: 'hint', id: 'person-why', role: 'status'});
+  private readonly operator = h('p', {class: 'hint', id: 'person-operator'});
+  private readonly warnings = h('div', {id: 'person-warnings', role: 'alert'});
+  private readonly gauges = new Map([...kMeasured, ...kModelled].map((name) => [name, new Gauge(name)]));
+  private readonly scores = new Map(
+      (Object.keys(kPersonScores) as ScoreName[]).map((name) => [name, new ScoreRow(name)]));
+  private readonly damage = h('p', {id: 'person-damage'});
+  private readonly fatigue = h('p', {id: 'person-fatigue'});
+  private readonly short = h('span', {class: 'hint'});  // beside the title, if the card is closed
+  private readonly body: HTMLElement;
+  private spec: SceneSpec | null = null;
+  private drawnMs = -Infinity;
+  private told = '';
+
+  constructor() {
+    const rows = (names: GaugeName[]) => names.map((name) => this.gauges.get(name)!.element);
+    const title = (words: string, origin: string) => h('h4', {}, words, h('span', {class: 'tag'}, origin));
+    const scale = h('i', {class: 'person-scale'});
+    scale.style.background = `linear-gradient(to right, ${[0, 0.5, 1].map((x) => hex(loadColor(x))).join()})`;
+    this.body = h(
+        'div', {class: 'person-body'},
+        h('p', {class: 'hint legend'}, 'Load 0', scale, '100 % of limit or strength'),
+        title('Hands', 'measured'), ...rows(kMeasured),
+        title('Body', 'modelled, 90 % band'), ...rows(kModelled),
+        title('Scores', 'standard, probability'), ...[...this.scores.values()].map(({element}) => element),
+        title('This run so far', 'standard'), this.damage, this.fatigue);
+    // Open where there is room beside the scene's objects.
+    const open = innerWidth >= kRoom[0] && innerHeight >= kRoom[1];
+    this.element = h(
+        'div', {class: 'person', id: 'person', hidden: true}, this.warnings,
+        h('details', {open}, h('summary', {}, h('b', {}, 'Person'), this.short), this.why, this.operator, this.body));
+  }
+
+  build(spec: SceneSpec) {
+    this.spec = spec;
+    this.element.hidden = !spec.person || spec.results !== undefined;
+    setText(this.operator, spec.person?.judged ? kOperator[spec.operator] : '');
+    this.show(null, false, Infinity);
+  }
+
+  // person: the newest state; null: none yet. silent: none has come for too long.
+  show(person: PersonState | null, silent: boolean, nowMs: number) {
+    const judged = this.spec?.person?.judged ?? false;
+    const why = !judged ? `Not judged: ${this.spec?.person?.why ?? 'the body or its place is not known.'}` :
+        !person ? 'Waiting for the evaluation.' :
+        silent ? 'The evaluation has stopped sending: these values are old.' :
+        person.status === 'judged' ? '' : kWhyNot[person.status];
+    const warnings = silent ? [] : person?.warnings ?? [];
+    const told = `${why} ${warnings.join()}`;
+    if (told === this.told && nowMs - this.drawnMs < kEveryMs) return;
+    this.told = told;
+    this.drawnMs = nowMs;
+    setText(this.why, why);
+    setText(this.short, judged ? '' : 'not judged');
+    this.body.hidden = !judged || !person;
+    this.body.classList.toggle('old', silent || person?.status !== 'judged');
+    this.warnings.replaceChildren(...warnings.map((name) => h('p', {'data-warning': name}, kPersonWarnings[name].words)));
+    if (!person) return;
+    for (const [name, gauge] of this.gauges) gauge.show(person.gauges[name]);
+    for (const [name, row] of this.scores) row.show(person.scores[name]);
+    setText(this.damage, damageText(person));
+    setText(this.fatigue, fatigueText(person));
+  }
+}
+
+// Damage of the run so far: if the run is repeated, of each repetition.
+export function damageText({parts, since}: PersonState): string {
+  const cost = (name: keyof PersonState['parts']) => {
+    const part = parts[name].day_share;
+    return part === null ? null : `${name.replace('_', ' ')} ${(100 * part).toPrecision(2)} %`;
+  };
+  const costs = (['lower_back', 'left_shoulder', 'right_shoulder'] as const).map(cost).filter((text) => text !== null);
+  return costs.length === 0 ? '' : `Damage${since !== null && since > kLateStart ? ` since ${since.toFixed(0)} s` : ''}, of a reference day: ${costs.join(', ')}.`;
+}
+
+export function fatigueText({parts}: PersonState): string {
+  const left = kArmParts.flatMap((name) => {
+    const {capacity} = parts[name];
+    return capacity === null ? [] : [`${name.replace('_', ' ')} ${(100 * capacity).toFixed(0)} %`];
+  });
+  return left.length === 0 ? '' : `Strength left (modelled): ${left.join(', ')}.`;
+}

@@ -1,0 +1,100 @@
+// Plays the states of the person: the body moves smoothly between them, everything else is the newest.
+import {kSides, PersonState, Side, Vec3} from './protocol';
+
+export type BodyPoints = {[K in keyof PersonState['points']]: Vec3};
+
+const kKept = 12;
+const kLargestGapMs = 400;  // states with a larger gap are not interpolated
+const kSilentMs = 1500;     // a judged person without news for longer is no longer shown as judged
+
+interface Entry {
+  points: BodyPoints;
+  receivedMs: number;
+}
+
+export class PersonPlayer {
+  latest: PersonState | null = null;
+  count = 0;  // of messages
+  private receivedMs = -Infinity;
+  private entries: Entry[] = [];
+
+  reset() {
+    this.latest = null;
+    this.entries = [];
+  }
+
+  add(person: PersonState, receivedMs: number) {
+    this.latest = person;
+    this.receivedMs = receivedMs;
+    this.count++;
+    const points = pointsOf(person);
+    if (points) {
+      const last = this.entries.at(-1);
+      if (last && receivedMs - last.receivedMs > kLargestGapMs) this.entries = [];
+      this.entries.push({points, receivedMs});
+      if (this.entries.length > kKept) this.entries.shift();
+    } else if (person.status !== 'waiting') {
+      this.entries = [];
+    }
+  }
+
+  // The evaluator judges, but has sent nothing for too long.
+  silent(nowMs: number): boolean {
+    return this.latest?.status === 'judged' && nowMs - this.receivedMs > kSilentMs;
+  }
+
+  // The body at page time `nowMs`, about one message ago; null if it is not known. While no simulated time
+  // passes, it stays.
+  sample(nowMs: number): BodyPoints | null {
+    const n = this.entries.length;
+    if (n === 0) return null;
+    const first = this.entries[0].receivedMs;
+    const interval = n > 1 ? (this.entries[n - 1].receivedMs - first) / (n - 1) : 0;
+    const playMs = nowMs - 1.5 * interval;
+    const after = this.entries.findIndex((entry) => entry.receivedMs > playMs);
+    if (after < 0) return this.entries[n - 1].points;
+    if (after === 0) return this.entries[0].points;
+    const [a, b] = [this.entries[after - 1], this.entries[after]];
+    return mixPoints(a.points, b.points, (playMs - a.receivedMs) / (b.receivedMs - a.receivedMs));
+  }
+}
+
+// null if a point is not known.
+function pointsOf(person: PersonState): BodyPoints | null {
+  return Object.values(person.points).every((point) => point !== null) ? person.points as BodyPoints : null;
+}
+
+function mixPoints(a: BodyPoints, b: BodyPoints, t: number): BodyPoints {
+  return Object.fromEntries(Object.entries(a).map(([name, from]) => {
+    const to = b[name as keyof BodyPoints];
+    return [name, from.map((x, i) => x + (to[i] - x) * t)];
+  })) as BodyPoints;
+}
+
+// Where a figure of the body in a mirror stands, and how large it is. Directions are horizontal unit vectors.
+export interface MirrorPlace {
+  at: Vec3;        // of its feet
+  toward: Vec3;    // from the person to the mirror
+  scale: number;
+}
+
+// The body of a person, who stands at `ground` and faces `forward`, as seen in a mirror: it faces the person,
+// with the left on the person's left.
+export function mirrored(points: BodyPoints, ground: Vec3, forward: Vec3, {at, toward, scale}: MirrorPlace): BodyPoints {
+  return Object.fromEntries(Object.entries(points).map(([name, p]) => {
+    const [x, y, up] = p.map((v, i) => scale * (v - ground[i]));
+    const ahead = x * forward[0] + y * forward[1];
+    const left = y * forward[0] - x * forward[1];
+    return [name, [at[0] - ahead * toward[0] - left * toward[1], at[1] - ahead * toward[1] + left * toward[0],
+                   at[2] + up]];
+  })) as BodyPoints;
+}
+
+export const kWhyNot: Record<Exclude<PersonState['status'], 'judged'>, string> = {
+  waiting: 'No simulated time passes.',
+  no_hand: 'No hand holds a handle, so the posture is not known.',
+  below_ground: 'The handles are below the ground: correct operator.stance.ground.',
+};
+
+// Damage and fatigue of the sides' shoulders and elbows, by the names of the state's parts.
+export const kArmParts = kSides.flatMap((side: Side) => [`${side}_shoulder`, `${side}_elbow`] as const);
