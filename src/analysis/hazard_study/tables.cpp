@@ -7,6 +7,7 @@
 #include "analysis/hazard_study/hazard_study.h"
 #include "core/format.h"
 #include "core/text.h"
+#include "evaluation/censored.h"
 #include "evaluation/statistics_samples.h"
 
 namespace predictor {
@@ -20,6 +21,15 @@ std::vector<double> ValuesOf(const HazardCell& cell, double HazardRun::*value, d
   for (const HazardRun& run : cell.runs)
     if (run.begin >= 0 && run.*value >= least) values.push_back(run.*value);
   return values;
+}
+
+// The largest forces after the hazard began. The emulator's stop ends the force as well, so that of
+// a stopped run is a lower bound. The cobot's own stop is what the person would have met.
+std::vector<CensoredValue> ForcesOf(const HazardCell& cell) {
+  std::vector<CensoredValue> forces;
+  for (const HazardRun& run : cell.runs)
+    if (run.begin >= 0) forces.push_back({run.after, run.cause != StopCause::kNone});
+  return forces;
 }
 
 template <class E>
@@ -40,11 +50,12 @@ std::string Shares(const std::map<std::string, int>& counts, std::size_t runs) {
   return Join(parts, ", ");
 }
 
-// What happened, how soon, and how hard: "force 80 % after 0.42 s; 30.2 N (10.1 N before)".
+// What happened, how soon, and how hard: "force 80 % after 0.42 s; at least 30.2 N (10.1 N
+// before)".
 std::string CellWords(const HazardCell& cell) {
   if (cell.impossible.find("would have no effect") != std::string::npos) return "no effect";
   if (!cell.impossible.empty()) return "impossible";
-  const std::vector<double> after = ValuesOf(cell, &HazardRun::after);
+  const std::vector<CensoredValue> after = ForcesOf(cell);
   if (after.empty()) return "did not begin";
   const std::map<std::string, int> causes = CountBy(cell, &HazardRun::cause);
   std::string text = causes.empty() ? "no stop" : Shares(causes, after.size());
@@ -52,8 +63,8 @@ std::string CellWords(const HazardCell& cell) {
     text += Formatted(" after %.2f s", Median(ValuesOf(cell, &HazardRun::until_stop)));
   const std::map<std::string, int> own = CountBy(cell, &HazardRun::cobot_stop);
   if (!own.empty()) text += "; the cobot itself: " + Shares(own, after.size());
-  return text + Formatted("; %.1f N (%.1f N before)", Quantile(after, 0.95),
-                          Quantile(ValuesOf(cell, &HazardRun::before), 0.95));
+  return text + "; " + BoundText(CensoredQuantile(after, 0.95), "%.1f N") +
+         Formatted(" (%.1f N before)", Quantile(ValuesOf(cell, &HazardRun::before), 0.95));
 }
 
 // The distinct values of a member, in the order of the cells.
@@ -93,23 +104,36 @@ std::string HazardStudyCsv(const HazardStudy& study) {
   std::string csv =
       "scenario,controller,hazard,impossible,runs,begun,stopped,causes,cobot_stops,"
       "until_stop_median_s,force_before_p95_N,force_after_median_N,force_after_p95_N,"
-      "force_after_max_N,torque_after_max_Nm,speed_after_max_m_s,detection_max_s,travel_max_m\n";
+      "force_after_max_N,torque_after_max_Nm,speed_after_max_m_s,detection_max_s,travel_max_m,"
+      "force_after_median_is_bound,force_after_p95_is_bound\n";
   for (const HazardCell& cell : study.cells) {
-    const std::vector<double> after = ValuesOf(cell, &HazardRun::after);
+    const std::vector<CensoredValue> after = ForcesOf(cell);
+    const CensoredValue median = CensoredQuantile(after, 0.5), tail = CensoredQuantile(after, 0.95);
     const std::vector<double> stops = ValuesOf(cell, &HazardRun::until_stop);
     const auto number = [](double x) { return std::isfinite(x) ? Formatted("%.6g", x) : ""; };
     const auto largest = [&](double HazardRun::*value) {
       return number(Quantile(ValuesOf(cell, value), 1));
     };
-    csv += Join({CsvCell(cell.scenario), CsvCell(cell.controller), CsvCell(cell.hazard),
-                 CsvCell(cell.impossible), std::to_string(cell.runs.size()),
-                 std::to_string(after.size()), std::to_string(stops.size()),
+    csv += Join({CsvCell(cell.scenario),
+                 CsvCell(cell.controller),
+                 CsvCell(cell.hazard),
+                 CsvCell(cell.impossible),
+                 std::to_string(cell.runs.size()),
+                 std::to_string(after.size()),
+                 std::to_string(stops.size()),
                  CsvCell(Shares(CountBy(cell, &HazardRun::cause), after.size())),
                  CsvCell(Shares(CountBy(cell, &HazardRun::cobot_stop), after.size())),
-                 number(Median(stops)), number(Quantile(ValuesOf(cell, &HazardRun::before), 0.95)),
-                 number(Median(after)), number(Quantile(after, 0.95)), largest(&HazardRun::after),
-                 largest(&HazardRun::torque), largest(&HazardRun::speed),
-                 largest(&HazardRun::detection), largest(&HazardRun::travel)},
+                 number(Median(stops)),
+                 number(Quantile(ValuesOf(cell, &HazardRun::before), 0.95)),
+                 number(median.value),
+                 number(tail.value),
+                 largest(&HazardRun::after),
+                 largest(&HazardRun::torque),
+                 largest(&HazardRun::speed),
+                 largest(&HazardRun::detection),
+                 largest(&HazardRun::travel),
+                 std::to_string(median.at_least),
+                 std::to_string(tail.at_least)},
                 ",") +
            "\n";
   }
