@@ -12,8 +12,6 @@
 namespace predictor::assessment {
 namespace {
 
-constexpr std::size_t kSampledStride = 20;  // samples between two evaluations of all persons: 5 Hz
-
 // The value below which a share p of the values lies.
 template <class T>
 T QuantileOf(std::vector<T> values, double p) {
@@ -138,9 +136,7 @@ std::vector<double> OverRun(const std::vector<double>& held, std::span<const Per
 
 void AddDamage(const Scenario& scenario, const NominalChain& nominal,
                std::span<const PersonSample> all, Assessment* a) {
-  // The moment of the hands' forces alone about the lower back, without the weight of the trunk.
-  const std::vector<double> back = SeriesOf(
-      nominal, [](const Frame& f) { return std::abs(f.loads.overload[person::kTorsoFlexion]); });
+  const std::vector<double> back = SeriesOf(nominal, LiftMoment);
   a->damage.push_back(DamageOfMoment("LiFFT", "lower back", OverRun(back, all),
                                      ergonomics::LiftDamage, ergonomics::kLiftRisk));
   for (int hand = 0; hand < kHands; ++hand) {

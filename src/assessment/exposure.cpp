@@ -11,8 +11,9 @@
 namespace predictor::assessment {
 namespace {
 
-constexpr double kShift = 8 * 3600;  // [s]
-constexpr std::size_t kStride = 10;  // samples per step of fatigue, which changes within minutes
+constexpr double kShift = 8 * 3600;              // [s]
+constexpr std::size_t kStride = 10;              // samples per step of fatigue
+constexpr double kStep = kStride / kSampleRate;  // [s]
 
 // Loads at 10 Hz, as means of the samples at 100 Hz.
 std::vector<double> Coarse(std::span<const double> load) {
@@ -57,19 +58,29 @@ DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
   return result;
 }
 
+void FatigueTracker::Add(double load) {
+  sum_ += load;
+  if (++count_ < kStride) return;
+  Step(sum_ / static_cast<double>(kStride));
+  sum_ = 0;
+  count_ = 0;
+}
+
+void FatigueTracker::Step(double mean_load) {
+  state_ = ergonomics::Fatigued(state_, std::min(mean_load, 1.0), kStep, rates_);
+}
+
 FatigueResult FatigueOfLoad(const std::string& joint, ergonomics::FatigueJoint kind,
                             std::span<const double> load) {
   FatigueResult result = {joint};
   const std::vector<double> coarse = Coarse(load);
-  const auto rates = ergonomics::FatigueRatesOf(kind);
-  constexpr double kStep = kStride / kSampleRate;  // [s]
-  ergonomics::Compartments state;
+  FatigueTracker state(kind);
   result.time_to_limit = std::numeric_limits<double>::infinity();
   double time = 0;
   const auto run = [&] {
     for (const double u : coarse) {
       if (u > state.capacity() && time < result.time_to_limit) result.time_to_limit = time;
-      state = ergonomics::Fatigued(state, std::min(u, 1.0), kStep, rates);
+      state.Step(u);
       time += kStep;
     }
   };

@@ -1,6 +1,7 @@
 // Damage and fatigue that a run causes, from the moments and forces over time.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,7 +31,25 @@ inline constexpr double kDamageCutoff = 1;     // [Hz]
 inline constexpr double kMinRange = 5;         // [N·m]
 inline constexpr double kMinRangeShare = 0.2;  // of the largest range
 
-// Fatigue of one joint by 3CC-r.
+// Fatigue of one joint by 3CC-r, sample after sample.
+class FatigueTracker {
+ public:
+  explicit FatigueTracker(ergonomics::FatigueJoint kind)
+      : rates_(ergonomics::FatigueRatesOf(kind)) {}
+  // The load of the next sample at 100 Hz, as a share of strength. Fatigue changes within minutes,
+  // so its state follows at 10 Hz, with the mean load.
+  void Add(double load);
+  void Step(double mean_load);                           // of the next 0.1 s
+  double capacity() const { return state_.capacity(); }  // strength that is left, as a share
+
+ private:
+  ergonomics::FatigueRates rates_;
+  ergonomics::Compartments state_;
+  double sum_ = 0;
+  std::size_t count_ = 0;
+};
+
+// Fatigue of one joint over a run.
 struct FatigueResult {
   std::string joint;         // "left shoulder"
   double mean_load = 0;      // share of strength

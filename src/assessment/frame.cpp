@@ -80,6 +80,10 @@ double UseOf(double torque, StrengthDirection flexion, StrengthDirection extensi
 
 }  // namespace
 
+double LiftMoment(const Frame& frame) {
+  return std::abs(frame.loads.overload[person::kTorsoFlexion]);
+}
+
 Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,
               const person::BodyLoads& loads, bool reached, Sex sex, const WorkPattern& work) {
   Frame frame;

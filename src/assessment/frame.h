@@ -42,6 +42,10 @@ struct FrameInput {
 Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,
               const person::BodyLoads& loads, bool reached, Sex sex, const WorkPattern& work);
 
+// The moment of the hands' forces alone about the lower back, without the weight of the trunk
+// [N·m].
+double LiftMoment(const Frame& frame);
+
 // A force that rises faster counts as a shock in RULA and REBA (design choice) [N/s].
 inline constexpr double kShockRate = 300;
 

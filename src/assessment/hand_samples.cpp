@@ -38,49 +38,52 @@ PersonSample SampleOf(std::span<const TickRecord> ticks) {
   return sample;
 }
 
-SampleCollector::SampleCollector(const Scenario& scenario)
+SampleBuilder::SampleBuilder(const Scenario& scenario)
     : ticks_per_sample_(
           static_cast<std::uint64_t>(std::max(1.0, std::round(scenario.rate / kSampleRate)))),
       dt_(1 / scenario.rate) {
   pending_.reserve(ticks_per_sample_);
 }
 
-void SampleCollector::Add(const TickRecord& record) {
-  const bool follows = pending_.empty() || record.run_time < pending_.back().run_time + 1.5 * dt_;
+std::optional<PersonSample> SampleBuilder::Add(const TickRecord& record) {
+  const bool follows = !last_time_ || record.run_time < *last_time_ + 1.5 * dt_;
   if (!record.ran || !follows) {
     // A part of a sample would have another bandwidth, so it is dropped.
-    interrupted_ = interrupted_ || !samples_.empty() || !pending_.empty();
+    interrupted_ = interrupted_ || last_time_;
     pending_.clear();
   }
-  if (!record.ran) return;
+  if (!record.ran) return {};
   if (first_.tick == 0) first_ = record;
+  last_time_ = record.run_time;
   pending_.push_back(record);
-  if (pending_.size() == ticks_per_sample_) Close();
+  if (pending_.size() < ticks_per_sample_) return {};
+  return Close();
 }
 
-void SampleCollector::Close() {
+PersonSample SampleBuilder::Close() {
   PersonSample sample = SampleOf(pending_);
-  const auto same = [&](std::size_t h) {
-    return sample.body.hands[h].present == samples_.back().body.hands[h].present;
-  };
-  sample.continues = !interrupted_ && (samples_.empty() || (same(0) && same(1)));
+  const std::array<bool, kHands> present = {sample.body.hands[0].present,
+                                            sample.body.hands[1].present};
+  sample.continues = !interrupted_ && (!present_ || *present_ == present);
+  present_ = present;
   interrupted_ = false;
-  samples_.push_back(sample);
   pending_.clear();
+  return sample;
+}
+
+std::optional<PersonSample> HeldFilter::Take(PersonSample sample) {
+  const bool held = IsHeld(sample);
+  if (held && gap_) sample.continues = false;
+  gap_ = !held;
+  if (!held) return {};
+  return sample;
 }
 
 std::vector<PersonSample> Held(const std::vector<PersonSample>& samples) {
   std::vector<PersonSample> held;
-  bool gap = false;
-  for (const PersonSample& sample : samples) {
-    if (!IsHeld(sample)) {
-      gap = true;
-      continue;
-    }
-    held.push_back(sample);
-    if (gap) held.back().continues = false;
-    gap = false;
-  }
+  HeldFilter filter;
+  for (const PersonSample& sample : samples)
+    if (const auto taken = filter.Take(sample)) held.push_back(*taken);
   return held;
 }
 

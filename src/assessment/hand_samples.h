@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,29 +28,54 @@ PersonSample SampleOf(std::span<const TickRecord> ticks);
 
 // Means of position and wrench over all ticks of 10 ms. The middle tick gives the orientation. Only
 // ticks in RUN count.
-class SampleCollector {
+class SampleBuilder {
  public:
-  explicit SampleCollector(const Scenario& scenario);
-  void Add(const TickRecord& record);
+  explicit SampleBuilder(const Scenario& scenario);
+  // The sample that this tick completes, if it completes one.
+  std::optional<PersonSample> Add(const TickRecord& record);
   // The record of the first tick in RUN; `tick` is 0 before it.
   const TickRecord& first() const { return first_; }
-  const std::vector<PersonSample>& samples() const { return samples_; }
 
  private:
-  void Close();
+  PersonSample Close();
 
   std::uint64_t ticks_per_sample_;
   double dt_;
   TickRecord first_{};
   std::vector<TickRecord> pending_;
-  std::vector<PersonSample> samples_;
+  std::optional<double> last_time_;                  // of the last tick in RUN [s]
+  std::optional<std::array<bool, kHands>> present_;  // in the sample before
   bool interrupted_ = false;
+};
+
+// All samples of a run.
+class SampleCollector {
+ public:
+  explicit SampleCollector(const Scenario& scenario) : builder_(scenario) {}
+  void Add(const TickRecord& record) {
+    if (const auto sample = builder_.Add(record)) samples_.push_back(*sample);
+  }
+  const TickRecord& first() const { return builder_.first(); }
+  const std::vector<PersonSample>& samples() const { return samples_; }
+
+ private:
+  SampleBuilder builder_;
+  std::vector<PersonSample> samples_;
 };
 
 inline bool IsHeld(const PersonSample& sample) {
   return sample.body.hands[0].present || sample.body.hands[1].present;
 }
-// The samples in which a hand holds a handle. Without one, nothing is known of the posture.
+
+// Passes on the samples in which a hand holds a handle. Without one, nothing is known of the
+// posture.
+class HeldFilter {
+ public:
+  std::optional<PersonSample> Take(PersonSample sample);
+
+ private:
+  bool gap_ = false;  // since the last sample that was passed on
+};
 std::vector<PersonSample> Held(const std::vector<PersonSample>& samples);
 
 }  // namespace predictor::assessment

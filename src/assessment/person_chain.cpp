@@ -1,28 +1,11 @@
 #include "assessment/person_chain.h"
 
 #include "person/body_model.h"
-#include "person/posture_solver.h"
 
 namespace predictor::assessment {
 namespace {
 
-std::vector<person::Posture> PosturesOf(const PersonSetup& setup,
-                                        std::span<const PersonSample> samples,
-                                        const std::function<void(double)>& progress) {
-  const person::PostureSolver solver(person::BodyModel(setup.body), setup.stance, setup.grips);
-  std::vector<person::Posture> postures;
-  postures.reserve(samples.size());
-  for (const PersonSample& sample : samples) {
-    postures.push_back(postures.empty() ? solver.Solve(sample.body)
-                                        : solver.Solve(sample.body, postures.back().q));
-    progress(static_cast<double>(postures.size()) / static_cast<double>(samples.size()));
-  }
-  return postures;
-}
-
-// Smooths each part without interruption by itself. Trunk and head count as at rest at each time:
-// that they follow the hands at once is an assumption of the posture, and the acceleration that it
-// would cause was not observed.
+// Smooths each part without interruption by itself.
 std::vector<person::BodyMotion> MotionsOf(const std::vector<person::Posture>& postures,
                                           std::span<const PersonSample> samples) {
   std::vector<person::BodyMotion> motions;
@@ -31,17 +14,53 @@ std::vector<person::BodyMotion> MotionsOf(const std::vector<person::Posture>& po
     while (end < postures.size() && samples[end].continues) ++end;
     std::vector<person::BodyVector> q;
     for (std::size_t i = begin; i < end; ++i) q.push_back(postures[i].q);
-    auto part = person::SmoothMotion(q, 1 / kSampleRate);
-    for (person::BodyMotion& motion : part) {
-      motion.v.head<person::kLeftArm>().setZero();
-      motion.a.head<person::kLeftArm>().setZero();
-    }
+    const auto part = MotionsOfPart(q);
     motions.insert(motions.end(), part.begin(), part.end());
   }
   return motions;
 }
 
-// Over 0.1 s, so that noise and tremor do not count.
+std::vector<Frame> FramesOf(const PersonSetup& setup, std::span<const PersonSample> samples,
+                            std::size_t i, const WorkPattern& work,
+                            const person::SampledBody& body) {
+  std::vector<Frame> frames;
+  frames.reserve(body.samples.size());
+  for (const person::SampledPosture& one : body.samples)
+    frames.push_back(
+        FrameOfPerson(one, {samples[i].body, ForceRates(samples, i)}, setup.body.sex, work));
+  return frames;
+}
+
+}  // namespace
+
+NominalPerson::NominalPerson(const PersonSetup& setup, const WorkPattern& work)
+    : setup_(setup),
+      work_(work),
+      solver_(person::BodyModel(setup.body), setup.stance, setup.grips),
+      dynamics_(solver_.model(), setup.stance) {}
+
+person::Posture NominalPerson::Solve(const PersonSample& sample) {
+  const person::Posture posture =
+      last_ ? solver_.Solve(sample.body, *last_) : solver_.Solve(sample.body);
+  last_ = posture.q;
+  return posture;
+}
+
+Frame NominalPerson::Judge(const FrameInput& input, const person::BodyMotion& motion,
+                           bool reached) const {
+  return FrameOf(input, person::AnglesOf(model(), motion.q, setup_.stance.width),
+                 dynamics_.Evaluate(motion, input.sample), reached, setup_.body.sex, work_);
+}
+
+std::vector<person::BodyMotion> MotionsOfPart(std::span<const person::BodyVector> postures) {
+  auto motions = person::SmoothMotion(postures, 1 / kSampleRate);
+  for (person::BodyMotion& motion : motions) {
+    motion.v.head<person::kLeftArm>().setZero();
+    motion.a.head<person::kLeftArm>().setZero();
+  }
+  return motions;
+}
+
 std::array<double, kHands> ForceRates(std::span<const PersonSample> samples, std::size_t i) {
   constexpr std::size_t kWindow = 10;  // samples
   std::array<double, kHands> rates = {};
@@ -56,34 +75,25 @@ std::array<double, kHands> ForceRates(std::span<const PersonSample> samples, std
   return rates;
 }
 
-std::vector<Frame> FramesOf(const PersonSetup& setup, std::span<const PersonSample> samples,
-                            std::size_t i, const WorkPattern& work,
-                            const person::SampledBody& body) {
-  std::vector<Frame> frames;
-  frames.reserve(body.samples.size());
-  for (const person::SampledPosture& one : body.samples)
-    frames.push_back(FrameOf({samples[i].body, ForceRates(samples, i)}, one.angles, one.loads,
-                             one.reached, setup.body.sex, work));
-  return frames;
-}
-
-}  // namespace
-
 NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> samples,
                         const WorkPattern& work, const std::function<void(double)>& progress) {
+  NominalPerson person(setup, work);
   NominalChain chain;
-  chain.postures = PosturesOf(setup, samples, progress);
-  chain.motions = MotionsOf(chain.postures, samples);
-  const person::BodyModel model(setup.body);
-  const person::BodyDynamics dynamics(model, setup.stance);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const person::BodySample& sample = samples[i].body;
-    const person::BodyMotion& motion = chain.motions[i];
-    chain.frames.push_back(FrameOf(
-        {sample, ForceRates(samples, i)}, person::AnglesOf(model, motion.q, setup.stance.width),
-        dynamics.Evaluate(motion, sample), chain.postures[i].reached, setup.body.sex, work));
+  chain.postures.reserve(samples.size());
+  for (const PersonSample& sample : samples) {
+    chain.postures.push_back(person.Solve(sample));
+    progress(static_cast<double>(chain.postures.size()) / static_cast<double>(samples.size()));
   }
+  chain.motions = MotionsOf(chain.postures, samples);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    chain.frames.push_back(person.Judge({samples[i].body, ForceRates(samples, i)}, chain.motions[i],
+                                        chain.postures[i].reached));
   return chain;
+}
+
+Frame FrameOfPerson(const person::SampledPosture& person, const FrameInput& input, Sex sex,
+                    const WorkPattern& work) {
+  return FrameOf(input, person.angles, person.loads, person.reached, sex, work);
 }
 
 SampledChain RunSampled(const PersonSetup& setup, std::span<const PersonSample> samples,

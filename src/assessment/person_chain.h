@@ -1,7 +1,10 @@
-// The chain from the samples of a run to frames: posture, motion, loads, scores.
+// The chain from the samples of a run to frames: posture, motion, loads, scores. The evaluation of
+// a recorded run and the live one use the same steps.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,9 +12,38 @@
 #include "assessment/hand_samples.h"
 #include "assessment/person_setup.h"
 #include "person/posture_samples.h"
+#include "person/posture_solver.h"
 #include "person/skeleton.h"
 
 namespace predictor::assessment {
+
+// The steps of the nominal person.
+class NominalPerson {
+ public:
+  NominalPerson(const PersonSetup& setup, const WorkPattern& work);
+  // The posture of the next sample; the solver starts at the one before.
+  person::Posture Solve(const PersonSample& sample);
+  // `motion` of the sample's posture, smoothed.
+  Frame Judge(const FrameInput& input, const person::BodyMotion& motion, bool reached) const;
+  const person::BodyModel& model() const { return solver_.model(); }
+  const PersonSetup& setup() const { return setup_; }
+
+ private:
+  PersonSetup setup_;
+  WorkPattern work_;
+  person::PostureSolver solver_;
+  person::BodyDynamics dynamics_;
+  std::optional<person::BodyVector> last_;
+};
+
+// The motions of the postures of a part without interruption. Trunk and head count as at rest at
+// each time: that they follow the hands at once is an assumption of the posture, and the
+// acceleration that it would cause was not observed.
+std::vector<person::BodyMotion> MotionsOfPart(std::span<const person::BodyVector> postures);
+
+// How fast each hand's force changed before sample i, over 0.1 s, so that noise and tremor do not
+// count [N/s]. 0 if the samples are interrupted there.
+std::array<double, kHands> ForceRates(std::span<const PersonSample> samples, std::size_t i);
 
 // The nominal person at each sample.
 struct NominalChain {
@@ -21,6 +53,13 @@ struct NominalChain {
 };
 NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> samples,
                         const WorkPattern& work, const std::function<void(double)>& progress);
+
+// The frame of one possible person.
+Frame FrameOfPerson(const person::SampledPosture& person, const FrameInput& input, Sex sex,
+                    const WorkPattern& work);
+
+// Samples between two evaluations of all possible persons: 5 Hz.
+inline constexpr std::size_t kSampledStride = 20;
 
 // All possible persons at every `stride`-th sample: frames[time][person].
 struct SampledChain {

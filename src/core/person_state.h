@@ -19,8 +19,8 @@ enum class PersonStatus : std::uint8_t {
 inline constexpr std::array kPersonStatusNames = {"judged", "waiting", "no_hand", "below_ground"};
 inline constexpr std::size_t kPersonStatuses = kPersonStatusNames.size();
 
-// Points of the body, for drawing. Joints, except: eyes, the middle of both; head, its top; hand,
-// the middle of the bar in it; toes, the front of the foot on the ground.
+// Points of the body, for drawing. Joints, except: eyes, the middle of both; head, its middle;
+// hand, the knuckles; toes, the front of the foot on the ground.
 enum class BodyPoint : std::uint8_t {
   kPelvis,  // middle of the hip joints
   kL5S1,
@@ -121,7 +121,7 @@ struct PersonScoreRow {
 inline constexpr std::array kPersonScoreRows = {
     PersonScoreRow{"rula", 7, 4}, PersonScoreRow{"reba", 15, 5}, PersonScoreRow{"owas", 4, 4}};
 inline constexpr std::size_t kPersonScores = kPersonScoreRows.size();
-inline constexpr std::size_t kMostClasses = 5;
+inline constexpr std::size_t kMaxClasses = 5;
 
 // Warnings, as bits. A warning begins when its value has been at or beyond `on` for kWarnAfter, and
 // ends when it has been back beyond `off` for kCalmAfter (design choices).
@@ -181,7 +181,7 @@ struct ScoreState {
   std::uint8_t level = 0;  // its action level
   std::uint16_t reserved = 0;
   // Of each action level, over the possible persons, at interval_time; the first: level 1.
-  std::array<float, kMostClasses> probability = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
+  std::array<float, kMaxClasses> probability = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
 };
 struct PartState {
   // For colouring: of the lower back compression over its limit, otherwise torque over the mean
@@ -197,9 +197,9 @@ struct PartState {
 struct PersonState {
   std::uint64_t tick = 0;     // the newest one that is considered
   std::uint64_t wall_ns = 0;  // monotonic clock at that tick
-  double run_time = 0;        // of that tick, and of the points
+  double run_time = 0;        // of the points: middle of the 10 ms that end with that tick
   double load_time = 0;       // of loads, scores, warnings
-  double interval_time = 0;   // of intervals and probabilities; while there are none, not used
+  double interval_time = 0;   // of intervals and probabilities; not used before there are some
   double since = 0;           // start of damage and fatigue: of the run, or of the evaluator
   PersonStatus status = PersonStatus::kWaiting;
   std::uint8_t reached = 0;          // 1: both hands of the posture reach their handles
@@ -276,7 +276,8 @@ void VisitScores(V& v, S& s) {
 template <class V, class S>
 void VisitPerson(V& v, S& s) {
   v.Number("tick", "", "the newest one that is considered", s.tick);
-  v.Number("run_time", "s", "of that tick and of the points", s.run_time);
+  v.Number("run_time", "s", "of the points: middle of the 10 ms that end with that tick",
+           s.run_time);
   v.Number("load_time", "s", "of loads, scores and warnings", s.load_time);
   v.Number("interval_time", "s", "of intervals and probabilities", s.interval_time);
   v.Number("since", "s", "start of damage and fatigue", s.since);

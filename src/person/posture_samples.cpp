@@ -130,17 +130,23 @@ PostureSampler::PostureSampler(const BodySpec& spec, const Stance& stance,
   }
 }
 
+SampledPosture PostureSampler::EvaluatePerson(std::size_t i, const BodySample& sample,
+                                              const BodyMotion& nominal) const {
+  const Person& person = persons_[i];
+  const Posture posture = person.solver.Solve(sample, nominal.q);
+  SampledPosture one;
+  one.q = posture.q;
+  one.reached = posture.reached;
+  one.angles = AnglesOf(person.solver.model(), posture.q, person.solver.stance().width);
+  one.loads = person.dynamics.Evaluate({posture.q, nominal.v, nominal.a}, sample);
+  return one;
+}
+
 SampledBody PostureSampler::Evaluate(const BodySample& sample, const BodyMotion& nominal) const {
   SampledBody body;
-  for (const Person& person : persons_) {
-    const Posture posture = person.solver.Solve(sample, nominal.q);
-    SampledPosture one;
-    one.q = posture.q;
-    one.reached = posture.reached;
-    one.angles = AnglesOf(person.solver.model(), posture.q, person.solver.stance().width);
-    one.loads = person.dynamics.Evaluate({posture.q, nominal.v, nominal.a}, sample);
-    body.reached += one.reached;
-    body.samples.push_back(one);
+  for (std::size_t i = 0; i < persons_.size(); ++i) {
+    body.samples.push_back(EvaluatePerson(i, sample, nominal));
+    body.reached += body.samples.back().reached;
   }
   Summarise(
       body.samples, [](SampledPosture& s) -> PostureAngles& { return s.angles; },

@@ -69,6 +69,9 @@ class PostureSampler {
   // `nominal` is the motion of the nominal posture. Its velocities and accelerations are used for
   // all samples, whose posture is solved for this time alone, starting at the nominal one.
   SampledBody Evaluate(const BodySample& sample, const BodyMotion& nominal) const;
+  // The same for one of the kPostureSamples persons.
+  SampledPosture EvaluatePerson(std::size_t i, const BodySample& sample,
+                                const BodyMotion& nominal) const;
 
   // The body of the k-th sample.
   const BodyModel& model(std::size_t k) const { return persons_[k].solver.model(); }

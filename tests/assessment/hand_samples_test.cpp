@@ -29,7 +29,7 @@ TEST(Samples, DoNotContinueAcrossAPauseOrLostTicks) {
   for (std::uint64_t tick = 51; tick <= 60; ++tick) run.Add(RecordOf(tick, 1, 0));
   std::vector<bool> continues;
   for (const PersonSample& sample : run.samples()) continues.push_back(sample.continues);
-  EXPECT_EQ(continues, (std::vector<bool>{true, false, true, true}));
+  EXPECT_EQ(continues, (std::vector<bool>{true, false, true, false}));
 }
 
 TEST(Samples, TellWhichHandHolds) {

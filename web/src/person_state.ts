@@ -3,7 +3,7 @@
 export interface PersonState {
   type: 'person';
   tick: number;  // the newest one that is considered
-  run_time: number | null;  // [s] of that tick and of the points
+  run_time: number | null;  // [s] of the points: middle of the 10 ms that end with that tick
   load_time: number | null;  // [s] of loads, scores and warnings
   interval_time: number | null;  // [s] of intervals and probabilities
   since: number | null;  // [s] start of damage and fatigue

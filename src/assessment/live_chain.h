@@ -1,0 +1,52 @@
+// The nominal chain for a run that is not over: one sample after another, with a fixed delay.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "assessment/person_chain.h"
+
+namespace predictor::assessment {
+
+// Accelerations need later postures: loads and scores are judged so many samples late (design
+// choice: 0.1 s, five time constants of the smoothing filter, so that its result hardly changes
+// any more).
+inline constexpr std::size_t kLiveDelay = 10;
+// Earlier postures that the filter sees. After 0.5 s it has forgotten how it began.
+inline constexpr std::size_t kLiveHistory = 60;
+
+struct JudgedSample {
+  PersonSample sample;
+  std::array<double, kHands> force_rate = {};  // as in FrameInput
+  person::BodyMotion motion;
+  Frame frame;
+};
+
+// Postures, measured forces and force rates are those of RunNominal. Motions are exactly those as
+// well if the whole part without interruption is known and at most kLiveHistory samples long, and
+// otherwise approximately.
+class LiveChain {
+ public:
+  LiveChain(const PersonSetup& setup, const WorkPattern& work) : person_(setup, work) {}
+
+  // Takes the next sample in which a hand holds a handle.
+  void Add(const PersonSample& sample);
+  // The posture of the newest sample.
+  const person::Posture& newest() const { return postures_.back(); }
+  // The next sample that can be judged. `all`: no later sample continues the known ones, so all of
+  // them can be judged. Returns false if no sample can be judged yet.
+  bool Next(bool all, JudgedSample* judged);
+
+  const person::BodyModel& model() const { return person_.model(); }
+  const PersonSetup& setup() const { return person_.setup(); }
+
+ private:
+  void Forget();
+
+  NominalPerson person_;
+  std::vector<PersonSample> samples_;  // the same index in both
+  std::vector<person::Posture> postures_;
+  std::size_t next_ = 0;  // to be judged
+};
+
+}  // namespace predictor::assessment

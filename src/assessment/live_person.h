@@ -1,0 +1,48 @@
+// The person in a run that is not over: a state of 100 Hz from the ticks, one after another.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "assessment/hand_samples.h"
+#include "assessment/live_chain.h"
+#include "assessment/live_exposure.h"
+#include "assessment/live_values.h"
+#include "core/person_state.h"
+
+namespace predictor::assessment {
+
+class LivePerson {
+ public:
+  // Throws InputError if something is missing (MissingForPosture) or no adult has such a body.
+  LivePerson(const Scenario& scenario, const WorkPattern& work);
+
+  // Takes the next tick of a run or of a replay. Returns whether state() is new. A tick that was
+  // seen before is ignored; after an earlier one, damage and fatigue begin again. Throws InputError
+  // if place, grips and handles contradict one another.
+  bool Add(const TickRecord& record);
+  const PersonState& state() const { return state_; }
+
+ private:
+  void BeginAgain();
+  void Begin();
+  bool Wait(const TickRecord& record);
+  void Take(PersonSample sample);
+  void TakeHeld(const PersonSample& sample);
+  void Judge(bool all);
+  void Rest(PersonStatus status);
+
+  Scenario scenario_;
+  WorkPattern work_;
+  std::uint64_t last_tick_ = 0;
+  std::optional<PersonSetup> setup_;  // from the first tick in RUN
+  SampleBuilder builder_;
+  HeldFilter held_;
+  std::optional<LiveChain> chain_;
+  std::optional<LiveIntervals> intervals_;
+  LiveExposure exposure_;
+  WarningKeeper warnings_;
+  PersonState state_;
+};
+
+}  // namespace predictor::assessment

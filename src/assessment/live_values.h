@@ -1,0 +1,53 @@
+// From frames to the numbers of a person's state: gauges, scores, intervals, warnings.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "assessment/live_chain.h"
+#include "core/person_state.h"
+
+namespace predictor::assessment {
+
+// Writes gauges, scores and loads of the nominal person into `state`, and keeps the intervals.
+void WriteFrame(const JudgedSample& judged, PersonState* state);
+
+// Intervals and probabilities from the frames of all possible persons.
+void WriteIntervals(std::span<const Frame> frames, const PersonSample& sample, PersonState* state);
+// The same as unknown.
+void ForgetValues(PersonState* state);
+
+// The possible persons, a few at a time, so that the nominal person is never late.
+class LiveIntervals {
+ public:
+  LiveIntervals(const PersonSetup& setup, const WorkPattern& work);
+  // Call with each judged sample: each kSampledStride-th one is evaluated for all persons. Writes
+  // the results when they are complete.
+  void Add(const JudgedSample& judged, PersonState* state);
+
+ private:
+  PersonSetup setup_;
+  WorkPattern work_;
+  person::PostureSampler sampler_;
+  std::size_t count_ = 0;
+  std::optional<JudgedSample> current_;
+  std::vector<Frame> frames_;  // of the persons so far
+};
+
+// Warnings with two thresholds and two times each, so that they do not flicker.
+class WarningKeeper {
+ public:
+  // The bits of PersonState::warnings at the simulated time [s] of the judged sample.
+  std::uint16_t Update(const Frame& frame, double time);
+  void Clear() { *this = {}; }
+
+ private:
+  struct Entry {
+    bool on = false;
+    std::optional<double> since;  // the value asks for the other state [s]
+  };
+  std::array<Entry, kPersonWarnings> entries_;
+};
+
+}  // namespace predictor::assessment
