@@ -1,6 +1,8 @@
-// What the evaluation of the person costs: posture, loads, muscles, and 64 possible persons.
+// What the evaluation of the person costs: posture, loads, muscles, 64 possible persons, and all
+// of it live.
 #include <cmath>
 
+#include "assessment/live_person.h"
 #include "muscles/stiffness.h"
 #include "person/posture_samples.h"
 #include "samples.h"
@@ -45,6 +47,44 @@ double MusclesAt(const std::array<muscles::ArmModel, kHands>& arms,
   return sum;
 }
 
+// Ticks of a run in which the hands follow HandlesAt.
+TickRecord TickAt(const person::Stance& stance, std::uint64_t tick) {
+  TickRecord record{};
+  record.tick = tick;
+  record.run_time = 1e-3 * static_cast<double>(tick);
+  record.ran = 1;
+  const person::BodySample sample = HandlesAt(stance, record.run_time);
+  for (std::size_t h = 0; h < kHands; ++h) {
+    record.hands[h].present = record.hands[h].gripping = 1;
+    record.hands[h].real.pose = ToRecord(sample.hands[h].X_WD);
+    record.hands[h].wrench[2] = 40;
+  }
+  return record;
+}
+
+// The share of a core that the evaluator needs: nominal person at 100 Hz, 64 persons at 5 Hz.
+void TimeLive(bool quick) {
+  Scenario scenario;
+  scenario.left_handle = scenario.right_handle = HandleSpec{};
+  scenario.operator_.body = BodySpec{};
+  scenario.operator_.stance = StanceSpec{};
+  const person::Stance stance = person::StanceAt({0, 0, 0}, {1, 0, 0});
+  assessment::LivePerson live(scenario, {});
+  const std::uint64_t ticks = quick ? 2000 : 20000;
+  std::vector<double> states;
+  double all = 0;
+  for (std::uint64_t tick = 1; tick <= ticks; ++tick) {
+    const TickRecord record = TickAt(stance, tick);
+    bool judged = false;
+    const double us = Microseconds([&] { judged = live.Add(record); });
+    all += us;
+    if (judged) states.push_back(us);
+  }
+  std::printf("live: a state takes %.0f us (p50), %.0f us (p99); all of it %.1f %% of a core\n",
+              Median(states), Quantile(states, 0.99),
+              all / (1e3 * static_cast<double>(ticks)) * 100);
+}
+
 }  // namespace
 
 void TimePerson(bool quick) {
@@ -87,6 +127,7 @@ void TimePerson(bool quick) {
   row("64 possible persons", persons);
   std::printf("nominal chain: %.0f Hz%s\n", 1e6 / (Median(next) + Median(loads) + Median(muscle)),
               std::isfinite(check) ? "" : " (not finite)");
+  TimeLive(quick);
 }
 
 }  // namespace predictor::bench

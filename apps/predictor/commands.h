@@ -72,6 +72,7 @@ struct ServeOptions {
   // while a page shows the results.
   std::optional<bool> stay;
   viewer::ViewerOptions page;
+  bool evaluation = true;  // the person is judged live, if the scenario says enough
   bool ros_tcp = false;
   ros_tcp::RosTcpOptions ros;
 };
@@ -191,7 +192,7 @@ int ListChannelsCommand(const RecordingOptions& options);
 // Writes to `output`, or to NAME.repaired.mcap next to the recording.
 int RepairCommand(const RecordingOptions& options);
 // Shows a recording in the viewer until asked to end.
-int ReplayCommand(const std::string& recording, const viewer::ViewerOptions& options);
+int ReplayCommand(const std::string& recording, const ServeOptions& options);
 // Returns the exit code kDeparted if the recomputed run differs.
 int VerifyCommand(const RecordingOptions& options);
 // Tries the library of a controller on a recorded run. Returns the exit code kUnfit if it fails.

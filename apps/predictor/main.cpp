@@ -5,6 +5,7 @@
 
 #include "command_line.h"
 #include "core/error.h"
+#include "evaluator/evaluator_process.h"
 #include "screen.h"
 #include "watchdog/watchdog_process.h"
 
@@ -32,14 +33,15 @@ constexpr const char* kFooter =
     "\n"
     "No command replaces an existing file without --force.\n";
 
-// Runs the processes that a run starts for its page, for Unity and as its watchdog; users do not
-// start them. Returns a negative value if the command line names none of them.
+// Runs the processes that a run starts for its page, for Unity, as its watchdog and to judge the
+// person; users do not start them. Returns a negative value if the command line names none of them.
 int RunHelperProcess(int argc, char** argv) {
   if (argc != 2) return -1;
   const std::string name = argv[1];
   if (name == viewer::kViewerSubcommand) return viewer::ViewerMain();
   if (name == ros_tcp::kRosTcpSubcommand) return ros_tcp::RosTcpMain();
   if (name == watchdog::kWatchdogSubcommand) return watchdog::WatchdogMain();
+  if (name == evaluator::kEvaluatorSubcommand) return evaluator::EvaluatorMain();
   return -1;
 }
 

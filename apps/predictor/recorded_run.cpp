@@ -21,11 +21,18 @@ namespace {
 
 constexpr double kSnapshotTime = 10;  // between saved states [s]
 
-RecorderOptions Options() {
+RecorderOptions Options(const EvaluationBoard* person = nullptr) {
   RecorderOptions options;
+  options.person = person;
   options.snapshot_bytes = kStateBytes;
   options.tell = [](const std::string& text) { TheScreen().Tell(text); };
   return options;
+}
+
+std::vector<JsonChannel> ChannelsOf(const Emulator& emulator, const EvaluationBoard* person) {
+  auto channels = RecordedScene(emulator.scenario(), emulator.setup().object_start);
+  if (person) channels.push_back(PersonChannel());
+  return channels;
 }
 
 }  // namespace
@@ -107,11 +114,12 @@ std::string VirtualRecording::Told() const {
                    1e-6 * static_cast<double>(writer_.bytes()));
 }
 
-RunRecording::RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board)
+RunRecording::RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board,
+                           const EvaluationBoard* person)
     : board_(board),
       file_(options.file.empty() ? NewRecordingName(emulator.scenario()) : options.file),
-      recorder_(file_, HeaderOf(emulator, options), board->records, Options(),
-                RecordedScene(emulator.scenario(), emulator.setup().object_start)) {
+      recorder_(file_, HeaderOf(emulator, options), board->records, Options(person),
+                ChannelsOf(emulator, person)) {
   Look();
 }
 

@@ -64,9 +64,11 @@ class VirtualRecording {
 class RunRecording final : public SnapshotSink {
  public:
   // Records everything that is published on the board from now on to `options.file`, or to the file
-  // of NewRecordingName. Shows on the board whether it is recording. The board is borrowed. Throws
+  // of NewRecordingName. Shows on the board whether it is recording. person: board of the
+  // evaluator's states, which are recorded as well; null: none. Both boards are borrowed. Throws
   // InputError.
-  RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board);
+  RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board,
+               const EvaluationBoard* person);
 
   std::span<std::byte> AcquireBuffer() noexcept override { return recorder_.SnapshotBuffer(); }
   void Commit(std::uint64_t tick, std::size_t bytes) noexcept override {

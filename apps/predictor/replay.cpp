@@ -12,6 +12,7 @@
 #include "core/format.h"
 #include "core/shared_run.h"
 #include "core/text.h"
+#include "live_evaluation.h"
 #include "progress.h"
 #include "quit.h"
 #include "recorded_run.h"
@@ -42,7 +43,8 @@ std::uint64_t LastTick(RecordingReader* reader, const TickRecord& first) {
   return last.tick;
 }
 
-// Plays a recording in the viewer: each state that a page shows is a recorded tick.
+// Plays a recording in the viewer: each state that a page shows is a recorded tick. Ticks between
+// two such states are published as well, because the evaluator needs them.
 class Player {
  public:
   // All arguments are borrowed. Throws InputError if the recording contains no ticks.
@@ -63,6 +65,7 @@ class Player {
  private:
   void TakeInputs();
   void MoveTo(double position);
+  void Show(const TickRecord& record);
 
   RecordingReader* reader_;
   RunBoard* board_;
@@ -70,6 +73,7 @@ class Player {
   double dt_;  // of a tick [s]
   TickRecord first_, shown_;
   double duration_ = 0, position_ = 0, speed_ = 1;  // speed 0: paused
+  std::uint64_t now_ = 0;                           // monotonic clock at this step [ns]
   std::uint32_t stops_ = 0;
 };
 
@@ -93,12 +97,17 @@ void Player::Play() {
 }
 
 void Player::Step(double dt, std::uint64_t now) {
+  now_ = now;
   TakeInputs();
   MoveTo(std::clamp(position_ + speed_ * dt, 0.0, duration_));
   if (position_ >= duration_) speed_ = 0;
-  TickRecord record = shown_;
-  record.wall_ns = now;
-  board_->records.Publish(record);
+  Show(shown_);
+}
+
+void Player::Show(const TickRecord& record) {
+  TickRecord shown = record;
+  shown.wall_ns = now_;
+  board_->records.Publish(shown);
 }
 
 void Player::TakeInputs() {
@@ -132,6 +141,7 @@ void Player::MoveTo(double position) {
   while ((!near || shown_.tick < tick) && reader_->Next(&record)) {
     shown_ = record;
     if (!near) return;
+    if (shown_.tick < tick) Show(record);
   }
 }
 
@@ -173,7 +183,7 @@ std::string JsonOf(const Verification& v) {
 
 }  // namespace
 
-int ReplayCommand(const std::string& recording, const viewer::ViewerOptions& options) {
+int ReplayCommand(const std::string& recording, const ServeOptions& options) {
   QuitOn({SIGINT, SIGTERM});
   RecordingReader reader(recording);
   TellProblem(reader.problem());
@@ -182,12 +192,14 @@ int ReplayCommand(const std::string& recording, const viewer::ViewerOptions& opt
   Shared<RunBoard> board;
   Shared<RunMailbox> mailbox;
   Player player(&reader, &*board, &*mailbox);
-  viewer::ViewerOptions page = options;
+  const auto show = [](const std::string& text) { TheScreen().Tell(text); };
+  const LiveEvaluation evaluation(options.evaluation, scenario, board, show);
+  viewer::ViewerOptions page = options.page;
+  page.why_not_judged = evaluation.why_not();
   page.secret = viewer::NewAdmissionSecret();
   page.replay = {player.duration(), player.first_tick()};
   page.object_start = FromRecord(player.first().object.pose).p;
-  viewer::ViewerProcess viewer(scenario, page, board, mailbox,
-                               [](const std::string& text) { TheScreen().Tell(text); });
+  viewer::ViewerProcess viewer(scenario, page, board, mailbox, show, evaluation.states());
   TheScreen().Tell(Formatted("%.1f s of %s. Press Ctrl-C to end.", player.duration(),
                              Quote(scenario.name).c_str()));
   player.Play();

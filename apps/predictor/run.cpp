@@ -18,6 +18,7 @@
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
 #include "follower.h"
+#include "live_evaluation.h"
 #include "models/arm_model.h"
 #include "patient_output.h"
 #include "quit.h"
@@ -172,20 +173,21 @@ class Run {
         device_(device.get()),
         emulator_(scenario, std::move(device)) {
     PrintSetup(emulator_, options.quiet);
+    const auto show = [](const std::string& text) { TheScreen().Tell(text); };
+    evaluation_.emplace(serve.evaluation, scenario, board_, show);
     if (!record.off) {
       options.MakeRoom(record.file);
-      recording_.emplace(emulator_, record, &*board_);
+      recording_.emplace(emulator_, record, &*board_, evaluation_->board());
     }
-    const auto tell = [](const std::string& text) { TheScreen().Tell(text); };
     if (machine) {
-      watchdog_.emplace(*machine, std::array{scenario.Has(0), scenario.Has(1)}, board_, tell);
+      watchdog_.emplace(*machine, std::array{scenario.Has(0), scenario.Has(1)}, board_, show);
       TheScreen().Tell("Watchdog  " + watchdog_->Describe());
       enabling_device_ = machine->enabling.has_value();
     }
     const EmulatorSetup& setup = emulator_.setup();
     if (serve.ros_tcp) {
       ros_.emplace(serve.ros, scenario, setup.cobot_joints, setup.object_start, board_, stops_,
-                   tell);
+                   show);
       std::fprintf(stderr, "ROS-TCP   port %u, %s, %s\n", ros_->port(), Name(serve.ros.dialect),
                    serve.ros.allow.empty()
                        ? "this machine only"
@@ -196,7 +198,8 @@ class Run {
     if (!serve.viewer) return;
     viewer::ViewerOptions page = serve.page;
     page.object_start = setup.object_start;
-    viewer_.emplace(scenario, page, board_, mailbox_, tell);
+    page.why_not_judged = evaluation_->why_not();
+    viewer_.emplace(scenario, page, board_, mailbox_, show, evaluation_->states());
   }
 
   // Returns an exit code. `next`: the scenario that a page chose to run after this one.
@@ -284,12 +287,14 @@ class Run {
     serve.page.results = ResultsJson(summary, curves, how, recording, remark).dump();
     serve.page.object_start = emulator_.setup().object_start;
     serve.page.notice.clear();
+    serve.page.why_not_judged = evaluation_->why_not();
     HandOn(&serve);
     viewer_.reset();
     for (RunInput stale; mailbox_->inputs.Pop(&stale);) {
     }
-    viewer_.emplace(scenario_, serve.page, board_, mailbox_,
-                    [](const std::string& text) { TheScreen().Tell(text); });
+    viewer_.emplace(
+        scenario_, serve.page, board_, mailbox_,
+        [](const std::string& text) { TheScreen().Tell(text); }, evaluation_->states());
     Commands commands(&*viewer_, nullptr);
     std::optional<Console> console;
     if (isatty(STDIN_FILENO) == 1) console.emplace(&commands);
@@ -323,6 +328,7 @@ class Run {
   Shared<RunBoard> board_;
   Shared<RunMailbox> mailbox_;  // messages from pages
   Shared<StopMailbox> stops_;   // messages from ROS-TCP clients
+  std::optional<LiveEvaluation> evaluation_;
   std::optional<RunRecording> recording_;
   std::optional<watchdog::WatchdogProcess> watchdog_;
   std::optional<ros_tcp::RosTcpProcess> ros_;

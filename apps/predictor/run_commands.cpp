@@ -43,6 +43,13 @@ void AddRosOptions(CLI::App* app, ServeOptions* o) {
       ->needs(ros);
 }
 
+void AddEvaluation(CLI::App* app, ServeOptions* o) {
+  app->add_flag("--evaluation,!--no-evaluation", o->evaluation,
+                "Judge the person live [default: on, if the scenario says who the operator is and "
+                "where the operator stands]")
+      ->group("Person");
+}
+
 void AddRun(CLI::App* app, Request* r) {
   CLI::App* run = AddCommand(app, kGroup, "run", "Run a scenario in real time", r,
                              [r] { return RunCommand(r->scenario, r->serve, r->record); });
@@ -66,6 +73,7 @@ void AddRun(CLI::App* app, Request* r) {
   AddRecordOptions(run, &r->record,
                    "Record to this file [default: a new file in runs/, about 90 MB per minute]");
   run->add_flag("--no-record", r->record.off, "Do not record")->group("Recording");
+  AddEvaluation(run, &r->serve);
   AddRosOptions(run, &r->serve);
   AddOutput(run, &r->scenario);
   run->footer(
@@ -90,11 +98,12 @@ void AddSimulate(CLI::App* app, Request* r) {
 }
 
 void AddReplay(CLI::App* app, Request* r) {
-  CLI::App* replay = AddCommand(
-      app, kGroup, "replay", "Show a recording in the browser, with seek, speed and step", r,
-      [r] { return ReplayCommand(r->recording.recording, r->serve.page); });
+  CLI::App* replay = AddCommand(app, kGroup, "replay",
+                                "Show a recording in the browser, with seek, speed and step", r,
+                                [r] { return ReplayCommand(r->recording.recording, r->serve); });
   AddRecording(replay, &r->recording.recording);
   AddPageOptions(replay, &r->serve);
+  AddEvaluation(replay, &r->serve);
   replay->footer("Example:\n  predictor replay runs/box_9kg_2026-01-31_14-05-09.mcap\n");
 }
 

@@ -59,11 +59,24 @@ template <class T>
 Shared<T>::~Shared() {
   munmap(memory_, sizeof(T));
   close(descriptor_);
+  if (read_only_ >= 0) close(read_only_);
+}
+
+template <class T>
+int Shared<T>::read_only_descriptor() const {
+  if (read_only_ < 0)
+    read_only_ =
+        open(("/proc/self/fd/" + std::to_string(descriptor_)).c_str(), O_RDONLY | O_CLOEXEC);
+  if (read_only_ < 0)
+    throw std::runtime_error(std::string("shared memory could not be opened for reading: ") +
+                             std::strerror(errno));
+  return read_only_;
 }
 
 template class Shared<RunBoard>;
 template class Shared<RunMailbox>;
 template class Shared<StopMailbox>;
 template class Shared<WatchdogMailbox>;
+template class Shared<EvaluationBoard>;
 
 }  // namespace predictor

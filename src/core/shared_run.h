@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/person_state.h"
 #include "core/record.h"
 #include "core/ring.h"
 #include "core/run_input.h"
@@ -46,6 +47,14 @@ struct WatchdogMailbox {
   std::atomic<std::uint32_t> beats{0};  // counts its signs of life, 1000 per second
 };
 
+inline constexpr std::size_t kPersonRing = 256;  // two and a half seconds
+
+// Written by the evaluator's process; the run's recorder and the viewer read it and trust nothing
+// in it.
+struct EvaluationBoard {
+  RingStorage<PersonState, kPersonRing> states;
+};
+
 // A piece of shared memory that holds one T. It has no name: processes pass it on by its
 // descriptor.
 template <class T>
@@ -63,14 +72,18 @@ class Shared {
   T& operator*() { return *memory_; }
   const T& operator*() const { return *memory_; }
   int descriptor() const { return descriptor_; }
+  // A descriptor that cannot map the memory for writing. Throws std::runtime_error.
+  int read_only_descriptor() const;
 
  private:
   int descriptor_ = -1;
+  mutable int read_only_ = -1;  // opened when it is first asked for
   T* memory_ = nullptr;
 };
 extern template class Shared<RunBoard>;
 extern template class Shared<RunMailbox>;
 extern template class Shared<StopMailbox>;
 extern template class Shared<WatchdogMailbox>;
+extern template class Shared<EvaluationBoard>;
 
 }  // namespace predictor

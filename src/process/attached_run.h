@@ -8,8 +8,13 @@
 namespace predictor {
 
 // Descriptors that such a process inherits. Each kind of process may write only into its own
-// mailbox.
-enum : int { kBoardDescriptor = 3, kMailboxDescriptor = 4, kControlDescriptor = 5 };
+// mailbox. The last one is that of the evaluator's states, for reading.
+enum : int {
+  kBoardDescriptor = 3,
+  kMailboxDescriptor = 4,
+  kControlDescriptor = 5,
+  kEvaluationDescriptor = 6
+};
 
 // The first line sent to every such process: the scenario, and the position of its object at the
 // start [m in W].

@@ -71,7 +71,7 @@ std::vector<std::string> Environment() {
 
 // Starts this program again with these descriptors, numbered from kBoardDescriptor (negative:
 // none). Throws std::runtime_error.
-pid_t Spawn(std::string subcommand, const std::array<int, 3>& descriptors) {
+pid_t Spawn(std::string subcommand, const std::array<int, 4>& descriptors) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -87,7 +87,7 @@ pid_t Spawn(std::string subcommand, const std::array<int, 3>& descriptors) {
     aside.emplace_back(fcntl(descriptors[i], F_DUPFD_CLOEXEC, kSafeDescriptor));
     posix_spawn_file_actions_adddup2(&actions, aside.back().get(), child);
   }
-  posix_spawn_file_actions_addclosefrom_np(&actions, kControlDescriptor + 1);
+  posix_spawn_file_actions_addclosefrom_np(&actions, kEvaluationDescriptor + 1);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -185,7 +185,8 @@ void SupervisedProcess::Impl::Start() {
     const std::lock_guard lock(mutex);
     start = setup.start;
   }
-  const pid_t child = Spawn(setup.subcommand, {setup.board, setup.mailbox, theirs.get()});
+  const pid_t child =
+      Spawn(setup.subcommand, {setup.board, setup.mailbox, theirs.get(), setup.evaluation});
   SendLine(ours.get(), start, true);
   heartbeat = {};
   silent = false;

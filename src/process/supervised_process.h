@@ -34,6 +34,7 @@ struct ChildSetup {
   const std::atomic<std::uint32_t>* beats = nullptr;
   std::string without = "the run continues";  // describes the state of the run while there is no
                                               // such process
+  int evaluation = -1;  // descriptor of the evaluator's states, for reading; -1: none
 };
 
 class SupervisedProcess {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/person_json.h"
 #include "recording/cdr.h"
 
 namespace predictor::recording {
@@ -74,7 +75,11 @@ Encoder::Encoder(const RecordingHeader& header, std::vector<JsonChannel> scene)
     : dt_(header.dt),
       start_ns_(static_cast<std::uint64_t>(header.start_unix_ns)),
       scene_(std::move(scene)),
-      now_ns_(start_ns_) {}
+      now_ns_(start_ns_) {
+  for (std::size_t i = 0; i < scene_.size(); ++i)
+    if (scene_[i].topic == kPersonTopic)
+      person_channel_ = static_cast<std::uint16_t>(kFirstJsonChannel + i);
+}
 
 // Uses the clock if the record contains it; in virtual time, the tick. The time never decreases.
 std::uint64_t Encoder::TimeOf(const TickRecord& record) {
@@ -121,9 +126,21 @@ void Encoder::Add(const TickRecord& record) {
 void Encoder::AddScene(const TickRecord& record, std::uint64_t time) {
   scene_ns_ = time;
   std::uint16_t channel = kFirstJsonChannel;
-  for (const JsonChannel& json : scene_)
-    chunk_.Add(channel++, static_cast<std::uint32_t>(record.tick), time,
-               json.message(record, time));
+  for (const JsonChannel& json : scene_) {
+    if (json.message)
+      chunk_.Add(channel, static_cast<std::uint32_t>(record.tick), time,
+                 json.message(record, time));
+    ++channel;
+  }
+}
+
+// Its time is that of its tick, whose messages have been added before.
+void Encoder::AddPerson(const PersonState& state) {
+  if (person_channel_ == 0) return;
+  std::uint64_t time = now_ns_;
+  if (first_wall_ns_ != 0 && state.wall_ns >= first_wall_ns_)
+    time = std::min(time, start_ns_ + (state.wall_ns - first_wall_ns_));
+  chunk_.Add(person_channel_, static_cast<std::uint32_t>(state.tick), time, PersonJson(state));
 }
 
 void Encoder::AddSnapshot(std::uint64_t tick, std::span<const std::byte> data) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/person_state.h"
 #include "core/tick_fields.h"
 #include "recording/chunk.h"
 #include "recording/header.h"
@@ -37,6 +38,8 @@ class Encoder {
   // Throws std::invalid_argument if the data exceed kLargestSnapshot.
   void AddSnapshot(std::uint64_t tick, std::span<const std::byte> data);
   void AddEvent(const RecordingEvent& event);  // its time is set here
+  // Adds a state of the person if the recording has their topic.
+  void AddPerson(const PersonState& state);
 
   // True if a chunk should be taken.
   bool Due() const;
@@ -52,6 +55,7 @@ class Encoder {
   double dt_;
   std::uint64_t start_ns_;
   std::vector<JsonChannel> scene_;
+  std::uint16_t person_channel_ = 0;  // 0: none
   RunEvents run_events_;
   ChunkBuilder chunk_;
   std::uint64_t first_wall_ns_ = 0;

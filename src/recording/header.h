@@ -38,8 +38,13 @@ struct RecordingHeader {
 struct JsonChannel {
   std::string topic, schema_name;
   std::string schema;  // JSON Schema
+  // Empty: the messages do not follow from ticks.
   std::function<std::string(const TickRecord& record, std::uint64_t unix_ns)> message;
 };
+
+// The topic of the person's states (core/person_json.h), at most 100 per second.
+inline constexpr const char* kPersonTopic = "/person/state";
+JsonChannel PersonChannel();
 
 // An event: a marker, lost ticks, a stop.
 struct RecordingEvent {

@@ -133,6 +133,7 @@ struct Recorder::Impl {
         encoder(header, std::move(scene)),
         queue(options.most_queued),
         disk(options) {
+    if (options.person) persons.emplace(options.person->states);
     free_bytes = file.FreeBytes();
     encodes = ContainedThread(
         "record encode", [this] { Encode(); }, [this](const char* why) { EncodingFailed(why); });
@@ -150,6 +151,7 @@ struct Recorder::Impl {
   void FollowLoss(const TickRecord& record);
   void NoteLoss(std::uint64_t tick);
   void TakeMarks();
+  void TakePersons();
   bool Pass(bool all);
 
   // ---- writing ----------------------------------------------------------------------------------
@@ -170,6 +172,7 @@ struct Recorder::Impl {
   FileCalls calls;
   const RecorderOptions options;
   RingReader<TickRecord, kRecordRing> reader;
+  std::optional<RingReader<PersonState, kPersonRing>> persons;
   SnapshotBox snapshot;
   recording::McapFile file;
   recording::Encoder encoder;
@@ -210,6 +213,7 @@ void Recorder::Impl::Encode() {
     Drain();
     if (last && holes > 0) NoteLoss(newest);
     TakeMarks();
+    TakePersons();
     snapshot.MoveTo(&encoder);
     if (wants_snapshot && snapshot.Want()) wants_snapshot = false;
     if (!Pass(last)) break;
@@ -276,6 +280,13 @@ void Recorder::Impl::TakeMarks() {
     mark.tick = newest;
     encoder.AddEvent(mark);
   }
+}
+
+// States that were overwritten are missing without a notice: nothing depends on them.
+void Recorder::Impl::TakePersons() {
+  PersonState state;
+  for (std::size_t k = 0; persons && k < kPersonRing && persons->Next(&state); ++k)
+    encoder.AddPerson(state);
 }
 
 // Passes on the data that are due, or all data. Returns false if the queue has ended.

@@ -30,6 +30,8 @@ struct RecorderOptions : DiskRules {
   std::size_t snapshot_bytes = 1U << 20U;  // maximum size of a snapshot
   std::size_t most_queued = 64U << 20U;    // maximum size of the chunks that wait for the disk
                                            // [bytes]
+  const EvaluationBoard* person =
+      nullptr;  // whose states are recorded as well; null: none; borrowed
 };
 
 // One thread reads the ring, encodes and compresses; another writes; a third synchronises the disk.

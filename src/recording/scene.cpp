@@ -1,5 +1,6 @@
 #include "recording/scene.h"
 
+#include "core/person_json.h"
 #include "foxglove/channels.h"
 
 namespace predictor {
@@ -13,5 +14,7 @@ std::vector<JsonChannel> RecordedScene(const Scenario& scenario, const Vector3& 
                         }});
   return channels;
 }
+
+JsonChannel PersonChannel() { return {kPersonTopic, "predictor.PersonState", PersonSchema(), {}}; }
 
 }  // namespace predictor

@@ -16,8 +16,9 @@ constexpr double kPingRate = 10;
 constexpr double kDenialRate = 5;
 constexpr double kLatencyRate = 2;
 constexpr double kMarkRate = 2;
-constexpr double kHeadRate = 12;      // of forwarding a headset's pose to the other pages
-constexpr std::uint32_t kStates = 0;  // slot of states; the slot of a head is its client's number
+constexpr double kHeadRate = 12;  // of forwarding a headset's pose to the other pages
+// Slots of the states of the run and of the person. The slot of a head is its client's number.
+constexpr std::uint32_t kStates = 0, kPerson = ~0U;
 
 }  // namespace
 
@@ -183,6 +184,7 @@ void Hub::Client::Admit(const HelloRequest& hello) {
   connection_->SendText(Welcome());
   hub_->TellLeases();
   if (hub_->frame_) connection_->SendNewest(kStates, MessageKind::kBinary, hub_->frame_);
+  if (hub_->person_) connection_->SendNewest(kPerson, MessageKind::kText, hub_->person_);
   if (hub_->ended()) SayGoodbye();
 }
 
@@ -194,7 +196,7 @@ std::string Hub::Client::Welcome() const {
               {"server", hub_->server_id_},
               {"server_ns", hub_->clock_()},
               {"leases", LeasesJson(hub_->leases_, hub_->clients())},
-              {"features", {"headset"}},
+              {"features", {"headset", "person"}},
               {"scene", hub_->setup_.scene},
               {"frame", FrameJson()}}
       .dump();
@@ -345,6 +347,12 @@ void Hub::Publish(std::shared_ptr<const std::string> frame, RunState state) {
   state_ = state;
   for (Client* client : sessions_)
     if (client->admitted()) client->connection()->SendNewest(kStates, MessageKind::kBinary, frame_);
+}
+
+void Hub::PublishPerson(std::shared_ptr<const std::string> text) {
+  person_ = std::move(text);
+  for (Client* client : sessions_)
+    if (client->admitted()) client->connection()->SendNewest(kPerson, MessageKind::kText, person_);
 }
 
 void Hub::Tick() {

@@ -57,6 +57,8 @@ class Hub {
 
   // Sends the newest state to all clients.
   void Publish(std::shared_ptr<const std::string> frame, RunState state);
+  // Sends the newest state of the person, as text, to all clients.
+  void PublishPerson(std::shared_ptr<const std::string> text);
   // Ends expired leases and waiting times. Call at least ten times per second.
   void Tick();
   // For the operator at the console.
@@ -103,7 +105,7 @@ class Hub {
   std::vector<Client*> sessions_;  // including clients that are not admitted
   std::vector<Headset> headsets_;
   std::uint32_t last_client_ = 0;
-  std::shared_ptr<const std::string> frame_;
+  std::shared_ptr<const std::string> frame_, person_;
   RunState state_ = RunState::kInit;
   std::string how_ended_;  // as a sentence; empty: the run has not ended
   bool results_follow_ = false;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/person_json.h"
 #include "core/text.h"
 #include "core/words.h"
 #include "scenario/operating_rules.h"
@@ -106,6 +107,8 @@ ViewerApp::ViewerApp(AppSetup setup, const Scenario& scenario, const Vector3& ob
     scene["replay"] = setup_.replay;
     scene["simulated"] = true;  // nothing moves
   }
+  scene["person"] = {{"judged", setup_.states != nullptr}};
+  if (!setup_.states) scene["person"]["why"] = setup_.why_not_judged;
   if (!setup_.notice.empty()) scene["notice"] = setup_.notice;
   if (setup_.results.is_object()) scene["results"] = setup_.results;
   if (!setup_.report.empty()) {
@@ -190,6 +193,7 @@ void ViewerApp::Tick() {
     setup_.tell("The address " + address +
                 " entered five wrong pins and can no longer use the existing pins. Other clients "
                 "still can; `pin` creates a new pin for everyone.");
+  ShowPerson();
   const std::uint64_t written = board_->records.written();
   TickRecord record;
   // If this process was delayed, the newest record may be overwritten while it is read; the next
@@ -203,6 +207,16 @@ void ViewerApp::Tick() {
           record, peaks, clock_(), board_->recording.load(std::memory_order_relaxed) != 0)),
       record.state);
   foxglove_->Publish(record);
+}
+
+// Another process writes the states; nothing in them is trusted.
+void ViewerApp::ShowPerson() {
+  if (!setup_.states) return;
+  const std::uint64_t written = setup_.states->states.written();
+  PersonState state;
+  if (written == shown_person_ || !setup_.states->states.Get(written - 1, &state)) return;
+  shown_person_ = written;
+  hub_->PublishPerson(std::make_shared<const std::string>(PersonJson(state)));
 }
 
 // Peaks of the records from `first` up to, but excluding, `end`; if there are too many, of the

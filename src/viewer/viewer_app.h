@@ -35,6 +35,8 @@ struct AppSetup {
   std::string report;  // of that run, an HTML page; empty: no report
   std::function<void(const std::string&)> tell;  // shows messages at the console; may be empty
   std::vector<std::string> origins;              // additional origins, for Foxglove only
+  const EvaluationBoard* states = nullptr;       // of the person; borrowed; null: the person is not judged
+  std::string why_not_judged;                    // without states; a sentence
 };
 
 // Checks a request's Host header by RFC 9112, section 3.2. Status 400: there is not exactly one
@@ -68,6 +70,7 @@ class ViewerApp : public Application {
  private:
   UpgradeReply UpgradePage(const HttpRequest& request);
   UpgradeReply UpgradeFoxglove(const HttpRequest& request, std::string_view query);
+  void ShowPerson();
   Peaks SeeRecords(std::uint64_t first, std::uint64_t end);
   void TellOfRefusal(const TickRecord& record);
   void TellOfReset(const TickRecord& record);
@@ -86,7 +89,8 @@ class ViewerApp : public Application {
   std::array<std::uint8_t, kHands> warnings_ = {};  // as last shown
   std::uint64_t warned_ = 0;                        // tick of the last warning
   bool ended_ = false;
-  std::uint64_t shown_ = 0;  // number of records when one was last shown
+  std::uint64_t shown_ = 0;         // number of records when one was last shown
+  std::uint64_t shown_person_ = 0;  // the same for the person's states
 };
 
 // The monotonic clock, as in TickRecord::wall_ns [ns].

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <optional>
 
 #include "process/attached_run.h"
 #include "process/child.h"
@@ -191,7 +192,11 @@ void Serve(const Json& start) {
   AttachedRun run(start);
   Shared<RunMailbox> mailbox(kMailboxDescriptor, true);
   const Site site(start, machine_names);
+  std::optional<const Shared<EvaluationBoard>> states;
+  if (start["judged"]) states.emplace(kEvaluationDescriptor, false);
   AppSetup setup;
+  setup.states = states ? &**states : nullptr;
+  setup.why_not_judged = start["why_not_judged"];
   setup.hosts = site.names;
   setup.tls = site.tls;
   setup.code_once =

@@ -46,7 +46,7 @@ std::filesystem::path StateFolderOf(const ViewerOptions& o) {
   return StateFolder();
 }
 
-Json ToJson(const Scenario& scenario, const ViewerOptions& o) {
+Json ToJson(const Scenario& scenario, const ViewerOptions& o, bool judged) {
   Check(o);
   Json line = RunLine(scenario, o.object_start);
   Json scenarios = Json::array();
@@ -67,8 +67,15 @@ Json ToJson(const Scenario& scenario, const ViewerOptions& o) {
                {"scenarios", scenarios},
                {"notice", o.notice},
                {"results", Json::parse(o.results.empty() ? "null" : o.results)},
-               {"report", o.report.string()}});
+               {"report", o.report.string()},
+               {"judged", judged},
+               {"why_not_judged", o.why_not_judged}});
   return line;
+}
+
+ChildSetup WithStates(ChildSetup setup, const Shared<EvaluationBoard>* states) {
+  if (states) setup.evaluation = states->read_only_descriptor();
+  return setup;
 }
 
 std::string Text(const Json& line, const char* name) {
@@ -167,11 +174,13 @@ void ViewerProcess::Renew(std::uint32_t Generations::*which, Json line, const st
 
 ViewerProcess::ViewerProcess(const Scenario& scenario, const ViewerOptions& options,
                              const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox,
-                             Tell tell)
+                             Tell tell, const Shared<EvaluationBoard>* states)
     : tell_(std::move(tell)),
       generations_(options.generations),
-      process_({"The viewer", kViewerSubcommand, ToJson(scenario, options), board.descriptor(),
-                mailbox.descriptor(), tell_, [this](const Json& line) { Hear(line); }}) {
+      process_(WithStates({"The viewer", kViewerSubcommand,
+                           ToJson(scenario, options, states != nullptr), board.descriptor(),
+                           mailbox.descriptor(), tell_, [this](const Json& line) { Hear(line); }},
+                          states)) {
   process_.Remember("last_client", kClientsOfOneStart);
 }
 

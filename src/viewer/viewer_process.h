@@ -43,6 +43,7 @@ struct ViewerOptions {
   std::string results;
   std::filesystem::path report;            // of that run, an HTML page; empty: no report
   Vector3 object_start = Vector3::Zero();  // O in W at the start of the run [m]
+  std::string why_not_judged;  // why the person is not judged, as a sentence; used without states
 };
 
 // $XDG_STATE_HOME/predictor, or ~/.local/state/predictor. Throws InputError if the user has no home
@@ -61,9 +62,10 @@ class ViewerProcess {
 
   // Starts the process and waits until it accepts clients. Throws InputError, for instance if the
   // port is in use, the certificate cannot be read, or the address needs `expose`. The descriptors
-  // of `board` and `mailbox` are borrowed.
+  // of `board`, `mailbox` and `states` are borrowed. states: of the person; null: the person is not judged.
   ViewerProcess(const Scenario& scenario, const ViewerOptions& options,
-                const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Tell tell);
+                const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Tell tell,
+                const Shared<EvaluationBoard>* states = nullptr);
 
   // The page's address with the code that admits; with real arms, it changes when the viewer
   // restarts.

@@ -218,6 +218,17 @@ TEST_F(HubTest, EverybodyAdmittedSeesTheNewestState) {
   EXPECT_EQ(Admit(Role::kLook)->connection.newest, "one");
 }
 
+TEST_F(HubTest, EverybodyAdmittedSeesTheNewestStateOfThePerson) {
+  const auto early = Admit();
+  hub_->PublishPerson(std::make_shared<const std::string>("{\"type\":\"person\",\"tick\":1}"));
+  hub_->PublishPerson(std::make_shared<const std::string>("{\"type\":\"person\",\"tick\":2}"));
+  const auto late = Admit(), stranger = Connect();
+  for (const auto* page : {&early, &late})
+    EXPECT_EQ(Json::parse((*page)->connection.newest_text)["tick"], 2);
+  EXPECT_EQ(stranger->connection.newest_text, "");
+  EXPECT_EQ(late->connection.Last("welcome")["features"], (Json{"headset", "person"}));
+}
+
 TEST_F(HubTest, PingsAreAnsweredTenTimesASecond) {
   auto page = Admit();
   for (int i = 0; i < 100; ++i) {

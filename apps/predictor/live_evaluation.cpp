@@ -1,0 +1,29 @@
+#include "live_evaluation.h"
+
+#include <exception>
+
+#include "assessment/person_setup.h"
+#include "core/text.h"
+
+namespace predictor {
+
+LiveEvaluation::LiveEvaluation(bool wanted, const Scenario& scenario, const Shared<RunBoard>& board,
+                               const std::function<void(const std::string&)>& show) {
+  if (!wanted) {
+    why_not_ = "The evaluation of the person was switched off with --no-evaluation.";
+    return;
+  }
+  if (const auto missing = assessment::MissingForPosture(scenario); !missing.empty()) {
+    why_not_ = Join(missing, " ");
+    return;
+  }
+  try {
+    states_.emplace();
+    process_.emplace(scenario, board, *states_, show);
+  } catch (const std::exception& error) {
+    why_not_ = std::string("The person is not evaluated: ") + error.what();
+    show(why_not_);
+  }
+}
+
+}  // namespace predictor

@@ -1,0 +1,32 @@
+// The evaluator beside a run or a replay.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/shared_run.h"
+#include "evaluator/evaluator_process.h"
+
+namespace predictor {
+
+class LiveEvaluation {
+ public:
+  // Starts the evaluator if it is wanted and the scenario says enough about the person. Whatever
+  // prevents it does not prevent the run: why_not() gives the reason, and `show` gets it if it is
+  // an error. `board` is borrowed.
+  LiveEvaluation(bool wanted, const Scenario& scenario, const Shared<RunBoard>& board,
+                 const std::function<void(const std::string&)>& show);
+
+  // Null: the person is not judged.
+  const Shared<EvaluationBoard>* states() const { return process_ ? &*states_ : nullptr; }
+  const EvaluationBoard* board() const { return process_ ? &**states_ : nullptr; }
+  const std::string& why_not() const { return why_not_; }
+
+ private:
+  std::string why_not_;
+  std::optional<const Shared<EvaluationBoard>> states_;
+  std::optional<evaluator::EvaluatorProcess> process_;
+};
+
+}  // namespace predictor

@@ -1,0 +1,76 @@
+#include "evaluator/evaluator_process.h"
+
+#include <poll.h>
+#include <sys/resource.h>
+
+#include <optional>
+#include <utility>
+
+#include "assessment/live_person.h"
+#include "core/error.h"
+#include "process/attached_run.h"
+#include "process/child.h"
+
+namespace predictor::evaluator {
+namespace {
+
+constexpr int kPause = 5;      // between two looks at the ring [ms]
+constexpr int kPriority = 10;  // lower than that of the run and the viewer
+
+// Returns false if the run has ended, which closes the channel.
+bool WaitAWhile() {
+  pollfd run{kControlDescriptor, POLLIN, 0};
+  return poll(&run, 1, kPause) == 0 || (run.revents & (POLLHUP | POLLERR | POLLIN)) == 0;
+}
+
+class Evaluator {
+ public:
+  Evaluator(const Scenario& scenario, const RunBoard& board, EvaluationBoard* out)
+      : person_(scenario, {}), reader_(board.records), out_(out) {}
+
+  void Look() {
+    for (TickRecord record; !failed_ && reader_.Next(&record);)
+      if (Add(record)) out_->states.Publish(person_.state());
+  }
+
+ private:
+  // A contradiction stays, so it is said once, and nothing is judged from then on.
+  bool Add(const TickRecord& record) {
+    try {
+      return person_.Add(record);
+    } catch (const InputError& error) {
+      failed_ = true;
+      SendLine(kControlDescriptor,
+               {{"say", std::string("The person is not evaluated any more: ") + error.what()}},
+               false);
+      return false;
+    }
+  }
+
+  assessment::LivePerson person_;
+  RingReader<TickRecord, kRecordRing> reader_;
+  EvaluationBoard* out_;
+  bool failed_ = false;
+};
+
+void Serve(const Json& start) {
+  setpriority(PRIO_PROCESS, 0, kPriority);
+  Prepare({});  // before the scenario is parsed
+  AttachedRun run(start);
+  Shared<EvaluationBoard> states(kMailboxDescriptor, true);
+  Evaluator evaluator(run.scenario, *run.board, &*states);
+  GiveUpRights(start, "The evaluator");
+  SendLine(kControlDescriptor, {{"ready", "judges"}}, false);
+  while (WaitAWhile()) evaluator.Look();
+}
+
+}  // namespace
+
+EvaluatorProcess::EvaluatorProcess(const Scenario& scenario, const Shared<RunBoard>& board,
+                                   const Shared<EvaluationBoard>& states, Tell show)
+    : process_({"The evaluator", kEvaluatorSubcommand, RunLine(scenario, Vector3::Zero()),
+                board.descriptor(), states.descriptor(), std::move(show), [](const Json&) {}}) {}
+
+int EvaluatorMain() { return ChildMain("evaluator", Serve); }
+
+}  // namespace predictor::evaluator

@@ -1,0 +1,139 @@
+// The evaluator as a process: what it says, its rights, and the consequences of its death.
+#include "support/process.h"
+
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <mutex>
+
+#include "assessment/samples.h"
+#include "core/error.h"
+#include "evaluator/evaluator_process.h"
+#include "scenario/scenario_io.h"
+
+namespace predictor::evaluator {
+namespace {
+
+using assessment::RecordOf;
+using test::Becomes;
+using test::StatusOf;
+
+// Its operator has a body and stands where RecordOf needs it.
+Scenario Box() {
+  return LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
+}
+
+class EvaluatorProcessTest : public testing::Test {
+ protected:
+  void Start(const Scenario& scenario) {
+    evaluator_ = std::make_unique<EvaluatorProcess>(scenario, board_, states_,
+                                                    [this](const std::string& text) {
+                                                      const std::lock_guard lock(mutex_);
+                                                      told_ += text + "\n";
+                                                    });
+  }
+  void Run(std::uint64_t first, std::uint64_t last, double height = 1) {
+    for (std::uint64_t tick = first; tick <= last; ++tick)
+      board_->records.Publish(RecordOf(tick, height, 20));
+  }
+  // The newest state; before the first one, its tick is 0.
+  PersonState Newest() const {
+    PersonState state;
+    const std::uint64_t written = (*states_).states.written();
+    if (written > 0) (*states_).states.Get(written - 1, &state);
+    return state;
+  }
+  bool Tells(const std::string& text) {
+    return Becomes([&] {
+      const std::lock_guard lock(mutex_);
+      return told_.find(text) != std::string::npos;
+    });
+  }
+
+  Shared<RunBoard> board_;
+  Shared<EvaluationBoard> states_;
+  std::mutex mutex_;
+  std::string told_;
+  std::unique_ptr<EvaluatorProcess> evaluator_;
+};
+
+TEST_F(EvaluatorProcessTest, JudgesEachHundredthOfASecond) {
+  Start(Box());
+  Run(1, 500);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 500; }));
+  EXPECT_EQ((*states_).states.written(), 50u);
+  const PersonState state = Newest();
+  EXPECT_EQ(state.status, PersonStatus::kJudged);
+  EXPECT_EQ(state.reached, 1);
+  EXPECT_GT(state.gauges[0].value, 100);
+  EXPECT_LT(state.gauges[0].low, state.gauges[0].value);
+  EXPECT_GT(state.gauges[0].high, state.gauges[0].value);
+}
+
+TEST_F(EvaluatorProcessTest, HasNoRightsAndWritesItsStatesOnly) {
+  Start(Box());
+  const int pid = evaluator_->pid();
+  EXPECT_EQ(StatusOf(pid, "NoNewPrivs"), "1");
+  EXPECT_EQ(getpriority(PRIO_PROCESS, static_cast<id_t>(pid)), 10);
+  if (geteuid() == 0) {
+    EXPECT_EQ(StatusOf(pid, "Uid"), "65534\t65534\t65534\t65534");
+    EXPECT_EQ(StatusOf(pid, "CapEff"), "0000000000000000");
+  }
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  if (!StatusOf(getpid(), "Seccomp").empty()) {
+    EXPECT_EQ(StatusOf(pid, "Seccomp"), "2");
+  }
+#endif
+  std::ifstream maps("/proc/" + std::to_string(pid) + "/maps");
+  int writable = 0;
+  for (std::string line; std::getline(maps, line);)
+    if (line.find("memfd:predictor") != std::string::npos)
+      writable += line.find(" rw-s ") != std::string::npos;
+  if (geteuid() == 0) {
+    EXPECT_EQ(writable, 1);
+  }
+}
+
+TEST_F(EvaluatorProcessTest, ItsDeathIsToldAndItStartsAgain) {
+  Start(Box());
+  Run(1, 200);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 200; }));
+  const int pid = evaluator_->pid();
+  ASSERT_EQ(kill(pid, SIGKILL), 0);
+  EXPECT_TRUE(Tells("The evaluator has ended (signal 9); the run continues."));
+  ASSERT_TRUE(Becomes([&] { return evaluator_->pid() != 0 && evaluator_->pid() != pid; }));
+  Run(201, 400);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 400; }));
+  EXPECT_NEAR(Newest().since, 0.206, 1e-9);  // damage and fatigue begin again
+}
+
+TEST_F(EvaluatorProcessTest, EndsWithTheRun) {
+  Start(Box());
+  const int pid = evaluator_->pid();
+  evaluator_.reset();
+  EXPECT_NE(kill(pid, 0), 0);
+}
+
+TEST_F(EvaluatorProcessTest, SaysWhatIsMissingOrImpossible) {
+  Scenario scenario = Box();
+  scenario.operator_.stance.reset();
+  EXPECT_THROW(Start(scenario), InputError);
+}
+
+// A process with this descriptor can read the states but not forge them.
+TEST(EvaluationBoard, CanBeGivenAwayReadOnly) {
+  const Shared<EvaluationBoard> states;
+  const int descriptor = states.read_only_descriptor();
+  EXPECT_EQ(
+      mmap(nullptr, sizeof(EvaluationBoard), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0),
+      MAP_FAILED);
+  Shared<EvaluationBoard> reader(dup(descriptor), false);
+  EXPECT_EQ(reader->states.written(), 0u);
+}
+
+}  // namespace
+}  // namespace predictor::evaluator
