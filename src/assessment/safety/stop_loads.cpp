@@ -11,7 +11,7 @@ namespace {
 
 using person::ArmJoint;
 
-constexpr std::size_t kSampledStride = 2;  // samples between two evaluations of all persons
+constexpr std::size_t kStopStride = 2;  // samples between two evaluations of all persons
 
 std::size_t TicksIn(double time, double rate) {
   return static_cast<std::size_t>(std::lround(time * rate));
@@ -112,7 +112,7 @@ StopJudgement JudgeStop(const PersonSetup& setup, const StopWindow& window, bool
   if (decided < 1 || decided >= end) return judgement;
   const NominalChain nominal = RunNominal(setup, samples, {}, [](double) {});
   SampledChain sampled;
-  if (intervals) sampled = RunSampled(setup, samples, nominal, kSampledStride, {}, [](double) {});
+  if (intervals) sampled = RunSampled(setup, samples, nominal, kStopStride, {}, [](double) {});
   const auto first =
       static_cast<std::size_t>(std::ranges::lower_bound(sampled.at, decided) - sampled.at.begin());
   for (int hand = 0; hand < kHands; ++hand) {
