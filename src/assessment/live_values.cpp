@@ -10,9 +10,9 @@ namespace predictor::assessment {
 namespace {
 
 // How a value of PersonState follows from a frame, in the order of the enumerations.
-using Value = double (*)(const Moment&);
+using GaugeValue = double (*)(const Moment&);
 
-constexpr std::array<Value, kPersonGauges> kGaugeValues = {
+constexpr std::array<GaugeValue, kPersonGauges> kGaugeValues = {
     [](const Moment& m) { return m.frame.loads.l5s1.compression; },
     [](const Moment& m) { return m.frame.loads.l5s1.shear; },
     [](const Moment& m) { return m.frame.loads.l5s1.flexion_moment; },
