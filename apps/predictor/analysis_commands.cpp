@@ -109,6 +109,35 @@ void AddEvaluate(CLI::App* app, Request* r) {
       "Example:\n  predictor evaluate runs/box_9kg_2026-01-31_14-05-09.mcap --csv person.csv\n");
 }
 
+void AddContinue(CLI::App* app, Request* r) {
+  ContinueCommandOptions* o = &r->continue_run;
+  CLI::App* go_on =
+      AddCommand(app, kGroup, "continue",
+                 "Predict what would have happened if the emulator had not stopped a recorded run",
+                 r, [o] { return ContinueCommand(*o); });
+  AddRecording(go_on, &o->recording);
+  AddOption(go_on, "Operator", "--arm", &o->arm, "FILE.json",
+            "Mean and covariance of the arm's impedance [default: a prior around the scenario's "
+            "hand]");
+  AddOption(go_on, "Operator", "--draws", &o->draws, "NUMBER", "Possible operators")
+      ->check(CLI::Range(20, 10000))
+      ->capture_default_str();
+  AddOption(go_on, "Operator", "--seed", &o->seed, "NUMBER",
+            "Seed of the possible operators; the same seed gives the same ones for every run")
+      ->capture_default_str();
+  AddOption(go_on, "Operator", "--horizon", &o->horizon, "SECONDS", "Time after the stop")
+      ->check(CLI::Range(0.1, 10.0))
+      ->capture_default_str();
+  AddOption(go_on, "Output", "-o,--output", &o->page, "FILE.html",
+            "Page to write [default: NAME.continued.html]");
+  AddOutput(go_on, o);
+  go_on->footer(
+      "Only a stop by a limit of force, torque, coupling or tracking can be left out, and only of "
+      "a "
+      "run with the simulated rig.\n"
+      "Example:\n  predictor continue runs/push_2026-01-31_14-05-09.mcap --json continued.json\n");
+}
+
 void AddVerify(CLI::App* app, Request* r) {
   RecordingOptions* o = &r->recording;
   CLI::App* verify =
@@ -239,6 +268,7 @@ void AddAnalysisCommands(CLI::App* app, Request* r) {
   AddReport(app, r);
   AddCompare(app, r);
   AddEvaluate(app, r);
+  AddContinue(app, r);
   AddVerify(app, r);
   AddTrial(app, r);
   AddIdentify(app, r);

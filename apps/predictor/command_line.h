@@ -23,6 +23,7 @@ struct Request {
   CompareOptions compare;
   ReproduceCommandOptions reproduce;
   EvaluateOptions evaluate;
+  ContinueCommandOptions continue_run;
   HazardsCommandOptions hazards;
   SurveyOptions survey;
   DevicesOptions devices;

@@ -141,6 +141,16 @@ struct EvaluateOptions : OutputOptions {
   std::string csv;                      // empty: none
 };
 
+// Input and output of `continue`.
+struct ContinueCommandOptions : OutputOptions {
+  std::string recording;
+  std::string arm;  // file with the distribution of the arm's impedance; empty: the prior
+  int draws = 200;
+  double horizon = 1.5;    // [s]
+  std::uint64_t seed = 1;  // of the possible operators
+  std::string page;        // empty: NAME.continued.html
+};
+
 // Input and output of `hazards`.
 struct HazardsCommandOptions : OutputOptions {
   std::vector<std::string> scenarios;
@@ -200,6 +210,7 @@ int TrialCommand(const ScenarioOptions& options, const std::string& recording);
 // Returns the exit code kUnfit if a joint was rejected.
 int IdentifyCommand(const IdentifyCommandOptions& options);
 int EvaluateCommand(const EvaluateOptions& options);
+int ContinueCommand(const ContinueCommandOptions& options);
 int HazardsCommand(const HazardsCommandOptions& options);
 int ReproduceCommand(const ReproduceCommandOptions& options);
 int SurveyAskCommand(const SurveyOptions& options);

@@ -8,6 +8,7 @@
 #include "core/format.h"
 #include "core/text.h"
 #include "evaluation/fidelity.h"
+#include "evaluation/stops.h"
 #include "recorded_run.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
@@ -22,6 +23,7 @@ struct Compared {
   std::string condition;             // the recording's label, if it has one
   std::optional<Scenario> scenario;  // empty if it is damaged
   FidelitySignals signals;
+  StopCause stopped = StopCause::kNone;  // what first stopped it
 };
 
 Compared Read(const std::string& file, bool quiet) {
@@ -33,8 +35,10 @@ Compared Read(const std::string& file, bool quiet) {
   if (!reader.header().scenario_yaml.empty())
     run.scenario = RecordedScenario(reader.header(), file, ".");
   FidelityCollector collector;
-  ReadTicks(&reader, "Reading " + run.name, quiet,
-            [&](const TickRecord& record) { collector.Add(record); });
+  ReadTicks(&reader, "Reading " + run.name, quiet, [&](const TickRecord& record) {
+    collector.Add(record);
+    if (run.stopped == StopCause::kNone) run.stopped = record.cause;
+  });
   TellProblem(reader.problem());
   run.signals = collector.signals();
   if (run.signals.filled > 0)
@@ -71,6 +75,15 @@ void WarnOfOtherTask(const Compared& first, const Compared& other, FidelityRepor
                              ". This alone may explain differences in the figures.");
 }
 
+// The emulator's stop ends what the person would have felt.
+void WarnOfStop(const Compared& run, FidelityReport* report) {
+  if (!IsLimit(run.stopped)) return;
+  report->warnings.push_back(Formatted(
+      "The emulator stopped %s at a limit (%s): its largest values are only lower bounds. "
+      "`predictor continue` predicts what would have happened.",
+      run.name.c_str(), Name(run.stopped)));
+}
+
 }  // namespace
 
 int CompareCommand(const CompareOptions& options) {
@@ -87,6 +100,8 @@ int CompareCommand(const CompareOptions& options) {
   if (options.by_phase) by_phase = true;
   if (options.by_time) by_phase = false;
   FidelityReport report = CompareFidelity(of_a, of_b, by_phase);
+  for (const auto* runs : {&runs_a, &runs_b})
+    for (const Compared& run : *runs) WarnOfStop(run, &report);
   for (const auto* runs : {&runs_a, &runs_b})
     for (const Compared& run : *runs)
       if (&run != &runs_a.front()) WarnOfOtherTask(runs_a.front(), run, &report);

@@ -1,6 +1,7 @@
 // The commands that convert, print and describe.
 #include <algorithm>
 
+#include "analysis/continuation/continuation.h"
 #include "assessment/output.h"
 #include "command_line.h"
 #include "evaluation/summary.h"
@@ -91,6 +92,8 @@ void AddSchema(CLI::App* app, Request* r) {
            SummarySchema);
   AddPrint(schema, "Commands", "evaluation", "Schema of the evaluation of a person (--json)", r,
            assessment::AssessmentSchema);
+  AddPrint(schema, "Commands", "continuation", "Schema of the continuation of a run (--json)", r,
+           ContinuationSchema);
 }
 
 // Prints the help of the command that `words` name.

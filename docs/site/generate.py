@@ -221,6 +221,23 @@ def evaluation_page(schema):
         "## worksheets", "`RULA`, `REBA` and `OWAS` have these members each:", table(head, result_rows(sheet))])
 
 
+def continuation_page(schema):
+    properties = schema["properties"]
+    predicted = properties["predicted"]["properties"]
+    quantities = [(f"`{name}`", value["description"]) for name, value in predicted.items()]
+    one = next(iter(predicted.values()))
+    draw = properties["draws"]["items"]
+    rest = {key: value for key, value in properties.items() if key not in ("predicted", "draws")}
+    head = ("key", "unit", "value", "meaning")
+    return "\n\n".join([
+        "# Continuation JSON", "What `predictor continue --json` writes about a stopped run, from `predictor schema continuation`. "
+        "[Continue a run that the emulator stopped](../../how-to/continue-a-stopped-run.md) explains it.",
+        table(head, result_rows({"properties": rest})),
+        "## predicted", table(("key", "quantity and SI unit"), quantities),
+        "Each of them has these members:", table(head, result_rows(one)),
+        "## draws", "Each possible operator has these members:", table(head, result_rows(draw))])
+
+
 # ---- from the sources ----------------------------------------------------------------------------------------------
 
 def controllers_page(schema):
@@ -298,6 +315,7 @@ def main():
         "stop-causes": stop_causes_page(),
         "summary-json": summary_page(json_schema(program, "summary")),
         "evaluation-json": evaluation_page(json_schema(program, "evaluation")),
+        "continuation-json": continuation_page(json_schema(program, "continuation")),
         "cpp": "\n\n".join(["# C++ interface",
                             "The headers with which a program embeds the emulator, and those that an extension uses.",
                             *(f"## {h}\n\n```{{doxygenfile}} {pathlib.Path(h).name}\n```" for h in HEADERS)]),

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/format.h"
 #include "evaluation/statistics_samples.h"
+#include "evaluation/stops.h"
 
 namespace predictor::assessment {
 namespace {
@@ -192,6 +193,14 @@ void CheckPlace(std::span<const PersonSample> samples, Assessment* a) {
         std::hypot(mean.x(), mean.y())));
 }
 
+void AddStopWarning(const SampleCollector& run, Assessment* a) {
+  if (!IsLimit(run.stopped())) return;
+  a->warnings.push_back(Formatted(
+      "The emulator stopped this run at a limit (%s). Its largest values are therefore only lower "
+      "bounds of what the person would have met; `predictor continue` predicts them.",
+      Name(run.stopped())));
+}
+
 void AddBalanceWarning(const NominalChain& nominal, Assessment* a) {
   const auto falling = std::ranges::count_if(
       nominal.frames, [](const Frame& f) { return f.loads.balance.margin < 0; });
@@ -276,6 +285,7 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
   a.duration = static_cast<double>(run.samples().size()) / kSampleRate;
   a.held = static_cast<double>(samples.size()) / kSampleRate;
   CheckPlace(samples, &a);
+  AddStopWarning(run, &a);
   const double share = options.intervals ? 0.3 : 1;  // of the time that the nominal chain takes
   NominalChain nominal = RunNominal(a.setup, samples, options.work,
                                     [&](double done) { options.progress(share * done); });

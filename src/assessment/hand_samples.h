@@ -53,13 +53,17 @@ class SampleCollector {
  public:
   explicit SampleCollector(const Scenario& scenario) : builder_(scenario) {}
   void Add(const TickRecord& record) {
+    if (stopped_ == StopCause::kNone) stopped_ = record.cause;
     if (const auto sample = builder_.Add(record)) samples_.push_back(*sample);
   }
   const TickRecord& first() const { return builder_.first(); }
   const std::vector<PersonSample>& samples() const { return samples_; }
+  // What first stopped the run; kNone: nothing.
+  StopCause stopped() const { return stopped_; }
 
  private:
   SampleBuilder builder_;
+  StopCause stopped_ = StopCause::kNone;
   std::vector<PersonSample> samples_;
 };
 

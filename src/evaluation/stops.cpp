@@ -22,6 +22,11 @@ bool DidNotRest(const StopSummary& stop) {
          SaysRestless(stop.harder.cause, stop.harder.quantity);
 }
 
+bool IsLimit(StopCause cause) {
+  return cause == StopCause::kForce || cause == StopCause::kTorque ||
+         cause == StopCause::kCoupling || cause == StopCause::kTracking;
+}
+
 void HandleOdometer::Start(const std::array<Pose, kHands>& X_WH) noexcept {
   path_ = {};
   for (std::size_t i = 0; i < kHands; ++i) corner_[i] = X_WH[i].p;

@@ -31,6 +31,11 @@ struct StopSummary {
 // only the values observed so far.
 bool DidNotRest(const StopSummary& stop);
 
+// True for a stop that censors what the person feels: by the force or the torque of a hand, by the
+// coupling, or by tracking, which ends runs that need more than the cap on the handles' speed. The
+// largest values of such a run are lower bounds.
+bool IsLimit(StopCause cause);
+
 // Path lengths of the handles. They are measured in steps of kStep because the encoders'
 // quantisation would otherwise add up.
 class HandleOdometer {

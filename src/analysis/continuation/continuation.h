@@ -1,0 +1,121 @@
+// What would have happened if the emulator had not stopped a run: its continuation from the tick of
+// the stop, for many possible operators.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/continuation/arm_distribution.h"
+#include "analysis/continuation/estimated_operator.h"
+#include "analysis/continuation/stopped_run.h"
+#include "core/status.h"
+#include "evaluation/censored.h"
+#include "evaluation/statistics_samples.h"
+
+namespace predictor {
+
+// How a continued run ended.
+enum class Ending {
+  kSettles,       // in the last third, no hand exceeds the scenario's limits of force and torque
+  kStaysAbove,    // they are still exceeded
+  kDiverges,      // they are exceeded, and the largest force is in the last third, and grows
+  kCobotStopped,  // the virtual cobot stopped itself by a function of its own
+  kFault,         // the emulator stopped for another reason: what follows is not known
+};
+inline constexpr int kEndings = 5;
+// "settles", "stays_above", "diverges", "cobot_stops", "fault".
+const char* Name(Ending ending);
+
+// One continued run, from the stop on. Forces are those of the sensors, as the stop sees them.
+struct ContinuedRun {
+  double peak_force = 0, peak_torque = 0;  // largest of a hand [N], [N·m]
+  double peak_speed = 0;                   // of a handle [m/s]
+  double energy = 0;                       // that the handles gave to the hands [J]
+  double peak_power = 0;                   // its largest power of a hand [W]
+  Ending ending = Ending::kSettles;
+  StopCause fault = StopCause::kNone;  // of Ending::kFault
+  CobotStop cobot_stop = CobotStop::kNone;
+  double duration = 0;        // from the stop to the end [s]
+  std::vector<double> force;  // largest of a hand in each interval of kCurveStep [N]
+  TickRecord at_peak{};       // the tick with the largest force
+  OperatorDraw person;        // not of the reference
+  // Largest torque of elbows and shoulders at the largest force, as a multiple of the mean strength
+  // of the sex; NaN: the posture is not known, or does not reach the handles.
+  double joint_use = kUndefined;
+};
+inline constexpr double kCurveStep = 0.01;  // [s]
+
+// 90 % interval.
+struct Interval90 {
+  CensoredValue low, median, high;  // 5 %, 50 %, 95 %
+};
+
+struct Continuation {
+  std::string scenario, operator_type;
+  Status cause;            // of the stop
+  double time = 0;         // of the stop in the run [s]
+  double peak_before = 0;  // largest force of a hand until the stop, including it [N]
+  double horizon = 0;      // [s]
+  double force_limit = 0, torque_limit = 0;  // [N], [N·m]
+  std::string arm_source;
+  std::vector<double> past_times,
+      past_force;                  // before the stop: time relative to it, largest force
+  std::vector<ContinuedRun> runs;  // of the draws, in order
+  // Of a simulated operator: what that operator would have done.
+  std::optional<ContinuedRun> reference;
+  std::string no_joint_use;  // why no posture could be judged; empty: it could
+
+  // Of a quantity over the draws in which it is known. A run that ended with another fault is a
+  // lower bound.
+  Interval90 IntervalOf(double ContinuedRun::*value) const;
+  int CountOf(Ending ending) const;
+};
+
+using OperatorMaker = std::function<std::unique_ptr<Operator>(const Scenario&)>;
+
+struct ContinueOptions {
+  int draws = 200;
+  double horizon = 1.5;    // after the stop [s]
+  std::uint64_t seed = 1;  // of the draws
+  int workers = 0;         // 0: the number of cores
+  IntentModel intent;
+  bool reference = false;   // also continue with the simulated operator's own state
+  bool joint_loads = true;  // needs the scenario's body and stance
+  // Makes an operator that can load the state of the recorded one.
+  OperatorMaker recorded_operator = [](const Scenario& scenario) {
+    return MakeOperator(scenario, HandInertia::kInWrench);
+  };
+  // Called only from the caller's thread.
+  std::function<void(double share)> progress = [](double) {};
+};
+
+// Continues the run in virtual time without the limits of force, torque, coupling, tracking and
+// handle speed. All other faults stop it as always. Throws InputError.
+Continuation Continue(const StoppedRun& run, const ArmDistribution& arms,
+                      const ContinueOptions& options);
+
+// `recording`: name of the file.
+std::string ContinuationText(const Continuation& c);
+std::string ContinuationJson(const Continuation& c, const std::string& recording);
+std::string ContinuationPage(const Continuation& c, const std::string& recording,
+                             const std::string& program_version);
+// JSON Schema (draft-07) of ContinuationJson.
+std::string ContinuationSchema();
+// Sentences about what the prediction assumes and leaves out.
+std::vector<std::string> ContinuationAssumptions(const Continuation& c);
+// "settles in 71 %, ..." of the draws.
+std::string EndingWords(const Continuation& c);
+
+// What the text, the page and the JSON show of the draws, in the JSON's order.
+struct ContinuationQuantity {
+  const char *key, *label, *format;
+  double ContinuedRun::*value;
+};
+extern const std::array<ContinuationQuantity, 6> kContinuationQuantities;
+
+}  // namespace predictor
