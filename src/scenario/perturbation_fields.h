@@ -13,7 +13,7 @@ void Fields(V& v, PerturbationSpec& s) {
   v("amplitude", s.amplitude, Number("m", "of a displacement", From(0.001, 0.008)));
   v("normal", s.normal, Number("", "of the plane of the displacements, in W", Within(1000)));
   v("directions", s.directions, Number("", "evenly distributed in the plane", From(4, 16)));
-  v("ramp", s.ramp, Number("s", "of moving out, and of moving back", From(0.1, 0.15)));
+  v("ramp", s.ramp, Number("s", "of moving out, and of moving back", From(0.12, 0.15)));
   v("hold", s.hold, Number("s", "between moving out and back", From(0.1, 1)));
   v("after", s.after, Number("s", "simulated time before the first displacement", From(0, 86400)));
   v("pause", s.pause, Number("s", "shortest time between two displacements", From(0.3, 60)));

@@ -37,7 +37,7 @@ TEST(Perturbation, HasBoundsThatAScenarioCannotWiden) {
 TEST(Perturbation, ForceIsBoundedByThatOfTheExactMotion) {
   PerturbationSpec p;
   p.amplitude = 0.008;
-  p.ramp = 0.1;
+  p.ramp = 0.12;
   for (const double mass : {0.5, 1.5, 3.0}) {
     HandSpec hand;
     hand.mass = mass;
@@ -65,7 +65,7 @@ TEST(Perturbation, ForceIsBoundedByThatOfTheExactMotion) {
 TEST(Perturbation, IsRefusedIfTheScenariosHandWouldResistTooMuch) {
   const std::string error =
       ErrorOf(FixtureText(), {"operator.hand.mass=3", "operator.hand.stiffness=[600, 600, 600]",
-                              "perturbation={consent: true, amplitude: 0.008, ramp: 0.1}"});
+                              "perturbation={consent: true, amplitude: 0.008, ramp: 0.12}"});
   EXPECT_NE(error.find("would resist with up to"), std::string::npos) << error;
 }
 

@@ -1,8 +1,8 @@
 // What could happen to a person who lets go of the handles: the object falls, object or cobot hit
 // the person or clamp a part of the body, the person stands too close to the moving cobot.
 //
-// All of this is contact that nobody intends. It says nothing about the forces at the handles,
-// which the person intends.
+// All of this is unintended contact. It says nothing about the forces at the handles, which the
+// person intends.
 #pragma once
 
 #include <algorithm>
