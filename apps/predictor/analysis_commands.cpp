@@ -205,6 +205,37 @@ void AddHazards(CLI::App* app, Request* r) {
   hazards->footer("Example:\n  predictor hazards scenarios/box_9kg.yaml --seeds 10\n");
 }
 
+void AddPopulation(CLI::App* app, Request* r) {
+  PopulationCommandOptions* o = &r->population;
+  CLI::App* population = AddCommand(
+      app, kGroup, "population",
+      "Compare designs by what they do to the same simulated people, each on an own body", r,
+      [o] { return PopulationCommand(*o); });
+  population->add_option("scenarios", o->scenarios, "Scenario files (YAML)")->required();
+  AddOption(population, "Study", "--persons", &o->persons, "NUMBER", "Simulated people")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  AddOption(population, "Study", "--heights", &o->heights, "M,M,...",
+            "Heights of the handles above the ground, each a design [default: the scenario's]")
+      ->delimiter(',')
+      ->check(CLI::Range(0.1, 2.5));
+  AddOption(population, "Study", "--set", &o->set, "KEY=VALUE",
+            "Change a value of all scenarios; repeatable");
+  AddOption(population, "Study", "--population-seed", &o->seed, "NUMBER",
+            "Seed of the people: the same number draws the same people")
+      ->capture_default_str();
+  AddOption(population, "Study", "--jobs", &o->workers, "NUMBER",
+            "Runs at the same time [default: the number of cores]")
+      ->check(CLI::Range(1, 1024));
+  AddOption(population, "Output", "-o,--output", &o->folder, "FOLDER",
+            "Folder for the results; an interrupted study continues in it")
+      ->capture_default_str();
+  AddOutput(population, o);
+  population->footer(
+      "Example:\n  predictor population scenarios/box_9kg.yaml scenarios/box_18kg.yaml "
+      "--heights 0.8,1.0,1.2 --persons 50\n");
+}
+
 void AddReproduce(CLI::App* app, Request* r) {
   ReproduceCommandOptions* o = &r->reproduce;
   CLI::App* reproduce = AddCommand(
@@ -273,6 +304,7 @@ void AddAnalysisCommands(CLI::App* app, Request* r) {
   AddTrial(app, r);
   AddIdentify(app, r);
   AddHazards(app, r);
+  AddPopulation(app, r);
   AddReproduce(app, r);
   AddSurvey(app, r);
 }

@@ -25,6 +25,7 @@ struct Request {
   EvaluateOptions evaluate;
   ContinueCommandOptions continue_run;
   HazardsCommandOptions hazards;
+  PopulationCommandOptions population;
   SurveyOptions survey;
   DevicesOptions devices;
   CalibrateOptions calibrate;

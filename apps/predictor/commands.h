@@ -158,6 +158,17 @@ struct HazardsCommandOptions : OutputOptions {
   int seeds = 50;  // runs of each scenario, controller and hazard
 };
 
+// Input and output of `population`.
+struct PopulationCommandOptions : OutputOptions {
+  std::vector<std::string> scenarios;
+  std::vector<std::string> set;  // overrides of all scenarios
+  std::vector<double> heights;   // of the handles above the ground [m]
+  std::string folder = "population";
+  int persons = 200;
+  std::uint64_t seed = 1;  // of the population
+  int workers = 0;         // 0: the number of cores
+};
+
 // Output of `init`.
 struct InitOptions : OutputOptions {
   std::string name;  // of the scenario, and of its file without .yaml
@@ -212,6 +223,7 @@ int IdentifyCommand(const IdentifyCommandOptions& options);
 int EvaluateCommand(const EvaluateOptions& options);
 int ContinueCommand(const ContinueCommandOptions& options);
 int HazardsCommand(const HazardsCommandOptions& options);
+int PopulationCommand(const PopulationCommandOptions& options);
 int ReproduceCommand(const ReproduceCommandOptions& options);
 int SurveyAskCommand(const SurveyOptions& options);
 int SurveyReportCommand(const SurveyOptions& options);

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "analysis/continuation/continuation.h"
+#include "analysis/population/population.h"
 #include "assessment/output.h"
 #include "command_line.h"
 #include "evaluation/summary.h"
@@ -94,6 +95,8 @@ void AddSchema(CLI::App* app, Request* r) {
            assessment::AssessmentSchema);
   AddPrint(schema, "Commands", "continuation", "Schema of the continuation of a run (--json)", r,
            ContinuationSchema);
+  AddPrint(schema, "Commands", "population", "Schema of a population study (--json)", r,
+           population::PopulationSchema);
 }
 
 // Prints the help of the command that `words` name.

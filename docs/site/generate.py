@@ -238,6 +238,24 @@ def continuation_page(schema):
         "## draws", "Each possible operator has these members:", table(head, result_rows(draw))])
 
 
+def population_page(schema):
+    design = schema["properties"]["designs"]["items"]
+    quantities = design["properties"]["quantities"]["properties"]
+    names = [(f"`{name}`", value["description"]) for name, value in quantities.items()]
+    one = next(iter(quantities.values()))
+    rest = {key: value for key, value in design["properties"].items() if key != "quantities"}
+    head = ("key", "unit", "value", "meaning")
+    return "\n\n".join([
+        "# Population JSON", "What `predictor population --json` writes, from `predictor schema population`. "
+        "[Compare designs for a population](../../how-to/population.md) explains it.",
+        table(head, result_rows({"properties": {**schema["properties"]}})),
+        "## people", table(head, result_rows(schema["properties"]["people"]["items"])),
+        "## designs", table(head, result_rows({"properties": rest})),
+        "## quantities of a design", table(("key", "quantity and SI unit"), names),
+        "Each of them has these members:", table(head, result_rows(one)),
+        "## differences", table(head, result_rows(schema["properties"]["differences"]["items"]))])
+
+
 # ---- from the sources ----------------------------------------------------------------------------------------------
 
 def controllers_page(schema):
@@ -316,6 +334,7 @@ def main():
         "summary-json": summary_page(json_schema(program, "summary")),
         "evaluation-json": evaluation_page(json_schema(program, "evaluation")),
         "continuation-json": continuation_page(json_schema(program, "continuation")),
+        "population-json": population_page(json_schema(program, "population")),
         "cpp": "\n\n".join(["# C++ interface",
                             "The headers with which a program embeds the emulator, and those that an extension uses.",
                             *(f"## {h}\n\n```{{doxygenfile}} {pathlib.Path(h).name}\n```" for h in HEADERS)]),

@@ -245,9 +245,13 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
           "repeated four times a minute and " + (work.held ? "" : "not ") +
           "held for more than a minute, and the handles are good to grip.",
       "For the lifting index, lifts occur as often as in this run, for at most one hour.",
-      "Strength is the mean of the person's sex, for flexion and extension only."};
+      std::string("Strength is the mean of the person's sex") +
+          (work.strength == WorkPattern().strength ? "" : ", times operator.body.strength") +
+          ", for flexion and extension only."};
   if (scenario.operator_.type == "virtual")
-    a->assumptions.emplace_back("The operator was simulated, without a body of its own.");
+    a->assumptions.emplace_back(scenario.operator_.embodied
+                                    ? "The operator was simulated, on this body."
+                                    : "The operator was simulated, without a body of its own.");
   if (scenario.operator_.type == "person")
     a->assumptions.emplace_back(
         "The hands held the handles throughout: real arms cannot feel whether a hand is there.");
@@ -287,12 +291,14 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
   CheckPlace(samples, &a);
   AddStopWarning(run, &a);
   const double share = options.intervals ? 0.3 : 1;  // of the time that the nominal chain takes
-  NominalChain nominal = RunNominal(a.setup, samples, options.work,
-                                    [&](double done) { options.progress(share * done); });
+  WorkPattern work = options.work;
+  work.strength = a.setup.body.strength;
+  NominalChain nominal =
+      RunNominal(a.setup, samples, work, [&](double done) { options.progress(share * done); });
   AddMuscles(a.setup, samples, &nominal);
   SampledChain sampled;
   if (options.intervals)
-    sampled = RunSampled(a.setup, samples, nominal, kSampledStride, options.work,
+    sampled = RunSampled(a.setup, samples, nominal, kSampledStride, work,
                          [&](double done) { options.progress(share + (1 - share) * done); });
   for (const PersonSample& sample : samples) a.times.push_back(sample.body.time);
   for (const std::size_t i : sampled.at) a.sampled_times.push_back(a.times[i]);
@@ -306,7 +312,7 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
   AddDamage(scenario, nominal, run.samples(), &a);
   AddFatigue(scenario, nominal, run.samples(), &a);
   AddPictures(nominal, samples, options.intervals, &a);
-  AddWords(scenario, options.work, &a);
+  AddWords(scenario, work, &a);
   AddMuscleWords(nominal, &a.warnings, &a.assumptions, &a.not_evaluable);
   AddLifts(object_mass, run, &a);
   return a;

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "ergonomics/strength.h"
-
 namespace predictor::assessment {
 namespace {
 
@@ -71,10 +69,11 @@ void Score(const FrameInput& input, const WorkPattern& work, Frame* frame) {
 }
 
 double UseOf(double torque, StrengthDirection flexion, StrengthDirection extension, Sex sex,
-             const person::ArmAngles& arm) {
+             const person::ArmAngles& arm, const WorkPattern& work) {
   const StrengthDirection direction = torque > 0 ? flexion : extension;
-  const double strength = ergonomics::MeanStrength(
-      direction, sex, std::numbers::pi - arm.elbow_flexion, arm.upper_arm_flexion);
+  const double mean = ergonomics::MeanStrength(direction, sex, std::numbers::pi - arm.elbow_flexion,
+                                               arm.upper_arm_flexion);
+  const double strength = mean * work.strength[static_cast<std::size_t>(direction)];
   return std::abs(torque) / std::max(strength, 1e-9);
 }
 
@@ -95,10 +94,10 @@ Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,
     const auto h = static_cast<std::size_t>(hand);
     frame.elbow_use[h] = UseOf(loads.torque[person::Of(hand, ArmJoint::kElbowFlexion)],
                                StrengthDirection::kElbowFlexion, StrengthDirection::kElbowExtension,
-                               sex, angles.arms[h]);
+                               sex, angles.arms[h], work);
     frame.shoulder_use[h] = UseOf(loads.torque[person::Of(hand, ArmJoint::kShoulderFlexion)],
                                   StrengthDirection::kShoulderFlexion,
-                                  StrengthDirection::kShoulderExtension, sex, angles.arms[h]);
+                                  StrengthDirection::kShoulderExtension, sex, angles.arms[h], work);
   }
   return frame;
 }

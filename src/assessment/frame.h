@@ -7,6 +7,7 @@
 #include "ergonomics/owas.h"
 #include "ergonomics/reba.h"
 #include "ergonomics/rula.h"
+#include "ergonomics/strength.h"
 #include "person/body_loads.h"
 #include "person/posture_angles.h"
 #include "scenario/scenario.h"
@@ -18,6 +19,8 @@ struct WorkPattern {
   bool repeated = false;  // the same posture at least four times a minute
   bool held = false;      // a posture static for more than a minute
   ergonomics::Coupling coupling = ergonomics::Coupling::kGood;
+  // Of the person, times the mean of the sex (BodySpec::strength).
+  std::array<double, ergonomics::kStrengthDirections> strength = {1, 1, 1, 1};
 };
 
 struct Frame {
@@ -27,7 +30,8 @@ struct Frame {
   ergonomics::RulaScores rula;
   ergonomics::RebaScores reba;
   ergonomics::OwasScore owas;
-  // Torque over the mean strength of the sex in its direction (flexion or extension).
+  // Torque over the strength in its direction (flexion or extension): the mean of the sex, times
+  // WorkPattern::strength.
   std::array<double, kHands> elbow_use = {}, shoulder_use = {};
   bool reached = false;  // the hands of the posture reach the handles
   // Of the nominal person; without values for the others.

@@ -75,6 +75,7 @@ bool LivePerson::Add(const TickRecord& record) {
 
 void LivePerson::Begin() {
   if (!setup_) setup_ = SetupOf(scenario_, builder_.first());
+  work_.strength = setup_->body.strength;
   chain_.emplace(*setup_, work_);
   intervals_.emplace(*setup_, work_);
 }

@@ -27,7 +27,7 @@ PersonSetup SetupOf(const Scenario& scenario, const TickRecord& first) {
   PersonSetup setup;
   setup.body = *scenario.operator_.body;
   const Vector3 forward(std::cos(stands.facing), std::sin(stands.facing), 0);
-  setup.stance = person::StanceAt(stands.ground, forward, stands.feet_apart);
+  setup.stance = person::StanceOf(stands);
   for (int hand = 0; hand < kHands; ++hand) {
     if (!scenario.Has(hand)) continue;
     const auto h = static_cast<std::size_t>(hand);

@@ -1,5 +1,7 @@
 #include "person/body_sample.h"
 
+#include <cmath>
+
 #include "core/error.h"
 #include "core/text.h"
 
@@ -20,6 +22,10 @@ Stance StanceAt(const Vector3& ground, const Vector3& direction, double width) {
   stance.X_WS.p = ground;
   stance.X_WS.q = Eigen::AngleAxisd(std::atan2(ahead.y(), ahead.x()), Vector3::UnitZ());
   return stance;
+}
+
+Stance StanceOf(const StanceSpec& spec) {
+  return StanceAt(spec.ground, {std::cos(spec.facing), std::sin(spec.facing), 0}, spec.feet_apart);
 }
 
 Pose GripOn(const Vector3& bar, const Vector3& wrist) {

@@ -18,6 +18,8 @@ struct Stance {
 // Stance at the point `ground` of W [m] and with the person facing `direction` (its horizontal part
 // counts). Throws InputError if that part is zero, or if the width is not within 0 to 1 m.
 Stance StanceAt(const Vector3& ground, const Vector3& direction, double width = 0.25);
+// The stance of a scenario.
+Stance StanceOf(const StanceSpec& spec);
 
 // How a hand holds its handle D: pose of the grip frame G (see GripInHand).
 struct Grip {

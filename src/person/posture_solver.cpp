@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "person/posture_follower.h"
 #include "person/posture_tasks.h"
 #include "qp/qp.h"
 
@@ -26,16 +27,28 @@ struct Stage {
 };
 constexpr Stage kCompromise = {false, 1e-3, 1e-9, 1e-6, 0, 80};
 constexpr Stage kExact = {true, 1e-6, 1e-10, 1e-13, 1e-10, 60};
+constexpr Stage kFollow = {false, 1e-5, 1e-9, 1e-6, 0, kFollowIterations};
+
+// All memory that a descent needs.
+struct Workspace {
+  TaskRows rows;
+  Qp qp{kBodyJoints, 0};
+  QpSolver solver{kBodyJoints, 0};
+  QpSolution solution;
+};
 
 class Descent {
  public:
-  Descent(const PostureTasks& tasks, const BodyModel& model, const PosturePrior& prior)
+  Descent(const PostureTasks& tasks, const BodyModel& model, const PosturePrior& prior,
+          Workspace* work)
       : tasks_(tasks),
         prior_(prior),
         lower_(model.lower()),
         upper_(model.upper()),
-        qp_(kBodyJoints, 0),
-        solver_(kBodyJoints, 0) {}
+        rows_(work->rows),
+        qp_(work->qp),
+        solver_(work->solver),
+        solution_(work->solution) {}
 
   // Improves q, which it first brings within the limits. Returns the number of iterations.
   int Run(const Stage& stage, BodyVector* q) {
@@ -97,10 +110,10 @@ class Descent {
   const PostureTasks& tasks_;
   const PosturePrior& prior_;
   BodyVector lower_, upper_;
-  TaskRows rows_;
-  Qp qp_;
-  QpSolver solver_;
-  QpSolution solution_;
+  TaskRows& rows_;
+  Qp& qp_;
+  QpSolver& solver_;
+  QpSolution& solution_;
 };
 
 }  // namespace
@@ -136,13 +149,28 @@ PostureSolver::PostureSolver(const BodyModel& model, const Stance& stance,
 
 Posture PostureSolver::Solve(const BodySample& sample, const BodyVector& start) const {
   const PostureTasks tasks(model_, stance_, grips_, prior_, sample);
-  Descent descent(tasks, model_, prior_);
+  Workspace work;
+  Descent descent(tasks, model_, prior_, &work);
   Posture posture;
   posture.q = start;
   posture.iterations = descent.Run(kCompromise, &posture.q);
   posture.iterations += descent.Run(kExact, &posture.q);
   tasks.Judge(&posture);
   return posture;
+}
+
+struct PostureFollower::Impl {
+  Workspace work;
+};
+
+PostureFollower::PostureFollower(const PostureSolver& solver)
+    : solver_(solver), impl_(std::make_unique<Impl>()) {}
+PostureFollower::~PostureFollower() = default;
+
+void PostureFollower::Follow(const BodySample& sample, BodyVector* q) noexcept {
+  const PostureTasks tasks(solver_.model(), solver_.stance(), solver_.grips(), solver_.prior(),
+                           sample);
+  Descent(tasks, solver_.model(), solver_.prior(), &impl_->work).Run(kFollow, q);
 }
 
 }  // namespace predictor::person

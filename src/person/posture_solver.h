@@ -55,6 +55,7 @@ class PostureSolver {
 
   const BodyModel& model() const { return model_; }
   const Stance& stance() const { return stance_; }
+  const std::array<Grip, kHands>& grips() const { return grips_; }
   const PosturePrior& prior() const { return prior_; }
 
  private:

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/minimum_jerk.h"
+#include "rig/arm_stiffness.h"
 
 namespace predictor {
 namespace {
@@ -65,7 +66,15 @@ void HandModel::StepGrip(bool hold, double grip_time) noexcept {
   }
 }
 
-Wrench HandModel::Step(const HandGoal& goal, const FrameMotion& handle) noexcept {
+Vector3 HandModel::Impedance(const Vector3& error, const Vector3& rate,
+                             const ArmAbility* arm) const noexcept {
+  if (!arm) return spec_.stiffness.cwiseProduct(error) + damping_.cwiseProduct(rate);
+  const Matrix3 stiffness = arm->stiffness / (1 + spec_.reflex_gain);
+  return stiffness * error + HandDamping(stiffness, spec_.mass, spec_.damping_ratio) * rate;
+}
+
+Wrench HandModel::Intend(const HandGoal& goal, const FrameMotion& handle,
+                         const ArmAbility* arm) noexcept {
   StepGrip(goal.hold, goal.grip_time);
   // Samples are drawn while the hand is free, too, so that later samples do not depend on the grip.
   Wrench noise;
@@ -80,14 +89,13 @@ Wrench HandModel::Step(const HandGoal& goal, const FrameMotion& handle) noexcept
   const Vector6 error = PoseError(goal.X_WH, handle.X_W);
   const Twist rate = goal.V_WH - handle.V_W;
   Wrench impedance;
-  impedance << spec_.stiffness.cwiseProduct(error.head<3>()) +
-                   damping_.cwiseProduct(rate.head<3>()),
+  impedance << Impedance(error.head<3>(), rate.head<3>(), arm),
       spec_.rotation_stiffness * error.tail<3>() + spec_.rotation_damping * rate.tail<3>();
   Wrench F = impedance + reflex_.Update(spec_.reflex_gain * impedance);
   F.head<3>() += spec_.visual_stiffness.cwiseProduct(goal.object_error) + goal.force;
 
   // Root mean square of the vector; each axis has a third of the power.
-  const double axis = 1 / std::sqrt(3.0);
+  const double axis = arm ? 1 / (std::sqrt(3.0) * arm->capacity) : 1 / std::sqrt(3.0);
   const double level = spec_.force_noise * F.head<3>().norm() + spec_.force_noise_floor;
   const double torque_level = spec_.force_noise * F.tail<3>().norm();
   F.head<3>() += axis * (level * noise.head<3>() + spec_.tremor_force * tremor);
@@ -95,6 +103,12 @@ Wrench HandModel::Step(const HandGoal& goal, const FrameMotion& handle) noexcept
 
   Wrench out;
   out << Saturate(F.head<3>(), spec_.max_force), Saturate(F.tail<3>(), spec_.max_torque);
+  return out;
+}
+
+Wrench HandModel::Deliver(const Wrench& muscles, const FrameMotion& handle) const noexcept {
+  if (grip_ <= 0) return Wrench::Zero();
+  Wrench out = muscles;
   if (inertia_ == HandInertia::kInWrench) out.head<3>() -= spec_.mass * handle.A_W.head<3>();
   return grip_ * out;
 }

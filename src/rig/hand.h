@@ -7,6 +7,7 @@
 #include "core/archive.h"
 #include "core/filters.h"
 #include "core/messages.h"
+#include "rig/arm_ability.h"
 #include "rig/operator.h"
 #include "rig/random_process.h"
 #include "scenario/scenario.h"
@@ -25,7 +26,9 @@ struct HandGoal {
 
 // F = s · (sat[K e + D de/dt + reflex + visual + feed-forward + noise + tremor] − M a), where e is
 // the reference minus the handle's pose. The reflex is a delayed share of K e + D de/dt. The torque
-// about H follows the same law.
+// about H follows the same law. With the ability of an arm, its stiffness is (1 + reflex) K, and
+// what fatigue leaves of its capacity divides noise and tremor: muscles work harder for the same
+// force.
 class HandModel {
  public:
   static constexpr double kMaxDelay = 0.5;  // of reflex and vision [s]
@@ -36,7 +39,13 @@ class HandModel {
   // Resets to a free hand; dt is the step time [s].
   void Reset(double dt) noexcept;
   // Advances by one step and returns the wrench F_H_W on the handle, which moves as `handle` says.
-  Wrench Step(const HandGoal& goal, const FrameMotion& handle) noexcept;
+  Wrench Step(const HandGoal& goal, const FrameMotion& handle) noexcept {
+    return Deliver(Intend(goal, handle, nullptr), handle);
+  }
+  // The same in two parts, so that a body can limit the muscles' wrench between them. `arm`: null
+  // if the stiffness does not depend on a posture.
+  Wrench Intend(const HandGoal& goal, const FrameMotion& handle, const ArmAbility* arm) noexcept;
+  Wrench Deliver(const Wrench& muscles, const FrameMotion& handle) const noexcept;
 
   void Archive(StateArchive& a) {
     a(noise_, tremor_, dt_, grip_, grip_start_, grip_phase_, keep_, held_, reflex_);
@@ -46,6 +55,9 @@ class HandModel {
 
  private:
   void StepGrip(bool hold, double grip_time) noexcept;
+  // K e + D de/dt, with e and its rate in W.
+  Vector3 Impedance(const Vector3& error, const Vector3& rate,
+                    const ArmAbility* arm) const noexcept;
 
   HandSpec spec_;
   HandInertia inertia_;

@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "rig/hand.h"
 #include "rig/operator.h"
+#include "rig/operator_body.h"
 #include "rig/script.h"
 
 namespace predictor {
@@ -19,7 +21,7 @@ class VirtualOperator final : public Operator {
   void Step(const OperatorInput& input, OperatorOutput* output) noexcept override;
   void Reset() noexcept override;
   void Archive(StateArchive& a) noexcept override {
-    a(hands_, drift_, script_, dt_, run_time_, running_, intent_, held_, X_OH_, sight_);
+    a(hands_, drift_, script_, dt_, run_time_, running_, intent_, held_, X_OH_, sight_, body_);
   }
 
  private:
@@ -29,6 +31,10 @@ class VirtualOperator final : public Operator {
   void RunScript(const OperatorInput& input, const Pose& X_WO) noexcept;
   void Anchor(const OperatorInput& input, const Pose& X_WO) noexcept;
   HandGoal Goal(int hand, const OperatorInput& input, const Vector3& seen) const noexcept;
+  // Brings the goal to a place that the hand reaches.
+  void Reach(int hand, HandGoal* goal) const noexcept;
+  void StepBody(const OperatorInput& input) noexcept;
+  void LimitMuscles(const OperatorInput& input, std::array<Wrench, kHands>* wrenches) noexcept;
 
   HandSpec spec_;
   std::array<Pose, kHands> X_OD_;
@@ -37,6 +43,7 @@ class VirtualOperator final : public Operator {
   std::vector<HandModel> hands_ = fresh_hands_;
   OrnsteinUhlenbeck drift_ = fresh_drift_;
   Script script_;
+  std::optional<OperatorBody> body_;
 
   double dt_ = 0;        // 0: no step yet
   double run_time_ = 0;  // time of the last step of a run [s]
@@ -77,6 +84,7 @@ VirtualOperator::VirtualOperator(const Scenario& scenario, HandInertia inertia)
   for (int i = 0; i < kHands; ++i) {
     if (scenario.Has(i)) X_OD_[static_cast<std::size_t>(i)] = scenario.handle(i).pose.ToPose();
   }
+  if (scenario.operator_.embodied) body_.emplace(scenario);
 }
 
 void VirtualOperator::Reset() noexcept {
@@ -85,6 +93,7 @@ void VirtualOperator::Reset() noexcept {
   intent_ = Intent();
   held_ = {false, false};
   script_.Reset();
+  if (body_) body_->Reset();
 }
 
 // Every run uses the same random draws, regardless of draws before it began.
@@ -141,6 +150,40 @@ HandGoal VirtualOperator::Goal(int hand, const OperatorInput& input,
   return goal;
 }
 
+void VirtualOperator::Reach(int hand, HandGoal* goal) const noexcept {
+  const Vector3 p = body_->Reachable(hand, goal->X_WH.p);
+  const Vector3 missing = goal->X_WH.p - p;
+  const double distance = missing.norm();
+  if (!(distance > 0)) return;
+  // The reference rests along the direction in which it is out of reach.
+  const Vector3 away = missing / distance;
+  goal->V_WH.head<3>() -= away * std::max(0.0, away.dot(goal->V_WH.head<3>()));
+  goal->X_WH.p = p;
+  goal->object_error -= missing;
+}
+
+void VirtualOperator::StepBody(const OperatorInput& input) noexcept {
+  std::array<bool, kHands> holds = {false, false};
+  for (const int hand : input.present) {
+    const auto i = static_cast<std::size_t>(hand);
+    holds[i] = intent_.hold[i] || hands_[i].grip() > 0;
+  }
+  body_->Step(input.handle, holds, input.dt);
+}
+
+void VirtualOperator::LimitMuscles(const OperatorInput& input,
+                                   std::array<Wrench, kHands>* wrenches) noexcept {
+  std::array<Vector3, kHands> forces;
+  for (std::size_t i = 0; i < kHands; ++i) forces[i] = hands_[i].grip() * (*wrenches)[i].head<3>();
+  std::array<Vector3, kHands> limited = forces;
+  body_->LimitForces(input.handle, &limited);
+  for (std::size_t i = 0; i < kHands; ++i)
+    if (hands_[i].grip() > 0) (*wrenches)[i].head<3>() = limited[i] / hands_[i].grip();
+  std::array<Wrench, kHands> felt = *wrenches;
+  for (std::size_t i = 0; i < kHands; ++i) felt[i] *= hands_[i].grip();
+  body_->Feel(felt);
+}
+
 void VirtualOperator::Step(const OperatorInput& input, OperatorOutput* output) noexcept {
   *output = OperatorOutput();
   if (input.running && !running_) BeginRun();
@@ -162,9 +205,18 @@ void VirtualOperator::Step(const OperatorInput& input, OperatorOutput* output) n
     intent_.hold = held_ = {false, false};  // when the machine stops, the person lets go
   }
 
+  if (body_) StepBody(input);
+  std::array<Wrench, kHands> muscles = {Wrench::Zero(), Wrench::Zero()};
   for (const int hand : input.present) {
     const std::size_t i = static_cast<std::size_t>(hand);
-    output->F_H_W[i] = hands_[i].Step(Goal(hand, input, seen), input.handle[i]);
+    HandGoal goal = Goal(hand, input, seen);
+    if (body_) Reach(hand, &goal);
+    muscles[i] = hands_[i].Intend(goal, input.handle[i], body_ ? &body_->arm(hand) : nullptr);
+  }
+  if (body_) LimitMuscles(input, &muscles);
+  for (const int hand : input.present) {
+    const std::size_t i = static_cast<std::size_t>(hand);
+    output->F_H_W[i] = hands_[i].Deliver(muscles[i], input.handle[i]);
     output->grip[i] = hands_[i].grip();
     output->hand_mass[i] = hands_[i].grip() * spec_.mass;
   }

@@ -98,6 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
     Scenarios, StateTest,
     testing::Values(std::pair{"box_9kg", std::vector<std::string>{}},
                     std::pair{"box_9kg", std::vector<std::string>{"mode=direct"}},
+                    std::pair{"box_9kg", std::vector<std::string>{"operator.embodied=true"}},
                     std::pair{"box_9kg",
                               std::vector<std::string>{"cobot.controller.type=joint_impedance",
                                                        "cobot.controller.joint_stiffness=200"}},

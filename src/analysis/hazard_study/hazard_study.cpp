@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <fstream>
 #include <thread>
 
 #include "analysis/hazard_study/run_store.h"
 #include "analysis/parallel.h"
 #include "analysis/stability_map/store.h"
+#include "analysis/text_file.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "core/norm.h"
@@ -47,14 +47,6 @@ struct Piece {
   HazardRun first;  // with seed 1
   std::string key;
 };
-
-void WriteText(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  if (!out.flush())
-    throw InputError("'" + file.string() +
-                     "' could not be written. Give a writable folder on a disk with free space.");
-}
 
 HazardRun Run(Scenario scenario, std::uint64_t seed) {
   scenario.seed = seed;

@@ -1,0 +1,287 @@
+// The page of a population study: for each quantity every person as a dot, the differences person
+// by person, and the curve over the height of the handles.
+#include "report/page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "analysis/population/population.h"
+#include "core/format.h"
+#include "core/text.h"
+#include "evaluation/statistics_samples.h"
+
+namespace predictor::population {
+namespace {
+
+constexpr double kHalfWidth = 0.36;  // of a cloud of dots, in designs
+
+struct Points {
+  std::vector<double> x, y, error;
+  void Add(double at, double value) {
+    x.push_back(at);
+    y.push_back(value);
+  }
+};
+
+PlotSeries Series(const std::string& label, SeriesKind kind, int color, Points points) {
+  PlotSeries series{.label = label, .kind = kind, .color = color};
+  series.SetPoints(std::move(points.x), std::move(points.y));
+  if (!points.error.empty()) series.error = MakeSamples(std::move(points.error));
+  return series;
+}
+
+std::size_t QuantityAt(const std::string& path) {
+  const auto all = StudyQuantities();
+  return static_cast<std::size_t>(
+      std::ranges::find_if(all, [&](const StudyQuantity& q) { return path == q.path; }) -
+      all.begin());
+}
+
+bool Counts(const PopulationRun& run, std::size_t quantity) {
+  return run.cause == StopCause::kNone && quantity < run.values.size() &&
+         std::isfinite(run.values[quantity]);
+}
+
+// Dots of equal height lie beside each other: values are put into rows, whose dots spread about the
+// middle `at`.
+void AddCloud(double at, std::vector<double> values, Points* points) {
+  if (values.empty()) return;
+  std::ranges::sort(values);
+  const double range = values.back() - values.front();
+  const double row = std::max(range / 40, 1e-12);
+  const double step = 2 * kHalfWidth / 24;
+  for (std::size_t begin = 0, end = 0; begin < values.size(); begin = end) {
+    while (end < values.size() && values[end] < values[begin] + row) ++end;
+    const auto n = static_cast<double>(end - begin);
+    const double space = std::min(step, 2 * kHalfWidth / std::max(1.0, n - 1));
+    for (std::size_t i = begin; i < end; ++i)
+      points->Add(at + (static_cast<double>(i - begin) - (n - 1) / 2) * space, values[i]);
+  }
+}
+
+std::vector<std::string> DesignNames(const PopulationStudy& study) {
+  std::vector<std::string> names;
+  for (const PopulationDesign& design : study.designs) names.push_back(design.name);
+  return names;
+}
+
+std::vector<double> ValuesOf(const PopulationDesign& design, std::size_t quantity, double factor) {
+  std::vector<double> values;
+  for (const PopulationRun& run : design.runs)
+    if (Counts(run, quantity)) values.push_back(factor * run.values[quantity]);
+  return values;
+}
+
+PlotAxis DesignAxis(std::vector<std::string> names) {
+  PlotAxis axis{.label = "Design"};
+  axis.low = -0.5;
+  axis.high = static_cast<double>(names.size()) - 0.5;
+  axis.names = std::move(names);
+  return axis;
+}
+
+// Every person as a dot, with the median and the range of 90 % of the people.
+PlotPanel PeoplePanel(const PopulationStudy& study, std::size_t quantity) {
+  const StudyQuantity& kind = StudyQuantities()[quantity];
+  const double factor = kind.unit.factor;
+  PlotPanel panel;
+  panel.y = {.label = kind.label, .unit = kind.unit.shown};
+  Points people, medians;
+  for (std::size_t i = 0; i < study.designs.size(); ++i) {
+    AddCloud(static_cast<double>(i), ValuesOf(study.designs[i], quantity, factor), &people);
+    medians.Add(static_cast<double>(i), factor * study.summaries[i][quantity].median);
+  }
+  panel.series.push_back(Series("one person each", SeriesKind::kMarkers, 0, people));
+  PlotSeries middle = Series("median", SeriesKind::kMarkers, 1, medians);
+  middle.symbol = PlotSymbol::kDiamond;
+  panel.series.push_back(middle);
+  if (kind.has_limit()) panel.limits.push_back({factor * kind.limit, kind.limit_name});
+  return panel;
+}
+
+Plot PeoplePlot(const PopulationStudy& study, std::size_t quantity) {
+  const StudyQuantity& kind = StudyQuantities()[quantity];
+  Plot plot;
+  plot.id = std::string("people-") + std::to_string(quantity);
+  plot.title = std::string(kind.label) + ": every person";
+  plot.caption = std::string("Each dot is one simulated person (") + assessment::Name(kind.origin) +
+                 "). The same people perform every design.";
+  plot.x = DesignAxis(DesignNames(study));
+  plot.panels = {PeoplePanel(study, quantity)};
+  return plot;
+}
+
+// The differences to the first design, person by person.
+Plot DifferencePlot(const PopulationStudy& study, std::size_t quantity) {
+  const StudyQuantity& kind = StudyQuantities()[quantity];
+  const double factor = kind.unit.factor;
+  Plot plot;
+  plot.id = std::string("differences-") + std::to_string(quantity);
+  plot.title = std::string(kind.label) + ": difference for the same person";
+  plot.caption = "Each dot is one person's value less the same person's value in '" +
+                 study.designs.front().name +
+                 "'. Diamonds: Hodges-Lehmann estimate with its 95 % interval.";
+  Points people, shifts;
+  std::vector<std::string> names;
+  for (const PairedDifference& d : study.differences) {
+    if (d.b != 0 || d.quantity != quantity) continue;
+    const auto at = static_cast<double>(names.size());
+    names.push_back(study.designs[d.a].name);
+    std::vector<double> values;
+    for (std::size_t i = 0; i < study.people.size(); ++i) {
+      const PopulationRun& a = study.designs[d.a].runs[i];
+      const PopulationRun& b = study.designs[d.b].runs[i];
+      if (Counts(a, quantity) && Counts(b, quantity))
+        values.push_back(factor * (a.values[quantity] - b.values[quantity]));
+    }
+    AddCloud(at, values, &people);
+    shifts.Add(at, factor * d.shift.estimate);
+    shifts.error.push_back(factor * (d.shift.upper - d.shift.lower) / 2);
+  }
+  PlotPanel panel;
+  panel.y = {.label = "Difference", .unit = kind.unit.shown, .zero = true};
+  panel.series.push_back(Series("one person each", SeriesKind::kMarkers, 0, people));
+  PlotSeries middle = Series("shift, 95 %", SeriesKind::kMarkers, 1, shifts);
+  middle.symbol = PlotSymbol::kDiamond;
+  panel.series.push_back(middle);
+  plot.x = DesignAxis(std::move(names));
+  plot.panels = {panel};
+  return plot;
+}
+
+// The designs of one scenario, by height.
+std::vector<std::size_t> ByHeight(const PopulationStudy& study, const std::string& scenario) {
+  std::vector<std::size_t> designs;
+  for (std::size_t i = 0; i < study.designs.size(); ++i)
+    if (study.designs[i].scenario == scenario && study.designs[i].height) designs.push_back(i);
+  std::ranges::sort(designs, {}, [&](std::size_t i) { return *study.designs[i].height; });
+  return designs;
+}
+
+Plot HeightPlot(const PopulationStudy& study, std::size_t quantity) {
+  const StudyQuantity& kind = StudyQuantities()[quantity];
+  const double factor = kind.unit.factor;
+  Plot plot;
+  plot.id = std::string("height-") + std::to_string(quantity);
+  plot.title = std::string(kind.label) + " over the height of the handles";
+  plot.caption = "Lines: the median person. Areas: 90 % of the people.";
+  plot.x = {.label = "Height of the handles above the ground", .unit = "m"};
+  PlotPanel panel;
+  panel.y = {.label = kind.label, .unit = kind.unit.shown};
+  std::set<std::string> scenarios;
+  for (const PopulationDesign& design : study.designs) scenarios.insert(design.scenario);
+  int color = 0;
+  for (const std::string& scenario : scenarios) {
+    Points median, high, low;
+    for (const std::size_t i : ByHeight(study, scenario)) {
+      const DesignSummary& s = study.summaries[i][quantity];
+      const double at = *study.designs[i].height;
+      median.Add(at, factor * s.median);
+      high.Add(at, factor * s.p95);
+      low.Add(at, factor * s.p5);
+    }
+    PlotSeries area =
+        Series(scenario + ", 90 % of the people", SeriesKind::kArea, color, std::move(high));
+    area.base = MakeSamples(std::move(low.y));
+    panel.series.push_back(area);
+    panel.series.push_back(Series(scenario, SeriesKind::kLine, color++, std::move(median)));
+  }
+  if (kind.has_limit()) panel.limits.push_back({factor * kind.limit, kind.limit_name});
+  plot.panels = {panel};
+  return plot;
+}
+
+// Bars for "this score or more": drawn over each other from the lowest score, so that each colour's
+// visible part is its own share.
+Plot RulaPlot(const PopulationStudy& study) {
+  Plot plot;
+  plot.id = "rula-shares";
+  plot.title = "RULA: how long the people spend in each class";
+  plot.caption = "Mean over the people of the share of time with each action level.";
+  plot.x = DesignAxis(DesignNames(study));
+  PlotPanel panel;
+  panel.y = {.label = "Share of time", .unit = "%", .low = 0, .high = 100};
+  struct Level {
+    std::size_t from;
+    const char* name;
+  };
+  int color = 0;
+  for (const Level& level : {Level{1, "1 to 2: acceptable"}, Level{3, "3 to 4: investigate"},
+                             Level{5, "5 to 6: change soon"}, Level{7, "7: change now"}}) {
+    Points bars;
+    for (std::size_t i = 0; i < study.designs.size(); ++i) {
+      double sum = 0, people = 0;
+      for (const PopulationRun& run : study.designs[i].runs) {
+        if (run.cause != StopCause::kNone) continue;
+        people += 1;
+        for (std::size_t score = level.from; score < kRulaScores; ++score)
+          sum += run.rula_share[score];
+      }
+      bars.Add(static_cast<double>(i), people > 0 ? 100 * sum / people : 0);
+    }
+    PlotSeries series = Series(level.name, SeriesKind::kBars, color++, std::move(bars));
+    series.bar_width = 0.7;
+    panel.series.push_back(series);
+  }
+  plot.panels = {panel};
+  return plot;
+}
+
+std::string SummaryTable(const PopulationStudy& study) {
+  std::vector<std::vector<std::string>> rows = {{"Quantity"}};
+  for (const PopulationDesign& design : study.designs)
+    rows.front().push_back(EscapeMarkup(design.name));
+  rows.front().emplace_back("Origin");
+  for (std::size_t q = 0; q < StudyQuantities().size(); ++q) {
+    const StudyQuantity& kind = StudyQuantities()[q];
+    std::vector<std::string> row = {EscapeMarkup(WithUnit(kind.label, kind.unit))};
+    for (std::size_t i = 0; i < study.designs.size(); ++i) {
+      const DesignSummary& s = study.summaries[i][q];
+      const auto value = [&](double x) {
+        return Formatted("%.*f", kind.unit.decimals, kind.unit.factor * x);
+      };
+      std::string cell = value(s.median) + " (" + value(s.p5) + " to " + value(s.p95) + ")";
+      if (kind.has_limit()) cell += Formatted("; %.0f %% beyond", 100 * s.beyond.value());
+      row.push_back(s.people > 0 ? cell : "–");
+    }
+    row.emplace_back(assessment::Name(kind.origin));
+    rows.push_back(row);
+  }
+  return HtmlTable(rows);
+}
+
+}  // namespace
+
+std::string PopulationPage(const PopulationStudy& study, const std::string& program_version) {
+  ReportPage page("A population of simulated people",
+                  "<p>Studied by PREDICTOR " + EscapeMarkup(program_version) + "</p>\n");
+  page.Section("summary", "Summary");
+  page.Paragraph(Formatted(
+      "%zu simulated people, each on an own body, perform %zu designs. No real person took part.",
+      study.people.size(), study.designs.size()));
+  page.Html(SummaryTable(study));
+  page.Paragraph(
+      "Median over the people, and in brackets 90 % of them, of each person's 95th percentile over "
+      "time (of balance the 5th). Beyond: people who exceed the limit. People whose run the "
+      "emulator stopped are left out.");
+  const bool has_heights = std::ranges::any_of(study.designs, [&](const PopulationDesign& design) {
+    return ByHeight(study, design.scenario).size() > 1;
+  });
+  if (study.designs.size() > 1) {
+    page.Section("rula", "Postures by RULA");
+    page.Figure(RulaPlot(study));
+  }
+  for (const char* path : {"lower_back_compression_n", "hand_force_n", "shoulder_use", "elbow_use",
+                           "trunk_flexion_rad", "upper_arm_elevation_rad"}) {
+    const std::size_t quantity = QuantityAt(path);
+    page.Section(std::string("quantity-") + std::to_string(quantity),
+                 StudyQuantities()[quantity].label);
+    page.Figure(PeoplePlot(study, quantity));
+    if (has_heights) page.Figure(HeightPlot(study, quantity));
+    if (study.designs.size() > 1) page.Figure(DifferencePlot(study, quantity));
+  }
+  return page.Finish();
+}
+
+}  // namespace predictor::population

@@ -1,0 +1,163 @@
+#include "analysis/population/population.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "analysis/parallel.h"
+#include "analysis/population/run_store.h"
+#include "analysis/stability_map/store.h"
+#include "analysis/text_file.h"
+#include "core/error.h"
+#include "core/format.h"
+#include "emulator/emulator.h"
+#include "emulator/run_loop.h"
+#include "evaluation/summary.h"
+#include "models/object_model.h"
+#include "scenario/scenario_io.h"
+
+namespace predictor::population {
+namespace {
+
+constexpr double kShortRun = 0.05;  // long enough for one sample of the person [s]
+
+// A design with what its runs need.
+struct Prepared {
+  PopulationDesign design;
+  Scenario scenario;
+  double object_mass = 0;
+  std::string key;
+  PopulationRun first;  // of person 1
+};
+
+// The middle of the handles at the start of a run, in W [m].
+double StartHeight(const Scenario& scenario) {
+  assessment::SampleCollector samples(scenario);
+  Emulator emulator(scenario);
+  Simulate(&emulator, kShortRun, [&](const TickRecord& record) { samples.Add(record); });
+  double sum = 0;
+  for (const int hand : scenario.hands())
+    sum += samples.first().hands[static_cast<std::size_t>(hand)].real.pose.p[2];
+  return sum / scenario.hands().count();
+}
+
+PopulationRun Perform(Scenario scenario, double object_mass, const SampledPerson& person) {
+  WritePerson(person, &scenario);
+  SummaryBuilder summary(scenario);
+  assessment::SampleCollector samples(scenario);
+  Emulator emulator(scenario);
+  Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
+    summary.Add(record);
+    samples.Add(record);
+  });
+  assessment::AssessOptions how;
+  how.intervals = false;
+  const assessment::Assessment a = Assess(scenario, object_mass, samples, how);
+  PopulationRun run;
+  run.person = person.number;
+  const Summary result = summary.summary();
+  if (!result.stops.empty()) run.cause = result.stops.front().cause;
+  run.held = a.held;
+  for (const StudyQuantity& quantity : StudyQuantities()) run.values.push_back(quantity.of(a));
+  for (const assessment::WorksheetResult& w : a.worksheets)
+    if (std::string(w.kind->name) == "RULA")
+      std::copy_n(w.share.begin(), kRulaScores, run.rula_share.begin());
+  return run;
+}
+
+// A scenario whose operator stands on a body, for one height of the handles.
+Prepared PreparedDesign(const std::filesystem::path& file, const Scenario& scenario,
+                        double start_height, std::optional<double> height,
+                        const SampledPerson& first) {
+  Prepared prepared;
+  prepared.scenario = scenario;
+  prepared.design.scenario = prepared.design.name = file.stem().string();
+  Vector3& ground = prepared.scenario.operator_.stance->ground;
+  if (height) {
+    prepared.design.name += Formatted(", %g m", *height);
+    ground.z() = start_height - *height;
+  }
+  prepared.design.height = start_height - ground.z();
+  prepared.object_mass = LoadObject(scenario.object, scenario.folder()).mass;
+  // The first run shows the program's behaviour, so that no outdated run is used.
+  prepared.first = Perform(prepared.scenario, prepared.object_mass, first);
+  prepared.key = HashOf(SaveScenario(prepared.scenario) + TextOf(prepared.first));
+  return prepared;
+}
+
+Scenario LoadDesign(const std::filesystem::path& file, const std::vector<std::string>& set) {
+  const Scenario scenario = LoadScenario(file, set);
+  if (!scenario.operator_.stance)
+    throw InputError("operator.stance",
+                     file.string() +
+                         ": the place where the operator stands is not known. Add "
+                         "operator.stance: {ground, facing} to the scenario.");
+  if (scenario.operator_.type != "virtual")
+    throw InputError("operator.type", file.string() + ": a population can only be simulated. Set " +
+                                          "operator.type: virtual.");
+  return scenario;
+}
+
+std::vector<Prepared> PrepareDesigns(const PopulationOptions& options, const SampledPerson& first) {
+  std::vector<Prepared> designs;
+  for (const std::filesystem::path& file : options.scenarios) {
+    const Scenario scenario = LoadDesign(file, options.set);
+    const double start = StartHeight(scenario);
+    if (options.heights.empty())
+      designs.push_back(PreparedDesign(file, scenario, start, std::nullopt, first));
+    for (const double height : options.heights)
+      designs.push_back(PreparedDesign(file, scenario, start, height, first));
+  }
+  return designs;
+}
+
+void WriteResults(const PopulationStudy& study, const PopulationOptions& options) {
+  const std::filesystem::path& folder = options.folder;
+  WriteText(folder / "persons.csv", PersonsCsv(study));
+  WriteText(folder / "designs.csv", DesignsCsv(study));
+  WriteText(folder / "differences.csv", DifferencesCsv(study));
+  WriteText(folder / "population.html", PopulationPage(study, options.program_version));
+}
+
+}  // namespace
+
+PopulationStudy MakePopulationStudy(const PopulationOptions& options) {
+  std::filesystem::create_directories(options.folder);
+  PopulationRunStore store(options.folder / "runs.jsonl");
+  PopulationStudy study;
+  study.people = SamplePopulation(options.persons, options.seed);
+  std::vector<Prepared> designs = PrepareDesigns(options, study.people.front());
+  for (Prepared& prepared : designs) prepared.design.runs.resize(study.people.size());
+
+  const unsigned workers = options.workers > 0 ? static_cast<unsigned>(options.workers)
+                                               : std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t count = designs.size() * study.people.size();
+  std::atomic<std::size_t> done = 0;
+  std::atomic<int> kept = 0;
+  DoInParallel(
+      count, workers,
+      [&](std::size_t i) {
+        Prepared& prepared = designs[i % designs.size()];
+        const SampledPerson& person = study.people[i / designs.size()];
+        PopulationRun& run = prepared.design.runs[i / designs.size()];
+        const std::string key = prepared.key + Formatted("/%llu", options.seed * 1ULL);
+        run.person = person.number;
+        if (store.Find(key, &run)) {
+          ++kept;
+        } else {
+          run = person.number == 1 ? prepared.first
+                                   : Perform(prepared.scenario, prepared.object_mass, person);
+          store.Add(key, run);
+        }
+        ++done;
+      },
+      [&] { options.progress(static_cast<double>(done) / static_cast<double>(count)); });
+  study.kept = kept;
+  for (Prepared& prepared : designs) study.designs.push_back(std::move(prepared.design));
+  Compare(&study);
+  WriteResults(study, options);
+  return study;
+}
+
+}  // namespace predictor::population

@@ -1,0 +1,121 @@
+// The population study: the same simulated people, each on an own body, perform every design, and
+// what each design does to them is compared person by person.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/population/people.h"
+#include "assessment/assessment.h"
+#include "core/status.h"
+#include "evaluation/metric.h"
+#include "evaluation/statistics_signed_rank.h"
+
+namespace predictor::population {
+
+// What is compared: one number of an assessed run.
+struct StudyQuantity {
+  const char* path;   // key in JSON and CSV, ending in the SI unit
+  const char* label;  // for people
+  Unit unit;
+  assessment::Origin origin;
+  double (*of)(const assessment::Assessment&);
+  double limit = 0;             // SI; a value beyond it is an excess; 0 without a name: no limit
+  const char* limit_name = "";  // where the limit comes from
+  assessment::Bad bad = assessment::Bad::kHigh;
+
+  bool has_limit() const { return limit_name[0] != '\0'; }
+  bool Exceeds(double x) const { return bad == assessment::Bad::kHigh ? x > limit : x < limit; }
+};
+std::span<const StudyQuantity> StudyQuantities();
+
+inline constexpr std::size_t kRulaScores = 8;  // index = score; 0 is not a score
+
+// One person in one design.
+struct PopulationRun {
+  int person = 0;
+  StopCause cause = StopCause::kNone;               // of the emulator's first stop
+  double held = 0;                                  // time that was judged [s]
+  std::vector<double> values;                       // by StudyQuantities()
+  std::array<double, kRulaScores> rula_share = {};  // of time, by score
+};
+
+// A scenario, with the handles at a height.
+struct PopulationDesign {
+  std::string name;
+  std::string scenario;             // file without folder and ending
+  std::optional<double> height;     // of the handles' middle above the ground at the start [m]
+  std::vector<PopulationRun> runs;  // by person
+};
+
+// A share with its 95 % interval by Wilson's score (Wilson 1927).
+struct Share {
+  int count = 0, of = 0;
+  double low = 0, high = 1;
+  double value() const { return of > 0 ? static_cast<double>(count) / of : 0; }
+};
+Share ShareOf(int count, int of);
+
+// One quantity in one design, over the people whose run no stop ended.
+struct DesignSummary {
+  int people = 0;
+  double median = 0, p5 = 0, p95 = 0;
+  Share beyond;  // the limit
+};
+
+// One quantity in two designs, over the people whose runs no stop ended in either. Positive: design
+// a has larger values.
+struct PairedDifference {
+  std::size_t a = 0, b = 0;  // designs
+  std::size_t quantity = 0;
+  ShiftEstimate shift;       // of a - b: Hodges and Lehmann, 95 %
+  double p = 1, p_holm = 1;  // signed rank; adjusted for all differences of the study
+  Share better;              // people for whom a is better than b
+};
+
+struct PopulationStudy {
+  std::vector<SampledPerson> people;
+  std::vector<PopulationDesign> designs;
+  std::vector<std::vector<DesignSummary>> summaries;  // [design][quantity]
+  std::vector<PairedDifference> differences;          // of each pair a > b and quantity
+  int kept = 0;  // runs that an earlier, interrupted study had finished
+};
+
+struct PopulationOptions {
+  std::vector<std::filesystem::path> scenarios;
+  std::vector<std::string> set;  // overrides of all scenarios
+  std::vector<double> heights;   // of the handles [m]; empty: as the scenario says
+  std::filesystem::path folder;  // of the results; created if necessary
+  int persons = 200;
+  std::uint64_t seed = 1;       // of the population
+  int workers = 0;              // 0: the number of cores
+  std::string program_version;  // shown on the page
+  // Called only from the caller's thread.
+  std::function<void(double share)> progress = [](double) {};
+};
+
+// Executes the runs that the folder's runs.jsonl does not contain yet: all designs of one person,
+// then the next person, so that an interrupted study compares fewer people. Each finished run is
+// appended to the file. Writes persons.csv, designs.csv, differences.csv and population.html.
+// Throws InputError.
+PopulationStudy MakePopulationStudy(const PopulationOptions& options);
+
+// Computes summaries and differences from the runs.
+void Compare(PopulationStudy* study);
+
+std::string PersonsCsv(const PopulationStudy& study);
+std::string DesignsCsv(const PopulationStudy& study);
+std::string DifferencesCsv(const PopulationStudy& study);
+std::string PopulationJson(const PopulationStudy& study);
+// JSON Schema (draft-07) of PopulationJson.
+std::string PopulationSchema();
+std::string PopulationText(const PopulationStudy& study);
+std::string PopulationPage(const PopulationStudy& study, const std::string& program_version);
+
+}  // namespace predictor::population

@@ -1,0 +1,33 @@
+// A posture that follows the handles, within the control loop's rules.
+#pragma once
+
+#include <memory>
+
+#include "person/posture_solver.h"
+
+namespace predictor::person {
+
+inline constexpr int kFollowIterations = 5;
+
+// Takes a few steps of the solver's first stage at a time, so that its cost is bounded. The hands
+// are not brought exactly to the handles: comfort costs a few millimetres, and more while the
+// handles move fast.
+class PostureFollower {
+ public:
+  // Allocates all memory.
+  explicit PostureFollower(const PostureSolver& solver);
+  ~PostureFollower();
+
+  // Improves q for this sample by at most kFollowIterations steps. The result depends only on the
+  // sample and q. No heap, no exception.
+  void Follow(const BodySample& sample, BodyVector* q) noexcept;
+
+  const PostureSolver& solver() const { return solver_; }
+
+ private:
+  struct Impl;
+  PostureSolver solver_;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace predictor::person

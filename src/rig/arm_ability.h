@@ -1,0 +1,86 @@
+// What an arm of the simulated operator can do in the present posture, and the limits that follow.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "core/types.h"
+
+namespace predictor {
+
+// The share, 0 to 1, of a load that keeps at_rest + share · load within lower ... upper. If at_rest
+// is outside, the whole load if it brings the value back, else nothing.
+inline double LargestShare(double at_rest, double load, double lower, double upper) {
+  if (load == 0) return 1;
+  return std::clamp(((load > 0 ? upper : lower) - at_rest) / load, 0.0, 1.0);
+}
+
+// A joint's muscle torque at_rest + per_force · F, for a force F of the hand on the handle [N], and
+// the person's strength in both directions.
+struct JointAbility {
+  double at_rest = 0;                   // carries the arm [N·m]
+  Vector3 per_force = Vector3::Zero();  // [m]
+  double lower = 0, upper = 0;          // [N·m], lower ≤ 0 ≤ upper
+
+  double TorqueFor(const Vector3& F) const { return at_rest + per_force.dot(F); }
+  template <class A>
+  void Archive(A& a) {
+    a(at_rest, per_force, lower, upper);
+  }
+};
+inline constexpr int kJudgedJoints = 2;  // elbow and shoulder flexion
+
+// In W.
+struct ArmAbility {
+  Matrix3 stiffness = Matrix3::Zero();  // of the hand, reflexes included [N/m]
+  Vector3 shoulder = Vector3::Zero();   // [m]
+  std::array<JointAbility, kJudgedJoints> joints;
+  double capacity = 1;  // strength that fatigue leaves, as a share; of the weaker joint
+
+  template <class A>
+  void Archive(A& a) {
+    a(stiffness, shoulder, joints, capacity);
+  }
+};
+
+// The share of the force that the joints are strong enough for.
+inline double StrengthShare(const ArmAbility& arm, const Vector3& F) {
+  double share = 1;
+  for (const JointAbility& joint : arm.joints)
+    share = std::min(share,
+                     LargestShare(joint.at_rest, joint.per_force.dot(F), joint.lower, joint.upper));
+  return share;
+}
+
+// The place nearest to p that is within `shortest` to `longest` of the shoulder [m].
+inline Vector3 WithinReach(const Vector3& p, const Vector3& shoulder, double shortest,
+                           double longest) {
+  const Vector3 arm = p - shoulder;
+  const double length = arm.norm();
+  // Not a rounding away from p: whoever asks compares with it.
+  if ((length >= shortest && length <= longest) || !(length > 1e-9)) return p;
+  return shoulder + arm * (std::clamp(length, shortest, longest) / length);
+}
+
+// A person who stands still and holds nothing, in S.
+struct Standing {
+  double weight = 0;           // [N]
+  double x = 0, y = 0;         // of the centre of mass [m]
+  double back = 0, front = 0;  // edges of the footprint along x [m]
+  double half_width = 0;       // along y [m]
+
+  template <class A>
+  void Archive(A& a) {
+    a(weight, x, y, back, front, half_width);
+  }
+};
+// A force of a hand on its handle, at p, both in S.
+struct HandForce {
+  Vector3 p = Vector3::Zero(), F = Vector3::Zero();
+};
+// The share of the forces' horizontal parts that keeps the centre of pressure within the footprint.
+// Static: N = W + Σ Fz carries c = (x W + Σ (px Fz - share pz Fx)) / N, and y likewise.
+double BalanceShare(const Standing& person, std::span<const HandForce> forces);
+
+}  // namespace predictor

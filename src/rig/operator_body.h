@@ -1,0 +1,83 @@
+// The simulated operator's body: posture, stiffness, strength, balance and fatigue from the
+// handles.
+#pragma once
+
+#include <array>
+
+#include "core/archive.h"
+#include "core/filters.h"
+#include "core/messages.h"
+#include "ergonomics/fatigue.h"
+#include "person/body_loads.h"
+#include "person/posture_angles.h"
+#include "person/posture_follower.h"
+#include "rig/arm_ability.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// The posture follows the handles that are held, kPosturePeriod apart; between, the stiffness
+// approaches its new value with kStiffnessTime.
+class OperatorBody {
+ public:
+  static constexpr double kPosturePeriod = 0.04;  // [s]
+  static constexpr double kStiffnessTime = 0.1;   // [s]
+
+  // The scenario has a body and a stance. Throws InputError if no adult has such a body.
+  explicit OperatorBody(const Scenario& scenario);
+
+  // A rested person (but for body.fatigue) in a comfortable posture.
+  void Reset() noexcept;
+  // Advances by dt [s]. `holds`: the hands that hold their handles.
+  void Step(const std::array<FrameMotion, kHands>& handle, const std::array<bool, kHands>& holds,
+            double dt) noexcept;
+
+  const ArmAbility& arm(int hand) const { return arms_[static_cast<std::size_t>(hand)]; }
+  const Standing& standing() const { return standing_; }
+  // The place nearest to p that the hand reaches from the present shoulder.
+  Vector3 Reachable(int hand, const Vector3& p) const noexcept;
+  // Reduces each hand's force on its handle at p, in W, to what the joints are strong enough for,
+  // then the horizontal parts of all to what the person can exert without falling.
+  void LimitForces(const std::array<FrameMotion, kHands>& handle,
+                   std::array<Vector3, kHands>* forces) const noexcept;
+  // The wrenches that the hands exert, by which muscles stiffen and tire.
+  void Feel(const std::array<Wrench, kHands>& F_H_W) noexcept;
+
+  void Archive(StateArchive& a) {
+    a(q_, next_, arms_, standing_, muscles_, exerted_, steps_, begun_);
+    if (steps_ < 0 || steps_ > kMaxSteps) a.Fail();
+  }
+
+ private:
+  static constexpr int kMaxSteps = 1 << 16;  // in one period, of a saved state
+  // Fatigue of the joints of one arm, in the order of ArmAbility::joints.
+  using Muscles = std::array<ergonomics::Compartments, kJudgedJoints>;
+
+  void UpdatePosture(const std::array<FrameMotion, kHands>& handle,
+                     const std::array<bool, kHands>& holds) noexcept;
+  void UpdateArm(int hand, const person::Placement& at, const person::JointLoads& loads) noexcept;
+  void UpdateStiffness(int hand, const person::Placement& at,
+                       const person::JointLoads& loads) noexcept;
+  void UpdateStanding() noexcept;
+  void Tire(double time) noexcept;
+  void Smooth(double dt) noexcept;
+  // Strength of a joint in both directions in the present posture, rested [N·m].
+  JointAbility StrengthOf(int hand, int joint, const person::ArmAngles& angles) const noexcept;
+  Vector3 GripOf(int hand, const person::Placement& at) const noexcept;  // in S
+
+  BodySpec body_;
+  person::PostureFollower follower_;
+  person::BodyDynamics dynamics_;
+  std::array<Vector3, kHands> p_JG_;  // of the grip from the last joint of the wrist [m]
+  double shortest_ = 0, longest_ = 0;
+
+  person::BodyVector q_;
+  std::array<ArmAbility, kHands> next_, arms_;
+  Standing standing_;
+  std::array<Muscles, kHands> muscles_;
+  std::array<Wrench, kHands> exerted_ = {Wrench::Zero(), Wrench::Zero()};  // mean since the update
+  int steps_ = 0;       // since the posture's update
+  bool begun_ = false;  // the posture was updated since Reset
+};
+
+}  // namespace predictor

@@ -1,0 +1,289 @@
+#include "analysis/population/population.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "analysis/population/run_store.h"
+#include "analysis/scenarios.h"
+#include "core/error.h"
+#include "evaluation/statistics_samples.h"
+#include "rig/person.h"
+#include "scenario/scenario_io.h"
+#include "support/temporary_folder.h"
+
+namespace predictor::population {
+namespace {
+
+std::vector<double> Of(const std::vector<SampledPerson>& people, Sex sex,
+                       double (*value)(const SampledPerson&)) {
+  std::vector<double> values;
+  for (const SampledPerson& person : people)
+    if (person.body.sex == sex) values.push_back(value(person));
+  return values;
+}
+
+TEST(People, AreTheSameInAPopulationOfAnySize) {
+  const auto few = SamplePopulation(5, 3), many = SamplePopulation(9, 3);
+  for (std::size_t i = 0; i < few.size(); ++i) {
+    EXPECT_EQ(few[i].body.height, many[i].body.height);
+    EXPECT_EQ(few[i].body.strength, many[i].body.strength);
+    EXPECT_EQ(few[i].hand.visual_delay, many[i].hand.visual_delay);
+    EXPECT_EQ(few[i].seed, many[i].seed);
+  }
+  EXPECT_NE(SamplePopulation(1, 4)[0].body.height, few[0].body.height);
+}
+
+TEST(People, HaveThePublishedHeightsAndCorrelatedStrength) {
+  const auto people = SamplePopulation(6000, 1);
+  const auto height = [](const SampledPerson& p) { return p.body.height; };
+  const auto women = Of(people, Sex::kFemale, height), men = Of(people, Sex::kMale, height);
+  ASSERT_EQ(women.size(), 3000U);
+  EXPECT_NEAR(Mean(women), 1.62, 4 * 0.065 / std::sqrt(3000));
+  EXPECT_NEAR(Mean(men), 1.75, 4 * 0.07 / std::sqrt(3000));
+  EXPECT_NEAR(SampleDeviation(women), 0.065, 0.004);
+  EXPECT_NEAR(SampleDeviation(men), 0.07, 0.004);
+  std::vector<double> elbow, shoulder;
+  for (const SampledPerson& person : people) {
+    elbow.push_back(person.body.strength[0]);
+    shoulder.push_back(person.body.strength[2]);
+  }
+  EXPECT_NEAR(Correlation(elbow, shoulder), 0.7, 0.03);
+  EXPECT_NEAR(Mean(elbow), 1, 0.02);
+  EXPECT_NEAR(SampleDeviation(elbow), 0.3, 0.01);
+}
+
+TEST(People, FitIntoAScenario) {
+  Scenario scenario = LoadScenario(kScenarios / "box_9kg.yaml");
+  for (const SampledPerson& person : SamplePopulation(100, 1)) {
+    WritePerson(person, &scenario);
+    EXPECT_NO_THROW(ParseScenario(SaveScenario(scenario), "person", scenario.folder()));
+  }
+}
+
+// Newcombe, Statistics in Medicine 17 (1998) 857, method 3, table I.
+TEST(Share, HasThePublishedIntervals) {
+  const auto check = [](int count, int of, double low, double high) {
+    EXPECT_NEAR(ShareOf(count, of).low, low, 5e-5);
+    EXPECT_NEAR(ShareOf(count, of).high, high, 5e-5);
+  };
+  check(81, 263, 0.2553, 0.3662);
+  check(15, 148, 0.0624, 0.1605);
+  check(0, 20, 0, 0.1611);
+  check(1, 29, 0.0061, 0.1718);
+  EXPECT_EQ(ShareOf(0, 0).high, 1);
+}
+
+// Two designs: in the second one, each person's values are larger by `shift`.
+PopulationStudy MadeUp(int people, double shift) {
+  PopulationStudy study;
+  study.people = SamplePopulation(people, 1);
+  for (int d = 0; d < 2; ++d) {
+    PopulationDesign design = {d == 0 ? "low" : "high", "box", 0.8 + 0.4 * d, {}};
+    for (int i = 0; i < people; ++i) {
+      PopulationRun run;
+      run.person = i + 1;
+      run.held = 2;
+      for (std::size_t q = 0; q < StudyQuantities().size(); ++q)
+        run.values.push_back(10 * (i % 7) + i + d * shift);
+      run.rula_share[3] = 0.25;
+      run.rula_share[5] = 0.75;
+      design.runs.push_back(run);
+    }
+    study.designs.push_back(design);
+  }
+  return study;
+}
+
+TEST(Comparison, FindsTheShiftForTheSamePeople) {
+  PopulationStudy study = MadeUp(30, 5);
+  Compare(&study);
+  ASSERT_EQ(study.differences.size(), StudyQuantities().size());
+  for (const PairedDifference& d : study.differences) {
+    EXPECT_EQ(d.a, 1U);
+    EXPECT_NEAR(d.shift.estimate, 5, 1e-12);  // though the people differ by 80
+    EXPECT_NEAR(d.shift.lower, 5, 1e-12);
+    EXPECT_LT(d.p, 1e-6);
+    EXPECT_GE(d.p_holm, d.p);
+    const bool high_is_bad = StudyQuantities()[d.quantity].bad == assessment::Bad::kHigh;
+    EXPECT_EQ(d.better.count, high_is_bad ? 0 : 30);
+    EXPECT_EQ(d.better.of, 30);
+  }
+}
+
+TEST(Comparison, LeavesOutPeopleWhoseRunWasStopped) {
+  PopulationStudy study = MadeUp(30, 5);
+  for (std::size_t i = 0; i < 10; ++i) study.designs[1].runs[i].cause = StopCause::kForce;
+  study.designs[0].runs[29].values[0] = std::nan("");
+  Compare(&study);
+  EXPECT_EQ(study.summaries[0][1].people, 30);
+  EXPECT_EQ(study.summaries[1][1].people, 20);
+  EXPECT_EQ(study.differences[0].better.of, 19);
+  EXPECT_EQ(study.differences[1].better.of, 20);
+}
+
+TEST(Comparison, CountsPeopleBeyondALimit) {
+  PopulationStudy study = MadeUp(30, 0);
+  for (std::size_t q = 0; q < StudyQuantities().size(); ++q)
+    for (std::size_t i = 0; i < 30; ++i)
+      study.designs[0].runs[i].values[q] = StudyQuantities()[q].limit + (i < 6 ? 1 : -1);
+  Compare(&study);
+  for (std::size_t q = 0; q < StudyQuantities().size(); ++q) {
+    if (!StudyQuantities()[q].has_limit()) continue;
+    const bool high_is_bad = StudyQuantities()[q].bad == assessment::Bad::kHigh;
+    EXPECT_EQ(study.summaries[0][q].beyond.count, high_is_bad ? 6 : 24) << q;
+  }
+}
+
+// Each key that a schema describes is there, and no other one.
+void ExpectDescribed(const nlohmann::json& schema, const nlohmann::json& json) {
+  if (json.is_null()) {
+    EXPECT_NE(schema["type"].dump().find("null"), std::string::npos) << schema;
+  } else if (json.is_object()) {
+    EXPECT_EQ(schema["properties"].size(), json.size());
+    for (const auto& [key, value] : json.items()) {
+      ASSERT_TRUE(schema["properties"].contains(key)) << key;
+      ExpectDescribed(schema["properties"][key], value);
+    }
+  } else if (json.is_array()) {
+    EXPECT_EQ(schema["type"], "array");
+    for (const auto& item : json) ExpectDescribed(schema["items"], item);
+  } else {
+    EXPECT_NE(schema["type"].dump().find(json.is_string() ? "string" : "n"), std::string::npos);
+  }
+}
+
+TEST(Output, JsonFitsItsSchemaAndTablesAreComplete) {
+  PopulationStudy study = MadeUp(4, 5);
+  study.designs[1].runs[2].cause = StopCause::kForce;
+  study.designs[1].height.reset();
+  Compare(&study);
+  const auto schema = nlohmann::json::parse(PopulationSchema());
+  const auto json = nlohmann::json::parse(PopulationJson(study));
+  ExpectDescribed(schema, json);
+  EXPECT_EQ(json["designs"][1]["stopped"], 1);
+  const auto lines = [](const std::string& text) { return std::ranges::count(text, '\n'); };
+  const auto quantities = static_cast<std::ptrdiff_t>(StudyQuantities().size());
+  EXPECT_EQ(lines(PersonsCsv(study)), 1 + 2 * 4);
+  EXPECT_EQ(lines(DesignsCsv(study)), 1 + 2 * quantities);
+  EXPECT_EQ(lines(DifferencesCsv(study)), 1 + quantities);
+  EXPECT_NE(PopulationText(study).find("1 of them stopped"), std::string::npos);
+  EXPECT_NE(PopulationPage(study, "1").find("RULA"), std::string::npos);
+}
+
+TEST(RunStore, FindsWhatWasAddedAndSkipsALineThatWasCut) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "runs.jsonl";
+  PopulationRun run = MadeUp(1, 0).designs[0].runs[0];
+  run.values[2] = std::nan("");
+  PopulationRunStore(file).Add("key", run);
+  std::ofstream(file, std::ios::app) << "{\"key\": \"ke";
+  PopulationRunStore again(file);
+  PopulationRun found;
+  found.person = 1;
+  EXPECT_FALSE(again.Find("other", &found));
+  ASSERT_TRUE(again.Find("key", &found));
+  EXPECT_EQ(TextOf(found), TextOf(run));
+  again.Add("next", run);
+  found = {};
+  found.person = 1;
+  EXPECT_TRUE(PopulationRunStore(file).Find("next", &found));
+}
+
+TEST(Study, RunsAndContinuesWhereItEnded) {
+  const test::TemporaryFolder folder;
+  PopulationOptions options;
+  options.scenarios = {kScenarios / "box_9kg.yaml"};
+  options.set = {"duration=1.5"};
+  options.heights = {0.9, 1.2};
+  options.folder = folder.path();
+  options.persons = 2;
+  const PopulationStudy study = MakePopulationStudy(options);
+  ASSERT_EQ(study.designs.size(), 2U);
+  EXPECT_EQ(study.kept, 0);
+  EXPECT_NEAR(*study.designs[0].height, 0.9, 1e-9);
+  // The handles are at another height of the body, but move alike.
+  EXPECT_NE(study.designs[0].runs[0].values, study.designs[1].runs[0].values);
+  for (const PopulationDesign& design : study.designs)
+    for (const PopulationRun& run : design.runs) EXPECT_GT(run.held, 1);
+  options.persons = 3;
+  const PopulationStudy more = MakePopulationStudy(options);
+  EXPECT_EQ(more.kept, 4);
+  EXPECT_EQ(TextOf(more.designs[1].runs[1]), TextOf(study.designs[1].runs[1]));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "population.html"));
+}
+
+TEST(Study, RefusesAScenarioWithoutAPlaceOfTheOperator) {
+  const test::TemporaryFolder folder;
+  PopulationOptions options;
+  options.scenarios = {kScenarios / "box_9kg.yaml"};
+  options.set = {"operator.stance=null"};
+  options.folder = folder.path();
+  EXPECT_THROW(MakePopulationStudy(options), InputError);
+}
+
+// What a person of one side does with one hand, a mirrored person does with the other.
+assessment::Assessment AssessLift(double side) {
+  Scenario scenario = QuietScenario(2);
+  scenario.operator_.embodied = true;
+  scenario.operator_.body = BodySpec();
+  scenario.operator_.stance = StanceSpec();
+  ActionSpec move = MakeActionSpec("move", 0.6, {"duration=1"});
+  move.Set("by=[0.05, " + std::to_string(0.1 * side) + ", 0.1]");
+  scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"}), move};
+  Person person(scenario);
+  for (int hand = 0; hand < kHands; ++hand) {
+    const double y = (hand == 0 ? 0.25 : -0.25) + 0.1 * side;
+    person.input.handle[static_cast<std::size_t>(hand)].X_W = {{0.4, y, 1.0}, {1, 0, 0, 0}};
+  }
+  assessment::SampleCollector samples(scenario);
+  std::uint64_t tick = 0;
+  person.Run(2, [&] {
+    TickRecord record{};
+    record.tick = ++tick;
+    record.run_time = person.input.run_time;
+    record.ran = 1;
+    for (std::size_t h = 0; h < kHands; ++h) {
+      record.hands[h].present = 1;
+      record.hands[h].gripping = person.output.grip[h] > 0.5;
+      record.hands[h].real.pose = ToRecord(person.input.handle[h].X_W);
+      for (int k = 0; k < 6; ++k)
+        record.hands[h].wrench[static_cast<std::size_t>(k)] = person.output.F_H_W[h][k];
+    }
+    samples.Add(record);
+  });
+  assessment::AssessOptions how;
+  how.intervals = false;
+  return Assess(scenario, 9.0, samples, how);
+}
+
+TEST(Mirror, AMirroredPersonHasMirroredForcesAndTheSameScores) {
+  const assessment::Assessment left = AssessLift(1), right = AssessLift(-1);
+  ASSERT_EQ(left.quantities.size(), right.quantities.size());
+  const auto tail = [](const assessment::Assessment& a, const std::string& path) {
+    for (const assessment::QuantityResult& q : a.quantities)
+      if (path == q.kind->path) return q.tail();
+    ADD_FAILURE() << path;
+    return 0.0;
+  };
+  double largest = 0;
+  for (const char* name : {"hands.%s.force_n", "arms.%s.elevation_rad", "arms.%s.elbow_flexion_rad",
+                           "strength.%s_shoulder"}) {
+    const auto path = [&](const char* side) {
+      std::string text = name;
+      return text.replace(text.find("%s"), 2, side);
+    };
+    const double value = tail(left, path("left"));
+    EXPECT_NEAR(value, tail(right, path("right")), 1e-3 * (1 + std::abs(value))) << name;
+    largest = std::max(largest, std::abs(value - tail(left, path("right"))));
+  }
+  EXPECT_GT(largest, 0.05);  // the handles are to one side
+  EXPECT_NEAR(tail(left, "lower_back.compression_n"), tail(right, "lower_back.compression_n"), 1);
+  for (std::size_t w = 0; w < left.worksheets.size(); ++w)
+    EXPECT_EQ(left.worksheets[w].values, right.worksheets[w].values);
+}
+
+}  // namespace
+}  // namespace predictor::population
