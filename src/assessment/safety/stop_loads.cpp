@@ -110,9 +110,11 @@ StopJudgement JudgeStop(const PersonSetup& setup, const StopWindow& window, bool
   const std::span<const PersonSample> samples = window.samples;
   const std::size_t decided = window.decided, end = samples.size();
   if (decided < 1 || decided >= end) return judgement;
-  const NominalChain nominal = RunNominal(setup, samples, {}, [](double) {});
+  WorkPattern work;
+  work.strength = setup.body.strength;
+  const NominalChain nominal = RunNominal(setup, samples, work, [](double) {});
   SampledChain sampled;
-  if (intervals) sampled = RunSampled(setup, samples, nominal, kStopStride, {}, [](double) {});
+  if (intervals) sampled = RunSampled(setup, samples, nominal, kStopStride, work, [](double) {});
   const auto first =
       static_cast<std::size_t>(std::ranges::lower_bound(sampled.at, decided) - sampled.at.begin());
   for (int hand = 0; hand < kHands; ++hand) {
