@@ -4,12 +4,12 @@
 namespace predictor {
 namespace {
 
-constexpr const char* kGroup = "Analyse";
+constexpr const char* kAnalysisGroup = "Analyse";
 
 void AddCheck(CLI::App* app, Request* r) {
-  CLI::App* check =
-      AddCommand(app, kGroup, "check", "Check models, reach and stability without moving anything",
-                 r, [r] { return CheckCommand(r->scenario, r->search, r->map); });
+  CLI::App* check = AddCommand(app, kAnalysisGroup, "check",
+                               "Check models, reach and stability without moving anything", r,
+                               [r] { return CheckCommand(r->scenario, r->search, r->map); });
   AddScenario(check, &r->scenario);
   AddOption(check, "Scenario", "--machine", &r->scenario.machine, "FILE",
             "Check on the real arms of this machine file");
@@ -43,7 +43,7 @@ void AddPersonOverrides(CLI::App* command, std::vector<std::string>* set) {
 void AddReport(CLI::App* app, Request* r) {
   ReportOptions* o = &r->report;
   CLI::App* report =
-      AddCommand(app, kGroup, "report",
+      AddCommand(app, kAnalysisGroup, "report",
                  "Make an HTML report about a recording, or compare up to eight recordings", r,
                  [o] { return ReportCommand(*o); });
   report->add_option("recordings", o->recordings, "Recordings (MCAP)")->required();
@@ -56,7 +56,7 @@ void AddReport(CLI::App* app, Request* r) {
 
 void AddCompare(CLI::App* app, Request* r) {
   CompareOptions* o = &r->compare;
-  CLI::App* compare = AddCommand(app, kGroup, "compare",
+  CLI::App* compare = AddCommand(app, kAnalysisGroup, "compare",
                                  "Compare two runs of the same task: similarity per axis, and "
                                  "perceptible differences",
                                  r, [o] { return CompareCommand(*o); });
@@ -80,7 +80,7 @@ void AddCompare(CLI::App* app, Request* r) {
 void AddEvaluate(CLI::App* app, Request* r) {
   EvaluateOptions* o = &r->evaluate;
   CLI::App* evaluate = AddCommand(
-      app, kGroup, "evaluate",
+      app, kAnalysisGroup, "evaluate",
       "Judge the person in a recording: posture, joint loads, scores, lifts, damage, fatigue", r,
       [o] { return EvaluateCommand(*o); });
   AddRecording(evaluate, &o->recording);
@@ -112,7 +112,7 @@ void AddEvaluate(CLI::App* app, Request* r) {
 void AddContinue(CLI::App* app, Request* r) {
   ContinueCommandOptions* o = &r->continue_run;
   CLI::App* go_on =
-      AddCommand(app, kGroup, "continue",
+      AddCommand(app, kAnalysisGroup, "continue",
                  "Predict what would have happened if the emulator had not stopped a recorded run",
                  r, [o] { return ContinueCommand(*o); });
   AddRecording(go_on, &o->recording);
@@ -140,9 +140,9 @@ void AddContinue(CLI::App* app, Request* r) {
 
 void AddVerify(CLI::App* app, Request* r) {
   RecordingOptions* o = &r->recording;
-  CLI::App* verify =
-      AddCommand(app, kGroup, "verify", "Recompute a recorded run and compare it bit for bit", r,
-                 [o] { return VerifyCommand(*o); });
+  CLI::App* verify = AddCommand(app, kAnalysisGroup, "verify",
+                                "Recompute a recorded run and compare it bit for bit", r,
+                                [o] { return VerifyCommand(*o); });
   AddRecording(verify, &o->recording);
   AddOutput(verify, o);
   verify->footer(
@@ -151,9 +151,10 @@ void AddVerify(CLI::App* app, Request* r) {
 }
 
 void AddTrial(CLI::App* app, Request* r) {
-  CLI::App* trial = AddCommand(
-      app, kGroup, "trial", "Try a controller's library on a recorded run, before it drives one", r,
-      [r] { return TrialCommand(r->scenario, r->recording.recording); });
+  CLI::App* trial =
+      AddCommand(app, kAnalysisGroup, "trial",
+                 "Try a controller's library on a recorded run, before it drives one", r,
+                 [r] { return TrialCommand(r->scenario, r->recording.recording); });
   AddScenario(trial, &r->scenario);
   AddRecording(trial, &r->recording.recording);
   AddOutput(trial, &r->scenario);
@@ -165,9 +166,9 @@ void AddTrial(CLI::App* app, Request* r) {
 void AddIdentify(CLI::App* app, Request* r) {
   const char* group = "Identification";
   IdentifyCommandOptions* o = &r->identify;
-  CLI::App* identify =
-      AddCommand(app, kGroup, "identify", "Identify the joint friction and the load of the cobot",
-                 r, [o] { return IdentifyCommand(*o); });
+  CLI::App* identify = AddCommand(app, kAnalysisGroup, "identify",
+                                  "Identify the joint friction and the load of the cobot", r,
+                                  [o] { return IdentifyCommand(*o); });
   AddRecording(identify, &o->recording);
   AddOption(identify, group, "--scenario", &o->scenario, "SCENARIO",
             "Scenario with the nominal cobot and load [default: the recording's own]");
@@ -190,7 +191,7 @@ void AddIdentify(CLI::App* app, Request* r) {
 void AddHazards(CLI::App* app, Request* r) {
   HazardsCommandOptions* o = &r->hazards;
   CLI::App* hazards = AddCommand(
-      app, kGroup, "hazards",
+      app, kAnalysisGroup, "hazards",
       "Study what simulated operators feel when hazards meet them, with several controllers", r,
       [o] { return HazardsCommand(*o); });
   hazards->add_option("scenarios", o->scenarios, "Scenario files (YAML)")->required();
@@ -208,7 +209,7 @@ void AddHazards(CLI::App* app, Request* r) {
 void AddPopulation(CLI::App* app, Request* r) {
   PopulationCommandOptions* o = &r->population;
   CLI::App* population = AddCommand(
-      app, kGroup, "population",
+      app, kAnalysisGroup, "population",
       "Compare designs by what they do to the same simulated people, each on an own body", r,
       [o] { return PopulationCommand(*o); });
   population->add_option("scenarios", o->scenarios, "Scenario files (YAML)")->required();
@@ -238,9 +239,10 @@ void AddPopulation(CLI::App* app, Request* r) {
 
 void AddReproduce(CLI::App* app, Request* r) {
   ReproduceCommandOptions* o = &r->reproduce;
-  CLI::App* reproduce = AddCommand(
-      app, kGroup, "reproduce", "Repeat the paper's experiments and show its figures next to ours",
-      r, [o] { return ReproduceCommand(*o); });
+  CLI::App* reproduce =
+      AddCommand(app, kAnalysisGroup, "reproduce",
+                 "Repeat the paper's experiments and show its figures next to ours", r,
+                 [o] { return ReproduceCommand(*o); });
   AddOption(reproduce, "Experiments", "--scenarios", &o->scenarios, "FOLDER",
             "Folder of the project's scenarios")
       ->capture_default_str();
@@ -256,7 +258,7 @@ void AddSurvey(CLI::App* app, Request* r) {
   CLI::App* survey =
       app->add_subcommand("survey",
                           "Present the questionnaire after a run, and evaluate the answers")
-          ->group(kGroup)
+          ->group(kAnalysisGroup)
           ->require_subcommand(1);
   SurveyOptions* o = &r->survey;
 

@@ -4,7 +4,7 @@
 namespace predictor {
 namespace {
 
-constexpr const char* kGroup = "Run";
+constexpr const char* kRunGroup = "Run";
 
 void AddRunTime(CLI::App* app, ScenarioOptions* o) {
   AddOption(app, "Scenario", "--seed", &o->seed, "NUMBER",
@@ -51,7 +51,7 @@ void AddEvaluation(CLI::App* app, ServeOptions* o) {
 }
 
 void AddRun(CLI::App* app, Request* r) {
-  CLI::App* run = AddCommand(app, kGroup, "run", "Run a scenario in real time", r,
+  CLI::App* run = AddCommand(app, kRunGroup, "run", "Run a scenario in real time", r,
                              [r] { return RunCommand(r->scenario, r->serve, r->record); });
   AddScenario(run, &r->scenario);
   AddRunTime(run, &r->scenario);
@@ -85,8 +85,8 @@ void AddRun(CLI::App* app, Request* r) {
 
 void AddSimulate(CLI::App* app, Request* r) {
   CLI::App* simulate =
-      AddCommand(app, kGroup, "simulate", "Run a scenario in virtual time and print its summary", r,
-                 [r] { return SimulateCommand(r->scenario, r->record); });
+      AddCommand(app, kRunGroup, "simulate", "Run a scenario in virtual time and print its summary",
+                 r, [r] { return SimulateCommand(r->scenario, r->record); });
   AddScenario(simulate, &r->scenario);
   AddRunTime(simulate, &r->scenario);
   AddRecordOptions(simulate, &r->record, "Record to this file [default: no recording]");
@@ -98,7 +98,7 @@ void AddSimulate(CLI::App* app, Request* r) {
 }
 
 void AddReplay(CLI::App* app, Request* r) {
-  CLI::App* replay = AddCommand(app, kGroup, "replay",
+  CLI::App* replay = AddCommand(app, kRunGroup, "replay",
                                 "Show a recording in the browser, with seek, speed and step", r,
                                 [r] { return ReplayCommand(r->recording.recording, r->serve); });
   AddRecording(replay, &r->recording.recording);
@@ -109,7 +109,7 @@ void AddReplay(CLI::App* app, Request* r) {
 
 void AddInit(CLI::App* app, Request* r) {
   InitOptions* o = &r->init;
-  CLI::App* init = AddCommand(app, kGroup, "init", "Write a commented scenario to start from", r,
+  CLI::App* init = AddCommand(app, kRunGroup, "init", "Write a commented scenario to start from", r,
                               [o] { return InitCommand(*o); });
   init->add_option("name", o->name, "Name of the scenario; NAME.yaml is written")->required();
   AddOption(init, "Scenario", "--arms", &o->arms, "1|2", "Number of haptic arms")

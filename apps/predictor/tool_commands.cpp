@@ -13,7 +13,7 @@
 namespace predictor {
 namespace {
 
-constexpr const char* kGroup = "Tools";
+constexpr const char* kToolGroup = "Tools";
 
 void AddTable(CLI::App* app, RecordingOptions* o) {
   AddOption(app, "Output", "-o,--output", &o->output, "FILE.csv",
@@ -24,7 +24,7 @@ void AddTable(CLI::App* app, RecordingOptions* o) {
 
 void AddExport(CLI::App* app, Request* r) {
   CLI::App* all = app->add_subcommand("export", "Export recordings as CSV, or the scene as URDF")
-                      ->group(kGroup)
+                      ->group(kToolGroup)
                       ->require_subcommand(1);
   RecordingOptions* o = &r->recording;
   CLI::App* data = AddCommand(all, "Commands", "data", "Channels of a recording as CSV", r,
@@ -64,8 +64,9 @@ void AddExport(CLI::App* app, Request* r) {
 
 void AddRepair(CLI::App* app, Request* r) {
   RecordingOptions* o = &r->recording;
-  CLI::App* repair = AddCommand(app, kGroup, "repair", "Repair a truncated or damaged recording", r,
-                                [o] { return RepairCommand(*o); });
+  CLI::App* repair =
+      AddCommand(app, kToolGroup, "repair", "Repair a truncated or damaged recording", r,
+                 [o] { return RepairCommand(*o); });
   AddRecording(repair, &o->recording);
   AddOption(repair, "Output", "-o,--output", &o->output, "FILE.mcap",
             "File to write [default: NAME.repaired.mcap]");
@@ -85,7 +86,7 @@ CLI::App* AddPrint(CLI::App* app, const char* group, const char* name, const cha
 void AddSchema(CLI::App* app, Request* r) {
   CLI::App* schema =
       app->add_subcommand("schema", "Print the JSON Schema of a file format, for editors")
-          ->group(kGroup)
+          ->group(kToolGroup)
           ->require_subcommand(1);
   AddPrint(schema, "Commands", "scenario", "Schema of scenario files", r, ScenarioSchema);
   AddPrint(schema, "Commands", "machine", "Schema of machine files", r, MachineSchema);
@@ -120,16 +121,16 @@ void AddToolCommands(CLI::App* app, Request* r) {
   AddExport(app, r);
   AddRepair(app, r);
   AddSchema(app, r);
-  CLI::App* help = AddCommand(app, kGroup, "help", "Show the help of a command", r,
+  CLI::App* help = AddCommand(app, kToolGroup, "help", "Show the help of a command", r,
                               [app, r] { return ShowHelp(app, r->help); });
   help->add_option("command", r->help, "Command, for example survey report");
-  AddPrint(app, kGroup, "version", "Show version, commit and recording format", r,
+  AddPrint(app, kToolGroup, "version", "Show version, commit and recording format", r,
            [] { return VersionText() + "\n"; });
-  AddPrint(app, kGroup, "man", "Print the manual page: predictor man | man -l -", r,
+  AddPrint(app, kToolGroup, "man", "Print the manual page: predictor man | man -l -", r,
            [app] { return ManPage(*app); });
   CLI::App* completion =
       app->add_subcommand("completion", "Print a script that completes commands in a shell")
-          ->group(kGroup)
+          ->group(kToolGroup)
           ->require_subcommand(1);
   AddPrint(completion, "Commands", "bash", "For bash: source <(predictor completion bash)", r,
            [app] { return BashCompletion(*app); });
