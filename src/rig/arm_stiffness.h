@@ -25,8 +25,8 @@ Matrix3 HandJacobian(const ArmPoints& arm, const ArmAxes& axes);
 
 // K_J = -∂τ/∂q [N·m/rad] of muscles that produce the torques τ [N·m], in the order above.
 // Shoulder and elbow: Tee, Burdet, Chew & Milner, Biol. Cybern. 90 (2004) 368, after Gomi & Osu
-// 1998 (R), its symmetric part. It was measured in the horizontal plane; that the lateral joint is
-// as stiff as the shoulder, and that torques which carry the arm's weight count like others, is D.
+// 1998 (R), its symmetric part. It was measured in the horizontal plane with a supported arm; that
+// the lateral joint is as stiff as the shoulder is D.
 // Reflexes are part of what was measured.
 Matrix3 JointStiffness(const Vector3& torque);
 

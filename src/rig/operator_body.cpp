@@ -109,7 +109,7 @@ void OperatorBody::UpdatePosture(const std::array<FrameMotion, kHands>& handle,
   const person::JointLoads loads = person::InverseDynamics(model, q_, rest, rest, {});
   for (int hand = 0; hand < kHands; ++hand) {
     UpdateArm(hand, at, loads);
-    UpdateStiffness(hand, at, loads);
+    UpdateStiffness(hand, at);
   }
   UpdateStanding();
 }
@@ -146,18 +146,18 @@ void OperatorBody::UpdateArm(int hand, const person::Placement& at,
   arm.shoulder = stance.X_WS * at.p[At(person::Of(hand, ArmJoint::kShoulderFlexion))];
 }
 
-void OperatorBody::UpdateStiffness(int hand, const person::Placement& at,
-                                   const person::JointLoads& loads) noexcept {
+void OperatorBody::UpdateStiffness(int hand, const person::Placement& at) noexcept {
   const Quaternion& q_WS = follower_.solver().stance().X_WS.q;
   const std::size_t shoulder = At(person::Of(hand, ArmJoint::kShoulderRotation));
   const std::size_t elbow = At(person::Of(hand, ArmJoint::kElbowFlexion));
   const ArmPoints points = {at.p[shoulder], at.p[elbow], GripOf(hand, at)};
   const ArmAxes axes = AxesOf(points);
-  // The muscles carry the arm and balance the hand's wrench.
+  // The torques that balance the hand's wrench. The stiffness was measured with a supported arm, so
+  // those that carry the arm do not count.
   const Vector3 force = q_WS.conjugate() * exerted_[At(hand)].head<3>();
   const Vector3 moment = q_WS.conjugate() * exerted_[At(hand)].tail<3>();
   const auto about = [&](std::size_t joint) -> Vector3 {
-    return loads.moment[joint] + moment + (points.hand - at.p[joint]).cross(force);
+    return moment + (points.hand - at.p[joint]).cross(force);
   };
   const Vector3 torque(axes.lateral.dot(about(shoulder)), axes.normal.dot(about(shoulder)),
                        axes.normal.dot(about(elbow)));

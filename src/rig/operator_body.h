@@ -56,8 +56,7 @@ class OperatorBody {
   void UpdatePosture(const std::array<FrameMotion, kHands>& handle,
                      const std::array<bool, kHands>& holds) noexcept;
   void UpdateArm(int hand, const person::Placement& at, const person::JointLoads& loads) noexcept;
-  void UpdateStiffness(int hand, const person::Placement& at,
-                       const person::JointLoads& loads) noexcept;
+  void UpdateStiffness(int hand, const person::Placement& at) noexcept;
   void UpdateStanding() noexcept;
   void Tire(double time) noexcept;
   void Smooth(double dt) noexcept;
