@@ -143,8 +143,8 @@ TEST(StopWindow, HoldsTheTimeAroundTheStopAndItsHands) {
   }
 }
 
-// Equilibrium: torque = weight + Jᵀ F, so the change is linear in the change of the force, and that of
-// the same posture in the run without a stop.
+// Equilibrium: torque = weight + Jᵀ F, so the change is linear in the change of the force, and that
+// of the same posture in the run without a stop.
 TEST(StopLoads, ChangeByTheForceThatTheStopAdds) {
   const Scenario scenario = PersonScenario();
   const PersonSetup setup = MadeUpSetup(scenario);
