@@ -35,8 +35,9 @@ struct AppSetup {
   std::string report;  // of that run, an HTML page; empty: no report
   std::function<void(const std::string&)> tell;  // shows messages at the console; may be empty
   std::vector<std::string> origins;              // additional origins, for Foxglove only
-  const EvaluationBoard* states = nullptr;       // of the person; borrowed; null: the person is not judged
-  std::string why_not_judged;                    // without states; a sentence
+  const EvaluationBoard* states =
+      nullptr;                 // of the person; borrowed; null: the person is not judged
+  std::string why_not_judged;  // without states; a sentence
 };
 
 // Checks a request's Host header by RFC 9112, section 3.2. Status 400: there is not exactly one

@@ -62,7 +62,8 @@ class ViewerProcess {
 
   // Starts the process and waits until it accepts clients. Throws InputError, for instance if the
   // port is in use, the certificate cannot be read, or the address needs `expose`. The descriptors
-  // of `board`, `mailbox` and `states` are borrowed. states: of the person; null: the person is not judged.
+  // of `board`, `mailbox` and `states` are borrowed. states: of the person; null: the person is not
+  // judged.
   ViewerProcess(const Scenario& scenario, const ViewerOptions& options,
                 const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Tell tell,
                 const Shared<EvaluationBoard>* states = nullptr);
