@@ -120,7 +120,7 @@ class Continuer {
       person_->UseRecorded();
     const bool cobot_had_stopped = run_.stop().cobot_stop != 0;
     RunObserver observer(c, emulator_->dt());
-    const auto ticks = static_cast<long>(std::lround(c.horizon / emulator_->dt()));
+    const long ticks = std::lround(c.horizon / emulator_->dt());
     for (long i = 0; i < ticks; ++i) {
       emulator_->Tick();
       observer.Add(emulator_->record());

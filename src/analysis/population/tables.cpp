@@ -113,7 +113,7 @@ std::string PersonsCsv(const PopulationStudy& study) {
   for (const StudyQuantity& kind : StudyQuantities()) csv += std::string(",") + kind.path;
   for (std::size_t score = 1; score < kRulaScores; ++score)
     csv += Formatted(",rula_%zu_share", score);
-  csv += "\n";
+  csv += '\n';
   for (const PopulationDesign& design : study.designs)
     for (std::size_t i = 0; i < design.runs.size(); ++i) {
       const PopulationRun& run = design.runs[i];

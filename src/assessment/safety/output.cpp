@@ -28,7 +28,7 @@ void AppendTable(const std::vector<std::vector<std::string>>& rows, std::string*
     std::string line = "  ";
     for (std::size_t c = 0; c < row.size(); ++c) {
       const std::string space(static_cast<std::size_t>(widths[c] - Letters(row[c])), ' ');
-      const bool left = c == 0 || row[c].find(" ") != std::string::npos;
+      const bool left = c == 0 || row[c].find(' ') != std::string::npos;
       line += (c == 0 ? "" : "  ") + (left ? row[c] + space : space + row[c]);
     }
     line.erase(line.find_last_not_of(' ') + 1);
