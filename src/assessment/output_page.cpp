@@ -58,29 +58,34 @@ void AddCurve(const Assessment& a, const QuantityResult& q, int color, PlotPanel
   if (q.kind->limit > 0) panel->limits.push_back({factor * q.kind->limit, q.kind->limit_name});
 }
 
+constexpr double kSmallestRange = 4;  // of a panel, in steps of the last digit that tables show
+
 // The quantities of one group, in one panel for each unit and pair of quantities.
 Plot GroupPlot(const Assessment& a, const std::string& group, const std::string& id) {
   Plot plot;
   plot.id = id;
   plot.title = group + " over time";
-  plot.caption = std::string(
-                     "Lines: the nominal posture. Areas: 90 % of the possible postures "
-                     "and bodies. ") +
-                 OperatorSentence(a);
+  plot.caption = "Lines: the nominal posture. ";
   plot.x = {.label = "Run time", .unit = "s"};
   plot.group = "time";
+  bool intervals = false;
   for (const QuantityResult& q : a.quantities) {
     if (group != q.kind->group) continue;
+    intervals = intervals || !q.low.empty();
     PlotPanel* panel = plot.panels.empty() ? nullptr : &plot.panels.back();
     const bool joins = panel && panel->y.unit == q.kind->unit.shown && panel->series.size() < 4 &&
                        panel->limits.empty() && q.kind->limit == 0;
     if (!joins) {
       panel = &plot.panels.emplace_back();
-      panel->y = {.label = q.kind->limit > 0 ? q.kind->label : group, .unit = q.kind->unit.shown};
+      panel->y = {.label = q.kind->limit > 0 ? q.kind->label : group,
+                  .unit = q.kind->unit.shown,
+                  .least = kSmallestRange * std::pow(10, -q.kind->unit.decimals)};
     }
     const auto lines = std::ranges::count(panel->series, SeriesKind::kLine, &PlotSeries::kind);
     AddCurve(a, q, static_cast<int>(lines), panel);
   }
+  if (intervals) plot.caption += "Areas: 90 % of the possible postures and bodies. ";
+  plot.caption += OperatorSentence(a);
   return plot;
 }
 
