@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/format.h"
 #include "core/text.h"
@@ -110,7 +111,49 @@ Json ToJson(const RigLimit& limit) {
           {"censored", limit.censored()}};
 }
 
-// The type of each value of an example.
+// What a key means, wherever it stands.
+std::string MeaningOf(const std::string& key) {
+  static const std::map<std::string, std::string> kMeanings = {
+      {"unit", "SI unit"},
+      {"value", "the result; null: missing"},
+      {"meaning", "how it was computed"},
+      {"joint", "joint of an arm"},
+      {"before_nm", "torque when the stop was decided [N·m]"},
+      {"change_nm", "largest change of the torque since then: what the stop caused [N·m]"},
+      {"change_90_nm", "90 % interval of that change over the possible postures [N·m]"},
+      {"largest_nm", "largest magnitude of the torque since then [N·m]"},
+      {"share_of_strength", "largest share of mean strength; null: no verified strength"},
+      {"time_s", "run time [s]"},
+      {"cause", "cause of the stop"},
+      {"duration_s", "from the decision to rest [s]"},
+      {"distance_m",
+       "path of the faster handle in a stop, or of the person from the moving scene [m]"},
+      {"joints", "each joint of the arms that held a handle"},
+      {"speed_m_per_s", "speed [m/s]"},
+      {"needed_m", "distance that a person needs [m]"},
+      {"height_m", "of the object's origin above the ground [m]"},
+      {"energy_j", "energy at the ground [J]"},
+      {"beside_feet_m", "horizontal distance from the feet [m]"},
+      {"weight_of_hand_n", "weight that each hand would carry [N]"},
+      {"jump_n", "how much more that is than in the run [N]"},
+      {"region", "region of the body"},
+      {"max_speed_m_per_s", "speed at which the limit is reached; 0: must not be hit [m/s]"},
+      {"share", "of the limit that the run reached; null: must not be hit"},
+      {"edition", "of the limits"},
+      {"effective_mass_kg", "of cobot and object [kg]"},
+      {"transient", "each region, if it can recoil"},
+      {"clamping_force_n", "to which the scenario bounds the cobot's force; null: no bound [N]"},
+      {"clamped", "each region, if it is clamped"},
+      {"what", "what it is about"},
+      {"why", "why it could not be judged"},
+      {"limit", "up to which the rig renders, SI"},
+      {"reached", "largest value of the run, SI"},
+      {"censored", "whether the true value may have been larger"},
+  };
+  return kMeanings.at(key);
+}
+
+// Type and meaning of each value of an example.
 Json TypesOf(const Json& example) {
   Json properties = Json::object();
   for (const auto& [key, value] : example.items()) {
@@ -120,7 +163,7 @@ Json TypesOf(const Json& example) {
                 : value.is_boolean() ? Json("boolean")
                 : value.is_null()    ? Json({"array", "number", "null"})
                                      : Json({"number", "null"});
-    properties[key] = {{"type", std::move(type)}};
+    properties[key] = {{"type", std::move(type)}, {"description", MeaningOf(key)}};
   }
   return {{"type", "object"}, {"properties", std::move(properties)}};
 }
