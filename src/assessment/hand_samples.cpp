@@ -38,10 +38,12 @@ PersonSample SampleOf(std::span<const TickRecord> ticks) {
   return sample;
 }
 
+std::size_t TicksPerSample(double rate) {
+  return static_cast<std::size_t>(std::max(1.0, std::round(rate / kSampleRate)));
+}
+
 SampleBuilder::SampleBuilder(const Scenario& scenario)
-    : ticks_per_sample_(
-          static_cast<std::uint64_t>(std::max(1.0, std::round(scenario.rate / kSampleRate)))),
-      dt_(1 / scenario.rate) {
+    : ticks_per_sample_(TicksPerSample(scenario.rate)), dt_(1 / scenario.rate) {
   pending_.reserve(ticks_per_sample_);
 }
 

@@ -14,6 +14,8 @@
 namespace predictor::assessment {
 
 inline constexpr double kSampleRate = 100;  // [Hz]
+// At this rate of the ticks [Hz]; at least 1.
+std::size_t TicksPerSample(double rate);
 
 struct PersonSample {
   person::BodySample body;

@@ -1,4 +1,4 @@
-// What is known of the impedance of an operator's arm: a distribution.
+// The impedance of an operator's arm, as a distribution.
 #pragma once
 
 #include <array>

@@ -14,8 +14,8 @@
 
 namespace predictor {
 
-// What is assumed of the operator after the stop, apart from the arm. Design choices. No one knows
-// how long an intention keeps changing: each draw assumes that it goes on at its present rate until
+// Assumptions about the operator after the stop, apart from the arm (design choices). How long an
+// intention keeps changing is unknown: each draw assumes that it goes on at its present rate until
 // it has changed by about as much as the hand's present force.
 struct IntentModel {
   // Time before the stop that shows the present rate, log-uniform between these [s].

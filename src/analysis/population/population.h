@@ -19,7 +19,7 @@
 
 namespace predictor::population {
 
-// What is compared: one number of an assessed run.
+// A number of an assessed run that the study compares.
 struct StudyQuantity {
   const char* path;   // key in JSON and CSV, ending in the SI unit
   const char* label;  // for people

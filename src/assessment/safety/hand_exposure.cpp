@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "assessment/hand_samples.h"
 #include "core/format.h"
 #include "evaluation/metrics/registry.h"
 #include "evaluation/statistics_samples.h"
@@ -22,7 +23,7 @@ Vector3 ForceOf(const HandRecord& hand) { return {hand.wrench[0], hand.wrench[1]
 HandExposure::HandExposure(const Scenario& scenario)
     : dt_(1 / scenario.rate),
       high_(kHighShare * scenario.safety.force),
-      ticks_a_mean_(std::max(1, static_cast<int>(std::lround(kMeanTime * scenario.rate)))) {
+      ticks_a_mean_(TicksPerSample(scenario.rate)) {
   for (Hand& hand : hands_) {
     hand.low_pass = LowPass<Vector3>(kCutoff, dt_, Vector3::Zero());
     hand.growing = OscillationDetector(scenario.safety.oscillation, dt_);
@@ -54,7 +55,7 @@ void HandExposure::AddForce(const HandRecord& record, Hand* hand) const {
   }
   hand->sum += force;
   if (++hand->count < ticks_a_mean_) return;
-  hand->means.push_back(hand->sum.norm() / hand->count);
+  hand->means.push_back(hand->sum.norm() / static_cast<double>(hand->count));
   hand->sum.setZero();
   hand->count = 0;
 }
@@ -96,7 +97,7 @@ void HandExposure::AppendHand(std::size_t i, std::vector<Result>* results) const
   const double rms =
       hand.means.empty() ? NAN : std::sqrt(squares / static_cast<double>(hand.means.size()));
   const std::string tick = Formatted("%.0f Hz", 1 / dt_),
-                    mean = Formatted("means over %.0f ms", 1e3 * kMeanTime),
+                    mean = Formatted("means over %.0f ms", 1e3 / kSampleRate),
                     smooth = Formatted("low-passed at %.0f Hz", kCutoff);
   add("peak_force_n", "peak force", kForceUnit, "estimated at " + tick + ", not filtered further",
       hand.peak);

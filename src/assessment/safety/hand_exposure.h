@@ -17,7 +17,6 @@ namespace predictor::assessment {
 class HandExposure {
  public:
   static constexpr double kCutoff = 20;      // of the low-passed force and of its rate [Hz]
-  static constexpr double kMeanTime = 0.01;  // over which the means of the percentiles go [s]
   static constexpr double kHighShare = 0.5;  // of the threshold of the stop: "high" force
 
   explicit HandExposure(const Scenario& scenario);
@@ -39,7 +38,7 @@ class HandExposure {
     double impulse = 0;             // ∫ |F| dt [N·s]
     double high_time = 0;           // with more than the high force [s]
     Vector3 sum = Vector3::Zero();  // of the forces of the current mean [N]
-    int count = 0;
+    std::size_t count = 0;
     std::vector<double> means;  // magnitudes of the mean forces [N]
     OscillationDetector growing;
     int growing_cycles = 0;        // in rows of at least the set number of growing cycles
@@ -50,8 +49,8 @@ class HandExposure {
   void AddForce(const HandRecord& record, Hand* hand) const;
   void AppendHand(std::size_t i, std::vector<Result>* results) const;
 
-  double dt_, high_;  // [s], [N]
-  int ticks_a_mean_;
+  double dt_, high_;          // [s], [N]
+  std::size_t ticks_a_mean_;  // of the percentiles: as long as a sample
   bool ran_ = false;
   std::array<Hand, kHands> hands_;
   std::vector<std::unique_ptr<Metric>> metrics_;  // of the summary

@@ -13,8 +13,8 @@ using person::ArmJoint;
 
 constexpr std::size_t kStopStride = 2;  // samples between two evaluations of all persons
 
-std::size_t TicksIn(double time, double rate) {
-  return static_cast<std::size_t>(std::lround(time * rate));
+std::size_t SamplesIn(double time) {
+  return static_cast<std::size_t>(std::lround(time * kSampleRate));
 }
 
 std::string LabelOf(int joint) {
@@ -56,13 +56,12 @@ std::optional<double> UseOf(int hand, ArmJoint joint, std::span<const Frame> sto
 }  // namespace
 
 StopWindows::StopWindows(const Scenario& scenario)
-    : ticks_a_sample_(std::max<std::size_t>(1, TicksIn(1 / kSampleRate, scenario.rate))),
-      log_(scenario) {}
+    : ticks_a_sample_(TicksPerSample(scenario.rate)), log_(scenario) {}
 
 void StopWindows::Add(const TickRecord& record) {
   log_.Add(record);
-  const std::size_t before = TicksIn(kBefore * kSampleRate, 1) * ticks_a_sample_;
-  const std::size_t longest = TicksIn(kLongest * kSampleRate, 1) * ticks_a_sample_;
+  const std::size_t before = SamplesIn(kBefore) * ticks_a_sample_;
+  const std::size_t longest = SamplesIn(kLongest) * ticks_a_sample_;
   if (log_.count() > stops_ && cuts_.size() < kMost && cuts_.size() < log_.stops().size()) {
     if (!cuts_.empty()) cuts_.back().open = false;
     cuts_.push_back({.ticks = {recent_.begin(), recent_.end()}, .decided = recent_.size()});
@@ -72,8 +71,7 @@ void StopWindows::Add(const TickRecord& record) {
     Cut& cut = cuts_.back();
     cut.ticks.push_back(record);
     cut.after = record.state == RunState::kStopping ? 0 : cut.after + 1;
-    cut.open = cut.ticks.size() < longest &&
-               cut.after < TicksIn(kAfter * kSampleRate, 1) * ticks_a_sample_;
+    cut.open = cut.ticks.size() < longest && cut.after < SamplesIn(kAfter) * ticks_a_sample_;
   }
   if (recent_.size() == before) recent_.pop_front();
   recent_.push_back(record);
