@@ -17,8 +17,8 @@ struct Figure {
   double mean, largest;
 };
 
-// Values of the worse hand, as printed in README.md and, for arms that differ from their nominal
-// model, in docs/concepts/accuracy.md.
+// Values of the worse hand, as in docs/numbers.csv, which README.md and docs/ quote. Those of arms
+// that differ from their nominal model are in docs/concepts/accuracy.md.
 struct Printed {
   const char* scenario;
   Figure translation, rotation;                    // error of a handle [mm], [deg]
@@ -69,8 +69,8 @@ TEST_P(Accuracy, WhileGrippingIsAsPrinted) {
   EXPECT_EQ(run.summary.Get<std::uint64_t>("qp.failed"), 0u);
 }
 
-// The release throws the box down, but the handles keep their distance. README.md prints these
-// values for 9 kg.
+// The release throws the box down, but the handles keep their distance. The values are printed for
+// 9 kg in docs/getting-started/first-run.md.
 TEST(RelativePose, AndHandlesAfterTheReleaseAreAsPrinted) {
   const TestRun run = RunScenario("box_9kg");
   for (const std::string hand : kHandNames) {
