@@ -13,10 +13,10 @@ ROW = re.compile(r'(?:\d+: )? ?(\d+)  (.{50}) (goes on|warned|holds|power off|re
 STOP = re.compile(r'seen after +(-?\d+) of +(\d+) ticks; .* at rest after +(\d+) ms, +([\d.]+) mm; '
                   r'apart ([\d.]+) mm, ([\d.]+) deg[^;]*(?:; power off asked for after (\d+) of)?')
 
-# Words of the page for names that the test cannot change, because they seed its random numbers, and for outcomes.
+# How the names of faults and outcomes begin, and their words on the page. The names themselves seed random numbers.
 PAGE = {
     "joints that are no numbers any more": "joint positions that are not numbers",
-    "datagrams of somebody else": "datagrams from another sender",
+    "datagrams of": "datagrams from another sender",
     "the arm's last package for ever": "the arm repeats its last package",
     "the arm's last state for ever": "the arm repeats its last state",
     "sequences come round to zero": "sequence numbers wrap around to zero",
@@ -50,6 +50,10 @@ PAGE = {
 }
 
 
+def on_page(name):
+    return next((words for beginning, words in PAGE.items() if name.startswith(beginning)), name)
+
+
 def read(lines):
     rigs, rows = [], {}
     for line in lines:
@@ -81,7 +85,7 @@ def main():
     print('|---|---|---|---|---|---|---|---|---|---|')
     for (number, name, follows), values in sorted(rows.items(), key=lambda row: row[0][0]):
         cells = [cell(values, rigs, i) for i in range(7)]
-        print('| %d | %s | %s | %s |' % (number, PAGE.get(name, name), PAGE.get(follows, follows), ' | '.join(cells)))
+        print('| %d | %s | %s | %s |' % (number, on_page(name), on_page(follows), ' | '.join(cells)))
 
 
 if __name__ == '__main__':
