@@ -9,6 +9,7 @@
 #include "core/real_time.h"
 #include "devices/wire/network.h"
 #include "haptics/stability.h"
+#include "models/arm_model.h"
 #include "scenario/located.h"
 #include "scenario/scenario.h"
 #include "simulation/world.h"
@@ -34,6 +35,18 @@ bool OnThisComputer(const Machine& machine) {
 }
 
 }  // namespace
+
+ArmModels LoadArmModels(const Machine& machine) try {
+  ArmModels models;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (const std::optional<MachineArm>& side = machine.arm(static_cast<int>(i)))
+      models[i] = LoadArmModel(side->arm, side->arm.base.X_RB(), {},
+                               std::string("arms.") + kHandNames[i] + ".arm");
+  }
+  return models;
+} catch (const InputError& error) {
+  throw Located(error, machine);
+}
 
 void RequireRealTime(const Machine& machine) {
   const RealTimeScheduling now;

@@ -1,9 +1,20 @@
 // Requirements on this computer before real arms are moved.
 #pragma once
 
+#include <array>
+#include <memory>
+
+#include "models/robot.h"
 #include "scenario/machine.h"
 
 namespace predictor {
+
+// The models of a machine's arms; null for an arm that it does not have.
+using ArmModels = std::array<std::shared_ptr<const RobotModel>, kHands>;
+
+// Reads the models from their files. Call before a device is connected, so that a file that stops
+// the program does so while no arm obeys it. Throws InputError with the machine file's line.
+ArmModels LoadArmModels(const Machine& machine);
 
 // A loop that any other program may delay must not move real arms: throws DeviceError if the system
 // grants no real-time scheduling. For fakes on this computer, only prints a warning.

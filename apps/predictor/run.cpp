@@ -19,7 +19,6 @@
 #include "emulator/run_loop.h"
 #include "follower.h"
 #include "live_evaluation.h"
-#include "models/arm_model.h"
 #include "patient_output.h"
 #include "quit.h"
 #include "raw_keys.h"
@@ -381,21 +380,22 @@ Scenario LoadForRealTime(const ScenarioOptions& options) {
 }
 
 // Prints the known settings of the arms; throws DeviceError if they contradict the machine file.
-void CheckArms(const Machine& machine, const RealDevice& device) {
+void CheckArms(const Machine& machine, const ArmModels& models, const RealDevice& device) {
   for (int hand = 0; hand < kHands; ++hand) {
     const DeviceFacts* facts = device.arm_facts(hand);
     if (facts == nullptr) continue;
     for (const std::string& remark : facts->remarks) TheScreen().Tell(facts->name + ": " + remark);
     const MachineArm& side = *machine.arm(hand);
-    const auto model = LoadArmModel(side.arm, side.arm.base.X_RB(), {},
-                                    std::string("arms.") + HandName(hand) + ".arm");
-    for (const std::string& refusal : {commissioning::KinematicsRefusal(*facts, side.arm, *model),
+    const RobotModel& model = *models[static_cast<std::size_t>(hand)];
+    for (const std::string& refusal : {commissioning::KinematicsRefusal(*facts, side.arm, model),
                                        commissioning::PayloadRefusal(*facts, side)})
       if (!refusal.empty()) throw DeviceError(facts->name + ": " + refusal);
   }
 }
 
 // Runs with real arms: one scenario, and a person at the console. Pages cannot choose scenarios.
+// Every file from elsewhere is read before the arms are connected (decisions.md); tests in
+// tests/machine/foreign_file_test.cpp rely on this order.
 int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptions record) {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError(
@@ -403,6 +403,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
         "the program from a terminal.");
   const Machine machine = LoadMachine(options.machine);
   Scenario scenario = options.Load(&machine);
+  const ArmModels models = LoadArmModels(machine);
   RequirePushTests(machine, scenario);
   RequireRealTime(machine);
   for (const std::string& line : UnmeasuredLoops(machine, scenario)) TheScreen().Tell(line);
@@ -413,7 +414,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
       "being tared.\n",
       stderr);
   std::unique_ptr<RealDevice> device = ConnectMachine(machine, &scenario, SocketNetwork());
-  CheckArms(machine, *device);
+  CheckArms(machine, models, *device);
   record.machine = SaveMachine(machine);
   serve.stay = true;
   serve.page.secret = viewer::NewAdmissionSecret();
