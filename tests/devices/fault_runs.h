@@ -26,7 +26,10 @@ struct FaultRuns {
   std::size_t due = 0, audits_due = 0;  // numbers of entries that it must contain
 };
 
-// Whether the rig has the device to which this fault applies.
+// The number of the only fault to test, from the environment (PREDICTOR_FAULT); 0: all faults.
+int OnlyFault();
+
+// Whether the rig has the device to which this fault applies, and the fault is to be tested.
 bool Concerns(const Fault& fault, const FaultRig& rig);
 
 // Whether the second fault can occur after the first in a run of the rig. Only faults up to 33 form

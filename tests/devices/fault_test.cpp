@@ -58,7 +58,7 @@ double Pairs() {
 // File in which a long test keeps its results; a short test keeps none.
 std::string KeptIn(const std::string& what, const FaultRig& rig) {
   const char* folder = std::getenv("PREDICTOR_FAULTS");
-  if (folder == nullptr) return "";
+  if (folder == nullptr || OnlyFault() != 0) return "";
   std::string name = what + " " + rig.name;
   std::replace(name.begin(), name.end(), ' ', '_');
   return std::string(folder) + "/" + name;

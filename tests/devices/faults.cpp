@@ -347,11 +347,7 @@ const std::vector<FaultWords>& AllFaultWords() {
       {22, "both", {Cause(StopCause::kRunaway), kForce, Cause(StopCause::kTorque)}, false},
       {23, "", {Cause(StopCause::kDevice, Quantity::kAngle)}},
       {24, "the simulation", {kDiverged}, false},
-      // On a mixed rig, an arm's loop may start to vibrate at the peak of the third oscillation.
-      {25,
-       "",
-       {Cause(StopCause::kOscillation), Cause(StopCause::kOscillation, Quantity::kVibration)},
-       false},
+      {25, "", {Cause(StopCause::kOscillation)}, false},
       {26, "", {kNoMotion}, false},
       {27, "", {kNoMotion}, false},
       {30, "three", {kLate}, false},
