@@ -1,10 +1,11 @@
 // Measures how a tick's time is spent, compared with the bare physics engine, and compares QP
-// solvers on the same problems. Options: --quick (fewer repetitions) and the options of
-// google-benchmark.
+// solvers on the same problems. Options: --quick (fewer repetitions), --tick (only the median tick)
+// and the options of google-benchmark.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <exception>
+#include <string>
 
 #include "samples.h"
 #include "sections.h"
@@ -38,15 +39,20 @@ void PrintRuns(const RunTimes& t, double mj_step) {
               verdict(t.start_up < 1));
 }
 
+// Removes an option from the arguments. Returns true if it was there.
+bool Take(const std::string& option, int* argc, char** argv) {
+  char** end = std::remove(argv + 1, argv + *argc, option);
+  const bool found = end != argv + *argc;
+  *argc = static_cast<int>(end - argv);
+  return found;
+}
+
 int Main(int argc, char** argv) {
-  bool quick = false;
-  for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--quick") != 0) continue;
-    quick = true;
-    std::copy(argv + i + 1, argv + argc, argv + i);
-    --argc;
-    --i;
+  if (Take("--tick", &argc, argv)) {
+    std::printf("%.2f\n", TimeRuns("box_9kg", 1).p50[static_cast<std::size_t>(Stage::kTick)]);
+    return 0;
   }
+  const bool quick = Take("--quick", &argc, argv);
   const Recording box = Record("box_9kg");
   const std::map<std::string, double> parts = TimeParts(box, &argc, argv);
   const RunTimes runs = TimeRuns("box_9kg", quick ? 1 : 5);

@@ -30,8 +30,9 @@ if(PREDICTOR_SANITIZE OR PREDICTOR_FUZZ)
   set(PREDICTOR_HARDEN OFF)  # sanitizers have their own checks and are incompatible with these
 endif()
 if(PREDICTOR_HARDEN)
-  # All targets get these flags, because all users of a precompiled header must have the same flags. Their cost per
-  # tick has not been measured yet. FORTIFY needs optimization; some systems already define their own level.
+  # All targets get these flags, because all users of a precompiled header must have the same flags.
+  # docs/developer/benchmarks.md states their cost per tick. FORTIFY needs optimization; some systems already define
+  # their own level.
   add_compile_options($<$<CONFIG:Release>:-fstack-protector-strong>)
   add_compile_definitions($<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:_GLIBCXX_ASSERTIONS>)
   add_compile_options($<$<CONFIG:Release>:-U_FORTIFY_SOURCE> $<$<CONFIG:Release>:-D_FORTIFY_SOURCE=3>)
