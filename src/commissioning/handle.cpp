@@ -68,8 +68,9 @@ struct Allowed {
   double force, torque;  // of a pose [N], [N·m]
 
   Allowed(const HandleFit& fit, const SensorSpec& sensor)
-      : force(kResidualForce + sensor.quantum_force + kResidualPart * 9.81 * std::abs(fit.mass())),
-        torque(kResidualTorque + sensor.quantum_torque +
+      : force(kResidualForce + sensor.force_resolution +
+              kResidualPart * 9.81 * std::abs(fit.mass())),
+        torque(kResidualTorque + sensor.torque_resolution +
                kResidualPart * 9.81 * fit.moment().norm()) {}
   // The larger ratio of an error to its allowed value; above 1 the pose does not fit.
   double Share(const HandleFit& fit, std::size_t pose) const {

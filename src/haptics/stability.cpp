@@ -213,7 +213,7 @@ double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain,
     for (int axis = 0; axis < 6; ++axis) {
       System::Signal force =
           gain * AddHand(&s, hand, delays_, axis, handles[i][axis], object[axis]);
-      const double low_pass = scenario_.arm(i).sensor.low_pass;
+      const double low_pass = scenario_.arm(i).sensor.cutoff_frequency;
       if (low_pass > 0) force = s.LowPass(force, 2 * kPi * low_pass);
       for (int k = 0; k < n; ++k) s.AddDerivative(k, world_.B(k, 6 * i + axis) * force);
     }

@@ -18,7 +18,7 @@ Vector3 QuaternionError(const Quaternion& to, const Quaternion& from, bool neare
 }
 
 Vector6 TwistWeight(const RenderSetup& setup) {
-  const double length = setup.scenario.rendering.rotation_length;
+  const double length = setup.scenario.rendering.characteristic_length;
   const double rotation = setup.repairs.Has(Repair::kRotationWeight) ? length * length : 1;
   Vector6 weight;
   weight << 1, 1, 1, rotation, rotation, rotation;

@@ -57,8 +57,8 @@ class Task {
 // nearer: false takes the path that the quaternions' signs decide, as (9) does.
 Vector3 QuaternionError(const Quaternion& to, const Quaternion& from, bool nearer = true) noexcept;
 
-// Weights of a handle's twist: 1 for translation, the square of `rendering.rotation_length` for
-// rotation; 1 in the paper's (7).
+// Weights of a handle's twist: 1 for translation, the square of `rendering.characteristic_length`
+// for rotation; 1 in the paper's (7).
 Vector6 TwistWeight(const RenderSetup& setup);
 
 // Factor in (0, 1] that reduces a twist to the caps of a handle.

@@ -35,7 +35,7 @@ HandSpec HandOf(const Scenario& scenario) {
   // The pointer's motion already contains the person's reflexes, tremor and visual feedback.
   hand.reflex_gain = hand.tremor_force = hand.force_noise = hand.force_noise_floor = 0;
   hand.visual_stiffness.setZero();
-  hand.squeeze = 0;
+  hand.internal_force = 0;
   return hand;
 }
 

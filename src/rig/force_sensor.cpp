@@ -21,7 +21,7 @@ Wrench HandleLoad(const HandlePayloadSpec& handle, const FrameMotion& sensor, do
 ForceSensor::ForceSensor(const SensorSpec& spec, const Wrench& bias, double dt, RandomStream random)
     : spec_(spec),
       bias_(bias),
-      low_pass_(spec.low_pass, dt, Wrench::Zero()),
+      low_pass_(spec.cutoff_frequency, dt, Wrench::Zero()),
       delay_samples_(spec.delay / dt),
       random_(random) {
   Reset(Wrench::Zero());
@@ -38,7 +38,7 @@ void ForceSensor::Step(const Wrench& F_S) noexcept {
   saturated_ = false;
   for (int i = 0; i < 6; ++i) {
     const double noise = i < 3 ? spec_.noise_force : spec_.noise_torque;
-    const double quantum = i < 3 ? spec_.quantum_force : spec_.quantum_torque;
+    const double quantum = i < 3 ? spec_.force_resolution : spec_.torque_resolution;
     const double range = i < 3 ? spec_.range_force : spec_.range_torque;
     double value = exact[i] + noise * random_.Normal();
     if (quantum > 0) value = quantum * std::round(value / quantum);

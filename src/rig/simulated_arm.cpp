@@ -103,7 +103,7 @@ void SimulatedArm::Move() noexcept {
 }
 
 void SimulatedArm::Measure() noexcept {
-  const double quantum = rig_.encoder_quantum;
+  const double quantum = rig_.encoder_resolution;
   for (int j = 0; j < q_.size(); ++j) {
     q_measured_[j] = quantum > 0 ? quantum * std::round(q_[j] / quantum) : q_[j];
     v_measured_[j] = v_[j] + rig_.velocity_noise * velocity_noise_.Normal();

@@ -145,7 +145,7 @@ HandGoal VirtualOperator::Goal(int hand, const OperatorInput& input,
   if (intent_.hold[0] && intent_.hold[1]) {
     const Vector3 line = input.handle[1 - i].X_W.p - input.handle[i].X_W.p;
     const double length = line.norm();
-    if (length > 1e-6) goal.force += spec_.squeeze / length * line;
+    if (length > 1e-6) goal.force += spec_.internal_force / length * line;
   }
   return goal;
 }

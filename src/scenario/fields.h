@@ -83,7 +83,7 @@ void Fields(V& v, WristSensorSpec& s) {
   v("noise_force", s.noise_force, Number("N", "standard deviation", From(0, 100)));
   v("noise_torque", s.noise_torque, Number("N·m", "standard deviation", From(0, 10)));
   v("bias", s.bias, Number("", "[N, N, N, N·m, N·m, N·m], in axes of W", Within(1000)));
-  v("low_pass", s.low_pass, Number("Hz", "first-order", Above(0, 500)));
+  v("cutoff_frequency", s.cutoff_frequency, Number("Hz", "first-order", Above(0, 500)));
 }
 
 template <class V>
@@ -243,12 +243,12 @@ void Fields(V& v, SensorSpec& s) {
   v("pose", s.pose, Part("pose of the sensor on the end-effector"));
   v("noise_force", s.noise_force, Number("N", "standard deviation", From(0, 100)));
   v("noise_torque", s.noise_torque, Number("N·m", "standard deviation", From(0, 10)));
-  v("quantum_force", s.quantum_force, Number("N", "step of the reading", From(0, 10)));
-  v("quantum_torque", s.quantum_torque, Number("N·m", "step of the reading", From(0, 1)));
+  v("force_resolution", s.force_resolution, Number("N", "step of the reading", From(0, 10)));
+  v("torque_resolution", s.torque_resolution, Number("N·m", "step of the reading", From(0, 1)));
   v("range_force", s.range_force, Number("N", "readings beyond it are saturated", Above(0, 1e5)));
   v("range_torque", s.range_torque,
     Number("N·m", "readings beyond it are saturated", Above(0, 1e4)));
-  v("low_pass", s.low_pass,
+  v("cutoff_frequency", s.cutoff_frequency,
     Number("Hz", "first-order filter in the sensor; 0: none", From(0, 1e4)));
   v("delay", s.delay, Number("s", "between measuring and reading", From(0, 0.05)));
   v("sample_rate", s.sample_rate,
@@ -295,7 +295,8 @@ void Fields(V& v, RigSpec& s) {
   v("loop", s.loop, Part("true velocity loop of both arms; null: as device.arms.*.loop"));
   v("computation_delay", s.computation_delay,
     Number("s", "between a tick's reading and its command", From(0, 0.1)));
-  v("encoder_quantum", s.encoder_quantum, Number("rad", "step of a joint's reading", From(0, 0.1)));
+  v("encoder_resolution", s.encoder_resolution,
+    Number("rad", "step of a joint's reading", From(0, 0.1)));
   v("velocity_noise", s.velocity_noise, Number("rad/s", "standard deviation", From(0, 1)));
   v("sensor_bias", s.sensor_bias, Number("N, N·m", "force x y z, torque x y z", Within(1000)));
   v("start_offset", s.start_offset,
@@ -324,7 +325,7 @@ void Fields(V& v, RenderingSpec& s) {
     Number("Hz", "low-pass of the lead's acceleration; 0: none", From(0, 1000)));
   v("manipulability", s.manipulability,
     Number("", "α, weight of the manipulability gradient", From(0, 1000)));
-  v("rotation_length", s.rotation_length,
+  v("characteristic_length", s.characteristic_length,
     Number("m", "weighs rotation against translation", Above(0, 10)));
   v("influence_distance", s.influence_distance,
     Number("m", "d_i, below which link pairs are slowed", Above(0, 10)));

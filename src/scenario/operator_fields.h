@@ -32,7 +32,7 @@ void Fields(V& v, HandSpec& s) {
   v("max_force", s.max_force, Number("N", "that the hand can exert", Above(0, 1000)));
   v("max_torque", s.max_torque, Number("N·m", "that the hand can exert", Above(0, 100)));
   v("release_time", s.release_time, Number("s", "time constant of letting go", Above(0, 10)));
-  v("squeeze", s.squeeze,
+  v("internal_force", s.internal_force,
     Number("N", "internal force along the line between the hands", Within(200)));
 }
 

@@ -70,7 +70,7 @@ struct WristSensorSpec {
   double noise_force = 0;           // standard deviation [N]
   double noise_torque = 0;          // [N·m]
   std::array<double, 6> bias = {};  // [N], [N·m]
-  double low_pass = 150;            // first-order [Hz]
+  double cutoff_frequency = 150;    // first-order [Hz]
 };
 
 // The cobot's own safety functions, as its vendor ships them. Absent ones are off.
@@ -221,16 +221,16 @@ struct HandlePayloadSpec {
 
 // Properties of a force/torque sensor.
 struct SensorSpec {
-  PoseSpec pose;                  // X_ES
-  double noise_force = 0.05;      // standard deviation [N]
-  double noise_torque = 0.002;    // [N·m]
-  double quantum_force = 0.02;    // [N]
-  double quantum_torque = 0.001;  // [N·m]
-  double range_force = 200;       // a reading beyond this value is saturated [N]
-  double range_torque = 10;       // [N·m]
-  double low_pass = 150;          // first-order, inside the sensor [Hz]; 0: none
-  double delay = 0.001;           // from measurement to reading [s]
-  double sample_rate = 1000;      // rate of the device's readings [Hz]
+  PoseSpec pose;                     // X_ES
+  double noise_force = 0.05;         // standard deviation [N]
+  double noise_torque = 0.002;       // [N·m]
+  double force_resolution = 0.02;    // [N]
+  double torque_resolution = 0.001;  // [N·m]
+  double range_force = 200;          // a reading beyond this value is saturated [N]
+  double range_torque = 10;          // [N·m]
+  double cutoff_frequency = 150;     // first-order, inside the sensor [Hz]; 0: none
+  double delay = 0.001;              // from measurement to reading [s]
+  double sample_rate = 1000;         // rate of the device's readings [Hz]
 };
 
 struct ArmSpec {
@@ -261,7 +261,7 @@ struct DeviceSpec {
 struct RigSpec {
   std::optional<VelocityLoopSpec> loop;  // true loop of both arms; if absent, device.arms.*.loop
   double computation_delay = 0;          // between reading and command of a tick [s]
-  double encoder_quantum = 1e-5;         // [rad]
+  double encoder_resolution = 1e-5;      // [rad]
   double velocity_noise = 1e-4;          // standard deviation of measured joint velocity [rad/s]
   std::array<double, 6> sensor_bias = {1.5, -2.0, 3.0, 0.05, -0.08, 0.04};  // [N], [N·m]
   double start_offset = 0.01;  // distance from the virtual handles at which the arms are parked [m]
@@ -289,7 +289,7 @@ struct HandSpec {
   double max_force = 60;                   // [N]
   double max_torque = 8;                   // [N·m]
   double release_time = 0.040;             // time constant of releasing [s]
-  double squeeze = 0;                      // internal force along the line between the hands [N]
+  double internal_force = 0;               // internal force along the line between the hands [N]
 };
 
 // One entry of the operator's script, which begins at `start`.
@@ -358,18 +358,18 @@ struct RenderingSpec {
   std::vector<std::string> formulation_except;  // repairs that deviate from it (formulation.h)
   double kp = 2.0;                              // K_p of (9) [1/s]
   double ko = 0.4;  // K_o of (9): acts on the quaternion's vector part, half the angle [1/s]
-  double relative_kp = 1.0;      // K'_p of (10) [1/s]
-  double relative_ko = 0.9;      // K'_o of (10) [1/s]
-  std::optional<double> lead;    // lead of the reference [s]; absent ("auto"): chosen automatically
-  double lead_cutoff = 20;       // low-pass of the lead's acceleration [Hz]
-  double manipulability = 0;     // α, weight of the manipulability gradient
-  double rotation_length = 0.2;  // weight of rotation relative to translation [m]
-  double influence_distance = 0.7;  // d_i [m]
-  double security_distance = 0.3;   // d_s [m]
-  double collision_gain = 1.0;      // ξ [m/s]
-  double joint_influence = 0.3;     // q_i [rad]
-  double joint_security = 0.02;     // q_s [rad]
-  double joint_gain = 1.0;          // ξ_q [rad/s]
+  double relative_kp = 1.0;    // K'_p of (10) [1/s]
+  double relative_ko = 0.9;    // K'_o of (10) [1/s]
+  std::optional<double> lead;  // lead of the reference [s]; absent ("auto"): chosen automatically
+  double lead_cutoff = 20;     // low-pass of the lead's acceleration [Hz]
+  double manipulability = 0;   // α, weight of the manipulability gradient
+  double characteristic_length = 0.2;  // weight of rotation relative to translation [m]
+  double influence_distance = 0.7;     // d_i [m]
+  double security_distance = 0.3;      // d_s [m]
+  double collision_gain = 1.0;         // ξ [m/s]
+  double joint_influence = 0.3;        // q_i [rad]
+  double joint_security = 0.02;        // q_s [rad]
+  double joint_gain = 1.0;             // ξ_q [rad/s]
   // Pairs of links that are kept apart. A pair names a link of the left arm and one of the right
   // arm. A link of a specific arm is given as left:LINK or right:LINK. Empty: the two elbows.
   std::vector<std::array<std::string, 2>> link_pairs;

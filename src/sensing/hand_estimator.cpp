@@ -29,7 +29,7 @@ HandEstimator::HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& 
       hold_back_(std::max(0.0, acceleration_lag - sensor.delay) / dt),
       weight_delay_(hold_back_ + sensor.delay / dt),
       inertia_delay_(std::max(0.0, weight_delay_ - acceleration_lag / dt)),
-      low_pass_(sensor.low_pass, dt, Wrench::Zero()) {
+      low_pass_(sensor.cutoff_frequency, dt, Wrench::Zero()) {
   if (weight_delay_ > kMaxDelayTicks) {
     throw InputError("device.arms.*.sensor.delay",
                      "The sensor's delay is longer than 60 ticks. Use a faster sensor.");
@@ -102,7 +102,7 @@ Wrench HandEstimator::QuietDeviation(const SensorSpec& sensor) noexcept {
   Wrench quiet;
   for (int i = 0; i < 6; ++i) {
     const double noise = i < 3 ? sensor.noise_force : sensor.noise_torque;
-    const double quantum = i < 3 ? sensor.quantum_force : sensor.quantum_torque;
+    const double quantum = i < 3 ? sensor.force_resolution : sensor.torque_resolution;
     const double own = std::sqrt(noise * noise + quantum * quantum / 12);
     quiet[i] = kTareFactor * own + (i < 3 ? kTareForce : kTareTorque);
   }

@@ -6,13 +6,15 @@ namespace predictor {
 
 WristSensor::WristSensor(const WristSensorSpec& spec, double dt, std::uint64_t seed)
     : spec_(spec),
-      filter_(spec.low_pass, dt, Wrench::Zero()),
+      filter_(spec.cutoff_frequency, dt, Wrench::Zero()),
       start_(seed, "wrist sensor"),
       random_(start_) {
   bias_ = Eigen::Map<const Vector6>(spec.bias.data());
 }
 
-double WristSensor::cutoff() const noexcept { return 2 * std::numbers::pi * spec_.low_pass; }
+double WristSensor::cutoff() const noexcept {
+  return 2 * std::numbers::pi * spec_.cutoff_frequency;
+}
 
 void WristSensor::Reset(const Wrench& F_E_W) noexcept {
   filter_.Reset(F_E_W);

@@ -26,7 +26,7 @@ Scenario PureDelay(double delay) {
   s.left_handle.emplace();
   s.device.left.emplace();
   s.device.left->loop = {20000, 1, delay};
-  s.device.left->sensor.low_pass = 0;
+  s.device.left->sensor.cutoff_frequency = 0;
   s.device.left->sensor.delay = 0;
   s.rendering.kp = s.rendering.ko = 0;
   return s;

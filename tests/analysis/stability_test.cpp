@@ -20,7 +20,7 @@ Scenario PureLoopDelay(double delay) {
   s.left_handle.emplace();
   s.device.left.emplace();
   s.device.left->loop = {20000, 1, delay - 1.5 * kDt};
-  s.device.left->sensor.low_pass = 0;
+  s.device.left->sensor.cutoff_frequency = 0;
   s.device.left->sensor.delay = 0;
   s.rendering.kp = s.rendering.ko = 0;
   return s;
@@ -98,7 +98,7 @@ double Growth(const Scenario& s, const HandSpec& hand, double mass, double dampe
     const double jerk = w * w * (delayed - vh) - 2 * arm.loop.damping_ratio * w * ah;
     const double felt = -gain * (k * h + d * vh + hand.mass * ah);
     filtered += kStep * cutoff * (v - filtered);
-    force += kStep * 2 * kPi * arm.sensor.low_pass * (felt - force);
+    force += kStep * 2 * kPi * arm.sensor.cutoff_frequency * (felt - force);
     ah += kStep * jerk;
     vh += kStep * ah;
     h += kStep * vh;

@@ -90,7 +90,7 @@ std::string RefusalOf(const std::vector<RestingPose>& poses, const SensorSpec& s
 
 SensorSpec Exact() {
   SensorSpec sensor;
-  sensor.noise_force = sensor.noise_torque = sensor.quantum_force = sensor.quantum_torque = 0;
+  sensor.noise_force = sensor.noise_torque = sensor.force_resolution = sensor.torque_resolution = 0;
   return sensor;
 }
 

@@ -34,7 +34,7 @@ LoopRecord Swing(const Arrangement& a) {
   Scenario scenario = ArmScenario(1);
   scenario.seed = a.seed;
   scenario.rig.loop = a.loop;
-  scenario.rig.encoder_quantum = a.quantum;
+  scenario.rig.encoder_resolution = a.quantum;
   scenario.device.left->acceleration_limit = {a.acceleration_limit};
   VirtualTime time;
   RigHand hand(scenario, &time, ArmStart(1)[0], a.rate);

@@ -33,7 +33,7 @@ void PushWhileCarrying(Scenario* s) {
         MakeActionSpec("push", start,
                        {"duration=0.3", std::string("hand=") + hand,
                         Formatted("force=[%.17g, %.17g, %.17g]", force.x(), force.y(), force.z()),
-                        Formatted("rise=%.17g", 0.05 + 0.10 * random.Uniform())}));
+                        Formatted("rise_time=%.17g", 0.05 + 0.10 * random.Uniform())}));
     at += 5;
   }
   s->operator_.script = script;

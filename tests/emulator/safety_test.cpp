@@ -428,7 +428,7 @@ TEST(Stop, KeepsToItsBoundsAtTheHandlesAndKeepsThemTogether) {
 
 TEST(Stop, TakesNoLongerWhereRenderingWeighsTurningMore) {
   const Scenario scenario = LoadTestScenario(
-      "box_9kg", {"rendering.rotation_length=10",
+      "box_9kg", {"rendering.characteristic_length=10",
                   "operator.script=[{action: grip, start: 0, duration: 0.5}, {action: rotate, "
                   "start: 1, duration: 2, rotate_by: [0, 0, 0.6]}]"});
   Emulator emulator(scenario);

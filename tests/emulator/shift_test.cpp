@@ -38,9 +38,9 @@ constexpr double kSameJoint = 1e-7;  // [rad]
 // One arm's base is tilted, so that its gravity direction is not that of its base's z axis.
 // Readings without steps: the last bit may decide to which step a reading is rounded.
 TEST(Shift, OfSceneAndArmsTogetherChangesNothing) {
-  Scenario here = LoadTestScenario("box_9kg", {"duration=6", "rig.encoder_quantum=0"});
+  Scenario here = LoadTestScenario("box_9kg", {"duration=6", "rig.encoder_resolution=0"});
   for (auto* arm : {&here.device.left, &here.device.right})
-    (*arm)->sensor.quantum_force = (*arm)->sensor.quantum_torque = 0;
+    (*arm)->sensor.force_resolution = (*arm)->sensor.torque_resolution = 0;
   here.device.right->base.rpy = {0.02, -0.03, 0.1};
   const std::vector<TickRecord> a = RecordsOf(here), b = RecordsOf(Elsewhere(here, kShift));
   ASSERT_EQ(a.size(), b.size());

@@ -287,7 +287,7 @@ TEST(VibrationRun, SuddenPushesAndReleasesAreNoVibrationSoak) {
         for (long seed = 1; seed <= Count(1, 20); ++seed) {
           std::string script = "operator.script=[{action: grip, start: 0, duration: 0.5}";
           script.append(", {action: push, start: 2, duration: 0.5, force: ").append(force);
-          script.append(", rise: ").append(rise).append("}");
+          script.append(", rise_time: ").append(rise).append("}");
           script += ", {action: release, start: 4}]";
           const Outcome outcome =
               RunLoop(scenario, {script, "operator.hand.release_time=0.01", "duration=6",

@@ -51,13 +51,14 @@ inline std::array<JointVector, kHands> ArmStart(int arms) {
 
 // Removes noise, quantisation and bias, and makes the sensor respond immediately.
 inline void MakeExact(Scenario* scenario) {
-  scenario->rig.encoder_quantum = scenario->rig.velocity_noise = 0;
+  scenario->rig.encoder_resolution = scenario->rig.velocity_noise = 0;
   scenario->rig.sensor_bias.fill(0);
   for (std::optional<ArmSpec>* arm : {&scenario->device.left, &scenario->device.right}) {
     if (!*arm) continue;
     SensorSpec& sensor = (*arm)->sensor;
-    sensor.noise_force = sensor.noise_torque = sensor.quantum_force = sensor.quantum_torque = 0;
-    sensor.low_pass = sensor.delay = 0;
+    sensor.noise_force = sensor.noise_torque = sensor.force_resolution = sensor.torque_resolution =
+        0;
+    sensor.cutoff_frequency = sensor.delay = 0;
   }
 }
 

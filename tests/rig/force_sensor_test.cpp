@@ -12,8 +12,8 @@ namespace {
 
 SensorSpec Exact() {
   SensorSpec spec;
-  spec.noise_force = spec.noise_torque = spec.quantum_force = spec.quantum_torque = 0;
-  spec.low_pass = spec.delay = 0;
+  spec.noise_force = spec.noise_torque = spec.force_resolution = spec.torque_resolution = 0;
+  spec.cutoff_frequency = spec.delay = 0;
   return spec;
 }
 
@@ -98,7 +98,7 @@ TEST(ForceSensor, ReadsTheWrenchAfterItsDelayWithItsBias) {
 
 TEST(ForceSensor, LowPassLagsARampByItsTimeConstantAndASineByTheClosedForm) {
   SensorSpec spec = Exact();
-  spec.low_pass = 150;
+  spec.cutoff_frequency = 150;
   for (const double dt : {0.001, 0.002}) {
     ForceSensor ramp(spec, Wrench::Zero(), dt, RandomStream(1, "test"));
     for (int k = 1; k <= 500; ++k) ramp.Step(Wrench::Constant(0.02 * k * dt));
@@ -124,7 +124,7 @@ TEST(ForceSensor, NoiseAndQuantumAreAsSpecified) {
   SensorSpec spec = Exact();
   spec.noise_force = 0.05;
   spec.noise_torque = 0.002;
-  spec.quantum_force = 0.02;
+  spec.force_resolution = 0.02;
   ForceSensor sensor(spec, Wrench::Zero(), kDt, RandomStream(1, "test"));
   Vector6 sum = Vector6::Zero(), squares = Vector6::Zero();
   const int n = 100000;

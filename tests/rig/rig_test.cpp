@@ -166,7 +166,7 @@ TEST(Rig, RefusesCommandsThatAreNotANumberAJoint) {
 TEST(Rig, EncodersAreQuantisedAndVelocitiesNoisy) {
   Scenario scenario = ArmScenario(1);
   MakeExact(&scenario);
-  scenario.rig.encoder_quantum = 1e-4;
+  scenario.rig.encoder_resolution = 1e-4;
   scenario.rig.velocity_noise = 1e-3;
   Rig rig(scenario, ArmStart(1), nullptr);
   DeviceSample sample, again;

@@ -148,7 +148,7 @@ TEST(VirtualOperator, PushRisesStaysAndFalls) {
 
 TEST(VirtualOperator, SqueezesAlongTheLineBetweenTheHands) {
   Scenario scenario = SpringScenario(2);
-  scenario.operator_.hand.squeeze = 8;
+  scenario.operator_.hand.internal_force = 8;
   scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"})};
   Person person(scenario);
   person.Run(1);

@@ -243,7 +243,8 @@ TEST(OwnParameters, OfOtherKindsAreRemovedFromEarlierRecordings) {
   EXPECT_EQ(group.Find("trajectory"), nullptr);
   EXPECT_FALSE(RemoveForeignParameters(controller));
   YamlNode script = ParseYaml(
-      "{operator: {script: [{action: grip, start: 1, duration: 2, hand: left, rise: 0.12}]}}", "f");
+      "{operator: {script: [{action: grip, start: 1, duration: 2, hand: left, rise_time: 0.12}]}}",
+      "f");
   for (const KindGroup& entry : KindGroups(&script)) EXPECT_TRUE(RemoveForeignParameters(entry));
   EXPECT_EQ(script.items[0].items[0].items[0].items.size(), 4u);
 }

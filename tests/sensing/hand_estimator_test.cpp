@@ -168,7 +168,7 @@ TEST(HandEstimator, MovingResidualIsSmallForOtherSensorsAndTicks) {
         Scenario scenario = ArmScenario(1);
         scenario.rate = rate;
         scenario.device.left->sensor.delay = delay;
-        scenario.device.left->sensor.low_pass = low_pass;
+        scenario.device.left->sensor.cutoff_frequency = low_pass;
         EXPECT_LT(MovingResidual(scenario, 3), 0.05) << rate << " " << delay << " " << low_pass;
       }
     }
@@ -221,7 +221,8 @@ TEST(HandEstimator, GivesTheHandsWrenchAtTheHandleWithTheSensorsLagOnly) {
   Wrench amplitude;
   amplitude << 10, -5, 8, 0.5, -1, 0.7;
   const SensorSpec& sensor = scenario.device.left->sensor;
-  const double sensor_lag = std::atan(Shaker::kFrequency / sensor.low_pass) / w + sensor.delay;
+  const double sensor_lag =
+      std::atan(Shaker::kFrequency / sensor.cutoff_frequency) / w + sensor.delay;
   for (int i = 0; i < 6; ++i) {
     const std::complex<double> response = phasor[i] / amplitude[i];
     EXPECT_NEAR(std::abs(response), 1, 0.01) << i;

@@ -65,7 +65,7 @@ TEST(WristSensor, AddsBiasAndNoiseToAFilteredWrench) {
   WristSensorSpec spec;
   spec.bias = {1, 2, 3, 0.1, 0.2, 0.3};
   spec.noise_force = 0.5;
-  spec.low_pass = 20;
+  spec.cutoff_frequency = 20;
   WristSensor sensor(spec, kSubStep, 5);
   Wrench F = Wrench::Constant(4);
   sensor.Reset(Wrench::Zero());

@@ -26,8 +26,8 @@ void Merge(const ArmReach& other, ArmReach* reach) {
   raise(other.joint_speed, &reach->joint_speed);
 }
 
-double SmallestSingularValue(Jacobian J, double rotation_length) {
-  J.bottomRows<3>() *= rotation_length;
+double SmallestSingularValue(Jacobian J, double characteristic_length) {
+  J.bottomRows<3>() *= characteristic_length;
   Matrix6 A;
   A.noalias() = J * J.transpose();
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(A, Eigen::EigenvaluesOnly);
@@ -87,7 +87,7 @@ void ArmFollower::Judge(const JointVector& q, double time, RobotData* data, ArmR
   data->UpdateKinematics(*model_, q, JointVector::Zero(q.size()));
   Jacobian J;
   data->FrameJacobian(*model_, handle_, &J);
-  reach->singular_value.Lower(SmallestSingularValue(J, rendering_.rotation_length), time);
+  reach->singular_value.Lower(SmallestSingularValue(J, rendering_.characteristic_length), time);
   for (int j = 0; j < q.size(); ++j)
     reach->joint_margin.Lower(std::min(q[j] - limits_.lower[j], limits_.upper[j] - q[j]), time, j);
 }

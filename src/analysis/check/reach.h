@@ -35,7 +35,7 @@ struct ArmReach {
   std::optional<double> lost;  // first time at which the handle cannot reach its pose [s]
   double reached = 0;          // share of the path's samples before that time
   // smallest singular value of the handle's Jacobian, with rotation weighted by
-  // rendering.rotation_length [m]
+  // rendering.characteristic_length [m]
   Extreme singular_value = Extreme::Smallest();
   Extreme joint_margin = Extreme::Smallest();  // distance to the nearest position limit [rad]
   Extreme joint_speed;  // share of the speed that the velocity limit and (near its end) the

@@ -43,7 +43,7 @@ ActionSpec Tap(const char* hand, const Vector3& direction) {
   const Vector3 force = kTapForce * direction;
   return MakeActionSpec(
       "push", kTapStart,
-      {Formatted("duration=%.17g", kTapRise), Formatted("rise=%.17g", kTapRise),
+      {Formatted("duration=%.17g", kTapRise), Formatted("rise_time=%.17g", kTapRise),
        std::string("hand=") + hand,
        Formatted("force=[%.17g, %.17g, %.17g]", force.x(), force.y(), force.z())});
 }
@@ -176,7 +176,7 @@ class Twins {
         tapped_(HoldScenario(s, lead, true)),
         limits_plain_(plain_.scenario()),
         limits_tapped_(tapped_.scenario()),
-        length_(s.rendering.rotation_length),
+        length_(s.rendering.characteristic_length),
         fast_(plain_.dt()),
         decimation_(std::max(1, static_cast<int>(std::lround(kMeanTime / plain_.dt())))) {}
 

@@ -18,7 +18,7 @@ class Damping final : public Task {
  public:
   explicit Damping(const RenderSetup& setup)
       : Task(0),
-        rotation_length_(setup.scenario.rendering.rotation_length),
+        rotation_length_(setup.scenario.rendering.characteristic_length),
         grows_(setup.repairs.Has(Repair::kSingularityDamping)) {}
 
   void Update(const RenderContext& context, JointObjective* joints) noexcept override {

@@ -1,4 +1,5 @@
-// Adds a feed-forward force: it rises within `rise`, stays for `duration`, falls within `rise`.
+// Adds a feed-forward force: it rises within `rise_time`, stays for `duration`, falls within
+// `rise_time`.
 #include <algorithm>
 #include <array>
 
@@ -11,7 +12,7 @@ namespace {
 struct PushParameters {
   double duration = 1;              // [s]
   Vector3 force = Vector3::Zero();  // in W [N]
-  double rise = 0.120;              // [s]
+  double rise_time = 0.120;         // [s]
   std::string hand = "both";
 };
 
@@ -19,7 +20,7 @@ template <class V>
 void Fields(V& v, PushParameters& p) {
   v("duration", p.duration, DurationRule("how long the force stays"));
   v("force", p.force, Required(Number("N", "feed-forward force of each hand, in W", Within(1000))));
-  v("rise", p.rise, Number("s", "in which the force rises and falls", Above(0, 10)));
+  v("rise_time", p.rise_time, Number("s", "in which the force rises and falls", Above(0, 10)));
   v("hand", p.hand, HandRule());
 }
 
@@ -28,9 +29,9 @@ class Push final : public Action {
   explicit Push(const PushParameters& p)
       : concerns_{Concerns(p.hand, 0), Concerns(p.hand, 1)},
         force_(NotZero("force", p.force)),
-        rise_(std::max(p.rise, 1e-9)),
+        rise_(std::max(p.rise_time, 1e-9)),
         total_(Time(p)) {}
-  static double Time(const PushParameters& p) { return 2 * p.rise + p.duration; }
+  static double Time(const PushParameters& p) { return 2 * p.rise_time + p.duration; }
   static std::string Sentence(const PushParameters& p, double) {
     return "Push " + HandlesOf(p.hand) + " with " + WithUnit(p.force.norm(), " N") + ".";
   }

@@ -8,7 +8,7 @@ import {Rig} from './rig.mjs';
 import {message} from './messages.mjs';
 
 const kPush = (start, duration, force) =>
-  `{action: push, start: ${start}, duration: ${duration}, force: [0, 0, ${force}], rise: 10}`;
+  `{action: push, start: ${start}, duration: ${duration}, force: [0, 0, ${force}], rise_time: 10}`;
 // For screenshots the arrow first stays red for a while.
 const kScript = '[{action: grip, start: 0, duration: 0.5}, ' +
     (shotsWanted ? `${kPush(6, 30, 62)}, ${kPush(36, 20, 80)}]` : `${kPush(6, 40, 80)}]`);
