@@ -1,29 +1,25 @@
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "assessment/output.h"
 #include "assessment/safety/output.h"
+#include "core/json_schema.h"
 
 namespace predictor::assessment {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
 Json ToJson(const std::optional<person::Interval>& range) {
   if (!range) return nullptr;
-  return {Number(range->low), Number(range->high)};
+  return {NumberOrNull(range->low), NumberOrNull(range->high)};
 }
 
 Json ToJson(const QuantityResult& q) {
   return {{"unit", q.kind->unit.si},
           {"origin", Name(q.kind->origin)},
-          {"mean", Number(q.mean)},
-          {"p5", Number(q.p5)},
-          {"p95", Number(q.p95)},
-          {"min", Number(q.min)},
-          {"max", Number(q.max)},
+          {"mean", NumberOrNull(q.mean)},
+          {"p5", NumberOrNull(q.p5)},
+          {"p95", NumberOrNull(q.p95)},
+          {"min", NumberOrNull(q.min)},
+          {"max", NumberOrNull(q.max)},
           {"bad", q.kind->bad == Bad::kHigh ? "high" : "low"},
           {"mean_interval_90", ToJson(q.mean_interval)},
           {"tail_interval_90", ToJson(q.tail_interval)}};
@@ -50,19 +46,19 @@ Json ToJson(const ergonomics::HandPlace& place) {
 }
 
 Json ToJson(const Lift& lift) {
-  return {
-      {"origin_of_number", Name(Origin::kStandard)},
-      {"begin_s", lift.begin},
-      {"end_s", lift.end},
-      {"one_hand", lift.one_hand},
-      {"origin", ToJson(lift.origin)},
-      {"destination", ToJson(lift.destination)},
-      {"vertical_force_n", lift.vertical_force},
-      {"adapted_lifting_index", lift.one_hand ? Json(nullptr) : Number(lift.niosh.carried.index)},
-      {"unassisted_lifting_index",
-       lift.one_hand ? Json(nullptr) : Number(lift.niosh.unassisted.index)},
-      {"share_that_accepts", lift.one_hand ? Json(nullptr) : Json(lift.share_that_accepts)},
-      {"outside_lm_mmh", lift.acceptable.outside}};
+  return {{"origin_of_number", Name(Origin::kStandard)},
+          {"begin_s", lift.begin},
+          {"end_s", lift.end},
+          {"one_hand", lift.one_hand},
+          {"origin", ToJson(lift.origin)},
+          {"destination", ToJson(lift.destination)},
+          {"vertical_force_n", lift.vertical_force},
+          {"adapted_lifting_index",
+           lift.one_hand ? Json(nullptr) : NumberOrNull(lift.niosh.carried.index)},
+          {"unassisted_lifting_index",
+           lift.one_hand ? Json(nullptr) : NumberOrNull(lift.niosh.unassisted.index)},
+          {"share_that_accepts", lift.one_hand ? Json(nullptr) : Json(lift.share_that_accepts)},
+          {"outside_lm_mmh", lift.acceptable.outside}};
 }
 
 Json ToJson(const DamageResult& d) {
@@ -80,7 +76,7 @@ Json ToJson(const FatigueResult& f) {
           {"joint", f.joint},
           {"mean_load", f.mean_load},
           {"capacity_at_end", f.capacity},
-          {"time_to_limit_s", Number(f.time_to_limit)}};
+          {"time_to_limit_s", NumberOrNull(f.time_to_limit)}};
 }
 
 template <class T>
@@ -94,8 +90,8 @@ Json ToJson(const Comparison& comparison) {
   Json json = {{"recording", comparison.b}, {"warning", comparison.warning}};
   for (const Difference& d : comparison.differences)
     json["quantities"][d.kind->path] = {
-        {"tail", Number(d.a)},
-        {"tail_of_other", Number(d.b)},
+        {"tail", NumberOrNull(d.a)},
+        {"tail_of_other", NumberOrNull(d.b)},
         {"difference_interval_90", ToJson(d.interval)},
         {"share_better", d.share_better ? Json(*d.share_better) : Json(nullptr)}};
   return json;
@@ -116,54 +112,35 @@ Json PersonOf(const Assessment& a) {
 
 // ---- schema -----------------------------------------------------------------------------------
 
-Json Described(const char* type, const std::string& meaning) {
-  return {{"type", type}, {"description", meaning}};
-}
-
-Json OrNull(const char* type, const std::string& meaning) {
-  return {{"type", {type, "null"}}, {"description", meaning}};
-}
-
-Json Members(Json properties, const std::string& meaning) {
-  Json required = Json::array();
-  for (const auto& [key, value] : properties.items()) required.push_back(key);
-  return {{"type", "object"},
-          {"description", meaning},
-          {"required", std::move(required)},
-          {"properties", std::move(properties)}};
-}
-
-Json ArrayOf(Json items, const std::string& meaning) {
-  return {{"type", "array"}, {"description", meaning}, {"items", std::move(items)}};
-}
-
 Json QuantitySchema(const QuantityKind& kind) {
-  return Members(
-      {{"unit", Described("string", "SI unit")},
-       {"origin", Described("string", "measured, modelled or standard")},
-       {"mean", OrNull("number", "over time, of the nominal posture")},
-       {"p5", OrNull("number", "5th percentile over time")},
-       {"p95", OrNull("number", "95th percentile over time")},
-       {"min", OrNull("number", "smallest value")},
-       {"max", OrNull("number", "largest value")},
-       {"bad", Described("string", "whether high or low values are bad")},
-       {"mean_interval_90", OrNull("array", "90 % interval of the mean")},
-       {"tail_interval_90", OrNull("array", "90 % interval of p95, or of p5 if low is bad")}},
+  return schema::Object(
+      {{"unit", schema::Value("string", "SI unit")},
+       {"origin", schema::Value("string", "measured, modelled or standard")},
+       {"mean", schema::ValueOrNull("number", "over time, of the nominal posture")},
+       {"p5", schema::ValueOrNull("number", "5th percentile over time")},
+       {"p95", schema::ValueOrNull("number", "95th percentile over time")},
+       {"min", schema::ValueOrNull("number", "smallest value")},
+       {"max", schema::ValueOrNull("number", "largest value")},
+       {"bad", schema::Value("string", "whether high or low values are bad")},
+       {"mean_interval_90", schema::ValueOrNull("array", "90 % interval of the mean")},
+       {"tail_interval_90",
+        schema::ValueOrNull("array", "90 % interval of p95, or of p5 if low is bad")}},
       WithUnit(std::string(kind.group) + ", " + kind.label, {kind.unit.si, kind.unit.si}));
 }
 
 Json WorksheetSchema(const WorksheetKind& kind) {
-  const Json classes =
-      Members({{"score", Described("integer", "score")},
-               {"share_of_time", Described("number", "of the nominal posture, 0 … 1")},
-               {"probability", OrNull("number", "mean over time, over the possible postures")}},
-              "one score");
-  return Members({{"origin", Described("string", "standard")},
-                  {"worst", Described("integer", "highest score")},
-                  {"p95", Described("integer", "95th percentile over time")},
-                  {"action", Described("string", "what the method advises for it")},
-                  {"classes", ArrayOf(classes, "each possible score")}},
-                 kind.name);
+  const Json classes = schema::Object(
+      {{"score", schema::Value("integer", "score")},
+       {"share_of_time", schema::Value("number", "of the nominal posture, 0 … 1")},
+       {"probability",
+        schema::ValueOrNull("number", "mean over time, over the possible postures")}},
+      "one score");
+  return schema::Object({{"origin", schema::Value("string", "standard")},
+                         {"worst", schema::Value("integer", "highest score")},
+                         {"p95", schema::Value("integer", "95th percentile over time")},
+                         {"action", schema::Value("string", "what the method advises for it")},
+                         {"classes", schema::Array(classes, "each possible score")}},
+                        kind.name);
 }
 
 Json ListSchema(const char* meaning, const Json& example) {
@@ -173,7 +150,7 @@ Json ListSchema(const char* meaning, const Json& example) {
                                 : value.is_string()  ? Json("string")
                                 : value.is_boolean() ? Json("boolean")
                                                      : Json({"number", "null"})}};
-  return ArrayOf(Members(properties, "one entry"), meaning);
+  return schema::Array(schema::Object(properties, "one entry"), meaning);
 }
 
 }  // namespace
@@ -203,41 +180,43 @@ std::string AssessmentSchema() {
   Json quantities = Json::object(), worksheets = Json::object();
   for (const QuantityKind& kind : Quantities()) quantities[kind.path] = QuantitySchema(kind);
   for (const WorksheetKind& kind : Worksheets()) worksheets[kind.name] = WorksheetSchema(kind);
-  const Json text = Described("string", "a sentence");
-  Json schema = Members(
-      {{"recording", Described("string", "file")},
-       {"scenario", Described("string", "name of the scenario")},
-       {"duration_s", Described("number", "simulated time [s]")},
+  const Json text = schema::Value("string", "a sentence");
+  Json root = schema::Object(
+      {{"recording", schema::Value("string", "file")},
+       {"scenario", schema::Value("string", "name of the scenario")},
+       {"duration_s", schema::Value("number", "simulated time [s]")},
        {"held_s",
-        Described("number", "of it, while a hand held a handle; only this is judged [s]")},
+        schema::Value("number", "of it, while a hand held a handle; only this is judged [s]")},
        {"person",
-        Members({{"simulated", Described("boolean", "whether the operator was simulated")},
-                 {"operator", Described("string", "virtual, browser or person")},
-                 {"height_m", Described("number", "height of the body [m]")},
-                 {"mass_kg", Described("number", "mass of the body [kg]")},
-                 {"sex", Described("string", "female or male")},
-                 {"reached", Described("number",
+        schema::Object(
+            {{"simulated", schema::Value("boolean", "whether the operator was simulated")},
+             {"operator", schema::Value("string", "virtual, browser or person")},
+             {"height_m", schema::Value("number", "height of the body [m]")},
+             {"mass_kg", schema::Value("number", "mass of the body [kg]")},
+             {"sex", schema::Value("string", "female or male")},
+             {"reached", schema::Value("number",
                                        "share of time in which the body reaches the "
                                        "handles, 0 … 1")},
-                 {"reached_by_possible_postures", OrNull("number", "the same over all of them")},
-                 {"largest_miss_m", Described("number", "distance that is missing [m]")}},
-                "the person")},
-       {"quantities", Members(quantities, "values over time")},
-       {"worksheets", Members(worksheets, "scores of observers' worksheets")},
+             {"reached_by_possible_postures",
+              schema::ValueOrNull("number", "the same over all of them")},
+             {"largest_miss_m", schema::Value("number", "distance that is missing [m]")}},
+            "the person")},
+       {"quantities", schema::Object(quantities, "values over time")},
+       {"worksheets", schema::Object(worksheets, "scores of observers' worksheets")},
        {"lifts", ListSchema("lifts of the run", ToJson(Lift{}))},
        {"damage", ListSchema("cumulative damage", ToJson(DamageResult{}))},
        {"fatigue", ListSchema("fatigue of joints", ToJson(FatigueResult{}))},
        {"safety", SafetySchema()},
-       {"warnings", ArrayOf(text, "doubtful input")},
-       {"assumptions", ArrayOf(text, "what was assumed")},
-       {"not_evaluable",
-        ArrayOf(Members({{"what", text}, {"why", text}}, "one gap"), "what could not be judged")},
-       {"against", OrNull("object",
-                          "tails of another recording, and the differences for "
-                          "the same possible persons")}},
+       {"warnings", schema::Array(text, "doubtful input")},
+       {"assumptions", schema::Array(text, "what was assumed")},
+       {"not_evaluable", schema::Array(schema::Object({{"what", text}, {"why", text}}, "one gap"),
+                                       "what could not be judged")},
+       {"against", schema::ValueOrNull("object",
+                                       "tails of another recording, and the differences for "
+                                       "the same possible persons")}},
       "The assessment of the person in a run of PREDICTOR");
-  schema["$schema"] = "http://json-schema.org/draft-07/schema#";
-  return schema.dump(2) + "\n";
+  root["$schema"] = schema::kDraft;
+  return root.dump(2) + "\n";
 }
 
 }  // namespace predictor::assessment

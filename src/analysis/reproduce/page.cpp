@@ -9,14 +9,13 @@
 #include "analysis/reproduce/runs.h"
 #include "core/error.h"
 #include "core/format.h"
+#include "core/json_schema.h"
 #include "core/text.h"
 
 namespace predictor {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json Finite(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 // Empty if the value is undefined.
 std::string Cell(double x) { return std::isfinite(x) ? FormatNumber(x) : ""; }
@@ -120,9 +119,9 @@ std::string ReproductionJson(const Reproduction& reproduction) {
                          {"unit", n.unit},
                          {"condition", n.condition},
                          {"paper", std::move(paper)},
-                         {"mean", Finite(n.mean)},
-                         {"deviation", Finite(n.deviation)},
-                         {"largest", Finite(n.largest)},
+                         {"mean", NumberOrNull(n.mean)},
+                         {"deviation", NumberOrNull(n.deviation)},
+                         {"largest", NumberOrNull(n.largest)},
                          {"ratio", n.ratio() ? Json(*n.ratio()) : Json(nullptr)},
                          {"command", n.command}});
     }

@@ -1,10 +1,10 @@
 #include "assessment/safety/output.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "core/format.h"
+#include "core/json_schema.h"
 #include "core/text.h"
 
 namespace predictor::assessment {
@@ -36,8 +36,6 @@ void AppendTable(const std::vector<std::vector<std::string>>& rows, std::string*
     *text += line + "\n";
   }
 }
-
-Json NumberOrNull(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 Json ToJson(const Result& result) {
   Json value = nullptr;
@@ -163,23 +161,23 @@ Json TypesOf(const Json& example) {
                 : value.is_boolean() ? Json("boolean")
                 : value.is_null()    ? Json({"array", "number", "null"})
                                      : Json({"number", "null"});
-    properties[key] = {{"type", std::move(type)}, {"description", MeaningOf(key)}};
+    properties[key] = schema::Value(std::move(type), MeaningOf(key));
   }
   return {{"type", "object"}, {"properties", std::move(properties)}};
 }
 
 Json ListOf(const Json& example, const char* meaning) {
-  return {{"type", "array"}, {"description", meaning}, {"items", TypesOf(example)}};
+  return schema::Array(TypesOf(example), meaning);
 }
 
-Json WithMeaning(Json schema, const char* meaning) {
-  schema["description"] = meaning;
-  return schema;
+Json WithMeaning(Json value, const char* meaning) {
+  value["description"] = meaning;
+  return value;
 }
 
-Json OrNull(Json schema) {
-  schema["type"] = {"object", "null"};
-  return schema;
+Json OrNull(Json value) {
+  value["type"] = {"object", "null"};
+  return value;
 }
 
 }  // namespace
