@@ -69,8 +69,12 @@ void HandModel::StepGrip(bool hold, double grip_time) noexcept {
 Vector3 HandModel::Impedance(const Vector3& error, const Vector3& rate,
                              const ArmAbility* arm) const noexcept {
   if (!arm) return spec_.stiffness.cwiseProduct(error) + damping_.cwiseProduct(rate);
-  const Matrix3 stiffness = arm->stiffness / (1 + spec_.reflex_gain);
-  return stiffness * error + HandDamping(stiffness, spec_.mass, spec_.damping_ratio) * rate;
+  const double g = spec_.reflex_gain;
+  const Matrix3 stiffness = arm->stiffness / (1 + g);
+  const Matrix3 damping = (HandDamping(arm->stiffness, spec_.mass, spec_.damping_ratio) +
+                           g * spec_.reflex_delay * stiffness) /
+                          (1 + g);
+  return stiffness * error + damping * rate;
 }
 
 Wrench HandModel::Intend(const HandGoal& goal, const FrameMotion& handle,

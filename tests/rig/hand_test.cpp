@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "rig/person.h"
 
@@ -68,6 +69,36 @@ TEST(Hand, DampingIsOfTheHandsMassAndStiffness) {
     EXPECT_NEAR(person.Torque()[i],
                 -late * hand.rotation_damping * person.input.handle[0].V_W[3 + i], 1e-10);
   }
+}
+
+// Displaces the handle of an arm along x by a slow sinus. Its force in phase and in quadrature must
+// be the stiffness and damping of the whole arm, reflexes included.
+TEST(Hand, SlowMotionsMeetTheMeasuredImpedanceOfAnArm) {
+  const double dt = 0.001, amplitude = 0.01, omega = 2 * std::numbers::pi * 0.2;
+  HandSpec spec = QuietScenario(1).operator_.hand;
+  spec.max_force = 1e3;
+  HandModel hand(spec, HandInertia::kInScene, 1, "hand");
+  hand.Reset(dt);
+  ArmAbility arm;
+  arm.stiffness = Vector3(420, 260, 310).asDiagonal();
+  HandGoal goal;
+  goal.hold = true;
+  goal.grip_time = dt;
+  const int period = static_cast<int>(std::lround(2 * std::numbers::pi / omega / dt));
+  double in_phase = 0, in_quadrature = 0;
+  for (int k = 0; k < 2 * period; ++k) {
+    const double phase = omega * k * dt;
+    FrameMotion handle;
+    handle.X_W.p.x() = amplitude * std::sin(phase);
+    handle.V_W[0] = amplitude * omega * std::cos(phase);
+    const double force = -hand.Intend(goal, handle, &arm)[0];
+    if (k < period) continue;  // the grip closes, and the reflex begins
+    in_phase += 2 * force * std::sin(phase) / period;
+    in_quadrature += 2 * force * std::cos(phase) / period;
+  }
+  EXPECT_NEAR(in_phase / amplitude, 420, 420 * 0.01);
+  const double damping = 2 * spec.damping_ratio * std::sqrt(spec.mass * 420);
+  EXPECT_NEAR(in_quadrature / (amplitude * omega), damping, damping * 0.01);
 }
 
 TEST(Hand, ItsMassIsInTheWrenchOrReportedForTheScene) {
