@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 """Checks the pages: check.py ROOT PROGRAM [PAGE...].
 
-Links: each relative link of a Markdown file of the repository names a file, and a heading in it, that exists; so does
-each path of the repository in code type.
+Links: each relative link in a Markdown file of the repository must lead to an existing file and heading, and each path
+of the repository in code type must exist.
 
-Code: blocks of `sh` and `python` run in the order of their page, in a folder of their own that holds the repository's
-scenarios, assets and docs, with PROGRAM on the path. A word after the language changes that:
+Code: blocks of `sh` and `python` are run in the order of their page, in a separate folder that contains the repository's
+scenarios, assets and docs, with PROGRAM on the path. A word after the language changes this:
 
-    ```sh hardware    needs a robot: not run, counted
-    ```sh long        takes minutes, builds, or waits for a person: not run, counted
+    ```sh hardware    needs a robot: counted, but not run
+    ```sh long        takes minutes, builds, or waits for a person: counted, but not run
     ```sh fails       must end with an exit code other than 0
-    ```yaml file=NAME is written to NAME first; any language
+    ```yaml file=NAME is written to NAME first (any language)
 """
 import os
 import pathlib
@@ -114,7 +114,7 @@ def check_code(root, program, file):
                 elif mark not in (*SKIPPED, "fails") and language in RUN:
                     errors.append(f"{where}: unknown mark '{mark}'")
             if not language:
-                errors.append(f"{where}: a block without a language: text, if nothing else")
+                errors.append(f"{where}: a block without a language; use text if no other fits")
             marked = [mark for mark in marks if mark in SKIPPED]
             if language not in RUN or any(mark.startswith("file=") for mark in marks):
                 continue

@@ -25,11 +25,11 @@ copybutton_exclude = ".linenos, .gp, .go"
 breathe_projects = {"predictor": str(ROOT / "build" / "docs" / "doxygen" / "xml")}
 breathe_default_project = "predictor"
 breathe_show_include = False
-# Words of the sources that Sphinx's C++ parser does not know.
+# Words in the sources that Sphinx's C++ parser does not support.
 cpp_id_attributes = ["EIGEN_ALIGN16"]
 suppress_warnings = ["duplicate_declaration.cpp"]  # the namespace, once for each header
 
-# Diagrams are Mermaid, which repository hosts draw; here Graphviz draws them, without a script from elsewhere.
+# Diagrams are Mermaid, which repository hosts draw. Here Graphviz draws them, so that no external script is needed.
 extensions.append("sphinx.ext.graphviz")
 graphviz_output_format = "svg"
 graphviz_dot_args = ["-Gbgcolor=transparent", "-Nfontname=sans-serif", "-Efontname=sans-serif", "-Nfontsize=11",

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the reference pages of the site from the program and its sources: generate.py PROGRAM.
 
-The pages go to docs/reference/generated/, which is not in the repository. What a page needs and does not find is an
-error, so that a page never silently lacks a part.
+The pages go to docs/reference/generated/, which is not in the repository. If a page lacks an
+input, this is an error, so that no page is silently incomplete.
 """
 import json
 import pathlib
@@ -101,7 +101,7 @@ def keys(schema, path=""):
 
 
 def with_requirements(schema, needs=None):
-    """A schema whose required keys count only where nothing is extended: with them back at their places."""
+    """Moves required keys that apply only to files without `extends` back to their places."""
     if needs is None:
         needs = next((a for a in schema.get("anyOf", []) if "extends" not in a.get("required", ["extends"])), {})
         schema = {key: value for key, value in schema.items() if key != "anyOf"}
@@ -131,7 +131,7 @@ def json_schema(program, of):
 # ---- the command line ----------------------------------------------------------------------------------------------
 
 def subcommands(program, path):
-    """Names that the help lists and that answer to --help themselves."""
+    """Names in the help that are commands, because they support --help themselves."""
     found = []
     for name in re.findall(r"^  ([a-z][a-z-]*)(?: [A-Z<\[].*?)?(?:  +|$)", run(program, *path, "--help"), re.M):
         done = subprocess.run([program, *path, name, "--help"], capture_output=True, text=True, check=False)

@@ -1,24 +1,24 @@
 #!/usr/bin/env python3
 """Compares the figures in README.md and docs/ with docs/numbers.csv, which `predictor reproduce` writes.
 
-    figures.py ROOT             every figure equals its number, rounded as printed; exit 1 if not
+    figures.py ROOT             checks that every figure equals its number, rounded as printed; otherwise exits with 1
     figures.py ROOT --update    writes the figures into the documents instead
-    figures.py ROOT --program P the output of `P simulate` in the page of the first run is what the program prints now
+    figures.py ROOT --program P checks the output of `P simulate` that the page of the first run quotes
 
 A table names its source in the line before it:
 
     <!-- figures: EXPERIMENT | COLUMN | COLUMN -->
 
-for the columns after the first. The first cell of a row is `QUANTITY [UNIT]`, after `9 kg: ` or `18 kg: ` that of
-box_9kg or box_18kg. A COLUMN is `paper`, or `CONDITION`, or `CONDITION [STYLE]`:
+for the columns after the first. The first cell of a row is `QUANTITY [UNIT]`; with the prefix `9 kg: ` or `18 kg: `, it
+refers to box_9kg or box_18kg. A COLUMN is `paper`, `CONDITION`, or `CONDITION [STYLE]`:
 
     (none)     mean ± deviation (largest)      [mean]   mean, three digits
     [± only]   mean ± deviation                [ratio]  to the paper's mean
     [RMSE]     RMSE (correlation) of the circle [range] of the circle
 
-A table with figures from elsewhere says so: <!-- figures not from reproduce: SOURCE -->, one that only describes:
-<!-- no results -->. A figure in a sentence stands
-before its source: 14.7<!-- EXPERIMENT | CONDITION [STYLE] | QUANTITY [UNIT] -->.
+A table with figures from another source is marked <!-- figures not from reproduce: SOURCE -->, and one without figures
+<!-- no results -->. In a sentence, the source follows the figure:
+14.7<!-- EXPERIMENT | CONDITION [STYLE] | QUANTITY [UNIT] -->.
 """
 import csv
 import math
@@ -56,7 +56,7 @@ def significant(value, digits):
 
 
 def plus_minus(mean, deviation):
-    """Two digits of the smaller one, at most four behind the point, as the program prints it."""
+    """Two significant digits of the smaller one, with at most four decimals, as the program prints it."""
     least = min(x for x in (abs(mean), deviation) if x > 0) if mean or deviation else 0
     decimals = min(4, max(0, 1 - math.floor(math.log10(least)))) if least else 1
     return f"{fixed(mean, decimals)} ± {fixed(deviation, decimals)}"
@@ -98,7 +98,7 @@ class Numbers:
         return "–"
 
     def figure(self, experiment, column, label):
-        """The text of a cell; `–` where this condition has no such quantity but another one has."""
+        """The text of a cell; `–` if this condition lacks the quantity but another condition has it."""
         quantity, unit = re.fullmatch(r"(.*) \[(.*)\]", label).groups()
         condition, style = STYLE.fullmatch(column).groups()
         if condition == "paper":
@@ -126,7 +126,7 @@ def plain(cell):
 
 
 class Document:
-    """A document's lines with the figures that the numbers give, and what does not fit."""
+    """A document's lines with the correct figures, and its errors."""
 
     def __init__(self, name, text, numbers):
         self.name, self.numbers = name, numbers
@@ -171,7 +171,7 @@ class Document:
             return self.renew(begin + 2, end, [part.strip() for part in directive[1].split("|")])
         figures = any(re.search(r"\d", " ".join(cells_of(line)[1:])) for line in self.lines[begin + 2:end])
         if figures and not ELSEWHERE.match(before):
-            self.error(begin, "a table with figures, and no line before it that names their source")
+            self.error(begin, "a table with figures, but no line before it that names their source")
 
     def renew(self, begin, end, source):
         for i in range(begin, end):
@@ -224,7 +224,7 @@ FIGURE = re.compile(r"\d+(?:\.\d+)?")
 
 
 def close(a, b):
-    """Within 3 % or two of the last printed digit: what another processor changes."""
+    """Whether the values differ by at most 3 % or two units of the last printed digit, as between processors."""
     digit = 10.0 ** -len(a.partition(".")[2])
     return abs(float(a) - float(b)) <= max(0.03 * abs(float(b)), 2.001 * digit)
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Builds each mutant of mutants.txt in a copy of the sources and says which ones no test notices.
+"""Builds each mutant of mutants.txt in a copy of the sources and reports the mutants that no test detects.
 
-run.py SOURCE BUILD [PART]: SOURCE is the checkout, BUILD a folder for the copy, its build and the results,
-kept from one time to the next: what is cut short goes on there. A mutant is tried again when its file has
-changed, and one that survived also when any test has. PART: only mutants of files whose names contain it.
-Exits 1 if fewer than 90 % are noticed.
-run.py SOURCE: only looks whether what each mutant changes still stands there, once.
+run.py SOURCE BUILD [PART]: SOURCE is the checkout. BUILD is a folder for the copy, its build and the results,
+which are kept so that an interrupted run can be continued. A mutant is tried again if its file has changed, and a
+surviving mutant also if any test has changed. PART: only mutants of files whose names contain it.
+Exits 1 if fewer than 90 % are detected.
+run.py SOURCE: only checks that the original text of each mutant occurs exactly once in its file.
 """
 import hashlib
 import json
@@ -64,11 +64,11 @@ def judges(file):
 
 
 def misplaced(source):
-    """A line for each mutant whose text does not stand in its file once."""
+    """Returns an error for each mutant whose original text does not occur exactly once in its file."""
     for file, old, _ in mutants(source):
         count = (source / file).read_text().count(old) if (source / file).exists() else 0
         if count != 1:
-            yield f'{file}: "{old}" stands there {count} times, not once. Mend mutants.txt.'
+            yield f'{file}: "{old}" occurs {count} times instead of once. Correct mutants.txt.'
 
 
 def hash_of(*texts):
@@ -76,7 +76,7 @@ def hash_of(*texts):
 
 
 def copy(source, folder):
-    """What has changed; new to the build, whenever it was written."""
+    """Copies the changed files, with the present time so that the build sees them, and removes deleted sources."""
     listed = subprocess.run(['git', 'ls-files', '-co', '--exclude-standard'], cwd=source, text=True,
                             capture_output=True, check=True).stdout.split('\n')
     files = [name for name in listed if name and (source / name).is_file()]
@@ -93,7 +93,7 @@ def copy(source, folder):
 
 
 class Copy:
-    """The sources, built apart."""
+    """A separate copy of the sources, and its build."""
 
     def __init__(self, source, folder):
         self.folder, self.usual = folder, {}  # duration of each program without a mutant [s]
@@ -108,7 +108,7 @@ class Copy:
                               text=True)
 
     def run(self, program, tests):
-        """Whether they pass, or None: they did not end. Its tests are shared out to all processors."""
+        """Returns whether the tests pass, or None if they do not end. They are distributed over all processors."""
         command = [self.built / 'bin' / program, '--gtest_brief=1', '--gtest_fail_fast',
                    '--gtest_filter=' + tests]
         start, shards = time.monotonic(), os.cpu_count()
@@ -130,11 +130,11 @@ class Copy:
             self.usual.setdefault((program, tests), time.monotonic() - start)
         return passed
 
-    def noticed(self, file):
-        """Which tests notice that `file` was changed, or None: also of what is no mutant, as it does not compile."""
+    def detected(self, file):
+        """Returns the test program that detects the change of `file`; None if no test does, or if it does not compile."""
         for program, tests in judges(file):
             if (built := self.build(program)).returncode != 0:
-                print('DOES NOT COMPILE. Mend mutants.txt.\n' + built.stdout[-2000:])
+                print('DOES NOT COMPILE. Correct mutants.txt.\n' + built.stdout[-2000:])
                 return None
             passed = self.run(program, tests)
             # the computer may have been busy once
@@ -146,7 +146,7 @@ class Copy:
 
 
 def check_unchanged(work, files):
-    """What no mutant is in must build and pass: else every mutant would be noticed."""
+    """Checks that the tests build and pass without a mutant; otherwise they would detect every mutant."""
     used = {judge: None for file in files for judge in judges(file)}
     built = work.build(*{program for program, _ in used})
     if built.returncode != 0:
@@ -166,7 +166,7 @@ def main():
     part = sys.argv[3] if len(sys.argv) > 3 else ''
     wanted = sorted((m for m in mutants(source) if part in m[0]), key=lambda m: m[0])
     if not wanted:
-        sys.exit(f'No mutant is of a file whose name contains "{part}"')
+        sys.exit(f'No mutant changes a file whose name contains "{part}"')
     work = Copy(source, folder)
     tests = hash_of(*(path.read_text() for path in sorted((source / 'tests').rglob('*.cpp'))))
     kept_in = folder / 'results.json'
@@ -187,14 +187,14 @@ def main():
         if key in new:
             start = time.monotonic()
             (folder / file).write_text(UNUSED + text.replace(old, by))
-            kept[key] = {'by': work.noticed(file), 'tests': tests}
+            kept[key] = {'by': work.detected(file), 'tests': tests}
             (folder / file).write_text(text)
             kept_in.write_text(json.dumps(kept, indent=0))
-            print(f'{number:3}  {"noticed by " + kept[key]["by"] if kept[key]["by"] else "SURVIVES":30} '
+            print(f'{number:3}  {"detected by " + kept[key]["by"] if kept[key]["by"] else "SURVIVES":30} '
                   f'{time.monotonic() - start:4.0f} s  {file}: {old}  →  {by or "(nothing)"}', flush=True)
         if not kept[key]['by']:
             survivors.append((file, old, by))
-    print(f'\n{len(wanted) - len(survivors)} of {len(wanted)} noticed '
+    print(f'\n{len(wanted) - len(survivors)} of {len(wanted)} detected '
           f'({100 * (1 - len(survivors) / len(wanted)):.0f} %)')
     for file, old, by in survivors:
         print(f'  survives: {file}: {old}  →  {by or "(nothing)"}')

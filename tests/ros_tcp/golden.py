@@ -21,7 +21,7 @@ POSE = (0.25, -1.5, 3.0, 0.5, -0.5, 0.5, 0.5)  # x y z, quaternion x y z w
 POINTS = [(0.0, 1.0, 2.0), (3.0, 4.0, 5.5)]
 
 
-def tell(name, ros1, ros2, ros2_type):
+def write(name, ros1, ros2, ros2_type):
     out = io.BytesIO()
     ros1.serialize(out)
     print(name, 'ROS1', out.getvalue().hex())
@@ -61,9 +61,9 @@ def strings():
 
 
 for index, (one, two) in enumerate(strings()):
-    tell(f'string{index}', one, two, 'std_msgs/msg/String')
+    write(f'string{index}', one, two, 'std_msgs/msg/String')
 for name, value in (('stop', True), ('no_stop', False)):
-    tell(name, Bool(data=value), T['std_msgs/msg/Bool'](data=value), 'std_msgs/msg/Bool')
+    write(name, Bool(data=value), T['std_msgs/msg/Bool'](data=value), 'std_msgs/msg/Bool')
 
 for count in (0, 1, 2, 3):
     names = [f'joint{"x" * k}' for k in range(count)]
@@ -73,11 +73,11 @@ for count in (0, 1, 2, 3):
     two = T['sensor_msgs/msg/JointState'](
         header=header2(), name=names, position=np.array(values), velocity=np.array(values),
         effort=np.array(efforts))
-    tell(f'joints{count}', one, two, 'sensor_msgs/msg/JointState')
+    write(f'joints{count}', one, two, 'sensor_msgs/msg/JointState')
 
 one = header1(PoseStamped())
 set_pose1(one.pose)
-tell('pose', one, T['geometry_msgs/msg/PoseStamped'](header=header2(), pose=pose2()),
+write('pose', one, T['geometry_msgs/msg/PoseStamped'](header=header2(), pose=pose2()),
      'geometry_msgs/msg/PoseStamped')
 
 one = header1(WrenchStamped())
@@ -85,7 +85,7 @@ for part, values in ((one.wrench.force, (1, 2, 3)), (one.wrench.torque, (-4, 5.5
     part.x, part.y, part.z = values
 two = T['geometry_msgs/msg/WrenchStamped'](header=header2(), wrench=T['geometry_msgs/msg/Wrench'](
     force=vector2('Vector3', (1.0, 2.0, 3.0)), torque=vector2('Vector3', (-4.0, 5.5, 0.125))))
-tell('wrench', one, two, 'geometry_msgs/msg/WrenchStamped')
+write('wrench', one, two, 'geometry_msgs/msg/WrenchStamped')
 
 one = Float64MultiArray(data=[0.001, 0.002])
 one.layout.dim = [MultiArrayDimension(label='left, right', size=2, stride=2)]
@@ -93,7 +93,7 @@ two = T['std_msgs/msg/Float64MultiArray'](
     layout=T['std_msgs/msg/MultiArrayLayout'](
         dim=[T['std_msgs/msg/MultiArrayDimension'](label='left, right', size=2, stride=2)],
         data_offset=0), data=np.array([0.001, 0.002]))
-tell('array', one, two, 'std_msgs/msg/Float64MultiArray')
+write('array', one, two, 'std_msgs/msg/Float64MultiArray')
 
 ARROW, LINE_STRIP = Marker.ARROW, Marker.LINE_STRIP
 MARKERS = (('arrow', ARROW, '', POINTS), ('line', LINE_STRIP, '', POINTS),
@@ -116,5 +116,5 @@ for name, kind, text, points in MARKERS:
         mesh_file=T['visualization_msgs/msg/MeshFile'](
             filename='', data=np.array([], dtype=np.uint8)),
         mesh_use_embedded_materials=False)
-    tell(name, one, two, 'visualization_msgs/msg/Marker')
+    write(name, one, two, 'visualization_msgs/msg/Marker')
 sys.stdout.flush()

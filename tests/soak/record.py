@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Appends the long runs of `./dev soak` to the record that the documentation quotes.
+"""Appends the long runs of `./dev soak` to the record that the documentation shows.
 
-  record.py RECORD COMMIT JUNIT   a row for each test of ctest's JUnit file
+  record.py RECORD COMMIT JUNIT   adds a row for each test in ctest's JUnit file
 
-A row: date, commit (with a + where the sources differ from it), test, what was counted, seconds, result. Counts are the
+A row: date, commit (with a + where the sources differ from it), test, count, seconds, result. Counts are the
 lines "soak: count=N" that tests/support/soak.h prints in full runs.
 """
 import csv

@@ -4,13 +4,13 @@
     VENV/bin/python draw_combinations.py PANDA_URDF SEED > combinations.txt
 
 The labels judge the vibration detector, so they share nothing with src/haptics/stability.cpp. That
-one linearises MuJoCo's scene, replaces delays by Pade sections and takes eigenvalues in continuous
+file linearises MuJoCo's scene, replaces delays by Pade sections and takes eigenvalues in continuous
 time. Here Pinocchio gives the rigid-body dynamics, and the loop is closed in discrete time, with
 every delay exact: z^-n. The loop's poles are the zeros of det(1 + L(z)), found by Newton's method
 from a grid and counted by the winding number along |z| = 1 (Nyquist).
 
-The judged modes are vibrations: the fastest growing one is at 10 Hz or above. A combination varies the hand's mass and stiffness, the arms' true bandwidth and delay, and the
-lead. Three classes are drawn, in the order of the random stream:
+The judged modes are vibrations: the fastest growing one is at 10 Hz or above. A combination varies the
+hand's mass and stiffness, the arms' true bandwidth and delay, and the lead. Three classes are drawn, in the order of the random stream:
   fast    unstable, doubling time of at most 2 s
   slow    unstable, doubling time of 2 to 20 s: it is drawn as well, and the lead follows from it
   stable  stable with the hand's impedance times 1, 1.05, ... 1.5
@@ -99,7 +99,7 @@ class World:
         self.linearise()
 
     def torque(self, q, v):
-        """Of the controller (eq. 2 of the paper) and the joints' friction."""
+        """Torque of the controller (eq. 2 of the paper) and of the joints' friction."""
         m, d = self.cobot, self.cobot_data
         qc, vc = q[:7], v[:7]
         M = pin.crba(m, d, qc)
@@ -132,7 +132,7 @@ class World:
         return out
 
     def force(self, q, v):
-        """Generalised force less what holds the motion: M a at velocity v."""
+        """Generalised force minus the force that keeps the velocity v: M a."""
         return self.torque(q, v) - pin.rnea(self.model, self.data, q, v, np.zeros(self.model.nv))
 
     def slope(self, q):
@@ -258,8 +258,8 @@ class Loop:
         return np.linalg.det(np.eye(12) + L)
 
     def outside(self, rate=0.0):
-        """How many poles grow faster than `rate`: by the winding of det along that circle, and
-        around z = 1."""
+        """Number of poles that grow faster than `rate`: the winding number of det along that circle
+        and around z = 1."""
         arc = 2 * np.pi * 0.02 * np.exp(0.5j * np.pi * np.linspace(0, 1, 20))
         f = np.r_[np.geomspace(0.02, 5, 60)[1:], np.linspace(5, 80, 250)[1:],
                   np.geomspace(80, 499.9, 60)[1:]]
@@ -276,8 +276,8 @@ class Loop:
         return round(-turned / np.pi)
 
     def poles(self, rates, step):
-        """Unstable ones, as rates s = log(z) / DT, each once: from a grid of rates and of 10 Hz,
-        10 Hz + step ... as well as slower ones."""
+        """The unstable poles, as rates s = log(z) / DT, without duplicates. The search starts from a
+        grid of rates and of the frequencies 10 Hz, 10 Hz + step, ..., and some lower ones."""
         f = np.r_[np.geomspace(0.4, 8, 8), np.arange(10, 62, step)]
         s = np.concatenate([rate + 2j * np.pi * f for rate in rates])
         for _ in range(12):
@@ -296,7 +296,7 @@ class Loop:
 
 
 def fastest(loop, outside):
-    """The fastest growing pole; None where one was not found, or it is slower than LOWEST."""
+    """The fastest growing pole; None if a pole was not found or it is slower than LOWEST."""
     poles = loop.poles((0.5, 9, 30), 3)
     if outside != 2 * len(poles):
         poles = loop.poles((0.2, 2, 5, 9, 14, 20, 30, 40, 55, 75), 1)

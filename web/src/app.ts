@@ -58,7 +58,7 @@ export class App {
   private newestTick = 0;
   private pictures = 0;  // since the scene is complete
   private reason = '';  // for the connection's phase
-  private told: Trouble | null = kTroubles.closed;  // as shown on the page
+  private shownTrouble: Trouble | null = kTroubles.closed;  // as shown on the page
 
   constructor(root: HTMLElement) {
     this.connection = new Connection({
@@ -115,7 +115,7 @@ export class App {
     this.stage.paint(this.theme.theme);
     window.addEventListener('keydown', (event) => this.key(event), {capture: true});
     window.addEventListener('keyup', (event) => this.keyUp(event), {capture: true});
-    window.setInterval(() => this.tellLatency(), 1000);
+    window.setInterval(() => this.sendLatency(), 1000);
     window.setInterval(() => this.watchRun(), kWatchMs);
   }
 
@@ -188,7 +188,7 @@ export class App {
 
   private updatePage(state: State | null, nowMs: number) {
     this.pageMs = nowMs;
-    if (state && this.spec && !this.spec.results && this.told !== kTroubles.silent && !this.isOver) {
+    if (state && this.spec && !this.spec.results && this.shownTrouble !== kTroubles.silent && !this.isOver) {
       this.overlay.update(
           state, this.spec, this.stage.guidance.error(state.object.p), this.score.result);
     }
@@ -219,7 +219,7 @@ export class App {
 
   // The run has announced its end.
   private get isOver(): boolean {
-    return this.told === kTroubles.ended || this.told === kTroubles.results;
+    return this.shownTrouble === kTroubles.ended || this.shownTrouble === kTroubles.results;
   }
 
   private updateResults() {
@@ -317,19 +317,19 @@ export class App {
     }
     // Updates immediately instead of with the next frame: the page must never show a stop button without
     // effect.
-    this.tellTrouble();
+    this.showTrouble();
   }
 
   private watchRun() {
     this.watch.pass(performance.now());
-    if (this.trouble !== this.told) this.tellTrouble();
+    if (this.trouble !== this.shownTrouble) this.showTrouble();
   }
 
-  private tellTrouble() {
-    this.told = this.trouble;
+  private showTrouble() {
+    this.shownTrouble = this.trouble;
     this.overlay.showBanner(this.banner(), this.connection.phase === 'connecting' || this.isOver);
-    if (this.told && !this.told.mayStop) this.overlay.clear();
-    this.panel.update(this.player.latest, this.spec, performance.now(), this.told);
+    if (this.shownTrouble && !this.shownTrouble.mayStop) this.overlay.clear();
+    this.panel.update(this.player.latest, this.spec, performance.now(), this.shownTrouble);
   }
 
   private banner(): string {
@@ -340,7 +340,7 @@ export class App {
             .filter((words) => words !== '').join(' ');
       case 'results': return `${this.reason} Preparing the results …`;
       case 'ended': return this.reason;
-      case 'open': return this.told ? `${this.told.title}. ${this.told.meaning}` : '';
+      case 'open': return this.shownTrouble ? `${this.shownTrouble.title}. ${this.shownTrouble.meaning}` : '';
       default: return '';
     }
   }
@@ -382,7 +382,7 @@ export class App {
     if (!available && this.stage.camera.view === 'headset') this.setView('free');
   }
 
-  private tellLatency() {
+  private sendLatency() {
     const medians = this.latency.takeMedians();
     if (medians) this.connection.send({type: 'latency', ...medians});
   }

@@ -6,7 +6,7 @@ export interface Score {
   largest: number;  // [m]
 }
 
-const kLeastSeconds = 2;   // shorter attempts are not scored
+const kMinSeconds = 2;   // shorter attempts are not scored
 const kLongestStep = 0.2;  // maximum of the counted time between states [s]
 
 export class PathScore {
@@ -28,7 +28,7 @@ export class PathScore {
   add(state: State, spec: SceneSpec, error: number) {
     if (!Number.isFinite(error)) return;
     if (!follows(state, spec)) {
-      if (this.seconds >= kLeastSeconds) this.done = this.now;
+      if (this.seconds >= kMinSeconds) this.done = this.now;
       this.seconds = 0;
       this.lastTime = NaN;
       return;

@@ -1,7 +1,7 @@
 """A build backend (PEP 517) that builds nothing.
 
-pip wants the metadata of a source package that it downloads, and runs the package's build for it. Only the C
-sources are used here, so this answers in place of setuptools, with what the package says of itself.
+For the metadata of a downloaded source package, pip would run the package's build. Only the C sources are used here,
+so this backend replaces setuptools and returns the metadata from the package.
 """
 import email
 import os

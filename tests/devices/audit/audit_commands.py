@@ -241,7 +241,7 @@ class Judge:
                 # Only a stop may leave a moving arm to its own deceleration.
                 if before is not None and any(x != 0 for x in before[1]) and \
                         not 0 < self.known['stop'] <= 1e9 * (time + 3 * TICK):
-                    self.fail(hand, time, 'is told to stand while it moves')
+                    self.fail(hand, time, 'is commanded to hold still while it moves')
                 before, rates = None, None
                 continue
             if before is not None and time <= before[0] and tuple(v) != tuple(before[1]):

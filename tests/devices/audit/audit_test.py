@@ -311,7 +311,7 @@ class AuditTest(unittest.TestCase):
                 self.assertEqual([w for w in wrong if 'jerks' in w or 'accel' in w], [])
                 self.assertEqual(not wrong, well, (more, wrong))
 
-    def test_a_stop_goes_on_from_what_a_controller_of_2_ms_was_not_sent(self):
+    def test_a_stop_continues_from_the_unsent_command_of_a_2_ms_controller(self):
         # The arm accelerates slowly, so it was faster a millisecond later. This difference is permitted, except for a Franka.
         def stop(make, at):
             with tempfile.TemporaryDirectory() as folder:
@@ -362,7 +362,7 @@ class AuditTest(unittest.TestCase):
                            self.smooth(0.08, 0, (t - STOP - 0.14) / 0.05))
         self.each(spoil, 'm/s while stopping')
 
-    def test_a_stop_is_judged_until_it_is_told_to_stand(self):
+    def test_a_stop_is_judged_until_the_arm_is_commanded_to_hold_still(self):
         def spoil(s):
             self.add(s, STOP + 0.01, STOP + 0.1, 0, lambda t: 0.12 * math.sin(math.pi * (t - STOP - 0.01) / 0.09) ** 2)
             s.stands = STOP + 0.18
@@ -426,7 +426,7 @@ class AuditTest(unittest.TestCase):
             self.add(s, STOP + 0.160, STOP + 0.164, 0, lambda t: -0.008)
         self.each(spoil, 'm/s³', makes=('ur',))
 
-    def test_told_to_stand_while_it_moves(self):
+    def test_commanded_to_hold_still_while_it_moves(self):
         with tempfile.TemporaryDirectory() as folder:
             stream = Stream('ur', folder, 6)
             stream.write()
@@ -439,7 +439,7 @@ class AuditTest(unittest.TestCase):
             for known, commands in audit.read(stream.file):
                 known['stop'] = known['rest'] = 0
                 wrong += audit.Judge(known).run(commands)
-            self.assertIn('told to stand', ' '.join(wrong))
+            self.assertIn('commanded to hold still', ' '.join(wrong))
 
     def test_nothing_to_judge(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -114,7 +114,7 @@ test("a span of time, found by the message indexes", async () => {
 // Fields that a log message has in addition to Foxglove's fields, which are unchanged.
 const kMore = { "foxglove.Log": ["lost", "tick"] };
 
-test("scene and log are told in Foxglove's own schemas", async () => {
+test("scene and log use Foxglove's own schemas", async () => {
   const reader = await open(bytes);
   for (const channel of reader.channelsById.values()) {
     const schema = reader.schemasById.get(channel.schemaId);

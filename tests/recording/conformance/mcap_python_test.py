@@ -1,4 +1,4 @@
-"""PyPI's `mcap` reads a recording whole: every record, index and CRC; `mcap-ros2-support` its values."""
+"""Reads a complete recording with PyPI's `mcap` (every record, index and CRC) and `mcap-ros2-support` (its values)."""
 
 import io
 import json
@@ -20,7 +20,7 @@ from mcap_ros2.decoder import DecoderFactory
 
 
 def plain(value):
-    """What expected.jsonl says of a decoded message."""
+    """A decoded message in the form of expected.jsonl."""
     if isinstance(value, float):
         return "nan" if math.isnan(value) else "inf" if value == math.inf else "-inf" if value == -math.inf else value
     if isinstance(value, (list, tuple)) or type(value).__name__ == "array":
@@ -46,7 +46,7 @@ class Recording(unittest.TestCase):
         cls.summary = SeekingReader(io.BytesIO(cls.bytes)).get_summary()
 
     def record_at(self, offset):
-        """Opcode, content and end of the record there."""
+        """Opcode, content and end of the record at this position."""
         opcode, length = struct.unpack_from("<BQ", self.bytes, offset)
         return opcode, self.bytes[offset + 9:offset + 9 + length], offset + 9 + length
 
@@ -89,7 +89,7 @@ class Recording(unittest.TestCase):
         for index in self.summary.chunk_indexes:
             opcode, content, after = self.record_at(index.chunk_start_offset)
             self.assertEqual((opcode, after), (6, index.chunk_start_offset + index.chunk_length))
-            if end == copy.offset:  # behind the first chunk
+            if end == copy.offset:  # after the first chunk
                 end += copy.length
             if end is not None:
                 self.assertEqual(end, index.chunk_start_offset)

@@ -41,7 +41,7 @@ test('a comparison of runs with long names, in folders, prints without overlaps'
 });
 
 test('labels that one row does not hold stand in rows', async () => {
-  const name = (k) => `a condition that is told at length, ${k}`;
+  const name = (k) => `a condition with a long name, ${k}`;
   const files = [1, 2, 3, 4].map((k) => join(folder, `labelled${k}.mcap`));
   files.forEach((file, k) => predictor('simulate', join(root, 'scenarios/box_9kg.yaml'), '--quiet', '--duration', '3',
                                        '--record', file, '--label', `condition=${name(k)}`));

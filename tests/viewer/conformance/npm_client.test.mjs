@@ -89,7 +89,7 @@ function receive(count) {
   });
 }
 
-test("every channel's messages fit its schema, and time goes on", async () => {
+test("every channel's messages fit its schema, and time advances", async () => {
   const received = await receive(kMessages);
   const ajv = new Ajv({ strict: false, validateFormats: false });
   for (const channel of channels) {
@@ -132,7 +132,7 @@ test("nothing can be published, set or called", async () => {
   assert.equal(runs.at(-1).message.cause, "none");
 });
 
-test("without its token nobody is let in", async () => {
+test("no client is admitted without its token", async () => {
   const naked = new WebSocket(url.replace(/token=.*/, "token=guess"), [FoxgloveClient.SUPPORTED_SUBPROTOCOL]);
   await new Promise((resolve, reject) => {
     naked.onerror = resolve;

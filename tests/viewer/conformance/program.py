@@ -1,6 +1,6 @@
-"""Starts `predictor run` as a person at a terminal would, and asks its console for Foxglove's address.
+"""Starts `predictor run` as in a terminal and requests Foxglove's address at its console.
 
-As a program: program.py PREDICTOR COMMAND... runs COMMAND beside it, FOXGLOVE_URL in its environment.
+As a program: program.py PREDICTOR COMMAND... also runs COMMAND, with FOXGLOVE_URL in its environment.
 """
 
 import os
@@ -17,7 +17,7 @@ PATIENCE = 60  # limit until a line appears [s]; generous, because these tests d
 
 
 class Predictor:
-    """`foxglove_url`: where a Foxglove client may look."""
+    """`foxglove_url`: address for a Foxglove client."""
 
     def __init__(self, binary, *options):
         self._terminal, slave = pty.openpty()
@@ -62,11 +62,11 @@ class Predictor:
         with self._more:
             self._more.wait_for(there, PATIENCE)
         if not found:
-            raise RuntimeError(f"predictor never said {pattern}, but:\n{self._text}")
+            raise RuntimeError(f"predictor did not print {pattern}, but:\n{self._text}")
         return found.group(found.lastindex or 0)
 
     def close(self):
-        """Ends it as Ctrl-C does; its exit code."""
+        """Ends it as Ctrl-C does and returns its exit code."""
         self._process.send_signal(signal.SIGINT)
         try:
             return self._process.wait(PATIENCE)

@@ -1,4 +1,4 @@
-"""A WebSocket on a plain socket, so that nothing stands between a test and the wire."""
+"""A WebSocket on a plain socket, so that a test controls every byte."""
 
 import base64
 import json
@@ -11,7 +11,7 @@ TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
 
 
 class RawClient:
-    """Offers `subprotocols`; `status` is HTTP's, `subprotocol` what the server chose (None: nothing)."""
+    """Offers `subprotocols`. status: of HTTP. subprotocol: the server's choice (None: no choice)."""
 
     def __init__(self, url, subprotocols, patience=30):
         parts = urllib.parse.urlsplit(url)
@@ -53,7 +53,7 @@ class RawClient:
         self._send(TEXT, json.dumps(message).encode())
 
     def next(self):
-        """The next message: a dict, or bytes as they are. Pings are answered on the way."""
+        """The next message as a dict, or as bytes if it is binary. Pings are answered."""
         whole, kind = b"", None
         while True:
             first, second = self._take(2)

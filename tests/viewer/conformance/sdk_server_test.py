@@ -1,4 +1,4 @@
-"""A raw `foxglove.sdk.v1` client meets the same channels and frames on Foxglove's own server and on ours."""
+"""Compares the channels and frames of Foxglove's own server with ours, as seen by a raw `foxglove.sdk.v1` client."""
 
 import base64
 import contextlib
@@ -21,12 +21,12 @@ INTEGERS = {FieldDescriptor.TYPE_UINT32, FieldDescriptor.TYPE_FIXED32}
 
 
 def kinds(value):
-    """The shape of a message: names and kinds of what is in it, not the values."""
+    """The structure of a message: names and types of its fields, without their values."""
     return {name: type(member).__name__ for name, member in value.items()}
 
 
 def differences(message, schema, path):
-    """What a message of a Protocol Buffers descriptor and a JSON schema do not have in common."""
+    """The differences between the message of a Protocol Buffers descriptor and a JSON schema."""
     if message.full_name in ("google.protobuf.Timestamp", "google.protobuf.Duration"):
         title = {"Timestamp": "time", "Duration": "duration"}[message.name]
         same = schema.get("title") == title and set(schema["properties"]) == {"sec", "nsec"}
@@ -64,7 +64,7 @@ def field_differences(field, schema, path):
 
 
 def fill(message, value):
-    """Writes a JSON message into a Protocol Buffers one; a name or a type that it lacks is an error."""
+    """Converts a JSON message to Protocol Buffers; an unknown name or a wrong type is an error."""
     for name, member in value.items():
         field = message.DESCRIPTOR.fields_by_name[name]
         if field.is_repeated:
@@ -92,7 +92,7 @@ def descriptor(schema_name, base64_set):
 
 
 def greeting(client):
-    """(serverInfo, {topic: channel}): what a server says unasked."""
+    """(serverInfo, {topic: channel}): what a server sends without a request."""
     info = client.next_op("serverInfo")
     return info, {channel["topic"]: channel for channel in client.next_op("advertise")["channels"]}
 
@@ -112,7 +112,7 @@ class SdkServer(unittest.TestCase):
 
     @classmethod
     def start_sdk(cls):
-        """Foxglove's server: our topics with our schemas, and the well-known ones in its own encoding."""
+        """Foxglove's server with our topics and schemas, and the well-known ones in its own encoding."""
         context = cls.context = foxglove.Context()  # the server ends with it
         cls.json_channels = {
             topic: foxglove.Channel(topic, schema=json.loads(channel["schema"]) | {"title": channel["schemaName"]},
@@ -142,7 +142,7 @@ class SdkServer(unittest.TestCase):
             self.assertEqual(json.loads(ours["schema"]), json.loads(theirs["schema"]), topic)
 
     def test_frames_are_the_same_bytes(self):
-        """What ours sends, theirs sends with the same frame round it; log time within the message's own."""
+        """Both servers send the same frames for the same message; the log time is within the message's own."""
         wanted = {100 + k: topic for k, topic in enumerate(self.our_channels)}
         for client, channels in ((self.ours, self.our_channels), (self.theirs, self.their_channels)):
             client.send({"op": "subscribe", "subscriptions": [
@@ -160,7 +160,7 @@ class SdkServer(unittest.TestCase):
         for client in (self.ours, self.theirs):
             client.send({"op": "unsubscribe", "subscriptionIds": list(wanted)})
 
-    def test_unsubscribed_is_silent_and_an_unknown_channel_is_told(self):
+    def test_unsubscribed_is_silent_and_an_unknown_channel_is_reported(self):
         for url, channels, log in ((self.predictor.foxglove_url, self.our_channels, lambda topic: None),
                                    (self.sdk_url, self.their_channels, lambda topic: self.json_channels[topic].log({}))):
             with contextlib.closing(RawClient(url, [SDK])) as client:
@@ -191,7 +191,7 @@ class SdkServer(unittest.TestCase):
             self.assertNotEqual(differences(message, schema, topic), [], "nothing is compared")
 
     def test_our_contents_are_messages_of_theirs(self):
-        """Each of our messages goes into Foxglove's own type, nothing left over."""
+        """Each of our messages can be converted completely to Foxglove's own type."""
         wanted = {200 + k: topic for k, topic in enumerate(WELL_KNOWN)}
         self.ours.send({"op": "subscribe", "subscriptions": [
             {"id": number, "channelId": self.our_channels[topic]["id"]} for number, topic in wanted.items()]})

@@ -59,7 +59,7 @@ for (const [parameter, index, value] of [['stiffness_translation', 0, 0.5], ['da
   });
 }
 
-test('what is not safe cannot be set', async () => {
+test('unsafe values cannot be set', async () => {
   const {page, client} = rig;
   for (const [parameter, limit] of [['force', 30], ['torque', 5]]) {
     const slider = page.locator(`#parameter-${parameter}`);
@@ -126,7 +126,7 @@ test('of two pages one has control, and gives it on', async () => {
   assert.equal(newest().state, 'RUN');
 });
 
-test('a client that never reads delays nobody, and gets no queue', async () => {
+test('a client that never reads does not delay the others, and gets no queue', async () => {
   const {page, client} = rig;
   const silent = await Client.join(rig.program.url);
   silent.socket.pause();

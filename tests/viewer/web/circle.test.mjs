@@ -43,7 +43,7 @@ test('the error in millimetres follows what is set', async () => {
   server.frozen = false;
 });
 
-test('the trail grows with the way and begins anew after a jump', async () => {
+test('the trail grows along the path and starts again after a jump', async () => {
   const {trail} = await predictor('counters');
   await until(page, (n) => window.predictor.counters().trail > n + 20, trail);
   if (shotsWanted) await page.waitForTimeout(5000);
@@ -62,7 +62,7 @@ test('each second is marked on the trail', async () => {
   assert.ok(marks < trail / 3, `${marks} marks, ${trail} points`);
 });
 
-test('after the circle its mean and largest error are told', async () => {
+test('after the circle its mean and largest error are shown', async () => {
   assert.equal(await page.locator('#score').isVisible(), false);
   server.offset = [0, 0, 0];
   server.runTime = 28;

@@ -37,7 +37,7 @@ test('the code leaves the address, and a token stays in this tab only', async ()
   assert.ok(!kept.local.includes(kept.session));
 });
 
-test('the clocks are compared and every step of the ledger is told', async () => {
+test('the clocks are compared and every step of the delay ledger is shown', async () => {
   await until(page, () => window.predictor.latency()['tick → drawn']?.count > 5);
   const clock = await predictor('clock');
   assert.ok(clock.roundTripMs >= 0);
@@ -67,7 +67,7 @@ test('the medians of the ledger are reported for the record', async () => {
 
 // ---- a run that does not answer ------------------------------------------------------------------
 
-test('a run that falls silent is told within a second, though the server still answers', async () => {
+test('a run that falls silent is reported within a second, though the server still answers', async () => {
   server.command('reset');
   server.state = 'RUN';
   await until(page, () => window.predictor.stateText() === 'Running');
@@ -88,7 +88,7 @@ test('a run that falls silent is told within a second, though the server still a
   await shows(page, '#banner', false);
 });
 
-test('a stop that the run does not take is told at once', async () => {
+test('a stop that the run does not accept is reported at once', async () => {
   server.deaf = true;
   await page.click('#stop');
   await until(page, () => window.predictor.stateText() === 'Not stopped');
@@ -103,7 +103,7 @@ test('a stop that the run does not take is told at once', async () => {
   server.state = 'RUN';
 });
 
-test('two scenarios of one title are told apart by their files', async () => {
+test('two scenarios with the same title are distinguished by their files', async () => {
   const chosen = () => page.evaluate(() => document.getElementById('scenario').value);
   assert.equal(await chosen(), 'made_up');
   await page.evaluate(() => (window.loadedOnce = true));
@@ -117,7 +117,7 @@ test('two scenarios of one title are told apart by their files', async () => {
 
 // ---- lost server -------------------------------------------------------------------------------
 
-test('a lost connection is told plainly, and found again with the token', async () => {
+test('a lost connection is reported plainly, and restored with the token', async () => {
   const {reconnects} = await predictor('counters');
   const {port} = server;
   await server.close();
@@ -150,7 +150,7 @@ test('who finds no room keeps the token and comes in later', async () => {
   assert.equal(await token(), kept);
 });
 
-test('a server that was started anew asks for digits; wrong ones are refused', async () => {
+test('a restarted server asks for digits; wrong ones are refused', async () => {
   server.renew();
   const {port} = server;
   await server.close();

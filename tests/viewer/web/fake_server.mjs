@@ -319,7 +319,7 @@ export class FakeServer {
   lease(socket, {what, take}, denied) {
     if (take && socket.role === 'look') return denied('This page may only look.');
     if (take && this.leases[what] !== null && this.leases[what] !== socket.client) {
-      return denied('Somebody else has it.');
+      return denied('Another page has it.');
     }
     if (!take && this.leases[what] !== socket.client) return;
     this.leases[what] = take ? socket.client : null;
@@ -378,10 +378,10 @@ export class FakeServer {
       if (socket.client === undefined || socket.bufferedAmount > 0) continue;
       socket.send(encode({...values, sent_ns: now()}));
     }
-    this.tellPerson();
+    this.sendPerson();
   }
 
-  tellPerson() {
+  sendPerson() {
     if (this.options.person || this.options.older || !this.sendingPerson) return;
     const hands = Object.fromEntries(kSides.map((side) => [side, position(this.handlePose(side))]));
     const wrenches = Object.fromEntries(kSides.map((side) => [side, this.wrench(side)]));

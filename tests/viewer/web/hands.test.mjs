@@ -151,7 +151,7 @@ test('a handle is taken, moved and let go by keys', async () => {
   await page.keyboard.press('l');
   await waitFor(() => hands('left').at(-1).grip === false, 'letting go of one');
   await page.focus('#theme');
-  await waitFor(() => hands('right').at(-1).grip === false, 'whoever goes elsewhere lets go');
+  await waitFor(() => hands('right').at(-1).grip === false, 'moving the focus lets go');
 });
 
 test('who loses the lease lets go', async () => {
@@ -201,7 +201,7 @@ test('the headset gives signs of life, at most ten a second', async () => {
   near([x, y, z], [0, 1.5, 0.35], 0.05, 'head');
 });
 
-test('what was drawn is told, and stands still with the picture', async () => {
+test('the time of the drawn state is reported, and stands still with the picture', async () => {
   const newest = () => reports().at(-1).drawn;
   const begin = newest();
   assert.ok(begin > 0 && begin <= Number(process.hrtime.bigint()), 'the run’s clock');
@@ -264,7 +264,7 @@ test('a controller takes the handle it is at and carries it', async () => {
   assert.equal(hands('left').length, count);
 });
 
-test('controllers on the handles register too, and drift is told', async () => {
+test('controllers on the handles register too, and drift is reported', async () => {
   const state = await predictor('shown');
   const places = {
     left: await predictor('inHeadsetSpace', state.hands.right.real.p),
@@ -323,7 +323,7 @@ test('above the warning level the controller pulses', async () => {
   await headset.button('right', 'squeeze', 0);
 });
 
-test('the plate stops; the cause is told inside, with a tone', async () => {
+test('the plate stops; the headset shows the cause and plays a tone', async () => {
   const {tones} = await predictor('immersive');
   await headset.touchPlate('stop');
   await until(page, () => window.predictor.immersive().board.title === 'Stopped, held');

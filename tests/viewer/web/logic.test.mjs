@@ -84,7 +84,7 @@ test('states are played one behind the newest, and never queued', () => {
   assert.equal(player.latest.object.p[0], 9);
 });
 
-test('the clock believes the quickest ping', () => {
+test('the clock uses the quickest ping', () => {
   const clock = new page.ServerClock();
   clock.add(100, 140, 10_030e6);  // slow on the way back, so the offset is wrong by 10 ms
   clock.add(200, 202, 10_111e6);
@@ -179,7 +179,7 @@ test('nothing has no minus', () => {
   assert.equal(page.fixed(12.345, 1), '12.3');
 });
 
-test('stops are told in words, in readable units', () => {
+test('stops are described in words, in readable units', () => {
   const words = (values) => page.stopWords(state(values), false);
   assert.equal(words({cause: 0}), null);
   assert.equal(words({cause: 7, cause_hand: -1, cause_quantity: 4, cause_value: 0.28, cause_limit: 0.3})
@@ -202,8 +202,8 @@ test('where real arms have lost their power, a reset is not said to do', () => {
   assert.ok(page.stopWords(unpowered, true).advice.endsWith(message('next.restart')));
 });
 
-test('what was measured tells more closely what is wrong', () => {
-  const told = (cause, quantity) => {
+test('the measured quantity makes the cause more specific', () => {
+  const causeText = (cause, quantity) => {
     const stopped = state({});
     Object.assign(stopped, {state: 'HELD', stop: {...stopped.stop, cause, quantity, hand: 'left'}});
     return page.stopWords(stopped, false);
@@ -214,7 +214,7 @@ test('what was measured tells more closely what is wrong', () => {
     ['device', 'angle', 'angle_jump', 'restart'], ['deadline', 'time', 'suspended', 'reset'],
     ['device', 'speed', 'no_rest', 'restart'], ['device', 'none', 'device', 'restart'],
   ]) {
-    const said = told(cause, quantity);
+    const said = causeText(cause, quantity);
     assert.ok(said.cause.startsWith(message('hand.left', {text: message(`stop.${id}.cause`)})), said.cause);
     assert.equal(said.advice, `${message(`stop.${id}.advice`)} ${message(`next.${next}`)}`);
   }
@@ -234,7 +234,7 @@ test('a fault of an arm behind the cause of a stop changes what is to be done', 
   assert.equal(held({cause: 13, right_arm_fault: 1}), `${device} ${message('next.restart')}`);
 });
 
-test('what took the power off at the end of a stop is told beside its cause', () => {
+test('the reason for power-off at the end of a stop is shown beside its cause', () => {
   const stopped = state({cause: 12, cause_hand: -1, cause_quantity: 1, cause_value: 3, cause_limit: 2,
                          harder_cause: 4, harder_cause_hand: 0, harder_cause_quantity: 9,
                          harder_cause_value: 0.0214, harder_cause_limit: 0.02});
@@ -251,7 +251,7 @@ test('what took the power off at the end of a stop is told beside its cause', ()
   assert.ok(page.stopWords(stopped, false).advice.endsWith(message('next.restart')));
 });
 
-test('a hand that real arms still press on is told of', () => {
+test('a hand that real arms still press on is reported', () => {
   const stopped = (name, left, right = [0, 0, 0]) => {
     const shown = state({});
     shown.state = name;
@@ -282,7 +282,7 @@ test('a hand that real arms still press on is told of', () => {
   assert.equal(words(stopped('UNPOWERED', [NaN, 0, 0]), false), '');
 });
 
-test('power that an arm keeps is told first', () => {
+test('power that an arm keeps is reported first', () => {
   const kept = state({state: 8, right_present: 1, left_keeps_power: 1, right_keeps_power: 1});
   assert.equal(page.dangerWords(kept, false),
                message('danger.keeps_power', {SIDE: 'RIGHT'}));

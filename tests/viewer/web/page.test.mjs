@@ -40,13 +40,13 @@ test('the drawn links are where the joint angles put them', async () => {
     const {linkPose, shown} = window.predictor;
     const names = [1, 2, 3, 4, 5, 6, 7, 8].map((i) => `panda_link${i}`);
     return {q: shown().cobotQ, poses: names.map((name) => linkPose(name)),
-            object: linkPose('object'), told: shown().object, end: shown().endEffector};
+            object: linkPose('object'), reported: shown().object, end: shown().endEffector};
   });
   links(seen.q).map(pose).forEach(({p, q}, i) => {
     near(seen.poses[i].p, p, 1e-4, `panda_link${i + 1}`);
     nearRotation(seen.poses[i].q, q, 1e-3, `panda_link${i + 1}`);
   });
-  near(seen.object.p, seen.told.p, 1e-6, 'object');
+  near(seen.object.p, seen.reported.p, 1e-6, 'object');
   near(seen.poses[7].p, seen.end.p, 1e-3, 'end-effector');
 });
 
@@ -150,7 +150,7 @@ test('commands need the lease and the right state', async () => {
   await until(page, () => window.predictor.stateText() === 'Running');
 });
 
-test('a stop is told with hand, value and limit', async () => {
+test('a stop is shown with hand, value and limit', async () => {
   for (const [cause, value, limit, words] of [
     ['force', 31.24, 30, `${message('hand.left', {text: message('stop.force.cause')})} (31.2 N, limit 30.0 N).`],
     ['force', 30.04, 30, `${message('hand.left', {text: message('stop.force.cause')})} (30.04 N, limit 30.00 N).`],
@@ -231,7 +231,7 @@ function parseTable(text) {
   return {head, column: (name) => rows.map((row) => row[head.findIndex((h) => h.startsWith(`${name} `))])};
 }
 
-test('a paused plot tells the values under the cursor', async () => {
+test('a paused plot shows the values under the cursor', async () => {
   server.force = {left: [0, 0, 12, 0, 0, 3], right: [0, 0, 0, 0, 0, 0]};
   await until(page, () => Math.abs(window.predictor.shown().hands.left.wrench[2] - 12) < 0.01);
   await page.waitForTimeout(400);

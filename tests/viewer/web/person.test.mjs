@@ -33,10 +33,10 @@ test('the body is drawn where the messages put it, coloured by its loads', async
   const count = await predictor('personCount');
   await until(page, (n) => window.predictor.personCount() > n + 12, count);
   const {points, colors} = await predictor('body');
-  const {points: told, parts} = await predictor('person');
-  for (const [name, p] of Object.entries(told)) near(points[name], p, 1e-6, name);
-  const hands = {left: told.left_hand, right: told.right_hand};
-  near(told.left_shoulder, pointsOf(server.scene.viewpoint, hands).points.left_shoulder, 1e-9, 'shoulder');
+  const {points: expected, parts} = await predictor('person');
+  for (const [name, p] of Object.entries(expected)) near(points[name], p, 1e-6, name);
+  const hands = {left: expected.left_hand, right: expected.right_hand};
+  near(expected.left_shoulder, pointsOf(server.scene.viewpoint, hands).points.left_shoulder, 1e-9, 'shoulder');
   assert.deepEqual(Object.keys(colors).sort(), Object.keys(parts).sort());
   assert.notEqual(colors.lower_back, colors.left_elbow, 'different loads, different colours');
   await screenshot(page, 'person');

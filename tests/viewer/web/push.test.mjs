@@ -57,7 +57,7 @@ test('arrows take their colours at half and at 80 % of the threshold, red before
   assert.deepEqual([...new Set(running.map((s) => s.colour))].sort(), ['green', 'orange', 'red']);
 });
 
-test('the stop is by the force, and told with hand, value and limit', async () => {
+test('the force causes the stop, which is shown with hand, value and limit', async () => {
   await rig.reach('HELD');
   await until(page, () => window.predictor.stateText() === 'Stopped, held');
   const {cause} = await predictor('stopText');

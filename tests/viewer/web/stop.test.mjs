@@ -68,7 +68,7 @@ test('the stop button brakes the arms and holds them', async () => {
   assert.deepEqual(last.object, held[0].object);
 });
 
-test('the cause is told in words', async () => {
+test('the cause is shown in words', async () => {
   await until(page, () => window.predictor.stateText() === 'Stopped, held');
   assert.equal(await text('#cause'), `${capitalised('stop.operator.cause')}.`);
   assert.equal(await text('#advice'), `${message('stop.operator.advice')} ${message('next.reset')}`);
@@ -129,22 +129,22 @@ test('who may only look, by digits from the console, may stop', async () => {
 const own = (problems) => problems.filter(
     (problem) => !/ERR_CONNECTION_REFUSED|WebSocket connection/.test(problem));
 
-async function tellsOfTheLoss() {
+async function reportsTheLoss() {
   await until(page, () => !document.getElementById('emergency').hidden);
   assert.equal(await text('#emergency'), message('link.silent.emergency'));
   await shows(page, '#stop', false);
   assert.equal(await predictor('instruction'), '');
 }
 
-test('the viewer’s death is told, and moves nothing', async () => {
+test('the viewer’s death is reported, and moves nothing', async () => {
   assert.equal(newest().state, 'RUN');
   const {tick, run_time: runTime} = newest();
   const {program} = rig;
   const {url, viewerPid} = program;
-  const told = tellsOfTheLoss();
+  const reported = reportsTheLoss();
   const banner = until(page, () => !document.getElementById('banner').hidden);
   process.kill(viewerPid, 'SIGKILL');
-  await Promise.all([told, banner]);
+  await Promise.all([reported, banner]);
   await screenshot(page, 'lost');
   await waitFor(() => program.viewerPid && program.viewerPid !== viewerPid, 'a new viewer');
   // The page's token is valid for the whole run, but its leases are free now.
@@ -158,10 +158,10 @@ test('the viewer’s death is told, and moves nothing', async () => {
   await shows(page, '#banner', false);
 });
 
-test('a run that hangs is told, though the viewer’s process lives', async () => {
+test('a run that hangs is reported, though the viewer’s process lives', async () => {
   assert.equal(await predictor('phase'), 'open');
   rig.program.freeze();
-  await tellsOfTheLoss();
+  await reportsTheLoss();
   await until(page, (title) => window.predictor.stateText() === title, message('link.silent.title'));
   assert.equal(await predictor('phase'), 'open');
   rig.program.thaw();
@@ -192,7 +192,7 @@ test('another scenario is chosen when idle, and starts by a person alone', async
   await until(page, () => window.predictor?.ready() && /box/i.test(window.predictor.scene()));
 });
 
-test('a program that was started anew is shown anew', async () => {
+test('a restarted program replaces the old one on the page', async () => {
   const {port} = rig.program;
   assert.equal(await rig.program.end(), 0);
   await until(page, () => window.predictor.stateText() === 'Ended');

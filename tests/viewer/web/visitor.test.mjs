@@ -80,8 +80,8 @@ test('the handles invite, and the first drag shows force and threshold', async (
   await shows(page, '#gauge-left', false);
 });
 
-test('whoever has the hands ends the run, which lasts until then', async () => {
-  assert.match(await page.locator('#run-time').textContent(), /^\d+\.\d s$/, 'no end is told');
+test('the page that holds the hands ends the run, which has no other end', async () => {
+  assert.match(await page.locator('#run-time').textContent(), /^\d+\.\d s$/, 'no end time is shown');
   await page.click('#end');
   await waitFor(() => sent('command').some((m) => m.command === 'end'), 'the end');
   await until(page, () => window.predictor.stateText() === 'Done, held');

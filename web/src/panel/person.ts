@@ -141,7 +141,7 @@ export class PersonCard {
   private readonly body: HTMLElement;
   private spec: SceneSpec | null = null;
   private drawnMs = -Infinity;
-  private told = '';
+  private shown = '';
 
   constructor() {
     const rows = (names: GaugeName[]) => names.map((name) => this.gauges.get(name)!.element);
@@ -177,9 +177,9 @@ export class PersonCard {
         silent ? 'The evaluation has stopped sending: these values are old.' :
         person.status === 'judged' ? '' : kWhyNot[person.status];
     const warnings = silent ? [] : person?.warnings ?? [];
-    const told = `${why} ${warnings.join()}`;
-    if (told === this.told && nowMs - this.drawnMs < kEveryMs) return;
-    this.told = told;
+    const text = `${why} ${warnings.join()}`;
+    if (text === this.shown && nowMs - this.drawnMs < kEveryMs) return;
+    this.shown = text;
     this.drawnMs = nowMs;
     setText(this.why, why);
     setText(this.short, judged ? '' : 'not judged');

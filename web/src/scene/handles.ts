@@ -12,7 +12,7 @@ const kLength = 0.11;       // [m]
 const kRingRadius = 0.042;  // around the grip, visible even if a body hides the grip [m]
 const kShineThrough = 10;  // order of drawing
 const kPickRadius = 0.07;  // generous, for fingers on a tablet [m]
-const kLeastRing = 20;     // minimum radius on the page of a ring that can be dragged [px]
+const kMinRingRadius = 20;  // minimum radius on the page of a ring that can be dragged [px]
 const kMaxScale = 2;       // maximum scaling for that purpose
 const kPulseMs = 1100;     // of an inviting ring
 
@@ -98,7 +98,7 @@ export class Handle {
 
   // pixelsPerMetre: at the handle; infinite: true size.
   setScreenScale(pixelsPerMetre: number) {
-    const scale = kLeastRing / (kRingRadius * pixelsPerMetre);
+    const scale = kMinRingRadius / (kRingRadius * pixelsPerMetre);
     this.rings.scale.setScalar(Math.min(Math.max(scale, 1), kMaxScale));
   }
 }

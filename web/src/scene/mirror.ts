@@ -1,4 +1,4 @@
-// A mirror beside the scene, in which the person sees the own body, at half its size.
+// A mirror beside the scene, in which the person sees their own body, at half its size.
 import {DoubleSide, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, PlaneGeometry} from 'three';
 import {BodyPoints, mirrored, MirrorPlace} from '../person';
 import {PersonState, SceneSpec, Vec3} from '../protocol';

@@ -29,7 +29,7 @@ export function parseNumbers(text: string): Float64Array {
         digits = NaN;
       }
     }
-    if (digits > 0 && digits <= kMostDigits) {
+    if (digits > 0 && digits <= kMaxDigits) {
       if (point >= 0) value /= kPowers[digits - point];
       numbers[count++] = negative ? -value : value;
     } else {
@@ -43,5 +43,5 @@ const kSpace = 32;
 const kMinus = 45;
 const kPoint = 46;
 const kZero = 48;
-const kMostDigits = 15;
-const kPowers = Array.from({length: kMostDigits + 1}, (_, i) => 10 ** i);
+const kMaxDigits = 15;
+const kPowers = Array.from({length: kMaxDigits + 1}, (_, i) => 10 ** i);

@@ -354,10 +354,10 @@ export class Stage {
 
   // Reports each kind of problem of a model only once.
   private oncePer(model: string): Complaint {
-    const told = new Set<string>();
+    const reported = new Set<string>();
     return (words) => {
-      if (!told.has(words)) this.complain(`${model}: ${words}`);
-      told.add(words);
+      if (!reported.has(words)) this.complain(`${model}: ${words}`);
+      reported.add(words);
     };
   }
 

@@ -87,7 +87,7 @@ export class Immersive {
   update(frame: XRFrame, spec: SceneSpec | null, state: State | null, nowMs: number) {
     this.counters.frames++;
     if (this.inputs.stopPressed(frame.session)) this.stop();
-    this.tell(spec, state);
+    this.updateBoard(spec, state);
     const space = this.stage.renderer.xr.getReferenceSpace();
     const viewer = space && frame.getViewerPose(space);
     if (!space || !viewer || !spec || !state) return;
@@ -246,7 +246,7 @@ export class Immersive {
     }
   }
 
-  private tell(spec: SceneSpec | null, state: State | null) {
+  private updateBoard(spec: SceneSpec | null, state: State | null) {
     const trouble = this.troubleNow();
     if (this.bell.rings(state, trouble !== null)) this.tone.play();
     const words = trouble ?? (state ? stateWords(state) : null);
@@ -269,8 +269,8 @@ export class Immersive {
     if (nowMs - this.reportedMs < kReportMs) return;
     this.reportedMs = nowMs;
     // Sends the head's pose only to servers that forward it to the other pages.
-    const tell = this.connection.features.includes('headset');
-    const pose: Partial<Pose> = tell ? poseOf(this.inWorld(head)) : {};
+    const forwarded = this.connection.features.includes('headset');
+    const pose: Partial<Pose> = forwarded ? poseOf(this.inWorld(head)) : {};
     // Reports the time of the drawn state instead of the time of sending, because a frozen picture is not a
     // sign of life.
     const drawn = this.drawnNs > 0 ? {drawn: this.drawnNs} : {};

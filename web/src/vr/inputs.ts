@@ -8,7 +8,7 @@ import {Side} from '../protocol';
 
 const kStopButton = 5;      // B or Y of common controllers
 const kThumbstickAxis = 3;  // vertical
-const kMostJoints = 25;
+const kMaxJoints = 25;
 
 export interface Input {
   source: XRInputSource;
@@ -140,7 +140,7 @@ class Body {
   private readonly controller = new Mesh(
       new CapsuleGeometry(0.017, 0.09, 6, 16).rotateX(Math.PI / 2), this.material);
   private readonly joints = new InstancedMesh(
-      new SphereGeometry(0.008, 12, 8), this.material, kMostJoints);
+      new SphereGeometry(0.008, 12, 8), this.material, kMaxJoints);
   private readonly ray = new Line(
       new BufferGeometry().setFromPoints([new Vector3(), new Vector3(0, 0, -0.5)]),
       new LineBasicMaterial({color: 0x9fc6ff, transparent: true, opacity: 0.5}));
@@ -176,7 +176,7 @@ class Body {
     let count = 0;
     for (const joint of hand.values()) {
       const pose = frame.getJointPose?.(joint, space);
-      if (pose && count < kMostJoints) {
+      if (pose && count < kMaxJoints) {
         this.joints.setMatrixAt(count++, new Matrix4().setPosition(position(pose)));
       }
     }

@@ -5,7 +5,7 @@
 import {Object3D} from 'three';
 import {Vec3} from '../protocol';
 
-const kLeastSpread = 0.1;  // between the outermost points, horizontally [m]
+const kMinSpread = 0.1;  // between the outermost points, horizontally [m]
 const kKey = (scene: string) => `predictor.registration.${scene}`;
 
 export interface Registration {
@@ -41,7 +41,7 @@ export function fit(pairs: PointPair[]): Registration {
     cosine += bx * ax + by * ay;
     spread = Math.max(spread, Math.hypot(bx, by));
   }
-  if (2 * spread < kLeastSpread || Math.hypot(sine, cosine) < 1e-6) {
+  if (2 * spread < kMinSpread || Math.hypot(sine, cosine) < 1e-6) {
     throw new Error('The points are too close together.');
   }
   const yaw = Math.atan2(sine, cosine);
