@@ -31,8 +31,8 @@ if(PREDICTOR_SANITIZE OR PREDICTOR_FUZZ)
 endif()
 if(PREDICTOR_HARDEN)
   # All targets get these flags, because all users of a precompiled header must have the same flags.
-  # docs/developer/benchmarks.md states their cost per tick. FORTIFY needs optimization; some systems already define
-  # their own level.
+  # docs/developer/benchmarks.md says how to measure their cost per tick. FORTIFY needs optimization; some systems
+  # already define their own level.
   add_compile_options($<$<CONFIG:Release>:-fstack-protector-strong>)
   add_compile_definitions($<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:_GLIBCXX_ASSERTIONS>)
   add_compile_options($<$<CONFIG:Release>:-U_FORTIFY_SOURCE> $<$<CONFIG:Release>:-D_FORTIFY_SOURCE=3>)
