@@ -6,16 +6,16 @@
 
 namespace predictor {
 
-// Braking of one arm in a stop: by the common profile, or later than that while the other arm lags
-// behind. It never accelerates in order to wait, and it stays within the profile's bounds.
+// Brakes one arm during a stop: along the common profile, or later while the other arm lags behind.
+// The arm never accelerates in order to wait, and it stays within the profile's bounds.
 class ArmBrake {
  public:
   ArmBrake() = default;
-  // hold: delay before it begins to brake [s].
+  // hold: delay before the arm begins to brake [s].
   ArmBrake(const StopProfile& begun, double hold, double dt);
-  // Returns the factor for the next tick. common: the profile's factor there. rate: the profile's
-  // rate there [m/s²]. behind: share of the initial speed by which this arm must exceed the
-  // profile's speed in order to keep up with the other arm.
+  // Returns the factor for the next tick. common: the profile's factor in that tick. rate: the
+  // profile's rate in that tick [m/s²]. behind: share of the initial speed by which this arm must
+  // exceed the profile's speed in order to keep up with the other arm.
   double Next(double common, double rate, double behind) noexcept;
   // Distance from now to rest if the arm brakes as hard as the profile's bounds allow [m].
   double RemainingDistance() const noexcept;

@@ -50,7 +50,7 @@ std::string PresentCause(const TickRecord& record, const std::string& trouble) {
 
 std::vector<std::string> ConsoleWords::See(const TickRecord& record,
                                            const std::function<std::string()>& trouble) {
-  // A stop in the same tick is more important than a refused request.
+  // A stop in the same tick takes precedence over a refused request.
   if (record.refused != 0 && record.state != RunState::kStopping)
     TellRefusal(record, trouble);
   else

@@ -15,7 +15,7 @@ namespace predictor {
 
 class ConsoleWords {
  public:
-  // A request by key, and the states that show that it was granted.
+  // A request made by a key, and the states which show that it was granted.
   struct Request {
     RunEvent event;
     char key;

@@ -50,8 +50,8 @@ bool Guard::Trusted(const std::array<JointVector, kHands>& q,
   return true;
 }
 
-// Factor by which the last command of both arms may shrink within each joint's acceleration bound
-// for one tick.
+// Smallest factor by which the last command of both arms can be scaled in one tick without any
+// joint exceeding its acceleration bound.
 double Guard::BrakingFactor() const noexcept {
   double relative = 1;
   for (std::size_t arm = 0; arm < kHands; ++arm) {

@@ -36,8 +36,8 @@ double ReactionTime(const VelocityLoopSpec& loop) noexcept;
 class Guard {
  public:
   Guard() = default;
-  // dt: nominal tick [s]. reaction: time from measuring a position until the joint has the
-  // resulting velocity [s], of the slower arm (ReactionTime plus other delays).
+  // dt: nominal tick [s]. reaction: time from measuring a position until the joint reaches the
+  // resulting velocity [s], for the slower arm (ReactionTime plus other delays).
   Guard(const std::array<JointBounds, kHands>& bounds, double dt, double reaction = 0);
   // Bounds `v` at the measured q; both have one number per joint. Returns the number of altered
   // joints (0 in normal operation). If any number is missing or not finite, the whole command is

@@ -10,7 +10,7 @@ bool IsFinite(const FrameMotion& motion) {
   return predictor::IsFinite(motion.X_W) && motion.V_W.allFinite();
 }
 
-// Of one quantity's values over the hands, keeps the one that exceeds its limit most.
+// Among the hands' values of one quantity, keeps the one that exceeds its limit most.
 class Worst {
  public:
   Worst(StopCause cause, double limit) : Worst(cause, limit, UsualQuantity(cause)) {}
@@ -141,7 +141,7 @@ void Monitor::FollowSensors(const MonitorInput& input) noexcept {
   }
 }
 
-// A hand that RECOVERY frees may be loaded beyond the usual thresholds, which must not prevent
+// A hand that RECOVERY frees may be loaded beyond the usual thresholds, but these must not prevent
 // freeing it. Any load above the smallest one since RECOVERY began is caused by the motion.
 void Monitor::FollowRecovery(const MonitorInput& input) noexcept {
   for (int hand = 0; hand < kHands; ++hand) {

@@ -45,7 +45,7 @@ struct SamplePeriods {
 // Of several faults in one tick, the first of these is reported:
 //   1. faults of the stages, in the order device, sensing, simulation, haptics: each invalidates
 //      the results of the later stages;
-//   2. device: an arm is missing, at fault, or sends the wrong number of joints;
+// 2. device: an arm is missing, has a fault, or sends the wrong number of joints;
 //   3. sensor, physics, qp: a number that is not finite, or saturated: no threshold can be checked;
 //      device: joints that jumped farther than any arm can move;
 //   4. force, then torque: the load that the person at the handles feels;
@@ -56,13 +56,13 @@ struct SamplePeriods {
 //   8. deadline: missed ticks that have had no other effect so far.
 // Some faults mean that an arm or sensor can no longer be trusted to hold: silence, saturation, a
 // jump, or a stage that requests power-off. The stop then ends without power, even if another fault
-// is reported. Of two hands, the one that exceeds its limit more is reported. NaN exceeds every
-// threshold; its status has zeros as value and limit.
+// is reported. Of two hands, the one that exceeds its limit more is reported. NaN counts as
+// exceeding every threshold; the status then gives zero for value and limit.
 class Monitor {
  public:
-  // The run stops if a link pair is closer than the security distance by this margin [m]. Rendering
-  // does not cross the security distance. The margin covers the encoders' resolution (1e-5 rad for
-  // each of up to seven joints at up to 1 m: 0.07 mm) and the arms' lag behind the command.
+  // The run stops if two links are closer than the security distance by more than this margin [m].
+  // Rendering itself keeps the security distance. The margin covers the encoders' resolution (1e-5
+  // rad for each of up to seven joints at up to 1 m: 0.07 mm) and the arms' lag behind the command.
   static constexpr double kLinkDistanceMargin = 0.001;
   // The run stops if a joint exceeds its limit by this margin [rad]. The margin is a hundred
   // encoder quanta, and a twentieth of the distance that rendering keeps.
@@ -83,7 +83,8 @@ class Monitor {
   // Losing one sample is acceptable, losing two is not.
   static constexpr double kMaxPeriods = 2.5;
 
-  // dt: tick [s]. detects_runaway: a sensor may be mounted or wired in the wrong orientation.
+  // dt: tick [s]. detects_runaway: true if a sensor may be mounted or wired in the wrong
+  // orientation.
   Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
           const std::array<bool, kHands>& sensor_has_noise, double dt,
           const std::array<SamplePeriods, kHands>& periods = {}, bool detects_runaway = false);

@@ -17,14 +17,14 @@ namespace predictor {
 // A cycle runs from peak to peak. A peak lies in the middle between rising above +h and falling
 // below it, provided that −h is passed afterwards (h is an eighth of spec.amplitude, which is more
 // than tremor and noise leave after the filter). The amplitude of a cycle is √2 times the standard
-// deviation over it. This averages noise, whereas the extreme values would add it. The rest of a
-// slow motion hardly contributes, since a ramp and a cosine are uncorrelated from peak to peak. The
-// amplitude is corrected by the filter's gain at the cycle's frequency. An amplitude counts as
-// larger only if it grew by at least kGrowth: a smaller growth cannot be distinguished from the
-// beat of an oscillation with tremor. Successive periods agree within kPeriodRatio, as in an
-// oscillation but not in single jolts. An oscillation along a diagonal is detected by its
-// components, in the worst case at √3 times the amplitude. Near tremor's 10 Hz, detecting a growth
-// of 5 % may take up to four times the amplitude.
+// deviation over it. This averages the noise, whereas the extreme values would include it. What
+// remains of a slow motion hardly contributes, since a ramp and a cosine are uncorrelated from peak
+// to peak. The amplitude is corrected by the filter's gain at the cycle's frequency. An amplitude
+// counts as larger only if it grew by at least kGrowth: a smaller growth cannot be distinguished
+// from the beat of an oscillation with tremor. Successive periods must agree within kPeriodRatio:
+// those of an oscillation do, those of single jolts do not. An oscillation along a diagonal is
+// detected by its components, in the worst case at √3 times the amplitude. Near tremor's 10 Hz,
+// detecting a growth of 5 % may take up to four times the amplitude.
 class OscillationDetector {
  public:
   static constexpr double kGrowth = 0.03;      // smallest relative growth of a cycle that counts

@@ -1,4 +1,4 @@
-// Detects a handle that drives its own motion because its sensor reads mirrored.
+// Detects a handle that drives its own motion because its sensor is mirrored.
 #pragma once
 
 #include "core/archive.h"
@@ -6,15 +6,15 @@
 
 namespace predictor {
 
-// A hand holds its place like a spring: its force along the motion falls as the handle moves with
-// it. If a sensor reads another direction than the hand pushes, the handle moves against the hand.
-// The hand resists more, so the force grows with the motion that it causes, and both grow as e^{λt}
-// until a threshold stops the run. This detector reports a runaway if two conditions hold: the
-// force along the motion and the speed have grown like that for kGrowing, and for kTime of this
-// period they exceeded kForce and the share kSpeed of the handle's cap.
+// A hand resists displacement like a spring: its force along the motion falls as the handle moves
+// with it. If a sensor reads a direction other than that of the push, the handle moves against the
+// hand. The hand resists more, so the force grows with the motion that it causes, and both grow as
+// e^{λt} until a threshold stops the run. This detector reports a runaway if two conditions hold:
+// the force along the motion and the speed have grown in this way for kGrowing, and for kTime of
+// this period they exceeded kForce and the share kSpeed of the handle's cap.
 //
 // A person's own motion does not last that long: a sudden push grows faster than kMaxGrowth, and in
-// a wide motion the force peaks before the handle reaches that speed. A runaway that grows faster
+// a large motion the force peaks before the handle reaches that speed. A runaway that grows faster
 // than kMaxGrowth soon reaches the force thresholds, however the sensor is mounted. If the other
 // hand or the virtual cobot prevents a mirrored sensor from causing a runaway, only the push test
 // finds it.
@@ -29,7 +29,7 @@ class RunawayDetector {
   static constexpr double kGrowing = 0.180, kTime = 0.080;  // [s]
 
   RunawayDetector() = default;
-  // cap: of a handle's speed [m/s]. dt: time between calls of Update [s].
+  // cap: limit of a handle's speed [m/s]. dt: time between calls of Update [s].
   RunawayDetector(double cap, double dt) : cap_(cap), dt_(dt) {}
   // force: of the hand on its handle; velocity: of the handle; in W, finite. Returns whether the
   // handle runs away. Uses no heap.
@@ -53,8 +53,8 @@ class RunawayDetector {
 
   double cap_ = 0.25, dt_ = 0.001;
   Trend force_, speed_;
-  // Time for which both have grown, and time of that above the thresholds; each falls twice as fast
-  // as it rises [s].
+  // Time for which both have grown, and the part of it above the thresholds; each decreases twice
+  // as fast as it increases [s].
   double growing_ = 0, time_ = 0;
 };
 

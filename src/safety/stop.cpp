@@ -232,13 +232,14 @@ void StopController::Observe(const std::array<Pose, kHands>& X_WH, bool in_motio
   }
   report_.duration = ++ticks_ * dt_;
   const bool moved = rest_.Update(X_WH, in_motion);
-  // After its last command, an arm may be led back a little. It counts as still only from then on.
+  // After its last command, an arm may be moved back a little. It counts as at rest only after
+  // that.
   still_ticks_ = moved || !commands_rest() ? 0 : still_ticks_ + 1;
   if (!commands_rest()) return;
   const bool rests = still_ticks_ * dt_ >= kRestTime;
   done_ = rests || ++rest_ticks_ * dt_ >= kPatience;
   timed_out_ = !rests;
-  // The handles came to rest at their last motion.
+  // The time of rest is that of the handles' last motion.
   if (rests) report_.duration = (ticks_ - still_ticks_) * dt_;
 }
 

@@ -1,4 +1,4 @@
-// Carries out a stop: brings both arms to rest, and reports how that went.
+// Carries out a stop: brings both arms to rest, and reports the outcome.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ struct StopReport {
   double duration = 0;  // from the decision until the handles rest; the time so far until done [s]
 };
 
-// The handles at the place that the arms will have reached when they obey the next command. Written
-// by the pipeline.
+// State of the handles where the arms will be when they obey the next command. Written by the
+// pipeline.
 struct StopGeometry {
   std::array<Jacobian, kHands> J;  // of each handle, axes of W; without columns: unknown
   std::array<Vector3, kHands> p_WH = {Vector3::Zero(), Vector3::Zero()};  // [m]
@@ -40,9 +40,9 @@ struct StopGeometry {
 class StopController {
  public:
   // bounds: joint bounds, which a stop respects as well. If the handles' deceleration would need
-  // more than a joint's acceleration, both arms brake more gently instead of separating. lags: of
-  // the arms behind their commands [s]. overruns: distance that each arm travels after its command
-  // reaches zero, divided by its speed before [s]; defaults to the lags.
+  // more than a joint's acceleration, both arms brake more gently instead of separating. lags:
+  // times by which the arms lag behind their commands [s]. overruns: distance that each arm travels
+  // after its command reaches zero, divided by its speed before [s]; defaults to the lags.
   StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
                  const std::array<double, kHands>& lags = {});
   StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
@@ -60,7 +60,7 @@ class StopController {
              const std::array<Twist, kHands>* handle_twists = nullptr) noexcept;
   // Next command: the last command before the stop, scaled; zero once the profile is done. ticks:
   // ticks since the last command; more than 1 after missed deadlines, since a stop follows elapsed
-  // time. Keeps corrections by earlier geometry. Uses no heap; does not throw.
+  // time. Keeps the corrections made for earlier geometries. Uses no heap; does not throw.
   void Next(std::array<JointVector, kHands>* v, int ticks = 1) noexcept;
   // The same, corrected for the change of the arms' geometry. The twists of the handles are scaled
   // like those of one rigid body, so that the handles keep their relative pose. The correction is
