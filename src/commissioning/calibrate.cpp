@@ -82,7 +82,7 @@ void AskForNoTip(Session* session, const Station& a, const Station& b) {
   const char answer = session->Ask(
       Formatted(
           "No --tip was given, so the end-effector's origin must touch the points (frame of the %s "
-          "arm: %s; frame of the %s arm: %s). Is this the case on both arms? Press y or n.",
+          "arm: %s; frame of the %s arm: %s). Is this true of both arms? Press y or n.",
           a.name().c_str(), a.spec().arm.end_effector.c_str(), b.name().c_str(),
           b.spec().arm.end_effector.c_str()),
       "yn");
@@ -99,7 +99,7 @@ Wrench Feel(Feeler* feeler, const Station& station) {
   return hand.F_H_W;
 }
 
-// One misread push shows that there is an error; all three show which.
+// One misread push shows that there is an error; all three together show which error.
 void TellReading(Session* session, const PushTest& test, int axis) {
   session->Tell(Formatted("  reads %s.", Name(test.readings()[static_cast<std::size_t>(axis)])));
   if (const std::string wrong = test.Wrong(axis); !wrong.empty())

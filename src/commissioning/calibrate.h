@@ -1,4 +1,4 @@
-// Measurements that a person beside the arms takes part in: handle, bases, velocity loop, and the
+// Measurements in which a person beside the arms takes part: handle, bases, velocity loop, and the
 // push test. Each instructs the person and returns its result; the caller writes the machine file.
 // Errors: InputError (a refusal, or the person gives up), DeviceError.
 #pragma once
@@ -16,7 +16,7 @@
 
 namespace predictor::commissioning {
 
-// The person guides the arm into poses by the arm's own free-drive. The program only reads.
+// The person guides the arm into poses in the arm's own free-drive mode. The program only reads.
 HandleCalibration MeasureHandle(Session* session, const Station& station);
 
 // The person touches points with the tip of arm A and then, in the same order, with the tip of arm
@@ -33,10 +33,10 @@ struct SwingOptions {
 
 // Swings one joint after the other, while the person consents (motion_watch.h) and no one touches
 // the handle. No joint is so fast that the handle exceeds `limits.align_speed`. Releasing the key
-// brings the joint to rest, and it is measured again. Everything that would stop a run, and a joint
-// off its path, is an error. In every case the arm is brought to rest first, and the person is
-// notified. swings: only joints that it does not contain yet are measured. It keeps finished joints
-// even if this throws.
+// brings the joint to rest, and it is measured again. Anything that would stop a run is an error,
+// and so is a joint that leaves its path. In every case the arm is brought to rest first, and the
+// person is notified. swings: only joints that it does not contain yet are measured. Finished
+// joints are added to it even if the function throws.
 inline constexpr char kSwingKey = 's';
 void SwingJoints(Session* session, Station* station, const SwingOptions& options, Swings* swings);
 // Fits the loop to the swings, and shows each joint's own result.

@@ -1,5 +1,5 @@
-// A small swing of one joint that reveals its velocity loop: from low to high frequency, and the
-// same way back.
+// A small swing of one joint that reveals its velocity loop: from low to high frequency, and back
+// in the same way.
 #pragma once
 
 namespace predictor::commissioning {

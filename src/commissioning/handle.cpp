@@ -97,8 +97,8 @@ double TiltOf(Poses poses) {
   return std::sqrt(std::max(0.0, modes.eigenvalues[1]));
 }
 
-// The pose whose removal gives the best fit of the others, and their worst ratio to the allowed
-// value then.
+// The pose whose removal gives the best fit of the others, and the worst ratio to the allowed value
+// in that fit.
 std::pair<std::size_t, double> OddOne(Poses poses, const Allowed& allowed) {
   std::pair<std::size_t, double> odd{0, HUGE_VAL};
   for (std::size_t i = 0; i < poses.size(); ++i) {

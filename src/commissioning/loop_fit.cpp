@@ -27,10 +27,9 @@ constexpr double kMostGain = 0.05;      // deviation from 1
 constexpr double kMostMisfit = 0.25;
 constexpr double kMostLate = 0.05, kMostLost = 0.05;  // share of the ticks; share of the samples
 constexpr double kBlock = 0.25;                       // time over which the misfit is evaluated [s]
-constexpr double kShows = 6;  // motion of a block that can be evaluated, as a multiple of the noise
+constexpr double kShows = 6;  // least motion of a block to be evaluated, as a multiple of the noise
 constexpr double kCounts = 0.05;  // and as a share of the largest block's motion: see Misfit
-constexpr double kTells = 3;  // motion of a block that can be fitted, likewise: resolution matters
-                              // less
+constexpr double kTells = 3;      // the same for a block to be fitted: resolution matters less
 constexpr std::size_t kLeastBlock = 8;  // samples per block
 
 using Records = std::span<const LoopRecord>;

@@ -22,7 +22,7 @@ struct Gaps {
     return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
   }
 };
-// "31 of 62104 ticks came late (0.0 %, at worst 5.1 ms apart), 12 of 31052 samples ..."
+// "31 of 62104 ticks were late (0.0 %; longest interval 5.1 ms), 12 of 31052 samples ..."
 std::string GapsText(const Gaps& gaps);
 
 // The record of one swing of one joint.

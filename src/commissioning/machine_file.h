@@ -11,10 +11,10 @@
 
 namespace predictor::commissioning {
 
-// Reads the file again, changes it, and checks the result like a reader. Then keeps the old version
-// as FILE.before-DATE (or FILE.before-DATE-2, ...) and replaces the file atomically. The whole
-// machine is written, so comments remain only in the copy. Returns the path of the copy. Throws
-// InputError; the file is then unchanged.
+// Reads the file again, changes it, and checks the result as a reader would. Then keeps the old
+// version as FILE.before-DATE (or FILE.before-DATE-2, ...) and replaces the file atomically. The
+// whole machine is written, so comments remain only in the copy. Returns the path of the copy.
+// Throws InputError; the file is then unchanged.
 std::filesystem::path ChangeMachine(const std::filesystem::path& file, const std::string& date,
                                     const std::function<void(Machine*)>& change);
 

@@ -30,7 +30,7 @@ class Consent {
   // From now [s] there is no consent until the key has been silent and the device has been
   // released.
   void Revoke(double now);
-  // The person's action that the last Update requires for consent: "hold s".
+  // What the person must do to consent, according to the last Update: "hold s".
   std::string Wanted() const;
 
  private:
@@ -68,8 +68,8 @@ class MotionWatch {
   // Call at rest. Throws InputError if something presses on the handle.
   void Begin();
   // Call in each step after reading the arm. due [s]: scheduled time of the session. If something
-  // would stop a run, throws a sentence for the person: InputError for people's actions,
-  // DeviceError for devices, HeldUp.
+  // would stop a run, throws an error with a sentence for the person: InputError for people's
+  // actions, DeviceError for devices, HeldUp.
   void Check(double due);
   // The permitted part of a command [rad/s].
   JointVector Bounded(const JointVector& v);

@@ -23,8 +23,8 @@ struct AxisReading {
 // the estimated wrenches of the hands. No heap, no exception.
 class PushTest {
  public:
-  static constexpr double kLeast = 5, kMost = 25;  // force of a push that counts [N]
-  static constexpr double kDominant = 3;           // ratio to each of the other components
+  static constexpr double kLeast = 5, kMost = 25;  // smallest force of a push that counts [N]
+  static constexpr double kDominant = 3;           // smallest ratio to each of the other components
   static constexpr double kLong = 0.3;             // minimum duration [s]
   static constexpr double kFree = 2;               // a smaller force is not a push [N]
   static constexpr int kAxes = 3;

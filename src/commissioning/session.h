@@ -1,4 +1,4 @@
-// A person at a terminal beside the arms, and the passing of time.
+// The dialogue with a person at a terminal beside the arms, and the timing of a session.
 #pragma once
 
 #include <cstdint>
