@@ -30,14 +30,14 @@ struct ArmReading {
   std::uint64_t sequence = 0;  // counts the arm's samples
   double age = 1e9;            // age of q and v [s]
   bool fault = false;          // it cannot move: no power, protective stop, emergency stop, …
-  // True if its driver still moves the arm, or the arm reports motion, because it is being brought
-  // to rest in its own way. A command to rest would not be sent immediately. Always false for an
-  // arm that executes commands directly.
+  // True while the arm is being brought to rest in its own way: its driver still moves it, or it
+  // reports motion. A command to stand still would not be sent immediately. Always false for an arm
+  // that executes commands directly.
   bool in_motion = false;
-  // True if it does not obey yet: its controller either has not started the requested motion or has
-  // not received the request. Always false for an arm that needs no request.
+  // True if it does not obey commands yet: its controller either has not started the requested
+  // motion or has not received the request. Always false for an arm that needs no request.
   bool waits = false;
-  bool no_power_off = false;  // the channel for power-off requests is lost, if it existed
+  bool no_power_off = false;  // the channel for power-off requests existed, but is lost
   bool keeps_power = false;   // it still reports power one second after PowerOff
   std::uint64_t inputs = 0;   // its digital inputs, one bit each, numbered as by the manufacturer
   WrenchReading wrench;       // of its own sensor or estimator, if it has one

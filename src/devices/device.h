@@ -36,7 +36,8 @@ class Device {
   // State of its enabling device at the last Read. No heap, no exception.
   virtual Enabling enabling() const noexcept { return Enabling::kNone; }
 
-  // The current state of the simulated operator, for the record; null: a person holds the handles.
+  // The current state of the simulated operator, for the record; null if a person holds the
+  // handles.
   virtual const OperatorOutput* truth() const noexcept { return nullptr; }
 
   // Saves or loads the state of a simulated device. A real device has no state that could be

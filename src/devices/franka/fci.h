@@ -48,7 +48,7 @@ enum class MoveStatus {
 
 MoveStatus MoveStatusOf(std::uint8_t byte, std::uint16_t version) noexcept;
 
-// Text of the robot's reaction: "aborted by a reflex", ....
+// Text of the robot's reaction, such as "stopped by a reflex".
 const char* Words(MoveStatus status);
 const char* Words(RobotMode mode);
 

@@ -17,7 +17,8 @@ namespace {
 using fci::Fault;
 using fci::Joints;
 
-// The arm abandons a motion after this time without commands; the driver does so without states.
+// The arm abandons a motion after this time without commands, the driver after this time without
+// states.
 constexpr double kSilence = fci::RateLimiter::kCoasting;  // [s]
 // Longest time in which the arm starts or ends a motion.
 constexpr double kPatience = 1;  // [s]
@@ -290,13 +291,13 @@ bool Driver::Moves() const noexcept {
   return std::any_of(v.begin(), v.end(), [](double x) { return std::abs(x) > kSameVelocity; });
 }
 
-// True if its last command was not rest or it reports motion.
+// True if the last command was not zero or the arm reports motion.
 bool Driver::InMotion() const noexcept {
   return !trouble_.any() && (Moves() || !limiter_.AtRest());
 }
 
 Status Driver::Write(const JointVector& v, bool motion) noexcept {
-  // Otherwise a wait for its rest would never end.
+  // Otherwise, waiting for the arm to rest would never end.
   if (!(v.isZero(0) && InMotion())) rests_since_ = network_->Now();
   if (Since(rests_since_) > kPatience) trouble_.Set(Fault::kNoEnd);
   if (!trouble_.any()) Advance(motion);
@@ -343,7 +344,7 @@ void Driver::StartMotion() noexcept {
   Enter(Phase::kStarting);
 }
 
-// Answers each state once, and only the newest. In a millisecond without a state no command is
+// Answers only the newest state, and only once. In a millisecond without a state no command is
 // sent, and the robot continues as before.
 void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
   const bool moves = phase_ == Phase::kMoving || phase_ == Phase::kFinishing;

@@ -1,11 +1,11 @@
-// A Franka arm (Research 3 or the older Panda) by the Franka Control Interface at 1 kHz. It follows
-// the published headers of the interface and was tested with a fake robot that libfranka also
-// drives. It has never run on hardware.
+// A Franka arm (Research 3 or the older Panda), driven through the Franka Control Interface at 1
+// kHz. It follows the published headers of the interface and was tested with a fake robot that
+// libfranka also drives. It has never run on hardware.
 //
 // The driver commands joint velocities; the arm's own joint impedance controller executes them. The
-// commands keep the published limits of velocity, acceleration, jerk and range (rate_limiter.h),
-// because otherwise the arm's reflexes would stop it. The driver never recovers from errors: a
-// person does so in Desk.
+// commands stay within the published limits of velocity, acceleration, jerk and range
+// (rate_limiter.h), because otherwise the arm's reflexes would stop it. The driver never recovers
+// from errors: a person does so in Desk.
 //
 // The wrench is estimated from the joint torques, without a sensor at the flange. It has a bias of
 // some newtons that changes with pose and friction, and it is worse in motion. Near a singular pose

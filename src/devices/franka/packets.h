@@ -19,7 +19,8 @@
 
 namespace predictor::fci {
 
-static_assert(std::endian::native == std::endian::little, "packets are copied as they lie");
+static_assert(std::endian::native == std::endian::little,
+              "packets are copied as they lie in memory");
 
 inline constexpr std::uint16_t kPort = 1337;
 inline constexpr std::uint16_t kPandaVersion = 5, kResearch3Version = 10;

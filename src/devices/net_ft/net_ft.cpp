@@ -192,7 +192,7 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
 }
 
 // A record that is further ahead is forged or damaged. If it were accepted as the newest, all later
-// ones would count as old. Records that were buffered for long are behind by their age.
+// ones would count as old. Records that were buffered for a long time lag behind by their age.
 bool NetFt::IsNext(std::uint32_t ahead) const noexcept {
   const double since = 1e-9 * static_cast<double>(now_ - taken_time_);
   return ahead <=

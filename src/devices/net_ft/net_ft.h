@@ -1,5 +1,5 @@
 // A force/torque sensor that streams RDT datagrams: ATI Net F/T and Axia, OnRobot HEX, OptoForce.
-// It was tested with a fake over the protocol and has never run on hardware.
+// It was tested with a fake sensor over the protocol and has never run on hardware.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ struct NetFtOptions {
 
 // Requests the stream and waits for the first record. The sensor's own bias is unchanged: this
 // program tares the sensor and records the bias. Throws DeviceError if the sensor is silent, if its
-// records have another size, if its status is an error, or if it does not support the rate.
+// records have the wrong size, if its status is an error, or if it does not support the rate.
 //
 // The age of a reading is computed from the records' own numbers, at their rate, relative to the
 // quickest recent record. The age of a record therefore includes its time in a queue, however

@@ -36,8 +36,8 @@ struct Packet {
   std::span<const std::byte> payload;  // valid until the parser receives more bytes
 };
 
-// Splits a stream into packets, however the bytes arrive. An invalid size or type is a permanent
-// error, because the next packet cannot be found. No heap.
+// Splits a stream into packets, in whatever pieces the bytes arrive. An invalid size or type is a
+// permanent error, because the next packet cannot be found. No heap.
 //
 //   parser.Filled(stream.Read(parser.Room()));
 //   while (parser.Next(&packet)) ...;

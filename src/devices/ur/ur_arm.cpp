@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kDeaf = 0.1;  // longest time for which our program may miss commands [s]
 constexpr double kStop = 0.5;  // longest duration of a stop [s]
-constexpr int kAnew = 3;  // after this many packages with an earlier time, the clock was set back
+constexpr int kAnew =
+    3;  // after this many packages with an earlier time, the clock counts as set back
 constexpr double kFresh = 0.02;  // an older package contains no information about this [s]
 constexpr double kPowerOff = 1;  // time in which a power-off request is executed, with margin [s]
 // Beyond the range of these arms' sensors; such a value is not a measurement.
@@ -113,7 +114,7 @@ class UrArm final : public Arm {
 
   static std::uint32_t Unsigned(std::int32_t x) noexcept { return static_cast<std::uint32_t>(x); }
 
-  // While it executes commands, its reported joints may be unreliable. It then comes to rest
+  // While the arm executes commands, its reported joints may be unreliable. It then comes to rest
   // together with the other arm, by the commands of the following stop, and is not moved again.
   bool MayFollow(const JointVector& v, std::uint64_t now) noexcept {
     if (!fault_.any()) stop_by_ = now + static_cast<std::uint64_t>(1e9 * kStop);

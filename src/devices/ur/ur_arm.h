@@ -1,6 +1,7 @@
-// A Universal Robots arm that is read and moved by RTDE (TCP 30004) and by our program on its
-// controller (ur_script.h). It supports the e-Series and later, and the CB3. It has never run on
-// hardware, only with our fake, which an independent client also drives.
+// A Universal Robots arm that is read and moved through RTDE (TCP 30004) and our program on its
+// controller (ur_script.h). It supports the e-Series and later, and the CB3. It has been tested
+// only with our fake controller, which an independent client also drives, and has never run on
+// hardware.
 #pragma once
 
 #include <memory>
@@ -33,7 +34,7 @@ struct UrOptions {
 // Throws DeviceError if there is no answer, if the version or a register is refused, if the arm
 // cannot move, if another program runs, or if ours does not start. `network` must outlive the arm.
 //
-// Velocities are sent every 2 ms to a controller of 500 Hz and every 4 ms to one of 125 Hz. The
+// Velocities are sent every 2 ms to a 500 Hz controller and every 4 ms to a 125 Hz controller. The
 // controller reads everything that arrives in a cycle and keeps the last value (RTDE guide), so it
 // receives a new counter in each cycle although its clock differs from ours. If no counter arrives,
 // the program on the controller brakes within facts().watchdog and ends. After a fault, zeros are

@@ -221,7 +221,7 @@ class Setup {
     if (SlowedDown(state))
       setup_.facts.remarks.push_back(
           "Its speed slider is at " + std::to_string(std::lround(100 * state.slider)) +
-          " %. Set it to 100 %; this program does not move the arm before.");
+          " %. Set it to 100 %; until then, this program does not move the arm.");
   }
 
   void CheckArm() {

@@ -10,8 +10,8 @@ namespace predictor {
 // older by the difference. The delay common to all packages cannot be observed.
 class DeviceClock {
  public:
-  // Allowed drift between the clocks: far more than that of quartz, far less than the changing
-  // delays of a network.
+  // Allowed drift between the clocks: far more than that of quartz clocks, far less than the
+  // changing delays of a network.
   static constexpr double kDrift = 5e-4;
 
   explicit DeviceClock(double drift = kDrift) : drift_(drift) {}
