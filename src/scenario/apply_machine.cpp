@@ -14,7 +14,7 @@
 namespace predictor {
 namespace {
 
-// The numbers of a field table without its groups, in its order.
+// The numbers in a field table, without its groups, in the table's order.
 struct Numbers {
   struct Number {
     std::string key;
@@ -38,7 +38,7 @@ std::vector<Numbers::Number> NumbersOf(Spec spec) {
   return numbers.list;
 }
 
-// A scenario's value `key` is looser than the machine's limit.
+// The message that a scenario's value `key` is looser than the machine's limit.
 std::string LooserThan(const Numbers::Number& limit, const std::string& key, double value,
                        bool least, const std::filesystem::path& machine) {
   const std::string unit = limit.unit.empty() ? "" : " " + limit.unit;
@@ -49,7 +49,7 @@ std::string LooserThan(const Numbers::Number& limit, const std::string& key, dou
          FormatNumber(limit.value) + ".";
 }
 
-// Each limit of a machine has the name of a value of the scenario's safety or rendering.
+// Each limit of a machine has the name of a value in the scenario's safety or rendering group.
 void RefuseLooser(const Machine& machine, const Scenario& s) {
   static const std::set<std::string> kMinima = {"stop_acceleration", "stop_jerk",
                                                 "security_distance", "joint_security"};
@@ -70,8 +70,8 @@ void RefuseLooser(const Machine& machine, const Scenario& s) {
   throw Located(InputError::At(key, key + " " + sentence), s);
 }
 
-// Late samples and ticks are counted in ticks, and the watchdog waits for several of them. With
-// slower ticks a stop would start later than its budget allows.
+// Lateness of samples and of ticks is measured in ticks; the watchdog trips only after several late
+// ticks. With slower ticks a stop would start later than its budget allows.
 void RequireRate(const Scenario& s) {
   constexpr double kRate = 1000;  // [Hz]
   if (s.rate != kRate)

@@ -187,7 +187,7 @@ void Checker::Operator() const {
   Embodied();
 }
 
-// An operator with a body needs one, and the body takes the place of some parameters of the hand.
+// An embodied operator needs a body, which takes the place of some parameters of the hand.
 void Checker::Embodied() const {
   const OperatorSpec& person = s_.operator_;
   if (!person.embodied) return;

@@ -6,8 +6,8 @@
 
 namespace predictor {
 
-// Reports contradictions between parts of a scenario whose single values are all allowed. `root` is
-// the tree from which it was read; it supplies the places.
+// Reports contradictions between parts of a scenario whose individual values are all allowed.
+// `root` is the tree from which it was read; it supplies the places.
 void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* problems);
 
 }  // namespace predictor

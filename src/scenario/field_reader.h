@@ -48,7 +48,7 @@ class FieldReader {
     const ParameterKind* kind = FindKind(kinds, word ? word->text : type);
     (*this)(key, type, rule);
     common(*this);
-    if (word == nullptr && rule.required) return NameAll(kinds);  // that is the problem
+    if (word == nullptr && rule.required) return NameAll(kinds);  // the missing key is reported
     if (kind != nullptr) {
       const std::unique_ptr<OwnParameters> own = kind->parameters();
       AnyVisitor visitor(this);
@@ -60,7 +60,7 @@ class FieldReader {
       return;
     }
     if (!naming_) parameters = Nothing();
-    for (const YamlNode& item : at_.node.items) {  // of a kind that is unknown here
+    for (const YamlNode& item : at_.node.items) {  // the parameters of an unknown kind
       if (item.key == key) continue;
       known_.push_back(item.key);
       if (!naming_) parameters.items.push_back(item);
@@ -188,8 +188,8 @@ class FieldReader {
   std::vector<std::string> known_;  // keys of this group
   std::vector<std::string> misspelt_;
   bool naming_ = false;                  // the keys are only being collected
-  const ParameterKind* kind_ = nullptr;  // whose own parameters are in this group
-  std::string kind_key_;                 // that names it
+  const ParameterKind* kind_ = nullptr;  // the kind whose own parameters are in this group
+  std::string kind_key_;                 // the key that names the kind
   ParameterKinds kinds_;
 };
 

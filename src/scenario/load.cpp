@@ -34,8 +34,8 @@ YamlNode ParseRoot(const std::string& text, const std::string& name) {
   return root;
 }
 
-// A word that names another kind leaves the parameters of the former one behind, as in a file that
-// extends.
+// An override that selects another kind removes the parameters of the former kind, as a file that
+// extends another one does.
 void ApplyToScenario(const std::string& assignment, YamlNode* root) {
   ApplyOverride(assignment, root);
   for (const KindGroup& group : KindGroups(root))

@@ -1,4 +1,5 @@
-// Finds the place in the file of a scenario's error that is detected only after models are loaded.
+// Finds the place in the file for an error of a scenario that is detected only after models are
+// loaded.
 #pragma once
 
 #include "core/error.h"

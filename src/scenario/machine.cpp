@@ -52,7 +52,7 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
     add(".arm.payload.inertia",
         "is physically impossible: the largest moment must be at most the sum of the two others. "
         "Measure the handle again.");
-  // Limits for the values that determine ages and frozen readings.
+  // Limits for the values that determine when samples are stale and readings are frozen.
   constexpr double kMinRate = 125;  // [Hz]
   for (const auto& [key, rate] : {std::pair{".arm.sample_rate", arm.arm.sample_rate},
                                   {".arm.sensor.sample_rate", arm.arm.sensor.sample_rate}})
@@ -76,7 +76,7 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
         "is " + std::to_string(arm.connection.first_register) + "; it must be 0 or 24.");
 }
 
-// The error in it, as a sentence that follows its key; "" without an error.
+// The error in the enabling input, as a sentence that follows its key; "" without an error.
 std::string EnablingRefusal(const EnablingInput& enabling, const Machine& machine) {
   const std::optional<MachineArm>& arm = machine.arm(enabling.arm == kHandNames[0] ? 0 : 1);
   if (!arm) return " is the " + enabling.arm + " arm, but the machine has no such arm.";

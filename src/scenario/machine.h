@@ -130,16 +130,16 @@ std::string HashOfLoop(const MachineArm& arm);
 // True if `arm.loop` was measured on this arm.
 bool IsLoopMeasured(const MachineArm& arm);
 // The arms of `scenario` whose velocity loop was not measured, with the remedy, one line each. For
-// them ApplyMachine removes the lead, which would be a guess.
+// these arms ApplyMachine removes the lead, which would be a guess.
 std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario);
-// The arms of `scenario` without a push test of their current form, with the remedy, one line each.
+// The arms of `scenario` without a push test in their current form, with the remedy, one line each.
 std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& scenario);
 // Throws InputError with the first of these lines, if any.
 void RequirePushTests(const Machine& machine, const Scenario& scenario);
 
 // Replaces the scenario's arms by the machine's. A scenario may tighten the machine's limits but
 // never loosen them, and its stop must keep the budget of real arms (90 ms, 13.5 mm from 0.25 m/s).
-// Otherwise throws InputError that names the key, also if the machine lacks an arm for a handle. If
+// Otherwise, or if the machine lacks an arm for a handle, throws InputError that names the key. If
 // a loop was not measured, the reference has no lead.
 void ApplyMachine(const Machine& machine, Scenario* scenario);
 

@@ -27,8 +27,9 @@ template <class V>
 void Fields(V& v, EnablingInput& s) {
   v("arm", s.arm, Required(Word("arm whose controller it is wired to", {"left", "right"})));
   v("digital_input", s.digital_input,
-    Required(
-        Number("", "UR: 0 … 7 standard, 8 … 15 configurable, 16 and 17 the tool's", From(0, 17))));
+    Required(Number(
+        "", "number of the input. UR: 0 … 7 standard, 8 … 15 configurable, 16 and 17 on the tool",
+        From(0, 17))));
 }
 
 template <class V>
@@ -46,10 +47,10 @@ void Fields(V& v, ArmConnection& s) {
 
 template <class V>
 void Fields(V& v, SensorConnection& s) {
-  v("make", s.make, Word("own: the arm's own measurement"));
-  v("host", s.host, Word("address of the sensor; own: none"));
+  v("make", s.make, Word("make of the sensor; own: the arm measures the wrench itself"));
+  v("host", s.host, Word("address of the sensor; none if make is own"));
   v("counts_per_force", s.counts_per_force,
-    Number("1/N", "of the sensor's configuration (ATI: cfgcpf; OnRobot: 10000)", Above(0, 1e9)));
+    Number("1/N", "from the sensor's configuration (ATI: cfgcpf; OnRobot: 10000)", Above(0, 1e9)));
   v("counts_per_torque", s.counts_per_torque,
     Number("1/(N·m)", "the same for torque (ATI: cfgcpt; OnRobot: 100000)", Above(0, 1e9)));
 }
@@ -57,9 +58,9 @@ void Fields(V& v, SensorConnection& s) {
 template <class V>
 void Fields(V& v, Commissioned& s) {
   v("push_test", s.push_test, Word("date of the successful push test"));
-  v("of", s.of, Word("hash of the arm's settings then; after a change, repeat the test"));
+  v("of", s.of, Word("hash of the arm's settings at that time; after a change, repeat the test"));
   v("loop", s.loop, Word("date when arm.loop was measured"));
-  v("loop_of", s.loop_of, Word("hash of arm.loop then; after a change, measure again"));
+  v("loop_of", s.loop_of, Word("hash of arm.loop at that time; after a change, measure again"));
 }
 
 template <class V>
@@ -73,36 +74,42 @@ void Fields(V& v, MachineArm& s) {
 
 template <class V>
 void Fields(V& v, MachineLimits& s) {
-  v("force", s.force, Number("N", "of a hand", Above(0, 200)));
-  v("torque", s.torque, Number("N·m", "of a hand", Above(0, 50)));
-  v("handle_speed", s.handle_speed, Number("m/s", "of a handle", Above(0, kMostHandleSpeed)));
-  v("handle_rotation_speed", s.handle_rotation_speed, Number("rad/s", "of a handle", Above(0, 3)));
+  v("force", s.force, Number("N", "force of a hand", Above(0, 200)));
+  v("torque", s.torque, Number("N·m", "torque of a hand", Above(0, 50)));
+  v("handle_speed", s.handle_speed, Number("m/s", "speed of a handle", Above(0, kMostHandleSpeed)));
+  v("handle_rotation_speed", s.handle_rotation_speed,
+    Number("rad/s", "rotation speed of a handle", Above(0, 3)));
   v("stop_acceleration", s.stop_acceleration,
-    Number("m/s²", "at the handles while stopping, at least", Above(0, 10)));
-  v("stop_jerk", s.stop_jerk, Number("m/s³", "at the handles while stopping", Above(0, 1000)));
-  v("align_speed", s.align_speed, Number("m/s", "while aligning", Above(0, 0.1)));
-  v("align_tolerance", s.align_tolerance, Number("m", "to become ARMED", Above(0, 0.01)));
+    Number("m/s²", "minimum deceleration of the handles in a stop", Above(0, 10)));
+  v("stop_jerk", s.stop_jerk,
+    Number("m/s³", "minimum jerk of the handles in a stop", Above(0, 1000)));
+  v("align_speed", s.align_speed, Number("m/s", "speed of the handles in ALIGN", Above(0, 0.1)));
+  v("align_tolerance", s.align_tolerance,
+    Number("m", "largest distance from the virtual handle for ARMED", Above(0, 0.01)));
   v("align_tolerance_rotation", s.align_tolerance_rotation,
-    Number("rad", "to become ARMED", Above(0, 0.1)));
-  v("tracking", s.tracking, Number("m", "distance of real and virtual handle", Above(0, 0.1)));
+    Number("rad", "largest angle from the virtual handle for ARMED", Above(0, 0.1)));
+  v("tracking", s.tracking, Number("m", "distance between real and virtual handle", Above(0, 0.1)));
   v("tracking_rotation", s.tracking_rotation,
-    Number("rad", "angle of real and virtual handle", Above(0, 0.7)));
-  v("relative_slack", s.relative_slack, Number("m/s", "of the rigid constraint", Above(0, 0.02)));
+    Number("rad", "angle between real and virtual handle", Above(0, 0.7)));
+  v("relative_slack", s.relative_slack,
+    Number("m/s", "slack of the rigid constraint", Above(0, 0.02)));
   v("relative_slack_rotation", s.relative_slack_rotation,
-    Number("rad/s", "of the rigid constraint", Above(0, 0.1)));
-  v("relative_slack_time", s.relative_slack_time, Number("s", "of that slack", From(0, 0.2)));
+    Number("rad/s", "slack of the rigid constraint", Above(0, 0.1)));
+  v("relative_slack_time", s.relative_slack_time,
+    Number("s", "time for which the slack may exceed its limit", From(0, 0.2)));
   v("coupling", s.coupling, Number("N", "force on a virtual handle", Above(0, 200)));
   v("coupling_torque", s.coupling_torque,
     Number("N·m", "torque on a virtual handle", Above(0, 50)));
-  v("max_age", s.max_age, Number("s", "of a sample", Above(0, 0.01)));
+  v("max_age", s.max_age, Number("s", "age of a sample", Above(0, 0.01)));
   v("frozen_samples", s.frozen_samples,
-    Number("", "identical readings of a sensor that has noise", From(2, 500)));
-  v("relative_kp", s.relative_kp, Number("1/s", "of the rigid constraint", From(0, 5)));
-  v("relative_ko", s.relative_ko, Number("1/s", "of the rigid constraint", From(0, 5)));
+    Number("", "number of identical readings of a sensor that has noise", From(2, 500)));
+  v("relative_kp", s.relative_kp, Number("1/s", "gain of the rigid constraint", From(0, 5)));
+  v("relative_ko", s.relative_ko,
+    Number("1/s", "rotational gain of the rigid constraint", From(0, 5)));
   v("security_distance", s.security_distance,
-    Number("m", "at which link pairs stop, at least", From(0.05, 10)));
+    Number("m", "minimum distance at which link pairs stop", From(0.05, 10)));
   v("joint_security", s.joint_security,
-    Number("rad", "distance from a limit at which joints stop, at least", From(0.005, 1)));
+    Number("rad", "minimum distance from a limit at which joints stop", From(0.005, 1)));
 }
 
 template <class V>
@@ -110,7 +117,7 @@ void Fields(V& v, Machine& s) {
   Rule version = Required(Number("", "version of this format", From(1, 1)));
   version.steps = {1};
   v("predictor_machine", s.predictor_machine, version);
-  v("name", s.name, Word("of the machine, for people"));
+  v("name", s.name, Word("name of the machine, for people"));
   v.Group("arms", "the arms that hold the real handles", [&](V& g) {
     g("left", s.left, Part("left arm; null: absent"));
     g("right", s.right, Part("right arm; null: absent"));

@@ -124,15 +124,15 @@ struct KindGroup {
   ParameterKinds kinds;
   YamlNode* group;
 };
-// Removes from a group what a file, not an override, gives for other kinds. Returns whether there
-// was any.
+// Removes from a group the parameters of other kinds that a file, not an override, gives. Returns
+// whether there were any.
 bool RemoveForeignParameters(const KindGroup& group);
 
 // ---- parts that are all present
 // ------------------------------------------------------------------
 
-// Several parts have a group each, with their name, in `all` (RenderingSpec::parts). `path`: that
-// of the groups.
+// Each of several parts has a group with its name in `all` (RenderingSpec::parts). `path`: path of
+// these groups.
 std::unique_ptr<OwnParameters> ParametersOfPart(const ParameterKind& part, const YamlNode& all,
                                                 const std::string& path, Problems* problems);
 void SetPart(const ParameterKind& part, OwnParameters* parameters, YamlNode* all);
@@ -156,7 +156,7 @@ void WalkParts(V& v, ParameterKinds parts, YamlNode* all) {
 // -------------------------------------------------------------------
 
 // The controllers of the virtual cobot. The simulation declares them when the program starts. A
-// program without it has none, and keeps their parameters as they are given.
+// program without the simulation has none, and keeps the parameters as given.
 ParameterKinds Controllers() noexcept;
 void DeclareControllers(ParameterKinds kinds) noexcept;
 

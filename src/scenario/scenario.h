@@ -324,7 +324,7 @@ struct BodySpec {
   std::optional<double> trunk;              // middle of the hip joints to the vertebra C7 [m]
   std::optional<double> thigh;              // hip to knee joint [m]
   std::optional<double> shank;              // knee to ankle joint [m]
-  // Strength as a multiple of the mean of the sex: elbow flexion and extension, shoulder flexion
+  // Strength as a multiple of the mean for the sex: elbow flexion and extension, shoulder flexion
   // and extension.
   std::array<double, 4> strength = {1, 1, 1, 1};
   double stiffness = 1;  // of the arm's joints, as a multiple of the published mean
@@ -373,8 +373,8 @@ struct RenderingSpec {
   // Pairs of links that are kept apart. A pair names a link of the left arm and one of the right
   // arm. A link of a specific arm is given as left:LINK or right:LINK. Empty: the two elbows.
   std::vector<std::array<std::string, 2>> link_pairs;
-  // Own parameters of tasks and limits, in a group each with their name (own_parameters.h). Missing
-  // ones have their defaults.
+  // Own parameters of tasks and limits, each part in a group with its name (own_parameters.h).
+  // Missing ones have their defaults.
   YamlNode parts;
 };
 

@@ -259,7 +259,7 @@ std::string ScenarioSchema() {
       {"type", "string"},
       {"minLength", 1},
       {"description",
-       "scenario whose keys count where this file has none; in this folder or below"}};
+       "scenario whose keys apply where this file gives none; in this folder or below"}};
   schema["anyOf"] = Json::array({{{"required", {kExtendsKey}}}, std::move(whole)});
   return schema.dump(2) + "\n";
 }

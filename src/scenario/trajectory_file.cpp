@@ -16,7 +16,7 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
-constexpr std::size_t kMaxBytes = 1u << 20;  // what ReadYamlText reads, less one
+constexpr std::size_t kMaxBytes = 1u << 20;  // one byte less than ReadYamlText reads
 constexpr const char* kFileKey = "trajectory_file";
 constexpr const char* kListKey = "trajectory";
 constexpr std::string_view kPosition = "time,x,y,z", kPose = "time,x,y,z,roll,pitch,yaw";

@@ -1,5 +1,5 @@
-// The note that a controller's library passed its trial (`predictor trial`). It lies beside the
-// library, and holds only for the same bytes.
+// The note that a controller's library passed its trial (`predictor trial`). It is stored beside
+// the library and is valid only for the same bytes.
 #pragma once
 
 #include <filesystem>

@@ -64,11 +64,11 @@ constexpr ActionKind ActionKindOf(const char* name, const char* doc,
           }};
 }
 
-// Rules of parameters that several actions have.
-inline Rule DurationRule(const char* doc = "how long it takes") {
+// Rules for parameters that several actions share.
+inline Rule DurationRule(const char* doc = "duration of the action") {
   return Number("s", doc, Above(0, 86400));
 }
-inline Rule HandRule() { return Word("which hand", {"left", "right", "both"}); }
+inline Rule HandRule() { return Word("hand or hands that act", {"left", "right", "both"}); }
 // The value of a parameter without which the action does nothing. Throws InputError if it is zero.
 Vector3 NotZero(const char* key, const Vector3& value);
 // True if "left", "right" or "both" concerns this hand.

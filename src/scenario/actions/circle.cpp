@@ -22,9 +22,9 @@ struct CircleParameters {
 
 template <class V>
 void Fields(V& v, CircleParameters& p) {
-  v("radius", p.radius, Number("m", "of the circle", Above(0, 10)));
-  v("period", p.period, Number("s", "one cycle", Above(0, 3600)));
-  v("cycles", p.cycles, Number("", "how many", Above(0, 1e5)));
+  v("radius", p.radius, Number("m", "radius of the circle", Above(0, 10)));
+  v("period", p.period, Number("s", "duration of one cycle", Above(0, 3600)));
+  v("cycles", p.cycles, Number("", "number of cycles", Above(0, 1e5)));
 }
 
 double Ramp(const CircleParameters& p) { return std::min(kMaxRamp, p.cycles * p.period); }

@@ -18,9 +18,10 @@ struct PushParameters {
 
 template <class V>
 void Fields(V& v, PushParameters& p) {
-  v("duration", p.duration, DurationRule("how long the force stays"));
+  v("duration", p.duration, DurationRule("time for which the force is constant"));
   v("force", p.force, Required(Number("N", "feed-forward force of each hand, in W", Within(1000))));
-  v("rise_time", p.rise_time, Number("s", "in which the force rises and falls", Above(0, 10)));
+  v("rise_time", p.rise_time,
+    Number("s", "time in which the force rises, and in which it falls", Above(0, 10)));
   v("hand", p.hand, HandRule());
 }
 
