@@ -243,7 +243,7 @@ void RecordingReader::Impl::FindOthers() {
   others_found = true;
 }
 
-// ---- the whole of it ----------------------------------------------------------------------------
+// ---- the whole file -----------------------------------------------------------------------------
 
 // The message indexes after a chunk give the positions of its messages.
 void RecordingReader::Impl::CheckIndexes(const mcap::ChunkIndex& index) const {
@@ -272,7 +272,7 @@ void RecordingReader::Impl::CheckIndexes(const mcap::ChunkIndex& index) const {
     file.Fail(at, "The index of the messages here is wrong.");
 }
 
-// ---- what others see ----------------------------------------------------------------------------
+// ---- the interface ------------------------------------------------------------------------------
 
 RecordingReader::RecordingReader(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
 RecordingReader::~RecordingReader() = default;

@@ -1,4 +1,4 @@
-// Repairs a truncated or damaged recording into a new one.
+// Repairs a truncated or damaged recording and writes the result to a new file.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ struct RecoverReport {
   std::uint64_t ticks = 0;           // number of ticks kept
   std::uint64_t chunks = 0;          // number of complete chunks kept
   std::uint64_t damaged_chunks = 0;  // including truncated ones
-  std::uint64_t salvaged_ticks = 0;  // those of `ticks` from damaged chunks
+  std::uint64_t salvaged_ticks = 0;  // number of `ticks` that come from damaged chunks
   std::uint64_t lost_ticks = 0;  // ticks lost between kept ones; the number after the last kept one
                                  // is unknown
   std::uint64_t snapshots = 0, events = 0;  // numbers kept
