@@ -12,7 +12,7 @@ void AddCheck(CLI::App* app, Request* r) {
                                [r] { return CheckCommand(r->scenario, r->search, r->map); });
   AddScenario(check, &r->scenario);
   AddOption(check, "Scenario", "--machine", &r->scenario.machine, "FILE",
-            "Check on the real arms of this machine file");
+            "Check with the real arms of this machine file");
   check
       ->add_flag("--search,!--no-search", r->search,
                  "Search for better positions of the arms' bases [default: on]")
@@ -119,22 +119,22 @@ void AddContinue(CLI::App* app, Request* r) {
   AddOption(go_on, "Operator", "--arm", &o->arm, "FILE.json",
             "Mean and covariance of the arm's impedance [default: a prior around the scenario's "
             "hand]");
-  AddOption(go_on, "Operator", "--draws", &o->draws, "NUMBER", "Possible operators")
+  AddOption(go_on, "Operator", "--draws", &o->draws, "NUMBER", "Number of possible operators")
       ->check(CLI::Range(20, 10000))
       ->capture_default_str();
   AddOption(go_on, "Operator", "--seed", &o->seed, "NUMBER",
-            "Seed of the possible operators; the same seed gives the same ones for every run")
+            "Seed of the possible operators; the same seed gives the same operators for every run")
       ->capture_default_str();
-  AddOption(go_on, "Operator", "--horizon", &o->horizon, "SECONDS", "Time after the stop")
+  AddOption(go_on, "Operator", "--horizon", &o->horizon, "SECONDS",
+            "Time to predict after the stop")
       ->check(CLI::Range(0.1, 10.0))
       ->capture_default_str();
   AddOption(go_on, "Output", "-o,--output", &o->page, "FILE.html",
             "Page to write [default: NAME.continued.html]");
   AddOutput(go_on, o);
   go_on->footer(
-      "Only a stop by a limit of force, torque, coupling or tracking can be left out, and only of "
-      "a "
-      "run with the simulated rig.\n"
+      "Only a stop by a limit of force, torque, coupling or tracking can be left out, and only in "
+      "a run with the simulated rig.\n"
       "Example:\n  predictor continue runs/push_2026-01-31_14-05-09.mcap --json continued.json\n");
 }
 
@@ -153,7 +153,7 @@ void AddVerify(CLI::App* app, Request* r) {
 void AddTrial(CLI::App* app, Request* r) {
   CLI::App* trial =
       AddCommand(app, kAnalysisGroup, "trial",
-                 "Try a controller's library on a recorded run, before it drives one", r,
+                 "Try a controller's library on a recorded run before a real run uses it", r,
                  [r] { return TrialCommand(r->scenario, r->recording.recording); });
   AddScenario(trial, &r->scenario);
   AddRecording(trial, &r->recording.recording);
@@ -190,13 +190,13 @@ void AddIdentify(CLI::App* app, Request* r) {
 
 void AddHazards(CLI::App* app, Request* r) {
   HazardsCommandOptions* o = &r->hazards;
-  CLI::App* hazards = AddCommand(
-      app, kAnalysisGroup, "hazards",
-      "Study what simulated operators feel when hazards meet them, with several controllers", r,
-      [o] { return HazardsCommand(*o); });
+  CLI::App* hazards =
+      AddCommand(app, kAnalysisGroup, "hazards",
+                 "Study what simulated operators feel when hazards occur, with several controllers",
+                 r, [o] { return HazardsCommand(*o); });
   hazards->add_option("scenarios", o->scenarios, "Scenario files (YAML)")->required();
   AddOption(hazards, "Study", "--seeds", &o->seeds, "NUMBER",
-            "Runs of each scenario, controller and hazard")
+            "Number of runs of each scenario, controller and hazard")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   AddOption(hazards, "Output", "-o,--output", &o->folder, "FOLDER",
@@ -210,10 +210,10 @@ void AddPopulation(CLI::App* app, Request* r) {
   PopulationCommandOptions* o = &r->population;
   CLI::App* population = AddCommand(
       app, kAnalysisGroup, "population",
-      "Compare designs by what they do to the same simulated people, each on an own body", r,
-      [o] { return PopulationCommand(*o); });
+      "Compare the effects of designs on the same simulated people, each with a body of their own",
+      r, [o] { return PopulationCommand(*o); });
   population->add_option("scenarios", o->scenarios, "Scenario files (YAML)")->required();
-  AddOption(population, "Study", "--persons", &o->persons, "NUMBER", "Simulated people")
+  AddOption(population, "Study", "--persons", &o->persons, "NUMBER", "Number of simulated people")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   AddOption(population, "Study", "--heights", &o->heights, "M,M,...",
@@ -226,7 +226,7 @@ void AddPopulation(CLI::App* app, Request* r) {
             "Seed of the people: the same number draws the same people")
       ->capture_default_str();
   AddOption(population, "Study", "--jobs", &o->workers, "NUMBER",
-            "Runs at the same time [default: the number of cores]")
+            "Number of simultaneous runs [default: the number of cores]")
       ->check(CLI::Range(1, 1024));
   AddOption(population, "Output", "-o,--output", &o->folder, "FOLDER",
             "Folder for the results; an interrupted study continues in it")

@@ -72,7 +72,7 @@ struct ServeOptions {
   // while a page shows the results.
   std::optional<bool> stay;
   viewer::ViewerOptions page;
-  bool evaluation = true;  // the person is judged live, if the scenario says enough
+  bool evaluation = true;  // the person is judged live, if the scenario describes the person
   bool ros_tcp = false;
   ros_tcp::RosTcpOptions ros;
 };

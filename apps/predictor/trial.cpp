@@ -57,7 +57,7 @@ std::string TextOf(const TrialFigures& f) {
              1e6 * f.longest_cpu);
   if (f.allocating > 0)
     AppendLine(&text,
-               "Unfit: it takes memory from the heap in %llu steps, first at %.3f s. Take all "
+               "Unfit: it allocates heap memory in %llu steps, first at %.3f s. Allocate all "
                "memory in create.",
                static_cast<unsigned long long>(f.allocating), f.first_allocation);
   if (f.not_finite > 0)
@@ -65,7 +65,7 @@ std::string TextOf(const TrialFigures& f) {
                static_cast<unsigned long long>(f.not_finite));
   if (f.p99 > f.kMaxTime || f.longest_cpu > f.kMaxCpuTime)
     AppendLine(&text,
-               "Unfit: it takes too long: at most %.0f µs in 99 %% of the steps, and at most %.0f "
+               "Unfit: it takes too long. The limits are %.0f µs in 99 %% of the steps, and %.0f "
                "µs of CPU time.",
                1e6 * f.kMaxTime, 1e6 * f.kMaxCpuTime);
   return text;

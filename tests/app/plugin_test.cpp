@@ -97,7 +97,7 @@ TEST_F(FailingController, ThatAllocatesFailsItsTrial) {
       << said_;
   EXPECT_TRUE(fs::exists(mine / "mine.so.trial")) << said_;
   EXPECT_EQ(Do({"trial", Scenario("box_9kg"), file_, "--set", library("mine.so")}), 1) << said_;
-  EXPECT_NE(said_.find("it takes memory from the heap in"), std::string::npos) << said_;
+  EXPECT_NE(said_.find("it allocates heap memory in"), std::string::npos) << said_;
   EXPECT_NE(said_.find("first at 2.00"), std::string::npos) << said_;
   EXPECT_FALSE(fs::exists(mine / "mine.so.trial"));
   EXPECT_EQ(Do({"trial", Scenario("box_9kg"), file_}), 2);
