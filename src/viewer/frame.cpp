@@ -106,10 +106,11 @@ void SendRecord(const TickRecord& record, const Additions& added, Sink sink) {
   visitor.Flag({"", "", "", "the run is recorded", "recording"}, added.recording);
   for (std::size_t h = 0; h < kHands; ++h)
     visitor.Within(h == 0 ? "left_" : "right_", [&](auto& inner) {
-      inner.Values({"", "N, N m", "", "largest force and torque since the state before", "peak"},
+      inner.Values({"", "N, N m", "", "largest force and torque since the previous state", "peak"},
                    added.peaks.hands[h]);
-      inner.Flag({"", "", "", "the arm reports power although it was to be cut", "keeps_power"},
-                 added.keeps_power[h]);
+      inner.Flag(
+          {"", "", "", "the arm reports power although it should have been cut", "keeps_power"},
+          added.keeps_power[h]);
     });
 }
 

@@ -362,8 +362,8 @@ void Hub::Tick() {
   TellHeadsets();
 }
 
-// Why no seat is available, or null. A single client or all lookers together cannot keep others
-// out.
+// Why no seat is available, or null. A single client or all clients that only look together cannot
+// keep others out.
 const char* Hub::NoSeatFor(const Admission::Grant& grant) const {
   const auto same = [&](const Client* c) { return c->admitted() && c->token() == grant.token; };
   if (static_cast<std::size_t>(std::count_if(sessions_.begin(), sessions_.end(), same)) >=
@@ -427,8 +427,8 @@ void Hub::TellLeases() {
   Tell(LeasesText(leases_, clients()));
 }
 
-// Called before any query of the leases. A client that lost a lease by silence is notified, and so
-// are the clients that may now take it.
+// Called before any query of the leases. A client that lost a lease through silence is notified,
+// and so are the clients that may now take it.
 void Hub::ExpireLeases() {
   if (leases_.Expire(clock_())) TellLeases();
 }

@@ -37,7 +37,7 @@ struct AppSetup {
   std::vector<std::string> origins;              // additional origins, for Foxglove only
   const EvaluationBoard* states =
       nullptr;                 // of the person; borrowed; null: the person is not judged
-  std::string why_not_judged;  // without states; a sentence
+  std::string why_not_judged;  // shown if there are no states; a sentence
 };
 
 // Checks a request's Host header by RFC 9112, section 3.2. Status 400: there is not exactly one

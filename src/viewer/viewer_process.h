@@ -43,7 +43,8 @@ struct ViewerOptions {
   std::string results;
   std::filesystem::path report;            // of that run, an HTML page; empty: no report
   Vector3 object_start = Vector3::Zero();  // O in W at the start of the run [m]
-  std::string why_not_judged;  // why the person is not judged, as a sentence; used without states
+  std::string
+      why_not_judged;  // why the person is not judged, as a sentence; used if there are no states
 };
 
 // $XDG_STATE_HOME/predictor, or ~/.local/state/predictor. Throws InputError if the user has no home
@@ -68,8 +69,7 @@ class ViewerProcess {
                 const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Tell tell,
                 const Shared<EvaluationBoard>* states = nullptr);
 
-  // The page's address with the code that admits; with real arms, it changes when the viewer
-  // restarts.
+  // The page's address with the access code; with real arms, it changes when the viewer restarts.
   std::string url() const;
   std::uint16_t port() const { return process_.port(); }
   std::string fingerprint() const;            // of the certificate; "" without TLS

@@ -109,8 +109,8 @@ export interface HandQuantities {
   armQ: number[];  // [rad] measured
   sensorAge: number;  // [s] of the sensor's sample
   manipulability: number;  // translational
-  peak: number[];  // [N, N m] largest force and torque since the state before
-  keepsPower: boolean;  // the arm reports power although it was to be cut
+  peak: number[];  // [N, N m] largest force and torque since the previous state
+  keepsPower: boolean;  // the arm reports power although it should have been cut
 }
 
 export const kHandFields = {
