@@ -60,7 +60,7 @@ class Emulator {
   // Requests an event for the next tick; from any thread, without waiting. The record shows whether
   // it was refused, and why.
   void Request(RunEvent event) noexcept;
-  // Brings the arms to rest like a stop, but without a fault. May be called from any thread.
+  // Brings the arms to rest as a stop does, but without a fault. May be called from any thread.
   void RequestEnd() noexcept;
 
   // Saves the complete state between two ticks. An emulator of the same scenario that loads it

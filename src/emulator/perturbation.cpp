@@ -12,7 +12,8 @@
 namespace predictor {
 namespace {
 
-constexpr double kHolding = 0.5;  // force of a hand that holds its handle, now and smoothed [N]
+constexpr double kHolding =
+    0.5;  // least force of a hand that holds its handle, now and smoothed [N]
 constexpr double kSmoothing = 2;  // cutoff of that smoothing [Hz]
 
 std::array<Vector3, 2> PlaneOf(const Vector3& normal) {
@@ -81,7 +82,8 @@ bool Perturbation::MayBegin(const PerturbationInput& input) const noexcept {
   return true;
 }
 
-// Draws a direction that has not been used since all had been, so that the directions are balanced.
+// Draws a direction that has not been used in the present round, so that all directions are used
+// equally often.
 void Perturbation::Begin() noexcept {
   const int count = spec_->directions;
   if (left_ == 0) {

@@ -14,7 +14,7 @@
 namespace predictor {
 
 // A motion along a line with continuous position, velocity and acceleration that ends at rest: a
-// polynomial of fifth order, from rest the one of minimum jerk (Flash & Hogan 1985).
+// polynomial of fifth order, which has minimum jerk if it starts from rest (Flash & Hogan 1985).
 class QuinticMotion {
  public:
   struct Point {
@@ -35,7 +35,7 @@ class QuinticMotion {
   double goal_ = 0, duration_ = 1;
 };
 
-// What decides whether a displacement may begin or must be taken back.
+// The conditions that decide whether a displacement may begin or must be taken back.
 struct PerturbationInput {
   double run_time = 0;  // [s]
   Hands present;
@@ -75,7 +75,7 @@ class Perturbation {
   std::array<Vector3, 2> plane_ = {Vector3::UnitX(), Vector3::UnitY()};  // its axes
 
   RandomStream random_;
-  // The directions not yet used since all had been: the last `left_` of these numbers.
+  // The numbers of the directions; the last `left_` of them have not been used in this round.
   std::array<std::uint8_t, 16> order_{};
   int left_ = 0;
   Phase phase_ = Phase::kWait;
@@ -83,7 +83,7 @@ class Perturbation {
   double earliest_ = 0;                   // start of the next displacement, run time [s]
   std::array<double, kHands> load_ = {};  // smoothed force of the hands [N]
   Vector3 direction_ = Vector3::UnitX();  // of the present displacement
-  QuinticMotion motion_;                  // along it
+  QuinticMotion motion_;                  // along direction_
   QuinticMotion::Point now_;
 };
 

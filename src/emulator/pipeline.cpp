@@ -147,7 +147,7 @@ std::array<RenderArm, kHands> Pipeline::View() const noexcept {
   return view;
 }
 
-// Outside RUN, a stop or the alignment moves the arms alone.
+// Outside RUN there is no displacement: only a stop or the alignment moves the arms.
 void Pipeline::Perturb(const TickPlan& plan, TickData* data) noexcept {
   data->perturbation.setZero();
   if (!perturbation_ || plan.state != RunState::kRun || !plan.time_passes) return;
