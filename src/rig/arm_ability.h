@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// The share, 0 to 1, of a load that keeps at_rest + share · load within lower ... upper. If at_rest
-// is outside, the whole load if it brings the value back, else nothing.
+// The largest share, 0 to 1, of a load for which at_rest + share · load stays within lower ...
+// upper. If at_rest is outside: 1 if the load brings the value back, otherwise 0.
 inline double LargestShare(double at_rest, double load, double lower, double upper) {
   if (load == 0) return 1;
   return std::clamp(((load > 0 ? upper : lower) - at_rest) / load, 0.0, 1.0);
@@ -36,7 +36,7 @@ struct ArmAbility {
   Matrix3 stiffness = Matrix3::Zero();  // of the hand, reflexes included [N/m]
   Vector3 shoulder = Vector3::Zero();   // [m]
   std::array<JointAbility, kJudgedJoints> joints;
-  double capacity = 1;  // strength that fatigue leaves, as a share; of the weaker joint
+  double capacity = 1;  // share of strength that fatigue leaves, of the weaker joint
 
   template <class A>
   void Archive(A& a) {
@@ -44,7 +44,7 @@ struct ArmAbility {
   }
 };
 
-// The share of the force that the joints are strong enough for.
+// The share of the force for which the joints are strong enough.
 inline double StrengthShare(const ArmAbility& arm, const Vector3& F) {
   double share = 1;
   for (const JointAbility& joint : arm.joints)
@@ -53,7 +53,7 @@ inline double StrengthShare(const ArmAbility& arm, const Vector3& F) {
   return share;
 }
 
-// The place nearest to p that is within `shortest` to `longest` of the shoulder [m].
+// The point nearest to p whose distance from the shoulder is between `shortest` and `longest` [m].
 inline Vector3 WithinReach(const Vector3& p, const Vector3& shoulder, double shortest,
                            double longest) {
   const Vector3 arm = p - shoulder;

@@ -14,8 +14,9 @@ struct ArmPoints {
 
 // An arm as three joints that together move the hand in all directions: the shoulder and the elbow
 // turn about the normal of the plane through the three points, and the shoulder turns about an axis
-// of that plane, across the line to the hand. A rotation about that line itself (the swivel) does
-// not move the hand. In the order of the rows and columns below: lateral, shoulder, elbow.
+// in that plane, perpendicular to the line to the hand. A rotation about that line itself (the
+// swivel) does not move the hand. In the order of the rows and columns below: lateral, shoulder,
+// elbow.
 struct ArmAxes {
   Vector3 lateral, normal;  // unit vectors; of a straight arm, any normal
 };
@@ -39,7 +40,8 @@ Matrix3 HandStiffness(const ArmPoints& arm, const Matrix3& joint_stiffness, cons
 inline constexpr double kMinJointStiffness = 1;                            // [N·m/rad] (D)
 inline constexpr double kMinHandStiffness = 50, kMaxHandStiffness = 1000;  // [N/m]
 
-// D = 2 ζ √M √K [N·s/m], the matrix root: the damping ratio is ζ along each principal direction.
+// D = 2 ζ √M √K [N·s/m], with matrix square roots: the damping ratio is ζ along each principal
+// direction.
 Matrix3 HandDamping(const Matrix3& stiffness, double mass, double damping_ratio);
 
 }  // namespace predictor

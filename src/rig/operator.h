@@ -1,4 +1,4 @@
-// The person at the handles, simulated: hands as delayed impedances that follow a script.
+// The simulated person at the handles: hands as delayed impedances that follow a script.
 #pragma once
 
 #include <array>

@@ -13,7 +13,7 @@ using ergonomics::FatigueJoint;
 using ergonomics::StrengthDirection;
 using person::ArmJoint;
 
-constexpr int kFirstUpdates = 4;       // of the posture at once when a run begins
+constexpr int kFirstUpdates = 4;       // of the posture, all at once when a run begins
 constexpr double kMinCapacity = 0.05;  // so that noise stays finite (D)
 constexpr FatigueJoint kTires[kJudgedJoints] = {FatigueJoint::kElbow, FatigueJoint::kShoulder};
 constexpr ArmJoint kJoints[kJudgedJoints] = {ArmJoint::kElbowFlexion, ArmJoint::kShoulderFlexion};
@@ -153,7 +153,7 @@ void OperatorBody::UpdateStiffness(int hand, const person::Placement& at) noexce
   const ArmPoints points = {at.p[shoulder], at.p[elbow], GripOf(hand, at)};
   const ArmAxes axes = AxesOf(points);
   // The torques that balance the hand's wrench. The stiffness was measured with a supported arm, so
-  // those that carry the arm do not count.
+  // the torques that carry the arm do not count.
   const Vector3 force = q_WS.conjugate() * exerted_[At(hand)].head<3>();
   const Vector3 moment = q_WS.conjugate() * exerted_[At(hand)].tail<3>();
   const auto about = [&](std::size_t joint) -> Vector3 {

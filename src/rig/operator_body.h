@@ -16,8 +16,8 @@
 
 namespace predictor {
 
-// The posture follows the handles that are held, kPosturePeriod apart; between, the stiffness
-// approaches its new value with kStiffnessTime.
+// The posture is computed from the held handles every kPosturePeriod. In between, the stiffness
+// approaches its new value with the time constant kStiffnessTime.
 class OperatorBody {
  public:
   static constexpr double kPosturePeriod = 0.04;  // [s]
@@ -26,7 +26,7 @@ class OperatorBody {
   // The scenario has a body and a stance. Throws InputError if no adult has such a body.
   explicit OperatorBody(const Scenario& scenario);
 
-  // A rested person (but for body.fatigue) in a comfortable posture.
+  // A rested person (except for body.fatigue) in a comfortable posture.
   void Reset() noexcept;
   // Advances by dt [s]. `holds`: the hands that hold their handles.
   void Step(const std::array<FrameMotion, kHands>& handle, const std::array<bool, kHands>& holds,
@@ -34,10 +34,10 @@ class OperatorBody {
 
   const ArmAbility& arm(int hand) const { return arms_[static_cast<std::size_t>(hand)]; }
   const Standing& standing() const { return standing_; }
-  // The place nearest to p that the hand reaches from the present shoulder.
+  // The point nearest to p that the hand can reach from the present position of the shoulder.
   Vector3 Reachable(int hand, const Vector3& p) const noexcept;
-  // Reduces each hand's force on its handle at p, in W, to what the joints are strong enough for,
-  // then the horizontal parts of all to what the person can exert without falling.
+  // Reduces each hand's force on its handle at p, in W, to what the joints can exert, then the
+  // horizontal parts of all forces to what the person can exert without falling.
   void LimitForces(const std::array<FrameMotion, kHands>& handle,
                    std::array<Vector3, kHands>* forces) const noexcept;
   // The wrenches that the hands exert, by which muscles stiffen and tire.
@@ -49,7 +49,7 @@ class OperatorBody {
   }
 
  private:
-  static constexpr int kMaxSteps = 1 << 16;  // in one period, of a saved state
+  static constexpr int kMaxSteps = 1 << 16;  // limit for a saved state, per period
   // Fatigue of the joints of one arm, in the order of ArmAbility::joints.
   using Muscles = std::array<ergonomics::Compartments, kJudgedJoints>;
 

@@ -31,7 +31,7 @@ class VirtualOperator final : public Operator {
   void RunScript(const OperatorInput& input, const Pose& X_WO) noexcept;
   void Anchor(const OperatorInput& input, const Pose& X_WO) noexcept;
   HandGoal Goal(int hand, const OperatorInput& input, const Vector3& seen) const noexcept;
-  // Brings the goal to a place that the hand reaches.
+  // Moves the goal to a point that the hand can reach.
   void Reach(int hand, HandGoal* goal) const noexcept;
   void StepBody(const OperatorInput& input) noexcept;
   void LimitMuscles(const OperatorInput& input, std::array<Wrench, kHands>* wrenches) noexcept;
@@ -155,7 +155,7 @@ void VirtualOperator::Reach(int hand, HandGoal* goal) const noexcept {
   const Vector3 missing = goal->X_WH.p - p;
   const double distance = missing.norm();
   if (!(distance > 0)) return;
-  // The reference rests along the direction in which it is out of reach.
+  // The reference must not move further out of reach.
   const Vector3 away = missing / distance;
   goal->V_WH.head<3>() -= away * std::max(0.0, away.dot(goal->V_WH.head<3>()));
   goal->X_WH.p = p;
