@@ -22,7 +22,7 @@ JointVector PostureOf(const std::vector<double>& posture, const RobotModel& mode
 void CheckPostureUnits(const YamlNode& tree, const RobotModel& model, const std::string& key);
 
 // Loads the model of an arm and checks its links and posture. `base`: its pose in the frame in
-// which the model shall compute, which is W for an emulation (Scenario::X_WB) and the rig's frame R
+// which the model is to compute, which is W for an emulation (Scenario::X_WB) and the rig's frame R
 // for commissioning (BaseSpec::X_RB). `folder`: start of relative paths. Throws InputError at the
 // invalid key within `key` ("device.arms.left").
 std::shared_ptr<const RobotModel> LoadArmModel(const ArmSpec& spec, const Pose& base,
