@@ -1,4 +1,5 @@
-// Plays the states of the person: the body moves smoothly between them, everything else is the newest.
+// Plays the states of the person: the body moves smoothly between them; everything else is taken
+// from the newest state.
 import {kSides, PersonState, Side, Vec3} from './protocol';
 
 export type BodyPoints = {[K in keyof PersonState['points']]: Vec3};
@@ -43,8 +44,8 @@ export class PersonPlayer {
     return this.latest?.status === 'judged' && nowMs - this.receivedMs > kSilentMs;
   }
 
-  // The body at page time `nowMs`, about one message ago; null if it is not known. While no simulated time
-  // passes, it stays.
+  // The body at page time `nowMs`, about one message ago; null if it is not known. While no
+  // simulated time passes, it does not move.
   sample(nowMs: number): BodyPoints | null {
     const n = this.entries.length;
     if (n === 0) return null;

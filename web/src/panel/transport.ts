@@ -4,7 +4,7 @@ import {h, setAttribute, setText} from '../dom';
 import {SceneSpec, State} from '../protocol';
 
 const kSpeeds = [0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
-const kStillMs = 500;     // a position that is unchanged for this time is paused
+const kStillMs = 500;     // playback counts as paused if the position is unchanged for this time
 const kHandsOffMs = 1000;  // after this time without input, the slider follows the recording again
 const kStepTicks = 1;
 const kLeapTicks = 100;

@@ -13,8 +13,8 @@ export interface ColladaModel {
   textured: boolean;  // refers to textures, which are not shown
 }
 
-// Reads the model in the file's own axes, whichever axis it calls up, as URDF requires. Throws an Error if
-// the file cannot be parsed.
+// Reads the model in the file's own axes, whichever axis it declares as up, as URDF requires.
+// Throws an Error if the file cannot be parsed.
 export function parseCollada(text: string): ColladaModel {
   const lists: Float64Array[] = [];
   const parsed = /<COLLADA\b/.test(text) ? new ColladaParser().parse(takeOut(text, lists)) : null;
