@@ -106,7 +106,7 @@ struct SurveyOptions : OutputOptions {
   std::string condition;      // "real", "emulated"; empty: the page asks the person
   std::uint16_t port = 8081;  // 0: any free port; the page of a run may use 8080
   std::string output = "survey.html";
-  std::string pseudonym;  // of the person whose answers are removed
+  std::string pseudonym;  // pseudonym of the person whose answers are removed
 };
 
 // Input and output of `report`.
@@ -119,7 +119,7 @@ struct ReportOptions : OutputOptions {
 // Input and output of `compare`.
 struct CompareOptions : OutputOptions {
   std::vector<std::string> a, b;  // the first of each list is compared, the others are repeats
-  bool by_phase = false, by_time = false;  // both false: depends on the paths
+  bool by_phase = false, by_time = false;  // if both are false, the paths decide
 };
 
 // Experiments and output of `reproduce`.
@@ -138,7 +138,7 @@ struct EvaluateOptions : OutputOptions {
   bool repeated = false, held = false;  // see assessment::WorkPattern
   std::string contact_limits;           // file of limits for unintended contact; empty: none
   std::string page;                     // empty: NAME.person.html
-  std::string csv;                      // empty: none
+  std::string csv;                      // empty: no table
 };
 
 // Input and output of `continue`.
@@ -147,7 +147,7 @@ struct ContinueCommandOptions : OutputOptions {
   std::string arm;  // file with the distribution of the arm's impedance; empty: the prior
   int draws = 200;
   double horizon = 1.5;    // [s]
-  std::uint64_t seed = 1;  // of the possible operators
+  std::uint64_t seed = 1;  // seed of the possible operators
   std::string page;        // empty: NAME.continued.html
 };
 
@@ -162,20 +162,20 @@ struct HazardsCommandOptions : OutputOptions {
 struct PopulationCommandOptions : OutputOptions {
   std::vector<std::string> scenarios;
   std::vector<std::string> set;  // overrides of all scenarios
-  std::vector<double> heights;   // of the handles above the ground [m]
+  std::vector<double> heights;   // heights of the handles above the ground [m]
   std::string folder = "population";
   int persons = 200;
-  std::uint64_t seed = 1;  // of the population
+  std::uint64_t seed = 1;  // seed of the population
   int workers = 0;         // 0: the number of cores
 };
 
 // Output of `init`.
 struct InitOptions : OutputOptions {
-  std::string name;  // of the scenario, and of its file without .yaml
+  std::string name;  // name of the scenario, and of its file without .yaml
   int arms = 2;
-  std::string urdf;            // of the cobot; empty: a Franka Panda
+  std::string urdf;            // URDF of the cobot; empty: a Franka Panda
   std::string end_effector;    // link of the cobot; empty: see FindArm
-  std::string object = "box";  // box, bar, ball
+  std::string object = "box";  // box, bar or ball
 };
 
 // Input of `devices`.
@@ -186,8 +186,8 @@ struct DevicesOptions : OutputOptions {
 
 // Input of `calibrate`.
 struct CalibrateOptions : OutputOptions {
-  std::string what;            // handle, bases, loop, push
-  std::string machine;         // file that is changed
+  std::string what;            // step: handle, bases, loop or push
+  std::string machine;         // file that the command changes
   std::string arm;             // left, right; empty: the only one, or both
   std::optional<Vector3> tip;  // bases: touching point in E [m]; empty: the person is asked
 };

@@ -19,11 +19,11 @@ namespace predictor {
 namespace {
 
 struct Compared {
-  std::string name;                  // for display
+  std::string name;                  // name to display
   std::string condition;             // the recording's label, if it has one
   std::optional<Scenario> scenario;  // empty if it is damaged
   FidelitySignals signals;
-  StopCause stopped = StopCause::kNone;  // what first stopped it
+  StopCause stopped = StopCause::kNone;  // cause of the first stop
 };
 
 Compared Read(const std::string& file, bool quiet) {

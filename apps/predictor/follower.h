@@ -51,7 +51,7 @@ class Follower {
 
   RingReader<TickRecord, kRecordRing> reader_;
   FollowerOptions options_;
-  std::array<std::uint8_t, kHands> warnings_ = {};  // as last reported
+  std::array<std::uint8_t, kHands> warnings_ = {};  // warnings as last reported
   ConsoleWords words_;
   RefusalWords refusals_;
   const Scenario& scenario_;

@@ -9,8 +9,8 @@
 namespace predictor {
 namespace {
 
-constexpr std::size_t kMinWidth = 80, kMaxWidth = 100;  // of a line [columns]
-constexpr std::size_t kColumn = 27;                     // at which descriptions begin
+constexpr std::size_t kMinWidth = 80, kMaxWidth = 100;  // width of a line [columns]
+constexpr std::size_t kColumn = 27;                     // column at which descriptions begin
 
 std::size_t Width() {
   winsize size{};

@@ -30,14 +30,14 @@ constexpr double kDampingRatios[] = {1, 1.5, 2};
 // A scenario that `init` may write.
 struct Draft {
   InitCobot cobot;
-  double mass = 0;  // of the object [kg]
+  double mass = 0;  // mass of the object [kg]
   double damping_ratio = 0;
-  std::vector<std::string> problems;  // of its check
+  std::vector<std::string> problems;  // problems found by its check
 };
 
 struct Object {
   const char *name, *shape;
-  double half_height;  // from its centre to the cobot above it [m]
+  double half_height;  // height from the object's centre to the cobot above it [m]
   double handle_y;     // distance of the left and right handle from the centre [m]
   double handle_z;     // height of the handles above the centre [m]
 };

@@ -17,7 +17,7 @@ inline constexpr double kInitStiffness = 500;  // vertical stiffness of the cont
 struct InitCobot {
   std::string model, end_effector;
   std::vector<std::string> remove_links;
-  double removed_mass = 0;      // of these links [kg]
+  double removed_mass = 0;      // mass of these links [kg]
   std::vector<double> posture;  // [rad] or [m]
   Pose X_WE;
 };

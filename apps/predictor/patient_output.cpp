@@ -56,8 +56,8 @@ class PatientFile {
   }
 
   int descriptor_;
-  bool patient_ = true;   // the last output was accepted
-  bool dropped_ = false;  // and later output was dropped
+  bool patient_ = true;   // whether the last output was accepted
+  bool dropped_ = false;  // whether output has been dropped since then
 };
 
 ssize_t WriteTo(void* file, const char* text, std::size_t size) {

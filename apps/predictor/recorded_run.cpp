@@ -19,7 +19,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kSnapshotTime = 10;  // between saved states [s]
+constexpr double kSnapshotTime = 10;  // time between saved states [s]
 
 RecorderOptions Options(const EvaluationBoard* person = nullptr) {
   RecorderOptions options;

@@ -24,7 +24,7 @@ struct RecordOptions {
   std::string file;                 // empty: the command's default
   bool off = false;                 // no recording, even if it is the default
   std::vector<std::string> labels;  // "key=value"
-  std::string machine;              // of real arms, as YAML
+  std::string machine;              // machine file of real arms, as YAML
 
   // Throws InputError.
   std::map<std::string, std::string> Labels() const;
@@ -56,7 +56,7 @@ class VirtualRecording {
   Emulator* emulator_;
   std::string file_;
   RecordingWriter writer_;
-  std::uint64_t snapshot_ticks_;  // between two saved states
+  std::uint64_t snapshot_ticks_;  // ticks between two saved states
   std::vector<std::byte> state_;
 };
 

@@ -25,7 +25,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kTurn = 0.01;  // between two displayed states [s]
+constexpr double kTurn = 0.01;  // time between two displayed states [s]
 // For distances up to this, reading on is cheaper than seeking [s].
 constexpr double kNear = 2;
 
@@ -52,7 +52,7 @@ class Player {
 
   std::uint64_t first_tick() const { return first_.tick; }
   const TickRecord& first() const { return first_; }
-  double duration() const { return duration_; }  // from the first to the last tick [s]
+  double duration() const { return duration_; }  // time from the first to the last tick [s]
 
   // Shows the first tick and then follows the pages' commands until a signal arrives. Throws
   // InputError if the recording is damaged.
@@ -70,7 +70,7 @@ class Player {
   RecordingReader* reader_;
   RunBoard* board_;
   RunMailbox* mailbox_;
-  double dt_;  // of a tick [s]
+  double dt_;  // duration of a tick [s]
   TickRecord first_, shown_;
   double duration_ = 0, position_ = 0, speed_ = 1;  // speed 0: paused
   std::uint64_t now_ = 0;                           // monotonic clock at this step [ns]

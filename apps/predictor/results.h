@@ -26,14 +26,14 @@ class ResultCurves {
  private:
   static constexpr std::size_t kPieces = 240;
   struct Piece {
-    std::array<double, kHands> force = {}, distance = {};  // maximum [N], [m]
+    std::array<double, kHands> force = {}, distance = {};  // maxima [N], [m]
   };
   void Halve();
 
   std::array<bool, kHands> present_;
   double force_limit_, distance_limit_;  // [N], [m]
-  double step_ = 0.05;                   // of a piece [s]
-  double time_ = 0;                      // of the last tick [s]
+  double step_ = 0.05;                   // duration of a piece [s]
+  double time_ = 0;                      // time of the last tick [s]
   std::vector<Piece> pieces_;
 };
 

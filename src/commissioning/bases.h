@@ -13,14 +13,14 @@ namespace predictor::commissioning {
 
 // One point of the room that the tips of both arms touched, as computed from each arm's joints.
 struct TouchedPoint {
-  Vector3 p_A = Vector3::Zero();  // in the base of A [m]
-  Vector3 p_B = Vector3::Zero();  // in the base of B [m]
+  Vector3 p_A = Vector3::Zero();  // position in the base of A [m]
+  Vector3 p_B = Vector3::Zero();  // position in the base of B [m]
 };
 
 struct BaseCalibration {
   Pose X_AB;                           // base of B in the base of A
   Vector3 position = Vector3::Zero();  // half-widths of 95 % intervals, along A's axes [m]
-  Vector3 rotation = Vector3::Zero();  // the same for the rotation, about A's axes [rad]
+  Vector3 rotation = Vector3::Zero();  // half-widths for the rotation, about A's axes [rad]
   double at_points = 0;  // upper bound of the same for a point in the middle of the touched points
                          // [m]
   double residual = 0;   // rms distance between the mapped and the touched points [m]

@@ -6,7 +6,7 @@ namespace predictor::commissioning {
 
 struct ChirpOptions {
   double low = 0.7, high = 40;  // frequencies [Hz]
-  double time = 5;              // from low to high frequency; the way back takes the same time [s]
+  double time = 5;              // time from low to high frequency; the way back takes as long [s]
   double speed = 0.05;          // maximum [rad/s]
   double acceleration = 3;      // maximum, below the joint's own limit [rad/s²]
   double angle = 0.03;          // maximum distance from the start [rad]

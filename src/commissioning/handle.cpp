@@ -22,7 +22,7 @@ constexpr double kResidualTorque = 0.01;
 constexpr double kResidualPart = 0.02;
 // Required accuracy.
 constexpr double kMostMassError = 0.05;     // as a share of the mass
-constexpr double kMostMass = 0.010;         // or this amount [kg]
+constexpr double kMostMass = 0.010;         // or as an amount [kg]
 constexpr double kNoMass = 0.020;           // a smaller mass counts as no weight [kg]
 constexpr double kMostCenterError = 0.005;  // [m]
 
@@ -65,7 +65,7 @@ struct HandleFit {
 };
 
 struct Allowed {
-  double force, torque;  // of a pose [N], [N·m]
+  double force, torque;  // force and torque of a pose [N], [N·m]
 
   Allowed(const HandleFit& fit, const SensorSpec& sensor)
       : force(kResidualForce + sensor.force_resolution +

@@ -54,9 +54,9 @@ class PoseRecorder {
 
 struct HandleCalibration {
   Estimate mass;                           // [kg]
-  std::array<Estimate, 3> center_of_mass;  // in S [m]
-  std::array<Estimate, 6> bias;            // at the last pose [N], [N·m]
-  Wrench drift = Wrench::Zero();           // of the bias [N/s], [N·m/s]
+  std::array<Estimate, 3> center_of_mass;  // centre of mass in S [m]
+  std::array<Estimate, 6> bias;            // bias at the last pose [N], [N·m]
+  Wrench drift = Wrench::Zero();           // drift of the bias [N/s], [N·m/s]
   Wrench residual = Wrench::Zero();        // rms of each axis over the poses [N], [N·m]
   int poses = 0;
 };

@@ -23,7 +23,7 @@ constexpr std::size_t kLeastSamples = 300;
 constexpr double kMostRelative = 0.10;  // half-width of the intervals of bandwidth and damping
                                         // ratio
 constexpr double kMostDelay = 0.002;    // half-width [s]
-constexpr double kMostGain = 0.05;      // deviation from 1
+constexpr double kMostGain = 0.05;      // largest deviation from 1
 constexpr double kMostMisfit = 0.25;
 constexpr double kMostLate = 0.05, kMostLost = 0.05;  // share of the ticks; share of the samples
 constexpr double kBlock = 0.25;                       // time over which the misfit is evaluated [s]

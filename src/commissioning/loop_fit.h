@@ -18,10 +18,10 @@ struct LoopFit {
   Estimate damping_ratio;
   Estimate delay;       // delay from a command to its effect in the samples [s]
   Estimate gain;        // ratio of the arm's velocity to the command: 1 if the arm follows exactly
-  double noise = 0;     // of a sample: noise at rest, or resolution [rad]
+  double noise = 0;     // noise of a sample: noise at rest, or resolution [rad]
   double residual = 0;  // rms [rad]
   double misfit = 0;    // unexplained share of the motion in the worst quarter of a second
-  Gaps gaps;            // of all records
+  Gaps gaps;            // gaps of all records
   VelocityLoopSpec spec() const;
   // Lag of slow motion: delay + 2ζ/ω [s].
   double lag() const;

@@ -11,8 +11,8 @@ namespace predictor::commissioning {
 struct Gaps {
   long ticks = 0, late = 0;    // late: ticks before which at least one step was skipped
   long samples = 0, lost = 0;  // lost: samples that never arrived, according to the arm's rate
-  double longest_tick = 0;     // between two ticks [s]
-  double longest_hole = 0;     // between two samples [s]
+  double longest_tick = 0;     // longest time between two ticks [s]
+  double longest_hole = 0;     // longest time between two samples [s]
   Gaps& operator+=(const Gaps& other);
   double late_share() const { return Share(late, ticks); }
   double lost_share() const { return Share(lost, samples + lost); }

@@ -56,7 +56,7 @@ class PushTest {
   int axis_ = 0;
   std::array<AxisReading, kAxes> readings_;
   AxisReading seen_;   // the current reading
-  double time_ = 0;    // its duration [s]
+  double time_ = 0;    // duration of the current reading [s]
   bool free_ = false;  // the handle was released after the last push that counted
   Hint hint_ = Hint::kLetGo;
 };

@@ -19,7 +19,7 @@ class SwingFile {
   const std::filesystem::path& path() const { return path_; }
 
   struct Kept {
-    Swings swings;       // none: no record
+    Swings swings;       // empty without a record
     std::string date;    // date of the last swing
     std::string remark;  // why an existing file cannot be used; otherwise ""
   };

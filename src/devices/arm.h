@@ -29,7 +29,7 @@ struct ArmReading {
   JointVector v;               // [rad/s]
   std::uint64_t sequence = 0;  // counts the arm's samples
   double age = 1e9;            // age of q and v [s]
-  bool fault = false;          // it cannot move: no power, protective stop, emergency stop, …
+  bool fault = false;  // the arm cannot move: no power, protective stop, emergency stop, …
   // True while the arm is being brought to rest in its own way: its driver still moves it, or it
   // reports motion. A command to stand still would not be sent immediately. Always false for an arm
   // that executes commands directly.
@@ -38,16 +38,16 @@ struct ArmReading {
   // motion or has not received the request. Always false for an arm that needs no request.
   bool waits = false;
   bool no_power_off = false;  // the channel for power-off requests existed, but is lost
-  bool keeps_power = false;   // it still reports power one second after PowerOff
-  std::uint64_t inputs = 0;   // its digital inputs, one bit each, numbered as by the manufacturer
-  WrenchReading wrench;       // of its own sensor or estimator, if it has one
+  bool keeps_power = false;   // the arm still reports power one second after PowerOff
+  std::uint64_t inputs = 0;   // digital inputs, one bit each, numbered as by the manufacturer
+  WrenchReading wrench;       // wrench of the arm's own sensor or estimator, if it has one
   LinkCounts link;
 };
 
 // The payload configured in an arm's controller: everything on the flange.
 struct ToldPayload {
   double mass = 0;                           // [kg]
-  Vector3 center_of_mass = Vector3::Zero();  // in the flange [m]
+  Vector3 center_of_mass = Vector3::Zero();  // centre of mass in the flange [m]
 };
 
 // The flange pose that an arm's controller reports for the joints q.
@@ -61,15 +61,15 @@ struct ToldFlange {
 
 // Information about an arm or a sensor, collected while connecting.
 struct DeviceFacts {
-  std::string name;         // for the user: manufacturer, model, versions, address
+  std::string name;         // name for the user: manufacturer, model, versions, address
   int joints = 0;           // number of joints of an arm
   double rate = 0;          // rate of its samples [Hz]
   bool own_wrench = false;  // an arm that measures a wrench itself
   double watchdog = 0;      // the arm stops by itself after this time without commands [s]
   // Limits of each joint that the driver enforces [rad/s], [rad/s²]; may be empty.
   std::vector<double> velocity = {}, acceleration = {};
-  std::optional<ToldPayload> payload = std::nullopt;  // if the arm reports it
-  std::optional<ToldFlange> flange = std::nullopt;    // if the arm reports it
+  std::optional<ToldPayload> payload = std::nullopt;  // set if the arm reports it
+  std::optional<ToldFlange> flange = std::nullopt;    // set if the arm reports it
   bool payload_taken_off = false;  // the payload's weight is excluded from the arm's own wrench
   std::vector<std::string> remarks = {};  // notes for the user, one sentence each
 };

@@ -10,8 +10,8 @@ namespace predictor {
 
 // The purpose of a connection to an arm.
 enum class ArmUse {
-  kMove,    // it accepts our commands
-  kListen,  // it is only read; a person may move it by free-drive
+  kMove,    // the arm accepts our commands
+  kListen,  // the arm is only read; a person may move it by free-drive
 };
 
 // Connects to the arm or the sensor of one hand. Throws DeviceError. The sensor is null if the arm

@@ -47,11 +47,11 @@ class ArmSide {
   std::shared_ptr<const RobotModel> model_;
   FrameId end_effector_, handle_;
   RobotData data_, ahead_;
-  double lag_;  // of the arm's velocity loop [s]
+  double lag_;  // lag of the arm's velocity loop [s]
   HandEstimator estimator_;
   MotionDifferentiator differentiator_;
   JointVector q_, q_ahead_;
-  Jacobian J_;  // of E
+  Jacobian J_;  // Jacobian of E
   FrameMotion end_effector_motion_;
   FrameMotion handle_motion_;
   HandWrench wrench_;

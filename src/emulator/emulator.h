@@ -73,9 +73,9 @@ class Emulator {
 
   const TickRecord& record() const;
   RunState state() const;
-  StopLevel level() const;         // of the current or last stop
+  StopLevel level() const;         // level of the current or last stop
   double run_time() const;         // [s]
-  const StopReport& stop() const;  // of the last stop
+  const StopReport& stop() const;  // report of the last stop
   // Why ALIGN was refused in the last tick: the two parts that are too near to each other, the key
   // in the scenario's file, and the remedy; "" if it was not refused. Not for the tick.
   std::string WhyNotAligned() const;

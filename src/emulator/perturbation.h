@@ -71,8 +71,8 @@ class Perturbation {
 
   std::optional<PerturbationSpec> spec_;  // absent: there are no displacements
   double dt_ = 0.001;                     // [s]
-  double expected_force_ = 0;             // of a displacement on a hand [N]
-  std::array<Vector3, 2> plane_ = {Vector3::UnitX(), Vector3::UnitY()};  // its axes
+  double expected_force_ = 0;             // force of a displacement on a hand [N]
+  std::array<Vector3, 2> plane_ = {Vector3::UnitX(), Vector3::UnitY()};  // axes of the plane
 
   RandomStream random_;
   // The numbers of the directions; the last `left_` of them have not been used in this round.
@@ -82,7 +82,7 @@ class Perturbation {
   double phase_time_ = 0;                 // time since the phase began [s]
   double earliest_ = 0;                   // start of the next displacement, run time [s]
   std::array<double, kHands> load_ = {};  // smoothed force of the hands [N]
-  Vector3 direction_ = Vector3::UnitX();  // of the present displacement
+  Vector3 direction_ = Vector3::UnitX();  // direction of the present displacement
   QuinticMotion motion_;                  // along direction_
   QuinticMotion::Point now_;
 };

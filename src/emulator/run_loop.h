@@ -38,7 +38,7 @@ struct RealTimeReport {
   std::string scheduling;      // the scheduling that was requested and granted
   std::uint64_t overruns = 0;  // ticks that had not ended when the next one was due
   std::uint64_t ticks = 0;
-  std::array<float, 4> lateness_us{};   // of wake-up: p50, p99, p99.9, max [µs]
+  std::array<float, 4> lateness_us{};   // lateness of wake-ups: p50, p99, p99.9, max [µs]
   std::optional<std::size_t> scenario;  // the scenario that a page selected to run next: its index
                                         // in a list
 };
@@ -63,7 +63,7 @@ struct RealTimeOptions {
   SnapshotSink* snapshots = nullptr;  // null without a recording
   // Counts the signs of a held enabling key; null without real arms.
   const std::atomic<std::uint32_t>* enabling = nullptr;
-  const StopMailbox* stops = nullptr;  // from ROS-TCP clients; null without the server
+  const StopMailbox* stops = nullptr;  // stop requests of ROS-TCP clients; null without the server
   // Counts the watchdog's signs of life; null without real arms.
   const std::atomic<std::uint32_t>* watchdog = nullptr;
   bool allow_scenario_switch = false;  // a page may select the next scenario while the arms are at

@@ -42,7 +42,7 @@ class Supervisor {
   Supervisor(const Scenario& scenario, const ArmsSpec& arms);
 
   // -- Between ticks; as in Emulator --
-  bool Submit(const RunInput& input) noexcept;  // from the tick's thread
+  bool Submit(const RunInput& input) noexcept;  // only from the tick's thread
   bool HasRoomForInput() const noexcept { return input_count_ < kInputsPerTick; }
   void Request(RunEvent event) noexcept;  // from any thread
   void RequestEnd() noexcept;             // from any thread
@@ -84,7 +84,7 @@ class Supervisor {
   const Status& fault() const noexcept { return fault_; }                      // latched
   const Status& power_off_cause() const noexcept { return power_off_cause_; }  // latched
   const RefusedRequest& refused() const noexcept { return refused_; }
-  const StopReport& stop() const noexcept { return stopper_.report(); }  // of the last stop
+  const StopReport& stop() const noexcept { return stopper_.report(); }  // report of the last stop
   const Warnings& warnings() const noexcept { return warnings_; }
   const ParameterRamps& parameters() const noexcept { return parameters_; }
   const std::array<HandInput, kHands>& hand_inputs() const noexcept { return hand_inputs_; }

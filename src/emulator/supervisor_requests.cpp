@@ -9,7 +9,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kEnablingPeriod = 0.02;  // between signs of an enabling device [s]
+constexpr double kEnablingPeriod = 0.02;  // time between signs of an enabling device [s]
 constexpr double kMaxHandDistance = 5;    // distance of a person's hand from the origin [m]
 
 }  // namespace

@@ -30,7 +30,7 @@ struct SentMotion {
   bool may_rest_next = true;          // the next command may be zero
   std::array<Twist, kHands> handle_twist = {Twist::Zero(), Twist::Zero()};  // V_WH
   double handle_speed = 0;  // speed of the faster handle, as measured by StopSpeed [m/s]
-  double handle_rate = 0;   // its derivative [m/s²]
+  double handle_rate = 0;   // derivative of handle_speed [m/s²]
 };
 
 // Largest speed [m/s] and angular speed [rad/s] of a handle.
@@ -47,12 +47,12 @@ struct TickPlan {
   bool renders = false;       // the QP is solved
   HandleCap cap;
   double run_time = 0;                        // [s]
-  std::array<HandInput, kHands> hand_inputs;  // of a person at a page
+  std::array<HandInput, kHands> hand_inputs;  // inputs of a person at a page
   std::optional<ControllerTuning> tuning;     // set if a parameter changed
 };
 
 enum class Motion : std::uint8_t {
-  kNone,     // the arms rest
+  kNone,     // the arms are at rest
   kFollow,   // follow the virtual handles, as rendered
   kBrake,    // execute a stop
   kRecover,  // RECOVERY
@@ -82,7 +82,7 @@ struct TickData {
   Status sensing;
   // Simulate
   WorldState before;                  // the virtual world at the time of the sample
-  const WorldState* after = nullptr;  // the same after the step
+  const WorldState* after = nullptr;  // the virtual world after the step
   Status simulation;
   // Render
   RenderResult rendered;

@@ -17,7 +17,7 @@ struct RecordSources {
   const TickPlan& plan;
   const TickData& data;
   const Supervisor& supervisor;
-  const std::vector<ActionSpan>& script;  // of the operator
+  const std::vector<ActionSpan>& script;  // script of the operator
   bool simulated_operator = false;  // true if data.person is a simulated operator; otherwise a
                                     // person holds the handles
 };

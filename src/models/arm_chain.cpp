@@ -86,7 +86,7 @@ class Arms {
   }
 
   void MarkBranches() {
-    std::vector<int> branches(urdf_.links.size(), 0);  // of each body
+    std::vector<int> branches(urdf_.links.size(), 0);  // number of branches of each body
     for (std::size_t j = 0; j < urdf_.joints.size(); ++j)
       if (Moves(urdf_.joints[j]) && !hand_[j]) ++at(branches, at(body_, urdf_.joints[j].parent));
     for (std::size_t j = 0; j < urdf_.joints.size(); ++j) {

@@ -13,7 +13,7 @@ struct ArmChain {
   std::string end_effector;               // link
   std::vector<std::string> joints;        // movable joints, from the base outwards
   std::vector<std::string> remove_links;  // what other joints move (see RobotSource)
-  double removed_mass = 0;                // of these links and all that is attached to them [kg]
+  double removed_mass = 0;                // mass of these links and all attached to them [kg]
 };
 
 // `end_effector`: link that is to carry the object. If it is empty, the link that most joints of an

@@ -9,9 +9,9 @@ namespace predictor {
 namespace {
 
 constexpr double kTolerance = 1e-6;      // [m] and [rad]
-constexpr int kIterations = 200;         // per start
+constexpr int kIterations = 200;         // iterations per start
 constexpr double kLength = 0.2;          // weighs rotation against translation [m/rad]
-constexpr double kLargestStep = 0.5;     // of a joint in one iteration [rad] or [m]
+constexpr double kLargestStep = 0.5;     // largest step of a joint in one iteration [rad] or [m]
 constexpr double kLeastDamping = 1e-12;  // [m²]
 constexpr double kPi = 3.14159265358979323846;
 

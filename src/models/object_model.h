@@ -14,7 +14,7 @@ namespace predictor {
 struct ObjectModel {
   std::string name;
   double mass = 0;                              // [kg]
-  Vector3 com = Vector3::Zero();                // in O [m]
+  Vector3 com = Vector3::Zero();                // centre of mass in O [m]
   Matrix3 inertia = Matrix3::Zero();            // about the centre of mass, axes of O [kg·m²]
   std::vector<ModelShape> visuals, collisions;  // X_LG in O
 };

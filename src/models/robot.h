@@ -29,7 +29,7 @@ struct RobotSource {
 // by RobotModel::Frame; any number of frames may be made at any time.
 struct FrameId {
   int body = -1;  // the movable joint that carries it, counted from 1; 0: the base
-  Pose X_JF;      // in the frame of that joint; in W if fixed to the base
+  Pose X_JF;      // pose in the frame of that joint; in W if fixed to the base
   bool valid() const { return body >= 0; }
 };
 
@@ -53,7 +53,7 @@ class RobotModel {
   const JointVector& position_upper() const;  // [rad] or [m]; +inf for continuous joints
   const JointVector& velocity_limit() const;  // [rad/s] or [m/s]; +inf if the URDF sets none
   const JointVector& effort_limit() const;    // [N·m] or [N]; +inf if the URDF sets none
-  double mass() const;                        // of all links, including the base [kg]
+  double mass() const;                        // mass of all links, including the base [kg]
   std::vector<std::string> link_names() const;
 
   // Frame fixed to a link at X_LF. Throws InputError that suggests similar link names.

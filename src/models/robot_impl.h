@@ -18,7 +18,7 @@ struct RobotModel::Impl {
   Pose X_WB;
   std::string name;
   std::vector<std::string> joint_names, link_names;
-  std::vector<bool> prismatic;  // for each joint
+  std::vector<bool> prismatic;  // whether each joint is prismatic
   JointVector lower, upper, velocity, effort;
   double mass = 0;  // [kg]
   std::unordered_map<std::string, FrameId> links;

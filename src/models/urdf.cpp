@@ -13,7 +13,7 @@
 namespace predictor {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 4u << 20;  // of a URDF
+constexpr std::uintmax_t kMostBytes = 4u << 20;  // maximum size of a URDF
 constexpr std::size_t kMostLinks = 1000;
 constexpr double kLeastInertia = 1e-11;  // smallest trace that counts as inertia [kg·m²]: a cube of
                                          // 1 g and 0.1 mm

@@ -19,7 +19,7 @@ struct ModelShape {
                                    // mesh: scale
   std::filesystem::path mesh;      // absolute; empty unless a mesh
   std::string place;               // "file:line" of the <mesh>, for errors; empty unless a mesh
-  Pose X_LG;                       // in the link's frame (for an ObjectModel: in O)
+  Pose X_LG;                       // pose in the link's frame (for an ObjectModel: in O)
   std::array<double, 4> color = {0.7, 0.7, 0.7, 1};  // red, green, blue, opacity
 };
 
@@ -27,13 +27,13 @@ struct UrdfLink {
   std::string name;
   int line = 0;                       // line in the file
   double mass = 0;                    // [kg]
-  Vector3 com = Vector3::Zero();      // in L [m]
-  Matrix3 inertia = Matrix3::Zero();  // about the centre of mass, axes of L [kg·m²]
+  Vector3 com = Vector3::Zero();      // centre of mass in L [m]
+  Matrix3 inertia = Matrix3::Zero();  // inertia about the centre of mass, axes of L [kg·m²]
   std::vector<ModelShape> visuals, collisions;
 };
 
 enum class UrdfJointType { kFixed, kRevolute, kContinuous, kPrismatic };
-const char* Name(UrdfJointType type);  // as written in a URDF
+const char* Name(UrdfJointType type);  // name as written in a URDF
 
 struct UrdfJoint {
   std::string name;
@@ -60,8 +60,8 @@ struct UrdfModel {
                      // mimic and planar joints
 
   std::vector<std::string> LinkNames() const;
-  double Mass() const;        // of all links [kg]
-  double MovingMass() const;  // of the links that its joints move [kg]
+  double Mass() const;        // mass of all links [kg]
+  double MovingMass() const;  // mass of the links that its joints move [kg]
 };
 
 // Reads a URDF and removes `remove_links` with all their descendants.

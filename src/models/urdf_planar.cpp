@@ -8,8 +8,8 @@
 namespace predictor {
 namespace {
 
-constexpr double kCarrierMass = 1e-6;     // of a link between two joints [kg]
-constexpr double kCarrierInertia = 1e-9;  // its principal moments [kg·m²]
+constexpr double kCarrierMass = 1e-6;     // mass of a link between two joints [kg]
+constexpr double kCarrierInertia = 1e-9;  // principal moments of such a link [kg·m²]
 
 std::string Text(const Vector3& v) {
   return FormatNumber(v.x()) + " " + FormatNumber(v.y()) + " " + FormatNumber(v.z());

@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-constexpr int kMostAttributes = 100;  // per element
+constexpr int kMostAttributes = 100;  // maximum number of attributes per element
 
 [[noreturn]] void FailAt(const std::string& text, std::size_t position, const std::string& name,
                          const std::string& sentence) {

@@ -18,7 +18,7 @@ struct SandboxedFailure : std::runtime_error {
 };
 
 struct SandboxedLimits {
-  std::size_t max_bytes;  // of the result
+  std::size_t max_bytes;  // maximum size of the result
   double max_time;        // [s]
 };
 

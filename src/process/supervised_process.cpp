@@ -28,7 +28,7 @@
 namespace predictor {
 namespace {
 
-constexpr int kSafeDescriptor = 16;  // above the descriptors that are replaced
+constexpr int kSafeDescriptor = 16;  // lies above the descriptors that are replaced
 constexpr auto kStartTime = std::chrono::seconds(60);
 constexpr auto kEndTime = std::chrono::seconds(2);
 constexpr auto kFirstPause = std::chrono::milliseconds(500);  // before the first restart

@@ -59,7 +59,7 @@ struct QpSolution {
   std::array<double, kMaxQpVariables> x;
   // Multipliers of the bounds, then of the rows: ≥ 0 at an upper bound, ≤ 0 at a lower one.
   std::array<double, kMaxQpVariables + kMaxQpRows> multiplier;
-  bool solved = false;  // as reported by the solver; KktResidual verifies it
+  bool solved = false;  // the solver's own report; KktResidual verifies it
   int iterations = 0;
 };
 

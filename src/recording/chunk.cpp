@@ -45,8 +45,8 @@ void ChunkBuilder::End(std::uint16_t channel, std::uint32_t sequence, std::uint6
   put(static_cast<std::uint64_t>(kMessageHead - mcap::kHead + bytes));
   put(channel);
   put(sequence);
-  put(time_ns);  // recorded
-  put(time_ns);  // published
+  put(time_ns);  // time of recording
+  put(time_ns);  // time of publication
   size_ += kMessageHead + bytes;
 }
 

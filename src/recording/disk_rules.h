@@ -9,8 +9,8 @@
 namespace predictor {
 
 struct DiskRules {
-  std::uint64_t warn_below = 10'000'000'000;  // free space [bytes]
-  std::uint64_t end_below = 1'000'000'000;    // likewise; below it the recording is closed
+  std::uint64_t warn_below = 10'000'000'000;  // free space below which a warning is given [bytes]
+  std::uint64_t end_below = 1'000'000'000;    // space below which the recording is closed [bytes]
   // Interval of synchronisation; half a second and the duration of the synchronisation are added.
   std::chrono::milliseconds sync_period{2000};
   // Receives sentences for the user: little space is left, or the recording has ended. Called by a
@@ -29,7 +29,7 @@ class DiskWatch {
 
   // Returns why the recording must end, or "". Warns once.
   std::string Look(const McapFile& file);
-  std::uint64_t free_bytes() const { return free_; }  // at the last check
+  std::uint64_t free_bytes() const { return free_; }  // free space at the last check
 
  private:
   const DiskRules rules_;

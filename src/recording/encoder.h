@@ -17,10 +17,10 @@
 
 namespace predictor::recording {
 
-inline constexpr std::size_t kChunkBytes = 1U << 20U;               // a chunk ends at this size
-inline constexpr std::uint64_t kChunkTime = 500'000'000;            // or after this time [ns]
-inline constexpr std::uint64_t kScenePeriod = 40'000'000;           // period of JSON messages [ns]
-inline constexpr std::size_t kLargestSnapshot = 32U << 20U;         // [bytes]
+inline constexpr std::size_t kChunkBytes = 1U << 20U;        // size at which a chunk ends
+inline constexpr std::uint64_t kChunkTime = 500'000'000;     // age at which a chunk ends [ns]
+inline constexpr std::uint64_t kScenePeriod = 40'000'000;    // period of JSON messages [ns]
+inline constexpr std::size_t kLargestSnapshot = 32U << 20U;  // [bytes]
 inline constexpr std::size_t kLargestChunk = 2 * kLargestSnapshot;  // uncompressed [bytes]
 
 // Starts a tick's CRC with its log time [ns].
@@ -37,7 +37,7 @@ class Encoder {
   void Add(const TickRecord& record);
   // Throws std::invalid_argument if the data exceed kLargestSnapshot.
   void AddSnapshot(std::uint64_t tick, std::span<const std::byte> data);
-  void AddEvent(const RecordingEvent& event);  // its time is set here
+  void AddEvent(const RecordingEvent& event);  // sets the event's time
   // Adds a state of the person if the recording has their topic.
   void AddPerson(const PersonState& state);
 

@@ -71,7 +71,7 @@ class McapFile {
   std::atomic<std::uint64_t> durable_ticks_{0};  // ticks that the disk has confirmed
   std::atomic<bool> sync_failed_{false};
   std::uint32_t crc_ = 0;  // CRC of everything written
-  Preamble preamble_;      // without its `bytes`
+  Preamble preamble_;      // the preamble without its `bytes`
   std::vector<mcap::ChunkIndex> chunks_;
   std::uint64_t indexes_bytes_ = 0;  // size of chunks_ as records
   std::map<std::uint16_t, std::uint64_t> messages_;

@@ -12,7 +12,7 @@ namespace predictor::recording {
 
 struct Opening {
   RecordingHeader header;
-  std::vector<JsonChannel> scene;  // without their message functions
+  std::vector<JsonChannel> scene;  // channels of the scene, without their message functions
   std::uint64_t end = 0;           // position of the first chunk
   bool damaged = false;            // the content differs from what was written
   std::string damage;              // sentences for the user about repaired and lost parts

@@ -45,7 +45,7 @@ inline constexpr const char* kLead = "lead_s";
 inline constexpr const char* kMargin = "stability_margin";
 
 // Larger parts are not written twice.
-inline constexpr std::uint64_t kLargestCopied = 256U << 10U;  // per part [bytes]
+inline constexpr std::uint64_t kLargestCopied = 256U << 10U;  // maximum per part [bytes]
 inline constexpr std::uint64_t kLargestCopy = 8U << 20U;      // [bytes]
 inline constexpr std::uint64_t kLargestRun = 2U << 20U;       // the run's metadata [bytes]
 

@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 using recording::Chunk;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kPause{10};         // between polls of the ring
+constexpr milliseconds kPause{10};         // pause between polls of the ring
 constexpr milliseconds kChunkPeriod{500};  // longest time that a chunk waits for more data
 // interval between two events about lost ticks [ns]
 constexpr std::uint64_t kLossPeriod = 1'000'000'000;

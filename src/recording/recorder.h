@@ -22,7 +22,7 @@ struct RecorderStatus {
   std::uint64_t bytes = 0;       // bytes on the disk
   std::uint64_t ticks = 0;       // ticks in complete chunks on the disk
   std::uint64_t lost = 0;        // ticks that were overwritten before they could be read
-  std::uint64_t free_bytes = 0;  // on the disk, at the last check
+  std::uint64_t free_bytes = 0;  // free space on the disk at the last check
 };
 
 struct RecorderOptions : DiskRules {
@@ -43,7 +43,7 @@ class Recorder {
   Recorder(const std::string& path, const RecordingHeader& header, const RecordRing& ring,
            RecorderOptions options = {}, std::vector<JsonChannel> scene = {},
            FileCalls* calls = nullptr);
-  ~Recorder();  // closes
+  ~Recorder();  // closes the recording
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
@@ -55,7 +55,7 @@ class Recorder {
 
   // Records an event at the newest tick. May be called from any thread except the one that ticks.
   void Mark(const std::string& text);
-  RecorderStatus status() const;  // "
+  RecorderStatus status() const;  // likewise
 
   // Takes everything from the ring and ends the file. Blocks until all data are on the disk.
   void Close();

@@ -179,8 +179,8 @@ class Recovery {
   TickDecoder decoder_;
   // Messages of the current incomplete tick.
   std::vector<std::pair<std::uint16_t, std::string>> parts_;
-  std::optional<std::uint64_t> last_;  // tick
-  bool damage_ = false;                // since the last tick
+  std::optional<std::uint64_t> last_;  // newest recovered tick
+  bool damage_ = false;                // whether damage was found since the last tick
   std::uint64_t wasted_ = 0;           // bytes read or decompressed without result
 };
 

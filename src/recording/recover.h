@@ -12,11 +12,11 @@ struct RecoverReport {
   bool was_complete = false;         // the recording had no damage
   std::uint64_t ticks = 0;           // number of ticks kept
   std::uint64_t chunks = 0;          // number of complete chunks kept
-  std::uint64_t damaged_chunks = 0;  // including truncated ones
+  std::uint64_t damaged_chunks = 0;  // including truncated chunks
   std::uint64_t salvaged_ticks = 0;  // number of `ticks` that come from damaged chunks
   std::uint64_t lost_ticks = 0;  // ticks lost between kept ones; the number after the last kept one
                                  // is unknown
-  std::uint64_t snapshots = 0, events = 0;  // numbers kept
+  std::uint64_t snapshots = 0, events = 0;  // numbers of those kept
   std::uint64_t gave_up_at = 0;             // byte at which the search was abandoned; 0: it was not
   std::string preamble;  // sentences about repaired or lost parts of the preamble; empty: none
 

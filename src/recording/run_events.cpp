@@ -11,7 +11,7 @@ namespace predictor::recording {
 namespace {
 
 constexpr std::uint64_t kSecond = 1'000'000'000;  // [ns]
-constexpr int kMaxParameters = 20;                // per second
+constexpr int kMaxParameters = 20;                // maximum number of parameter events per second
 
 std::string CauseText(const Status& s) {
   std::string text = Name(s.cause);

@@ -44,8 +44,8 @@ class RecordingWriter {
   // Ends the file with its index.
   void Close();
 
-  std::uint64_t bytes() const;  // on the disk
-  std::uint64_t ticks() const;  // "
+  std::uint64_t bytes() const;  // size on the disk
+  std::uint64_t ticks() const;  // number on the disk
 
  private:
   struct Impl;

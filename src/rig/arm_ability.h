@@ -19,7 +19,7 @@ inline double LargestShare(double at_rest, double load, double lower, double upp
 // A joint's muscle torque at_rest + per_force · F, for a force F of the hand on the handle [N], and
 // the person's strength in both directions.
 struct JointAbility {
-  double at_rest = 0;                   // carries the arm [N·m]
+  double at_rest = 0;                   // torque that carries the arm [N·m]
   Vector3 per_force = Vector3::Zero();  // [m]
   double lower = 0, upper = 0;          // [N·m], lower ≤ 0 ≤ upper
 
@@ -33,7 +33,7 @@ inline constexpr int kJudgedJoints = 2;  // elbow and shoulder flexion
 
 // In W.
 struct ArmAbility {
-  Matrix3 stiffness = Matrix3::Zero();  // of the hand, reflexes included [N/m]
+  Matrix3 stiffness = Matrix3::Zero();  // stiffness of the hand, including reflexes [N/m]
   Vector3 shoulder = Vector3::Zero();   // [m]
   std::array<JointAbility, kJudgedJoints> joints;
   double capacity = 1;  // share of strength that fatigue leaves, of the weaker joint
@@ -66,9 +66,9 @@ inline Vector3 WithinReach(const Vector3& p, const Vector3& shoulder, double sho
 // A person who stands still and holds nothing, in S.
 struct Standing {
   double weight = 0;           // [N]
-  double x = 0, y = 0;         // of the centre of mass [m]
+  double x = 0, y = 0;         // position of the centre of mass [m]
   double back = 0, front = 0;  // edges of the footprint along x [m]
-  double half_width = 0;       // along y [m]
+  double half_width = 0;       // half of its width along y [m]
 
   template <class A>
   void Archive(A& a) {

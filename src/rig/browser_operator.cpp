@@ -16,7 +16,7 @@ namespace {
 constexpr double kSilence = 0.250;
 constexpr double kMaxForce = 25;          // maximum force of a hand [N]
 constexpr double kMaxTorque = 2;          // [N·m]
-constexpr double kStiffness = 300;        // between hand and handle [N/m]
+constexpr double kStiffness = 300;        // stiffness between hand and handle [N/m]
 constexpr double kRotationStiffness = 4;  // [N·m/rad]
 constexpr double kDampingRatio = 0.7;
 constexpr double kGripTime = 0.2;  // [s]

@@ -9,7 +9,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kNoiseBandwidth = 20;    // of the force noise [Hz]
+constexpr double kNoiseBandwidth = 20;    // bandwidth of the force noise [Hz]
 constexpr double kTremorCoherence = 0.5;  // time over which the tremor keeps its phase [s]
 constexpr double kFree = 1e-3;            // a weaker grip counts as released
 

@@ -33,7 +33,7 @@ struct HandGoal {
 // D = (D_x + g τ K) / (1 + g).
 class HandModel {
  public:
-  static constexpr double kMaxDelay = 0.5;  // of reflex and vision [s]
+  static constexpr double kMaxDelay = 0.5;  // maximum delay of reflex and vision [s]
 
   // `name` identifies the hand's random streams.
   HandModel(const HandSpec& spec, HandInertia inertia, std::uint64_t seed, const std::string& name);

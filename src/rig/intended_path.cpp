@@ -9,7 +9,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kTick = 0.001;  // of the operator [s]
+constexpr double kTick = 0.001;  // tick of the operator [s]
 
 double NextGrip(const Scenario& scenario, double time) {
   double next = scenario.duration;

@@ -14,7 +14,7 @@ namespace predictor {
 // The simulation is not part of it: the object's pose is derived from the handles, to which it is
 // rigidly attached.
 struct OperatorInput {
-  double dt = 0.001;    // since the last call [s]
+  double dt = 0.001;    // time since the last call [s]
   double run_time = 0;  // time of the run [s]; advances only while running
   bool running = false;
   Hands present;

@@ -13,7 +13,7 @@ using ergonomics::FatigueJoint;
 using ergonomics::StrengthDirection;
 using person::ArmJoint;
 
-constexpr int kFirstUpdates = 4;       // of the posture, all at once when a run begins
+constexpr int kFirstUpdates = 4;       // updates of the posture made at once when a run begins
 constexpr double kMinCapacity = 0.05;  // so that noise stays finite (D)
 constexpr FatigueJoint kTires[kJudgedJoints] = {FatigueJoint::kElbow, FatigueJoint::kShoulder};
 constexpr ArmJoint kJoints[kJudgedJoints] = {ArmJoint::kElbowFlexion, ArmJoint::kShoulderFlexion};

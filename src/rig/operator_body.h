@@ -67,7 +67,7 @@ class OperatorBody {
   BodySpec body_;
   person::PostureFollower follower_;
   person::BodyDynamics dynamics_;
-  std::array<Vector3, kHands> p_JG_;  // of the grip from the last joint of the wrist [m]
+  std::array<Vector3, kHands> p_JG_;  // position of the grip relative to the wrist's last joint [m]
   double shortest_ = 0, longest_ = 0;
 
   person::BodyVector q_;
@@ -75,7 +75,7 @@ class OperatorBody {
   Standing standing_;
   std::array<Muscles, kHands> muscles_;
   std::array<Wrench, kHands> exerted_ = {Wrench::Zero(), Wrench::Zero()};  // mean since the update
-  int steps_ = 0;       // since the posture's update
+  int steps_ = 0;       // steps since the posture's last update
   bool begun_ = false;  // the posture was updated since Reset
 };
 

@@ -27,14 +27,14 @@ class Script {
  private:
   struct Entry {
     double start;
-    int index;  // in the scenario's script
+    int index;  // index in the scenario's script
     std::unique_ptr<Action> action;
     bool begun = false;
     bool active = false;
 
     void Archive(StateArchive& a) noexcept { a(begun, active, action); }
   };
-  std::vector<Entry> entries_;  // in the order of their start times
+  std::vector<Entry> entries_;  // entries in the order of their start times
 };
 
 }  // namespace predictor

@@ -45,7 +45,7 @@ class SimulatedArm {
   std::vector<VelocityLoop> loops_;
   JointVector q_, v_, a_;  // true joint positions, velocities and accelerations
   JointVector q_measured_, v_measured_;
-  JointVector command_;       // after the watchdog
+  JointVector command_;       // command as modified by the watchdog
   JointVector acceleration_;  // acceleration limits [rad/s²]
   double since_command_ = 0;  // time since the last command [s]
   bool fault_ = false;

@@ -114,9 +114,9 @@ struct RosTcpServer::Impl {
   void Open();
   void Accept();
   bool MakeRoom(std::uint32_t address);
-  bool Receive(Client* client);              // false: the client disconnected
-  bool Flush(Client* client);                // likewise
-  bool Serve(Client* client, short events);  // likewise; events as from poll
+  bool Receive(Client* client);              // returns false if the client disconnected
+  bool Flush(Client* client);                // returns false if the client disconnected
+  bool Serve(Client* client, short events);  // likewise; `events` as from poll
   void Publish();
   void Run(int lifeline);
 

@@ -20,7 +20,7 @@ class ArmBrake {
   // Distance from now to rest if the arm brakes as hard as the profile's bounds allow [m].
   double RemainingDistance() const noexcept;
   bool done() const noexcept { return factor_ == 0; }
-  double factor() const noexcept { return factor_; }  // of the last tick
+  double factor() const noexcept { return factor_; }  // factor of the last tick
   void Archive(StateArchive& a) noexcept { a(brake_, first_, hold_, rate_, dt_, factor_, apart_); }
 
  private:

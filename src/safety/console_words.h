@@ -45,7 +45,7 @@ class ConsoleWords {
   bool enabling_device_;
   std::uint64_t again_;  // maximum time between repeated letters of a held key [ticks]
   RunState state_ = RunState::kInit;
-  std::array<bool, kHands> faults_ = {};             // of the previous record
+  std::array<bool, kHands> faults_ = {};             // faults in the previous record
   std::array<std::uint64_t, kRunEvents> told_ = {};  // tick after the latest one with that request
   std::vector<std::string> lines_;
 };

@@ -31,7 +31,7 @@ struct MonitorInput {
   bool follows = true;   // ALIGN, RUN: distances to joint and link limits are checked
   // RECOVERY: a hand may be loaded, but the motion must not increase the load.
   bool recovers = false;
-  int missed_deadlines = 0;  // consecutive
+  int missed_deadlines = 0;  // number of consecutive missed deadlines
 };
 
 // Time between samples of a device [s]; 0: it provides a sample in each tick.
@@ -117,7 +117,7 @@ class Monitor {
   struct JointPast {
     std::array<double, kMaxArmJoints> q{};
     std::uint64_t sequence = 0;
-    double age = 0;  // time since then [s]
+    double age = 0;  // time since that sample [s]
     bool known = false;
     void Archive(StateArchive& a) noexcept { a(q, sequence, age, known); }
   };

@@ -62,8 +62,8 @@ class OscillationDetector {
     // between.
     Sums now, at_rise, at_fall, at_peak;
     bool after_peak = false;  // the sums begin at a peak
-    double period = 0;        // of the last cycle [s]; 0: no cycle yet
-    double amplitude = 0;     // of the last cycle [N]
+    double period = 0;        // period of the last cycle [s]; 0: no cycle yet
+    double amplitude = 0;     // amplitude of the last cycle [N]
     int growing = 0;          // number of consecutive growing cycles
     void Archive(StateArchive& a) noexcept {
       a(high_pass, low_pass, above, now, at_rise, at_fall, at_peak, after_peak, period, amplitude,

@@ -16,13 +16,13 @@ namespace predictor {
 struct StopReport {
   Status status;        // the fault that caused the stop; ok if it has none
   double time = 0;      // run time of the decision [s]
-  double duration = 0;  // from the decision until the handles rest; the time so far until done [s]
+  double duration = 0;  // time from the decision until the handles rest, or until now [s]
 };
 
 // State of the handles where the arms will be when they obey the next command. Written by the
 // pipeline.
 struct StopGeometry {
-  std::array<Jacobian, kHands> J;  // of each handle, axes of W; without columns: unknown
+  std::array<Jacobian, kHands> J;  // Jacobian of each handle, axes of W; without columns: unknown
   std::array<Vector3, kHands> p_WH = {Vector3::Zero(), Vector3::Zero()};  // [m]
   // Measured twists of the handles; valid only while both arms' samples can be trusted.
   bool measured = false;
@@ -74,7 +74,7 @@ class StopController {
   void Observe(const std::array<Pose, kHands>& X_WH, bool in_motion = false) noexcept;
   void Reset() noexcept;
 
-  bool active() const noexcept { return active_; }  // from Begin until Reset
+  bool active() const noexcept { return active_; }  // true from Begin until Reset
   bool done() const noexcept { return done_; }  // the handles are at rest, or the stop timed out
   // Whether the stop timed out while an arm still moved.
   bool timed_out() const noexcept { return done_ && timed_out_; }
@@ -117,17 +117,17 @@ class StopController {
   std::array<ArmBrake, kHands> brakes_;
   double profile_left_ = 0;                    // distance that remains [m]
   std::array<JointVector, kHands> command_;    // last sent before the stop [rad/s]
-  std::array<JointVector, kHands> corrected_;  // the same, corrected for the geometry
+  std::array<JointVector, kHands> corrected_;  // the last command, corrected for the geometry
   // Twists of the handles due to that command.
   std::array<Twist, kHands> begun_ = {Twist::Zero(), Twist::Zero()};
-  std::array<Twist, kHands> twist_ = begun_;  // the same, split
+  std::array<Twist, kHands> twist_ = begun_;  // the twists of the last command, split
   bool twists_known_ = false;
   bool twists_split_ = false;  // the right twist is relative to its rigid-body share
 
   // Waiting for the other arm. Distances are expressed as time at the handle's initial speed [s].
-  std::array<double, kHands> gone_ = {};      // of each handle
-  std::array<double, kHands> followed_ = {};  // of each command, beyond the profile's distance
-  double after_ = 0;                          // since the end of the profile [s]
+  std::array<double, kHands> gone_ = {};      // distance of each handle
+  std::array<double, kHands> followed_ = {};  // distance of each command beyond the profile's
+  double after_ = 0;                          // time since the end of the profile [s]
 
   // Rest
   RestDetector rest_;

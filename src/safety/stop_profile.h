@@ -41,7 +41,7 @@ class StopProfile {
   double duration() const noexcept { return ramp_in_ + hold_ + ramp_out_; }
   // Distance from Begin to rest [m].
   double Distance() const noexcept;
-  double speed() const noexcept { return speed_; }  // at the beginning [m/s]
+  double speed() const noexcept { return speed_; }  // speed at the beginning [m/s]
   double rate() const noexcept { return rate_; }    // [m/s²]
   double rate_now() const noexcept { return RateAt(tick_ * dt_); }
   double jerk() const noexcept { return jerk_; }  // [m/s³]
@@ -53,7 +53,7 @@ class StopProfile {
  private:
   double acceleration_ = 5, jerk_ = 250, dt_ = 0.001;
   double cap_ = std::numeric_limits<double>::infinity();
-  double speed_ = 0, rate_ = 0;                   // at the beginning [m/s], [m/s²]
+  double speed_ = 0, rate_ = 0;                   // speed and rate at the beginning [m/s], [m/s²]
   double peak_ = 0;                               // largest deceleration [m/s²]
   double ramp_in_ = 0, hold_ = 0, ramp_out_ = 0;  // times to ramp in, hold and ramp out [s]
   int tick_ = 0;

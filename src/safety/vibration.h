@@ -39,8 +39,8 @@ class VibrationDetector {
 
   struct Scale {
     double lag, window;  // T, and the time constant of the mean [s]
-    double coherence;    // minimum
-    double amplitude;    // minimum [N]
+    double coherence;    // minimum coherence
+    double amplitude;    // minimum amplitude [N]
     // Minimum and maximum growth of the amplitude over one lag. The maximum exists because a
     // vibration that did not exist one lag ago cannot be compared with itself.
     double growth, max_growth;
@@ -62,7 +62,7 @@ class VibrationDetector {
   static constexpr double kJumpTime = 0.15;  // time constant with which a jump is forgotten [s]
 
   struct Finding {
-    double amplitude = 0;  // of the vibration [N]; 0: none
+    double amplitude = 0;  // amplitude of the vibration [N]; 0: none
     double limit = 0;      // threshold of the scale that found it [N]
   };
 
@@ -116,7 +116,7 @@ class VibrationDetector {
   double jump_ = 0;                    // recent largest deviation from that mean [N]
   double lasting_ = 0;                 // share of the recent time in which kLasting was met
   int head_ = 0;                       // index of the newest sample
-  int ticks_ = 0;                      // since that sample
+  int ticks_ = 0;                      // ticks since the newest sample
   std::array<Means, kScales.size()> means_;
   bool started_ = false;
 };

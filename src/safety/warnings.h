@@ -26,7 +26,7 @@ class Warnings {
   // Nothing is counted during this initial time [s]: packets that arrived before the program read
   // them were not lost.
   static constexpr double kStartTime = 0.5;
-  static constexpr double kMaxLost = 0.01;    // share of the samples
+  static constexpr double kMaxLost = 0.01;    // largest share of lost samples
   static constexpr double kMinLosses = 1.5;   // fewer losses cause no warning
   static constexpr double kMaxRefused = 0.5;  // [1/s]
   static constexpr double kMaxDrift = 2;      // [N/min]

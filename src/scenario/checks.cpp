@@ -19,7 +19,7 @@ namespace {
 constexpr double kMostHandleDistance = 0.3;  // maximum distance of a handle's origin from its body
                                              // [m]
 
-constexpr double kMaxShift = 10;  // of the scene [m]
+constexpr double kMaxShift = 10;  // maximum displacement of the scene [m]
 
 class Checker {
  public:

@@ -32,7 +32,7 @@ inline constexpr double kFullTurn = 6.2832;  // [rad], rounded up
 struct Rule {
   std::string unit = {};  // "" for pure numbers and words
   std::string doc = {};
-  Range range = {};                       // of a number, or of each number of a list
+  Range range = {};                       // range of a number, or of each number of a list
   std::vector<double> steps = {};         // the only permitted numbers; empty: the whole range
   std::vector<std::string> choices = {};  // the only permitted words; empty: all
   std::size_t least = 0, most = 64;       // entries of a list

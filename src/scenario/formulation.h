@@ -33,13 +33,13 @@ inline constexpr std::size_t kRepairs = static_cast<std::size_t>(Repair::kCount)
 
 struct RepairEntry {
   Repair repair;
-  const char* name;       // in scenarios: "relative_target"
-  const char* equations;  // that it changes
-  const char* ours;       // what rendering does with it
-  const char* papers;     // and without it
+  const char* name;       // name in scenarios: "relative_target"
+  const char* equations;  // equations that the repair changes
+  const char* ours;       // what rendering does with the repair
+  const char* papers;     // what rendering does without the repair
 };
 
-std::span<const RepairEntry> RepairTable();  // in the order of Repair
+std::span<const RepairEntry> RepairTable();  // entries in the order of Repair
 std::vector<std::string> RepairNames();
 
 class RepairSet {

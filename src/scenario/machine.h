@@ -35,7 +35,7 @@ struct ArmConnection {
 struct SensorConnection {
   SensorMake make = SensorMake::kOwn;
   std::string host;
-  double counts_per_force = 1e6;   // from the sensor's configuration [1/N]
+  double counts_per_force = 1e6;   // counts per newton, from the sensor's configuration [1/N]
   double counts_per_torque = 1e6;  // [1/(N·m)]
 };
 
@@ -45,7 +45,7 @@ struct Commissioned {
                           // correctly; "": never
   std::string of;         // HashOf the arm at that time
   std::string loop;       // time at which `arm.loop` was measured; "": never
-  std::string loop_of;    // HashOfLoop at that time
+  std::string loop_of;    // value of HashOfLoop at that time
 };
 
 // One arm with its sensor and handle.
@@ -59,12 +59,12 @@ struct MachineArm {
 // Limits that no scenario may loosen on this machine. Names and units are those of a scenario's
 // `safety`. Some limits are minima, for which a smaller value is looser.
 struct MachineLimits {
-  double force = 30;                   // per hand [N]
-  double torque = 5;                   // per hand [N·m]
+  double force = 30;                   // limit per hand [N]
+  double torque = 5;                   // limit per hand [N·m]
   double handle_speed = 0.25;          // [m/s]
   double handle_rotation_speed = 1.5;  // [rad/s]
   double stop_acceleration = 5;        // minimum: a smaller value means a longer stop [m/s²]
-  double stop_jerk = 250;              // minimum [m/s³]
+  double stop_jerk = 250;              // minimum jerk [m/s³]
   double align_speed = 0.05;           // [m/s]
   double align_tolerance = 0.002;      // [m]
   double align_tolerance_rotation = 0.01745;  // [rad]
@@ -80,8 +80,8 @@ struct MachineLimits {
   // Limits of a scenario's `rendering`.
   double relative_kp = 1.0;        // [1/s]
   double relative_ko = 0.9;        // [1/s]
-  double security_distance = 0.3;  // minimum [m]
-  double joint_security = 0.02;    // minimum [rad]
+  double security_distance = 0.3;  // minimum distance [m]
+  double joint_security = 0.02;    // minimum distance [rad]
 };
 
 // A device that a person holds pressed while the arms may move. Its contact is wired to a digital

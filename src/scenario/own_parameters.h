@@ -97,7 +97,7 @@ enum class ControllerPlace { kProgram, kLibrary, kProcess };
 struct ParameterKind {
   const char* name;  // the word that chooses it: the controller's `type`, the entry's `action`
   const char* doc;
-  std::unique_ptr<OwnParameters> (*parameters)();  // with their defaults
+  std::unique_ptr<OwnParameters> (*parameters)();  // makes the parameters with their defaults
   ControllerPlace place = ControllerPlace::kProgram;
 };
 using ParameterKinds = std::span<const ParameterKind* const>;
@@ -120,7 +120,7 @@ YamlNode CompleteParameters(ParameterKinds kinds, const std::string& type, const
 // A group of keys in a tree that has the own parameters of a kind.
 struct KindGroup {
   std::string path;  // "cobot.controller"
-  std::string key;   // that names the kind: "type"
+  std::string key;   // key that names the kind: "type"
   ParameterKinds kinds;
   YamlNode* group;
 };

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMostBytes = 64u << 20;  // of a model or mesh file
+constexpr std::uintmax_t kMostBytes = 64u << 20;  // maximum size of a model or mesh file
 constexpr std::size_t kMostNames = 1000;  // maximum number of names in a folder that are compared
                                           // for a suggestion
 constexpr std::size_t kLongestUri = 4096;

@@ -61,8 +61,8 @@ struct ControllerSpec {
 
 // When the controller computes and when its torques act.
 struct ControlSpec {
-  double rate = 1000;  // of the controller [Hz]
-  double delay = 0;    // from the state that it sees to its torque [s]
+  double rate = 1000;  // rate of the controller [Hz]
+  double delay = 0;    // delay from the state that the controller sees to its torque [s]
 };
 
 // Force/torque sensor in the cobot's wrist, for controllers that use one.
@@ -70,23 +70,23 @@ struct WristSensorSpec {
   double noise_force = 0;           // standard deviation [N]
   double noise_torque = 0;          // [N·m]
   std::array<double, 6> bias = {};  // [N], [N·m]
-  double cutoff_frequency = 150;    // first-order [Hz]
+  double cutoff_frequency = 150;    // cutoff of the first-order filter [Hz]
 };
 
 // The cobot's own safety functions, as its vendor ships them. Absent ones are off.
 struct CobotSafetySpec {
-  std::optional<double> force;         // that the cobot estimates at its end-effector [N]
-  std::optional<double> speed;         // of the end-effector [m/s]
-  std::optional<double> momentum;      // of the arm at the end-effector [kg·m/s]
-  std::optional<double> joint_torque;  // external torque that it estimates in a joint [N·m]
-  double stop_deceleration = 5;        // of each joint in a protective stop [rad/s²]
-  std::optional<double> force_cap;     // of the controller's force at the end-effector [N]
-  std::optional<double> speed_cap;     // above it, the cobot brakes [m/s]
+  std::optional<double> force;         // limit of the force estimated at the end-effector [N]
+  std::optional<double> speed;         // limit of the end-effector's speed [m/s]
+  std::optional<double> momentum;      // limit of the arm's momentum at the end-effector [kg·m/s]
+  std::optional<double> joint_torque;  // limit of the external torque estimated in a joint [N·m]
+  double stop_deceleration = 5;        // deceleration of each joint in a protective stop [rad/s²]
+  std::optional<double> force_cap;     // limit of the controller's force at the end-effector [N]
+  std::optional<double> speed_cap;     // speed above which the cobot brakes [m/s]
   double observer_rate = 30;           // bandwidth of the estimates [Hz]
 };
 
 struct CobotSpec {
-  std::string model;                      // URDF, package:// or relative to the scenario
+  std::string model;                      // URDF: package:// or relative to the scenario
   std::vector<std::string> remove_links;  // links that are removed with all their descendants
   PoseSpec base;                          // X_WB
   std::string end_effector;               // link E
@@ -97,7 +97,7 @@ struct CobotSpec {
   ControllerSpec controller;
   ControlSpec control;
   WristSensorSpec wrist_sensor;
-  std::optional<ControllerSpec> standby_controller;  // for the event `takeover`
+  std::optional<ControllerSpec> standby_controller;  // second controller, for the event `takeover`
   CobotSafetySpec safety;
 };
 
@@ -105,7 +105,7 @@ struct CobotSpec {
 
 // The place where an event begins: a ball about an offset from the object's start.
 struct EventPlaceSpec {
-  Vector3 center = Vector3::Zero();  // in W [m]
+  Vector3 center = Vector3::Zero();  // offset in W [m]
   double radius = 0.05;              // [m]
 };
 
@@ -114,7 +114,7 @@ struct TriggerSpec {
   double after = 0;                     // simulated time from which the event may begin [s]
   double window = 0;                    // added to `after`, a random share of it [s]
   std::optional<EventPlaceSpec> place;  // where the object must be
-  std::optional<double> force;          // that a hand must exceed [N]
+  std::optional<double> force;          // force that a hand must exceed [N]
   bool gripping = false;                // every hand must exert a force
 };
 
@@ -141,7 +141,7 @@ struct PrimitiveSpec {
   // Box: x y z; cylinder: radius, length, –; sphere: radius, –, – [m].
   Vector3 size = {0.1, 0.1, 0.1};
   double mass = 1;                           // [kg]
-  Vector3 center_of_mass = Vector3::Zero();  // in O [m]
+  Vector3 center_of_mass = Vector3::Zero();  // centre of mass in O [m]
   std::optional<Vector3> inertia;  // principal moments about the centre of mass, axes of O [kg·m²]
 };
 
@@ -149,8 +149,8 @@ struct AttachmentSpec {
   JointType joint = JointType::kSpherical;
   PoseSpec on_end_effector;                    // X_EA: pose of the joint on the cobot
   PoseSpec on_object;                          // X_OA: pose of the joint on the object
-  Vector3 axis = {0, 0, 1};                    // revolute, prismatic: in A
-  double damping = 0;                          // of the joint [N·m·s/rad] or [N·s/m]
+  Vector3 axis = {0, 0, 1};                    // axis of a revolute or prismatic joint, in A
+  double damping = 0;                          // damping of the joint [N·m·s/rad] or [N·s/m]
   std::optional<std::array<double, 2>> range;  // revolute [rad], prismatic [m]
 };
 
@@ -185,7 +185,7 @@ struct EnvironmentSpec {
   double gravity = 9.81;  // [m/s²]
   bool floor = true;      // plane z = 0 with contact
   std::optional<TableSpec> table;
-  double friction = 0.8;  // sliding friction of contacts
+  double friction = 0.8;  // coefficient of sliding friction in contacts
   // X_RW, pose of the virtual world in the frame of the arms' bases; roll and pitch are 0, so that
   // gravity points down in both. Absent: W is R, and the arms' bases may be chosen freely.
   std::optional<PoseSpec> shift;
@@ -215,8 +215,8 @@ struct VelocityLoopSpec {
 // The real handle between sensor and hand, as calibrated.
 struct HandlePayloadSpec {
   double mass = 0.4;                      // [kg]
-  Vector3 center_of_mass = {0, 0, 0.05};  // in S [m]
-  Vector3 inertia = {4e-4, 4e-4, 2e-4};   // about the centre of mass, axes of S [kg·m²]
+  Vector3 center_of_mass = {0, 0, 0.05};  // centre of mass in S [m]
+  Vector3 inertia = {4e-4, 4e-4, 2e-4};   // inertia about the centre of mass, axes of S [kg·m²]
 };
 
 // Properties of a force/torque sensor.
@@ -229,7 +229,7 @@ struct SensorSpec {
   double range_force = 200;          // a reading beyond this value is saturated [N]
   double range_torque = 10;          // [N·m]
   double cutoff_frequency = 150;     // first-order, inside the sensor [Hz]; 0: none
-  double delay = 0.001;              // from measurement to reading [s]
+  double delay = 0.001;              // delay from measurement to reading [s]
   double sample_rate = 1000;         // rate of the device's readings [Hz]
 };
 
@@ -260,7 +260,7 @@ struct DeviceSpec {
 // How the simulated rig differs from the program's model of it. Only the rig reads these values.
 struct RigSpec {
   std::optional<VelocityLoopSpec> loop;  // true loop of both arms; if absent, device.arms.*.loop
-  double computation_delay = 0;          // between reading and command of a tick [s]
+  double computation_delay = 0;          // delay from reading to command of a tick [s]
   double encoder_resolution = 1e-5;      // [rad]
   double velocity_noise = 1e-4;          // standard deviation of measured joint velocity [rad/s]
   std::array<double, 6> sensor_bias = {1.5, -2.0, 3.0, 0.05, -0.08, 0.04};  // [N], [N·m]
@@ -285,7 +285,7 @@ struct HandSpec {
   double force_noise = 0.03;               // coefficient of variation of the force
   double force_noise_floor = 0.1;          // rms [N]
   double speed_drift = 0.06;               // standard deviation of the pace (Ornstein-Uhlenbeck)
-  double speed_drift_time = 1.0;           // its time constant [s]
+  double speed_drift_time = 1.0;           // time constant of the drift [s]
   double max_force = 60;                   // [N]
   double max_torque = 8;                   // [N·m]
   double release_time = 0.040;             // time constant of releasing [s]
@@ -320,14 +320,14 @@ struct BodySpec {
   std::optional<double> upper_arm;          // shoulder to elbow joint [m]
   std::optional<double> forearm;            // elbow to wrist joint [m]
   std::optional<double> hand;               // wrist joint to the third knuckle [m]
-  std::optional<double> shoulder_distance;  // between the shoulder joints [m]
+  std::optional<double> shoulder_distance;  // distance between the shoulder joints [m]
   std::optional<double> trunk;              // middle of the hip joints to the vertebra C7 [m]
   std::optional<double> thigh;              // hip to knee joint [m]
   std::optional<double> shank;              // knee to ankle joint [m]
   // Strength as a multiple of the mean for the sex: elbow flexion and extension, shoulder flexion
   // and extension.
   std::array<double, 4> strength = {1, 1, 1, 1};
-  double stiffness = 1;  // of the arm's joints, as a multiple of the published mean
+  double stiffness = 1;  // stiffness of the arm's joints, as a multiple of the published mean
   double fatigue = 0;    // share of the arm's muscles that is fatigued at the start of a run
 };
 
@@ -389,8 +389,8 @@ struct OscillationSpec {
 };
 
 struct SafetySpec {
-  double force = 30;                          // per hand [N]
-  double torque = 5;                          // per hand [N·m]
+  double force = 30;                          // limit per hand [N]
+  double torque = 5;                          // limit per hand [N·m]
   double tracking = 0.05;                     // distance of the real from the virtual handle [m]
   double tracking_rotation = 0.35;            // [rad]
   double relative_slack = 0.002;              // [m/s], for longer than relative_slack_time
@@ -398,12 +398,12 @@ struct SafetySpec {
   double relative_slack_time = 0.050;         // [s]
   double coupling = 80;                       // [N]
   double coupling_torque = 15;                // [N·m]
-  double max_age = 0.005;                     // of a sample; for a slower device 2.5 periods [s]
+  double max_age = 0.005;                     // age of a sample; for slower devices 2.5 periods [s]
   int frozen_samples = 50;                    // identical readings of a sensor with noise
   double handle_speed = 0.25;                 // cap [m/s]
   double handle_rotation_speed = 1.5;         // cap [rad/s]
-  double stop_acceleration = 5;               // at the handles [m/s²]
-  double stop_jerk = 250;                     // at the handles [m/s³]
+  double stop_acceleration = 5;               // deceleration of the handles [m/s²]
+  double stop_jerk = 250;                     // jerk of the handles [m/s³]
   double align_speed = 0.05;                  // [m/s]
   double align_tolerance = 0.002;             // [m]
   double align_tolerance_rotation = 0.01745;  // [rad]
@@ -417,16 +417,16 @@ struct SafetySpec {
 // their relative pose.
 struct PerturbationSpec {
   bool consent = false;        // the person knows that the handles will move, and agrees
-  double amplitude = 0.006;    // of a displacement [m]
-  Vector3 normal = {0, 0, 1};  // of the plane in which the displacements lie, in W
+  double amplitude = 0.006;    // amplitude of a displacement [m]
+  Vector3 normal = {0, 0, 1};  // normal of the plane in which the displacements lie, in W
   int directions = 8;          // evenly distributed in the plane
   double ramp = 0.12;          // duration of moving out, and of moving back [s]
-  double hold = 0.2;           // between the two [s]
+  double hold = 0.2;           // time between moving out and back [s]
   double after = 3;            // simulated time from which displacements may begin [s]
   double pause = 0.6;          // shortest time from the end of one to the start of the next [s]
   double window = 0.6;         // added to `pause`, a random share of it [s]
-  double speed = 0.03;         // of the virtual handles, above which none begins [m/s]
-  double force = 15;           // of a hand, beyond which a displacement is taken back [N]
+  double speed = 0.03;         // speed of the virtual handles above which none begins [m/s]
+  double force = 15;           // force of a hand beyond which a displacement is taken back [N]
   double margin = 2;           // least stability margin with which a run may begin
 };
 

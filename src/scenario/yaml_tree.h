@@ -21,9 +21,9 @@ struct YamlNode {
   enum class Kind { kNull, kScalar, kList, kMap };
   Kind kind = Kind::kNull;
   Place place;
-  std::string text;             // of a scalar
+  std::string text;             // text of a scalar
   bool quoted = false;          // a scalar in quotation marks is always a string
-  std::vector<YamlNode> items;  // of a list or a map, in the file's order
+  std::vector<YamlNode> items;  // items of a list or a map, in the file's order
   std::string key;              // key, for an item of a map
   Place key_place;
   std::string comment;  // comment after the key

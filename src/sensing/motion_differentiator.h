@@ -30,7 +30,7 @@ class MotionDifferentiator {
   double dt_;
   JointVector v_, a_;
   std::uint64_t sequence_ = 0;
-  int ticks_ = 0;  // since the last new sample
+  int ticks_ = 0;  // ticks since the last new sample
   bool started_ = false;
 };
 

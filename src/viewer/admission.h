@@ -35,7 +35,7 @@ struct Generations {
 class Admission {
  public:
   static constexpr std::uint64_t kPinLife = 120'000'000'000;  // [ns]
-  static constexpr int kPinTries = 5;                         // for each address
+  static constexpr int kPinTries = 5;                         // wrong guesses allowed per address
   static constexpr std::size_t kMaxGuessers = 256;            // addresses with wrong guesses
 
   // `secret`: NewAdmissionSecret(). code_once: the code admits only one client, as with real arms,

@@ -12,7 +12,7 @@ namespace predictor::viewer {
 
 struct Asset {
   std::string bytes;
-  std::string type;          // as in Content-Type
+  std::string type;          // media type, as in Content-Type
   bool needs_token = false;  // part of the run's data
 };
 

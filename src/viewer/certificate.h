@@ -10,7 +10,7 @@ namespace predictor::viewer {
 struct Certificate {
   std::string certificate_pem, key_pem;  // chain and private key
   std::string fingerprint;               // SHA-256 of the first certificate: "AB:CD:..."
-  std::vector<std::string> names;        // its subjectAltName: host names and addresses
+  std::vector<std::string> names;        // names in its subjectAltName: host names and addresses
   bool made = false;                     // made by this call
 };
 

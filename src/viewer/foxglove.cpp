@@ -9,7 +9,7 @@
 namespace predictor::viewer {
 namespace {
 
-constexpr double kClientRate = 100;  // per client and second
+constexpr double kClientRate = 100;  // messages per client and second
 constexpr std::uint8_t kMessageData = 1;
 
 // Format: 01 | u32 subscription | u64 log time | payload.

@@ -9,14 +9,14 @@
 namespace predictor::viewer {
 namespace {
 
-constexpr double kMessageRate = 200;  // per second and client
+constexpr double kMessageRate = 200;  // messages per second and client
 constexpr double kFloodRate = 2000;   // more than a well-behaved page sends
-constexpr double kHandRate = 90;      // per second and hand
+constexpr double kHandRate = 90;      // messages per second and hand
 constexpr double kPingRate = 10;
 constexpr double kDenialRate = 5;
 constexpr double kLatencyRate = 2;
 constexpr double kMarkRate = 2;
-constexpr double kHeadRate = 12;  // of forwarding a headset's pose to the other pages
+constexpr double kHeadRate = 12;  // rate at which a headset's pose is forwarded to the other pages
 // Slots of the states of the run and of the person. The slot of a head is its client's number.
 constexpr std::uint32_t kStates = 0, kPerson = ~0U;
 

@@ -21,7 +21,7 @@ using MonotonicClock = std::function<std::uint64_t()>;  // [ns]
 
 struct HubSetup {
   Json scene;
-  OperatingRules rules;           // of the run; a replay uses the defaults
+  OperatingRules rules;           // rules of the run; a replay uses the defaults
   bool browser_operator = false;  // pages may act as operator
   Hands present = {true, true};
   std::array<ParameterRange, kParameters> ranges;
@@ -107,7 +107,7 @@ class Hub {
   std::uint32_t last_client_ = 0;
   std::shared_ptr<const std::string> frame_, person_;
   RunState state_ = RunState::kInit;
-  std::string how_ended_;  // as a sentence; empty: the run has not ended
+  std::string how_ended_;  // a sentence; empty: the run has not ended
   bool results_follow_ = false;
 };
 

@@ -344,10 +344,10 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     MessageKind kind = MessageKind::kBinary;
     std::shared_ptr<const std::string> bytes;
   };
-  std::map<std::uint32_t, Message> newest_;  // by slot
+  std::map<std::uint32_t, Message> newest_;  // newest message of each slot
   std::uint32_t last_slot_ = 0;
-  bool ping_out_ = false;      // its pong has not arrived
-  bool writing_ping_ = false;  // it has not been written completely
+  bool ping_out_ = false;      // the ping's pong has not arrived
+  bool writing_ping_ = false;  // the ping has not been written completely
   Clock::time_point pinged_;
   std::uint64_t pings_ = 0;
 };

@@ -8,8 +8,8 @@
 namespace predictor::viewer {
 
 struct PageFile {
-  std::string path;  // as in requests: "/", "/app.js", "/app.css"
-  std::string type;  // as in Content-Type
+  std::string path;  // path as in requests: "/", "/app.js", "/app.css"
+  std::string type;  // media type, as in Content-Type
   std::string_view bytes;
 };
 

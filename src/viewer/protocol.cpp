@@ -14,8 +14,8 @@ constexpr double kFarthest = 100;  // maximum distance of a hand from the origin
 // Tolerance of its norm, because pages use single precision.
 constexpr double kQuaternionSlip = 1e-2;
 constexpr double kLargestTime = 1e15;   // [ms]
-constexpr double kMostSteps = 1e6;      // of one request to a replay
-constexpr double kMostSpeed = 64;       // of a replay
+constexpr double kMostSteps = 1e6;      // maximum number of steps in one request to a replay
+constexpr double kMostSpeed = 64;       // maximum speed of a replay
 constexpr double kLargestClock = 9e18;  // [ns]
 
 // Reads the members of a message; `good` becomes false once one is missing or invalid.

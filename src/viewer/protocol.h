@@ -18,7 +18,7 @@ namespace predictor::viewer {
 
 using Json = nlohmann::ordered_json;
 
-inline constexpr std::size_t kLongestMessage = 1024;  // from a page [bytes]
+inline constexpr std::size_t kLongestMessage = 1024;  // largest message from a page [bytes]
 inline constexpr const char* kSubprotocol = "predictor.v1";
 
 struct HelloRequest {
@@ -45,12 +45,12 @@ struct MarkRequest {};
 // For replaying a recording.
 struct ReplayRequest {
   InputKind what = InputKind::kPlay;  // play, seek or step
-  double value = 0;                   // as RunInput::value
+  double value = 0;                   // value as in RunInput::value
 };
 struct HandRequest {
   std::uint8_t hand = 0;  // 0 left, 1 right
   bool grip = false;
-  std::array<double, 3> p = {};            // in W [m]
+  std::array<double, 3> p = {};            // position in W [m]
   std::array<double, 4> q = {1, 0, 0, 0};  // unit, scalar first
 };
 struct PingRequest {
@@ -65,7 +65,7 @@ struct ImmersiveRequest {
   std::uint64_t drawn_ns = 0;  // TickRecord::wall_ns of the newest drawn state; 0: none yet
   // Pose of the head, if the page sends it.
   bool has_head = false;
-  std::array<double, 3> p = {};            // in W [m]
+  std::array<double, 3> p = {};            // position in W [m]
   std::array<double, 4> q = {1, 0, 0, 0};  // unit, scalar first
 };
 using PageRequest =
@@ -90,6 +90,6 @@ std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset);
 // {"control": 3 | null, ...}, as in `leases` and `welcome`.
 Json LeasesJson(const Leases& leases, std::size_t clients);
 std::string LeasesText(const Leases& leases, std::size_t clients);
-Json FrameJson();  // of FrameFields()
+Json FrameJson();  // FrameFields() as JSON
 
 }  // namespace predictor::viewer

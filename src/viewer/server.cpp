@@ -15,7 +15,7 @@
 namespace predictor::viewer {
 namespace {
 
-constexpr auto kAcceptPause = std::chrono::milliseconds(50);  // if file descriptors run out
+constexpr auto kAcceptPause = std::chrono::milliseconds(50);  // pause when file descriptors run out
 
 std::string WhyNot(const tcp::endpoint& endpoint, Error error) {
   return "The viewer could not open port " + std::to_string(endpoint.port()) + " of " +

@@ -13,23 +13,24 @@
 namespace predictor::viewer {
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";             // numeric; 127.0.0.1 includes ::1 if available
-  std::uint16_t port = 8080;                     // 0: any free port
-  std::string certificate_pem, key_pem;          // both empty: no TLS
-  std::chrono::milliseconds head_time{5000};     // for a request's head and for the TLS handshake
-  std::chrono::milliseconds reply_time{30000};   // for receiving an answer
-  std::chrono::milliseconds message_time{1000};  // from a message's first byte to its last
-  std::chrono::milliseconds idle_time{20000};    // without any data on a WebSocket
+  std::string address = "127.0.0.1";     // numeric; 127.0.0.1 includes ::1 if available
+  std::uint16_t port = 8080;             // 0: any free port
+  std::string certificate_pem, key_pem;  // if both are empty: no TLS
+  std::chrono::milliseconds head_time{
+      5000};  // limit for a request's head and for the TLS handshake
+  std::chrono::milliseconds reply_time{30000};   // time limit for receiving an answer
+  std::chrono::milliseconds message_time{1000};  // limit from a message's first byte to its last
+  std::chrono::milliseconds idle_time{20000};    // time limit without any data on a WebSocket
   std::size_t longest_head = 8192;               // [bytes]
   // Maximum number of connections before admission; one more drops the oldest.
   std::size_t most_guests = 256;
-  std::size_t most_guests_per_address = 128;  // the same for each address
+  std::size_t most_guests_per_address = 128;  // the same limit for each address
   // Maximum number of TLS handshakes that begin per second; further ones wait within head_time.
   // Handshakes cost the single thread most, and a stop has to wait for them.
   double handshake_rate = 100;
   double handshake_rate_per_address = 40;
-  std::size_t most_waiting_text = 256 * 1024;  // for one client [bytes]
-  double tick_rate = 60;                       // of Application::Tick [Hz]
+  std::size_t most_waiting_text = 256 * 1024;  // limit for one client [bytes]
+  double tick_rate = 60;                       // rate of Application::Tick [Hz]
 };
 
 class Server {

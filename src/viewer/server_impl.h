@@ -34,7 +34,7 @@ class Member {
   virtual ~Member() = default;
   // Disconnects it at once.
   virtual void Drop() = 0;
-  virtual const asio::ip::address& address() const = 0;  // of the peer
+  virtual const asio::ip::address& address() const = 0;  // address of the peer
 };
 
 struct Server::Impl {

@@ -15,7 +15,7 @@
 namespace predictor::viewer {
 namespace {
 
-constexpr std::uint64_t kMostRecords = kRecordRing / 2;  // between two states that are shown
+constexpr std::uint64_t kMostRecords = kRecordRing / 2;  // most between two shown states
 constexpr const char* kReportPath = "/report.html";
 
 HubSetup HubSetupOf(const Scenario& scenario, Json scene) {

@@ -22,21 +22,21 @@ namespace predictor::viewer {
 struct AppSetup {
   std::vector<std::string> hosts;  // host names of this server, without port
   bool tls = false;                // pages are loaded by https:
-  bool code_once = false;          // for real arms
+  bool code_once = false;          // true for real arms
   std::string secret;              // NewAdmissionSecret()
-  Generations generations;         // of the secret's tokens
-  std::uint32_t last_client = 0;   // of earlier processes
+  Generations generations;         // generations of the secret's tokens
+  std::uint32_t last_client = 0;   // last client number of earlier processes
   Json replay = Json::object();    // for a recording: {"duration": s, "first_tick": n}
   // Scenarios that a page may choose, [{"name", "title"}, ...], and a message about the last
   // choice, if any.
   Json scenarios = Json::array();
   std::string notice;
-  Json results;        // of a run that has ended (ViewerOptions::results); null during a run
-  std::string report;  // of that run, an HTML page; empty: no report
+  Json results;        // results of a finished run (ViewerOptions::results); null during a run
+  std::string report;  // report of that run, an HTML page; empty: no report
   std::function<void(const std::string&)> tell;  // shows messages at the console; may be empty
   std::vector<std::string> origins;              // additional origins, for Foxglove only
   const EvaluationBoard* states =
-      nullptr;                 // of the person; borrowed; null: the person is not judged
+      nullptr;                 // states of the person; borrowed; null: the person is not judged
   std::string why_not_judged;  // shown if there are no states; a sentence
 };
 
@@ -87,11 +87,11 @@ class ViewerApp : public Application {
   std::unique_ptr<Hub> hub_;
   std::unique_ptr<Foxglove> foxglove_;
   RunState state_ = RunState::kInit;
-  std::array<std::uint8_t, kHands> warnings_ = {};  // as last shown
+  std::array<std::uint8_t, kHands> warnings_ = {};  // warnings as last shown
   std::uint64_t warned_ = 0;                        // tick of the last warning
   bool ended_ = false;
   std::uint64_t shown_ = 0;         // number of records when one was last shown
-  std::uint64_t shown_person_ = 0;  // the same for the person's states
+  std::uint64_t shown_person_ = 0;  // number of the person's states when one was last shown
 };
 
 // The monotonic clock, as in TickRecord::wall_ns [ns].

@@ -20,7 +20,7 @@
 namespace predictor::viewer {
 namespace {
 
-constexpr std::size_t kLongestCommand = 4096;  // from the console [bytes]
+constexpr std::size_t kLongestCommand = 4096;  // longest command from the console [bytes]
 // Time to inform the pages that the run has ended.
 constexpr std::chrono::milliseconds kFarewell{300};
 

@@ -19,7 +19,7 @@ namespace {
 constexpr const char* kLoopback = "127.0.0.1";
 constexpr const char* kEverywhere = "0.0.0.0";
 constexpr std::uint32_t kClientsOfOneStart = 10000;
-constexpr auto kPatience = std::chrono::seconds(2);  // for a request without an answer
+constexpr auto kPatience = std::chrono::seconds(2);  // wait for the answer to a request
 
 std::string AddressOf(const ViewerOptions& o) {
   if (!o.address.empty()) return o.address;

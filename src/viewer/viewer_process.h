@@ -21,7 +21,7 @@ namespace predictor::viewer {
 
 // A recording that is replayed instead of a run.
 struct ReplaySpan {
-  double duration = 0;           // from first to last tick [s]; 0: this is a run
+  double duration = 0;           // time from first to last tick [s]; 0: this is a run
   std::uint64_t first_tick = 0;  // TickRecord::tick
 };
 
@@ -35,13 +35,13 @@ struct ViewerOptions {
   std::vector<std::string> names;          // additional names of this machine
   std::vector<std::string> foxglove_origins;  // such as https://app.foxglove.dev
   std::string secret;                         // NewAdmissionSecret(); empty: one is made
-  Generations generations;                    // of the tokens of the previous run
+  Generations generations;                    // generations of the previous run's tokens
   std::vector<ScenarioTitle> scenarios;       // scenarios that a page may choose
   std::string notice;                         // shown to every client; empty: no notice
   ReplaySpan replay;
   // Results of a run that has ended, as JSON (the page's `scene.results`); empty during a run.
   std::string results;
-  std::filesystem::path report;            // of that run, an HTML page; empty: no report
+  std::filesystem::path report;            // report of that run, an HTML page; empty: no report
   Vector3 object_start = Vector3::Zero();  // O in W at the start of the run [m]
   std::string
       why_not_judged;  // why the person is not judged, as a sentence; used if there are no states
@@ -72,9 +72,9 @@ class ViewerProcess {
   // The page's address with the access code; with real arms, it changes when the viewer restarts.
   std::string url() const;
   std::uint16_t port() const { return process_.port(); }
-  std::string fingerprint() const;            // of the certificate; "" without TLS
+  std::string fingerprint() const;            // fingerprint of the certificate; "" without TLS
   int pid() const { return process_.pid(); }  // 0 while no process is running
-  Generations generations() const;            // for the ViewerOptions of the next run
+  Generations generations() const;            // generations for the ViewerOptions of the next run
 
   // Requests of the operator at the console. They do not block, may be called from any thread, and
   // report their result by messages.

@@ -27,7 +27,7 @@ import {kTroubles, overWords, Trouble} from './words';
 const kHeadsetSilenceMs = 1500;
 const kWatchMs = 50;
 const kFirstPictures = 10;
-const kPageInVrMs = 150;  // between updates of the page, because the headset needs the time
+const kPageInVrMs = 150;  // time between updates of the page, because the headset needs the time
 
 export class App {
   readonly connection: Connection;
@@ -47,7 +47,7 @@ export class App {
   readonly theme: ThemeSwitch;
   readonly immersive: Immersive;
   spec: SceneSpec | null = null;
-  shown: State | null = null;  // as interpolated and drawn
+  shown: State | null = null;  // newest state as interpolated and drawn
   private readonly pairing: PairingPage;
   private welcome: Welcome | null = null;
   private headsetMs = -Infinity;

@@ -45,7 +45,7 @@ export class Connection {
 
   private socket: WebSocket | null = null;
   private decoder: StateDecoder | null = null;
-  private credential: Credential | null = null;  // for the next attempt
+  private credential: Credential | null = null;  // credential for the next attempt
   private retryMs = kFirstRetryMs;
   private retryTimer = 0;
   private lastHeardMs = 0;

@@ -8,7 +8,7 @@ import {quaternion, vector} from './scene/frames';
 import {Stage} from './scene/stage';
 
 const kStep = 0.005;          // per key press [m]
-const kFineStep = 0.001;      // with Shift [m]
+const kFineStep = 0.001;      // step with Shift [m]
 const kTurn = Math.PI / 90;   // per key press, about the vertical [rad]
 const kTakes: Record<string, readonly Side[]> = {l: ['left'], r: ['right'], b: kSides};
 

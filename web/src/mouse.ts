@@ -13,7 +13,7 @@ interface Grip {
   sides: Side[];
   vertical: boolean;
   from: Vector3;                         // where the pointer grabbed on its plane, in W
-  plane: Plane;                          // in which the pointer moves, in W
+  plane: Plane;                          // plane in which the pointer moves, in W
   base: Partial<Record<Side, Pose>>;     // targets when the pointer grabbed
 }
 

@@ -15,7 +15,7 @@ interface Entry {
 
 export class PersonPlayer {
   latest: PersonState | null = null;
-  count = 0;  // of messages
+  count = 0;  // number of messages
   private receivedMs = -Infinity;
   private entries: Entry[] = [];
 
@@ -74,8 +74,8 @@ function mixPoints(a: BodyPoints, b: BodyPoints, t: number): BodyPoints {
 
 // Where a figure of the body in a mirror stands, and how large it is. Directions are horizontal unit vectors.
 export interface MirrorPlace {
-  at: Vec3;        // of its feet
-  toward: Vec3;    // from the person to the mirror
+  at: Vec3;        // position of the figure's feet
+  toward: Vec3;    // direction from the person to the mirror
   scale: number;
 }
 

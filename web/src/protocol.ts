@@ -50,7 +50,7 @@ export interface Action {
 
 export interface SceneSpec {
   name: string;
-  file?: string;  // of the scenario, without folder and extension; older servers omit it
+  file?: string;  // file of the scenario, without folder and extension; older servers omit it
   mode: string;
   duration: number;  // [s]; 0: until a person ends it
   simulated: boolean;
@@ -76,7 +76,7 @@ export interface SceneSpec {
   parameters: Partial<Record<ParameterName, ParameterSpec>>;
   script: Action[];
   hazards?: string[];  // what each one does; older servers omit it
-  scenarios: {name: string; title: string}[];  // that may be chosen at rest
+  scenarios: {name: string; title: string}[];  // scenarios that may be chosen at rest
   notice?: string;                             // error of the last choice, if it failed
   person?: {judged: boolean; why?: string};        // whether messages `person` come; older servers omit it
   replay?: {duration: number; first_tick: number};  // present for a recording [s]
@@ -105,7 +105,7 @@ export interface Results {
   how: string;        // how the run ended, as a sentence
   figures: Figure[];
   curves: Curve[];
-  recording: string;  // its file; empty: no recording
+  recording: string;  // the recording's file; empty: no recording
   remark: string;     // why there is no report, or empty
   report?: string;    // path on the server
 }

@@ -30,7 +30,7 @@ export interface Trouble {
   meaning: string;
   emergency: string;   // position of the stop button, or the text beside it
   mayStop: boolean;    // the stop button may still have an effect
-  tone?: StateWords['tone'];  // of the state card; default: stopped
+  tone?: StateWords['tone'];  // tone of the state card; default: stopped
 }
 
 function trouble(name: 'closed' | 'silent' | 'ignored', mayStop: boolean): Trouble {

@@ -16,7 +16,7 @@ enum class Fault : std::uint8_t {
   kNonsense,
   kSilent,
   kMode,   // a mode in which it cannot move
-  kError,  // it reports errors
+  kError,  // the robot reports errors
   kMove,   // negative answer to Move
   kNoStart,
   kNoEnd,

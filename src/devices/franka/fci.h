@@ -63,7 +63,7 @@ struct RobotState {
   Joints q{}, dq{};               // measured [rad], [rad/s]
   Joints q_d{}, dq_d{}, ddq_d{};  // as last commanded, or extrapolated [rad], [rad/s], [rad/s²]
   Wrench F_K_K = Wrench::Zero();  // wrench of the robot on its surroundings, about K, axes of K
-  Pose X_FK;                      // of the stiffness frame in the flange
+  Pose X_FK;                      // pose of the stiffness frame in the flange
   std::optional<Pose> X_OF;       // pose of the flange in the base; empty if it is not reported
   double compensated_mass = 0;    // mass of end-effector and load, which F_K_K excludes [kg]
   Vector3 compensated_center = Vector3::Zero();  // their centre of mass in the flange [m]

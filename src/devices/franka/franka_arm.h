@@ -25,8 +25,8 @@ namespace predictor {
 
 // Thresholds above which the arm's own reflex stops it.
 struct FrankaCollision {
-  std::array<double, fci::kJoints> torque{};  // of each joint [N·m]
-  Wrench force = Wrench::Zero();              // at the stiffness frame [N], [N·m]
+  std::array<double, fci::kJoints> torque{};  // torque of each joint [N·m]
+  Wrench force = Wrench::Zero();              // wrench at the stiffness frame [N], [N·m]
 };
 
 struct FrankaOptions {
@@ -38,7 +38,7 @@ struct FrankaOptions {
   Pose X_FS;                             // pose of the sensor's frame in the flange
   std::optional<FrankaCollision> collision;  // empty: the arm's own settings
   bool listen = false;                       // only read: nothing is configured or moved
-  double timeout = 5;                        // for each answer while connecting [s]
+  double timeout = 5;                        // maximum wait for each answer while connecting [s]
 };
 
 // Counts of irregularities that are not faults.

@@ -120,7 +120,7 @@ class NetFt final : public WrenchSensor {
   std::uint64_t malformed_ = 0;             // datagrams dropped because of their size or number
   bool resumes_ = false;                    // since a pause only buffered records have arrived
   // Trouble may be called by other threads.
-  std::atomic<std::uint32_t> status_ = 0;  // of the newest record
+  std::atomic<std::uint32_t> status_ = 0;  // status of the newest record
   std::atomic<int> behind_ = 0;   // records since the newest one whose numbers were rejected
   std::atomic<double> rate_ = 0;  // measured rate [Hz]; 0: not measured yet
 };

@@ -20,7 +20,7 @@ inline constexpr std::size_t kRequestBytes = 8, kRecordBytes = 36;
 
 enum class Command : std::uint16_t {
   kStop = 0x0000,
-  kStream = 0x0002,  // without end, or this number of records
+  kStream = 0x0002,  // starts a stream without end, or of this number of records
   kBias = 0x0042,    // ATI: sets the current reading to zero; OnRobot: count 0xFF sets, 0 clears
   kFilter = 0x0081,  // OnRobot: number of the cut-off frequency, in `count`
   kPeriod = 0x0082,  // OnRobot: interval between records [ms], in `count`

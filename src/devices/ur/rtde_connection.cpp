@@ -3,7 +3,7 @@
 namespace predictor::rtde {
 namespace {
 
-constexpr double kAnswerTimeout = 2;  // for connecting, and for each answer [s]
+constexpr double kAnswerTimeout = 2;  // maximum wait when connecting, and for each answer [s]
 
 }  // namespace
 

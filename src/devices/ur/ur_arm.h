@@ -19,8 +19,8 @@ struct UrOptions {
   // (local control, free-drive). ArmReading::fault then reports that it cannot move, which is not
   // an error.
   bool listen = false;
-  double acceleration = 20;  // of the leading joint in speedj [rad/s²]; above the guard's limit
-  double deceleration = kUrStandstill.deceleration;  // of the leading joint in stopj [rad/s²]
+  double acceleration = 20;  // acceleration of speedj [rad/s²]; above the guard's limit
+  double deceleration = kUrStandstill.deceleration;  // deceleration of stopj [rad/s²]
   // The first register used (ur_script.h). 24 … 42: reserved for clients by the RTDE guide, from
   // PolyScope 3.9 or 5.3. 0 … 18: registers of its fieldbuses, from 3.4.
   int first_register = 24;

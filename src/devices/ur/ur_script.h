@@ -9,16 +9,16 @@ namespace predictor {
 
 // The program's state, in the second output register.
 enum class UrScriptState : std::int32_t {
-  kReady = 1,     // it runs but has received nothing from the tick; the arm stands still
-  kFollows = 2,   // it receives the counter; the arm stands still or follows
-  kStopping = 3,  // it brakes as commanded and then follows again
+  kReady = 1,     // the program runs but has heard nothing from the tick; the arm stands still
+  kFollows = 2,   // the program receives the counter; the arm stands still or follows
+  kStopping = 3,  // the program brakes as commanded and then follows again
   kEnded = 4,     // the counter stopped or never changed: the program brakes and ends
 };
 
 struct UrScriptOptions {
   double cycle = 0.002;      // cycle of the controller [s]
-  double acceleration = 20;  // of the leading joint, in speedj [rad/s²]
-  double deceleration = 10;  // of the leading joint, in stopj [rad/s²]
+  double acceleration = 20;  // acceleration of the leading joint in speedj [rad/s²]
+  double deceleration = 10;  // deceleration of the leading joint in stopj [rad/s²]
   int first_register = 24;   // first register used; see below
 };
 

@@ -12,7 +12,7 @@ namespace {
 // being updated.
 constexpr std::int32_t kPowerOn = 4;
 constexpr std::int32_t kRunning = 7;                 // powered, brakes released
-constexpr std::uint32_t kFreedriveButton = 1U << 2;  // in robot_status_bits
+constexpr std::uint32_t kFreedriveButton = 1U << 2;  // bit of robot_status_bits
 // In safety_status_bits.
 constexpr std::uint32_t kProtectiveStopBit = 1U << 2;
 constexpr std::uint32_t kSafeguardStopBit = 1U << 4;
@@ -26,7 +26,7 @@ constexpr double kWholeSpeed = 0.995;  // setting of the speed slider
 // Time since the controller's start: 30 years. With a larger value, the age of a package could not
 // be computed [s].
 constexpr double kMostTime = 1e9;
-constexpr double kMostAngle = 100;  // also for an endless joint [rad]
+constexpr double kMostAngle = 100;  // limit of an angle, also for an endless joint [rad]
 constexpr double kMostSpeed = 20;   // five times the speed of an arm [rad/s]
 
 bool Within(const UrVector& values, double bound) noexcept {

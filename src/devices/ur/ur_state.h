@@ -29,7 +29,7 @@ struct UrState {
   std::int32_t echo = 0;          // registers that our program writes (ur_script.h)
   std::int32_t script = 0;
   double payload = 0;                   // configured at the pendant; zero if unknown [kg]
-  std::array<double, 3> payload_cog{};  // in the flange [m]
+  std::array<double, 3> payload_cog{};  // centre of mass in the flange [m]
   // Position [m] and rotation vector [rad] of the tool in the base, and on the flange. The latter
   // is zero if it is unknown.
   UrVector tool{}, tool_offset{};
@@ -62,7 +62,7 @@ enum class UrFault : std::uint8_t {
   kSafetyFault,     // violation, fault, recovery mode
   kUnpowered,       // power off, or brakes not released
   kFreedrive,       // the free-drive button is pressed
-  kSpeedSlider,     // below 100 %: the arm is slower than commanded
+  kSpeedSlider,     // the speed slider is below 100 %: the arm is slower than commanded
   kScriptSilent,    // our program ended because it received no data from us
   kScriptEnded,     // our program was stopped or paused by someone else
   kDeaf,            // our program runs but does not receive our commands

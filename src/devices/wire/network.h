@@ -50,7 +50,7 @@ class Datagrams {
   // truncated; 0: none at present.
   virtual int Receive(std::span<std::byte> to) noexcept = 0;
   virtual bool Send(std::span<const std::byte> from) noexcept = 0;
-  virtual std::uint16_t port() const noexcept = 0;  // our port
+  virtual std::uint16_t port() const noexcept = 0;  // our port number
   // number of dropped datagrams from other senders
   virtual std::uint64_t strangers() const noexcept = 0;
 };

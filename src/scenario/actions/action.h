@@ -33,10 +33,10 @@ enum class ActionMotion { kNone, kMoves, kTurns };
 
 // The registry's description of an action.
 struct ActionKind : ParameterKind {
-  ActionMotion motion;  // of the object
+  ActionMotion motion;  // motion of the object
   // The instruction to a person. `facing`: direction of view, about z of W from its x axis [rad].
   std::string (*sentence)(const OwnParameters&, double facing);
-  double (*time)(const OwnParameters&);  // from start to end at an average pace [s]
+  double (*time)(const OwnParameters&);                   // duration at an average pace [s]
   std::unique_ptr<Action> (*make)(const OwnParameters&);  // throws InputError
 };
 

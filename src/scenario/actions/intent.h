@@ -10,7 +10,7 @@ namespace predictor {
 // Written by actions and read by the hands. Both hands share one reference for the object.
 struct Intent {
   Pose X_WO;                   // set-point of the object
-  Twist V_WO = Twist::Zero();  // its velocity, the sum over all actions [m/s], [rad/s]
+  Twist V_WO = Twist::Zero();  // velocity of the object, the sum over all actions [m/s], [rad/s]
   // feed-forward force, in W [N]
   std::array<Vector3, kHands> push = {Vector3::Zero(), Vector3::Zero()};
   std::array<bool, kHands> hold = {false, false};     // the hand holds its handle

@@ -8,7 +8,7 @@ namespace {
 
 struct MoveParameters {
   double duration = 1;           // [s]
-  Vector3 by = Vector3::Zero();  // in W [m]
+  Vector3 by = Vector3::Zero();  // displacement in W [m]
 };
 
 template <class V>

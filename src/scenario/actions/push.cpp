@@ -11,7 +11,7 @@ namespace {
 
 struct PushParameters {
   double duration = 1;              // [s]
-  Vector3 force = Vector3::Zero();  // in W [N]
+  Vector3 force = Vector3::Zero();  // force in W [N]
   double rise_time = 0.120;         // [s]
   std::string hand = "both";
 };
@@ -48,7 +48,7 @@ class Push final : public Action {
 
  private:
   std::array<bool, kHands> concerns_;
-  Vector3 force_;        // in W [N]
+  Vector3 force_;        // force in W [N]
   double rise_, total_;  // [s]
   double time_ = 0;      // [s]
 };

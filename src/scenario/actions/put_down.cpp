@@ -9,7 +9,7 @@ namespace {
 
 struct PutDownParameters {
   double duration = 1;           // [s]
-  Vector3 by = Vector3::Zero();  // in W [m]
+  Vector3 by = Vector3::Zero();  // displacement in W [m]
   std::string hand = "both";
 };
 

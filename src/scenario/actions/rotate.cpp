@@ -13,7 +13,7 @@ constexpr double kMinAngle = 1e-4;  // a smaller rotation is not mentioned [rad]
 
 struct RotateParameters {
   double duration = 1;                  // [s]
-  Vector3 rotate_by = Vector3::Zero();  // in W [rad]
+  Vector3 rotate_by = Vector3::Zero();  // rotation vector in W [rad]
 };
 
 template <class V>

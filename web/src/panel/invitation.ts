@@ -10,7 +10,7 @@ import {level} from '../words';
 const kGaugeStaysMs = 1200;  // after the handle was released
 
 export class Invitation {
-  readonly element: HTMLElement;  // in the scene
+  readonly element: HTMLElement;  // element in the scene
   readonly gauges: HTMLElement;
   private readonly words = h('span', {});
   private readonly button = h('button', {class: 'primary', id: 'take-hands', onclick: () => this.take()},

@@ -43,7 +43,7 @@ export class Panel {
   private readonly resultsButton = h('button', {
     id: 'show-results', class: 'primary', hidden: true, onclick: () => this.showResults(),
   }, 'Show results');
-  private file = '';  // of the scenario
+  private file = '';  // file of the scenario
   private readonly commandHint = h('p', {class: 'hint', id: 'command-hint'});
   private readonly leaseButtons = new Map<'control' | 'operator', HTMLButtonElement>();
   private readonly leaseTexts = new Map<'control' | 'operator', HTMLElement>();
@@ -63,7 +63,7 @@ export class Panel {
   private readonly latencyText = h('span', {class: 'hint'});
   private readonly clockText = h('p', {class: 'hint', id: 'clock'});
   private lastLedgerMs = 0;
-  private commandHadFocus = false;  // and was then disabled
+  private commandHadFocus = false;  // a command button had the focus and was then disabled
 
   readonly transport: Transport;
 

@@ -10,7 +10,7 @@ type ScoreName = keyof typeof kPersonScores;
 
 const kRoom = [1100, 700];  // window in which the card is open at first [px]
 const kLateStart = 0.5;  // later than this, damage does not count from the start of the run [s]
-const kEveryMs = 100;  // between updates; warnings appear at once
+const kEveryMs = 100;  // time between updates; warnings appear at once
 
 // How a gauge is shown: its words, the factor from SI, the decimals, and the ends of its bar in SI.
 interface GaugeLook {

@@ -12,7 +12,7 @@ const kTickSteps = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30];  // [s]
 type Value = number | null;
 interface Series {
   label: string;
-  name: string;    // in a saved table
+  name: string;    // name in a saved table
   color: string;
   limit?: number;  // for a limit's line: the axis includes it once a value reaches this share of it
   value(state: State, spec: SceneSpec): Value;

@@ -29,7 +29,7 @@ export class Transport {
   private playing = true;
   private movedMs = -Infinity;
   private touchedMs = -Infinity;
-  private asked = false;  // for control, since the welcome
+  private asked = false;  // control was requested since the welcome
 
   constructor(private readonly connection: Connection) {
     const step = (label: string, words: string, ticks: number) =>

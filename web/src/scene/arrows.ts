@@ -6,10 +6,10 @@ import {
 import {kMeaning} from '../theme';
 import {level, Level} from '../words';
 
-const kLengthAtThreshold = 0.3;   // of a force arrow [m]
-const kShortest = 0.02;           // below this no arrow is drawn [m]
-const kRingRadius = 0.085;        // of a torque arrow [m]
-const kRingAngle = Math.PI * 1.5; // of its arc at the threshold [rad]
+const kLengthAtThreshold = 0.3;   // length of a force arrow at the threshold [m]
+const kShortest = 0.02;           // length below which no arrow is drawn [m]
+const kRingRadius = 0.085;        // radius of a torque arrow [m]
+const kRingAngle = Math.PI * 1.5; // angle of a torque arrow's arc at the threshold [rad]
 const kSlices = 24;               // steps of the arc's growth
 const kOverEverything = 20;       // order of drawing
 const kZ = new Vector3(0, 0, 1);

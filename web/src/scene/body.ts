@@ -74,7 +74,7 @@ function span(matrix: Matrix4, at: Vector3, along: Vector3, beside: Vector3, siz
 
 export class Body {
   readonly group = new Group();
-  colors: Record<string, number> = {};  // of the parts, as drawn
+  colors: Record<string, number> = {};  // colours of the parts, as drawn
   private readonly limbs: LimbMesh[];
   private readonly trunkMaterial = new MeshLambertMaterial({color: kNotJudged});
   private readonly skinMaterial = new MeshLambertMaterial({color: kNotJudged});

@@ -8,11 +8,11 @@ import {hex, kMeaning, kSceneColors, Theme} from '../theme';
 import {distance} from './frames';
 
 const kTrailPoints = 900;
-const kTrailStep = 0.003;  // between points of the trail [m]
+const kTrailStep = 0.003;  // distance between points of the trail [m]
 const kJump = 0.1;         // a longer step means that the object was placed elsewhere [m]
 const kFarOff = 0.03;      // distance from the path at which the trail's colour stops changing [m]
 const kMarks = 120;
-const kMarkEvery = 1;      // of run time [s]
+const kMarkEvery = 1;      // run time between two marks [s]
 
 // The latest positions, oldest first.
 class Places {

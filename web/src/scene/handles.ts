@@ -7,14 +7,14 @@ import {HandState, Side} from '../protocol';
 import {kMeaning} from '../theme';
 import {place} from './frames';
 
-const kRadius = 0.018;      // of the grip [m]
+const kRadius = 0.018;      // radius of the grip [m]
 const kLength = 0.11;       // [m]
 const kRingRadius = 0.042;  // around the grip, visible even if a body hides the grip [m]
 const kShineThrough = 10;  // order of drawing
 const kPickRadius = 0.07;  // generous, for fingers on a tablet [m]
 const kMinRingRadius = 20;  // minimum radius on the page of a ring that can be dragged [px]
 const kMaxScale = 2;       // maximum scaling for that purpose
-const kPulseMs = 1100;     // of an inviting ring
+const kPulseMs = 1100;     // period of an inviting ring's pulse
 
 export class Handle {
   readonly group = new Group();

@@ -5,9 +5,9 @@ import {PersonState, SceneSpec, Vec3} from '../protocol';
 import {Body} from './body';
 
 const kScale = 0.5;
-const kAhead = 1.1, kRight = 0.85, kAboveGround = 0.72;  // of the figure's feet from the person's [m]
-const kBehind = 0.22;  // of the glass behind the figure [m]
-const kWidth = 0.8, kHeight = 1.15;  // of the glass [m]
+const kAhead = 1.1, kRight = 0.85, kAboveGround = 0.72;  // offset of the figure's feet from the person's [m]
+const kBehind = 0.22;  // distance of the glass behind the figure [m]
+const kWidth = 0.8, kHeight = 1.15;  // size of the glass [m]
 
 export class Mirror {
   readonly group = new Group();

@@ -44,7 +44,7 @@ function finish(root: Object3D) {
 export type Complaint = (words: string) => void;
 
 export const kPlaceholder = 'placeholder';
-const kPlaceholderSize = 0.06;  // of the box that represents a mesh that cannot be shown [m]
+const kPlaceholderSize = 0.06;  // size of the box that represents a mesh that cannot be shown [m]
 
 // Loads a mesh file of any format that robots commonly use. Throws an Error if the format is different, or if
 // the file is missing or cannot be parsed.

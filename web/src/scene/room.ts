@@ -13,7 +13,7 @@ const kGridStep = 0.1;    // [m]
 const kMajorEvery = 5;    // lines
 // The virtual floor where the ground is below it: a round table on a column.
 const kPlate = {radius: 1, thickness: 0.03, column: 0.12};  // [m]
-const kBesidePlate = 0.25, kMinPlate = 0.4;  // from the plate's edge to the operator's feet; its radius [m]
+const kBesidePlate = 0.25, kMinPlate = 0.4;  // distance of the plate's edge from the feet; minimum radius [m]
 const kFoot = [0.13, 0.05];  // half length and half width of a footprint [m]
 
 function gridLines(minor: boolean): BufferGeometry {

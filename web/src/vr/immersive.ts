@@ -16,16 +16,16 @@ import {Controllers, Registrar} from './registrar';
 import {applyTo, clearFrom, standAt, zUp} from './registration';
 import {Tone} from './tone';
 
-const kGrabDistance = 0.12;   // of a hand from a handle [m]
-const kReportMs = 105;        // between heartbeats: at most ten per second
-const kPulseEveryMs = 100;    // of haptic pulses
+const kGrabDistance = 0.12;   // maximum distance of a hand from a handle [m]
+const kReportMs = 105;        // time between heartbeats: at most ten per second
+const kPulseEveryMs = 100;    // period of haptic pulses
 const kPulseMs = 70;
 const kMirrorEvery = 3;       // frames, for the experimenter's page
-const kBoardBelowEyes = 0.3;  // its centre [m]
-const kHeightSpeed = 0.25;    // by the thumbstick, before a registration [m/s]
+const kBoardBelowEyes = 0.3;  // distance of the board's centre below the eyes [m]
+const kHeightSpeed = 0.25;    // vertical speed set by the thumbstick, before a registration [m/s]
 
 interface Grab {
-  side: Side;               // of the handle
+  side: Side;               // side of the handle
   handleFromInput: Matrix4; // pose of the handle in the input's frame when it was grabbed
 }
 

@@ -13,7 +13,7 @@ const kMaxJoints = 25;
 export interface Input {
   source: XRInputSource;
   side: Side | null;
-  grip: Matrix4;       // in the headset's space, three.js's axes
+  grip: Matrix4;       // pose in the headset's space, three.js's axes
   tip: Vector3;        // point with which it touches
   ray: {origin: Vector3; direction: Vector3} | null;
   closed: boolean;     // trigger, squeeze or pinch

@@ -5,7 +5,7 @@ export interface BoardText {
   tone: 'calm' | 'ready' | 'running' | 'warning' | 'stopped';
   text: string;       // instruction, or cause of the stop
   advice: string;
-  prompt: string;     // of the registration
+  prompt: string;     // prompt of the registration
   alarm: string;      // drift, connection
 }
 
@@ -19,7 +19,7 @@ export interface Line {
   color: string;
 }
 
-const kTop = 128;        // of the sentences
+const kTop = 128;        // top of the sentences
 const kSmaller = 0.95;
 const kSmallest = 0.5;  // smaller letters cannot be read
 export const kTones = {calm: '#9aa7b8', ready: '#2fbf71', running: '#2fbf71', warning: '#ff9f1c',

@@ -4,10 +4,10 @@ import {kSides, SceneSpec, scenarioOf, Side, State, Vec3} from '../protocol';
 import {distance, matrix, vector} from '../scene/frames';
 import {fit, load, PointPair, Registration, store, toWorld} from './registration';
 
-const kMountMs = 4000;     // to place the controllers on the handles
-const kMeasureMs = 500;    // of which the last ones are averaged
-const kLongestFrameMs = 250;  // that counts, because the person sees the countdown
-const kWorstResidual = 0.03;  // of correctly touched points [m]
+const kMountMs = 4000;     // time for placing the controllers on the handles
+const kMeasureMs = 500;    // last part of that time, over which poses are averaged
+const kLongestFrameMs = 250;  // longest frame that counts, because the person sees the countdown
+const kWorstResidual = 0.03;  // largest residual of correctly touched points [m]
 const kDriftLimit = 0.03;  // [m]
 const kDriftMs = 500;      // duration before it is reported
 const kCheckLimit = 0.03;  // distance between a touch and the handle that confirms the registration [m]
@@ -31,7 +31,7 @@ export type Controllers = Partial<Record<Side, Place>>;
 // A controller or hand that moves with a handle: it lies on the handle or holds it.
 interface Attached {
   handle: Side;
-  offset: Vec3;        // of the controller in the handle's frame [m]
+  offset: Vec3;        // position of the controller in the handle's frame [m]
   driftSinceMs: number;
 }
 
@@ -39,15 +39,15 @@ export class Registrar {
   registration: Registration | null = null;
   drift = NaN;          // largest of the attached controllers [m]
   prompt = '';
-  recentred = false;    // by the headset's menu, which invalidates the registration
+  recentred = false;    // set by the headset's menu; invalidates the registration
   private touching: {points: Point[]; pairs: PointPair[]} | null = null;
   private mounting: {leftMs: number; samples: Record<Side, Vec3[]>} | null = null;
   private lastMs = 0;
-  private readonly attached = new Map<Side, Attached>();  // by controller
+  private readonly attached = new Map<Side, Attached>();  // by the controller's side
   private pending = false;  // offsets are measured in the first frame of the new registration
   private driftAlarm = false;
-  private unchecked = false;  // from an earlier session, whose space may have had a different origin
-  private readonly held = new Map<Side, Attached & {by: Side}>();  // by handle
+  private unchecked = false;  // made in an earlier session, whose space may have had a different origin
+  private readonly held = new Map<Side, Attached & {by: Side}>();  // by the handle's side
 
   constructor(private readonly changed: (registration: Registration) => void) {}
 

@@ -9,13 +9,13 @@ const kMinSpread = 0.1;  // between the outermost points, horizontally [m]
 const kKey = (scene: string) => `predictor.registration.${scene}`;
 
 export interface Registration {
-  yaw: number;           // of W in the headset's space [rad]
+  yaw: number;           // yaw of W in the headset's space [rad]
   t: Vec3;               // origin of W in the headset's space [m]
   residual: number;      // root mean square of the fit's residuals [m]
 }
 
 export interface PointPair {
-  touched: Vec3;  // in the headset's space
+  touched: Vec3;  // point in the headset's space
   known: Vec3;    // the same point in W
 }
 
