@@ -19,7 +19,7 @@ void AddCheck(CLI::App* app, Request* r) {
       ->group("Analysis");
   AddOption(check, "Analysis", "--map", &r->map, "FOLDER",
             "Also map the stable hand stiffnesses, predicted and simulated, into this folder "
-            "(minutes; continues an interrupted map)");
+            "(takes minutes; continues an interrupted map)");
   for (const auto& [name, value] :
        {std::pair{"--seed", &r->scenario.seed}, std::pair{"--duration", &r->scenario.duration}})
     AddOption(check, "Scenario", name, value, "NUMBER", "Use this value instead of the scenario's");

@@ -86,7 +86,7 @@ std::size_t FindLink(const UrdfModel& model, const std::string& name, std::size_
   if (found - model.links.begin() == model.root) {
     throw InputError::At(key, key + ": " + Quote(name) + " is the root of the robot " +
                                   Quote(model.name) +
-                                  ", so nothing would remain. Give a link further out.");
+                                  ", so nothing would remain. Give a link farther from the root.");
   }
   return static_cast<std::size_t>(found - model.links.begin());
 }

@@ -148,7 +148,7 @@ class OpeningReader {
       file_.Fail(0, "This is not a recording: it does not start like an MCAP file.");
     if (head && head->op == mcap::Op::kHeader && file_.size() >= at &&
         file_.Read(0, at) != Beginning())
-      file_.Fail(0, "This MCAP file is not a recording of this program.");
+      file_.Fail(0, "This MCAP file was not recorded by this program.");
     if (run && Entry(run->map, "format") != kFormat) OtherFormat(run->map);
     file_.Fail(at,
                "The recording is truncated or damaged before its first tick, and there is no "

@@ -66,10 +66,10 @@ void ExtendTree(const fs::path& file, YamlNode* root) {
     const fs::path canonical = Canonical(next);
     if (std::find(files.begin(), files.end(), canonical) != files.end())
       throw InputError(place.Text(), "extends leads back to " + next.string() +
-                                         ". A scenario cannot build on itself.");
+                                         ". A scenario cannot extend itself.");
     if (files.size() == kMaxExtends)
       throw InputError(place.Text(), "more than " + std::to_string(kMaxExtends) +
-                                         " scenarios build on each other.");
+                                         " scenarios extend one another.");
     if (!fs::is_regular_file(canonical))
       throw InputError(place.Text(),
                        "extends is " + Quote(next.string()) + ", but this file does not exist.");

@@ -299,6 +299,6 @@ export class Panel {
             whole ? `drawn after ${whole.p50.toFixed(0)} ms, p99 ${whole.p99.toFixed(0)}` : '');
     const {clock} = this.connection;
     setText(this.clockText, clock.known ?
-      `Clocks compared to ± ${(clock.roundTripMs / 2).toFixed(2)} ms.` : '');
+      `Clocks synchronised to ± ${(clock.roundTripMs / 2).toFixed(2)} ms.` : '');
   }
 }

@@ -9,7 +9,7 @@ type GaugeName = keyof typeof kPersonGauges;
 type ScoreName = keyof typeof kPersonScores;
 
 const kRoom = [1100, 700];  // window in which the card is open at first [px]
-const kLateStart = 0.5;  // later than this, damage does not count from the start of the run [s]
+const kLateStart = 0.5;  // if damage is counted from later than this, the card says from when [s]
 const kEveryMs = 100;  // time between updates; warnings appear at once
 
 // How a gauge is shown: its words, the factor from SI, the decimals, and the ends of its bar in SI.
@@ -41,7 +41,7 @@ const kMeasured = (Object.keys(kGaugeLooks) as GaugeName[]).filter((name) => kPe
 const kModelled = (Object.keys(kGaugeLooks) as GaugeName[]).filter((name) => !kPersonGauges[name].measured);
 const kOperator: Record<SceneSpec['operator'], string> = {
   virtual: 'The operator is simulated.',
-  browser: 'A mouse or a headset moves the handles: this is a person who would hold them.',
+  browser: 'A mouse or a headset moves the handles: the values are those of a person who would hold them.',
   person: 'A person holds the handles.',
 };
 
@@ -174,7 +174,7 @@ export class PersonCard {
     const judged = this.spec?.person?.judged ?? false;
     const why = !judged ? `Not judged: ${this.spec?.person?.why ?? 'the body or its place is not known.'}` :
         !person ? 'Waiting for the evaluation.' :
-        silent ? 'The evaluation has stopped sending: these values are old.' :
+        silent ? 'The evaluator has stopped sending: these values are old.' :
         person.status === 'judged' ? '' : kWhyNot[person.status];
     const warnings = silent ? [] : person?.warnings ?? [];
     const text = `${why} ${warnings.join()}`;
@@ -194,14 +194,14 @@ export class PersonCard {
   }
 }
 
-// Damage of the run so far: if the run is repeated, of each repetition.
+// Damage caused by the run so far; if the run is repeated, by each repetition.
 export function damageText({parts, since}: PersonState): string {
   const cost = (name: keyof PersonState['parts']) => {
     const part = parts[name].day_share;
     return part === null ? null : `${name.replace('_', ' ')} ${(100 * part).toPrecision(2)} %`;
   };
   const costs = (['lower_back', 'left_shoulder', 'right_shoulder'] as const).map(cost).filter((text) => text !== null);
-  return costs.length === 0 ? '' : `Damage${since !== null && since > kLateStart ? ` since ${since.toFixed(0)} s` : ''}, of a reference day: ${costs.join(', ')}.`;
+  return costs.length === 0 ? '' : `Damage${since !== null && since > kLateStart ? ` since ${since.toFixed(0)} s` : ''}, as a share of a reference day: ${costs.join(', ')}.`;
 }
 
 export function fatigueText({parts}: PersonState): string {
