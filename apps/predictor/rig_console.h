@@ -34,7 +34,7 @@ class RigConsole {
   RigConsole(const RigConsole&) = delete;
   RigConsole& operator=(const RigConsole&) = delete;
 
-  // Number of signs so far that a key is held.
+  // Number of signs of a held key so far.
   const std::atomic<std::uint32_t>& enabling() const { return enabling_; }
 
   const char* Help() const;

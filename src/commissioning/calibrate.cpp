@@ -113,7 +113,7 @@ void TellReading(Session* session, const PushTest& test, int axis) {
 HandleCalibration MeasureHandle(Session* session, const Station& station) {
   session->Tell(
       Formatted("The handle of the %s arm is measured in %d poses or more. For each pose, guide "
-                "the arm in its free-drive and tilt the handle in a new direction (it is best if "
+                "the arm in free-drive and tilt the handle in a new direction (it is best if "
                 "each axis points down once). Then take your hands off.",
                 station.name().c_str(), kLeastHandlePoses));
   PoseRecorder recorder(station.spec().arm.sensor);
@@ -149,7 +149,7 @@ BaseCalibration MeasureBases(Session* session, const Station& a, const Station& 
   const Vector3 tip = told.value_or(Vector3::Zero());
   session->Tell(
       "Mark three points or more (six are better) that both arms can reach. They must be far "
-      "apart, not on a line, and not all at one height. Guide the arms in their free-drive.");
+      "apart, not on a line, and not all at one height. Guide the arms in free-drive.");
   const std::vector<Vector3> by_a = TakePoints(session, a, tip, 0);
   const std::vector<Vector3> by_b = TakePoints(session, b, tip, by_a.size());
   std::vector<TouchedPoint> points;

@@ -227,7 +227,7 @@ void Try(const std::string& place, const Connect& connect, const Watch& watch,
   probed.place = place;
   try {
     const auto device = connect();
-    if (!device) return;  // the device does not exist
+    if (!device) return;  // the machine has no such device
     probed.name = device->facts().name;
     watch(device.get(), &probed);
   } catch (const DeviceError& error) {

@@ -12,8 +12,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kHolding =
-    0.5;  // least force of a hand that holds its handle, now and smoothed [N]
+constexpr double kHolding = 0.5;  // least force of a holding hand, both present and smoothed [N]
 constexpr double kSmoothing = 2;  // cutoff of that smoothing [Hz]
 
 std::array<Vector3, 2> PlaneOf(const Vector3& normal) {

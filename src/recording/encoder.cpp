@@ -81,7 +81,8 @@ Encoder::Encoder(const RecordingHeader& header, std::vector<JsonChannel> scene)
       person_channel_ = static_cast<std::uint16_t>(kFirstJsonChannel + i);
 }
 
-// Uses the clock if the record contains it; in virtual time, the tick. The time never decreases.
+// Uses the clock if the record contains it, otherwise (in virtual time) the tick. The time never
+// decreases.
 std::uint64_t Encoder::TimeOf(const TickRecord& record) {
   std::uint64_t since = 0;
   if (record.wall_ns == 0) {

@@ -53,7 +53,7 @@ std::string LooserThan(const Numbers::Number& limit, const std::string& key, dou
 void RefuseLooser(const Machine& machine, const Scenario& s) {
   static const std::set<std::string> kMinima = {"stop_acceleration", "stop_jerk",
                                                 "security_distance", "joint_security"};
-  std::map<std::string, std::pair<std::string, double>> values;  // key and value by limit's name
+  std::map<std::string, std::pair<std::string, double>> values;  // by limit name: key and value
   for (const auto& number : NumbersOf(s.safety))
     values[number.key] = {"safety." + number.key, number.value};
   for (const auto& number : NumbersOf(s.rendering))

@@ -167,7 +167,7 @@ void Fields(V& v, PrimitiveSpec& s) {
   v("mass", s.mass, Number("kg", "mass", Above(0, 1000)));
   v("center_of_mass", s.center_of_mass, Number("m", "centre of mass in O", Within(10)));
   v("inertia", s.inertia,
-    Number("kg·m²", "principal moments about the centre of mass; null: of uniform density",
+    Number("kg·m²", "principal moments about the centre of mass; null: uniform density",
            Above(0, 1e4)));
 }
 
@@ -413,9 +413,9 @@ void Fields(V& v, SafetySpec& s) {
   v("stop_jerk", s.stop_jerk, Number("m/s³", "jerk of the handles in a stop", Above(0, 1e5)));
   v("align_speed", s.align_speed, Number("m/s", "speed of the handles in ALIGN", Above(0, 0.25)));
   v("align_tolerance", s.align_tolerance,
-    Number("m", "largest distance from the virtual handle for ARMED", Above(0, 0.1)));
+    Number("m", "largest distance between real and virtual handle to become ARMED", Above(0, 0.1)));
   v("align_tolerance_rotation", s.align_tolerance_rotation,
-    Number("rad", "largest angle from the virtual handle for ARMED", Above(0, 1)));
+    Number("rad", "largest angle between real and virtual handle to become ARMED", Above(0, 1)));
   v("oscillation", s.oscillation,
     Part("detection of a growing oscillation or a vibration of a hand's force"));
 }

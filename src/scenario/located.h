@@ -8,8 +8,8 @@
 namespace predictor {
 
 // Returns `error` preceded by the place of its key: "file:line:column: ", or "--set key: " if an
-// override set it. For a missing key, it is the place of the group without it. An error of a
-// machine's arm gets its place and key in the machine's file. The error is unchanged if it has no
+// override set it. For a missing key, it is the place of the group that lacks the key. An error of
+// a machine's arm gets its place and key in the machine's file. The error is unchanged if it has no
 // key or if the scenario was not read from text.
 InputError Located(const InputError& error, const Scenario& scenario);
 

@@ -85,9 +85,10 @@ void Fields(V& v, MachineLimits& s) {
     Number("m/s³", "minimum jerk of the handles in a stop", Above(0, 1000)));
   v("align_speed", s.align_speed, Number("m/s", "speed of the handles in ALIGN", Above(0, 0.1)));
   v("align_tolerance", s.align_tolerance,
-    Number("m", "largest distance from the virtual handle for ARMED", Above(0, 0.01)));
+    Number("m", "largest distance between real and virtual handle to become ARMED",
+           Above(0, 0.01)));
   v("align_tolerance_rotation", s.align_tolerance_rotation,
-    Number("rad", "largest angle from the virtual handle for ARMED", Above(0, 0.1)));
+    Number("rad", "largest angle between real and virtual handle to become ARMED", Above(0, 0.1)));
   v("tracking", s.tracking, Number("m", "distance between real and virtual handle", Above(0, 0.1)));
   v("tracking_rotation", s.tracking_rotation,
     Number("rad", "angle between real and virtual handle", Above(0, 0.7)));

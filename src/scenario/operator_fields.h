@@ -54,7 +54,7 @@ template <class V>
 void Fields(V& v, BodySpec& s) {
   v("height", s.height, Required(Number("m", "height without shoes", From(1.2, 2.3))));
   v("mass", s.mass, Required(Number("kg", "mass of the body", From(30, 250))));
-  v("sex", s.sex, Required(Word("which tables of body parts and strength apply")));
+  v("sex", s.sex, Required(Word("sex, which selects the tables of body parts and strength")));
   const auto length = [&](const char* key, std::optional<double>& member, const char* doc) {
     v(key, member, Number("m", doc, From(0.05, 1.2)));
   };

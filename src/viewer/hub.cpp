@@ -362,8 +362,8 @@ void Hub::Tick() {
   TellHeadsets();
 }
 
-// Why no seat is available, or null. A single client or all clients that only look together cannot
-// keep others out.
+// Why no seat is available, or null. Neither a single client nor all clients that only look can
+// keep the others out.
 const char* Hub::NoSeatFor(const Admission::Grant& grant) const {
   const auto same = [&](const Client* c) { return c->admitted() && c->token() == grant.token; };
   if (static_cast<std::size_t>(std::count_if(sessions_.begin(), sessions_.end(), same)) >=

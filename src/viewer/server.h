@@ -13,11 +13,10 @@
 namespace predictor::viewer {
 
 struct ServerOptions {
-  std::string address = "127.0.0.1";     // numeric; 127.0.0.1 includes ::1 if available
-  std::uint16_t port = 8080;             // 0: any free port
-  std::string certificate_pem, key_pem;  // if both are empty: no TLS
-  std::chrono::milliseconds head_time{
-      5000};  // limit for a request's head and for the TLS handshake
+  std::string address = "127.0.0.1";             // numeric; 127.0.0.1 includes ::1 if available
+  std::uint16_t port = 8080;                     // 0: any free port
+  std::string certificate_pem, key_pem;          // if both are empty: no TLS
+  std::chrono::milliseconds head_time{5000};     // limit for a request's head and the TLS handshake
   std::chrono::milliseconds reply_time{30000};   // time limit for receiving an answer
   std::chrono::milliseconds message_time{1000};  // limit from a message's first byte to its last
   std::chrono::milliseconds idle_time{20000};    // time limit without any data on a WebSocket

@@ -98,8 +98,8 @@ std::filesystem::path StateFolder() {
   return std::filesystem::path(home) / ".local/state/predictor";
 }
 
-// After a restart, the process numbers its clients from a different start. `kick` therefore never
-// means another client than the one that `status` showed.
+// After a restart, the process numbers its clients from a different start. Therefore, `kick` never
+// removes a client other than the one that `status` showed.
 void ViewerProcess::HearReady(const Json& line) {
   bool unanswered = false, outdated = false;
   Json now;

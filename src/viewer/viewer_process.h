@@ -43,8 +43,7 @@ struct ViewerOptions {
   std::string results;
   std::filesystem::path report;            // report of that run, an HTML page; empty: no report
   Vector3 object_start = Vector3::Zero();  // O in W at the start of the run [m]
-  std::string
-      why_not_judged;  // why the person is not judged, as a sentence; used if there are no states
+  std::string why_not_judged;  // why the person is not judged: a sentence for when no states come
 };
 
 // $XDG_STATE_HOME/predictor, or ~/.local/state/predictor. Throws InputError if the user has no home

@@ -19,9 +19,8 @@ namespace {
 
 constexpr double kDeaf = 0.1;  // longest time for which our program may miss commands [s]
 constexpr double kStop = 0.5;  // longest duration of a stop [s]
-constexpr int kAnew =
-    3;  // after this many packages with an earlier time, the clock counts as set back
-constexpr double kFresh = 0.02;  // an older package contains no information about this [s]
+constexpr int kAnew = 3;  // after this many packages with an earlier time, the clock was set back
+constexpr double kFresh = 0.02;  // age up to which a package is recent enough for this [s]
 constexpr double kPowerOff = 1;  // time in which a power-off request is executed, with margin [s]
 // Beyond the range of these arms' sensors; such a value is not a measurement.
 constexpr double kMostForce = 500;   // [N]
