@@ -45,7 +45,7 @@ struct SamplePeriods {
 // Of several faults in one tick, the first of these is reported:
 //   1. faults of the stages, in the order device, sensing, simulation, haptics: each invalidates
 //      the results of the later stages;
-// 2. device: an arm is missing, has a fault, or sends the wrong number of joints;
+//   2. device: an arm is missing, has a fault, or sends the wrong number of joints;
 //   3. sensor, physics, qp: a number that is not finite, or saturated: no threshold can be checked;
 //      device: joints that jumped farther than any arm can move;
 //   4. force, then torque: the load that the person at the handles feels;

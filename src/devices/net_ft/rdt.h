@@ -53,9 +53,8 @@ inline constexpr std::uint32_t kAnyError = 0x80000000;   // set with every error
 
 // OnRobot's and OptoForce's status, in the lower half (the status word of OptoForce's 6-axis
 // sensors; their own clients treat every value except 0 as an error).
-inline constexpr std::uint32_t kOverload =
-    0x000003F0;  // Tz Ty Tx Fz Fy Fx, from bit 4 upwards, three bits each: 1 not detected, 2
-                 // failure, 4 temperature
+inline constexpr std::uint32_t kOverload = 0x000003F0;  // Tz Ty Tx Fz Fy Fx, from bit 4 upwards
+// Three bits: 1 not detected, 2 failure, 4 temperature.
 inline constexpr int kSensorErrorShift = 10;
 inline constexpr int kDaqErrorShift = 13;  // three bits: 1 unit itself, 2 communication
 
