@@ -57,8 +57,8 @@ export class App {
   private readonly watch = new RunWatch();
   private newestTick = 0;
   private pictures = 0;  // since the scene is complete
-  private reason = '';  // for the connection's phase
-  private shownTrouble: Trouble | null = kTroubles.closed;  // as shown on the page
+  private reason = '';  // reason for the connection's phase
+  private shownTrouble: Trouble | null = kTroubles.closed;  // trouble as shown on the page
 
   constructor(root: HTMLElement) {
     this.connection = new Connection({

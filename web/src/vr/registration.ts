@@ -5,7 +5,7 @@
 import {Object3D} from 'three';
 import {Vec3} from '../protocol';
 
-const kMinSpread = 0.1;  // between the outermost points, horizontally [m]
+const kMinSpread = 0.1;  // smallest horizontal distance between the outermost points [m]
 const kKey = (scene: string) => `predictor.registration.${scene}`;
 
 export interface Registration {
