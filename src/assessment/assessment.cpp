@@ -13,7 +13,7 @@
 namespace predictor::assessment {
 namespace {
 
-// The value below which a share p of the values lies.
+// The p-quantile of the values: the value below which a share p of them lies.
 template <class T>
 T QuantileOf(std::vector<T> values, double p) {
   const auto n = static_cast<double>(values.size());
@@ -60,7 +60,7 @@ void AddIntervals(const SampledChain& sampled, std::span<const PersonSample> sam
   result->tail_interval = person::IntervalOf(sorted);
 }
 
-// Of the times that have a value; not a number if none has.
+// Uses only the times that have a value; without any, the results are not a number.
 void SummariseOverTime(QuantityResult* result) {
   std::vector<double> values;
   for (const double x : result->values)
@@ -127,7 +127,7 @@ std::vector<double> SeriesOf(const NominalChain& nominal, double (*of)(const Fra
   return values;
 }
 
-// A load over the whole run. While no hand holds a handle, the arms hang and rest.
+// The load over the whole run. While no hand holds a handle, the arms hang down and rest.
 std::vector<double> OverRun(const std::vector<double>& held, std::span<const PersonSample> all) {
   std::vector<double> load;
   std::size_t next = 0;
@@ -167,7 +167,7 @@ void AddFatigue(const Scenario& scenario, const NominalChain& nominal,
   add(1, "right elbow", FatigueJoint::kElbow, [](const Frame& f) { return f.elbow_use[1]; });
 }
 
-// A wrong place of the person would make every number wrong. Throws InputError if it is impossible.
+// If the person's place is wrong, every number is wrong. Throws InputError if it is impossible.
 void CheckPlace(std::span<const PersonSample> samples, Assessment* a) {
   Vector3 mean = Vector3::Zero();  // of the gripping hands, in S
   double hands = 0, highest = 0;
@@ -197,17 +197,17 @@ void AddStopWarning(const SampleCollector& run, Assessment* a) {
   if (!IsLimit(run.stopped())) return;
   a->warnings.push_back(Formatted(
       "The emulator stopped this run at a limit (%s). Its largest values are therefore only lower "
-      "bounds of what the person would have met; `predictor continue` predicts them.",
+      "bounds of what the person would have experienced; `predictor continue` predicts them.",
       Name(run.stopped())));
 }
 
 void AddBalanceWarning(const NominalChain& nominal, Assessment* a) {
   const auto falling = std::ranges::count_if(
       nominal.frames, [](const Frame& f) { return f.loads.balance.margin < 0; });
-  constexpr double kShort = 0.1;  // a person balances for so long [s]
+  constexpr double kShort = 0.1;  // a person can balance for this long [s]
   if (static_cast<double>(falling) < kShort * kSampleRate) return;
   a->warnings.push_back(Formatted(
-      "For %.1f s the centre of pressure is outside the feet: a person could not stand like this.",
+      "The centre of pressure is outside the feet for %.1f s: a person could not stand like this.",
       static_cast<double>(falling) / kSampleRate));
 }
 
@@ -239,22 +239,22 @@ void AddPictures(const NominalChain& nominal, std::span<const PersonSample> samp
 void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) {
   a->assumptions = {
       "The feet stay where operator.stance puts them.",
-      "Only the hands were measured: the rest of the posture follows from comfort.",
-      "The trunk moves slowly, so that its acceleration loads nothing.",
+      "Only the hands were measured: the rest of the posture is the most comfortable one.",
+      "The acceleration of the trunk is neglected, because the trunk moves slowly.",
       std::string("For RULA and REBA, the postures are ") + (work.repeated ? "" : "not ") +
           "repeated four times a minute and " + (work.held ? "" : "not ") +
-          "held for more than a minute, and the handles are good to grip.",
-      "For the lifting index, lifts occur as often as in this run, for at most one hour.",
+          "held for more than a minute, and the handles are easy to grip.",
+      "For the lifting index, lifts occur as often as in this run, and for at most one hour.",
       std::string("Strength is the mean of the person's sex") +
           (work.strength == WorkPattern().strength ? "" : ", times operator.body.strength") +
           ", for flexion and extension only."};
   if (scenario.operator_.type == "virtual")
     a->assumptions.emplace_back(scenario.operator_.embodied
-                                    ? "The operator was simulated, on this body."
-                                    : "The operator was simulated, without a body of its own.");
+                                    ? "The operator was simulated, with this body."
+                                    : "The operator was simulated, without a body.");
   if (scenario.operator_.type == "person")
     a->assumptions.emplace_back(
-        "The hands held the handles throughout: real arms cannot feel whether a hand is there.");
+        "The hands held the handles throughout: real arms cannot sense whether a hand is there.");
   a->not_evaluable = {{"DUET (hand and forearm)", "the effort of the grip is not measured"},
                       {"raised shoulders", "the shoulder girdle does not move in the model"}};
   if (scenario.operator_.type == "browser")
@@ -290,7 +290,8 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
   a.held = static_cast<double>(samples.size()) / kSampleRate;
   CheckPlace(samples, &a);
   AddStopWarning(run, &a);
-  const double share = options.intervals ? 0.3 : 1;  // of the time that the nominal chain takes
+  const double share = options.intervals ? 0.3 : 1;  // share of the progress that the nominal chain
+                                                     // accounts for
   WorkPattern work = options.work;
   work.strength = a.setup.body.strength;
   NominalChain nominal =

@@ -1,5 +1,5 @@
-// What a recorded run means for the person: posture, loads, scores, lifts, damage and fatigue, each
-// with its origin and, where the posture is not determined by what is measured, with its
+// What a recorded run means for the person: posture, loads, scores, lifts, damage and fatigue. Each
+// result states its origin and, where the measurements do not determine the posture, its
 // uncertainty.
 #pragma once
 
@@ -22,13 +22,15 @@ namespace predictor::assessment {
 struct QuantityResult {
   const QuantityKind* kind = nullptr;
   double mean = 0, p5 = 0, p95 = 0, min = 0, max = 0;  // of the nominal posture over time
-  // 90 % intervals over possible postures and bodies, of the mean and of the bad tail.
+  // 90 % intervals, over possible postures and bodies, of the mean and of the tail on the bad side.
   std::optional<person::Interval> mean_interval, tail_interval;
-  std::vector<double> person_tail;  // of each possible person; the same persons in all assessments
+  std::vector<double> person_tail;  // tail of each possible person; the persons are the same in all
+                                    // assessments
   std::vector<double> values;       // at Assessment::times
   std::vector<double> low, high;    // 90 % interval at Assessment::sampled_times
 
-  // The value that is worse in 5 % of the time: p95, or p5 if low values are bad.
+  // The value that is exceeded (in the bad direction) for 5 % of the time: p95, or p5 if low values
+  // are bad.
   double tail() const { return kind->bad == Bad::kHigh ? p95 : p5; }
   double worst() const { return kind->bad == Bad::kHigh ? max : min; }
 };
@@ -37,9 +39,9 @@ struct WorksheetResult {
   const WorksheetKind* kind = nullptr;
   int worst = 0, p95 = 0;                       // of the nominal posture
   std::vector<double> share;                    // of time, by score (index 0: score 0)
-  std::vector<double> probability;              // mean over time of the probability of each score
+  std::vector<double> probability;              // of each score, averaged over time
   std::vector<int> values;                      // at Assessment::times
-  std::vector<double> likely_low, likely_high;  // 90 % of the postures, at sampled_times
+  std::vector<double> likely_low, likely_high;  // range of 90 % of the postures, at sampled_times
 };
 
 struct Assessment {
@@ -48,18 +50,20 @@ struct Assessment {
   PersonSetup setup;
   std::array<bool, kHands> hands = {};  // which handles the scenario has
   double duration = 0;                  // simulated [s]
-  double held = 0;             // of it, while a hand held a handle; only this is judged [s]
+  double held = 0;             // part of it in which a hand held a handle; only this part is judged
+                               // [s]
   double reached = 0;          // share of the time in which the body reaches the handles
-  double sampled_reached = 0;  // the same over the possible postures
-  double worst_miss = 0;       // largest distance that is missing [m]
+  double sampled_reached = 0;  // the same, averaged over the possible postures
+  double worst_miss = 0;       // largest distance by which a hand misses its handle [m]
   std::vector<double> times, sampled_times;  // [s]
-  std::vector<QuantityResult> quantities;    // in the order of Quantities(), of existing handles
+  std::vector<QuantityResult> quantities;    // those of existing handles, in the order of
+                                             // Quantities()
   std::vector<WorksheetResult> worksheets;   // in the order of Worksheets()
   std::vector<Lift> lifts;
   std::vector<DamageResult> damage;
   std::vector<FatigueResult> fatigue;
   BodyPicture worst;                       // at WorstSample()
-  std::vector<BodyPicture> pictures;       // evenly over the judged time
+  std::vector<BodyPicture> pictures;       // evenly spaced over the judged time
   std::optional<SafetyAssessment> safety;  // filled by JudgeSafety; empty: not judged
   std::vector<std::string> warnings;       // about doubtful input
   std::vector<std::string> assumptions;
@@ -67,13 +71,13 @@ struct Assessment {
 };
 
 struct AssessOptions {
-  bool intervals = true;  // otherwise only the nominal posture
+  bool intervals = true;  // false: only the nominal posture
   WorkPattern work;
   std::function<void(double share)> progress = [](double) {};
 };
 
-// Judges the samples of a run. Throws InputError if the person or the place is not known, no adult
-// has such a body, or there are no samples.
+// Judges the samples of a run. Throws InputError if the body or the place of the person is unknown,
+// no adult has such a body, or there are no samples.
 Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
                   const SampleCollector& run, const AssessOptions& options);
 

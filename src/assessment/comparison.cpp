@@ -35,9 +35,10 @@ Difference DifferenceOf(const QuantityResult& a, const QuantityResult& b) {
 
 Comparison Compare(const Assessment& a, const Assessment& b) {
   if (!SameBody(a.setup.body, b.setup.body))
-    throw InputError(b.recording,
-                     "The operator's body differs from that of " + a.recording +
-                         ". Give both the same one, for example --set operator.body.height=1.75.");
+    throw InputError(
+        b.recording,
+        "The operator's body differs from that of " + a.recording +
+            ". Give both runs the same body, for example with --set operator.body.height=1.75.");
   Comparison comparison = {a.recording, b.recording, {}, a.damage, b.damage, ""};
   for (const QuantityResult& of_a : a.quantities)
     for (const QuantityResult& of_b : b.quantities)
@@ -45,15 +46,15 @@ Comparison Compare(const Assessment& a, const Assessment& b) {
   constexpr double kSameLength = 0.1;
   if (std::abs(a.held - b.held) > kSameLength * std::max(a.held, b.held))
     comparison.warning = Formatted(
-        "The hands held for %.1f s in one run and for %.1f s in the other. If one of them ended "
-        "early, it looks better than it is.",
+        "The hands held the handles for %.1f s in one run and for %.1f s in the other. If one of "
+        "the runs ended early, it looks better than it is.",
         a.held, b.held);
   return comparison;
 }
 
 std::string ComparisonText(const Comparison& comparison) {
   std::string text;
-  AppendLine(&text, "\n%s against %s, for the same person", Printable(comparison.a).c_str(),
+  AppendLine(&text, "\n%s compared with %s, for the same person", Printable(comparison.a).c_str(),
              Printable(comparison.b).c_str());
   if (!comparison.warning.empty()) AppendLine(&text, "%s", comparison.warning.c_str());
   AppendLine(&text, "%-52s %8s %8s  %-19s %s", "", "this", "other", "difference (90 %)",
@@ -77,8 +78,8 @@ std::string ComparisonText(const Comparison& comparison) {
                    (a.tool + ", " + a.part + ", reference day per run [%]").c_str(),
                    100 * a.day_share, 100 * b.day_share);
   text +=
-      "Values: 95th percentiles over time (of balance the 5th). \"Better for\": the share of 64 "
-      "possible postures and bodies for which this recording has the better value.\n";
+      "Values: 95th percentiles over time (5th percentile for balance). \"Better for\": the share "
+      "of 64 possible postures and bodies for which this recording has the better value.\n";
   return text;
 }
 

@@ -12,8 +12,8 @@ namespace predictor::assessment {
 struct Difference {
   const QuantityKind* kind = nullptr;
   double a = 0, b = 0;  // QuantityResult::tail()
-  // 90 % interval of a - b over the possible persons. Each of them is compared with itself, so most
-  // of the uncertainty about the posture cancels.
+  // 90 % interval of a - b over the possible persons. Each person is compared with himself or
+  // herself, so most of the uncertainty about the posture cancels.
   std::optional<person::Interval> interval;
   std::optional<double> share_better;  // of the possible persons for whom a is better than b
 };
@@ -22,10 +22,11 @@ struct Comparison {
   std::string a, b;  // recordings
   std::vector<Difference> differences;
   std::vector<DamageResult> damage_a, damage_b;
-  std::string warning;  // about runs that hardly can be compared; else empty
+  std::string warning;  // if the runs can hardly be compared; else empty
 };
 
-// Throws InputError if the bodies differ: then the difference would not be that of the designs.
+// Throws InputError if the bodies differ: the difference would then not be due to the designs
+// alone.
 Comparison Compare(const Assessment& a, const Assessment& b);
 
 std::string ComparisonText(const Comparison& comparison);

@@ -16,13 +16,14 @@ struct DamageResult {
   std::string tool, part;  // "LiFFT", "lower back"
   double per_run = 0;      // damage
   double day_share = 0;    // of the reference day, per run
-  double shift_share = 0;  // of the reference day, if the run is repeated for 8 h
+  double shift_share = 0;  // of the reference day, if the run is repeated for an 8 h shift
   double probability = 0;  // of the tool's outcome for that shift
 };
 
 // `moment` [N·m]: over a run, at 100 Hz, 0 at rest. It is low-passed at kDamageCutoff in both
-// directions, and smaller ranges than kMinRange or kMinRangeShare of the largest one do not count:
-// each cycle costs something even without a load, so tremor and noise would count as lifts.
+// directions. Ranges smaller than kMinRange or than kMinRangeShare of the largest range are
+// ignored: in this method, each cycle causes some damage even without a load, so tremor and noise
+// would count as lifts.
 DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
                             std::span<const double> moment, double (*per_cycle)(double),
                             const ergonomics::DamageRisk& risk);
@@ -31,16 +32,16 @@ inline constexpr double kDamageCutoff = 1;     // [Hz]
 inline constexpr double kMinRange = 5;         // [N·m]
 inline constexpr double kMinRangeShare = 0.2;  // of the largest range
 
-// Fatigue of one joint by 3CC-r, sample after sample.
+// Fatigue of one joint by the 3CC-r model, sample by sample.
 class FatigueTracker {
  public:
   explicit FatigueTracker(ergonomics::FatigueJoint kind)
       : rates_(ergonomics::FatigueRatesOf(kind)) {}
-  // The load of the next sample at 100 Hz, as a share of strength. Fatigue changes within minutes,
-  // so its state follows at 10 Hz, with the mean load.
+  // Adds the next sample's load, at 100 Hz, as a share of strength. Fatigue changes within minutes,
+  // so the state is updated at 10 Hz, with the mean load.
   void Add(double load);
-  void Step(double mean_load);                           // of the next 0.1 s
-  double capacity() const { return state_.capacity(); }  // strength that is left, as a share
+  void Step(double mean_load);                           // advances by 0.1 s
+  double capacity() const { return state_.capacity(); }  // remaining strength, as a share
 
  private:
   ergonomics::FatigueRates rates_;
@@ -53,9 +54,9 @@ class FatigueTracker {
 struct FatigueResult {
   std::string joint;         // "left shoulder"
   double mean_load = 0;      // share of strength
-  double capacity = 1;       // strength that is left at the end of the run, as a share
-  double time_to_limit = 0;  // until a repetition of the run needs more than what is left [s];
-                             // infinite: not within 8 h
+  double capacity = 1;       // remaining strength at the end of the run, as a share
+  double time_to_limit = 0;  // until a repetition of the run needs more than the remaining strength
+                             // [s]; infinite: not within 8 h
 };
 
 // `load`: share of strength at 100 Hz.

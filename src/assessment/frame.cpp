@@ -23,7 +23,7 @@ ergonomics::BodyPosture BodyOf(const person::PostureAngles& a) {
 }
 
 ergonomics::ArmPosture ArmOf(const person::ArmAngles& a) {
-  constexpr double kOutside = 0.1;  // beside the shoulder, a design choice [m]
+  constexpr double kOutside = 0.1;  // sideways from the shoulder; a design choice [m]
   ergonomics::ArmPosture arm;
   arm.upper_arm_flexion = a.upper_arm_flexion;
   arm.upper_arm_abduction = a.upper_arm_abduction;
@@ -37,7 +37,7 @@ ergonomics::ArmPosture ArmOf(const person::ArmAngles& a) {
   return arm;
 }
 
-// What both hands exert together: a squeeze between them is no load.
+// What both hands exert together: a squeeze between them is not a load.
 ergonomics::Exertion ExertionOf(const FrameInput& input, const WorkPattern& work) {
   ergonomics::Exertion exertion;
   Vector3 force = Vector3::Zero();

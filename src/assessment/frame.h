@@ -1,4 +1,4 @@
-// Everything that is judged of the person at one time, from posture and loads.
+// Everything that is judged about the person at one time, from posture and loads.
 #pragma once
 
 #include <array>
@@ -14,27 +14,27 @@
 
 namespace predictor::assessment {
 
-// What no recording contains about the work. These are assumptions.
+// Assumptions about the work, which no recording contains.
 struct WorkPattern {
   bool repeated = false;  // the same posture at least four times a minute
-  bool held = false;      // a posture static for more than a minute
+  bool held = false;      // a posture is static for more than a minute
   ergonomics::Coupling coupling = ergonomics::Coupling::kGood;
-  // Of the person, times the mean of the sex (BodySpec::strength).
+  // Of the person, as a multiple of the mean for the person's sex (BodySpec::strength).
   std::array<double, ergonomics::kStrengthDirections> strength = {1, 1, 1, 1};
 };
 
 struct Frame {
   person::PostureAngles angles;
   person::BodyLoads loads;
-  // The worse one of the arms that hold a handle, with the force of both hands together.
+  // Scores of the worse of the arms that hold a handle, with the force of both hands together.
   ergonomics::RulaScores rula;
   ergonomics::RebaScores reba;
   ergonomics::OwasScore owas;
-  // Torque over the strength in its direction (flexion or extension): the mean of the sex, times
-  // WorkPattern::strength.
+  // Torque divided by the strength in its direction (flexion or extension), which is the mean for
+  // the person's sex times WorkPattern::strength.
   std::array<double, kHands> elbow_use = {}, shoulder_use = {};
-  bool reached = false;  // the hands of the posture reach the handles
-  // Of the nominal person; without values for the others.
+  bool reached = false;  // in this posture, the hands reach the handles
+  // Computed for the nominal person only; has no values for the other persons.
   std::array<ArmMuscleUse, kHands> muscles;
 };
 
@@ -46,11 +46,10 @@ struct FrameInput {
 Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,
               const person::BodyLoads& loads, bool reached, Sex sex, const WorkPattern& work);
 
-// The moment of the hands' forces alone about the lower back, without the weight of the trunk
-// [N·m].
+// The moment of the hands' forces about the lower back, without the weight of the trunk [N·m].
 double LiftMoment(const Frame& frame);
 
-// A force that rises faster counts as a shock in RULA and REBA (design choice) [N/s].
+// In RULA and REBA, a force that rises faster than this counts as a shock (design choice) [N/s].
 inline constexpr double kShockRate = 300;
 
 }  // namespace predictor::assessment

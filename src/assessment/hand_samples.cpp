@@ -50,7 +50,7 @@ SampleBuilder::SampleBuilder(const Scenario& scenario)
 std::optional<PersonSample> SampleBuilder::Add(const TickRecord& record) {
   const bool follows = !last_time_ || record.run_time < *last_time_ + 1.5 * dt_;
   if (!record.ran || !follows) {
-    // A part of a sample would have another bandwidth, so it is dropped.
+    // A partial sample would have a different bandwidth, so it is dropped.
     interrupted_ = interrupted_ || last_time_;
     pending_.clear();
   }

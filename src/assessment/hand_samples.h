@@ -1,4 +1,4 @@
-// The measurements of the person in a run, at 100 Hz.
+// The measurements of the person during a run, at 100 Hz.
 #pragma once
 
 #include <array>
@@ -14,28 +14,28 @@
 namespace predictor::assessment {
 
 inline constexpr double kSampleRate = 100;  // [Hz]
-// At this rate of the ticks [Hz]; at least 1.
+// Ticks per sample for the given tick rate [Hz]; at least 1.
 std::size_t TicksPerSample(double rate);
 
 struct PersonSample {
   person::BodySample body;
-  std::array<double, kHands> peak_force = {};  // largest of the ticks within the sample [N]
-  // False: before it, simulated time was paused, ticks are lost, or a hand gripped or let go.
+  std::array<double, kHands> peak_force = {};  // largest over the ticks of the sample [N]
+  // False if, before this sample, simulated time was paused, ticks were lost, or a hand gripped or
+  // let go.
   bool continues = true;
 };
 
-// The sample of successive ticks: means of position and wrench, the orientation of the middle one.
-// A hand is present if it grips in most of them.
+// Makes one sample of successive ticks: the means of position and wrench, and the orientation at
+// the middle tick. A hand is present if it grips in most of the ticks.
 PersonSample SampleOf(std::span<const TickRecord> ticks);
 
-// Means of position and wrench over all ticks of 10 ms. The middle tick gives the orientation. Only
-// ticks in RUN count.
+// Builds a sample from every 10 ms of ticks (see SampleOf). Only ticks in RUN count.
 class SampleBuilder {
  public:
   explicit SampleBuilder(const Scenario& scenario);
-  // The sample that this tick completes, if it completes one.
+  // Returns the sample that this tick completes, if any.
   std::optional<PersonSample> Add(const TickRecord& record);
-  // The record of the first tick in RUN; `tick` is 0 before it.
+  // The record of the first tick in RUN; its `tick` is 0 until then.
   const TickRecord& first() const { return first_; }
 
  private:
@@ -46,7 +46,7 @@ class SampleBuilder {
   TickRecord first_{};
   std::vector<TickRecord> pending_;
   std::optional<double> last_time_;                  // of the last tick in RUN [s]
-  std::optional<std::array<bool, kHands>> present_;  // in the sample before
+  std::optional<std::array<bool, kHands>> present_;  // in the previous sample
   bool interrupted_ = false;
 };
 
@@ -60,7 +60,7 @@ class SampleCollector {
   }
   const TickRecord& first() const { return builder_.first(); }
   const std::vector<PersonSample>& samples() const { return samples_; }
-  // What first stopped the run; kNone: nothing.
+  // The cause that first stopped the run; kNone if it was not stopped.
   StopCause stopped() const { return stopped_; }
 
  private:
@@ -73,8 +73,7 @@ inline bool IsHeld(const PersonSample& sample) {
   return sample.body.hands[0].present || sample.body.hands[1].present;
 }
 
-// Passes on the samples in which a hand holds a handle. Without one, nothing is known of the
-// posture.
+// Passes on the samples in which a hand holds a handle. While no hand does, the posture is unknown.
 class HeldFilter {
  public:
   std::optional<PersonSample> Take(PersonSample sample);

@@ -9,7 +9,7 @@
 namespace predictor::assessment {
 namespace {
 
-// The middle of the gripping hands, in S.
+// The point midway between the gripping hands, in S.
 std::optional<Vector3> MiddleOf(const PersonSample& sample, const person::Stance& stance) {
   Vector3 sum = Vector3::Zero();
   int n = 0;
@@ -28,8 +28,8 @@ ergonomics::HandPlace PlaceOf(const Vector3& middle) {
           .asymmetry = std::abs(std::atan2(middle.y(), middle.x()))};
 }
 
-// The first sample at which the height is close to its highest value: the object may then move at
-// this height for long.
+// The first sample at which the height is close to its maximum: the object may then move at this
+// height for a long time.
 std::size_t ArrivalAt(const std::vector<std::optional<Vector3>>& middle, std::size_t low,
                       std::size_t high) {
   while (low < high && middle[low]->z() < middle[high]->z() - kReversal / 2) ++low;
@@ -49,7 +49,8 @@ std::size_t DepartureAt(const std::vector<std::optional<Vector3>>& middle, std::
   return last;
 }
 
-// Finds rises between turning points. Where no hand holds, or another one, a new search begins.
+// Finds rises between turning points. The search restarts where no hand, or a different hand,
+// holds.
 std::vector<Rise> RisesOf(const std::vector<std::optional<Vector3>>& middle,
                           std::span<const PersonSample> samples) {
   std::vector<Rise> rises;

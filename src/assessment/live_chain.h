@@ -1,4 +1,4 @@
-// The nominal chain for a run that is not over: one sample after another, with a fixed delay.
+// The nominal chain for a run in progress: sample by sample, with a fixed delay.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,11 @@
 
 namespace predictor::assessment {
 
-// Accelerations need later postures: loads and scores are judged so many samples late (design
-// choice: 0.1 s, five time constants of the smoothing filter, so that its result hardly changes
-// any more).
+// Accelerations need later postures, so loads and scores are judged this many samples late (design
+// choice: 0.1 s, which is five time constants of the smoothing filter, so later samples would
+// hardly change its result).
 inline constexpr std::size_t kLiveDelay = 10;
-// Earlier postures that the filter sees. After 0.5 s it has forgotten how it began.
+// Earlier postures that the filter uses. After 0.5 s, its initial state has no more influence.
 inline constexpr std::size_t kLiveHistory = 60;
 
 struct JudgedSample {
@@ -22,9 +22,9 @@ struct JudgedSample {
   Frame frame;
 };
 
-// Postures, measured forces and force rates are those of RunNominal. Motions are exactly those as
-// well if the whole part without interruption is known and at most kLiveHistory samples long, and
-// otherwise approximately.
+// Postures, measured forces and force rates equal those of RunNominal. Motions are equal, too, if
+// the whole uninterrupted part is known and at most kLiveHistory samples long; otherwise, they are
+// approximately equal.
 class LiveChain {
  public:
   LiveChain(const PersonSetup& setup, const WorkPattern& work) : person_(setup, work) {}
@@ -33,8 +33,8 @@ class LiveChain {
   void Add(const PersonSample& sample);
   // The posture of the newest sample.
   const person::Posture& newest() const { return postures_.back(); }
-  // The next sample that can be judged. `all`: no later sample continues the known ones, so all of
-  // them can be judged. Returns false if no sample can be judged yet.
+  // Gets the next sample that can be judged. `all`: no later sample continues the known ones, so
+  // all of them can be judged. Returns false if no sample can be judged yet.
   bool Next(bool all, JudgedSample* judged);
 
   const person::BodyModel& model() const { return person_.model(); }
@@ -44,9 +44,9 @@ class LiveChain {
   void Forget();
 
   NominalPerson person_;
-  std::vector<PersonSample> samples_;  // the same index in both
+  std::vector<PersonSample> samples_;  // with the same indices in both
   std::vector<person::Posture> postures_;
-  std::size_t next_ = 0;  // to be judged
+  std::size_t next_ = 0;  // the next sample to be judged
 };
 
 }  // namespace predictor::assessment

@@ -1,4 +1,4 @@
-// Damage and fatigue of a run that is not over.
+// Damage and fatigue of a run in progress.
 #pragma once
 
 #include <array>
@@ -11,28 +11,27 @@
 
 namespace predictor::assessment {
 
-// Damage so far is that of DamageOfMoment for the samples so far, as if the run ended now with
-// rest.
+// The damage is DamageOfMoment of the samples so far, as if the run ended now at rest.
 class LiveExposure {
  public:
   explicit LiveExposure(const Scenario& scenario);
-  // The next sample; null: no hand holds a handle, so the arms rest.
+  // Adds the next sample; null: no hand holds a handle, so the arms rest.
   void Add(const Frame* frame);
-  // Writes damage and capacity into `state`. The damage is computed again when the samples have
-  // grown by a fiftieth and by 1 s, which bounds the cost; with `now`, at once.
+  // Writes damage and capacity into `state`. To bound the cost, the damage is recomputed only when
+  // the number of samples has grown by 2 % and by at least 1 s; with `now`, at once.
   void Write(bool now, PersonState* state);
 
  private:
   struct Part {
     std::optional<FatigueTracker> fatigue;
-    double (*damage_per_cycle)(double) = nullptr;  // null: no tool
+    double (*damage_per_cycle)(double) = nullptr;  // null if there is no tool
     const ergonomics::DamageRisk* risk = nullptr;
     std::vector<double> moment;  // [N·m]
     DamageResult damage;
   };
 
   std::array<Part, kBodyParts> parts_;
-  std::size_t count_ = 0, counted_ = 0;  // samples, and those in the damage
+  std::size_t count_ = 0, counted_ = 0;  // samples, and how many of them are included in the damage
 };
 
 }  // namespace predictor::assessment

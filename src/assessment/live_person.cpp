@@ -80,7 +80,7 @@ void LivePerson::Begin() {
   intervals_.emplace(*setup_, work_);
 }
 
-// The handles' places at the start of the run stay known.
+// The initial places of the handles stay known.
 void LivePerson::BeginAgain() {
   builder_ = SampleBuilder(scenario_);
   held_ = {};
@@ -131,7 +131,7 @@ void LivePerson::Judge(bool all) {
   }
 }
 
-// Judges what is still to be judged; then nothing is known of the posture.
+// Judges the samples that are left; from then on, the posture is unknown.
 void LivePerson::Rest(PersonStatus status) {
   if (state_.status != status) {
     Judge(true);

@@ -1,4 +1,4 @@
-// The person in a run that is not over: a state of 100 Hz from the ticks, one after another.
+// The person during a run in progress: a state at 100 Hz, from successive ticks.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ class LivePerson {
   // Throws InputError if something is missing (MissingForPosture) or no adult has such a body.
   LivePerson(const Scenario& scenario, const WorkPattern& work);
 
-  // Takes the next tick of a run or of a replay. Returns whether state() is new. A tick that was
-  // seen before is ignored; after an earlier one, damage and fatigue begin again. Throws InputError
-  // if place, grips and handles contradict one another.
+  // Takes the next tick of a run or of a replay. Returns whether state() is new. A repeated tick is
+  // ignored; if an earlier tick follows, damage and fatigue start again. Throws InputError if
+  // place, grips and handles contradict one another.
   bool Add(const TickRecord& record);
   const PersonState& state() const { return state_; }
 

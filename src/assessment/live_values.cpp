@@ -9,7 +9,7 @@
 namespace predictor::assessment {
 namespace {
 
-// How a value of PersonState follows from a frame, in the order of the enumerations.
+// How each value of PersonState follows from a frame, in the order of the enumerations.
 using GaugeValue = double (*)(const Moment&);
 
 constexpr std::array<GaugeValue, kPersonGauges> kGaugeValues = {
@@ -39,13 +39,13 @@ constexpr std::array<double (*)(const Frame&), kPersonWarnings> kWarningValues =
     [](const Frame& f) { return f.reached ? 0.0 : 1.0; },
 };
 
-// Whose gauge it is: 0, 1, or −1 for none.
+// The hand that the gauge belongs to: 0, 1, or −1 for none.
 constexpr int HandOf(std::size_t gauge) {
   if (gauge < static_cast<std::size_t>(PersonGauge::kLeftShoulderUse)) return -1;
   return static_cast<int>(gauge - static_cast<std::size_t>(PersonGauge::kLeftShoulderUse)) % 2;
 }
 
-// True for −1.
+// True for −1 as well.
 bool IsPresent(int hand, const PersonSample& sample) {
   return hand < 0 || sample.body.hands[static_cast<std::size_t>(hand)].present;
 }
@@ -114,7 +114,7 @@ LiveIntervals::LiveIntervals(const PersonSetup& setup, const WorkPattern& work)
     : setup_(setup), work_(work), sampler_(setup.body, setup.stance, setup.grips) {}
 
 void LiveIntervals::Add(const JudgedSample& judged, PersonState* state) {
-  constexpr std::size_t kAtOnce = 4;  // complete before the next ones begin
+  constexpr std::size_t kAtOnce = 4;  // these are complete before the next ones begin
   static_assert(kAtOnce * kSampledStride >= person::kPostureSamples);
   if (count_++ % kSampledStride == 0) {
     current_ = judged;

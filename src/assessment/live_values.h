@@ -1,4 +1,4 @@
-// From frames to the numbers of a person's state: gauges, scores, intervals, warnings.
+// From frames to the numbers of the person's state: gauges, scores, intervals, warnings.
 #pragma once
 
 #include <array>
@@ -10,20 +10,20 @@
 
 namespace predictor::assessment {
 
-// Writes gauges, scores and loads of the nominal person into `state`, and keeps the intervals.
+// Writes gauges, scores and loads of the nominal person into `state`; the intervals are kept.
 void WriteFrame(const JudgedSample& judged, PersonState* state);
 
-// Intervals and probabilities from the frames of all possible persons.
+// Writes intervals and probabilities from the frames of all possible persons.
 void WriteIntervals(std::span<const Frame> frames, const PersonSample& sample, PersonState* state);
-// The same as unknown.
+// Sets the same values to unknown.
 void ForgetValues(PersonState* state);
 
-// The possible persons, a few at a time, so that the nominal person is never late.
+// Evaluates the possible persons, a few at a time, so that the nominal person is never late.
 class LiveIntervals {
  public:
   LiveIntervals(const PersonSetup& setup, const WorkPattern& work);
-  // Call with each judged sample: each kSampledStride-th one is evaluated for all persons. Writes
-  // the results when they are complete.
+  // Call with each judged sample: every kSampledStride-th sample is evaluated for all persons.
+  // Writes the results when they are complete.
   void Add(const JudgedSample& judged, PersonState* state);
 
  private:
@@ -32,20 +32,20 @@ class LiveIntervals {
   person::PostureSampler sampler_;
   std::size_t count_ = 0;
   std::optional<JudgedSample> current_;
-  std::vector<Frame> frames_;  // of the persons so far
+  std::vector<Frame> frames_;  // of the persons evaluated so far
 };
 
-// Warnings with two thresholds and two times each, so that they do not flicker.
+// Warnings with hysteresis and a delay for each direction, so that they do not flicker.
 class WarningKeeper {
  public:
-  // The bits of PersonState::warnings at the simulated time [s] of the judged sample.
+  // Returns the bits of PersonState::warnings at the simulated time [s] of the judged sample.
   std::uint16_t Update(const Frame& frame, double time);
   void Clear() { *this = {}; }
 
  private:
   struct Entry {
     bool on = false;
-    std::optional<double> since;  // the value asks for the other state [s]
+    std::optional<double> since;  // since when the value has called for the opposite state [s]
   };
   std::array<Entry, kPersonWarnings> entries_;
 };

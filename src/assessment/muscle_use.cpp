@@ -46,7 +46,7 @@ void SetReserve(const ArmVector& reserve, const ArmVector& torque, ArmMuscleUse*
   ValueOf(use, kTooWeak) = weak ? 1 : 0;
 }
 
-// One arm at one time.
+// Muscles of one arm at one time.
 ArmMuscleUse MusclesOf(const muscles::ArmModel& arm, const person::BodyMotion& motion,
                        const person::BodyVector& torques, const person::ExternalWrench& wrench,
                        double elevation) {
@@ -163,9 +163,9 @@ std::vector<QuantityKind> MuscleQuantities() {
 void AddMuscleWords(const NominalChain& chain, std::vector<std::string>* warnings,
                     std::vector<std::string>* assumptions, std::vector<NotEvaluable>* gaps) {
   assumptions->emplace_back(
-      "Muscles share the torques with the least sum of squared activations and without "
-      "co-contraction, so activations and stiffness are at the low end.");
-  gaps->push_back({"muscles that grip, and the muscles' forces on the shoulder joint",
+      "The torques are shared among the muscles with the least sum of squared activations and "
+      "without co-contraction, so activations and stiffness are lower bounds.");
+  gaps->push_back({"muscles that grip, and the muscle forces on the shoulder joint",
                    "the effort of the grip is not measured, and the shoulder girdle does not move "
                    "in the model"});
   for (int hand = 0; hand < kHands; ++hand) {
@@ -180,8 +180,8 @@ void AddMuscleWords(const NominalChain& chain, std::vector<std::string>* warning
     }
     if (weak > 0)
       warnings->push_back(Formatted(
-          "For %.1f %% of the time the muscles of the %s arm cannot produce its torques in the "
-          "model: up to %.1f N·m are missing, and activations are too low there.",
+          "For %.1f %% of the time, the muscles of the %s arm cannot produce its torques in the "
+          "model: up to %.1f N·m are missing, and the activations shown are too low.",
           100 * weak / judged, HandName(hand), most));
     if (raised > 0)
       gaps->push_back({std::string("muscles of the ") + HandName(hand) + " shoulder for " +

@@ -1,5 +1,5 @@
-// What the muscles of the arms do at each time of a run, by the built-in model of the nominal
-// person.
+// What the muscles of the arms do at each time of a run, according to the built-in model of the
+// nominal person.
 #pragma once
 
 #include <array>
@@ -23,10 +23,10 @@ struct QuantityKind;
 enum MuscleValue : int {
   kLargestActivation,  // 0 ... 1
   kMeanActivation,     // of all muscles
-  kGroupActivation,    // the largest of each group, in the order of muscles::MuscleGroup
+  kGroupActivation,    // largest of each group, in the order of muscles::MuscleGroup
   // Largest torque of a joint that the muscles cannot produce [N·m].
   kReserve = kGroupActivation + muscles::kMuscleGroups,
-  // 1 if a reserve exceeds kReserveLimit and kReserveShare of the joint's torque, else 0.
+  // 1 if the missing torque exceeds kReserveLimit and kReserveShare of the joint's torque, else 0.
   kTooWeak,
   kSoftest,  // smallest principal stiffness of the hand [N/m]
   kStiffest,
@@ -35,8 +35,8 @@ enum MuscleValue : int {
 inline constexpr double kReserveLimit = 0.5;   // (design choice) [N·m]
 inline constexpr double kReserveShare = 0.05;  // (design choice)
 
-// Not a number where the arm holds no handle. Where the upper arm is raised above 90°, the model of
-// the shoulder disagrees with measurements (Bergmann et al. 2011), and only the groups of elbow and
+// Not a number if the arm holds no handle. If the upper arm is raised above 90°, the model of the
+// shoulder disagrees with measurements (Bergmann et al. 2011), so only the groups of elbow and
 // forearm have values.
 struct ArmMuscleUse {
   std::array<double, kMuscleValues> values;
@@ -45,14 +45,15 @@ struct ArmMuscleUse {
   ArmMuscleUse() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
 };
 
-// Fills `muscles` of the chain's frames.
+// Fills in `muscles` of the chain's frames.
 void AddMuscles(const PersonSetup& setup, std::span<const PersonSample> samples,
                 NominalChain* chain);
 
-// Rows of the table of quantities, of both arms.
+// Rows for the table of quantities, for both arms.
 std::vector<QuantityKind> MuscleQuantities();
 
-// Sentences about the share of time in which an arm is too weak, and what could not be judged.
+// Adds sentences about the share of time in which an arm is too weak, and about what could not be
+// judged.
 void AddMuscleWords(const NominalChain& chain, std::vector<std::string>* warnings,
                     std::vector<std::string>* assumptions, std::vector<NotEvaluable>* gaps);
 

@@ -1,4 +1,4 @@
-// An assessment as text, JSON, CSV and as a page.
+// Output of an assessment as text, JSON, CSV and as a page.
 #pragma once
 
 #include <optional>
@@ -15,12 +15,12 @@ class ReportPage;
 namespace predictor::assessment {
 
 std::string AssessmentText(const Assessment& a);
-// `comparison`: with another design; null: none.
+// `comparison`: with another design; may be null.
 std::string AssessmentJson(const Assessment& a, const Comparison* comparison = nullptr);
 // JSON Schema (draft-07) of AssessmentJson.
 std::string AssessmentSchema();
-// One row for each time of the nominal person, with every quantity and score; the 90 % intervals
-// where they were computed.
+// One row for each time of the nominal person, with every quantity and score, and the 90 %
+// intervals where they were computed.
 std::string AssessmentCsv(const Assessment& a);
 std::string AssessmentPage(const Assessment& a, const std::string& program_version);
 
@@ -31,15 +31,16 @@ struct PersonOfRun {
   std::optional<Assessment> assessment;
   std::string why;
 };
-// Adds the chapter "person": of one run all that AssessmentPage shows, of several runs a table.
+// Adds the chapter "person": for one run everything that AssessmentPage shows, for several runs a
+// table.
 void AddPersonChapter(std::span<const PersonOfRun> runs, ReportPage* page);
 
-// A value in the unit that people read, without it.
+// A value as a number in the unit that is displayed, without the unit.
 std::string NumberText(const Unit& unit, double x);
 std::string ValueText(const QuantityKind& kind, double x);
-// "low … high" in the same unit; empty: there is no interval.
+// "low … high" in the same unit; empty if there is no interval.
 std::string RangeText(const QuantityKind& kind, const std::optional<person::Interval>& range);
-// "measured by ...": what the words of Origin mean.
+// "measured by ...": explains the words for Origin.
 std::string OriginWords();
 // One sentence for each lift, damage and fatigue result.
 std::string Sentence(const Lift& lift);
@@ -47,7 +48,7 @@ std::string Sentence(const DamageResult& damage);
 std::string Sentence(const FatigueResult& fatigue);
 // "The body reaches the handles 98 % of the time ..."
 std::string ReachSentence(const Assessment& a);
-// Who moved the handles.
+// States who moved the handles.
 std::string OperatorSentence(const Assessment& a);
 
 }  // namespace predictor::assessment

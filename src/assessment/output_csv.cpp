@@ -29,7 +29,7 @@ std::string HeadOf(const Assessment& a) {
 
 std::string AssessmentCsv(const Assessment& a) {
   std::string text = HeadOf(a);
-  std::size_t k = 0;  // next of sampled_times
+  std::size_t k = 0;  // index of the next of sampled_times
   for (std::size_t i = 0; i < a.times.size(); ++i) {
     const bool sampled = k < a.sampled_times.size() && a.sampled_times[k] == a.times[i];
     Append(&text, "%.3f", a.times[i]);

@@ -124,7 +124,7 @@ Json QuantitySchema(const QuantityKind& kind) {
        {"bad", schema::Value("string", "whether high or low values are bad")},
        {"mean_interval_90", schema::ValueOrNull("array", "90 % interval of the mean")},
        {"tail_interval_90",
-        schema::ValueOrNull("array", "90 % interval of p95, or of p5 if low is bad")}},
+        schema::ValueOrNull("array", "90 % interval of p95, or of p5 if low values are bad")}},
       WithUnit(std::string(kind.group) + ", " + kind.label, {kind.unit.si, kind.unit.si}));
 }
 
@@ -134,13 +134,14 @@ Json WorksheetSchema(const WorksheetKind& kind) {
        {"share_of_time", schema::Value("number", "of the nominal posture, 0 … 1")},
        {"probability",
         schema::ValueOrNull("number", "mean over time, over the possible postures")}},
-      "one score");
-  return schema::Object({{"origin", schema::Value("string", "standard")},
-                         {"worst", schema::Value("integer", "highest score")},
-                         {"p95", schema::Value("integer", "95th percentile over time")},
-                         {"action", schema::Value("string", "what the method advises for it")},
-                         {"classes", schema::Array(classes, "each possible score")}},
-                        kind.name);
+      "a score");
+  return schema::Object(
+      {{"origin", schema::Value("string", "standard")},
+       {"worst", schema::Value("integer", "highest score")},
+       {"p95", schema::Value("integer", "95th percentile over time")},
+       {"action", schema::Value("string", "what the method advises for this score")},
+       {"classes", schema::Array(classes, "each possible score")}},
+      kind.name);
 }
 
 Json ListSchema(const char* meaning, const Json& example) {
@@ -150,7 +151,7 @@ Json ListSchema(const char* meaning, const Json& example) {
                                 : value.is_string()  ? Json("string")
                                 : value.is_boolean() ? Json("boolean")
                                                      : Json({"number", "null"})}};
-  return schema::Array(schema::Object(properties, "one entry"), meaning);
+  return schema::Array(schema::Object(properties, "an entry"), meaning);
 }
 
 }  // namespace
@@ -186,7 +187,8 @@ std::string AssessmentSchema() {
        {"scenario", schema::Value("string", "name of the scenario")},
        {"duration_s", schema::Value("number", "simulated time [s]")},
        {"held_s",
-        schema::Value("number", "of it, while a hand held a handle; only this is judged [s]")},
+        schema::Value("number",
+                      "part of it in which a hand held a handle; only this part is judged [s]")},
        {"person",
         schema::Object(
             {{"simulated", schema::Value("boolean", "whether the operator was simulated")},
@@ -198,22 +200,24 @@ std::string AssessmentSchema() {
                                        "share of time in which the body reaches the "
                                        "handles, 0 … 1")},
              {"reached_by_possible_postures",
-              schema::ValueOrNull("number", "the same over all of them")},
-             {"largest_miss_m", schema::Value("number", "distance that is missing [m]")}},
+              schema::ValueOrNull("number", "the same, averaged over the possible postures")},
+             {"largest_miss_m",
+              schema::Value("number", "largest distance by which a hand misses its handle [m]")}},
             "the person")},
        {"quantities", schema::Object(quantities, "values over time")},
-       {"worksheets", schema::Object(worksheets, "scores of observers' worksheets")},
+       {"worksheets", schema::Object(worksheets, "scores of observational worksheets")},
        {"lifts", ListSchema("lifts of the run", ToJson(Lift{}))},
        {"damage", ListSchema("cumulative damage", ToJson(DamageResult{}))},
        {"fatigue", ListSchema("fatigue of joints", ToJson(FatigueResult{}))},
        {"safety", SafetySchema()},
        {"warnings", schema::Array(text, "doubtful input")},
        {"assumptions", schema::Array(text, "what was assumed")},
-       {"not_evaluable", schema::Array(schema::Object({{"what", text}, {"why", text}}, "one gap"),
+       {"not_evaluable", schema::Array(schema::Object({{"what", text}, {"why", text}}, "a gap"),
                                        "what could not be judged")},
-       {"against", schema::ValueOrNull("object",
-                                       "tails of another recording, and the differences for "
-                                       "the same possible persons")}},
+       {"against",
+        schema::ValueOrNull(
+            "object",
+            "tails of the other recording, and the differences for the same possible persons")}},
       "The assessment of the person in a run of PREDICTOR");
   root["$schema"] = schema::kDraft;
   return root.dump(2) + "\n";

@@ -13,14 +13,14 @@
 namespace predictor::assessment {
 namespace {
 
-// A curve that is interrupted while no hand holds a handle.
+// A curve with gaps where no hand holds a handle.
 struct Points {
   std::vector<double> x, y;
 };
 
 Points Interrupted(const std::vector<double>& times, const std::vector<double>& values,
                    double factor) {
-  constexpr double kGap = 0.3;  // more than the interval of the intervals, 0.2 s [s]
+  constexpr double kGap = 0.3;  // longer than the step of the intervals, 0.2 s [s]
   Points points;
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (i > 0 && times[i] - times[i - 1] > kGap) {
@@ -58,9 +58,10 @@ void AddCurve(const Assessment& a, const QuantityResult& q, int color, PlotPanel
   if (q.kind->limit > 0) panel->limits.push_back({factor * q.kind->limit, q.kind->limit_name});
 }
 
-constexpr double kSmallestRange = 4;  // of a panel, in steps of the last digit that tables show
+constexpr double kSmallestRange = 4;  // smallest range of a panel, in steps of the last digit that
+                                      // tables show
 
-// The quantities of one group, in one panel for each unit and pair of quantities.
+// The quantities of one group, with one panel for each unit and left-right pair.
 Plot GroupPlot(const Assessment& a, const std::string& group, const std::string& id) {
   Plot plot;
   plot.id = id;
@@ -113,7 +114,7 @@ Plot ScorePlot(const Assessment& a) {
   return plot;
 }
 
-// How a page names the parts of an assessment: as chapters, or as parts of one chapter.
+// Structures the parts of an assessment on a page: as chapters, or as parts of one chapter.
 class Outline {
  public:
   Outline(ReportPage* page, bool chapters) : page_(page), chapters_(chapters) {}
@@ -150,7 +151,8 @@ std::string QuantityTable(const Assessment& a) {
 
 std::string Percent(double share) { return Formatted("%.1f %%", 100 * share); }
 
-// A bar of a worksheet's scores, as wide as their shares and coloured by the advised action.
+// A bar of a worksheet's scores; its segments are as wide as the scores' shares and have the colour
+// of the advised action.
 std::string ScoreBar(const WorksheetResult& w, const std::vector<double>& shares) {
   const int levels = w.kind->action(w.kind->most).level;
   std::string html = "<div class=\"shares\">";
@@ -221,10 +223,9 @@ void AddCosts(const Assessment& a, Outline* outline) {
   outline->Begin("damage", "Cumulative damage (standard)");
   page.Html(DamageTable(a));
   page.Html(
-      "<p class=\"caption\">As shares of the reference day, whose damage the method connects with "
-      "a "
-      "probability of one half that the job is one of those with many injuries. Not the risk of a "
-      "person.</p>\n");
+      "<p class=\"caption\">As shares of the reference day. With the damage of that day, the "
+      "method gives a probability of one half that the job is one of those with many injuries. "
+      "This is not the risk of a person.</p>\n");
   outline->Begin("fatigue", "Fatigue by 3CC-r (modelled)");
   page.Html(FatigueTable(a));
   page.Html(
@@ -276,7 +277,7 @@ void AddParts(const Assessment& a, Outline* outline) {
   page.Html(QuantityTable(a));
   page.Paragraph(
       "p5 and p95: percentiles over the judged time, of the nominal posture. Tail: 90 % interval "
-      "of p95 (of balance p5) over 64 possible postures and bodies.");
+      "of p95 (of p5 for balance) over 64 possible postures and bodies.");
   page.Paragraph(OriginWords() + ".");
   outline->Begin("worksheets", "Scores (standard)");
   page.Html(ScoreBars(a));
@@ -322,10 +323,10 @@ void AddComparison(std::span<const PersonOfRun> runs, ReportPage* page) {
   }
   page->Html(HtmlTable(rows));
   page->Paragraph(
-      "The 95th percentile over time (of balance the 5th) of the nominal posture, and its 90 % "
-      "interval over 64 possible postures and bodies. To compare two runs for the same possible "
-      "persons, use predictor evaluate with --against: its intervals of the differences are "
-      "narrower.");
+      "The 95th percentile over time (5th percentile for balance) of the nominal posture, and its "
+      "90 % interval over 64 possible postures and bodies. To compare two runs for the same "
+      "possible persons, use predictor evaluate with --against: its intervals of the differences "
+      "are narrower.");
 }
 
 }  // namespace

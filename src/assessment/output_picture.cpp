@@ -14,13 +14,13 @@ namespace {
 using person::Skeleton;
 using person::SkeletonSide;
 
-// A view of S: the directions that point to the right in the picture and away from the viewer.
+// A view of S: the directions that point right in the picture and away from the observer.
 struct View {
   const char* name;
   Vector3 right, away;
   double left_edge, right_edge;  // [m]
 };
-// From the person's right side, and from before the person.
+// From the person's right side, and from the front.
 const View kSide = {"from the side", Vector3::UnitX(), Vector3::UnitY(), -0.6, 0.95};
 const View kFront = {"from the front", Vector3::UnitY(), -Vector3::UnitX(), -0.72, 0.72};
 
@@ -29,7 +29,7 @@ constexpr double kAbove = 0.1;   // upper edge above the head [m]
 constexpr double kBottom = 0.1;  // lower edge below the ground [m]
 constexpr const char* kNotJudged = "var(--grid)";
 
-// Rough breadths of the parts [m] (design choice).
+// Rough widths of the parts of the body [m] (design choice).
 namespace breadth {
 constexpr double kThigh = 0.13, kShank = 0.09, kFoot = 0.06, kUpperArm = 0.085, kForearm = 0.065,
                  kHand = 0.05, kTrunk = 0.15, kNeck = 0.09, kHead = 0.2;
@@ -48,13 +48,13 @@ class Drawing {
     Append(&svg_, "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" %s/>", X(from), Y(from),
            X(to), Y(to), attributes);
   }
-  // A part with round ends and an outline.
+  // A body part with round ends and an outline.
   void Limb(const Vector3& from, const Vector3& to, double breadth, const std::string& color) {
     const double width = scale_ * breadth;
     Line(from, to, Formatted("class=\"rim\" stroke-width=\"%.1f\"", width + 2).c_str());
     Line(from, to, Formatted("stroke=\"%s\" stroke-width=\"%.1f\"", color.c_str(), width).c_str());
   }
-  // The same around a closed line.
+  // The same for a closed polygon.
   void Block(const std::vector<Vector3>& corners, double breadth, const std::string& color) {
     std::string points;
     for (const Vector3& p : corners) Append(&points, "%.1f,%.1f ", X(p), Y(p));
@@ -131,7 +131,7 @@ void DrawArm(const SkeletonSide& side, const std::string& upper, const std::stri
 
 void DrawTrunk(const Skeleton& s, const std::string& color, Drawing* d) {
   d->Limb(s.neck, s.head, breadth::kNeck, kNotJudged);
-  // Within the joints, so that the outline passes through them.
+  // Ends inside the joints, so that the outline passes through them.
   const auto inside = [&](const Vector3& p, const Vector3& middle) {
     return Vector3(p +
                    (middle - p).normalized() * std::min(breadth::kTrunk / 3, (middle - p).norm()));
@@ -146,7 +146,7 @@ void DrawTrunk(const Skeleton& s, const std::string& color, Drawing* d) {
 }
 
 void DrawBody(const Skeleton& s, const Colors& colors, Drawing* d) {
-  // The far side first: the left one if the picture is from the right.
+  // Draws the far side first: the left one if the person is seen from the right.
   const std::size_t near = d->view().away.y() > 0 ? 1 : 0, far = 1 - near;
   const bool from_front = d->view().away.x() < 0;
   DrawLeg(s.sides[far], d);
@@ -162,7 +162,7 @@ void DrawBody(const Skeleton& s, const Colors& colors, Drawing* d) {
   DrawArm(s.sides[near], colors.upper_arm[near], colors.forearm[near], d);
 }
 
-// The joints of a possible person as thin lines.
+// Draws the joints of a possible person as thin lines.
 void DrawThin(const Skeleton& s, Drawing* d) {
   constexpr const char* kThin = "class=\"possible\"";
   d->Line(s.pelvis, s.lower_back, kThin);
@@ -179,7 +179,8 @@ void DrawThin(const Skeleton& s, Drawing* d) {
 
 // The forces of the hands on the handles, as arrows.
 void DrawForces(const BodyPicture& picture, Drawing* d) {
-  constexpr double kLength = 0.3, kMinForce = 1;  // of the largest force [m]; of an arrow [N]
+  constexpr double kLength = 0.3, kMinForce = 1;  // length of the largest force [m]; smallest force
+                                                  // with an arrow [N]
   double most = 0;
   for (const Vector3& force : picture.force) most = std::max(most, force.norm());
   for (std::size_t h = 0; h < kHands; ++h) {
@@ -193,7 +194,7 @@ void DrawForces(const BodyPicture& picture, Drawing* d) {
 
 std::string WholePercent(double share) { return Formatted("%.0f %%", 100 * share); }
 
-// The loads beside the parts, seen from the front.
+// Writes the loads beside the parts, seen from the front.
 void DrawWords(const Assessment& a, const BodyPicture& picture, Drawing* d) {
   const auto beside = [&](const Vector3& from, const Vector3& to, std::size_t hand, double least) {
     const double sign = hand == 0 ? 1 : -1;  // the person's left is on the right

@@ -7,12 +7,12 @@
 
 namespace predictor::assessment {
 
-// "#rrggbb" of a load between 0 and 1 and above: light green, amber, dark red. The colours become
-// darker, so that they can be distinguished without seeing red and green.
+// Colour "#rrggbb" of a load: light green at 0, amber, dark red at 1 and above. The colours become
+// steadily darker, so that colour-blind people can distinguish them, too.
 std::string LoadColor(double share);
 
-// The body at the worst moment from the side and from the front, its loads as a table, and the
-// course of the run in small pictures.
+// The body at the worst moment from the side and from the front, its loads as a table, and small
+// pictures over the course of the run.
 std::string PicturesHtml(const Assessment& a);
 
 }  // namespace predictor::assessment

@@ -82,7 +82,7 @@ std::string OperatorSentence(const Assessment& a) {
 
 std::string ReachSentence(const Assessment& a) {
   std::string text = Formatted(
-      "A hand held a handle for %.1f of %.1f s, and only this time is judged. The body reaches the "
+      "A hand held a handle for %.1f of %.1f s; only this time is judged. The body reaches the "
       "handles for %.0f %% of it",
       a.held, a.duration, 100 * a.reached);
   if (a.worst_miss > 5e-4) Append(&text, " and misses them by up to %.0f mm", 1e3 * a.worst_miss);
@@ -95,12 +95,12 @@ std::string Sentence(const Lift& lift) {
   if (lift.one_hand)
     return Formatted(
         "%.1f to %.1f s, from %.2f to %.2f m above the ground, with one hand: the lifting "
-        "equations "
-        "are for two hands.",
+        "equations apply only to two hands.",
         lift.begin, lift.end, lift.origin.height, lift.destination.height);
   return Formatted(
       "%.1f to %.1f s, from %.2f to %.2f m above the ground: the hands carry %.1f kg. Lifting "
-      "index %s (%s), %s without the cobot. %.0f %% of this sex accept it for a day (LM-MMH%s).",
+      "index %s (%s), %s without the cobot. %.0f %% of people of this sex accept this load for a "
+      "day (LM-MMH%s).",
       lift.begin, lift.end, lift.origin.height, lift.destination.height,
       lift.vertical_force / kStandardGravity, Index(lift.niosh.carried.index).c_str(),
       ergonomics::AssistedLift::kCarriedLabel, Index(lift.niosh.unassisted.index).c_str(),
@@ -109,7 +109,8 @@ std::string Sentence(const Lift& lift) {
 
 std::string Sentence(const DamageResult& damage) {
   return Formatted(
-      "%s, %s: one run costs %.3g %% of a reference day, a shift of such runs %.3g %%.",
+      "%s, %s: one run causes %.3g %% of the damage of a reference day, a shift of such runs %.3g "
+      "%%.",
       damage.tool.c_str(), damage.part.c_str(), 100 * damage.day_share, 100 * damage.shift_share);
 }
 
@@ -118,10 +119,10 @@ std::string Sentence(const FatigueResult& fatigue) {
       Formatted("%s: %.1f %% of strength on average, %.1f %% of strength left.",
                 fatigue.joint.c_str(), 100 * fatigue.mean_load, 100 * fatigue.capacity);
   if (std::isfinite(fatigue.time_to_limit))
-    Append(&text, " Repeated without a break, the run is too much after %.0f min.",
+    Append(&text, " Repeated without a break, the run becomes too demanding after %.0f min.",
            fatigue.time_to_limit / 60);
   else
-    text += " Repeated without a break, the run stays possible for 8 h.";
+    text += " The run can be repeated without a break for 8 h.";
   return text;
 }
 
@@ -132,8 +133,8 @@ std::string AssessmentText(const Assessment& a) {
   for (const std::string& line : a.warnings) AppendLine(&text, "Warning: %s", line.c_str());
   AppendLine(&text, "%s.", OriginWords().c_str());
   text +=
-      "p5, p95: percentiles over time, of the nominal posture. Tail: 90 % interval of p95 (of "
-      "balance p5) over 64 possible postures and bodies.\n\n";
+      "p5, p95: percentiles over time, of the nominal posture. Tail: 90 % interval of p95 (of p5 "
+      "for balance) over 64 possible postures and bodies.\n\n";
   AppendQuantities(a, &text);
   AppendWorksheets(a, &text);
   AppendSentences("Lifts (standard)", a.lifts, &text);

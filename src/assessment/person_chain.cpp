@@ -5,7 +5,7 @@
 namespace predictor::assessment {
 namespace {
 
-// Smooths each part without interruption by itself.
+// Smooths each uninterrupted part separately.
 std::vector<person::BodyMotion> MotionsOf(const std::vector<person::Posture>& postures,
                                           std::span<const PersonSample> samples) {
   std::vector<person::BodyMotion> motions;

@@ -1,5 +1,5 @@
-// The chain from the samples of a run to frames: posture, motion, loads, scores. The evaluation of
-// a recorded run and the live one use the same steps.
+// The chain that computes frames from the samples of a run: posture, motion, loads, scores. The
+// evaluation of a recording and the live evaluation use the same steps.
 #pragma once
 
 #include <array>
@@ -17,13 +17,13 @@
 
 namespace predictor::assessment {
 
-// The steps of the nominal person.
+// The steps of the chain for the nominal person.
 class NominalPerson {
  public:
   NominalPerson(const PersonSetup& setup, const WorkPattern& work);
-  // The posture of the next sample; the solver starts at the one before.
+  // The posture of the next sample; the solver starts from the previous one.
   person::Posture Solve(const PersonSample& sample);
-  // `motion` of the sample's posture, smoothed.
+  // `motion`: smoothed motion of the sample's posture.
   Frame Judge(const FrameInput& input, const person::BodyMotion& motion, bool reached) const;
   const person::BodyModel& model() const { return solver_.model(); }
   const PersonSetup& setup() const { return setup_; }
@@ -36,13 +36,13 @@ class NominalPerson {
   std::optional<person::BodyVector> last_;
 };
 
-// The motions of the postures of a part without interruption. Trunk and head count as at rest at
-// each time: that they follow the hands at once is an assumption of the posture, and the
-// acceleration that it would cause was not observed.
+// The motions of the postures of an uninterrupted part. Trunk and head count as being at rest at
+// each time: the posture model assumes that they follow the hands immediately, but the resulting
+// acceleration was not observed.
 std::vector<person::BodyMotion> MotionsOfPart(std::span<const person::BodyVector> postures);
 
-// How fast each hand's force changed before sample i, over 0.1 s, so that noise and tremor do not
-// count [N/s]. 0 if the samples are interrupted there.
+// The rate at which each hand's force changed before sample i, averaged over 0.1 s, so that noise
+// and tremor do not count [N/s]. It is 0 if the samples are interrupted there.
 std::array<double, kHands> ForceRates(std::span<const PersonSample> samples, std::size_t i);
 
 // The nominal person at each sample.
@@ -58,7 +58,7 @@ NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> 
 Frame FrameOfPerson(const person::SampledPosture& person, const FrameInput& input, Sex sex,
                     const WorkPattern& work);
 
-// Samples between two evaluations of all possible persons: 5 Hz.
+// Samples between two evaluations of all possible persons, which gives 5 Hz.
 inline constexpr std::size_t kSampledStride = 20;
 
 // All possible persons at every `stride`-th sample: frames[time][person].
@@ -70,7 +70,7 @@ SampledChain RunSampled(const PersonSetup& setup, std::span<const PersonSample> 
                         const NominalChain& nominal, std::size_t stride, const WorkPattern& work,
                         const std::function<void(double)>& progress);
 
-// All possible persons at sample `i` alone, with their joints in S.
+// All possible persons at a single sample `i`, with their joints in S.
 struct PossiblePersons {
   std::vector<Frame> frames;
   std::vector<person::Skeleton> skeletons;

@@ -1,4 +1,4 @@
-// The person of a recorded run: body, stance and grips, and what of them is not known.
+// The person of a recorded run: body, stance and grips, and which of them are unknown.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ struct NotEvaluable {
   std::string what, why;
 };
 
-// What the scenario must say before a posture can be judged and does not, as sentences that say
-// what to do. Empty: nothing is missing.
+// What must be added to the scenario before a posture can be judged, as sentences that say what to
+// do. Empty if nothing is missing.
 std::vector<std::string> MissingForPosture(const Scenario& scenario);
 
 struct PersonSetup {
@@ -26,8 +26,8 @@ struct PersonSetup {
   std::array<person::Grip, kHands> grips;
 };
 
-// `first`: a record in which the handles have their places at the start; the wrists are on the
-// person's side of them. Throws InputError if something is missing or no adult has such a body.
+// `first`: a record with the initial places of the handles; the wrists are on the person's side of
+// the handles. Throws InputError if something is missing or no adult has such a body.
 PersonSetup SetupOf(const Scenario& scenario, const TickRecord& first);
 
 }  // namespace predictor::assessment

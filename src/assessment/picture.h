@@ -1,4 +1,4 @@
-// The body at one time of a run, for pictures: its joints, and how loaded its parts are.
+// The body at one time of a run, for pictures: its joints, and the loads on its parts.
 #pragma once
 
 #include <array>
@@ -12,15 +12,15 @@
 
 namespace predictor::assessment {
 
-// Of a part of the body that has a load.
+// A part of the body that has a load.
 struct PartKind {
   const char* name;  // "left shoulder"
-  int hand;          // whose part it is; -1: of no single hand
+  int hand;          // the hand that the part belongs to; -1: neither
 };
 const PartKind& KindOf(BodyPart part);
 
-// Loads as shares of a reference: compression of the lower back of kCompressionLimit, torques of
-// shoulder and elbow of the mean strength of the person's sex.
+// Loads as shares of a reference: for the compression of the lower back, kCompressionLimit; for the
+// torques of shoulder and elbow, the mean strength for the person's sex.
 using PartLoads = std::array<double, kBodyParts>;
 PartLoads LoadsOf(const Frame& frame);
 
@@ -29,7 +29,7 @@ struct BodyPicture {
   person::Skeleton body;
   PartLoads loads = {};
   std::array<Vector3, kHands> force;  // of the hands on the handles, in S [N]
-  // Only where they were computed: of the possible persons at this time.
+  // Only where they were computed: the possible persons at this time.
   std::vector<person::Skeleton> possible;
   std::array<std::optional<person::Interval>, kBodyParts> intervals;
 };
@@ -37,7 +37,7 @@ struct BodyPicture {
 // The sample with the highest load of any of these parts.
 std::size_t WorstSample(const NominalChain& nominal);
 
-// The picture at one sample. `possible`: with all possible persons.
+// The picture at one sample. `possible`: include all possible persons.
 BodyPicture PictureAt(const PersonSetup& setup, std::span<const PersonSample> samples,
                       const NominalChain& nominal, std::size_t i, bool possible);
 

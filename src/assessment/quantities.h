@@ -1,4 +1,4 @@
-// The table of what is reported of the person over time. Text, JSON, CSV and page derive from it.
+// Table of the quantities reported for the person over time, for text, JSON, CSV and page.
 #pragma once
 
 #include <span>
@@ -11,9 +11,9 @@ namespace predictor::assessment {
 
 // How a number was obtained. Every output shows it.
 enum class Origin {
-  kMeasured,  // by the sensors of the arms
-  kModelled,  // by the model of the person's body
-  kStandard,  // by a published method or worksheet, from measured and modelled values
+  kMeasured,  // measured by the sensors of the arms
+  kModelled,  // computed by the model of the person's body
+  kStandard,  // from measured and modelled values, by a published method or worksheet
 };
 const char* Name(Origin origin);
 
@@ -27,20 +27,20 @@ enum class Bad { kHigh, kLow };
 
 struct QuantityKind {
   const char* path;   // key in JSON and CSV, ending in the SI unit
-  const char* group;  // of a table and a plot
+  const char* group;  // in tables and plots
   const char* label;
   Unit unit;
   Origin origin;
   double (*of)(const Moment&);
-  double limit = 0;             // a published limit, SI; 0: none
+  double limit = 0;             // a published limit, in SI units; 0: none
   const char* limit_name = "";  // its source
-  int hand = -1;                // whose quantity it is; -1: of no single hand
+  int hand = -1;                // the hand that the quantity belongs to; -1: neither
   Bad bad = Bad::kHigh;
   bool nominal_only = false;  // not computed for the possible postures
 };
 std::span<const QuantityKind> Quantities();
 
-// A worksheet: its score of a frame, and the action for a score.
+// A worksheet: computes the score of a frame, and the action for a score.
 struct WorksheetKind {
   const char* name;
   int most;  // highest score

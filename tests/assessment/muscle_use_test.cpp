@@ -74,7 +74,7 @@ TEST(MuscleUse, TorquesBeyondTheMusclesAreReported) {
   const Assessment a = JudgeAt(1.0, 700);
   EXPECT_EQ(Row(a, "muscles.left.too_weak").mean, 1);
   EXPECT_GT(Row(a, "muscles.left.reserve_nm").mean, 10);
-  EXPECT_TRUE(Mentions(a.warnings, "100.0 % of the time the muscles of the left arm cannot"));
+  EXPECT_TRUE(Mentions(a.warnings, "100.0 % of the time, the muscles of the left arm cannot"));
 }
 
 TEST(MuscleUse, RaisedArmsHaveNoConclusionsAboutTheShoulder) {

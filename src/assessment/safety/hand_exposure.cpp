@@ -99,22 +99,23 @@ void HandExposure::AppendHand(std::size_t i, std::vector<Result>* results) const
   const std::string tick = Formatted("%.0f Hz", 1 / dt_),
                     mean = Formatted("means over %.0f ms", 1e3 / kSampleRate),
                     smooth = Formatted("low-passed at %.0f Hz", kCutoff);
-  add("peak_force_n", "peak force", kForceUnit, "estimated at " + tick + ", not filtered further",
-      hand.peak);
+  add("peak_force_n", "peak force", kForceUnit,
+      "estimated at " + tick + ", without further filtering", hand.peak);
   add("smooth_peak_force_n", "peak force, low-passed", kForceUnit, "the same " + smooth,
       hand.smooth_peak);
   add("force_p95_n", "force, 95 %", kForceUnit, "95th percentile of " + mean,
       Quantile(hand.means, 0.95));
   add("force_rms_n", "force, rms", kForceUnit, "root mean square of " + mean, rms);
   add("impulse_ns", "impulse", kImpulseUnit, "integral of the force's magnitude", hand.impulse);
-  add("force_rate_n_per_s", "rate of force", kForceRateUnit, "largest, of the force " + smooth,
+  add("force_rate_n_per_s", "rate of force", kForceRateUnit, "largest; of the force" + smooth,
       hand.rate);
   add("high_force_s", "time with a high force", kTimeUnit,
-      Formatted("above %.0f N, %.0f %% of the threshold of the stop", high_, 100 * kHighShare),
+      Formatted("above %.0f N, which is %.0f %% of the threshold of the stop", high_,
+                100 * kHighShare),
       hand.high_time);
   add("peak_torque_nm", "peak torque", kTorqueUnit, "estimated at " + tick, hand.peak_torque);
   add("growing_cycles", "growing cycles", kNumberUnit,
-      "cycles of the force that ended a row of growing ones (the criterion of the stop)",
+      "cycles of the force that ended a series of growing ones (the criterion of the stop)",
       hand.growing_cycles);
   add("growing_amplitude_n", "largest growing cycle", kForceUnit,
       "amplitude of the largest of them", hand.growing_amplitude);
@@ -125,16 +126,17 @@ void HandExposure::AppendHand(std::size_t i, std::vector<Result>* results) const
   add("peak_return_w", "peak power received", kPowerUnit, "by the hand from the real handle",
       hand.device.peak_return);
   add("lowest_j", "lowest energy", kEnergyUnit,
-      "lowest sum at the real handle; a passive device stays above what it stored at the start",
+      "lowest energy balance at the real handle; for a passive device, it stays above minus the "
+      "energy stored at the start",
       hand.device.lowest);
   add("active_episodes", "active episodes", kNumberUnit,
-      "how often that sum fell below −0.05 J: the handle gave more than it had received",
+      "how often that balance fell below −0.05 J: the handle gave more than it had received",
       hand.device.episodes);
   add("scene_supplied_j", "energy into the scene", kEnergyUnit,
       "by the hand's wrench and the coupling to the virtual handle, minus what came back",
       hand.scene.sum);
   add("scene_lowest_j", "lowest energy of the scene", kEnergyUnit,
-      "lowest sum at the virtual handle", hand.scene.lowest);
+      "lowest energy balance at the virtual handle", hand.scene.lowest);
 }
 
 std::vector<Result> HandExposure::results() const {

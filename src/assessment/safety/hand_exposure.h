@@ -1,5 +1,5 @@
-// What the hands felt in a run: forces, their rate, energy, oscillation. From the records alone, so
-// that it can be judged without knowing the person.
+// What the hands felt during a run: forces, their rate, energy, oscillation. It uses only the
+// records, so it can be judged without knowing the person.
 #pragma once
 
 #include <array>
@@ -13,36 +13,37 @@
 
 namespace predictor::assessment {
 
-// Collects the records of a run. Forces count in RUN, energies also while the arms stop.
+// Collects the records of a run. Forces count in RUN, energies also while the arms are stopping.
 class HandExposure {
  public:
   static constexpr double kCutoff = 20;      // of the low-passed force and of its rate [Hz]
-  static constexpr double kHighShare = 0.5;  // of the threshold of the stop: "high" force
+  static constexpr double kHighShare = 0.5;  // share of the stop's threshold above which a force
+                                             // counts as "high"
 
   explicit HandExposure(const Scenario& scenario);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // The results so far of the existing hands, then those of both hands. Each states in its meaning
-  // how it is filtered and at which rate.
+  // The results so far: first those of each existing hand, then those of both hands. The meaning of
+  // each result states its filter and rate.
   std::vector<Result> results() const;
 
  private:
   struct Hand {
     bool present = false;
     LowPass<Vector3> low_pass;
-    bool started = false;           // the filter has a value
+    bool started = false;           // whether the filter has a value
     double peak = 0;                // of the force at the rate of the ticks [N]
     double smooth_peak = 0;         // of the low-passed force [N]
     double peak_torque = 0;         // [N·m]
     double rate = 0;                // largest |dF/dt| of the low-passed force [N/s]
     double impulse = 0;             // ∫ |F| dt [N·s]
-    double high_time = 0;           // with more than the high force [s]
-    Vector3 sum = Vector3::Zero();  // of the forces of the current mean [N]
+    double high_time = 0;           // with a force above the high one [s]
+    Vector3 sum = Vector3::Zero();  // of the forces in the current averaging interval [N]
     std::size_t count = 0;
     std::vector<double> means;  // magnitudes of the mean forces [N]
     OscillationDetector growing;
-    int growing_cycles = 0;        // in rows of at least the set number of growing cycles
-    double growing_amplitude = 0;  // largest amplitude of such a cycle [N]
+    int growing_cycles = 0;        // that end a series of at least the set number of growing cycles
+    double growing_amplitude = 0;  // largest amplitude of these cycles [N]
     PortEnergy device, scene;      // at the real handle; at the virtual one
   };
 
@@ -50,7 +51,7 @@ class HandExposure {
   void AppendHand(std::size_t i, std::vector<Result>* results) const;
 
   double dt_, high_;          // [s], [N]
-  std::size_t ticks_a_mean_;  // of the percentiles: as long as a sample
+  std::size_t ticks_a_mean_;  // averaging interval for the percentiles: as long as a sample
   bool ran_ = false;
   std::array<Hand, kHands> hands_;
   std::vector<std::unique_ptr<Metric>> metrics_;  // of the summary

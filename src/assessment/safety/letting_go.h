@@ -1,5 +1,6 @@
-// What could happen to a person who lets go of the handles: the object falls, object or cobot hit
-// the person or clamp a part of the body, the person stands too close to the moving cobot.
+// What could happen to a person who lets go of the handles: the object falls, the object or the
+// cobot hits the person or clamps a part of the body, the person stands too close to the moving
+// cobot.
 //
 // All of this is unintended contact. It says nothing about the forces at the handles, which the
 // person intends.
@@ -42,10 +43,10 @@ class SceneMotion {
   bool empty() const { return !any_; }
   const Sample& fastest() const { return fastest_; }
   const Sample& highest() const { return highest_; }  // of the object
-  // The moments at which a simulated operator's hand let go, and the fastest moment from there
-  // until the hands hold again.
+  // The moments of greatest speed after each release by a simulated operator's hand, until the
+  // hands hold again.
   const std::vector<Sample>& releases() const { return releases_; }
-  // The smallest upward force of a hand while it held [N]; infinite: it never did.
+  // The smallest upward force of a hand while it held [N]; infinite if it never held.
   double least_lift(int hand) const { return least_lift_[static_cast<std::size_t>(hand)]; }
 
  private:
@@ -56,47 +57,49 @@ class SceneMotion {
   int gripping_ = 0;
 };
 
-// The object falls from the highest place of the run because the cobot lets it go.
+// The fall of the object from its highest place in the run, when the cobot lets go of it.
 struct Drop {
   double time = 0;         // run time of the highest place [s]
   double height = 0;       // of the object's origin above the ground [m]
   double speed = 0;        // on the ground, √(2 g h) [m/s]
   double energy = 0;       // m g h [J]
   double beside_feet = 0;  // horizontal distance of the object's origin from the feet [m]; 0: above
-  // Weight that a hand would carry at once, and how much more that is than it carried at least in
-  // the run [N]; with both hands each takes half.
+                           // them
+  // Weight that a hand would suddenly carry, and its difference from the smallest force that the
+  // hand carried in the run [N]; if both hands hold, each carries half of the weight.
   double weight_of_hand = 0, jump = 0;
 };
 
-// The distance that a person needs from a cobot that does not know that the hands let go, after
-// ISO 13855 (mark R): S = v_h (T_r + T_s) + v_r T_r + v_r² / 2a. Not included: the intrusion
+// The distance that a person needs from a cobot that does not detect that the hands let go, after
+// ISO 13855 (mark R): S = v_h (T_r + T_s) + v_r T_r + v_r² / 2a. Not included are the intrusion
 // distance C and the uncertainties Z, which belong to a sensor that this scene does not have.
 struct Separation {
   double time = 0;      // run time [s]
   double speed = 0;     // v_r, of the faster of object and end-effector [m/s]
   double needed = 0;    // S [m]
-  double distance = 0;  // horizontal, from the middle of the feet to the nearer of both [m]
+  double distance = 0;  // horizontal, from the point between the feet to the nearer of object and
+                        // end-effector [m]
 };
 inline constexpr double kApproachSpeed = 1.6;   // v_h of a walking person (R) [m/s]
 inline constexpr double kReactionTime = 0.1;    // T_r (D) [s]
 inline constexpr double kStopDeceleration = 5;  // a, so that T_s = v_r / a (D) [m/s²]
 double NeededSeparation(double robot_speed);    // S [m]
 
-// A region of the body that the object or the cobot hits or clamps. Only its force is judged: the
-// pressure depends on the shape of what hits it.
+// A region of the body that the object or the cobot hits or clamps. Only the force is judged: the
+// pressure depends on the shape of the surface that hits.
 struct RegionCheck {
   ergonomics::ContactLimit limit;
-  double max_speed = 0;  // at which the limit is reached [m/s]; 0: must not be hit
+  double max_speed = 0;  // at which the force limit is reached [m/s]; 0: must not be hit
   double share = 0;      // largest speed of the run / max_speed
 };
 
 struct UnintendedContact {
   std::string edition;               // of the limits
   double robot_mass = 0;             // effective [kg]
-  double speed = 0;                  // the largest of the run [m/s]
-  double time = 0;                   // its run time [s]
+  double speed = 0;                  // largest speed in the run [m/s]
+  double time = 0;                   // run time of that speed [s]
   std::vector<RegionCheck> regions;  // transient contact, each region once
-  // Force with which the cobot clamps a part of the body at most; empty: the scenario sets no
+  // Largest force with which the cobot can clamp a part of the body; empty if the scenario sets no
   // bound.
   std::optional<double> clamping_force;  // [N]
   std::vector<RegionCheck> clamped;      // `share`: clamping force / quasi-static limit
@@ -104,7 +107,8 @@ struct UnintendedContact {
 
 Drop DropOf(const SceneMotion& motion, const SceneMasses& masses, const PersonSetup& setup,
             const Scenario& scenario);
-// Of the release at which most distance is missing, and if there was none, of the fastest moment.
+// For the release at which the distance is most insufficient or, without a release, for the fastest
+// moment.
 Separation SeparationOf(const SceneMotion& motion, const PersonSetup& setup);
 UnintendedContact ContactOf(const SceneMotion& motion, const SceneMasses& masses,
                             const ergonomics::ContactLimits& limits, const Scenario& scenario);

@@ -18,7 +18,7 @@ long Letters(const std::string& text) {
   });
 }
 
-// Numbers to the right, names and sentences to the left.
+// Aligns numbers to the right, and names and sentences to the left.
 void AppendTable(const std::vector<std::vector<std::string>>& rows, std::string* text) {
   std::vector<long> widths;
   for (const auto& row : rows) {
@@ -109,7 +109,7 @@ Json ToJson(const RigLimit& limit) {
           {"censored", limit.censored()}};
 }
 
-// What a key means, wherever it stands.
+// Meaning of a key, which is the same wherever the key occurs.
 std::string MeaningOf(const std::string& key) {
   static const std::map<std::string, std::string> kMeanings = {
       {"unit", "SI unit"},
@@ -125,33 +125,34 @@ std::string MeaningOf(const std::string& key) {
       {"cause", "cause of the stop"},
       {"duration_s", "from the decision to rest [s]"},
       {"distance_m",
-       "path of the faster handle in a stop, or of the person from the moving scene [m]"},
+       "distance travelled by the faster handle in a stop, or distance of the person from the "
+       "moving scene [m]"},
       {"joints", "each joint of the arms that held a handle"},
       {"speed_m_per_s", "speed [m/s]"},
       {"needed_m", "distance that a person needs [m]"},
-      {"height_m", "of the object's origin above the ground [m]"},
+      {"height_m", "height of the object's origin above the ground [m]"},
       {"energy_j", "energy at the ground [J]"},
       {"beside_feet_m", "horizontal distance from the feet [m]"},
       {"weight_of_hand_n", "weight that each hand would carry [N]"},
-      {"jump_n", "how much more that is than in the run [N]"},
+      {"jump_n", "difference from the smallest force that the hand carried in the run [N]"},
       {"region", "region of the body"},
       {"max_speed_m_per_s", "speed at which the limit is reached; 0: must not be hit [m/s]"},
-      {"share", "of the limit that the run reached; null: must not be hit"},
-      {"edition", "of the limits"},
-      {"effective_mass_kg", "of cobot and object [kg]"},
-      {"transient", "each region, if it can recoil"},
-      {"clamping_force_n", "to which the scenario bounds the cobot's force; null: no bound [N]"},
+      {"share", "share of the limit that the run reached; null: must not be hit"},
+      {"edition", "edition of the limits"},
+      {"effective_mass_kg", "effective mass of cobot and object [kg]"},
+      {"transient", "each region, if it is hit and can recoil"},
+      {"clamping_force_n", "bound that the scenario sets on the cobot's force; null: no bound [N]"},
       {"clamped", "each region, if it is clamped"},
-      {"what", "what it is about"},
+      {"what", "what the limit or the gap is about"},
       {"why", "why it could not be judged"},
-      {"limit", "up to which the rig renders, SI"},
-      {"reached", "largest value of the run, SI"},
+      {"limit", "limit of what the rig renders, SI"},
+      {"reached", "largest value in the run, SI"},
       {"censored", "whether the true value may have been larger"},
   };
   return kMeanings.at(key);
 }
 
-// Type and meaning of each value of an example.
+// Type and meaning of each value in an example.
 Json TypesOf(const Json& example) {
   Json properties = Json::object();
   for (const auto& [key, value] : example.items()) {
@@ -220,12 +221,13 @@ Json SafetySchema() {
        {{"measured", std::move(measured)},
         {"stops", ListOf(ToJson(StopJudgement{}), "what each stop did to the joints; modelled")},
         {"separation", WithMeaning(TypesOf(ToJson(Separation{})),
-                                   "distance after letting go, ISO 13855; standard")},
+                                   "required distance after letting go, by ISO 13855; standard")},
         {"drop", OrNull(WithMeaning(TypesOf(ToJson(Drop{})), "the object falls; modelled"))},
         {"unintended_contact",
          OrNull(WithMeaning(TypesOf(ToJson(UnintendedContact{})),
-                            "object or cobot hit or clamp the person; standard"))},
-        {"rig", ListOf(ToJson(RigLimit{}), "what the rig renders, and what the run asked of it")},
+                            "object or cobot hits or clamps the person; standard"))},
+        {"rig", ListOf(ToJson(RigLimit{}),
+                       "limits of what the rig renders, and the values that the run reached")},
         {"not_evaluable", ListOf(Json{{"what", ""}, {"why", ""}}, "what could not be judged")}}}};
 }
 

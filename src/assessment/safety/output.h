@@ -13,12 +13,13 @@ std::string SafetyText(const SafetyAssessment& safety);
 nlohmann::ordered_json SafetyJson(const SafetyAssessment& safety);
 nlohmann::ordered_json SafetySchema();  // of SafetyJson, JSON Schema (draft-07)
 
-// What text and page share.
+// Content that text and page share.
 struct SafetyTable {
   std::string title;
   std::string origin;                          // "measured", ...
-  std::vector<std::vector<std::string>> rows;  // the first is the header, its first cell empty
-  std::vector<std::string> notes;              // sentences below
+  std::vector<std::vector<std::string>> rows;  // the first row is the header; its first cell is
+                                               // empty
+  std::vector<std::string> notes;              // sentences below the table
 };
 std::vector<SafetyTable> SafetyTables(const SafetyAssessment& safety);
 

@@ -30,21 +30,21 @@ void AddGaps(const Scenario& scenario, const SafetyOptions& options, SafetyAsses
     add("unintended contact", "the masses of the virtual scene are not known");
   } else if (!options.limits) {
     add("unintended contact",
-        "no limits of force on the body are given (--contact-limits FILE; "
+        "no limits for the force on the body are given (--contact-limits FILE; "
         "assets/contact_limits_template.csv is a template)");
   } else {
     add("pressure of an unintended contact", "the area of contact is not known");
     if (!safety->contact->clamping_force)
       add("clamping between object and fixture",
-          "the scenario bounds neither the cobot's force (cobot.safety.force_cap) nor stops it at "
-          "one (cobot.safety.force)");
+          "the scenario neither bounds the cobot's force (cobot.safety.force_cap) nor stops the "
+          "cobot at a force (cobot.safety.force)");
   }
   add("distance between the person's body and the links of the cobot",
       "the links have no shape in this simulation");
   if (scenario.operator_.type == "person")
-    add("moments at which the person let go", "real arms cannot feel whether a hand is there");
+    add("moments at which the person let go", "real arms cannot sense whether a hand is there");
   if (scenario.mode == Mode::kEmulate)
-    add("jolts that are faster than the arms follow",
+    add("jolts that are too fast for the arms to follow",
         "the real handles low-pass the motion of the virtual ones");
 }
 

@@ -23,8 +23,8 @@ class SafetyCollector {
   const StopWindows& stops() const { return stops_; }
   const SceneMotion& scene() const { return scene_; }
 
-  // Largest values of both hands in RUN: of the force [N] and torque [N·m], and of what the virtual
-  // handles did [m/s], [rad/s].
+  // Largest values of both hands in RUN: force [N] and torque [N·m], and the speeds of the virtual
+  // handles [m/s], [rad/s].
   struct Largest {
     double force = 0, torque = 0, speed = 0, rotation_speed = 0;
   };
@@ -37,7 +37,7 @@ class SafetyCollector {
   Largest largest_;
 };
 
-// A bound of what the rig renders, and what the run asked of it.
+// A limit of what the rig renders, and the largest value that the run reached.
 struct RigLimit {
   std::string what;  // "force of a hand"
   Unit unit;
@@ -57,7 +57,7 @@ struct SafetyAssessment {
 };
 
 struct SafetyOptions {
-  bool intervals = true;                            // of the loads of stops
+  bool intervals = true;                            // for the loads during stops
   std::optional<SceneMasses> masses;                // empty: not known
   std::optional<ergonomics::ContactLimits> limits;  // empty: the user gave none
 };

@@ -11,7 +11,7 @@ namespace {
 
 using person::ArmJoint;
 
-constexpr std::size_t kStopStride = 2;  // samples between two evaluations of all persons
+constexpr std::size_t kStopStride = 2;  // samples between two evaluations of all possible persons
 
 std::size_t SamplesIn(double time) {
   return static_cast<std::size_t>(std::lround(time * kSampleRate));
@@ -23,7 +23,7 @@ std::string LabelOf(int joint) {
   return label;
 }
 
-// Largest magnitude of the joint's torque, and of its change, from the decision on.
+// Largest magnitude of the joint's torque, and of its change, since the decision.
 struct Peaks {
   double torque = 0, change = 0;
 };
@@ -84,7 +84,7 @@ StopWindow StopWindows::WindowOf(const Cut& cut, const StopSummary& stop) const 
   for (std::size_t i = cut.decided; i < ticks.size(); ++i)
     for (std::size_t h = 0; h < kHands; ++h)
       ticks[i].hands[h].gripping = ticks[cut.decided].hands[h].gripping;
-  // A sample begins with the decision.
+  // Aligns the samples so that one begins at the decision.
   std::size_t begin = cut.decided % ticks_a_sample_;
   window.decided = (cut.decided - begin) / ticks_a_sample_;
   for (; begin + ticks_a_sample_ <= ticks.size(); begin += ticks_a_sample_) {

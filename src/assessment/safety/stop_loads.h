@@ -14,9 +14,10 @@
 
 namespace predictor::assessment {
 
-// A stop, and the samples from kBefore before its decision to kAfter after the arms rest. The hands
-// that held a handle when the stop was decided count as staying at it, because a person cannot let
-// go as quickly. (The simulated operator lets go: then the force fades, but the posture stays.)
+// A stop, and the samples from kBefore before its decision until kAfter after the arms come to
+// rest. Hands that held a handle when the stop was decided count as still holding it, because a
+// person cannot let go that quickly. (The simulated operator lets go: the force then fades, but the
+// posture stays.)
 struct StopWindow {
   StopSummary stop;
   std::vector<PersonSample> samples;  // at kSampleRate
@@ -27,20 +28,21 @@ struct StopWindow {
 class StopWindows {
  public:
   static constexpr double kBefore = 0.2, kAfter = 0.1;  // [s]
-  static constexpr double kLongest = 1.5;               // of a window [s]
-  static constexpr std::size_t kMost = 20;              // the first stops of a run
+  static constexpr double kLongest = 1.5;               // maximum length of a window [s]
+  static constexpr std::size_t kMost = 20;              // maximum number of stops; later ones are
+                                                        // ignored
 
   explicit StopWindows(const Scenario& scenario);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // All stops so far whose windows are complete or end with the run.
+  // All stops so far; their windows are complete or end with the run.
   std::vector<StopWindow> windows() const;
 
  private:
   struct Cut {
     std::vector<TickRecord> ticks;
     std::size_t decided = 0;  // index into ticks
-    std::size_t after = 0;    // ticks since the arms rest
+    std::size_t after = 0;    // ticks since the arms came to rest
     bool open = true;
   };
   StopWindow WindowOf(const Cut& cut, const StopSummary& stop) const;
@@ -48,7 +50,7 @@ class StopWindows {
   std::size_t ticks_a_sample_;
   StopLog log_;
   std::uint64_t stops_ = 0;
-  std::deque<TickRecord> recent_;  // the ticks before, at most kBefore
+  std::deque<TickRecord> recent_;  // previous ticks, for at most kBefore
   std::vector<Cut> cuts_;          // one for each of the first kMost stops
 };
 
@@ -57,11 +59,11 @@ struct StopLoad {
   std::string joint;                          // "left shoulder flexion"
   double before = 0;                          // when the stop was decided [N·m]
   double peak = 0;                            // largest magnitude from then on [N·m]
-  double change = 0;                          // largest magnitude of its change from then on:
-                                              // what the stop caused [N·m]
+  double change = 0;                          // largest magnitude of its change from then on, which
+                                              // the stop caused [N·m]
   std::optional<person::Interval> change_90;  // over the possible postures [N·m]
-  std::optional<double> use;                  // largest share of mean strength; empty: no
-                                              // strength of a verified source
+  std::optional<double> use;                  // largest share of mean strength; empty if no
+                                              // strength from a verified source exists
 };
 
 struct StopJudgement {
@@ -69,9 +71,9 @@ struct StopJudgement {
   std::vector<StopLoad> loads;  // of the arms that held a handle
 };
 
-// Wrenches and motions are measured at 100 Hz (means of 10 ms); the posture's accelerations are
-// low-passed at 6 Hz, so that the inertia of the person's own arm is underestimated. The inertia of
-// what the hand holds is in the measured wrench.
+// Wrenches and motions are measured at 100 Hz (means of 10 ms). The posture's accelerations are
+// low-passed at 6 Hz, so the inertia of the person's own arm is underestimated. The inertia of what
+// the hand holds is included in the measured wrench.
 StopJudgement JudgeStop(const PersonSetup& setup, const StopWindow& window, bool intervals);
 
 }  // namespace predictor::assessment

@@ -21,7 +21,7 @@ std::string PercentText(double share) {
   return std::isfinite(share) ? Formatted("%.0f %%", 100 * share) : "must not be hit";
 }
 
-// The hand whose result this is, from its path ("hands.left.…"); −1: of no single hand.
+// The hand that the result belongs to, from its path ("hands.left.…"); −1 for neither.
 int HandOf(const Result& result) {
   for (int hand = 0; hand < kHands; ++hand)
     if (result.path.find(std::string(".") + HandName(hand) + ".") != std::string::npos) return hand;
@@ -36,7 +36,7 @@ std::string LabelOf(const Result& result, int hand) {
   return WithUnit(label, result.unit);
 }
 
-// Results of the single hands side by side, then those of the whole run.
+// The results of each hand side by side, then those of the whole run.
 SafetyTable HandTable(const std::vector<Result>& results) {
   SafetyTable table{.title = "What the hands felt", .origin = "measured"};
   table.rows.push_back({"", "left", "right", "how it was computed"});
@@ -63,7 +63,7 @@ SafetyTable StopTable(const StopJudgement& judged) {
                     .origin = "modelled"};
   std::string words = "The stop: " + StopCauseText(stop.cause, stop.quantity);
   if (stop.hand >= 0) words += Formatted(" (%s hand)", HandName(stop.hand));
-  words += Formatted(". The handles rested after %.0f ms and %.1f mm.", 1e3 * stop.duration,
+  words += Formatted(". The handles came to rest after %.0f ms and %.1f mm.", 1e3 * stop.duration,
                      1e3 * stop.distance);
   table.notes.push_back(words);
   if (judged.loads.empty()) {
@@ -78,8 +78,9 @@ SafetyTable StopTable(const StopJudgement& judged) {
          load.change_90 ? Formatted("%.1f … %.1f", load.change_90->low, load.change_90->high) : "–",
          Formatted("%.1f", load.peak), load.use ? PercentText(*load.use) : "–"});
   table.notes.emplace_back(
-      "Caused by the stop: largest change of the torque since its decision. 90 %: over 64 possible "
-      "postures and bodies. Of strength: of the mean of the sex, where a source was verified.");
+      "Caused by the stop: largest change of the torque since the decision to stop. 90 %: over 64 "
+      "possible postures and bodies. Strength is given as a fraction of the mean for the person's "
+      "sex, where a source was verified.");
   return table;
 }
 
@@ -101,10 +102,10 @@ SafetyTable LettingGoTable(const SafetyAssessment& safety) {
   }
   const Separation& s = safety.separation;
   table.notes.push_back(Formatted(
-      "At %.1f s the scene moved at %.2f m/s. A person who walks towards it needs %.2f m (ISO "
-      "13855, without the intrusion distance of a sensor); the feet are %.2f m away%s.",
+      "At %.1f s the scene moved at %.2f m/s. A person who walks towards it needs a distance of "
+      "%.2f m (ISO 13855, without the intrusion distance of a sensor); the feet are %.2f m away%s.",
       s.time, s.speed, s.needed, s.distance,
-      s.needed > s.distance ? ", which is too near for a cobot that does not know of the person"
+      s.needed > s.distance ? ", which is too close to a cobot that does not detect the person"
                             : ""));
   return table;
 }
@@ -122,18 +123,18 @@ SafetyTable ContactTable(const UnintendedContact& contact) {
     if (contact.clamping_force) row.push_back(PercentText(contact.clamped[i].share));
     table.rows.push_back(std::move(row));
   }
-  table.notes.push_back(Formatted(
-      "If object or cobot hit the person at the largest speed of this run, %.2f m/s (%.1f s), with "
-      "an effective mass of %.1f kg. Limits: %s.",
-      contact.speed, contact.time, contact.robot_mass, contact.edition.c_str()));
+  table.notes.push_back(
+      Formatted("For contact of the person with the object or the cobot at the largest speed of "
+                "this run, %.2f m/s (%.1f s), and an effective mass of %.1f kg. Limits: %s.",
+                contact.speed, contact.time, contact.robot_mass, contact.edition.c_str()));
   if (contact.clamping_force)
-    table.notes.push_back(Formatted(
-        "Clamped between object and fixture: with the %.0f N to which the scenario bounds the "
-        "cobot's force.",
-        *contact.clamping_force));
+    table.notes.push_back(
+        Formatted("Clamped between object and fixture: with %.0f N, the bound that the scenario "
+                  "sets on the cobot's force.",
+                  *contact.clamping_force));
   table.notes.emplace_back(
-      "These limits are not for the forces at the handles, and no number here states conformity: a "
-      "real application is measured.");
+      "These limits do not apply to the forces at the handles, and no number here is proof of "
+      "conformity: a real application must be measured.");
   return table;
 }
 
@@ -148,11 +149,11 @@ SafetyTable RigTable(const std::vector<RigLimit>& limits) {
                           (limit.censored() ? "at least " : "") + NumberText(unit, limit.reached),
                           PercentText(limit.reached / limit.limit)});
   }
-  table.notes.emplace_back(
-      censored ? "The run reached a limit: what it would have been without the rig's limits is not "
-                 "known, and values with \"at least\" are lower bounds."
-               : "The run stayed inside. A hazard that needs more than these limits cannot be "
-                 "judged on this rig.");
+  table.notes.emplace_back(censored
+                               ? "The run reached a limit of the rig: the values without that "
+                                 "limit are unknown, and values with \"at least\" are lower bounds."
+                               : "The run stayed within the limits. A hazard that exceeds these "
+                                 "limits cannot be judged on this rig.");
   return table;
 }
 
