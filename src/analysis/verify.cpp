@@ -27,14 +27,14 @@ bool Resume(RecordingReader* reader, const TickRecord& record, Emulator* emulato
 }
 
 // Data about lost and refused packets and about power reports of real arms are displayed but not
-// recorded. Therefore the recorded warnings about them are used.
+// recorded. Therefore, the recorded warnings about them are used.
 TickRecord WithWarningsOf(const TickRecord& recorded, const TickRecord& computed) {
   TickRecord with = computed;
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     const HandRecord& from = recorded.hands[hand];
     HandRecord& to = with.hands[hand];
     for (std::size_t w = 0; w < kWarnings; ++w) {
-      // Derived from the readings, so it is computed.
+      // This warning is derived from the readings, so it is computed.
       if (static_cast<Warning>(w) == Warning::kBiasDrift) continue;
       const auto bit = static_cast<std::uint8_t>(1U << w);
       to.warnings = static_cast<std::uint8_t>((to.warnings & ~bit) | (from.warnings & bit));
@@ -64,7 +64,7 @@ Verification Verify(RecordingReader* reader, const Scenario& scenario,
   Verification result;
   TickRecord record;
   std::uint64_t expected = 1;  // the next tick of the emulator
-  bool follows = true;         // the emulator is at the tick immediately before it
+  bool follows = true;         // the emulator is at the tick immediately before `expected`
   while (reader->Next(&record)) {
     if (record.tick != expected) {
       result.missing += record.tick - expected;

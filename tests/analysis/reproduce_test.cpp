@@ -122,8 +122,8 @@ TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
 TEST_F(ReproduceTest, ShowsTheStops) {
   options_.only = "safety";
   const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
-  EXPECT_GT(Find(e, "force that decided", "Sudden push").mean, 30);
-  EXPECT_GT(Find(e, "force that decided", "Underdamped, no monitor").mean, 30);
+  EXPECT_GT(Find(e, "force that caused the stop", "Sudden push").mean, 30);
+  EXPECT_GT(Find(e, "force that caused the stop", "Underdamped, no monitor").mean, 30);
   EXPECT_LT(Find(e, "time of the decision", "Underdamped").mean,
             Find(e, "time of the decision", "Underdamped, no monitor").mean);
   ExpectAsInNumbersFile(e);

@@ -32,7 +32,8 @@ struct ModelsReport {
   Vector3 sag = Vector3::Zero();  // object at equilibrium minus object at the set-point, in W [m]
   Pose X_WO;                      // object at equilibrium
   double torque_share = 0;        // static torque divided by its limit, for the worst joint
-  double torque = 0, torque_limit = 0;  // of that joint [N·m], or a force [N] if it is prismatic
+  double torque = 0, torque_limit = 0;  // torque of that joint and its limit [N·m], or a force [N]
+                                        // if the joint is prismatic
   bool torque_is_force = false;
   std::string torque_joint;
   struct Arm {
@@ -50,7 +51,7 @@ struct StabilityReport {
   double lag = 0;         // lag of the arms [s]
   double lead = 0;        // chosen automatically or set by the scenario [s]
   bool chosen = true;     // chosen by `lead: auto`
-  bool withheld = false;  // no lead is used because the loop of a real arm was not measured
+  bool withheld = false;  // no lead is used because the loop of a real arm has not been measured
   StabilityMargin without_lead, margin, full_lead;  // at lead 0, `lead` and `lag`
   std::vector<double> masses, stiffnesses;          // axes of the table [kg], [N/m]
   std::vector<StabilityMargin> table;               // at `lead`; ordered by mass
@@ -65,16 +66,16 @@ struct CheckReport {
   double comfort = 0;                       // comfort of the reach, see Comfort
   std::array<std::string, kHands> arm_key;  // key of an arm's base and loop
   std::array<Vector3, kHands> base = {Vector3::Zero(), Vector3::Zero()};  // current bases [m]
-  PoseSpec shift;                                                         // current one
-  // Set after a search: the first, or the second if the arms are fixed (Scenario::HasFixedArms).
+  PoseSpec shift;                                                         // current shift
+  // Set after a search: the first or, if the arms are fixed (Scenario::HasFixedArms), the second.
   std::optional<BaseProposal> proposal;
   std::optional<ShiftProposal> shift_proposal;
   std::optional<StabilityReport> stability;  // empty without a device
-  // A stop from `handle_speed` [m/s] as the arms execute it (StopOfArms), and the same with a joint
+  // A stop from `handle_speed` [m/s] as the arms perform it (StopOfArms), and the same with a joint
   // at its speed limit (MinStopAcceleration). Empty without a device.
   std::optional<StopBudget> stop, longest_stop;
   double handle_speed = 0;
-  std::vector<std::string> problems;  // each is a sentence with its remedy; if there are any, the
+  std::vector<std::string> problems;  // sentences, each with its remedy; if there are any, the
                                       // check fails
   std::vector<std::string> warnings;
 
@@ -87,8 +88,8 @@ struct CheckOptions {
   std::function<void(double share, const char* what)> progress = [](double, const char*) {};
 };
 
-// Throws InputError for every error that `run` would refuse, except a start out of reach, which
-// makes the check fail.
+// Throws InputError for every error for which `run` would refuse the scenario, except a start out
+// of reach, which makes the check fail.
 CheckReport Check(const Scenario& scenario, const CheckOptions& options);
 
 // True if a margin is sufficient, as far as it is known.

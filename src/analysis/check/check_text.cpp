@@ -77,7 +77,8 @@ void AddHandles(const Reach& reach, std::string* text) {
 }
 
 bool IsWorthIt(const CheckReport& report, double comfort) {
-  constexpr double kWorthIt = 1.05;  // a smaller improvement does not justify moving anything
+  constexpr double kWorthIt = 1.05;  // improvements smaller than this do not justify moving
+                                     // anything
   return comfort > report.comfort + (kWorthIt - 1) * std::fabs(report.comfort);
 }
 
@@ -105,7 +106,7 @@ void AddProposal(const CheckReport& report, const BaseProposal& p, std::string* 
   AddComfort(report, p.comfort, text);
 }
 
-// A shift as the scenario takes it.
+// A shift in the form that the scenario takes.
 std::string ShiftText(const PoseSpec& shift) {
   return Formatted("{xyz: [%.3f, %.3f, %.3f], rpy: [0, 0, %.4g deg]}", shift.xyz.x(), shift.xyz.y(),
                    shift.xyz.z(), kDegrees * shift.rpy.z());

@@ -68,7 +68,7 @@ ArmFollower::Track ArmFollower::Follow(const std::vector<IntendedSample>& path,
     if (!reached && !track.reach.lost) track.reach.lost = path[k].time;
     if (track.reach.lost && give_up) break;
     if (!track.reach.lost) ++good;
-    // A posture that misses its goal, and the path to it, contain no information.
+    // A posture that misses its goal, and the motion to it, provide no information.
     if (!rests && !track.reach.lost) {
       if (k > 0) JudgeSpeed(before, q, path[k].time - path[k - 1].time, path[k].time, &track.reach);
       Judge(q, path[k].time, &data, &track.reach);
@@ -94,7 +94,7 @@ void ArmFollower::Judge(const JointVector& q, double time, RobotData* data, ArmR
 
 void ArmFollower::JudgeSpeed(const JointVector& from, const JointVector& to, double dt, double time,
                              ArmReach* reach) const {
-  // The bounds used by rendering: (13)–(15).
+  // The bounds used by rendering, equations (13) to (15).
   const double gain =
       rendering_.joint_gain / (rendering_.joint_influence - rendering_.joint_security);
   for (int j = 0; j < to.size(); ++j) {

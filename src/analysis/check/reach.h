@@ -32,7 +32,7 @@ struct Extreme {
 };
 
 struct ArmReach {
-  std::optional<double> lost;  // first time at which the handle cannot reach its pose [s]
+  std::optional<double> lost;  // first time at which the handle cannot be at its pose [s]
   double reached = 0;          // share of the path's samples before that time
   // smallest singular value of the handle's Jacobian, with rotation weighted by
   // rendering.characteristic_length [m]

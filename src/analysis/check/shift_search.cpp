@@ -8,7 +8,7 @@ namespace predictor {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;  // [rad]
-constexpr int kMaxSweeps = 6;                       // over the coordinates, per step width
+constexpr int kMaxSweeps = 6;                       // sweeps over the coordinates per step width
 struct StepWidth {
   double length, angle;  // [m], [rad]
 };
@@ -53,7 +53,8 @@ class ShiftSearch {
   };
 
   std::vector<double> StartYaws(double present) const {
-    constexpr double kShortLine = 0.05;  // seen from above, it has no reliable direction [m]
+    constexpr double kShortLine = 0.05;  // a line between the handles that is shorter than this,
+                                         // seen from above, has no reliable direction [m]
     if (scenario_.hands().count() < kHands) {
       std::vector<double> turns;
       for (int quarter = 0; quarter < 4; ++quarter)

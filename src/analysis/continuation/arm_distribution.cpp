@@ -17,7 +17,7 @@ const std::array<const char*, kArmParameters> kArmParameterNames = {
 
 namespace {
 
-constexpr int kGain = 5;  // the only normal parameter
+constexpr int kGain = 5;  // index of the only parameter that is normally distributed
 constexpr double kMaxGain = 1, kMaxDelay = 0.2;
 constexpr double kCommonStiffness = 0.35, kAxisStiffness = 0.2;
 constexpr double kDampingSpread = 0.35, kMassSpread = 0.3, kGainSpread = 0.15, kDelaySpread = 0.2;
@@ -29,7 +29,8 @@ ArmDistribution::Vector MomentsOf(const HandSpec& hand) {
   return x;
 }
 
-// A square root of a covariance, also of a singular one. Throws InputError if it is not one.
+// A square root of a covariance, which may be singular. Throws InputError if the matrix is not a
+// covariance.
 ArmDistribution::Matrix RootOf(const ArmDistribution::Matrix& covariance) {
   using Matrix = ArmDistribution::Matrix;
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(covariance);
@@ -61,7 +62,7 @@ std::vector<int> ParametersIn(const nlohmann::json& json) {
     const auto name = entry.get<std::string>();
     const auto at = std::ranges::find(kArmParameterNames, name);
     if (at == kArmParameterNames.end())
-      throw InputError("Parameter " + Quote(name) + " is not known. Known are: " +
+      throw InputError("Parameter " + Quote(name) + " is not known. The known ones are: " +
                        Join({kArmParameterNames.begin(), kArmParameterNames.end()}) + ".");
     found.push_back(static_cast<int>(at - kArmParameterNames.begin()));
   }
@@ -95,7 +96,7 @@ ArmDistribution ArmDistribution::Prior(const HandSpec& hand) {
 ArmDistribution ArmDistribution::FromMoments(const Vector& mean, const Matrix& covariance,
                                              const HandSpec& hand, const std::string& source) {
   ArmDistribution arm = Prior(hand);
-  RootOf(covariance);  // checks it
+  RootOf(covariance);  // checks the covariance
   for (int i = 0; i < kArmParameters; ++i)
     if (!(mean[i] > 0) && i != kGain)
       throw InputError(std::string("The mean of ") + kArmParameterNames[i] +
@@ -120,13 +121,13 @@ ArmDistribution ArmDistribution::Read(const std::string& file, const HandSpec& h
   const nlohmann::json json = ParseArm(file);
   try {
     if (json.at("predictor_arm").get<int>() != 1)
-      throw InputError("Its version (predictor_arm) must be 1.");
+      throw InputError("The version (predictor_arm) must be 1.");
     const std::vector<int> which = ParametersIn(json);
     const auto mean = json.at("mean").get<std::vector<double>>();
     const auto covariance = json.at("covariance").get<std::vector<std::vector<double>>>();
     if (mean.size() != which.size() || covariance.size() != which.size())
       throw InputError("parameters, mean and covariance must have the same length.");
-    // Moments of the prior, for what the file does not contain.
+    // Moments of the prior, for parameters that the file does not contain.
     Vector m = MomentsOf(hand);
     Matrix c = Matrix::Zero();
     const ArmDistribution prior = Prior(hand);

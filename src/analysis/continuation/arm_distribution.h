@@ -10,11 +10,11 @@
 
 namespace predictor {
 
-// Impedance of one hand, as felt at the handle.
+// Impedance of one arm, as felt at the handle.
 struct ArmImpedance {
   Vector3 stiffness;              // along W's axes [N/m]
   double damping_ratio = 0;       // D = 2 ζ √(mass · stiffness)
-  double mass = 0;                // that moves with the handle [kg]
+  double mass = 0;                // mass that moves with the handle [kg]
   double reflex_gain = 0;         // share of stiffness and damping that acts with a delay
   double reflex_delay = 0;        // [s]
   double rotation_stiffness = 0;  // [N·m/rad]
@@ -28,38 +28,37 @@ inline constexpr int kArmParameters = 7;
 // "reflex_delay".
 extern const std::array<const char*, kArmParameters> kArmParameterNames;
 
-// All parameters except the reflex gain are log-normal, the reflex gain is normal; they may be
+// All parameters are log-normal, except for the reflex gain, which is normal; they may be
 // correlated. The rotational impedance scales with the geometric mean of the stiffness.
 class ArmDistribution {
  public:
   using Vector = Eigen::Matrix<double, kArmParameters, 1>;
   using Matrix = Eigen::Matrix<double, kArmParameters, kArmParameters>;
 
-  // The spread that this project assumes of people whose arms were not identified, around `hand`:
-  // standard deviations of the logarithms 0.35 (stiffness, common to all axes), 0.2 (of each axis
-  // more), 0.35 (damping ratio), 0.3 (mass), 0.2 (reflex delay), and of the reflex gain 0.15.
-  // Design choices: with the default hand, 95 % of the people then lie within the ranges that
-  // Mussa-Ivaldi et al. 1985, Tsuji et al. 1995, Dolan et al. 1993 and Pruszynski & Scott 2012
-  // report, as recalled in the project's reference (not checked again).
+  // The distribution that this project assumes for people whose arms were not identified, centred
+  // on `hand`. Standard deviations of the logarithms: 0.35 (stiffness, common to all axes), 0.2 (in
+  // addition for each axis), 0.35 (damping ratio), 0.3 (mass), 0.2 (reflex delay); standard
+  // deviation of the reflex gain: 0.15. Design choices: with the default hand, 95 % of the people
+  // then lie within the ranges that Mussa-Ivaldi et al. 1985, Tsuji et al. 1995, Dolan et al. 1993
+  // and Pruszynski & Scott 2012 report, as recalled in the project's reference (not checked again).
   static ArmDistribution Prior(const HandSpec& hand);
-  // From the mean and the covariance of the parameters themselves, in their units.
-  // Throws InputError if a mean is not positive or the covariance is not one.
+  // From the mean and the covariance of the parameters themselves, in their units. Throws
+  // InputError if a mean is not positive or the matrix is not a covariance.
   static ArmDistribution FromMoments(const Vector& mean, const Matrix& covariance,
                                      const HandSpec& hand, const std::string& source);
   // Reads mean and covariance from JSON: {"predictor_arm": 1, "source": "...", "parameters": [...],
-  // "mean": [...], "covariance": [[...]]}. Parameters that are missing keep the prior. Throws
-  // InputError.
+  // "mean": [...], "covariance": [[...]]}. Missing parameters keep the prior. Throws InputError.
   static ArmDistribution Read(const std::string& file, const HandSpec& hand);
 
   ArmImpedance Draw(RandomStream* random) const;
   const std::string& source() const { return source_; }  // a sentence for the user
-  // The quantile of a parameter by itself; probability 0.05, 0.5 or 0.95.
+  // Quantile of the marginal distribution of a parameter; probability 0.05, 0.5 or 0.95.
   double Percentile(int parameter, double probability) const;
 
  private:
   ArmImpedance Make(const Vector& x) const;
 
-  Vector mean_ = Vector::Zero();  // of the logarithms and of the reflex gain
+  Vector mean_ = Vector::Zero();  // mean of the logarithms and of the reflex gain
   Matrix covariance_ = Matrix::Zero();
   Matrix root_ = Matrix::Zero();  // root · rootᵀ is the covariance
   double rotation_stiffness_ = 0, rotation_damping_ = 0, reference_ = 1;

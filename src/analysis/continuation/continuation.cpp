@@ -19,9 +19,9 @@
 namespace predictor {
 namespace {
 
-constexpr double kUnlimited = 1e6;  // instead of a limit of force, torque, distance or speed
+constexpr double kUnlimited = 1e6;  // replaces a limit of force, torque, distance or speed
 
-// The same scenario without the limits that censor.
+// The same scenario without the limits that would stop the run.
 Scenario WithoutLimits(Scenario scenario) {
   SafetySpec& s = scenario.safety;
   for (double* limit :
@@ -97,7 +97,7 @@ std::array<JointVector, kHands> JointsIn(const TickRecord& record) {
   return q;
 }
 
-// An emulator without the limits, for one thread.
+// An emulator without the limits, used by one thread.
 class Continuer {
  public:
   Continuer(const StoppedRun& run, const OperatorMaker& recorded) : run_(run) {
@@ -110,7 +110,7 @@ class Continuer {
     emulator_->Tick();  // shows the operator its step
   }
 
-  // draw: null: the recorded operator continues.
+  // draw: if null, the recorded operator continues.
   ContinuedRun Run(const Continuation& c, const IntentModel& intent, const OperatorDraw* draw) {
     emulator_->LoadState(run_.state);
     LiftThresholds();
@@ -132,8 +132,8 @@ class Continuer {
   }
 
  private:
-  // The saved state contains the thresholds. Without an upper limit, they rise so fast that they
-  // are out of the way in the next tick.
+  // The saved state contains the thresholds. Without an upper limit, they rise so fast that in the
+  // next tick they no longer have an effect.
   void LiftThresholds() {
     for (const Parameter parameter : {Parameter::kForceThreshold, Parameter::kTorqueThreshold}) {
       RunInput input;
@@ -149,7 +149,7 @@ class Continuer {
   std::unique_ptr<Emulator> emulator_;
 };
 
-// Gives each thread a Continuer of its own, which it returns after each piece.
+// Lends each thread a Continuer of its own, which the thread returns after each piece.
 class ContinuerPool {
  public:
   ContinuerPool(const StoppedRun& run, OperatorMaker recorded)
@@ -213,8 +213,9 @@ Interval90 Continuation::IntervalOf(double ContinuedRun::*value) const {
   std::vector<CensoredValue> values;
   for (const ContinuedRun& run : runs)
     if (std::isfinite(run.*value)) values.push_back({run.*value, run.ending == Ending::kFault});
-  // With these probabilities, one more draw lies within the interval with 90 % probability, for any
-  // number n of draws: the order statistics p (n + 1), which Quantile counts as 1 + p' (n - 1).
+  // With these probabilities, one further draw lies within the interval with 90 % probability, for
+  // any number n of draws. The order statistics are p (n + 1); Quantile numbers them as 1 + p' (n -
+  // 1).
   const auto n = static_cast<double>(values.size());
   const auto probability = [n](double p) {
     return n < 2 ? p : std::clamp((p * (n + 1) - 1) / (n - 1), 0.0, 1.0);

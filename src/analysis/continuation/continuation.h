@@ -22,30 +22,32 @@ namespace predictor {
 // How a continued run ended.
 enum class Ending {
   kSettles,       // in the last third, no hand exceeds the scenario's limits of force and torque
-  kStaysAbove,    // they are still exceeded
-  kDiverges,      // they are exceeded, and the largest force is in the last third, and grows
-  kCobotStopped,  // the virtual cobot stopped itself by a function of its own
+  kStaysAbove,    // in the last third, the limits are still exceeded
+  kDiverges,      // the same, and the largest force occurs in the last third and is still growing
+  kCobotStopped,  // a safety function of the virtual cobot stopped it
   kFault,         // the emulator stopped for another reason: what follows is not known
 };
 inline constexpr int kEndings = 5;
 // "settles", "stays_above", "diverges", "cobot_stops", "fault".
 const char* Name(Ending ending);
 
-// One continued run, from the stop on. Forces are those of the sensors, as the stop sees them.
+// One continued run, from the stop on. Forces are the sensors' readings, like those that the stop
+// uses.
 struct ContinuedRun {
   double peak_force = 0, peak_torque = 0;  // largest of a hand [N], [N·m]
   double peak_speed = 0;                   // of a handle [m/s]
-  double energy = 0;                       // that the handles gave to the hands [J]
-  double peak_power = 0;                   // its largest power of a hand [W]
+  double energy = 0;                       // energy that the handles transferred to the hands [J]
+  double peak_power = 0;                   // largest power of that transfer at one hand [W]
   Ending ending = Ending::kSettles;
-  StopCause fault = StopCause::kNone;  // of Ending::kFault
+  StopCause fault = StopCause::kNone;  // cause, for Ending::kFault
   CobotStop cobot_stop = CobotStop::kNone;
   double duration = 0;        // from the stop to the end [s]
-  std::vector<double> force;  // largest of a hand in each interval of kCurveStep [N]
+  std::vector<double> force;  // largest force of a hand in each interval of kCurveStep [N]
   TickRecord at_peak{};       // the tick with the largest force
-  OperatorDraw person;        // not of the reference
-  // Largest torque of elbows and shoulders at the largest force, as a multiple of the mean strength
-  // of the sex; NaN: the posture is not known, or does not reach the handles.
+  OperatorDraw person;        // not set for the reference
+  // Largest torque of elbows and shoulders at the time of the largest force, as a multiple of the
+  // mean strength for the person's sex; NaN: the posture is not known or does not reach the
+  // handles.
   double joint_use = kUndefined;
 };
 inline constexpr double kCurveStep = 0.01;  // [s]
@@ -57,21 +59,21 @@ struct Interval90 {
 
 struct Continuation {
   std::string scenario, operator_type;
-  Status cause;            // of the stop
-  double time = 0;         // of the stop in the run [s]
+  Status cause;            // cause of the stop
+  double time = 0;         // time of the stop in the run [s]
   double peak_before = 0;  // largest force of a hand until the stop, including it [N]
   double horizon = 0;      // [s]
   double force_limit = 0, torque_limit = 0;  // [N], [N·m]
   std::string arm_source;
   std::vector<double> past_times,
-      past_force;                  // before the stop: time relative to it, largest force
-  std::vector<ContinuedRun> runs;  // of the draws, in order
-  // Of a simulated operator: what that operator would have done.
+      past_force;                  // before the stop: time relative to the stop, largest force
+  std::vector<ContinuedRun> runs;  // one per draw, in order
+  // For a simulated operator: what that operator would have done.
   std::optional<ContinuedRun> reference;
   std::string no_joint_use;  // why no posture could be judged; empty: it could
 
-  // Of a quantity over the draws in which it is known. A run that ended with another fault is a
-  // lower bound.
+  // Interval of a quantity over the draws in which it is known. For a run that ended with another
+  // fault, the value is a lower bound.
   Interval90 IntervalOf(double ContinuedRun::*value) const;
   int CountOf(Ending ending) const;
 };
@@ -80,13 +82,13 @@ using OperatorMaker = std::function<std::unique_ptr<Operator>(const Scenario&)>;
 
 struct ContinueOptions {
   int draws = 200;
-  double horizon = 1.5;    // after the stop [s]
-  std::uint64_t seed = 1;  // of the draws
+  double horizon = 1.5;    // duration after the stop [s]
+  std::uint64_t seed = 1;  // seed of the draws
   int workers = 0;         // 0: the number of cores
   IntentModel intent;
   bool reference = false;   // also continue with the simulated operator's own state
-  bool joint_loads = true;  // needs the scenario's body and stance
-  // Makes an operator that can load the state of the recorded one.
+  bool joint_loads = true;  // needs body and stance in the scenario
+  // Makes an operator that can load the saved state of the recorded one.
   OperatorMaker recorded_operator = [](const Scenario& scenario) {
     return MakeOperator(scenario, HandInertia::kInWrench);
   };
@@ -95,7 +97,7 @@ struct ContinueOptions {
 };
 
 // Continues the run in virtual time without the limits of force, torque, coupling, tracking and
-// handle speed. All other faults stop it as always. Throws InputError.
+// handle speed. All other faults still stop it. Throws InputError.
 Continuation Continue(const StoppedRun& run, const ArmDistribution& arms,
                       const ContinueOptions& options);
 
@@ -106,12 +108,12 @@ std::string ContinuationPage(const Continuation& c, const std::string& recording
                              const std::string& program_version);
 // JSON Schema (draft-07) of ContinuationJson.
 std::string ContinuationSchema();
-// Sentences about what the prediction assumes and leaves out.
+// Sentences that state the assumptions and omissions of the prediction.
 std::vector<std::string> ContinuationAssumptions(const Continuation& c);
 // "settles in 71 %, ..." of the draws.
 std::string EndingWords(const Continuation& c);
 
-// What the text, the page and the JSON show of the draws, in the JSON's order.
+// The results over the draws that the text, the page and the JSON show, in the order of the JSON.
 struct ContinuationQuantity {
   const char *key, *label, *format;
   double ContinuedRun::*value;

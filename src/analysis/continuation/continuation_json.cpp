@@ -1,4 +1,4 @@
-// A continuation as JSON, with its schema.
+// A continuation as JSON, and its schema.
 #include "analysis/continuation/continuation.h"
 #include "core/json_schema.h"
 
@@ -42,8 +42,9 @@ Json RunProperties() {
   for (const ContinuationQuantity& q : kContinuationQuantities)
     json[q.key] = schema::Value({"number", "null"}, std::string(q.label) + ", SI");
   json["ending"] = schema::Value("string", "settles, stays_above, diverges, cobot_stops or fault");
-  json["fault"] = schema::Value("string", "cause of another stop of the emulator");
-  json["cobot_stop"] = schema::Value("string", "function by which the cobot stopped itself");
+  json["fault"] = schema::Value("string", "cause if the emulator stopped for another reason");
+  json["cobot_stop"] =
+      schema::Value("string", "safety function with which the cobot stopped itself");
   json["duration_s"] = schema::Value("number", "from the stop to the end [s]");
   return json;
 }
@@ -99,7 +100,7 @@ std::string ContinuationJson(const Continuation& c, const std::string& recording
 
 std::string ContinuationSchema() {
   Json draw = RunProperties(), endings = Json::object();
-  draw["operator"] = schema::Value("object", "the possible operator: impedance of the arm");
+  draw["operator"] = schema::Value("object", "impedance of this possible operator's arm");
   for (int k = 0; k < kEndings; ++k)
     endings[Name(static_cast<Ending>(k))] = schema::Value("integer", "number of draws");
   Json reference = schema::Object(RunProperties(), "what the simulated operator would have done");
@@ -117,7 +118,7 @@ std::string ContinuationSchema() {
                         {"time_s", schema::Value("number", "time of the run [s]")},
                         {"largest_force_n",
                          schema::Value("number", "largest force of a hand up to the stop [N]")}},
-                       "the stop that was left out")},
+                       "the stop that the continuation leaves out")},
        {"horizon_s", schema::Value("number", "time after the stop [s]")},
        {"arm", schema::Value("string", "source of the arm's impedance")},
        {"predicted", schema::Object(IntervalSchema(), "quantiles over the draws")},

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kBarWidth = 5;  // of the histogram [N]
 
-// The force in one interval of kCurveStep, over all runs that last that long.
+// The forces in one interval of kCurveStep, of all runs that last that long.
 std::vector<double> ForcesAt(const Continuation& c, std::size_t piece) {
   std::vector<double> forces;
   for (const ContinuedRun& run : c.runs)
@@ -56,8 +56,8 @@ Plot FanPlot(const Continuation& c) {
   plot.title = "Largest force of a hand, before the stop and without it";
   plot.caption =
       "Areas: 90 % and 50 % of the possible operators at each time, without those whose run had "
-      "ended by another fault. The largest force of a run is above what the area shows at one "
-      "time.";
+      "already ended with another fault. The largest force of a run can lie above the areas, which "
+      "apply to each time separately.";
   plot.x = {.label = "Time after the stop", .unit = "s"};
   plot.notes.push_back({0, "stop"});
   PlotPanel panel;
@@ -133,8 +133,8 @@ std::string ContinuationPage(const Continuation& c, const std::string& recording
                                                          EscapeMarkup(program_version) + "</p>\n");
   page.Section("summary", "Summary");
   page.Paragraph(Formatted(
-      "The emulator stopped this run after %.3f s by the cause '%s': %s. The run itself shows only "
-      "that the largest force was at least %.1f N. %zu possible operators continued it for %.2g s.",
+      "The emulator stopped this run after %.3f s. Cause: '%s', %s. The run itself shows only that "
+      "the largest force was at least %.1f N. %zu possible operators continued it for %.2g s.",
       c.time, Name(c.cause.cause),
       SeenAndAllowed(c.cause.value, c.cause.limit, c.cause.quantity).c_str(), c.peak_before,
       c.runs.size(), c.horizon));

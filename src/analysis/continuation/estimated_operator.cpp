@@ -6,7 +6,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kAccelerationTime = 0.02;  // over which velocities are compared [s]
+constexpr double kAccelerationTime = 0.02;  // interval over which accelerations are computed [s]
 constexpr double kMaxSightDelay = 0.5;      // [s]
 Vector3 SpeedOf(const TickRecord& record, std::size_t hand) {
   const auto& twist = record.hands[hand].real.twist;
@@ -66,7 +66,8 @@ void EstimatedHand::Prepare(const HandRecord& first, double dt, const OperatorDr
   sight_.Reset(draw.sight_delay / dt, Vector3::Zero());
 }
 
-// What the arm exerts against a motion, except its inertia. force: of the hand, which stiffens it.
+// The wrench with which the arm resists a motion, without its inertia. force: of the hand; the arm
+// stiffens with it.
 Vector6 EstimatedHand::Resist(const Pose& X_W, const Twist& V_W, double force) noexcept {
   const double stiffer = 1 + draw_.stiffening * force / kStiffeningForce;
   const Vector6 stretch = PoseError(X_W, origin_);
@@ -78,7 +79,7 @@ Vector6 EstimatedHand::Resist(const Pose& X_W, const Twist& V_W, double force) n
   return resistance;
 }
 
-// Also fills the delays with the past. Between two records, the handle counts as at rest.
+// Also fills the delay lines with the past. The handle counts as at rest between two records.
 std::vector<Vector6> EstimatedHand::DriveBefore(std::span<const TickRecord> past, std::size_t hand,
                                                 double record_step) {
   const auto steps = static_cast<int>(std::max(1L, std::lround(record_step / dt_)));
@@ -97,7 +98,7 @@ std::vector<Vector6> EstimatedHand::DriveBefore(std::span<const TickRecord> past
   return drive;
 }
 
-// A straight line by least squares.
+// Fits a straight line by least squares.
 void EstimatedHand::FitTrend(const std::vector<Vector6>& drive, double record_step,
                              const IntentModel& intent) {
   const auto wanted = static_cast<std::size_t>(std::lround(draw_.trend_time / record_step)) + 1;
@@ -143,7 +144,7 @@ void EstimatedHand::Begin(std::span<const TickRecord> past, std::size_t hand, do
 Wrench EstimatedHand::Step(const FrameMotion& handle) noexcept {
   if (!holds_) return Wrench::Zero();
   time_ += dt_;
-  const double axis = 1 / std::sqrt(3.0);  // of a vector of size 1
+  const double axis = 1 / std::sqrt(3.0);  // component of a vector of length 1
   for (double& x : noise_) x = keep_ * x + kick_ * axis * draw_.noise.Normal();
   for (double& x : speed_) x = speed_keep_ * x + speed_kick_ * draw_.noise.Normal();
   rest_ *= keep_;

@@ -1,4 +1,4 @@
-// An operator of whom only the recorded motion and forces are known: the law by which a run is
+// An operator of whom only the recorded motion and forces are known: the model with which a run is
 // continued after a stop.
 #pragma once
 
@@ -15,28 +15,29 @@
 namespace predictor {
 
 // Assumptions about the operator after the stop, apart from the arm (design choices). How long an
-// intention keeps changing is unknown: each draw assumes that it goes on at its present rate until
-// it has changed by about as much as the hand's present force.
+// intention keeps changing is unknown: each draw assumes that it goes on changing at its present
+// rate until it has changed by about as much as the hand's present force.
 struct IntentModel {
-  // Time before the stop that shows the present rate, log-uniform between these [s].
+  // Time before the stop from which the present rate is taken, log-uniform in this range [s].
   double shortest_trend = 0.04, longest_trend = 0.2;
   // Further change as a multiple of the present force: median, and standard deviation of its
-  // logarithm. The rate fades out with a time constant of at most `longest_change` [s].
+  // logarithm. The rate decays with a time constant of at most `longest_change` [s].
   double change = 1.8, change_spread = 0.6, longest_change = 1;
-  // With this probability, what changed before and after the stop ends again after a time that is
-  // log-uniform between these [s] (a push is over): the drive returns to its mean over the first
-  // kBaselineTime of the past, with a time constant of `end_time` [s].
+  // With this probability, the change (for example, a push) ends after a time that is log-uniform
+  // in this range [s]: the drive then returns to its mean over the first kBaselineTime of the past,
+  // with a time constant of `end_time` [s].
   double chance_of_end = 0.5, earliest_end = 0.15, latest_end = 1.5, end_time = 0.08;
-  // New intentions: the intended position moves with a random speed, rms along each axis [m/s],
-  // that is correlated over `wander_time` [s].
+  // New intentions: the intended position moves at a random speed, with this rms along each axis
+  // [m/s], correlated over `wander_time` [s].
   double wander = 0.08, wander_time = 0.5;
   // Noise of force and torque: rms of the vectors, as a share of their present size, correlated
-  // over `noise_time` [s]. It stands for all that the law does not contain.
+  // over `noise_time` [s]. It stands for everything that the model omits.
   double noise = 0.1, noise_time = 0.3;
-  // The arm stiffens with its force: K (1 + c |F| / kStiffeningForce), c uniform up to this.
+  // The arm stiffens with its force: K (1 + c |F| / kStiffeningForce), with c uniform from 0 to
+  // this value.
   double most_stiffening = 1;
-  // Correction by sight: up to this multiple of the scenario's, uniform, and the spread of its
-  // delay.
+  // Visual correction: uniform up to this multiple of the scenario's stiffness, and the spread of
+  // its delay.
   double most_sight = 1.5, sight_delay_spread = 0.15;
 };
 inline constexpr double kStiffeningForce = 30;  // [N]
@@ -45,15 +46,15 @@ inline constexpr double kBaselineTime = 0.2;    // [s]
 // One possible operator.
 struct OperatorDraw {
   ArmImpedance arm;
-  double trend_time = 0;            // before the stop [s]
+  double trend_time = 0;            // time over which the trend is taken, before the stop [s]
   double change = 0;                // as in IntentModel
-  double end = 0;                   // of the change [s]
+  double end = 0;                   // time after which the change ends [s]
   double stiffening = 0;            // c
-  Vector3 sight = Vector3::Zero();  // stiffness of the correction by sight [N/m]
+  Vector3 sight = Vector3::Zero();  // stiffness of the visual correction [N/m]
   double sight_delay = 0;           // [s]
   RandomStream noise{0, ""};
 };
-// The draw of this number. The same number gives the same operator for every run (common random
+// The draw with this number. The same number gives the same operator for every run (common random
 // numbers), so that two runs are compared for the same operators.
 OperatorDraw DrawOperator(const ArmDistribution& arms, const HandSpec& hand,
                           const IntentModel& intent, std::uint64_t seed, int number);
@@ -61,9 +62,10 @@ OperatorDraw DrawOperator(const ArmDistribution& arms, const HandSpec& hand,
 // F = u − z − g z(t − δ) − Kv x(t − δv) − M a, where z integrates K (1 + c |F| / 30 N) dx and
 // contains the damping D √(1 + c |F| / 30 N) v, and x is the displacement of the handle. The drive
 // u = K xr + D vr + its reflex and feed-forward is what the operator intends, expressed as a force.
-// Before the stop, it follows from the measured force and motion. After it, its trend over the last
-// `trend_time` continues and fades out with a time constant (IntentModel); then u is constant,
-// apart from noise. Stiffness that grows with force: Perreault, Kirsch & Crago 2002 (recalled).
+// Before the stop, it follows from the measured force and motion. After the stop, its trend over
+// the last `trend_time` continues and decays with a time constant (IntentModel); then u is
+// constant, apart from noise. Stiffness that grows with force: Perreault, Kirsch & Crago 2002
+// (recalled).
 class EstimatedHand {
  public:
   // past: consecutive records up to the tick that decided the stop; record_step: their interval
@@ -87,28 +89,32 @@ class EstimatedHand {
 
   OperatorDraw draw_;
   Vector6 stiffness_, damping_;
-  Pose origin_;                                                   // at the beginning of `past`
-  Vector6 stretch_ = Vector6::Zero(), spring_ = Vector6::Zero();  // displacement, its force
+  Pose origin_;                                                   // pose at the beginning of `past`
+  Vector6 stretch_ = Vector6::Zero(), spring_ = Vector6::Zero();  // displacement, and the force due
+                                                                  // to it
   double dt_ = 0, time_ = 0;
-  double persistence_ = 1, end_time_ = 1;  // of the trend; of its end [s]
-  double force_ = 0, torque_ = 0;          // of the last step [N], [N·m]
+  double persistence_ = 1, end_time_ = 1;  // decay of the trend; its end [s]
+  double force_ = 0, torque_ = 0;          // magnitudes in the last step [N], [N·m]
   bool holds_ = false;
   Vector6 drive_ = Vector6::Zero(), trend_ = Vector6::Zero();
-  Vector6 baseline_ = Vector6::Zero();  // to which the drive returns
-  Vector6 rest_ = Vector6::Zero();   // of the drive at the stop, which the trend does not explain
-  Vector6 noise_ = Vector6::Zero();  // as a share of the present force and torque
-  double keep_ = 0, kick_ = 0;       // of the noise
-  Vector3 speed_ = Vector3::Zero(), moved_ = Vector3::Zero();  // of the intended position
+  Vector6 baseline_ = Vector6::Zero();  // the drive returns to it
+  Vector6 rest_ = Vector6::Zero();      // part of the drive at the stop that the trend does not
+                                        // explain
+  Vector6 noise_ = Vector6::Zero();     // as a share of the present force and torque
+  double keep_ = 0, kick_ = 0;          // coefficients of the noise
+  Vector3 speed_ = Vector3::Zero(), moved_ = Vector3::Zero();  // speed and displacement of the
+                                                               // intended position
   double speed_keep_ = 0, speed_kick_ = 0;
   FractionalDelay<Vector6, 1024> reflex_;
   FractionalDelay<Vector3, 1024> sight_;
 };
 
-// Follows the operator of the recorded run until Begin, so that a saved state can be loaded, and
-// from then on what is estimated of that operator. It never uses the state of the recorded one.
+// Behaves like the recorded operator until Begin, so that a saved state can be loaded, and from
+// then on like the estimate of that operator. The estimate never uses the recorded operator's
+// state.
 class EstimatedOperator final : public Operator {
  public:
-  // recorded: the operator whose state the saved states contain; null: they contain none.
+  // recorded: the operator whose state the saved states contain; null if they contain none.
   explicit EstimatedOperator(std::unique_ptr<Operator> recorded) : recorded_(std::move(recorded)) {}
 
   // From the next step on, the estimate replaces the recorded operator.

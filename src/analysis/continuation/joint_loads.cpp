@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// The stop shows the solver where the posture comes from.
+// The posture at the stop is the solver's starting point.
 double JointUse(const assessment::PersonSetup& setup, const TickRecord& stop,
                 const TickRecord& peak) {
   std::array<assessment::PersonSample, 2> samples = {assessment::SampleOf({&stop, 1}),

@@ -1,4 +1,4 @@
-// The load of the operator's joints at the largest force of each continued run.
+// The load on the operator's joints at the largest force of each continued run.
 #pragma once
 
 #include "analysis/continuation/continuation.h"
@@ -6,7 +6,7 @@
 namespace predictor {
 
 // Sets joint_use of all runs, or no_joint_use. The posture is the nominal one that reaches both
-// handles at that time; the body counts as at rest.
+// handles at that time, and the body counts as being at rest.
 void AddJointLoads(const StoppedRun& stopped, unsigned workers, Continuation* c);
 
 }  // namespace predictor

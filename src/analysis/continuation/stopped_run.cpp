@@ -96,17 +96,17 @@ bool StopFinder::Add(const TickRecord& record) {
 void CheckContinuable(const Scenario& scenario) {
   if (RulesFor(scenario).external_device)
     throw InputError(
-        "The run used real arms. Their state at the stop (delays, filters, the motion that their "
-        "controllers still had to make) is not part of a recording, so the run cannot be continued "
-        "from it. Runs with the simulated rig can be continued.");
+        "The run used real arms. A recording does not contain their state at the stop (delays, "
+        "filters, the motion that their controllers still had to perform), so the run cannot be "
+        "continued. Runs with the simulated rig can be continued.");
   if (scenario.mode == Mode::kDirect)
     throw InputError(
-        "The run was made in mode direct, in which the saved state contains the operator but no "
-        "arms. Only runs in mode emulate can be continued.");
+        "The run was made in mode direct, so its saved states contain the operator but no arms. "
+        "Only runs in mode emulate can be continued.");
   if (scenario.controller_tape && !scenario.controller_tape->empty())
     throw InputError(
-        "The cobot's controller was outside the program (a plugin or a process). Its state is not "
-        "part of a recording, so the run cannot be continued.");
+        "The cobot's controller was outside the program (a plugin or a process). A recording does "
+        "not contain its state, so the run cannot be continued.");
 }
 
 StoppedRun FindStop(RecordingReader* reader, const Scenario& scenario,
@@ -120,8 +120,8 @@ StoppedRun FindStop(RecordingReader* reader, const Scenario& scenario,
   run.first = finder.first();
   if (run.past.size() < 2)
     throw InputError(
-        "The stop follows the start of the run so closely that nothing is known of "
-        "the operator.");
+        "The stop occurs so soon after the start of the run that nothing is known about the "
+        "operator.");
   Emulator emulator(scenario);
   Recompute(reader, run.stop().tick, &emulator, progress);
   run.state.resize(kStateBytes);

@@ -1,4 +1,4 @@
-// A run up to the tick in which the emulator's limit stopped it.
+// A run up to the tick in which a limit of the emulator stopped it.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,10 @@ namespace predictor {
 
 struct StoppedRun {
   Scenario scenario;
-  std::vector<std::byte> state;  // of the emulator before the tick that decided the stop
-  std::vector<TickRecord> past;  // the ticks of the last kPastTime of RUN; the last one decided it
+  std::vector<std::byte> state;  // state of the emulator before the tick in which the stop was
+                                 // decided
+  std::vector<TickRecord> past;  // the ticks of the last kPastTime of RUN; the stop was decided in
+                                 // the last one
   TickRecord first{};            // the first tick of RUN
   double peak_before = 0;        // largest force of a hand before the tick of the stop [N]
 
@@ -24,22 +26,23 @@ struct StoppedRun {
 
 inline constexpr double kPastTime = 0.5;  // [s]
 
-// Follows the ticks of a run, and finds the tick that decides its first stop by a limit (IsLimit).
+// Takes the ticks of a run, and finds the tick in which its first stop by a limit (IsLimit) was
+// decided.
 class StopFinder {
  public:
   explicit StopFinder(double rate);
-  // Adds the next record, in order. Returns true if its tick decided the stop; later records are
-  // ignored.
+  // Adds the next record, in order. Returns true if the stop was decided in its tick; later records
+  // are ignored.
   bool Add(const TickRecord& record);
   bool found() const { return found_; }
-  // The first cause that stopped the run otherwise; kNone without one.
+  // The first other cause that stopped the run; kNone if nothing did.
   StopCause other() const { return other_; }
   const std::vector<TickRecord>& past() const { return past_; }
   double peak_before() const { return peak_; }  // [N]
   const TickRecord& first() const { return first_; }
 
  private:
-  std::size_t most_;  // records in past_
+  std::size_t most_;  // maximum number of records in past_
   std::vector<TickRecord> past_;
   TickRecord first_{};
   double peak_ = 0;
@@ -47,10 +50,10 @@ class StopFinder {
   bool found_ = false;
 };
 
-// Finds the stop in a recording, and recomputes the run from the last saved state (or from its
-// start) up to it. `scenario`: from RestoreScenario. progress: receives the ticks so far. Throws
-// InputError if there is no such stop, ticks before it are lost, the recomputed run differs from
-// the recorded one, or the run cannot be continued.
+// Finds the stop in a recording, and recomputes the run up to the stop from the last saved state
+// (or from the start). `scenario`: from RestoreScenario. progress: receives the number of ticks so
+// far. Throws InputError if there is no stop by a limit, ticks before it are lost, the recomputed
+// run differs from the recorded one, or the run cannot be continued.
 StoppedRun FindStop(RecordingReader* reader, const Scenario& scenario,
                     const std::function<void(std::uint64_t)>& progress);
 

@@ -21,7 +21,7 @@
 namespace predictor {
 namespace {
 
-// The hazard begins at a random time of this window, so that an operator cannot anticipate it.
+// The hazard begins at a random time in this window, so that an operator cannot anticipate it.
 constexpr double kAfter = 2, kWindow = 2;  // [s]
 // The cobot's own limits in the study. A design choice: wide enough for every undisturbed run.
 const std::vector<std::string> kCobotSafety = {"cobot.safety.force=100", "cobot.safety.speed=0.75",
@@ -29,7 +29,8 @@ const std::vector<std::string> kCobotSafety = {"cobot.safety.force=100", "cobot.
 
 constexpr const char* kLoadSharing = "load_sharing";
 constexpr const char* kSlips = "object_slips";
-constexpr double kGripShare = 0.5;  // of the object's weight, which the grip holds; a design choice
+constexpr double kGripShare = 0.5;  // share of the object's weight that the grip can hold; a design
+                                    // choice
 
 std::vector<std::string> Controller(const std::string& parameters) {
   return {"cobot.controller={" + parameters + "}"};
@@ -44,7 +45,7 @@ StudyChoice Hazard(const std::string& name, const std::string& parameters = "") 
 struct Piece {
   HazardCell cell;
   Scenario scenario;
-  HazardRun first;  // with seed 1
+  HazardRun first;  // the run with seed 1
   std::string key;
 };
 
@@ -79,11 +80,11 @@ HazardRun Run(Scenario scenario, std::uint64_t seed) {
   return run;
 }
 
-// The cobot knows the mass of what it carries, and where it hangs.
+// Tells the cobot the mass and the centre of mass of its load.
 void SetLoad(Scenario* scenario) {
   const ObjectModel object = LoadObject(scenario->object, scenario->folder());
   const AttachmentSpec& at = scenario->object.attachment;
-  // A ball joint transmits the weight at its own place.
+  // A ball joint transmits the weight at the joint itself.
   const Pose X_EO = at.on_end_effector.ToPose() * at.on_object.ToPose().Inverse();
   const Vector3 com =
       at.joint == JointType::kSpherical ? at.on_end_effector.xyz : X_EO * object.com;
@@ -92,7 +93,7 @@ void SetLoad(Scenario* scenario) {
       Formatted("object_center_of_mass=[%.9g, %.9g, %.9g]", com.x(), com.y(), com.z()));
 }
 
-// A grip that is too weak for the object, even while the person carries a part of it.
+// A grip that is too weak for the object, even while the person carries part of the weight.
 void SetGrip(Scenario* scenario) {
   const ObjectModel object = LoadObject(scenario->object, scenario->folder());
   scenario->events.front().Set(
@@ -112,7 +113,7 @@ Piece PieceOf(const std::filesystem::path& file, const StudyChoice& controller,
     piece.scenario = LoadScenario(file, set);
     if (controller.name == kLoadSharing) SetLoad(&piece.scenario);
     if (hazard.name == kSlips) SetGrip(&piece.scenario);
-    // The first run shows the program's behaviour, so that no outdated run is used.
+    // The first run reveals the program's behaviour, so that no outdated run is reused.
     piece.first = Run(piece.scenario, 1);
     piece.key = HashOf(SaveScenario(piece.scenario) + TextOf(piece.first));
   } catch (const InputError& error) {

@@ -1,5 +1,5 @@
-// The hazard study: what simulated operators feel when a hazard meets them at a time that they do
-// not know, for several scenarios, controllers and hazards.
+// The hazard study: what simulated operators feel when a hazard occurs at a time unknown to them,
+// for several scenarios, controllers and hazards.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace predictor {
 
-// A setting of the study: its name, and the overrides of the scenario that make it.
+// A setting of the study: its name, and the overrides of the scenario that produce it.
 struct StudyChoice {
   std::string name;
   std::vector<std::string> set;
@@ -25,13 +25,15 @@ std::vector<StudyChoice> StudiedHazards();
 // One run, with one seed.
 struct HazardRun {
   std::uint64_t seed = 0;
-  double begin = -1;             // run time at which the hazard began [s]; −1: it did not
-  double before = 0, after = 0;  // largest force of a hand before and after it began [N]
-  double torque = 0, speed = 0;  // largest ones after it began [N·m], [m/s]
-  double until_stop = -1;        // from its beginning to the emulator's stop [s]; −1: no stop
+  double begin = -1;             // run time at which the hazard began [s]; −1: it did not begin
+  double before = 0, after = 0;  // largest force of a hand before and after the hazard began [N]
+  double torque = 0, speed = 0;  // largest values after the hazard began [N·m], [m/s]
+  double until_stop = -1;  // from the beginning of the hazard to the emulator's stop [s]; −1:
+                           // no stop
   StopCause cause = StopCause::kNone;
-  double detection = -1;  // from the true force crossing its threshold to the stop [s]
-  double travel = -1;     // of the faster handle in the stop [m]
+  double detection = -1;  // from the time at which the true force crosses its threshold to the stop
+                          // [s]
+  double travel = -1;     // travel of the faster handle during the stop [m]
   CobotStop cobot_stop = CobotStop::kNone;
 };
 
@@ -39,8 +41,8 @@ struct HazardRun {
 struct HazardCell {
   std::string scenario, controller, hazard;
   std::string impossible;       // why the cell is empty
-  double speed_cap = 0;         // of the handles [m/s]
-  double travel_budget = 0;     // of a stop, as `check` computes it [m]
+  double speed_cap = 0;         // limit of the handles' speed [m/s]
+  double travel_budget = 0;     // travel allowed for a stop, as `check` computes it [m]
   std::vector<HazardRun> runs;  // by seed
 };
 
@@ -51,9 +53,9 @@ struct HazardStudy {
 
 struct HazardStudyOptions {
   std::vector<std::filesystem::path> scenarios;
-  std::filesystem::path folder;  // of the results; created if necessary
+  std::filesystem::path folder;  // folder for the results; created if necessary
   int seeds = 50;
-  double duration = 6;  // of a run [s]
+  double duration = 6;  // duration of a run [s]
   int workers = 0;      // 0: the number of cores
   // Called only from the caller's thread.
   std::function<void(double share)> progress = [](double) {};
@@ -69,7 +71,7 @@ std::string HazardStudyCsv(const HazardStudy& study);
 std::string HazardStudyJson(const HazardStudy& study);
 // For each scenario, a table of controllers and hazards, in Markdown.
 std::string HazardStudyTables(const HazardStudy& study);
-// Whether the requirements hold over all runs: time of detection, travel and speed.
+// States whether the requirements hold over all runs: time of detection, travel and speed.
 std::string HazardStudyWords(const HazardStudy& study);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// The finished runs of a hazard study in a CSV file, so that an interruption does not lose them.
+// The finished runs of a hazard study in a CSV file, so that they survive an interruption.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@
 
 namespace predictor {
 
-// A run is found by the key of its cell and by its seed. Unreadable lines (such as the last line of
-// a killed study) are skipped. Any thread may call Add.
+// A run is identified by the key of its cell and by its seed. Unreadable lines (such as the last
+// line of a killed study) are skipped. Any thread may call Add.
 class HazardRunStore {
  public:
   // Reads the file. Throws InputError if it cannot be written.
@@ -20,8 +20,8 @@ class HazardRunStore {
 
   // Loads the run; false if it is not stored.
   bool Find(const std::string& key, std::uint64_t seed, HazardRun* run) const;
-  // key: a hash of the cell's scenario and of the program's behaviour. Throws InputError if it
-  // cannot be written.
+  // key: a hash of the cell's scenario and of the program's behaviour. Throws InputError if the
+  // file cannot be written.
   void Add(const std::string& key, const HazardCell& cell, const HazardRun& run);
 
  private:
@@ -34,7 +34,7 @@ class HazardRunStore {
   std::mutex mutex_;
 };
 
-// The numbers of a run as cells of a row, without its key and names.
+// The numbers of a run as cells of a row, without the run's key and names.
 std::string TextOf(const HazardRun& run);
 
 }  // namespace predictor

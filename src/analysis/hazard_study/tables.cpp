@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInTime = 0.0035;  // 3 ms, in whole ticks of 1 ms [s]
 
-// The values of the runs in which the hazard began; `least`: smaller ones are missing values.
+// The values of the runs in which the hazard began; values below `least` are missing.
 std::vector<double> ValuesOf(const HazardCell& cell, double HazardRun::*value, double least = 0) {
   std::vector<double> values;
   for (const HazardRun& run : cell.runs)
@@ -23,8 +23,9 @@ std::vector<double> ValuesOf(const HazardCell& cell, double HazardRun::*value, d
   return values;
 }
 
-// The largest forces after the hazard began. The emulator's stop ends the force as well, so that of
-// a stopped run is a lower bound. The cobot's own stop is what the person would have met.
+// The largest forces after the hazard began. The emulator's stop ends the force as well, so the
+// force of a stopped run is a lower bound. The cobot's own stop does not count: the person would
+// have experienced it, too.
 std::vector<CensoredValue> ForcesOf(const HazardCell& cell) {
   std::vector<CensoredValue> forces;
   for (const HazardRun& run : cell.runs)
@@ -50,7 +51,7 @@ std::string Shares(const std::map<std::string, int>& counts, std::size_t runs) {
   return Join(parts, ", ");
 }
 
-// What happened, how soon, and how hard: "force 80 % after 0.42 s; at least 30.2 N (10.1 N
+// The cause of the stop, its delay and the force: "force 80 % after 0.42 s; at least 30.2 N (10.1 N
 // before)".
 std::string CellWords(const HazardCell& cell) {
   if (cell.impossible.find("would have no effect") != std::string::npos) return "no effect";
@@ -188,8 +189,8 @@ std::string HazardStudyWords(const HazardStudy& study) {
              "%zu of %zu force stops were decided within 3 ms after the true force crossed its "
              "threshold, all within %.0f ms; the largest measured force was %.2f N.",
              in_time, by_force, 1e3 * detection, force);
-  AppendLine(&text, "The longest stop travelled %.0f %% of its budget.", 100 * travel);
-  AppendLine(&text, "The fastest handle moved at %.0f %% of the cap on its speed.", 100 * speed);
+  AppendLine(&text, "The longest stop used %.0f %% of its travel budget.", 100 * travel);
+  AppendLine(&text, "The fastest handle reached %.0f %% of its speed cap.", 100 * speed);
   return text;
 }
 

@@ -39,7 +39,7 @@ struct Fit {
   std::vector<double> scale;   // robust standard deviation of a joint's residuals
   std::vector<double> excess;  // variance of a mean of the residuals relative to independent
                                // residuals, at least 1
-  std::vector<Eigen::VectorXd> residual;  // of each joint's rows
+  std::vector<Eigen::VectorXd> residual;  // residuals of each joint's rows
   std::vector<Eigen::VectorXd> weight;    // Huber's weights, divided by scale² excess
 };
 
@@ -53,14 +53,14 @@ Fit FitRobustly(const FitProblem& problem, const FitModel& model, const std::vec
 struct CrossValidation {
   std::vector<double> loss;           // mean of Huber's loss in each block, in units of scale
   std::vector<double> error_squares;  // sum for each joint [N²·m²]
-  std::vector<double> rows;           // number for each joint
+  std::vector<double> rows;           // one per joint
 };
 CrossValidation CrossValidate(const FitProblem& problem, const FitModel& model, const Fit& fit,
                               const std::vector<double>& scale, int blocks);
 
 // The parameters in `among`, ordered by the information that each adds to the previous ones, as far
-// as the (weighted) equations separate them. `condition`: condition number of these and `always`,
-// for unit columns.
+// as the (weighted) equations can distinguish them. `condition`: condition number of these and of
+// `always`, for columns of unit length.
 std::vector<int> BaseParameters(const FitProblem& problem, const Fit& fit,
                                 const std::vector<int>& always, const std::vector<int>& among,
                                 double* condition);

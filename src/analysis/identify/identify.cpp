@@ -179,7 +179,7 @@ double Quantile(std::vector<float> x, double q) {
 
 std::string Seconds(double t) { return FormatNumber(std::round(10 * t) / 10) + " s"; }
 
-// Why a joint's friction cannot be identified; "" if it can.
+// Why a joint's friction cannot be identified; "" if it can be.
 std::string RefusalOf(const JointIdentification& joint) {
   const auto& [back, forth] = joint.moving;
   if (back < kLeastMoving || forth < kLeastMoving) {
@@ -334,7 +334,7 @@ struct Identifier::Impl {
     return result;
   }
 
-  // Uses z of the links, which has variance 1 if the prior is correct.
+  // Uses z of the links, whose variance is 1 if the prior is correct.
   static void Strain(const Eigen::VectorXd& z, Identification* result) {
     const double k = std::max(1, result->base_parameters);
     result->strain = std::sqrt(z.squaredNorm() / k);

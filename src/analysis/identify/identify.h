@@ -75,7 +75,7 @@ struct Identification {
   std::array<ModelScore, kInertiaModels> scores;
   int base_parameters = 0;  // number of parameters of links and load that the motion separates
   // Distance of the links from their model in standard deviations of the prior (rms over the base
-  // parameters), and whether it exceeds the range of chance.
+  // parameters), and whether it is larger than chance explains.
   double strain = 0;
   bool strained = false;
   double condition = 0;  // condition number of the base regressor with friction, for unit columns

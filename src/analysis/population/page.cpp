@@ -1,4 +1,4 @@
-// The page of a population study: for each quantity every person as a dot, the differences person
+// The page of a population study: for each quantity, every person as a dot, the differences person
 // by person, and the curve over the height of the handles.
 #include "report/page.h"
 
@@ -14,7 +14,7 @@
 namespace predictor::population {
 namespace {
 
-constexpr double kHalfWidth = 0.36;  // of a cloud of dots, in designs
+constexpr double kHalfWidth = 0.36;  // half-width of a cloud of dots, in designs
 
 struct Points {
   std::vector<double> x, y, error;
@@ -43,8 +43,8 @@ bool Counts(const PopulationRun& run, std::size_t quantity) {
          std::isfinite(run.values[quantity]);
 }
 
-// Dots of equal height lie beside each other: values are put into rows, whose dots spread about the
-// middle `at`.
+// Places dots of equal height side by side: values are grouped into rows, and the dots of a row
+// spread about the middle `at`.
 void AddCloud(double at, std::vector<double> values, Points* points) {
   if (values.empty()) return;
   std::ranges::sort(values);
@@ -112,14 +112,14 @@ Plot PeoplePlot(const PopulationStudy& study, std::size_t quantity) {
   return plot;
 }
 
-// The differences to the first design, person by person.
+// The differences from the first design, person by person.
 Plot DifferencePlot(const PopulationStudy& study, std::size_t quantity) {
   const StudyQuantity& kind = StudyQuantities()[quantity];
   const double factor = kind.unit.factor;
   Plot plot;
   plot.id = std::string("differences-") + std::to_string(quantity);
   plot.title = std::string(kind.label) + ": difference for the same person";
-  plot.caption = "Each dot is one person's value less the same person's value in '" +
+  plot.caption = "Each dot is one person's value minus the same person's value in '" +
                  study.designs.front().name +
                  "'. Diamonds: Hodges-Lehmann estimate with its 95 % interval.";
   Points people, shifts;
@@ -192,13 +192,13 @@ Plot HeightPlot(const PopulationStudy& study, std::size_t quantity) {
   return plot;
 }
 
-// Bars for "this score or more": drawn over each other from the lowest score, so that each colour's
-// visible part is its own share.
+// Bars for "this score or more", drawn over each other from the lowest score, so that the visible
+// part of each colour is the share of its own score.
 Plot RulaPlot(const PopulationStudy& study) {
   Plot plot;
   plot.id = "rula-shares";
   plot.title = "RULA: how long the people spend in each class";
-  plot.caption = "Mean over the people of the share of time with each action level.";
+  plot.caption = "Share of time at each action level, averaged over the people.";
   plot.x = DesignAxis(DesignNames(study));
   PlotPanel panel;
   panel.y = {.label = "Share of time", .unit = "%", .low = 0, .high = 100};
@@ -258,13 +258,13 @@ std::string PopulationPage(const PopulationStudy& study, const std::string& prog
                   "<p>Studied by PREDICTOR " + EscapeMarkup(program_version) + "</p>\n");
   page.Section("summary", "Summary");
   page.Paragraph(Formatted(
-      "%zu simulated people, each on an own body, perform %zu designs. No real person took part.",
+      "%zu simulated people with different bodies perform %zu designs. No real person took part.",
       study.people.size(), study.designs.size()));
   page.Html(SummaryTable(study));
   page.Paragraph(
-      "Median over the people, and in brackets 90 % of them, of each person's 95th percentile over "
-      "time (of balance the 5th). Beyond: people who exceed the limit. People whose run the "
-      "emulator stopped are left out.");
+      "Median over the people, and in brackets the range of 90 % of them, of each person's 95th "
+      "percentile over time (5th percentile for balance). Beyond: people who exceed the limit. "
+      "People whose run the emulator stopped are left out.");
   const bool has_heights = std::ranges::any_of(study.designs, [&](const PopulationDesign& design) {
     return ByHeight(study, design.scenario).size() > 1;
   });

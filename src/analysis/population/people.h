@@ -1,7 +1,8 @@
-// A population of simulated operators: people who differ, not one person whose posture is unknown.
+// A population of simulated operators: different people, not one person whose posture is unknown.
 //
-// person::PostureSampler draws 64 persons who could have given the same measurements; its spread is
-// ignorance about one person. Here the spread is that between people: their bodies are known.
+// person::PostureSampler draws 64 persons who could have given the same measurements; its spread
+// expresses ignorance about one person. Here, the spread is that between people, whose bodies are
+// known.
 #pragma once
 
 #include <cstdint>
@@ -12,26 +13,27 @@
 
 namespace predictor::population {
 
-// One person of the population, with the seed of the person's noise, tremor and pace.
+// One person of the population, with the seed for the person's noise, tremor and pace.
 struct SampledPerson {
-  int number = 1;  // from 1
+  int number = 1;  // starts at 1
   std::uint64_t seed = 1;
   BodySpec body;
-  HandSpec hand;  // the sampled members: see WritePerson
+  HandSpec hand;  // with the sampled members, see WritePerson
 };
 
-// The first `count` persons of a population: a person does not depend on how many there are. Odd
-// numbers are women, even ones men. Marks: R, recalled from the literature; D, our choice.
+// The first `count` persons of a population; a person does not depend on `count`. Odd numbers are
+// women, even ones men. Marks: R, recalled from the literature; D, our choice.
 // - height: women 1.62 ± 0.065 m, men 1.75 ± 0.07 m (R), within 3 standard deviations;
 // - mass: body-mass index lognormal, median 25 kg/m², 15 % (D), 17 to 40 kg/m²;
 // - strength: ergonomics::SampleStrength, 30 % and correlated by 0.7 between directions (R);
-// - stiffness of the joints: lognormal, 25 % (D), as the range of 200 to 600 N/m of hands is wide;
-// - reaction: sight 0.2 ± 0.02 s, reflex 60 ± 10 ms, reflex gain 0.4 ± 0.1 (R; spread D);
+// - stiffness of the joints: lognormal, 25 % (D), because reported stiffnesses of hands range
+//   from 200 to 600 N/m;
+// - reaction: visual 0.2 ± 0.02 s, reflex 60 ± 10 ms, reflex gain 0.4 ± 0.1 (R; spread D);
 // - hand: mass in proportion to the body's, damping ratio, tremor, noise and drift of pace about
 //   the defaults of HandSpec (spread D), all within the ranges of docs/concepts/operator.md.
 std::vector<SampledPerson> SamplePopulation(int count, std::uint64_t seed);
 
-// Puts a person into a scenario, and asks for an operator on that body.
+// Writes a person into a scenario, whose operator then has that body.
 void WritePerson(const SampledPerson& person, Scenario* scenario);
 
 }  // namespace predictor::population

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kShortRun = 0.05;  // long enough for one sample of the person [s]
 
-// A design with what its runs need.
+// A design and what its runs need.
 struct Prepared {
   PopulationDesign design;
   Scenario scenario;
@@ -31,7 +31,7 @@ struct Prepared {
   PopulationRun first;  // of person 1
 };
 
-// The middle of the handles at the start of a run, in W [m].
+// Height of the point midway between the handles at the start of a run, in W [m].
 double StartHeight(const Scenario& scenario) {
   assessment::SampleCollector samples(scenario);
   Emulator emulator(scenario);
@@ -66,7 +66,7 @@ PopulationRun Perform(Scenario scenario, double object_mass, const SampledPerson
   return run;
 }
 
-// A scenario whose operator stands on a body, for one height of the handles.
+// Prepares a scenario whose operator has a body, for one height of the handles.
 Prepared PreparedDesign(const std::filesystem::path& file, const Scenario& scenario,
                         double start_height, std::optional<double> height,
                         const SampledPerson& first) {
@@ -80,7 +80,7 @@ Prepared PreparedDesign(const std::filesystem::path& file, const Scenario& scena
   }
   prepared.design.height = start_height - ground.z();
   prepared.object_mass = LoadObject(scenario.object, scenario.folder()).mass;
-  // The first run shows the program's behaviour, so that no outdated run is used.
+  // The first run reveals the program's behaviour, so that no outdated run is reused.
   prepared.first = Perform(prepared.scenario, prepared.object_mass, first);
   prepared.key = HashOf(SaveScenario(prepared.scenario) + TextOf(prepared.first));
   return prepared;
@@ -94,7 +94,8 @@ Scenario LoadDesign(const std::filesystem::path& file, const std::vector<std::st
                          ": the place where the operator stands is not known. Add "
                          "operator.stance: {ground, facing} to the scenario.");
   if (scenario.operator_.type != "virtual")
-    throw InputError("operator.type", file.string() + ": a population can only be simulated. Set " +
+    throw InputError("operator.type", file.string() +
+                                          ": only simulated operators can form a population. Set " +
                                           "operator.type: virtual.");
   return scenario;
 }

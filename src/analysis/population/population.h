@@ -1,5 +1,5 @@
-// The population study: the same simulated people, each on an own body, perform every design, and
-// what each design does to them is compared person by person.
+// The population study: the same simulated people, each with a body of their own, perform every
+// design, and the effects of the designs are compared person by person.
 #pragma once
 
 #include <array>
@@ -22,12 +22,13 @@ namespace predictor::population {
 // A number of an assessed run that the study compares.
 struct StudyQuantity {
   const char* path;   // key in JSON and CSV, ending in the SI unit
-  const char* label;  // for people
+  const char* label;  // text for people
   Unit unit;
   assessment::Origin origin;
   double (*of)(const assessment::Assessment&);
-  double limit = 0;             // SI; a value beyond it is an excess; 0 without a name: no limit
-  const char* limit_name = "";  // where the limit comes from
+  double limit = 0;             // in SI units; a value beyond it counts as exceeding it; without a
+                                // limit_name, there is no limit
+  const char* limit_name = "";  // source of the limit
   assessment::Bad bad = assessment::Bad::kHigh;
 
   bool has_limit() const { return limit_name[0] != '\0'; }
@@ -40,17 +41,18 @@ inline constexpr std::size_t kRulaScores = 8;  // index = score; 0 is not a scor
 // One person in one design.
 struct PopulationRun {
   int person = 0;
-  StopCause cause = StopCause::kNone;               // of the emulator's first stop
+  StopCause cause = StopCause::kNone;               // cause of the emulator's first stop
   double held = 0;                                  // time that was judged [s]
-  std::vector<double> values;                       // by StudyQuantities()
-  std::array<double, kRulaScores> rula_share = {};  // of time, by score
+  std::vector<double> values;                       // in the order of StudyQuantities()
+  std::array<double, kRulaScores> rula_share = {};  // share of time at each score
 };
 
 // A scenario, with the handles at a height.
 struct PopulationDesign {
   std::string name;
-  std::string scenario;             // file without folder and ending
-  std::optional<double> height;     // of the handles' middle above the ground at the start [m]
+  std::string scenario;             // file name without folder and extension
+  std::optional<double> height;     // of the point midway between the handles, above the ground at
+                                    // the start [m]
   std::vector<PopulationRun> runs;  // by person
 };
 
@@ -62,20 +64,21 @@ struct Share {
 };
 Share ShareOf(int count, int of);
 
-// One quantity in one design, over the people whose run no stop ended.
+// One quantity in one design, over the people whose run was not stopped.
 struct DesignSummary {
   int people = 0;
   double median = 0, p5 = 0, p95 = 0;
   Share beyond;  // the limit
 };
 
-// One quantity in two designs, over the people whose runs no stop ended in either. Positive: design
-// a has larger values.
+// One quantity in two designs, over the people whose run was stopped in neither. Positive: design a
+// has larger values.
 struct PairedDifference {
   std::size_t a = 0, b = 0;  // designs
   std::size_t quantity = 0;
-  ShiftEstimate shift;       // of a - b: Hodges and Lehmann, 95 %
-  double p = 1, p_holm = 1;  // signed rank; adjusted for all differences of the study
+  ShiftEstimate shift;       // shift of a - b by Hodges and Lehmann, with its 95 % interval
+  double p = 1, p_holm = 1;  // of the signed-rank test; p_holm is adjusted for all differences of
+                             // the study
   Share better;              // people for whom a is better than b
 };
 
@@ -83,27 +86,27 @@ struct PopulationStudy {
   std::vector<SampledPerson> people;
   std::vector<PopulationDesign> designs;
   std::vector<std::vector<DesignSummary>> summaries;  // [design][quantity]
-  std::vector<PairedDifference> differences;          // of each pair a > b and quantity
+  std::vector<PairedDifference> differences;          // for each pair a > b and each quantity
   int kept = 0;  // runs that an earlier, interrupted study had finished
 };
 
 struct PopulationOptions {
   std::vector<std::filesystem::path> scenarios;
-  std::vector<std::string> set;  // overrides of all scenarios
-  std::vector<double> heights;   // of the handles [m]; empty: as the scenario says
-  std::filesystem::path folder;  // of the results; created if necessary
+  std::vector<std::string> set;  // overrides for all scenarios
+  std::vector<double> heights;   // heights of the handles [m]; empty: as in the scenario
+  std::filesystem::path folder;  // folder for the results; created if necessary
   int persons = 200;
-  std::uint64_t seed = 1;       // of the population
+  std::uint64_t seed = 1;       // seed of the population
   int workers = 0;              // 0: the number of cores
   std::string program_version;  // shown on the page
   // Called only from the caller's thread.
   std::function<void(double share)> progress = [](double) {};
 };
 
-// Executes the runs that the folder's runs.jsonl does not contain yet: all designs of one person,
-// then the next person, so that an interrupted study compares fewer people. Each finished run is
-// appended to the file. Writes persons.csv, designs.csv, differences.csv and population.html.
-// Throws InputError.
+// Executes the runs that the folder's runs.jsonl does not contain yet: all designs for one person,
+// then for the next one, so that an interrupted study contains fewer people but all designs. Each
+// finished run is appended to the file. Writes persons.csv, designs.csv, differences.csv and
+// population.html. Throws InputError.
 PopulationStudy MakePopulationStudy(const PopulationOptions& options);
 
 // Computes summaries and differences from the runs.

@@ -1,4 +1,4 @@
-// The finished runs of a population study, so that an interruption does not lose them.
+// The finished runs of a population study, so that they survive an interruption.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@
 
 namespace predictor::population {
 
-// One line of JSON per run, found by the key of its design and the number of its person. Unreadable
-// lines (such as the last line of a killed study) are skipped. Any thread may call Add.
+// One line of JSON per run, identified by the key of its design and the number of its person.
+// Unreadable lines (such as the last line of a killed study) are skipped. Any thread may call Add.
 class PopulationRunStore {
  public:
   // Reads the file. Throws InputError if it cannot be written.
@@ -20,7 +20,7 @@ class PopulationRunStore {
 
   // Loads the run; false if it is not stored.
   bool Find(const std::string& key, PopulationRun* run) const;
-  // Throws InputError if it cannot be written.
+  // Throws InputError if the file cannot be written.
   void Add(const std::string& key, const PopulationRun& run);
 
  private:

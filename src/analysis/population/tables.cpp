@@ -90,7 +90,7 @@ std::string DifferenceText(const PopulationStudy& study, std::size_t against) {
     if (d.b != against) continue;
     const StudyQuantity& kind = StudyQuantities()[d.quantity];
     if (d.a != last)
-      AppendLine(&text, "\n%s less %s, the same %d people\n%-50s %9s  %-17s %-9s %s",
+      AppendLine(&text, "\n%s minus %s, the same %d people\n%-50s %9s  %-17s %-9s %s",
                  study.designs[d.a].name.c_str(), study.designs[d.b].name.c_str(), d.better.of, "",
                  "shift", "95 %", "p (Holm)", "better for");
     last = d.a;
@@ -205,19 +205,19 @@ std::string PopulationJson(const PopulationStudy& study) {
 
 std::string PopulationText(const PopulationStudy& study) {
   std::string text;
-  AppendLine(&text,
-             "%zu simulated people, each on an own body, in %zu designs (%d runs from an earlier "
-             "study).",
-             study.people.size(), study.designs.size(), study.kept);
+  AppendLine(
+      &text,
+      "%zu simulated people with different bodies in %zu designs (%d runs from an earlier study).",
+      study.people.size(), study.designs.size(), study.kept);
   text +=
-      "Values: of each person the 95th percentile over time (of balance the 5th), of the nominal "
-      "posture; RULA and REBA the score that is exceeded 5 % of the time.\n";
+      "Values: for each person, the 95th percentile over time (5th percentile for balance) of the "
+      "nominal posture; for RULA and REBA, the score that is exceeded for 5 % of the time.\n";
   for (std::size_t i = 0; i < study.designs.size(); ++i) text += DesignText(study, i);
   text += DifferenceText(study, 0);
   text +=
       "\nShift: Hodges-Lehmann estimate of the difference for the same person, with its 95 % "
-      "interval. p: Wilcoxon's signed-rank test, adjusted by Holm for all differences of the "
-      "study. Shares have 95 % intervals. People whose run the emulator stopped are not "
+      "interval. p: Wilcoxon's signed-rank test, adjusted by Holm's method for all differences of "
+      "the study. Shares have 95 % intervals. People whose run the emulator stopped are not "
       "compared.\n";
   return text;
 }

@@ -1,5 +1,5 @@
-// The effect of each repair of the paper's formulation. The repairs are added to the paper's
-// equations in turn, and removed one by one from ours, in three tasks.
+// The effect of each repair of the paper's formulation. In three tasks, the repairs are added to
+// the paper's equations in turn, and removed one by one from ours.
 #include <cmath>
 
 #include "analysis/reproduce/runs.h"
@@ -11,10 +11,10 @@
 namespace predictor {
 namespace {
 
-// The order in which the repairs are added. The rest are added together.
+// The order in which the repairs are added one by one. The others are then added together.
 constexpr Repair kInTurn[] = {Repair::kPredictedJacobian, Repair::kRelativeTarget, Repair::kLead,
                               Repair::kSoftRows, Repair::kCoupling};
-// A loop like the paper's: rate and computing time, without our formulation.
+// A loop like the paper's: its rate and computing time, without our formulation.
 const std::vector<std::string> kPaperLoop = {"rate=" + std::to_string(kAssumedPaperRate),
                                              "rig.computation_delay=0.01"};
 constexpr const char* kWithoutMonitor = "safety.oscillation.enabled=false";
@@ -82,11 +82,11 @@ std::vector<Step> RemovedFromOurs() {
   return steps;
 }
 
-// The runs of a step in a task. Without our oscillation monitor, unless stated otherwise.
+// The runs of a step in a task, without our oscillation monitor unless stated otherwise.
 struct StepRuns {
   ReproducedRun run;
   std::optional<ReproducedRun> monitored;  // if the monitor stopped it
-  std::optional<ReproducedRun> compared;   // up to the earliest stop of all steps
+  std::optional<ReproducedRun> compared;   // run up to the earliest stop of all steps
 };
 
 std::optional<StopSummary> StopOf(const ReproducedRun& run) {
@@ -106,7 +106,7 @@ StepRuns RunStep(const Task& task, const Step& step, ReproduceRuns* runs) {
   ReproducedRun monitored = runs->RunToEitherEnd(setting);
   const std::optional<StopSummary> stop = StopOf(monitored);
   if (!stop || stop->cause != StopCause::kOscillation) {
-    // The monitor only stops; otherwise it has no effect.
+    // The monitor can only stop a run, so this run is the same without it.
     result.run = std::move(monitored);
     return result;
   }

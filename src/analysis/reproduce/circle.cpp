@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kLoopShare = 0.9;  // as a share of the experiment's time
+constexpr double kLoopShare = 0.9;  // share of the experiment's time
 constexpr const char* kCommand = "predictor reproduce --only circle";
 
 std::string Agreed(const Agreement& a, double scale) {
@@ -18,7 +18,7 @@ std::string Agreed(const Agreement& a, double scale) {
          Significant(a.correlation, 3) + ")";
 }
 
-// Text of the probability at which emulated and real runs were distinguished.
+// The probability p of the test that distinguishes emulated from real runs, as text.
 std::string ToldApart(const SameKindTest& test) {
   if (!test.can_tell()) return "too few runs";
   return test.p < 1e-3 ? "< 0.001" : Significant(test.p, 2);
@@ -166,7 +166,7 @@ ReproducedExperiment ReproduceCircle(ReproduceRuns* runs) {
   std::vector<Plot> paths = PathPlots(curves);
   e.Add(std::move(paths.front()), "fig12-path",
         "The path of the bar from above, and the circle to follow",
-        "Every 50 ms; lengths are alike along both axes.");
+        "Every 50 ms; both axes have the same scale.");
   return e;
 }
 

@@ -64,14 +64,14 @@ ReproducedExperiment ReproduceQuestionnaire(ReproduceRuns* runs) {
   runs->Tell(1);
   e.numbers = rows.numbers;
   e.AddParagraph(
-      "No people were asked here. The table lists every set of 17 integer answers from −2 to 2 "
+      "No people were asked for this. The table lists every set of 17 integer answers from −2 to 2 "
       "that gives the mean and the sample standard deviation in Table 1 and the lowest answers to "
       "S2, S3, S4 and S8 stated in the text. Fig. 11 is redrawn from these sets, not from the "
       "printed figure. To ask people yourself, use predictor survey ask.");
   e.Add(HtmlTable(rows.table));
   e.Add(LikertPlot(rows.plots), "fig11", "Distributions behind Table 1 (Fig. 11)",
-        "A cross for each answer. Where Table 1 allows one distribution "
-        "only, both solutions are the same.");
+        "A cross for each answer. Where Table 1 allows only one distribution, both solutions are "
+        "the same.");
   return e;
 }
 
@@ -83,7 +83,7 @@ ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs) {
     ReproducedNumber n = NumberOf(run, quantity, us, 1e-3, "ms");
     n.paper = kPaperDelay;
     Add(n, "section 4.2.2", &e.numbers);
-    // Other load on the computer affects the mean and the deviation, but hardly the median.
+    // Other load on the computer affects the mean and the deviation, but hardly affects the median.
     n.quantity += ", median";
     n.mean = 1e-3 * run.data.summary
                         .Get<Quantiles>(std::string("timing_us.") +

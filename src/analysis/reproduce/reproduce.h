@@ -28,8 +28,9 @@ struct ReproducedNumber {
   double mean = 0;
   double deviation = std::numeric_limits<double>::quiet_NaN();  // NaN for a single value
   double largest = std::numeric_limits<double>::quiet_NaN();    // NaN: not available
-  std::string command;                                          // repeats our result
-  bool variant = false;                 // tests an assumption: not included in the overview
+  std::string command;                                          // command that repeats our result
+  bool variant = false;                 // the row tests an assumption and is not included in the
+                                        // overview
   std::optional<double> ratio() const;  // our number divided by the paper's
 };
 
@@ -65,9 +66,9 @@ struct ReproducedExperiment {
 struct ReproduceOptions {
   std::filesystem::path scenarios = "scenarios";  // folder of the project's scenarios
   std::filesystem::path folder = "reproduction";  // destination folder
-  std::string only;                               // name of the one experiment; empty: all
-  int seeds = 17;  // runs of each kind on the circle, by default the number of the paper's
-                   // participants; at least 2
+  std::string only;                               // name of the only experiment to run; empty: all
+  int seeds = 17;  // runs of each kind on the circle, at least 2; the default is the number of the
+                   // paper's participants
   std::string program_version;
   std::function<void(double share, const std::string& what)> progress = {};
 };

@@ -19,7 +19,7 @@ namespace {
 // ticks would have tens of megabytes.
 constexpr double kDetail = 8;
 
-// Parts of a script in which no hand holds the handles: from a release to the end of the next grip.
+// Intervals in which no hand holds a handle: from a release to the end of the next grip.
 class Released {
  public:
   explicit Released(const OperatorSpec& person) {
@@ -116,8 +116,8 @@ ReproducedRun ReproduceRuns::Run(const ReproducedSetting& setting, const Scenari
                                  RunEnd expected) {
   ReproducedRun run = RunToAnyEnd(setting, scenario);
   if (run.end != expected)
-    throw std::runtime_error("The run `" + run.command + "` was to come " + InWords(expected) +
-                             " and came " + InWords(run.end) + ".");
+    throw std::runtime_error("The run `" + run.command + "` was expected to run " +
+                             InWords(expected) + ", but it ran " + InWords(run.end) + ".");
   return run;
 }
 
@@ -286,7 +286,7 @@ void ReproducedExperiment::Add(Plot plot, const std::string& id, const std::stri
   plot.id = id;
   if (!heading.empty()) plot.title = heading;
   if (!caption.empty()) plot.caption = caption;
-  plot.group = id;  // each run has its own time
+  plot.group = id;  // each run has its own time axis
   blocks.push_back({"", std::move(plot)});
 }
 

@@ -43,7 +43,7 @@ class ReproduceRuns {
   // Throws std::runtime_error unless it ends as `expected`.
   ReproducedRun Run(const ReproducedSetting& setting, RunEnd expected = RunEnd::kFinished);
   ReproducedRun Run(const ReproducedSetting& setting, const Scenario& scenario, RunEnd expected);
-  // For a run whose end is itself a result: runs to the end of the script or to a safety stop.
+  // For a run whose end is itself a result: it runs to the end of the script or to a safety stop.
   ReproducedRun RunToEitherEnd(const ReproducedSetting& setting);
   // Reports progress of the experiment that Run does not report.
   void Tell(double share) const;

@@ -35,12 +35,12 @@ void AddStop(const ReproducedRun& run, std::vector<ReproducedNumber>* numbers) {
   };
   add("time of the decision", "s", stop.time);
   if (stop.quantity == Quantity::kForce)
-    add(stop.cause == StopCause::kOscillation ? "growing amplitude that decided"
-                                              : "force that decided",
+    add(stop.cause == StopCause::kOscillation ? "growing amplitude that caused the stop"
+                                              : "force that caused the stop",
         "N", stop.value);
   if (stop.detection) add("true force over threshold to decision", "ms", 1e3 * *stop.detection);
   add("decision to rest", "ms", 1e3 * stop.duration);
-  add("way of the faster handle meanwhile", "mm", 1e3 * stop.distance);
+  add("travel of the faster handle meanwhile", "mm", 1e3 * stop.distance);
 }
 
 ReproducedSetting SettingOf(const StopExperiment& experiment, bool monitored) {

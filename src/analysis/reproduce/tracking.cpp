@@ -57,7 +57,7 @@ void AddStop(const ErrorFigures& figures, const ReproducedRun& run,
     Add(NumberOf(run, quantity, value, unit), figures.translation, numbers);
   };
   add("time of the safety stop", stop.time, "s");
-  const std::string quantity = std::string("value that stopped it, ") + Name(stop.cause);
+  const std::string quantity = std::string("value that caused the stop, ") + Name(stop.cause);
   if (stop.quantity == Quantity::kLength) add(quantity, kMillimetres * stop.value, "mm");
   if (stop.quantity == Quantity::kAngle) add(quantity, kDegrees * stop.value, "°");
   if (stop.quantity == Quantity::kForce) add(quantity, stop.value, "N");
@@ -148,7 +148,7 @@ void AddRates(const BoxExperiment& box, const ReproducedRun& assumed, ReproduceR
   for (ReproducedNumber& n : others) n.variant = true;
   for (ReproducedNumber& n : table)
     if (n.condition == kPapers) n.condition = name(kAssumedPaperRate) + ", as above";
-  e->Add("<h4>Were the paper's rate another one</h4>\n" + NumbersTable(table));
+  e->Add("<h4>The paper's task at other assumed rates</h4>\n" + NumbersTable(table));
   e->Add(others);
 }
 
@@ -175,7 +175,7 @@ void AddTracking(const ErrorFigures& figures, const ConditionRuns& task, Reprodu
     AddWholeRun(figures, *run, &whole);
   }
   e->Add("<h3>Tracking errors while all hands grip</h3>\n" + NumbersTable(gripping) +
-         "<h3>Of the whole run</h3>\n" + NumbersTable(whole));
+         "<h3>Tracking errors over the whole run</h3>\n" + NumbersTable(whole));
   e->AddParagraph(
       "Mean ± standard deviation (largest). The paper's values (section 4.1.1) apply to the whole "
       "run, including a release. The paper's conditions: 10 ms of computing time, no lag "
@@ -249,7 +249,7 @@ ReproducedExperiment ReproduceBar(ReproduceRuns* runs) {
 ReproducedExperiment ReproduceRelativePose(ReproduceRuns* runs) {
   ReproducedExperiment e;
   const ReproducedRun plain = runs->Run({"box_9kg", {"duration=12"}, "as it is"});
-  // The arms are almost stretched out: the bases are beyond their comfortable reach.
+  // The arms are almost stretched, because their bases are too far away.
   const ReproducedRun stretched =
       runs->Run({"box_9kg",
                  {"duration=12", "device.arms.left.base.xyz=[-0.13, -0.22, -0.35]",

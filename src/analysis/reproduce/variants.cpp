@@ -32,7 +32,7 @@ std::vector<ReproducedVariant> UnderdampedVariants() {
           {"sight 0 N/m", {"operator.hand.visual_stiffness=[0, 0, 0]"}}};
 }
 
-// Runs once with our oscillation monitor and once without.
+// Runs once with our oscillation monitor and once without it.
 void AddUnderdamped(ReproduceRuns* runs, std::vector<ReproducedNumber>* numbers) {
   for (const ReproducedVariant& variant : UnderdampedVariants())
     for (const bool monitor : {true, false}) {

@@ -120,7 +120,7 @@ class LimitWatch {
 // handles [m/s].
 using Difference = Eigen::Matrix<double, 6 * kHands, 1>;
 
-// High-pass filter of kFastOrder equal stages.
+// High-pass filter of kFastOrder identical stages.
 class FastPart {
  public:
   explicit FastPart(double dt) : keep_(1 / (1 + 2 * kPi * kFast * dt)) {

@@ -35,7 +35,7 @@ constexpr double kFingerprintTime = 1;  // [s]
 std::string Exactly(double x) { return Formatted("%a ", x); }
 
 // Identifies the behaviour of this program for a scenario: one simulated second with a tap, and the
-// predicted growth, bit for bit. Programs or models that differ in it must not share points.
+// predicted growth, bit for bit. Programs or models that differ in this must not share points.
 std::string FingerprintOf(const MapBase& base) {
   std::string text = kFormat;
   const Scenario hold = HoldScenario(base.scenario, base.lead, true);

@@ -67,14 +67,15 @@ struct MapOptions {
 // therefore be continued, and no outdated point is reused. Throws InputError.
 StabilityMap MakeStabilityMap(const Scenario& scenario, const MapOptions& options);
 
-// Reasons why the prediction may be wrong for the whole scenario, as sentences; empty: it must be
-// correct.
+// Reasons why the prediction may be wrong for the whole scenario, as sentences. If empty, the
+// prediction must be correct.
 std::vector<std::string> DeparturesOf(const Scenario& scenario);
 
-// Reasons why the prediction may be wrong for a found boundary, as text; empty: it must be correct.
-// They are derived only from the simulations near the boundary, never from the difference between
-// prediction and simulation: limits that act on the stable side, limits that noise alone reaches on
-// the other side, and a growth rate that depends too weakly on the stiffness.
+// Reasons why the prediction may be wrong for a found boundary, as text. If empty, the prediction
+// must be correct. The reasons are derived only from the simulations near the boundary, never from
+// the difference between prediction and simulation: limits that act on the stable side, limits that
+// noise alone reaches on the other side, and a growth rate that depends too weakly on the
+// stiffness.
 std::vector<std::string> DeparturesAt(const FoundExtent& found, const Boundary& boundary);
 // The same if no stable stiffness was found.
 std::vector<std::string> DeparturesEverywhere(const FoundExtent& found);

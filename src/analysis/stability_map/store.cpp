@@ -98,7 +98,8 @@ void MapStore::ReadLine(const std::string& line) {
   if (!json.is_object()) return;
   try {
     points_[json.at("key").get<std::string>()] = PointFrom(json);
-  } catch (const Json::exception&) {  // from another version or damaged: it is computed again
+  } catch (const Json::exception&) {  // from another version or damaged: the point is computed
+                                      // again
   }
 }
 

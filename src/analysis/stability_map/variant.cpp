@@ -34,7 +34,7 @@ PrimitiveSpec ScaledObject(const Scenario& s, double mass) {
         "varied.");
   PrimitiveSpec body;
   body.shape = Shape::kBox;
-  body.size.setConstant(0.02);  // also around the handles, which must be on the object
+  body.size.setConstant(0.02);  // also for the handles, which must be on the object
   for (int i = 0; i < kHands; ++i)
     if (s.Has(i)) body.size = body.size.cwiseMax(2 * s.handle(i).pose.xyz.cwiseAbs());
   body.mass = mass;
