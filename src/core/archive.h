@@ -2,7 +2,7 @@
 //
 // A class with state lists it once, for both directions:
 //   void Archive(StateArchive& a) { a(x_, v_, count_); }
-// Values that follow from the scenario are not listed: the emulator that loads was built from it.
+// Values that follow from the scenario are not listed: the loading emulator was built from it.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +27,7 @@ namespace predictor {
 class StateArchive {
  public:
   static StateArchive ToSave(std::span<std::byte> to) { return {to.data(), to.size(), true}; }
-  // Only reads `from`.
+  // Only reads from `from`.
   static StateArchive ToLoad(std::span<const std::byte> from) {
     return {const_cast<std::byte*>(from.data()), from.size(), false};
   }
@@ -95,7 +95,7 @@ class StateArchive {
   template <class T, int R, int C, int O, int MR, int MC>
   void Field(Eigen::Matrix<T, R, C, O, MR, MC>& x) noexcept {
     if constexpr (R == Eigen::Dynamic || C == Eigen::Dynamic) {
-      static_assert(MR != Eigen::Dynamic && MC != Eigen::Dynamic, "would need heap");
+      static_assert(MR != Eigen::Dynamic && MC != Eigen::Dynamic, "would allocate memory");
       auto rows = static_cast<std::int32_t>(x.rows());
       auto cols = static_cast<std::int32_t>(x.cols());
       Field(rows), Field(cols);

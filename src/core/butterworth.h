@@ -6,8 +6,8 @@
 
 namespace predictor {
 
-// Low-pass or high-pass by the bilinear transform with prewarped frequency. It starts as if its
-// first sample had been there for ever.
+// Low-pass or high-pass by the bilinear transform with prewarped frequency. It starts as if it had
+// always received its first sample.
 template <class T>
 class Butterworth {
  public:

@@ -15,7 +15,7 @@ class InputError : public std::runtime_error {
       : std::runtime_error(place.empty() ? sentence : place + ": " + sentence) {}
 
   // An error in the value at `key` of a scenario ("device.arms.left.elbow"). Its place in the file
-  // is not known here: Located (scenario/located.h) adds it. `sentence` begins with the key.
+  // is not known yet: Located (scenario/located.h) adds it. `sentence` begins with the key.
   static InputError At(const std::string& key, const std::string& sentence) {
     InputError error(sentence);
     error.key_ = key;

@@ -1,4 +1,4 @@
-// printf into strings of any length. Not for the tick.
+// printf into strings of any length. Not for use in the tick.
 #pragma once
 
 #include <ctime>

@@ -1,4 +1,4 @@
-// Which hands there are.
+// The hands that exist.
 #pragma once
 
 #include "core/types.h"

@@ -9,7 +9,7 @@ enum class KeySign {
   kTouched,  // a letter arrived after at least kFirstRepeat without one
   kHeld,     // a second letter arrived: the key now counts as held
   kGoesOn,   // another letter arrived while the key is held
-  kNotHeld,  // the key was tapped; no second letter arrived within kFirstRepeat
+  kNotHeld,  // the key was only tapped; no second letter arrived within kFirstRepeat
   kLate,     // the letters arrived together, and none followed within kFirstRepeat
 };
 
@@ -17,9 +17,9 @@ enum class KeySign {
 // has been silent for kSilence.
 //
 // A letter shows when it arrives, not when its key was pressed. After a delay (a stalled network or
-// a busy computer) the queued letters arrive together, perhaps after the hand has moved elsewhere.
+// a busy computer), the queued letters arrive together, perhaps after the hand has moved elsewhere.
 // No hand and no terminal repeats within kTogether, so letters that close together are a backlog,
-// and none of them counts. The first letter of a backlog looks like any other. Therefore a letter
+// and none of them counts. The first letter of a backlog looks like any other. Therefore, a letter
 // counts only if no other letter follows within kTogether.
 //
 // A backlog does not release a key that is already held, because on a busy computer two letters

@@ -1,4 +1,4 @@
-// Least-squares fits and the uncertainty of their results. They allocate memory: not for the tick.
+// Least-squares fits and the uncertainty of their results. They allocate: not for the tick.
 #pragma once
 
 #include <Eigen/Core>

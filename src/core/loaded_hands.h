@@ -18,7 +18,7 @@ bool ArmAtFault(const TickRecord& record);
 // True after a stop if the power is off or an arm has had a fault: RECOVERY then moves nothing.
 bool NothingMovesAnyMore(const TickRecord& record);
 
-// A stopped arm holds stiffly, and an arm without power is heavy, so a hand may be trapped at any
+// A stopped arm is held stiffly, and an arm without power is heavy, so a hand may be trapped at any
 // time after a stop. A message is issued once when a force has acted on a hand for kPatience. It is
 // issued again only after the handle has been free for kPatience or the arms have moved.
 class LoadedHands {

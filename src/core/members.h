@@ -7,7 +7,7 @@ namespace predictor {
 
 struct AnyMember {
   template <class T>
-  operator T&() const;  // never defined; used only in unevaluated initialisers
+  operator T&() const;  // never defined; used only in unevaluated expressions
 };
 
 template <class T, class... Members>

@@ -26,10 +26,10 @@ constexpr std::string_view FindMessage(std::string_view id) {
 // Declared only: a constant expression cannot call it, so the compiler rejects an unknown ID.
 void RejectUnknownMessageId();
 
-// An ID that is known to be in the catalogue: an unknown literal does not compile.
+// The ID of a text in the catalogue: an unknown literal does not compile.
 class MessageId {
  public:
-  consteval MessageId(const char* id) : text_(FindMessage(id)) {  // NOLINT: as a literal
+  consteval MessageId(const char* id) : text_(FindMessage(id)) {  // NOLINT: converts a literal
     if (text_.empty()) RejectUnknownMessageId();
   }
   constexpr std::string_view text() const { return text_; }

@@ -31,10 +31,10 @@ struct ArmSample {
   double sensor_age = 0;              // of the wrench [s]
   bool sensor_saturated = false;      // the sensor reports that its range was exceeded
   bool fault = false;                 // the arm reports a fault or is not powered
-  bool in_motion = false;             // its driver is still ramping it down
-  bool waits = false;                 // its controller has not started the motion yet
-  bool no_power_off = false;          // as Warning::kNoPowerOff
-  bool keeps_power = false;           // as Warning::kKeepsPower
+  bool in_motion = false;             // the driver is still ramping the arm down
+  bool waits = false;                 // the arm's controller has not started the motion yet
+  bool no_power_off = false;          // see Warning::kNoPowerOff
+  bool keeps_power = false;           // see Warning::kKeepsPower
   LinkCounts arm_link, sensor_link;
 };
 
@@ -46,13 +46,13 @@ struct DeviceSample {
 struct HandInput {
   bool grip = false;
   Pose X_WH;         // set-point of the handle
-  double age = 1e9;  // since the page sent it [s]
+  double age = 1e9;  // time since the page sent it [s]
 };
 
 // Written by the guard, the last stage before the device.
 struct DeviceCommand {
   RunState state = RunState::kInit;     // as shown on the page
-  double run_time = 0;                  // time since RUN began [s]; stands still when stopped
+  double run_time = 0;                  // time since RUN began [s]; constant while stopped
   std::array<JointVector, kHands> v;    // joint velocities [rad/s]
   std::array<HandInput, kHands> hands;  // simulated rig: the operator's hands, if a page moves them
 };
@@ -98,17 +98,17 @@ struct WorldState {
   FrameMotion object;                      // object frame O
   FrameMotion end_effector;                // cobot's end-effector E
   std::array<Wrench, kHands> coupling = {Wrench::Zero(), Wrench::Zero()};  // on D, about D, in W
-  double energy = 0;  // kinetic + potential, set-point spring in [J]
+  double energy = 0;  // kinetic + potential, including the set-point spring [J]
   ControllerOutcome controller = ControllerOutcome::kComputed;  // in the last step
-  std::uint16_t events = 0;       // that act: bit = entry of the scenario's `events`
+  std::uint16_t events = 0;       // active hazards: bit = entry of the scenario's `events`
   std::uint8_t latest_event = 0;  // 1 + number of the hazard that began last; 0: none
-  std::uint8_t cobot_stop = 0;    // the cobot's own protective stop: CobotStop
+  std::uint8_t cobot_stop = 0;    // protective stop of the cobot itself: CobotStop
 };
 
-// What a controller outside the program answered in a tick, from its record. For a replay.
+// What a controller outside the program answered in a tick, taken from its record. For a replay.
 struct ControllerAnswer {
-  JointVector torque;  // that acted [N·m]
-  double energy = 0;   // of the virtual world [J]
+  JointVector torque;  // torque that was applied [N·m]
+  double energy = 0;   // energy of the virtual world [J]
   ControllerOutcome outcome = ControllerOutcome::kComputed;
   Status failure;
 };
@@ -123,8 +123,8 @@ struct RenderResult {
   double link_distance = HUGE_VAL;                     // nearest link pair [m]; +inf without pairs
   std::array<double, kMaxLimits> slack_by_limit = {};  // [m/s]; order and names: RegisteredLimits
   bool relaxed = false;                                // a slack is above its tolerance
-  bool failed = false;  // no verified solution: v decelerates from the last one
-  int iterations = 0;   // of the solver
+  bool failed = false;  // no verified solution: v decelerates from the previous one
+  int iterations = 0;   // iterations of the solver
   // Active bounds and rows (nonzero multiplier): bit = joint of an arm, or row.
   std::array<std::uint16_t, kHands> at_lower = {}, at_upper = {};
   std::uint16_t rows = 0;
@@ -139,7 +139,7 @@ struct RenderResult {
 // Entries of an absent side are zero.
 struct LinearModel {
   Eigen::MatrixXd A, B, C;
-  int dof = 0;  // number of positions, and of velocities
+  int dof = 0;  // number of positions, which is also that of velocities
 };
 
 }  // namespace predictor

@@ -7,7 +7,7 @@
 
 namespace predictor {
 
-// Below this measured speed a handle counts as stationary. It is above the readings of arms at rest
+// A handle slower than this counts as stationary. The speeds measured on arms at rest are lower
 // [m/s].
 inline constexpr double kStandstillSpeed = 0.01;
 
@@ -19,10 +19,10 @@ inline double HandleSpeed(const Twist& V, double length = kHandleLength) {
   return std::max(V.head<3>().norm(), length * V.tail<3>().norm());
 }
 
-// Lever arm at which rotation counts towards the speed that a stop brakes [m]. A scenario cannot
-// change it: a longer lever arm would make stops longer.
+// Lever arm at which rotation counts towards the speed that a stop must brake [m]. A scenario
+// cannot change it: a longer lever arm would make stops longer.
 inline constexpr double kStopLength = 0.2;
-// Speed of a handle as a stop measures it [m/s].
+// Speed of a handle as used for a stop [m/s].
 inline double StopSpeed(const Twist& V) { return HandleSpeed(V, kStopLength); }
 
 // Motion of B, fixed to A at X_AB, from the motion of A: twist and classical acceleration about B.

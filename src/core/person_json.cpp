@@ -79,7 +79,7 @@ class TextVisitor {
   std::string text_;
 };
 
-// Writes the JSON Schema of an object's members.
+// Writes the JSON Schema for an object's members.
 class SchemaVisitor {
  public:
   std::string Object(const char* meaning) const {

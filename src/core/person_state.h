@@ -1,6 +1,6 @@
-// What the evaluator says about the person at one time of a run: posture, loads, scores, damage.
+// What the evaluator reports about the person at one time of a run: posture, loads, scores, damage.
 //
-// The page, the recording and the page's TypeScript derive from the tables of this file.
+// The page, the recording and the page's TypeScript are derived from the tables in this file.
 #pragma once
 
 #include <array>
@@ -12,15 +12,15 @@ namespace predictor {
 
 enum class PersonStatus : std::uint8_t {
   kJudged,
-  kWaiting,      // no simulated time passes
-  kNoHand,       // no hand holds a handle, so nothing is known of the posture
+  kWaiting,      // no simulated time has passed yet
+  kNoHand,       // no hand holds a handle, so the posture is unknown
   kBelowGround,  // the handles are below the ground: operator.stance.ground is wrong
 };
 inline constexpr std::array kPersonStatusNames = {"judged", "waiting", "no_hand", "below_ground"};
 inline constexpr std::size_t kPersonStatuses = kPersonStatusNames.size();
 
-// Points of the body, for drawing. Joints, except: eyes, the middle of both; head, its middle;
-// hand, the knuckles; toes, the front of the foot on the ground.
+// Points of the body, for drawing. All are joints, except: eyes and head, their centres; hand, the
+// knuckles; toes, the front of the foot on the ground.
 enum class BodyPoint : std::uint8_t {
   kPelvis,  // middle of the hip joints
   kL5S1,
@@ -67,7 +67,7 @@ inline constexpr std::size_t kBodyParts = kBodyPartNames.size();
 inline constexpr double kCompressionLimit = 3400;  // NIOSH's limit for L5/S1 [N]
 inline constexpr double kShearLimit = 700;  // Gallagher & Marras's limit for frequent shear [N]
 
-// Values with a nominal posture and an interval over possible ones.
+// Values for the nominal posture, with an interval over the possible ones.
 enum class PersonGauge : std::uint8_t {
   kCompression,
   kShear,
@@ -83,7 +83,7 @@ enum class PersonGauge : std::uint8_t {
 };
 struct PersonGaugeRow {
   const char *name, *unit, *meaning;
-  double limit;  // 0: none, except for the balance
+  double limit;  // 0: none, except for balance
   bool low_is_bad;
   bool measured;  // by the sensors of the arms; otherwise modelled, with an interval
 };
@@ -111,7 +111,7 @@ inline constexpr std::array kPersonGaugeRows = {
 };
 inline constexpr std::size_t kPersonGauges = kPersonGaugeRows.size();
 
-// Worksheets. A class is an action level of the worksheet, 1 the least.
+// Worksheets. A class is an action level of the worksheet; 1 is the lowest.
 enum class PersonScore : std::uint8_t { kRula, kReba, kOwas };
 struct PersonScoreRow {
   const char* name;
@@ -124,7 +124,7 @@ inline constexpr std::size_t kPersonScores = kPersonScoreRows.size();
 inline constexpr std::size_t kMaxClasses = 5;
 
 // Warnings, as bits. A warning begins when its value has been at or beyond `on` for kWarnAfter, and
-// ends when it has been back beyond `off` for kCalmAfter (design choices).
+// ends when the value has been back beyond `off` for kCalmAfter (design choices).
 enum class PersonWarning : std::uint8_t {
   kCompression,
   kShear,
@@ -143,8 +143,8 @@ struct PersonWarningRow {
   double on, off;  // if on < off, low values are bad
   const char* words;
 };
-// Of a use, half of the mean strength: with a standard deviation of 0.3 of the mean, one person in
-// twenty has no more. Of a worksheet, the highest action level.
+// For a joint's use, half of the mean strength: with a standard deviation of 0.3 of the mean, one
+// person in twenty is no stronger than that. For a worksheet, the highest action level.
 inline constexpr double kUseWarning = 0.5, kUseCalm = 0.4;
 inline constexpr std::array kPersonWarningRows = {
     PersonWarningRow{"lower_back_compression", kCompressionLimit, 3100,
@@ -169,7 +169,7 @@ inline constexpr std::array kPersonWarningRows = {
 inline constexpr std::size_t kPersonWarnings = kPersonWarningRows.size();
 inline constexpr double kWarnAfter = 0.1, kCalmAfter = 1;  // [s]
 
-// A number that is not known.
+// A value that is not known.
 inline constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 struct GaugeState {
@@ -180,32 +180,32 @@ struct ScoreState {
   std::uint8_t score = 0;  // of the nominal posture; 0: not known
   std::uint8_t level = 0;  // its action level
   std::uint16_t reserved = 0;
-  // Of each action level, over the possible persons, at interval_time; the first: level 1.
+  // Of each action level, over the possible persons, at interval_time; the first is level 1.
   std::array<float, kMaxClasses> probability = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
 };
 struct PartState {
-  // For colouring: of the lower back compression over its limit, otherwise torque over the mean
+  // For colouring: compression of the lower back over its limit; elsewhere, torque over the mean
   // strength.
   float load = kUnknown;
-  float capacity = kUnknown;   // strength that fatigue leaves (3CC-r), as a share
+  float capacity = kUnknown;   // strength that remains despite fatigue (3CC-r), as a share
   float damage = kUnknown;     // of the run so far: LiFFT for the lower back, Shoulder Tool
   float day_share = kUnknown;  // the same as a share of the tool's reference day
 };
 
 // Times are simulated times since RUN began [s]. Loads and scores are older than the points by the
-// evaluator's delay, because the accelerations need later samples.
+// evaluator's delay, because accelerations need later samples.
 struct PersonState {
-  std::uint64_t tick = 0;     // the newest one that is considered
+  std::uint64_t tick = 0;     // newest tick that was evaluated
   std::uint64_t wall_ns = 0;  // monotonic clock at that tick
   double run_time = 0;        // of the points: middle of the 10 ms that end with that tick
   double load_time = 0;       // of loads, scores, warnings
-  double interval_time = 0;   // of intervals and probabilities; not used before there are some
-  double since = 0;           // start of damage and fatigue: of the run, or of the evaluator
+  double interval_time = 0;   // of intervals and probabilities; not valid until there are some
+  double since = 0;           // start of damage and fatigue: start of the run, or of the evaluator
   PersonStatus status = PersonStatus::kWaiting;
-  std::uint8_t reached = 0;          // 1: both hands of the posture reach their handles
+  std::uint8_t reached = 0;          // 1: in this posture, both hands reach their handles
   std::uint16_t warnings = 0;        // bits by PersonWarning
-  float miss = 0;                    // largest distance that is missing to a handle [m]
-  float sampled_reached = kUnknown;  // share of the possible persons who reach both
+  float miss = 0;                    // largest distance by which a hand misses its handle [m]
+  float sampled_reached = kUnknown;  // share of the possible persons who reach both handles
   float reserved = 0;
   std::array<std::array<float, 3>, kBodyPoints> points = {};  // in W [m]; see status
   std::array<PartState, kBodyParts> parts;

@@ -8,7 +8,7 @@
 namespace predictor {
 
 // One stream of random numbers (xoshiro256++, Blackman & Vigna 2019). Each stream is named after
-// its use, so additional draws in one place do not change the draws elsewhere. No allocation.
+// its use, so additional draws from one stream do not change the others. No allocation.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::string_view use) {

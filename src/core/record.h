@@ -41,8 +41,8 @@ struct HandRecord {
   std::uint8_t warnings;   // active warnings, bit = Warning
   // Joints whose position, velocity or acceleration bound limited the command: bit = joint.
   std::uint16_t at_lower, at_upper;
-  std::uint8_t arm_in_motion;  // its driver is still ramping it down
-  std::uint8_t arm_waits;      // its controller has not started the motion yet
+  std::uint8_t arm_in_motion;  // the driver is still ramping the arm down
+  std::uint8_t arm_waits;      // the arm's controller has not started the motion yet
   std::array<std::uint8_t, 4> more_reserved;
   MotionRecord real;                            // H, measured; equal to D in direct mode
   MotionRecord virtual_;                        // D, at the time of the same sample
@@ -102,7 +102,7 @@ struct TickRecord {
   std::uint8_t why_refused;   // Refusal
   std::uint8_t controller;    // ControllerOutcome of the virtual cobot's last step
   std::uint8_t cobot_stop;    // protective stop of the virtual cobot itself: CobotStop
-  std::uint16_t events;       // hazards that act: bit = entry of the scenario's `events`
+  std::uint16_t events;       // active hazards: bit = entry of the scenario's `events`
   std::uint8_t latest_event;  // 1 + number of the hazard that began last; 0: none
   std::array<std::uint8_t, 5> reserved;
   StatusRecord read, written;  // result of the device's read and write

@@ -1,4 +1,4 @@
-// Whether the handles move: for stops and their summary.
+// Detects whether the handles move, for stops and their summary.
 #pragma once
 
 #include <array>

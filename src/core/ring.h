@@ -24,7 +24,7 @@ class RingStorage {
   void Publish(const T& value) noexcept {
     const std::uint64_t index = written_.load(std::memory_order_relaxed);
     Slot& slot = slots_[index & (N - 1)];
-    // A reader that sees a new word also sees that the slot is being written.
+    // A reader that sees a word of the new item also sees that the slot is being written.
     slot.version.store(2 * index + 1, std::memory_order_relaxed);
     std::uint64_t words[kWords] = {};
     std::memcpy(words, &value, sizeof(T));

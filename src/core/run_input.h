@@ -22,7 +22,7 @@ enum class InputKind : std::uint8_t {
   kMarker,     // from anyone, only recorded: marks this moment so that it can be found later
   kPlay,       // replay only: `value` is the speed relative to the recording; 0 pauses
   kSeek,       // replay only: moves to `value` [s] after the recording's first tick
-  kStep,       // replay only: moves by `value` ticks; negative: backwards
+  kStep,       // replay only: moves by `value` ticks; negative values move backwards
   kEnable,    // from a person at the rig, real arms: `value` is 1 while the enabling key is held, 0
               // once released
   kWatchdog,  // from the run itself: the watchdog has been silent for too long, `value` [s]

@@ -20,7 +20,7 @@ void* Map(int descriptor, std::size_t bytes, int protection) {
   if (memory == MAP_FAILED)
     throw std::runtime_error(std::string("shared memory could not be mapped: ") +
                              std::strerror(errno));
-  // A child that is only forked (process/sandboxed_call.h) must not access the run through this
+  // A child that was only forked (process/sandboxed_call.h) must not access the run through this
   // memory.
   madvise(memory, bytes, MADV_DONTFORK);
   return memory;
@@ -37,7 +37,7 @@ Shared<T>::Shared() {
         (errno == EFBIG ? ". Allow larger files: `ulimit -f unlimited`." : ""));
   memory_ = new (Map(descriptor_, sizeof(T), PROT_READ | PROT_WRITE)) T;
   // A process that receives the descriptor can neither shrink the memory that the run uses nor
-  // write a record.
+  // write records.
   int seals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
   if (std::is_same_v<T, RunBoard>) seals |= F_SEAL_FUTURE_WRITE;
   if (fcntl(descriptor_, F_ADD_SEALS, seals) != 0)

@@ -29,12 +29,12 @@ struct RunMailbox {
   InputQueue inputs;
   // Counts stop requests. It is separate from the queue, so a stop never waits behind other inputs.
   std::atomic<std::uint32_t> stops{0};
-  // Client of the last stop request; 0: none of the viewer's.
+  // Client that sent the last stop request; 0: none of the viewer's clients.
   std::atomic<std::uint32_t> stop_client{0};
   // Inputs of the viewer's clients.
   std::atomic<std::uint32_t> clients{0};
   std::atomic<std::uint32_t> immersive{0};           // headsets in an immersive session
-  std::atomic<std::uint64_t> immersive_frame_ns{0};  // monotonic clock at their last sign of life
+  std::atomic<std::uint64_t> immersive_frame_ns{0};  // monotonic clock at the headsets' last report
 };
 
 // Written by the ROS-TCP server's process and read by the run. Its clients may only request a stop.
@@ -77,7 +77,7 @@ class Shared {
 
  private:
   int descriptor_ = -1;
-  mutable int read_only_ = -1;  // opened when it is first asked for
+  mutable int read_only_ = -1;  // opened when it is first requested
   T* memory_ = nullptr;
 };
 extern template class Shared<RunBoard>;

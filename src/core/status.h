@@ -79,11 +79,11 @@ constexpr Quantity UsualQuantity(StopCause cause) {
   }
 }
 
-// How the virtual cobot's controller got its torques. Only a controller outside the program can do
-// other than compute them.
+// How the virtual cobot's controller obtained its torques. Values other than kComputed occur only
+// for a controller outside the program.
 enum class ControllerOutcome : std::uint8_t {
   kComputed,
-  kFellBack,  // it was late: gravity compensation and damping acted instead
+  kFellBack,  // the controller was late: gravity compensation and damping acted instead
   kFailed,    // no usable torques: the step was refused
 };
 inline constexpr int kControllerOutcomes = 3;
@@ -156,7 +156,7 @@ enum class Refusal : std::uint8_t {
   kHandLoaded,    // a force acts on a handle
   kNotFree,       // a force is measured although the hands must be off (or the sensor has drifted)
   kMoves,         // an arm moves: it is being guided by hand, or it sinks
-  kNotAligned,    // a handle has left its aligned pose
+  kNotAligned,    // a handle has moved away from its aligned pose
 };
 inline constexpr int kRefusals = 9;
 // A sentence for the operator that says what to do; "" for kNone.

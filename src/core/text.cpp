@@ -14,7 +14,7 @@ constexpr std::size_t kLongestName = 100;  // comparing longer words would take 
 
 char Lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
-// Optimal string alignment distance; both words at most kLongestName long.
+// Optimal string alignment distance; both words have at most kLongestName characters.
 std::size_t EditDistance(const std::string& a, const std::string& b) {
   using Row = std::array<std::size_t, kLongestName + 1>;
   Row before{}, last{}, row{};

@@ -14,25 +14,25 @@ namespace predictor {
 // would have to change. Among equals, the first one wins.
 std::string Nearest(const std::string& word, const std::vector<std::string>& candidates);
 
-// "Did you mean X?", or "Known are: a, b, c." if no candidate is close.
+// "Did you mean X?", or "The known names are: a, b, c." if no candidate is close.
 std::string Suggestion(const std::string& word, const std::vector<std::string>& candidates);
 
 // The shortest decimal number that reads back as exactly `x` ("0.1", "1e-05", "inf").
 std::string FormatNumber(double x);
 
-// Text to append to the message that refuses an angle `x` [rad] outside low … high [rad]. If `x`
-// would be within these limits in degrees, it is a sentence that says so; otherwise "".
+// Text to append to the message that refuses an angle `x` [rad] outside low … high [rad]. If `x`,
+// read as degrees, would be within these limits, it is a sentence that says so; otherwise "".
 std::string DegreesHint(double x, double low, double high);
 
-// The first character of a text in UTF-8. If it has zero bytes, the text does not begin with a
-// valid one (RFC 3629).
+// The first character of a UTF-8 text. If it has zero bytes, the text does not begin with a valid
+// character (RFC 3629).
 struct Character {
   char32_t code;
   std::size_t bytes;
 };
 Character FirstCharacter(std::string_view text);
 
-// Hash FNV-1a of a text, continued from `hash`. It does not protect against malice.
+// FNV-1a hash of a text, continued from `hash`. It does not protect against malice.
 constexpr std::uint64_t Fnv1a(std::string_view text, std::uint64_t hash = 0xcbf29ce484222325ULL) {
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
   return hash;

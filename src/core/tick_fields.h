@@ -1,6 +1,6 @@
 // The table of recorded quantities: name, unit, frame and meaning of every field of TickRecord.
 //
-// Everything that reads records by name derives from it: the schema, writer and reader of
+// Everything that reads records by name is derived from it: the schema, writer and reader of
 // recordings, the columns of `export-data`, `replay --verify`, the states sent to pages with their
 // TypeScript types, and the topics for Foxglove. To add a quantity, add the member to TickRecord,
 // its row here, and the line that fills it in.

@@ -54,8 +54,8 @@ struct Pose {
 // Pose from a position [m] and roll, pitch, yaw [rad] about the fixed axes x, y, z (as in URDF).
 Pose PoseFromXyzRpy(const Vector3& xyz, const Vector3& rpy);
 
-// Roll, pitch, yaw [rad] of a rotation, as PoseFromXyzRpy takes them. Roll is 0 if the pitch is a
-// right angle.
+// Roll, pitch and yaw [rad] of a rotation, in the convention of PoseFromXyzRpy. Roll is 0 if the
+// pitch is ±90°.
 Vector3 RpyOf(const Quaternion& q);
 
 // Rotation vector [rad], in A, that rotates `from` into `to` (both R_A·) by the shortest path.
@@ -64,7 +64,7 @@ Vector3 RotationError(const Quaternion& to, const Quaternion& from);
 // Quaternion of a rotation vector [rad].
 Quaternion RotationFromVector(const Vector3& w);
 
-// Set-point minus pose, position [m] then rotation vector [rad], both in W (impedance error).
+// Set-point minus pose: position [m], then rotation vector [rad], both in W (impedance error).
 Vector6 PoseError(const Pose& X_Wset, const Pose& X_W);
 
 // Matrix S(a) with S(a) b = a × b.

@@ -1,4 +1,4 @@
-// Factors between SI units and the units in which people read figures.
+// Factors between SI units and the units in which figures are displayed.
 #pragma once
 
 #include <numbers>

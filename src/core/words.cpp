@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// Name of the stop in the catalogue: the quantity may be more specific than the cause.
+// Name of the stop in the catalogue, which may depend on the quantity as well as the cause.
 std::string StopId(StopCause cause, Quantity quantity) {
   if (cause == StopCause::kStale && quantity == Quantity::kArmAge) return "stop.arm_stale";
   if (cause == StopCause::kStale && quantity == Quantity::kSensorAge) return "stop.sensor_stale";
@@ -91,7 +91,7 @@ std::string StopCauseWords(const TickRecord& record) {
 }
 
 std::string RefusalWords::See(const TickRecord& record) {
-  // A stop in the same tick is more informative.
+  // If the same tick decided a stop, the stop is more informative.
   if (record.refused == 0 || record.state == RunState::kStopping) return "";
   const auto why = static_cast<Refusal>(record.why_refused);
   const bool again = std::exchange(why_, why) == why && record.tick - tick_ < again_;

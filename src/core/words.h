@@ -16,7 +16,7 @@ constexpr bool SaysRestless(StopCause cause, Quantity quantity) {
          (quantity == Quantity::kSpeed || quantity == Quantity::kTime);
 }
 
-// How the operator requests motion by a key: "hold r", or, with an enabling device, "hold the
+// How the operator requests motion with a key: "hold r" or, with an enabling device, "hold the
 // enabling device and tap r".
 std::string HowToHold(char key, bool enabling_device);
 
