@@ -12,9 +12,9 @@
 namespace predictor::person {
 namespace {
 
-// A row of de Leva's table: fraction of the body's mass; centre of mass from the proximal end and
-// radii of gyration (sagittal, transverse, longitudinal axis) as fractions of the length; length at
-// the table's mean height [m].
+// A row of de Leva's table: mass as a fraction of the body's mass; centre of mass from the proximal
+// end, and radii of gyration (sagittal, transverse, longitudinal axis), as fractions of the length;
+// length at the table's mean height [m].
 struct Row {
   double mass, com;
   Vector3 radii;
@@ -22,9 +22,9 @@ struct Row {
 };
 
 struct Table {
-  double height;  // mean of the table's people [m]
+  double height;  // mean of the people in the table [m]
   Row head, upper_trunk, middle_trunk, lower_trunk, upper_arm, forearm, hand, thigh, shank, foot;
-  double shoulder_height;  // of the shoulder joints above the hip joints [m]
+  double shoulder_height;  // height of the shoulder joints above the hip joints [m]
 };
 
 // The trunk's rows are given from the cranial end and the head's row from the vertex, as in the
@@ -57,9 +57,10 @@ const Table kFemaleTable = {1.735,
 constexpr double kMinHeight = 1.2, kMaxHeight = 2.4;              // [m]
 constexpr double kMinMass = 30, kMaxMass = 250;                   // [kg]
 constexpr double kMinBodyMassIndex = 12, kMaxBodyMassIndex = 70;  // [kg/m²]
-// A measured length may differ from the estimate by these factors.
+// Range of a measured length, as factors of the estimate.
 constexpr double kMinLengthFactor = 0.7, kMaxLengthFactor = 1.4;
-// What the other lengths may leave for the head, as a fraction of the height.
+// Range of the height that the other lengths leave for the head, as a fraction of the body's
+// height.
 constexpr double kMinHeadHeight = 0.08, kMaxHeadHeight = 0.2;
 
 [[noreturn]] void Refuse(const std::string& key, const std::string& sentence) {
@@ -69,8 +70,9 @@ constexpr double kMinHeadHeight = 0.08, kMaxHeadHeight = 0.2;
 void CheckRange(const std::string& key, double value, double low, double high,
                 const std::string& unit) {
   if (value >= low && value <= high) return;
-  Refuse(key, "is " + FormatNumber(value) + " " + unit + ", but an adult has " + FormatNumber(low) +
-                  " to " + FormatNumber(high) + " " + unit + ". Give it in " + unit + ".");
+  Refuse(key, "is " + FormatNumber(value) + " " + unit + ", but for an adult it is " +
+                  FormatNumber(low) + " to " + FormatNumber(high) + " " + unit + ". Give it in " +
+                  unit + ".");
 }
 
 double Measured(const char* key, const std::optional<double>& measured, double estimate) {
@@ -93,14 +95,14 @@ Segment Make(const Row& row, double mass, double length) {
   return s;
 }
 
-// The same with a centre of mass that the table gives from the far end.
+// The same with a centre of mass that the table measures from the distal end.
 Segment FromFarEnd(const Row& row, double mass, double length) {
   Segment s = Make(row, mass, length);
   s.com = length - s.com;
   return s;
 }
 
-// Two segments along z as one; `distal` begins where `proximal` ends.
+// Combines two segments along z into one; `distal` begins where `proximal` ends.
 Segment Combine(const Segment& proximal, const Segment& distal) {
   Segment s;
   s.mass = proximal.mass + distal.mass;

@@ -9,29 +9,29 @@
 
 namespace predictor::person {
 
-// A rigid segment. Its axes, in the upright posture with hanging arms and thumbs forward: x
-// forward, y left, z up.
+// A rigid segment. Its axes in the upright posture with hanging arms and thumbs forward: x forward,
+// y left, z up.
 struct Segment {
   double mass = 0;                    // [kg]
   double length = 0;                  // [m]
-  double com = 0;                     // of the centre of mass from the proximal end [m]
-  Vector3 inertia = Vector3::Zero();  // about the centre of mass, about x, y, z [kg·m²]
+  double com = 0;                     // position of the centre of mass from the proximal end [m]
+  Vector3 inertia = Vector3::Zero();  // about the axes x, y, z through the centre of mass [kg·m²]
 };
 
-// The pelvis is de Leva's lower trunk (mid hip to omphalion), the torso his middle and upper trunk
-// (omphalion to C7). Proximal ends: of the head C7, of the torso the omphalion, of the pelvis the
-// middle of the hips, of the foot the heel.
+// The pelvis is de Leva's lower trunk (mid hip to omphalion), the torso de Leva's middle and upper
+// trunk (omphalion to C7). Proximal ends: of the head, C7; of the torso, the omphalion; of the
+// pelvis, the midpoint of the hip joints; of the foot, the heel.
 struct Anthropometry {
   double height = 0;  // [m]
   double mass = 0;    // [kg]
   Segment head, torso, pelvis, upper_arm, forearm, hand, thigh, shank, foot;
-  // Heights above the middle of the hip joints, upright [m].
+  // Heights above the midpoint of the hip joints, upright [m].
   double shoulder_height = 0, l5s1_height = 0;
-  double l5s1_behind = 0;          // of the line from the hips to C7 [m]
-  double half_shoulder_width = 0;  // of a shoulder joint from the midplane [m]
-  double half_hip_width = 0;       // of a hip joint from the midplane [m]
-  double ankle_height = 0;         // above the ground [m]
-  Vector3 eyes = Vector3::Zero();  // middle of the eyes from C7, in the axes of the head [m]
+  double l5s1_behind = 0;          // distance behind the line from the hips to C7 [m]
+  double half_shoulder_width = 0;  // distance of a shoulder joint from the midplane [m]
+  double half_hip_width = 0;       // distance of a hip joint from the midplane [m]
+  double ankle_height = 0;         // height above the ground [m]
+  Vector3 eyes = Vector3::Zero();  // midpoint of the eyes from C7, in the axes of the head [m]
 
   double hip_height() const { return ankle_height + shank.length + thigh.length; }  // [m]
 };
@@ -41,7 +41,7 @@ struct Anthropometry {
 // height R). Lengths scale with the height; inertia = m (r L)². Masses are scaled by at most 0.01 %
 // so that they sum to the person's mass. The centre of mass of the upper arm is 0.5772 (0.5754) of
 // its length from the shoulder; biobuddy measures this fraction from the elbow, Winter gives 0.436.
-// The trunk is upright and straight, so the head takes what the other lengths leave of the height.
+// The trunk is upright and straight, so the head has the height that the other lengths leave.
 // Further lengths, as fractions of the height: ankle 0.039 (Winter, R), hip joints 0.05 and
 // shoulder joints 0.105 from the midplane (D), L5/S1 0.058 above (Chaffin & Andersson: a fifth of
 // the way from hip to shoulder, R) and 0.018 behind the hips (D), eyes at 0.936 (Drillis & Contini,

@@ -17,7 +17,8 @@ struct BodyMotion {
 
 // The disc between the fifth lumbar vertebra and the sacrum, loaded by everything above it.
 struct DiscLoads {
-  double flexion_moment = 0;  // that the back muscles must produce, positive: extensors [N·m]
+  double flexion_moment = 0;  // moment that the back muscles must produce, positive: extensors
+                              // [N·m]
   double lateral_moment = 0;  // positive: the muscles bend to the left [N·m]
   double twist_moment = 0;    // about the pelvis's long axis, positive to the left [N·m]
   double compression = 0;     // [N]
@@ -27,24 +28,26 @@ struct DiscLoads {
 struct Balance {
   double ground_force = 0;  // vertical [N]
   double x = 0, y = 0;      // centre of pressure in S [m]
-  double margin = 0;        // distance from the edge of the footprint [m]; negative: falls
+  double margin = 0;        // distance from the edge of the footprint [m]; negative: the person
+                            // falls
 };
 
 struct BodyLoads {
-  BodyVector torque;    // that the muscles produce [N·m], see JointLoads
-  BodyVector overload;  // the part that the hands' wrenches cause: torque with them - without [N·m]
+  BodyVector torque;    // torque that the muscles produce [N·m], see JointLoads
+  BodyVector overload;  // part due to the hands' wrenches: torque with them minus torque without
+                        // them [N·m]
   // Magnitude of the moment that the torso exerts on each upper arm at the shoulder [N·m].
   std::array<double, kHands> shoulder_moment = {};
   DiscLoads l5s1;
   Balance balance;
 };
 
-// Single equivalent extensor (Chaffin & Andersson; marks R): the disc is perpendicular to a
-// direction in the pelvis that leans kSacralAngle forward of its long axis; compression = the force
-// along it + √(flexion² + lateral moment²) / muscle_arm, shear = the force across it, forward. The
-// muscle pulls along the compression. The abdominal pressure and co-contraction are neglected, so
-// upright standing is underestimated. Compare with 3.4 kN (NIOSH, R) and with shear of 0.7 to 1 kN
-// (Gallagher & Marras 2012, R).
+// Single equivalent extensor (Chaffin & Andersson; marks R). The disc is perpendicular to a
+// direction fixed to the pelvis, which leans kSacralAngle forward from the pelvis's long axis.
+// Compression = force along this direction + √(flexion² + lateral moment²) / muscle_arm; shear =
+// force across it, forward. The muscle pulls along the compression. Abdominal pressure and
+// co-contraction are neglected, so the loads of upright standing are underestimated. Compare with
+// 3.4 kN (NIOSH, R) and with shear of 0.7 to 1 kN (Gallagher & Marras 2012, R).
 inline constexpr double kSacralAngle = 0.698;   // 40° [rad]
 inline constexpr double kBackMuscleArm = 0.06;  // 0.05 to 0.07 [m]
 
@@ -53,7 +56,7 @@ class BodyDynamics {
   BodyDynamics(const BodyModel& model, const Stance& stance, double muscle_arm = kBackMuscleArm)
       : model_(model), stance_(stance), muscle_arm_(muscle_arm) {}
 
-  // Uses the hands' wrenches of the sample.
+  // Uses the wrenches in `sample`.
   BodyLoads Evaluate(const BodyMotion& motion, const BodySample& sample) const;
 
  private:
@@ -79,11 +82,11 @@ void ForEachBodyValue(Loads& loads, F f) {
   f("balance_margin", loads.balance.margin);
 }
 
-// Postures at the constant interval dt [s], smoothed without phase shift, with their derivatives: a
-// Butterworth filter of second order forward and backward, whose cutoff together is `cutoff` [Hz]
-// (Winter 2009: each pass 1/0.802 of it), and central differences. No delay, but the last half
-// second changes when samples are added. At most half of Nyquist's frequency is used as the cutoff.
-// Fewer than three postures have derivatives of zero.
+// Postures at the constant interval dt [s], smoothed without phase shift, with their derivatives.
+// The filter is a second-order Butterworth filter, run forward and backward, with the overall
+// cutoff `cutoff` [Hz] (Winter 2009: each pass has 1/0.802 of it), followed by central differences.
+// There is no delay, but the last half second changes when samples are added. The cutoff is at most
+// half of the Nyquist frequency. Fewer than three postures have derivatives of zero.
 std::vector<BodyMotion> SmoothMotion(std::span<const BodyVector> q, double dt, double cutoff = 6);
 
 }  // namespace predictor::person

@@ -40,7 +40,7 @@ Vector3 Along(double x, double y, double z) { return {x, y, z}; }
 const char* JointName(int joint) { return kNames[At(joint)]; }
 
 Pose GripInHand(const Anthropometry& a, int hand, GripKind kind) {
-  const double palm = hand == 0 ? -1 : 1;  // the side of the palm along y
+  const double palm = hand == 0 ? -1 : 1;  // sign of y on the palm's side
   const bool power = kind == GripKind::kPower;
   return {Vector3(0, palm * (power ? 0.025 : 0.02), -(power ? 0.9 : 1.2) * a.hand.length),
           Quaternion::Identity()};
@@ -63,7 +63,7 @@ void BodyModel::Carry(int joint, const Segment& segment, const Vector3& com) {
   j.com = com;
 }
 
-// Limits of the torso: reference R; of neck and pelvis: D.
+// Limits of the torso: reference (R); of neck and pelvis: D.
 void BodyModel::AddTrunk() {
   const Anthropometry& a = anthropometry_;
   const Vector3 none = Vector3::Zero(), x = Vector3::UnitX(), y = Vector3::UnitY(),
@@ -87,12 +87,12 @@ void BodyModel::AddTrunk() {
   Carry(kNeckTwist, a.head, {0, 0, a.head.com});
 }
 
-// Limits: rotation, pronation and deviation of the MyoArm model (V); elbow to 2.5 (D); wrist
-// flexion clinical (R); shoulder flexion clinical (R); abduction stops short of the sequence's
-// singularity (D).
+// Limits: rotation, pronation and deviation from the MyoArm model (V); elbow up to 2.5 rad (D);
+// wrist flexion clinical (R); shoulder flexion clinical (R); abduction ends before the singularity
+// of the sequence (D).
 void BodyModel::AddArm(int hand) {
   const Anthropometry& a = anthropometry_;
-  const double side = hand == 0 ? 1 : -1;  // the arm's side along y
+  const double side = hand == 0 ? 1 : -1;  // sign of y on the arm's side
   const auto at = [&](ArmJoint joint) { return Of(hand, joint); };
   const Vector3 none = Vector3::Zero();
   const Vector3 shoulder(a.l5s1_behind, side * a.half_shoulder_width,

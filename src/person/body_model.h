@@ -1,8 +1,8 @@
 // The body as a tree of rigid segments: joints, kinematics, inverse dynamics.
 //
-// The body is described in S, the frame on the ground between the feet: x the direction in which
-// the person faces, y left, z up. S does not move. In the zero posture the person stands upright
-// with hanging arms and the thumbs forward, and the axes of all segments are those of S.
+// The body is described in S, the frame on the ground between the feet: x is the direction that the
+// person faces, y points left, z up. S does not move. In the zero posture, the person stands
+// upright with hanging arms and the thumbs forward, and the axes of all segments are those of S.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@
 
 namespace predictor::person {
 
-// Joints, in the order in which they follow each other. The first six are the pelvis in S. A joint
-// moves all that come after it in its chain; arms and neck begin at the torso.
+// Joints, in order along the chains. The first six are those of the pelvis in S. A joint moves all
+// joints after it in its chain; arms and neck begin at the torso.
 enum Joint : int {
   kPelvisX,       // forward [m]
   kPelvisY,       // left [m]
   kPelvisZ,       // up; 0 with straight legs [m]
-  kPelvisYaw,     // positive to the left [rad], as all below
+  kPelvisYaw,     // positive to the left [rad], like all joints below
   kPelvisTilt,    // positive forward
   kPelvisList,    // positive to the right
   kTorsoFlexion,  // at L5/S1, positive forward
@@ -35,8 +35,8 @@ inline constexpr int kArmJoints = 7;
 inline constexpr int kRightArm = kLeftArm + kArmJoints;
 inline constexpr int kBodyJoints = kRightArm + kArmJoints;
 
-// Joints of an arm; Of() gives their place in the body. The shoulder is a sequence of flexion,
-// abduction and rotation, which is singular at an abduction of 90° and not for a hanging upper arm.
+// Joints of an arm; Of() gives their index in the body. The shoulder is a sequence of flexion,
+// abduction and rotation. It is singular at an abduction of 90°, but not for a hanging upper arm.
 enum class ArmJoint : int {
   kShoulderFlexion,    // positive forward
   kShoulderAbduction,  // positive away from the body
@@ -44,7 +44,7 @@ enum class ArmJoint : int {
   kElbowFlexion,       // 0 straight
   kPronation,          // 0 with the thumb forward (up, if the elbow is bent), positive palm down
   kWristFlexion,       // positive towards the palm
-  kWristDeviation,     // positive to the ulnar side (the little finger)
+  kWristDeviation,     // positive to the ulnar side (that of the little finger)
 };
 constexpr int Of(int hand, ArmJoint joint) {
   return (hand == 0 ? static_cast<int>(kLeftArm) : kRightArm) + static_cast<int>(joint);
@@ -58,11 +58,11 @@ constexpr bool IsPrismatic(int joint) { return joint <= kPelvisZ; }
 using BodyVector = Eigen::Matrix<double, kBodyJoints, 1>;
 using BodyJacobian = Eigen::Matrix<double, 6, kBodyJoints>;
 
-// A joint, and the segment that it moves. Only the last of several joints at one place carries
-// mass.
+// A joint, and the segment that it moves. If several joints are at the same place, only the last
+// one carries mass.
 struct BodyJoint {
-  int parent = -1;                   // joint; -1: S
-  Vector3 offset = Vector3::Zero();  // of this joint in the parent's frame [m]
+  int parent = -1;                   // parent joint; -1: S
+  Vector3 offset = Vector3::Zero();  // position of this joint in the parent's frame [m]
   Vector3 axis = Vector3::Zero();
   double lower = 0, upper = 0;        // [rad] or [m]
   double mass = 0;                    // [kg]
@@ -71,8 +71,9 @@ struct BodyJoint {
 };
 
 // The grip frame G in the axes of the hand: x along the bar towards the thumb, z from the knuckles
-// to the wrist. Its origin is the centre of the bar: power grip 0.9 of the hand's length from the
-// wrist and 0.025 m on the palm's side; hook grip 1.2 of the length and 0.02 m (D).
+// to the wrist. Its origin is the centre of the bar: in a power grip, 0.9 of the hand's length from
+// the wrist and 0.025 m from it on the palm's side; in a hook grip, 1.2 of the length and 0.02 m
+// (D).
 Pose GripInHand(const Anthropometry& a, int hand, GripKind kind);
 
 class BodyModel {
@@ -114,19 +115,19 @@ Placement Place(const BodyModel& model, const BodyVector& q);
 // `joint`.
 BodyJacobian JacobianAt(const BodyModel& model, const Placement& at, int joint, const Vector3& p);
 
-// A wrench that acts on the body from outside, at the point p of S, in the axes of S.
+// An external wrench on the body, about the point p of S, in the axes of S.
 struct ExternalWrench {
-  int joint = 0;  // that moves with the segment on which it acts
+  int joint = 0;  // joint that moves with the segment on which the wrench acts
   Vector3 p = Vector3::Zero();
   Wrench F = Wrench::Zero();
 };
 
 struct JointLoads {
-  // Generalised forces of the joints [N·m, of the pelvis's positions N]: what the muscles must
+  // Generalised forces of the joints [N·m; N for the pelvis's translations]: what the muscles must
   // produce, positive in the direction of the joint. The first six are the legs' action on the
   // pelvis.
   BodyVector torque;
-  // Force [N] and moment [N·m] that the inner segment exerts on the outer one at each joint's
+  // Force [N] and moment [N·m] that the inner segment exerts on the outer segment at each joint's
   // origin, in the axes of S.
   std::array<Vector3, kBodyJoints> force, moment;
 };
@@ -137,7 +138,7 @@ JointLoads InverseDynamics(const BodyModel& model, const BodyVector& q, const Bo
                            const BodyVector& a, std::span<const ExternalWrench> wrenches,
                            double gravity = kStandardGravity);
 
-// The body as a MuJoCo model, with the joints' names and order of this file. The legs stand upright
+// The body as a MuJoCo model, with the joints' names and order in this file. The legs stand upright
 // and do not move.
 std::string MjcfOf(const BodyModel& model);
 

@@ -9,46 +9,46 @@
 
 namespace predictor::person {
 
-// Where the person stands. S: on the ground between the feet, x in the direction that the person
-// faces, z up.
+// Where the person stands. S: origin on the ground between the feet, x in the direction that the
+// person faces, z up.
 struct Stance {
   Pose X_WS;
-  double width = 0.25;  // between the ankles [m]
+  double width = 0.25;  // distance between the ankles [m]
 };
-// Stance at the point `ground` of W [m] and with the person facing `direction` (its horizontal part
-// counts). Throws InputError if that part is zero, or if the width is not within 0 to 1 m.
+// Stance at the point `ground` of W [m]; the person faces `direction` (only its horizontal part
+// counts). Throws InputError if that part is zero, or if the width is outside 0 to 1 m.
 Stance StanceAt(const Vector3& ground, const Vector3& direction, double width = 0.25);
 // The stance of a scenario.
 Stance StanceOf(const StanceSpec& spec);
 
-// How a hand holds its handle D: pose of the grip frame G (see GripInHand).
+// How a hand holds its handle D: the pose of the grip frame G (see GripInHand).
 struct Grip {
   GripKind kind = GripKind::kPower;
   Pose X_DG;
-  // The hand may have closed at any angle about the bar (x of G), and the bar may lie obliquely in
-  // it, so that these angles follow from the arm's comfort.
+  // True if the hand may have closed at any angle about the bar (x of G) and the bar may lie
+  // obliquely in it; the arm's comfort then determines these angles.
   bool turns = true;
 };
-// X_DG of a hand that holds a bar along `bar` (towards the thumb) at D's origin, with the wrist in
-// the direction `wrist` from there, both in D. Throws InputError if they are parallel.
+// X_DG of a hand that holds a bar in the direction `bar` (towards the thumb) at D's origin, with
+// the wrist in the direction `wrist` from there, both in D. Throws InputError if they are parallel.
 Pose GripOn(const Vector3& bar, const Vector3& wrist);
 
 struct HandSample {
   bool present = false;  // the hand holds the handle
-  Pose X_WD;             // of the handle
-  // That the hand exerts on the handle, about D's origin, in the axes of W. The hand itself feels
-  // the opposite.
+  Pose X_WD;             // pose of the handle
+  // Wrench of the hand on the handle, about D's origin, in the axes of W. The hand itself feels the
+  // opposite.
   Wrench F_D_W = Wrench::Zero();
 };
 
 struct BodySample {
   double time = 0;  // [s]
   std::array<HandSample, kHands> hands;
-  std::optional<Pose> X_WHead;                               // of the eyes, x forward, z up
+  std::optional<Pose> X_WHead;                               // frame at the eyes, x forward, z up
   std::array<std::optional<Vector3>, kHands> p_WElbow = {};  // elbow joints [m]
 };
 
-// External wrenches on the body of a sample's hands, in S.
+// External wrenches on the body due to the sample's hands, in S.
 std::array<ExternalWrench, kHands> WrenchesOn(const BodySample& sample, const Stance& stance);
 
 }  // namespace predictor::person

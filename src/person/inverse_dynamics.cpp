@@ -7,7 +7,7 @@ namespace {
 struct Motion {
   Vector3 w = Vector3::Zero();      // angular velocity [rad/s]
   Vector3 alpha = Vector3::Zero();  // angular acceleration [rad/s²]
-  Vector3 a = Vector3::Zero();      // acceleration of the origin, less gravity [m/s²]
+  Vector3 a = Vector3::Zero();      // acceleration of the origin, minus gravity [m/s²]
 };
 
 // Motion of a joint's frame from its parent's. r: from the parent's origin [m, in S].

@@ -1,4 +1,5 @@
-// The legs, which are not part of the body's tree: from the pelvis to feet that stay on the ground.
+// The legs, which are not part of the body's tree: from the pelvis to the feet, which stay on the
+// ground.
 #pragma once
 
 #include <array>
@@ -13,18 +14,18 @@ struct BodyLegs {
   // Hip, knee and ankle of each leg, in S [m].
   std::array<std::array<Vector3, 3>, kHands> joints;
   std::array<double, kHands> knee_flexion = {};  // 0 straight [rad]
-  // How much farther the hip joints are from the ankles than the legs are long [m]; 0 if they
-  // reach.
+  // Amount by which the distance from hip joints to ankles exceeds the length of the legs [m]; 0 if
+  // the legs reach.
   double stretched = 0;
 };
 
-// Legs from the hip joints to ankles at ± width / 2 [m], below the zero posture's hips. Thigh and
-// shank form a triangle in the plane through hip and ankle that contains the pelvis's forward axis.
-// The feet are flat. Mass of the legs acts by its weight only; it has no inertia.
+// Legs from the hip joints to ankles at ± width / 2 [m], below the hips of the zero posture. Thigh
+// and shank form a triangle in the plane through hip and ankle that contains the pelvis's forward
+// axis. The feet are flat. The mass of the legs contributes only its weight, no inertia.
 BodyLegs LegsOf(const BodyModel& model, const BodyVector& q, double width);
 
-// The rectangle around both feet, parallel in the direction x of S: the ankle is 0.25 of the foot's
-// length before the heel, and the foot is 0.055 of the height wide (Drillis & Contini, R).
+// The rectangle around both feet, which are parallel to x of S: the heel is 0.25 of the foot's
+// length behind the ankle, and the foot is 0.055 of the height wide (Drillis & Contini, R).
 struct Footprint {
   double back = 0, front = 0, half_width = 0;  // x = back ... front, |y| ≤ half_width [m]
   // Distance of (x, y) from the nearest edge [m], positive inside.

@@ -22,7 +22,8 @@ std::string JointElement(const BodyModel& model, int i) {
          FormatNumber(joint.lower) + " " + FormatNumber(joint.upper) + "\"/>\n";
 }
 
-// Opens the body of the joints first ... last, which are at one place. The last carries the mass.
+// Opens the body of the joints first ... last, which are at the same place. The last one carries
+// the mass.
 std::string Open(const BodyModel& model, const char* name, int first, int last) {
   std::string text =
       std::string("<body name=\"") + name + "\" pos=" + Text(model.joint(first).offset) + ">\n";

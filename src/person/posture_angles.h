@@ -1,4 +1,4 @@
-// Angles of a posture as ergonomic worksheets ask for them.
+// Angles of a posture as ergonomic worksheets define them.
 #pragma once
 
 #include <array>
@@ -8,34 +8,35 @@
 namespace predictor::person {
 
 struct ArmAngles {
-  // Of the upper arm against the torso, in the torso's midplane: 0 along the torso, positive
+  // Angle of the upper arm to the torso, in the torso's midplane: 0 along the torso, positive
   // forward, negative behind (RULA and REBA: flexion, extension) [rad].
   double upper_arm_flexion = 0;
-  // Of the upper arm out of the torso's midplane, positive away from the body [rad].
+  // Angle of the upper arm to the torso's midplane, positive away from the body [rad].
   double upper_arm_abduction = 0;
-  // Of the upper arm against the vertical, 0 hanging ... π up (ISO 11226) [rad].
+  // Angle of the upper arm to the vertical, 0 hanging ... π up (ISO 11226) [rad].
   double upper_arm_elevation = 0;
   double upper_arm_rotation = 0;  // about its own axis, positive inward [rad]
   double elbow_flexion = 0;       // 0 straight [rad]
   double wrist_flexion = 0;       // positive towards the palm, negative extension [rad]
   double wrist_deviation = 0;     // positive ulnar, negative radial [rad]
   double forearm_twist = 0;       // 0 with the thumb up, positive pronation (palm down) [rad]
-  // Of the knuckles from the torso's midplane to the arm's own side [m]: negative if the forearm
-  // crosses the midline; beyond the shoulder's distance if it is out to the side.
+  // Distance of the knuckles from the torso's midplane, towards the arm's own side [m]: negative if
+  // the forearm crosses the midline; larger than the shoulder's distance if the forearm is out to
+  // the side.
   double hand_beside_midline = 0;
-  // The same less the distance of the shoulder joint: positive out to the side [m].
+  // The same minus the distance of the shoulder joint: positive out to the side [m].
   double hand_beside_shoulder = 0;
 };
 
-// The shoulder girdle does not move in this model: a raised shoulder cannot be seen.
+// The shoulder girdle does not move in this model, so a raised shoulder cannot be detected.
 struct PostureAngles {
   std::array<ArmAngles, kHands> arms;
-  // Of the torso against the vertical in the direction that the pelvis faces, positive forward,
-  // negative extension [rad].
+  // Angle of the torso to the vertical in the direction that the pelvis faces, positive forward,
+  // negative: extension [rad].
   double trunk_flexion = 0;
-  double trunk_side_bend = 0;  // of the torso from the vertical, positive to the right [rad]
-  double trunk_twist = 0;      // of the torso against the pelvis, positive to the left [rad]
-  double neck_flexion = 0;     // of the head against the torso, positive forward [rad]
+  double trunk_side_bend = 0;  // of the torso to the vertical, positive to the right [rad]
+  double trunk_twist = 0;      // of the torso relative to the pelvis, positive to the left [rad]
+  double neck_flexion = 0;     // of the head relative to the torso, positive forward [rad]
   double neck_side_bend = 0;   // positive to the right [rad]
   double neck_twist = 0;       // positive to the left [rad]
   std::array<double, kHands> knee_flexion = {};  // 0 straight [rad]

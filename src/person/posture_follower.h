@@ -1,4 +1,4 @@
-// A posture that follows the handles, within the control loop's rules.
+// A posture that follows the handles, under the rules of the control loop.
 #pragma once
 
 #include <memory>
@@ -9,9 +9,9 @@ namespace predictor::person {
 
 inline constexpr int kFollowIterations = 5;
 
-// Takes a few steps of the solver's first stage at a time, so that its cost is bounded. The hands
-// are not brought exactly to the handles: comfort costs a few millimetres, and more while the
-// handles move fast.
+// Performs a few steps of the solver's first stage at a time, so its cost is bounded. The hands do
+// not reach the handles exactly: comfort costs a few millimetres, and more while the handles move
+// fast.
 class PostureFollower {
  public:
   // Allocates all memory.

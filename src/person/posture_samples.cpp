@@ -9,11 +9,11 @@
 namespace predictor::person {
 namespace {
 
-// Standard normal numbers of one person: of the prior, of the body, and of the back muscle.
+// Standard normal numbers of one person: for the prior, the body and the back muscle.
 constexpr int kDraws = kPriorVariations + kBodyVariations + 1;
 
-// Antithetic pairs: each second person has the opposite numbers of the one before, so that no
-// quantity has a mean other than its nominal value.
+// Antithetic pairs: every second person has the negated numbers of the previous one, so the mean of
+// each varied parameter is its nominal value.
 std::vector<std::array<double, kDraws>> DrawPersons(std::uint64_t seed) {
   std::vector<std::array<double, kDraws>> z(kPostureSamples);
   RandomStream random(seed, "posture");
@@ -59,7 +59,7 @@ void ForEachLoad(BodyLoads& loads, F f) {
 }  // namespace
 
 Interval IntervalOf(std::span<double> values) {
-  if (values.empty()) throw std::invalid_argument("The interval of no values.");
+  if (values.empty()) throw std::invalid_argument("There are no values for an interval.");
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
   const std::size_t outside = n >= 20 ? n / 20 - 1 : 0;

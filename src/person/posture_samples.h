@@ -1,4 +1,4 @@
-// How uncertain posture and loads are: two hands and a head do not determine a body.
+// The uncertainty of posture and loads: two hands and a head do not determine a body's posture.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,15 @@ namespace predictor::person {
 // Standard deviations of everything that must be assumed (all D; a swivel of ±15° is the
 // reference's).
 struct PostureSpread {
-  double swivel = 0.262;           // of each elbow (15°), half of it common to both [rad]
+  double swivel = 0.262;           // of each elbow (15°); half of it is common to both [rad]
   double pelvis_forward = 0.03;    // [m]
   double pelvis_sideways = 0.02;   // [m]
   double pelvis_tilt = 0.087;      // 5° [rad]
   double spine_share = 0.7;        // of the logarithm of the weights of torso, pelvis and lowering
   double neck = 0.26;              // 15° [rad]
   double comfort = 0.12;           // of each arm joint's comfort [rad]
-  double length = 0.05;            // of each segment's length that is not measured, as a fraction
+  double length = 0.05;            // of the length of each segment that is not measured, as a
+                                   // fraction
   double segment_mass = 0.05;      // of each segment's share of the mass, as a fraction
   double back_muscle_arm = 0.006;  // [m]
 };
@@ -30,12 +31,12 @@ struct PostureSpread {
 // with probability 59/65 = 0.91.
 inline constexpr int kPostureSamples = 64;
 
-// Median and the interval of 90 % of one value.
+// Median and 90 % interval of one value.
 struct Interval {
   double median = 0, low = 0, high = 0;
 };
-// The median, and the ⌊n/20⌋-th smallest and largest (of 64: the third). `values` is reordered.
-// Throws std::invalid_argument if it is empty.
+// The median, and the ⌊n/20⌋-th smallest and largest value (of 64: the third). `values` is
+// reordered. Throws std::invalid_argument if it is empty.
 Interval IntervalOf(std::span<double> values);
 
 // One possible person.
@@ -52,14 +53,14 @@ struct Range {
 };
 
 struct SampledBody {
-  std::vector<SampledPosture> samples;  // kPostureSamples; the same persons at every time
+  std::vector<SampledPosture> samples;  // kPostureSamples of them; the same persons at every time
   Range<PostureAngles> angles;
   Range<BodyLoads> loads;
-  int reached = 0;  // samples whose hands reach the handles
+  int reached = 0;  // number of samples whose hands reach the handles
 };
 
 // Draws kPostureSamples persons once, in pairs of opposite deviations, and evaluates all of them at
-// each time: common random numbers.
+// each time (common random numbers).
 class PostureSampler {
  public:
   PostureSampler(const BodySpec& spec, const Stance& stance, const std::array<Grip, kHands>& grips,
@@ -67,7 +68,7 @@ class PostureSampler {
                  std::uint64_t seed = 1);
 
   // `nominal` is the motion of the nominal posture. Its velocities and accelerations are used for
-  // all samples, whose posture is solved for this time alone, starting at the nominal one.
+  // all samples. Their postures are solved for this time alone, starting from the nominal posture.
   SampledBody Evaluate(const BodySample& sample, const BodyMotion& nominal) const;
   // The same for one of the kPostureSamples persons.
   SampledPosture EvaluatePerson(std::size_t i, const BodySample& sample,
@@ -84,16 +85,16 @@ class PostureSampler {
   std::vector<Person> persons_;
 };
 
-// A person whose posture differs: the prior's comfort, swivel and weights change by `spread` times
-// kPriorVariations standard normal numbers.
+// A person with a different posture: the prior's comfort, swivel and weights change by `spread`
+// times kPriorVariations standard normal numbers.
 inline constexpr int kPriorVariations = 3 + 4 + 4 + 2 + kHands * kArmJoints;
 PosturePrior VariedPrior(const PosturePrior& prior, std::span<const double> z,
                          const PostureSpread& spread);
 
-// A person whose lengths and masses differ: factor 1 + spread · z for each segment (z: 9 standard
-// normal numbers for upper arm, forearm, hand, shoulder distance, trunk, and the masses of torso,
-// upper arm, forearm, hand). Lengths that are measured in `spec` stay. The mass of the whole body
-// stays: the pelvis takes the difference.
+// A person with different lengths and masses: each segment has the factor 1 + spread · z (z: 9
+// standard normal numbers for upper arm, forearm, hand, shoulder distance, trunk, and the masses of
+// torso, upper arm, forearm, hand). Lengths that are measured in `spec` are unchanged. The mass of
+// the whole body is unchanged: the pelvis takes the difference.
 Anthropometry VariedBody(const BodySpec& spec, std::span<const double> z, double length,
                          double mass);
 inline constexpr int kBodyVariations = 9;

@@ -7,7 +7,7 @@ namespace predictor::person {
 namespace {
 
 constexpr double kElbowWeight = 1;    // [1/m²]
-constexpr double kHeadWeight = 0.3;   // [1/m²], and times kRotationLength² [1/rad²]
+constexpr double kHeadWeight = 0.3;   // [1/m²]; times kRotationLength² [1/rad²]
 constexpr double kDifference = 1e-6;  // of numerical differentiation [m]
 
 // Points of an arm in S [m].
@@ -15,8 +15,9 @@ struct ArmPoints {
   Vector3 shoulder, elbow, wrist;
 };
 
-// Displacement of the elbow [m] outward about the line from shoulder to wrist that is missing to
-// `swivel` [rad]. It fades where the direction from which the angle counts is along that line.
+// Displacement of the elbow [m] outward about the line from shoulder to wrist that is needed to
+// reach `swivel` [rad]. It fades where the reference direction of the angle is parallel to that
+// line.
 double MissingSwivel(const ArmPoints& arm, int hand, double swivel) {
   const double side = hand == 0 ? 1 : -1;
   const Vector3 line = arm.wrist - arm.shoulder;
@@ -25,7 +26,7 @@ double MissingSwivel(const ArmPoints& arm, int hand, double swivel) {
   const double radius = radial.norm();
   if (!(radius > 1e-9)) return 0;
   const Vector3 behind_down(-0.5, 0, -std::sqrt(0.75));
-  const Vector3 down = behind_down - n * behind_down.dot(n);  // its length is the fading
+  const Vector3 down = behind_down - n * behind_down.dot(n);  // its length fades
   const Vector3 goal = std::cos(swivel) * down + std::sin(swivel) * side * n.cross(down);
   return goal.dot(n.cross(radial));
 }
@@ -184,7 +185,7 @@ void PostureTasks::Judge(Posture* posture) const {
       posture->oblique[k] = 2 * std::asin(std::min(1.0, posture->rotation_error[k] / 2));
       posture->rotation_error[k] = std::max(0.0, posture->oblique[k] - kMaxOblique);
     }
-    // Also false for measurements that are not finite.
+    // Also false if measurements are not finite.
     if (!(posture->position_error[k] <= 1e-6 && posture->rotation_error[k] <= 1e-6))
       posture->reached = false;
   }

@@ -1,4 +1,4 @@
-// The places of the joints, for pictures of the body.
+// The positions of the joints, for pictures of the body.
 #pragma once
 
 #include <array>
@@ -21,6 +21,6 @@ struct Skeleton {
   std::array<SkeletonSide, kHands> sides;
 };
 
-// `width`: between the ankles [m], see LegsOf.
+// `width`: distance between the ankles [m], see LegsOf.
 Skeleton SkeletonOf(const BodyModel& model, const BodyVector& q, double width);
 }  // namespace predictor::person

@@ -14,7 +14,7 @@ void FilterForward(double cutoff, double dt, std::vector<BodyVector>* q) {
   for (BodyVector& x : *q) x = filter.Update(x);
 }
 
-// `q` continued by `n` samples on either side, each end mirrored through its point.
+// `q` extended by `n` samples on either side, by point reflection about its ends.
 std::vector<BodyVector> Continued(std::span<const BodyVector> q, std::size_t n) {
   std::vector<BodyVector> all;
   all.reserve(q.size() + 2 * n);
@@ -30,7 +30,7 @@ std::vector<BodyMotion> SmoothMotion(std::span<const BodyVector> q, double dt, d
   std::vector<BodyMotion> motion(q.size());
   for (std::size_t i = 0; i < q.size(); ++i) motion[i].q = q[i];
   if (q.size() < 3) return motion;
-  // The effect of an end dies out within about 0.5 s.
+  // The effect of the ends vanishes within about 0.5 s.
   const std::size_t margin = std::min(
       q.size() - 1, static_cast<std::size_t>(std::ceil(3 / (std::max(cutoff, 1e-3) * dt))));
   std::vector<BodyVector> all = Continued(q, margin);

@@ -93,11 +93,13 @@ TEST(Anthropometry, RefusesWhatNoAdultHas) {
   legs.thigh = 0.58;
   legs.shank = 0.58;
   nan.height = std::nan("");
-  EXPECT_EQ(Refusal(giant), "height|height is 5 m, but an adult has 1.2 to 2.4 m. Give it in m.");
+  EXPECT_EQ(Refusal(giant),
+            "height|height is 5 m, but for an adult it is 1.2 to 2.4 m. Give it in m.");
   EXPECT_EQ(Refusal(feather),
             "mass|mass is 31 kg at a height of 1.75 m, which is a body-mass index of 10.1 kg/m². "
             "Check both; 12 to 70 kg/m² is possible.");
-  EXPECT_EQ(Refusal(stone), "mass|mass is 400 kg, but an adult has 30 to 250 kg. Give it in kg.");
+  EXPECT_EQ(Refusal(stone),
+            "mass|mass is 400 kg, but for an adult it is 30 to 250 kg. Give it in kg.");
   EXPECT_EQ(
       Refusal(arm),
       "upper_arm|upper_arm is 28 m, but 0.198 to 0.396 m is possible for this height. Measure "
