@@ -38,7 +38,7 @@ CensoredValue CensoredQuantile(std::span<const CensoredValue> values, double pro
   const double of_bounds = Quantile(bounds, probability);
   if (std::ranges::none_of(values, &CensoredValue::at_least)) return {of_bounds, false};
   constexpr double kRounding = 1e-12;
-  double below = of_bounds;  // the quantile is not smaller
+  double below = of_bounds;  // the quantile is at least this value
   for (const SurvivalStep& step : KaplanMeier(values)) {
     if (step.share_above <= 1 - probability + kRounding) return {step.value, false};
     below = std::max(below, step.value);

@@ -1,4 +1,4 @@
-// Statistics of values of which some are only known to be at least as large as observed.
+// Statistics of values some of which are only known to be at least as large as observed.
 //
 // The emulator stops a run at its limit of force. The largest force of such a run is a lower bound
 // of what the person would have felt without the stop: a right-censored observation.
@@ -13,27 +13,27 @@ namespace predictor {
 
 struct CensoredValue {
   double value = 0;
-  bool at_least = false;  // the true value is not known, but not smaller
+  bool at_least = false;  // the true value is at least this large
 };
 
 // The product-limit estimate of Kaplan & Meier (1958), J. Am. Stat. Assoc. 53, 457–481.
 struct SurvivalStep {
-  double value = 0;           // at which values were observed exactly
-  std::size_t at_risk = 0;    // values and bounds that are not smaller
-  std::size_t observed = 0;   // exactly here
+  double value = 0;           // at which exact values were observed
+  std::size_t at_risk = 0;    // number of values and bounds that are not smaller
+  std::size_t observed = 0;   // number of exact values here
   double share_above = 1;     // estimated probability of a larger value
   double standard_error = 0;  // of share_above, by Greenwood's formula
 };
 
-// The steps in ascending order. A bound that equals an observed value counts as larger than it, as
-// usual. The estimate assumes that whether a value is censored does not depend on what it would
-// have become: true for a stop at a fixed limit, doubtful for other stops.
+// The steps in ascending order. By convention, a bound that equals an observed value counts as
+// larger than it. The estimate assumes that whether a value is censored does not depend on what the
+// value would have been: true for a stop at a fixed limit, doubtful for other stops.
 std::vector<SurvivalStep> KaplanMeier(std::span<const CensoredValue> values);
 
 // The smallest observed value that is exceeded by a share of at most 1 − probability. If too many
-// values are censored for that, the estimate ends below it. The result is then a lower bound: the
-// quantile of all values as they are (Quantile), or the largest exact value if that is larger.
-// Without censored values, the result is Quantile. kUndefined without values.
+// values are censored, the estimate does not reach this probability. The result is then a lower
+// bound: the quantile of all values, censored or not (Quantile), or the largest exact value if that
+// is larger. Without censored values, the result is Quantile. kUndefined without values.
 CensoredValue CensoredQuantile(std::span<const CensoredValue> values, double probability);
 
 // "31.2 N", or "at least 31.2 N".

@@ -18,7 +18,7 @@ EventLog::EventLog(const Scenario& scenario) {
 }
 
 void EventLog::Add(const TickRecord& record) {
-  if (record.run_time < run_time_) {  // a reset
+  if (record.run_time < run_time_) {  // after a reset
     for (EventSummary& event : events_) {
       event.begin.reset(), event.end.reset(), event.until_stop.reset();
       event.force = event.torque = event.speed = {};

@@ -1,4 +1,4 @@
-// The events of a scenario in a run, and what the hands felt after them, from its records.
+// The events of a scenario in a run, and what the hands felt after them, derived from its records.
 #pragma once
 
 #include <array>
@@ -13,12 +13,13 @@ namespace predictor {
 
 struct EventSummary {
   std::string event;            // name of the hazard
-  std::string meaning;          // what happens, in words
+  std::string meaning;          // what happens, as text
   std::optional<double> begin;  // run time at which it began [s]; empty: it did not begin
   std::optional<double> end;    // run time at which it ended [s]
-  // Largest values of a hand from its beginning to the end of RUN.
+  // Largest values of a hand from the beginning of the event to the end of RUN.
   std::array<double, kHands> force = {}, torque = {}, speed = {};  // [N], [N·m], [m/s]
-  std::optional<double> until_stop;  // from its beginning to the emulator's next stop [s]
+  std::optional<double> until_stop;  // from the beginning of the event to the emulator's next stop
+                                     // [s]
 };
 
 struct CobotStopSummary {
@@ -32,7 +33,7 @@ class EventLog {
   explicit EventLog(const Scenario& scenario);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // In the order of the scenario.
+  // In the order of the scenario's events.
   const std::vector<EventSummary>& events() const { return events_; }
   // The first protective stop of the virtual cobot itself.
   const std::optional<CobotStopSummary>& cobot_stop() const { return cobot_stop_; }

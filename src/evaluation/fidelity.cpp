@@ -12,7 +12,7 @@ namespace predictor {
 namespace {
 
 constexpr std::size_t kPoints = 400;      // points per cycle when cycles are compared by phase
-constexpr std::size_t kLeastCycles = 2;   // with fewer cycles nothing is repeated
+constexpr std::size_t kLeastCycles = 2;   // with fewer cycles, there are no repeats
 constexpr double kLongestLag = 0.25;      // share of a cycle or of the run
 constexpr double kSegment = 8;            // segment of Welch's estimate without cycles [s]
 constexpr double kEdge = 1e-6;            // rounding tolerance as a share of a step
@@ -37,7 +37,7 @@ std::vector<Run> RunsOf(std::span<const FidelitySignals> all) {
   std::vector<Run> runs;
   for (const FidelitySignals& signals : all) {
     if (static_cast<double>(LengthOf(signals)) < kFidelityRate)
-      throw InputError("A run is shorter than a second: there is nothing to compare.");
+      throw InputError("A run is shorter than one second, which is too short to compare.");
     Run run{&signals, CyclePhase(signals.path_x, signals.path_y), 0};
     run.cycles = CyclesIn(run.phase);
     runs.push_back(std::move(run));
@@ -50,7 +50,7 @@ bool GoRound(const std::vector<Run>& runs) {
                      [](const Run& run) { return run.cycles >= kLeastCycles; });
 }
 
-// Mean time of the compared cycles [s].
+// Mean duration of the compared cycles [s].
 double PeriodOf(const Run& run, std::size_t cycles) {
   const double samples =
       PlaceOfPhase(run.phase, static_cast<double>(cycles)) - PlaceOfPhase(run.phase, 0);
@@ -213,8 +213,8 @@ void FidelityCollector::Add(const TickRecord& record) {
   if (!record.ran || !(record.run_time >= 0)) return;
   if (!(record.run_time < kLongestRun))
     throw InputError(
-        "A run says that it lasted longer than six hours: that is too long to be "
-        "compared, or its times are damaged. Compare a shorter one.");
+        "The times of a run span more than six hours: either the run is too long to be compared, "
+        "or its times are damaged. Compare a shorter one.");
   if (record.run_time < last_time_) steps_.clear(), present_ = {};
   last_time_ = record.run_time;
   const auto step = static_cast<std::size_t>(record.run_time * kFidelityRate + kEdge);
@@ -282,8 +282,8 @@ FidelityReport CompareFidelity(std::span<const FidelitySignals> a,
       ComparePerceived(a[0], PartsOf(runs_a[0], alignment), b[0], PartsOf(runs_b[0], alignment));
   if (std::any_of(report.perceived.begin(), report.perceived.end(), ErrorUnknown))
     report.warnings.emplace_back(
-        "With fewer than two cycles of each run the standard errors are not known: what would be "
-        "felt is judged by two single figures.");
+        "A run has fewer than two cycles, so the standard errors are not known: what would be felt "
+        "is judged from single values.");
   return report;
 }
 

@@ -28,7 +28,7 @@ struct FidelitySignals {
   std::vector<FidelityChannel> channels;
   // Horizontal path of the object in W [m], by which cycles are counted. May be empty.
   std::vector<double> path_x, path_y;
-  std::size_t filled = 0;  // samples without a record, which are interpolated
+  std::size_t filled = 0;  // number of samples without a record, which are interpolated
 };
 // The channel of this name; null if no channel has it.
 const FidelityChannel* FindChannel(const FidelitySignals& signals, const std::string& name);

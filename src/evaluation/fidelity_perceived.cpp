@@ -57,9 +57,10 @@ std::span<const double> Part(const std::vector<double>& samples, const SampleRan
 // sign.
 constexpr double kLed = 5e-3;
 
-// Smooths with w = (1 − cos)² and differentiates by partial integration: the means of x' and x''
-// under w equal those of −x under w' and of x under w'' (modulating functions). Motion and force
-// therefore pass through exactly the same filter, and no noise is differentiated sample by sample.
+// Smooths with w = (1 − cos)² and differentiates using integration by parts: the means of x' and
+// x'' under w equal those of −x under w' and of x under w'' (modulating functions). Motion and
+// force therefore pass through exactly the same filter, and no noise is differentiated sample by
+// sample.
 class Kernels {
  public:
   explicit Kernels(std::size_t length) : values_(3, std::vector<double>(length)) {
@@ -129,7 +130,7 @@ void CompareForces(const FidelitySignals& a, std::span<const SampleRange> parts_
 
 struct Dynamics {
   Estimate mass, viscosity, stiffness;
-  bool separable = false;  // mass and stiffness are separable in every part
+  bool separable = false;  // mass and stiffness can be distinguished in every part
 };
 
 Dynamics DynamicsOf(const FidelitySignals& signals, std::span<const SampleRange> parts,
@@ -193,7 +194,7 @@ PerceivedQuantity Perceive(PerceivedQuantity q) {
   q.difference = (q.b - q.a) / std::abs(q.a);
   q.error = std::hypot(q.error_a * q.b / q.a, q.error_b) / std::abs(q.a);
   const double size = std::abs(q.difference);
-  // Without repeats the errors are unknown, so the values alone decide.
+  // Without repeats, the errors are unknown, so the values alone decide.
   const bool known =
       size == size && !(q.error >= q.jnd.high) && !(q.error_a >= q.jnd.high * std::abs(q.a));
   if (!known)
@@ -220,8 +221,9 @@ std::vector<PerceivedQuantity> ComparePerceived(const FidelitySignals& a,
     const bool separable = of_a.separable && of_b.separable;
     if (separable)
       quantities.push_back(MakeQuantity("mass " + axis, "kg", of_a.mass, of_b.mass, kMass));
-    quantities.push_back(MakeQuantity((separable ? "stiffness " : "stiffness less ω²·mass ") + axis,
-                                      "N/m", of_a.stiffness, of_b.stiffness, kStiffness));
+    quantities.push_back(
+        MakeQuantity((separable ? "stiffness " : "stiffness minus ω²·mass ") + axis, "N/m",
+                     of_a.stiffness, of_b.stiffness, kStiffness));
   }
   return quantities;
 }

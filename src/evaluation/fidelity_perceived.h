@@ -1,4 +1,4 @@
-// Estimates from motion and force what a hand on the object would feel of its dynamics.
+// Estimates, from motion and force, the object's dynamics that a hand on it would feel.
 #pragma once
 
 #include <span>
@@ -18,8 +18,8 @@ struct ApparentImpedance {
   // and mass and stiffness cannot be distinguished.
   double separable = 0;
 };
-inline constexpr double kSeparable = 0.05;  // below it mass and stiffness cannot be distinguished:
-                                            // mass is set to 0
+inline constexpr double kSeparable = 0.05;  // below this value, mass and stiffness cannot be
+                                            // distinguished: mass is set to 0
 
 // position [m] and force [N] are sampled at kFidelityRate and smoothed over `span` [s]. The result
 // is NaN if there are too few samples or if the axis moves less than 5 mm (standard deviation): the

@@ -27,7 +27,7 @@ struct Circle {
 Circle FitOnce(std::span<const double> x, std::span<const double> y, const Circle* before) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  const double x0 = x[0], y0 = y[0];  // origin near the path, to avoid cancellation
+  const double x0 = x[0], y0 = y[0];  // origin near the path, to avoid loss of precision
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double far = before ? std::hypot(x[i] - before->x, y[i] - before->y) - before->radius : 0;
     if (before && std::abs(far) > kJoined * before->radius) continue;
@@ -172,7 +172,7 @@ double WarpedDistance(std::span<const double> a, std::span<const double> b, doub
   constexpr double kFar = std::numeric_limits<double>::infinity();
   const double longer = static_cast<double>(std::max(a.size(), b.size()));
   const double slope = static_cast<double>(b.size()) / static_cast<double>(a.size());
-  // With a smaller reach no step would be possible.
+  // With a smaller reach, no step would be possible.
   const double reach = std::max(band * longer, slope);
   std::vector<double> row(b.size() + 1, kFar), above(b.size() + 1, kFar);
   above[0] = 0;

@@ -36,8 +36,8 @@ struct Lag {
   double correlation = 0;  // Pearson's correlation of the overlapping parts at the nearest whole
                            // lag
 };
-// The shift of at most `longest` samples with the largest correlation; NaN if either signal is
-// constant.
+// The shift with the largest correlation, among shifts of at most `longest` samples; NaN if either
+// signal is constant.
 Lag LagOf(std::span<const double> a, std::span<const double> b, std::size_t longest);
 
 // Dynamic time warping: the smallest sum of |a[i] − b[j]| along a path from the first to the last

@@ -130,7 +130,9 @@ std::string FidelityText(const FidelityReport& report, const std::string& name_a
                name_b.c_str(), report.duration);
   for (const std::string& warning : report.warnings)
     AppendLine(&text, "Warning: %s", warning.c_str());
-  AppendLine(&text, "%zu and %zu %s as repeats; ratio: a against b beside repeats of the same kind",
+  AppendLine(&text,
+             "%zu and %zu %s as repeats; ratio: differences between a and b, relative to those "
+             "within a and within b",
              report.repeats_a, report.repeats_b, report.by_phase ? "cycles" : "runs");
   AppendLine(&text, "  %-14s %-3s%9s%9s%9s%9s%7s%8s%9s%9s%9s%14s%7s", "", "", "std a", "std b",
              "mean b-a", "rmse", "% of a", "r", "lag ms", "warped", "peak b-a", "coherence",

@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// [m]; none if there is no path. object, start: position of the object now and when RUN began, in W
-// [m].
+// [m]; empty if there is no path. object, start: position of the object now and when RUN began, in
+// W [m].
 inline std::optional<double> GuidanceDistance(const GuidanceSpec& guidance,
                                               const std::array<double, 3>& object,
                                               const std::array<double, 3>& start) noexcept {

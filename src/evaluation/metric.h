@@ -1,6 +1,6 @@
-// The interface of a metric: it adds up the records of a run and lists its results. The printed
-// summary, its JSON and JSON Schema, the report and the comparison of runs are made from that list.
-// To add a metric, see docs/developer/add-a-metric.md.
+// The interface of a metric, which accumulates the records of a run and lists its results. The
+// printed summary, its JSON and JSON Schema, the report and the comparison of runs are made from
+// that list. To add a metric, see docs/developer/add-a-metric.md.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@
 
 namespace predictor {
 
-// SI in files, and the unit in which people read a value.
+// The SI unit, used in files, and the unit in which a value is displayed.
 struct Unit {
   const char* si = "";
   const char* shown = "";
-  double factor = 1;  // from SI to the shown unit
-  int decimals = 0;   // of the shown unit, in tables
+  double factor = 1;  // from SI to the displayed unit
+  int decimals = 0;   // in the displayed unit, in tables
 };
 namespace units {
 inline constexpr Unit kNone = {};
@@ -44,7 +44,7 @@ struct Quantiles {
 Quantiles QuantilesOf(const Histogram& histogram);
 
 // A number that is not finite, statistics without samples, and monostate are missing values: null
-// in files, and absent from text.
+// in files, and omitted from text.
 using ResultValue =
     std::variant<std::monostate, double, std::uint64_t, bool, std::string, Statistics, Quantiles>;
 
@@ -54,17 +54,17 @@ enum class Chapter { kSummary, kTracking, kForces, kRendering, kTiming };
 struct Result {
   // Keys in the summary JSON, ending in the SI unit: "wrench.left.force_n".
   std::string path;
-  // For people. Adjacent results of one group form a table of statistics or of quantiles, or a line
-  // of single values.
+  // Text for people. Adjacent results of one group form a table of statistics or of quantiles, or a
+  // line of single values.
   std::string group;   // title
   std::string label;   // row, or the words after a single value
-  std::string column;  // of a table of statistics
+  std::string column;  // in a table of statistics
   Unit unit = units::kNone;
-  std::string meaning;  // for the reference
+  std::string meaning;  // description for the reference
   ResultValue value;
-  // In a table or line of the printed summary and of the report of one run.
+  // Whether it is shown in a table or line of the printed summary and of the report of one run.
   bool shown = true;
-  bool compared = true;                 // in the comparison of runs
+  bool compared = true;                 // whether it is shown in the comparison of runs
   Chapter chapter = Chapter::kSummary;  // set from the metric's kind
 };
 
@@ -95,19 +95,19 @@ std::span<const MetricKind* const> Metrics();
 bool IsMissing(const ResultValue& value);
 
 // Results of one group in the form that text and report show. Missing values and empty rows are
-// left out.
+// omitted.
 struct ResultGroup {
   struct Row {
     std::string label;
-    std::vector<const Result*> cells;  // by column; null: no value
+    std::vector<const Result*> cells;  // one per column; null: no value
   };
   std::string title;
   Chapter chapter = Chapter::kSummary;
-  std::vector<const Result*> columns;  // one result of each, for its name and unit
+  std::vector<const Result*> columns;  // one result per column, for its name and unit
   std::vector<Row> rows;
   std::string line;  // the single values: "3 solved, 0 failed"
 };
-// The shown results.
+// Groups the shown results.
 std::vector<ResultGroup> GroupResults(const std::vector<Result>& results);
 
 // "force [N]".

@@ -47,7 +47,7 @@ class OscillationIndex {
   double time_ = 0;                // of the newest tick [s]
   Vector3 sum_ = Vector3::Zero();  // sum of the forces in the current sample [N]
   std::vector<Vector3> samples_;   // [N]
-  Window window_;                  // the last complete one
+  Window window_;                  // the last complete window
 };
 
 }  // namespace predictor

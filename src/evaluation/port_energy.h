@@ -6,7 +6,7 @@
 
 namespace predictor {
 
-// Power of a wrench [N, N·m] on a body that moves with a twist [m/s, rad/s] [W].
+// Power [W] of a wrench [N, N·m] on a body that moves with a twist [m/s, rad/s].
 inline double Power(const std::array<double, 6>& wrench,
                     const std::array<double, 6>& twist) noexcept {
   double power = 0;
@@ -19,7 +19,7 @@ struct PortEnergy {
   double sum = 0;          // [J]
   double lowest = 0;       // lowest value of the running sum [J]
   double returned = 0;     // energy returned by the device, as a positive number [J]
-  double peak_return = 0;  // its peak power [W]
+  double peak_return = 0;  // peak power of that return [W]
   int episodes = 0;        // number of times the sum fell below kEpisode
   bool below = false;
   static constexpr double kEpisode = -0.05;  // [J]

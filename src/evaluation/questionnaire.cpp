@@ -22,7 +22,7 @@ static_assert(kPseudonymDigits.size() == 32);
 const std::set<std::string> kSexes = {"female", "male", "other"};
 
 Json ParseObject(std::string_view text) {
-  if (text.size() > kLongestAnswer) throw InputError("The answer is longer than any can be.");
+  if (text.size() > kLongestAnswer) throw InputError("The answer is too long.");
   Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) throw InputError("The answer is not a JSON object.");
   return json;
@@ -30,7 +30,8 @@ Json ParseObject(std::string_view text) {
 
 void RefuseUnknown(const Json& object, const std::set<std::string>& known) {
   for (const auto& [key, value] : object.items())
-    if (!known.contains(key)) throw InputError::At(key, "\"" + key + "\" is not asked for.");
+    if (!known.contains(key))
+      throw InputError::At(key, "\"" + key + "\" is not a field of the questionnaire.");
 }
 
 const Json* Find(const Json& object, const char* key) {
@@ -58,15 +59,15 @@ std::optional<int> ReadScore(const Json& answers, const char* name) {
   const Json* value = Find(answers, name);
   if (!value) return {};
   if (!IsWhole(*value, kLowestScore, kHighestScore))
-    throw InputError::At(name, std::string("The answer to ") + name +
-                                   " must be one of −2, −1, 0, 1 and 2, or left out.");
+    throw InputError::At(
+        name, std::string("The answer to ") + name + " must be −2, −1, 0, 1 or 2, or omitted.");
   return value->get<int>();
 }
 
 void ReadScores(const Json& object, SurveyAnswer* answer) {
   const Json* answers = Find(object, "answers");
   if (!answers || !answers->is_object())
-    throw InputError::At("answers", "There are no answers to the statements.");
+    throw InputError::At("answers", "The answers to the statements are missing.");
   std::set<std::string> names;
   for (std::size_t i = 0; i < kStatements; ++i) {
     names.insert(Statements()[i].name);
@@ -75,7 +76,7 @@ void ReadScores(const Json& object, SurveyAnswer* answer) {
   RefuseUnknown(*answers, names);
   if (std::none_of(answer->scores.begin(), answer->scores.end(),
                    [](const auto& score) { return score.has_value(); }))
-    throw InputError::At("answers", "Not one statement is answered.");
+    throw InputError::At("answers", "No statement was answered.");
 }
 
 std::optional<int> ReadAge(const Json& object) {
@@ -83,7 +84,7 @@ std::optional<int> ReadAge(const Json& object) {
   if (!value) return {};
   if (!IsWhole(*value, 1, kOldest))
     throw InputError::At("age", "The age must be a whole number of years from 1 to " +
-                                    std::to_string(kOldest) + ", or left out.");
+                                    std::to_string(kOldest) + ", or omitted.");
   return value->get<int>();
 }
 
@@ -96,12 +97,13 @@ std::size_t CharactersIn(const std::string& utf8) {
 std::string ReadComment(const Json& object) {
   std::string comment = ReadText(object, "comment");
   if (CharactersIn(comment) > kLongestComment)
-    throw InputError::At("comment", "The comment may have " + std::to_string(kLongestComment) +
-                                        " characters at most.");
+    throw InputError::At("comment", "The comment may have at most " +
+                                        std::to_string(kLongestComment) + " characters.");
   const bool odd = std::any_of(comment.begin(), comment.end(), [](char c) {
     return (static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\r' && c != '\t') || c == 127;
   });
-  if (odd) throw InputError::At("comment", "The comment has characters that cannot be shown.");
+  if (odd)
+    throw InputError::At("comment", "The comment contains characters that cannot be displayed.");
   return comment;
 }
 
@@ -124,20 +126,19 @@ SurveyAnswer ReadFields(const Json& object) {
   SurveyAnswer answer;
   const auto condition = ConditionNamed(ReadText(object, "condition"));
   if (!condition)
-    throw InputError::At("condition", "Say what you used: the real system or the emulated one.");
+    throw InputError::At("condition", "Choose what you used: the real system or the emulated one.");
   answer.condition = *condition;
   ReadScores(object, &answer);
   answer.age = ReadAge(object);
   answer.sex = ReadText(object, "sex");
   if (!answer.sex.empty() && !kSexes.contains(answer.sex))
-    throw InputError::At("sex", "The sex must be female, male or other, or left out.");
+    throw InputError::At("sex", "The sex must be female, male or other, or omitted.");
   answer.comment = ReadComment(object);
   answer.pseudonym = ReadText(object, "pseudonym");
   if (!answer.pseudonym.empty() && !IsPseudonym(answer.pseudonym))
-    throw InputError::At(
-        "pseudonym",
-        "This is not a pseudonym from this questionnaire. Look at what you wrote down, "
-        "or leave it empty if you have none yet.");
+    throw InputError::At("pseudonym",
+                         "This is not a pseudonym from this questionnaire. Check what you wrote "
+                         "down, or leave the field empty if you have none yet.");
   return answer;
 }
 
@@ -213,7 +214,7 @@ bool IsPseudonym(std::string_view text) {
 std::string DrawPseudonym() {
   std::array<std::uint8_t, kPseudonymLength - 1> random{};
   if (getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size()))
-    throw std::runtime_error("The system gives no random numbers.");
+    throw std::runtime_error("The system provides no random numbers.");
   std::string text;
   for (const std::uint8_t byte : random) text += kPseudonymDigits[byte % kPseudonymDigits.size()];
   return text + CheckCharacter(text).value();
@@ -223,7 +224,7 @@ SurveyAnswer ParseSurveyForm(std::string_view text) {
   const Json form = ParseObject(text);
   const Json* consent = Find(form, "consent");
   if (!consent || *consent != true)
-    throw InputError::At("consent", "Without your consent nothing is stored.");
+    throw InputError::At("consent", "Nothing is stored without your consent.");
   RefuseUnknown(form,
                 {"type", "consent", "condition", "answers", "age", "sex", "comment", "pseudonym"});
   return ReadFields(form);
@@ -252,7 +253,7 @@ SurveyAnswer ParseSurveyAnswer(std::string_view text) {
   RefuseUnknown(json, {"predictor_survey", "pseudonym", "recording", "condition", "answers", "age",
                        "sex", "comment", "consent"});
   if (const Json* consent = Find(json, "consent"); !consent || *consent != kConsentVersion)
-    throw InputError::At("consent", "The answer names no consent: it may not be used.");
+    throw InputError::At("consent", "The answer contains no consent, so it may not be used.");
   SurveyAnswer answer = ReadFields(json);
   if (answer.pseudonym.empty()) throw InputError::At("pseudonym", "The answer has no pseudonym.");
   answer.recording = ReadText(json, "recording");

@@ -35,7 +35,7 @@ int WriteAll(int descriptor, std::string_view text) {
   return fsync(descriptor) == 0 ? 0 : errno;
 }
 
-// Makes the new file name durable on the disk.
+// Makes sure that the new file name is on the disk.
 void SyncFolder(const fs::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -109,8 +109,9 @@ fs::path StoreSurveyAnswer(const fs::path& folder, const SurveyAnswer& answer) {
   const fs::path file = folder / SurveyFileName(answer);
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (descriptor < 0 && errno == EEXIST)
-    throw InputError::At("pseudonym", std::string("This pseudonym has answered already for the ") +
-                                          Name(answer.condition) + " system after this run.");
+    throw InputError::At("pseudonym",
+                         std::string("A person with this pseudonym has already answered for the ") +
+                             Name(answer.condition) + " system after this run.");
   if (descriptor < 0) throw CannotWrite(file, errno);
   int error = WriteAll(descriptor, SurveyAnswerJson(answer));
   if (close(descriptor) != 0 && error == 0) error = errno;

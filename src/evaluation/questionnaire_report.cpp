@@ -26,7 +26,7 @@ Answers ByPerson(const std::vector<StoredAnswer>& stored) {
     if (place)
       throw InputError(one.answer.pseudonym + " answered twice for the " +
                        Name(one.answer.condition) + " system: " + place->file.string() + " and " +
-                       one.file.string() + ". Name only one of the two.");
+                       one.file.string() + ". Give only one of the two.");
     place = &one;
   }
   return people;
@@ -115,10 +115,10 @@ std::string PeopleText(const ConditionSummary& c) {
   std::string text = std::to_string(c.people) + (c.people == 1 ? " person" : " people");
   if (c.ages > 0)
     text += ", age " + Figure("%.2f", c.age_mean) + " ± " + Figure("%.2f", c.age_deviation) +
-            " years (" + std::to_string(c.ages) + " told)";
+            " years (" + std::to_string(c.ages) + " stated)";
   const int silent = c.people - c.female - c.male - c.other;
   text += ", " + std::to_string(c.female) + " female, " + std::to_string(c.male) + " male, " +
-          std::to_string(c.other) + " other, " + std::to_string(silent) + " not told";
+          std::to_string(c.other) + " other, " + std::to_string(silent) + " not stated";
   return text;
 }
 
@@ -155,22 +155,23 @@ std::string ShiftTable(const char* counted, const ShiftSummaries& summaries) {
 }
 
 std::string NeutralTable(const ConditionSummary& c, Condition condition) {
-  return std::string("After the ") + Name(condition) + " system, against neutral (0)\n" +
+  return std::string("After the ") + Name(condition) + " system, compared with neutral (0)\n" +
          ShiftTable("answers", c.from_neutral);
 }
 
 std::string PairedTable(const SurveyReport& report) {
   if (report.paired_people == 0)
-    return "Nobody answered once for each system, so the answers are held against neutral only.\n";
+    return "Nobody answered once for each system, so the answers are compared with neutral only.\n";
   return "Emulated minus real, " + std::to_string(report.paired_people) +
          (report.paired_people == 1 ? " person" : " people") + " who answered for both\n" +
          ShiftTable("pairs", report.paired);
 }
 
 std::string TestsInWords() {
-  return "Wilcoxon's signed ranks, two-sided, exact up to " + std::to_string(kMaxEnumerated) +
-         " that are not zero, zeros dropped;\nHodges and Lehmann's shift with 95 % asked for; p by "
-         "Holm for all statements at once.\n";
+  return "Wilcoxon's signed-rank test, two-sided, exact for up to " +
+         std::to_string(kMaxEnumerated) +
+         " non-zero values; zeros are dropped;\nHodges-Lehmann shift with a 95 % interval; p "
+         "adjusted by Holm's method for all statements together.\n";
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ struct StatementSummary {
   double agreeing = 0;  // share of "agree" and "strongly agree"
 };
 
-// Location of a statement's scores, or of the differences of the people who answered it twice.
+// Location of a statement's scores, or of the differences between the two answers of each person.
 struct ShiftSummary {
   int count = 0;
   SignedRankTest test;  // against 0; zeros are dropped

@@ -55,8 +55,8 @@ RoundedFigures FiguresOf(const ScoreCounts& counts) {
   const auto [n, sum, squares] = SumsOf(counts);
   // 100 |sum| / n plus one half, rounded down.
   const std::int64_t size = (200 * std::abs(sum) + n) / (2 * n);
-  // The squared deviation is spread / (n (n − 1)). In hundredths it is the largest m for which m −
-  // 1/2 does not exceed it.
+  // The squared deviation is spread / (n (n − 1)). In hundredths, the deviation is the largest m
+  // for which m − 1/2 does not exceed it.
   const std::int64_t spread = n * squares - sum * sum;
   std::int64_t m = 0;
   while ((2 * m + 1) * (2 * m + 1) * n * (n - 1) <= 40000 * spread) ++m;

@@ -18,7 +18,7 @@ struct RoundedFigures {
   bool operator==(const RoundedFigures&) const = default;
 };
 
-// Uses integers only; a half is rounded away from zero. (With 17 answers no half can occur, so
+// Uses integers only; a half is rounded away from zero. (With 17 answers, no half can occur, so
 // every rule that rounds to the nearest gives the same result; truncation does not.) Needs at least
 // two answers.
 RoundedFigures FiguresOf(const ScoreCounts& counts);

@@ -10,8 +10,8 @@
 namespace predictor {
 namespace {
 
-constexpr double kRounding = 1e-12;  // rounding of the sums: distances that differ by less count as
-                                     // equal
+constexpr double kRounding = 1e-12;  // accounts for rounding of the sums: distances that differ by
+                                     // less count as equal
 
 // Sums over pairs, grouped by how many of the two repeats belong to set a.
 double EnergyDistance(const Eigen::MatrixXd& distances, const std::vector<bool>& is_a) {

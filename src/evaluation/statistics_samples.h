@@ -9,8 +9,8 @@ namespace predictor {
 
 inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-// Each function returns kUndefined if the result is undefined: for no samples, and SampleDeviation
-// for fewer than two.
+// Each function returns kUndefined if the result is undefined: without samples, and for
+// SampleDeviation also with one sample.
 double Mean(std::span<const double> samples);
 // The denominator is n − 1.
 double SampleDeviation(std::span<const double> samples);

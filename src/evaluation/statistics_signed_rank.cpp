@@ -45,7 +45,8 @@ double ExactTwoSided(const std::vector<std::size_t>& ranks, std::size_t smaller_
   return std::min(1.0, std::ldexp(2 * tail, -static_cast<int>(ranks.size())));
 }
 
-// One plus the number of Walsh averages outside the interval on each side, and the confidence.
+// The Walsh averages that bound the interval, as one plus the number of those outside it on each
+// side, and the confidence.
 struct CriticalPlace {
   std::size_t place = 1;  // counted from 1
   double confidence = 0;

@@ -6,13 +6,13 @@
 
 namespace predictor {
 
-// Treatment of zero differences. In both cases equal absolute values share their mean rank.
+// Treatment of zero differences. In both cases, equal absolute values share their mean rank.
 enum class ZeroRule {
   kDropped,  // Wilcoxon (1949): dropped before ranking
   kPratt,    // Pratt (1959): ranked with the others, then dropped
 };
 
-// Up to this number of differences the distribution is enumerated; beyond it the normal
+// Up to this number of differences, the distribution is enumerated; beyond it, the normal
 // approximation is used.
 inline constexpr std::size_t kMaxEnumerated = 50;
 

@@ -53,7 +53,7 @@ StopLog::StopLog(const Scenario& scenario)
   stops_.reserve(kMaxStops);
 }
 
-// A reset sets the run's own time to zero.
+// A reset sets the run time to zero.
 void StopLog::FollowTime(const TickRecord& record) {
   if (record.run_time < run_time_) before_ += run_time_;
   run_time_ = record.run_time;

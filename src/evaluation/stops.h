@@ -1,4 +1,4 @@
-// The stops of a run, from its records.
+// The stops of a run, derived from its records.
 #pragma once
 
 #include <array>
@@ -26,18 +26,18 @@ struct StopSummary {
                              // otherwise have held
 };
 
-// True if the arms did not come to rest although they were commanded to. The stop's final fault
-// shows this; if the run had ended without a cause, its cause does. Duration and distance are then
-// only the values observed so far.
+// True if the arms did not come to rest although they were commanded to. This follows from the
+// stop's final fault or, if the run had ended without a cause, from its cause. Duration and
+// distance are then only the values observed so far.
 bool DidNotRest(const StopSummary& stop);
 
-// True for a stop that censors what the person feels: by the force or the torque of a hand, by the
-// coupling, or by tracking, which ends runs that need more than the cap on the handles' speed. The
-// largest values of such a run are lower bounds.
+// True for a stop that censors what the person feels: a stop by the force or the torque of a hand,
+// by the coupling, or by tracking, which ends runs in which the handles would have to exceed their
+// speed cap. The largest values of such a run are lower bounds.
 bool IsLimit(StopCause cause);
 
-// Path lengths of the handles. They are measured in steps of kStep because the encoders'
-// quantisation would otherwise add up.
+// Lengths of the handles' paths. They are measured in steps of kStep because the encoders'
+// quantisation would otherwise accumulate.
 class HandleOdometer {
  public:
   static constexpr double kStep = 1e-4;  // [m]
@@ -74,14 +74,15 @@ class StopLog {
 
   std::vector<StopSummary> stops_;
   std::uint64_t count_ = 0;
-  double force_, torque_;  // thresholds [N], [N·m], for the time since the true value exceeded them
+  double force_, torque_;  // thresholds [N], [N·m]; they determine when the true value exceeded
+                           // them
   double dt_;              // [s]
   std::array<double, kHands> force_crossed_,
       torque_crossed_;                // time of the last upward crossing [s]
   double before_ = 0, run_time_ = 0;  // emulated time before the last reset, and since then [s]
   StopCause cause_ = StopCause::kNone;
 
-  // Of the last stop: path and time of the handles from the decision to rest.
+  // For the last stop: path and time of the handles from the decision to rest.
   bool stopping_ = false;
   HandleOdometer odometer_;
   RestDetector rest_;

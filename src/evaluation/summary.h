@@ -27,7 +27,7 @@ struct Summary {
   std::vector<EventSummary> events;  // in the order of the scenario
   std::optional<CobotStopSummary> cobot_stop;
 
-  // Measured by the caller.
+  // Provided by the caller.
   double real_time_factor = 0;
   bool by_the_clock = false;  // the run was paced by the clock, so its real-time factor does not
                               // show the computer's speed
@@ -66,7 +66,7 @@ class SummaryBuilder {
 // computer's speed.
 std::string SummaryJson(const Summary& summary, bool timing = true);
 
-// JSON Schema of the former.
+// JSON Schema of SummaryJson.
 std::string SummarySchema();
 
 // The same for people: tables in mm, degrees and N.

@@ -38,12 +38,13 @@ std::vector<Result> ResultsOf(const StopSummary& stop) {
   return {
       Entry("cause", Name(stop.cause), "cause of the stop"),
       Entry("hand", HandName(stop.hand), "hand that caused it"),
-      Entry("value", stop.value, "measured value that caused it, SI"),
+      Entry("value", stop.value, "measured value that caused the stop, SI"),
       Entry("limit", stop.limit, "its limit, SI"),
       Entry("time_s", stop.time, "emulated time until the stop", units::kSecond),
       Entry("stop_duration_s", stop.duration, "time from the decision to rest", units::kSecond),
       Entry("stop_distance_m", stop.distance,
-            "path of the handle that moved further, from the decision to rest", units::kMetre),
+            "distance travelled by the handle that moved further, from the decision to rest",
+            units::kMetre),
       Entry("power_off_by.cause", if_hardened(Name(harder.cause)),
             "fault that removed the power at the end of the stop"),
       Entry("power_off_by.hand", if_hardened(HandName(harder.hand)), "hand of that fault"),
@@ -60,7 +61,7 @@ std::vector<Result> ResultsOf(const EventSummary& event) {
       Entry("begin_s", if_known(event.begin), "run time at which it began", units::kSecond),
       Entry("end_s", if_known(event.end), "run time at which it ended", units::kSecond),
       Entry("until_stop_s", if_known(event.until_stop),
-            "time from its beginning to the emulator's next stop", units::kSecond)};
+            "time from the beginning of the event to the emulator's next stop", units::kSecond)};
   const auto add = [&](const char* path, const std::array<double, kHands>& largest,
                        const char* meaning, const Unit& unit) {
     results.push_back(Entry(path,
@@ -128,7 +129,7 @@ void Collapse(Json* json) {
   if (!any) *json = nullptr;
 }
 
-// "wrench.left" with `between` for the dot, as a pointer.
+// A path such as "wrench.left" as a JSON pointer; `between` replaces the dot.
 Json::json_pointer PlaceOf(const std::string& path, const std::string& between = "/") {
   std::string pointer = "/";
   for (const char c : path) pointer += c == '.' ? between : std::string(1, c);

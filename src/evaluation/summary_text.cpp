@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// Appends `text` (UTF-8) in a column of this width: on the left, or on the right.
+// Appends `text` (UTF-8) in a column of this width, left- or right-aligned.
 void AppendPadded(const std::string& text, int width, bool right, std::string* out) {
   const auto letters = std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned>(c) & 0xC0U) != 0x80U; });
@@ -23,7 +23,7 @@ void EndLine(std::string* text) {
   *text += '\n';
 }
 
-// "mean ± deviation   largest", in a column that suits the unit's decimals.
+// "mean ± deviation   largest", with column widths that suit the unit's decimals.
 int RoomOf(const Unit& unit) { return std::max(unit.decimals, 2); }
 int WidthOf(const Unit& unit) { return 3 * RoomOf(unit) + 16; }
 std::string CellText(const Result& result) {
@@ -67,7 +67,7 @@ void AddQuantiles(const ResultGroup& group, std::string* text) {
   }
 }
 
-// timing: add the results that depend on the computer's speed, or the others.
+// timing: adds only the results that depend on the computer's speed; otherwise, only the others.
 void AddResults(const std::vector<ResultGroup>& groups, bool timing, std::string* text) {
   const ResultGroup* above = nullptr;
   for (const ResultGroup& group : groups) {
@@ -90,10 +90,10 @@ void AddStop(const StopSummary& stop, std::string* text) {
   AppendLine(text, "Stopped after %.3f s of emulation by cause '%s'%s%s%s", stop.time,
              Name(stop.cause), stop.hand < 0 ? "" : ", hand ",
              stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen.c_str());
-  // The other causes name themselves.
+  // The text of any other cause explains itself.
   if (stop.cause == StopCause::kPhysics && stop.quantity != Quantity::kNone) {
     const Status status{stop.cause, -1, stop.value, stop.limit, stop.quantity};
-    AppendLine(text, "  That is: %s. %s", StopCauseText(stop.cause, stop.quantity).c_str(),
+    AppendLine(text, "  Explanation: %s. %s", StopCauseText(stop.cause, stop.quantity).c_str(),
                CauseAdvice(status).c_str());
   }
   if (DidNotRest(stop))
@@ -152,7 +152,9 @@ std::string SummaryTable(const Summary& s) {
   std::string text;
   AppendLine(&text, "%s", Printable(s.scenario).c_str());
   if (s.ticks() == 0)
-    AppendLine(&text, "Not run: it never came to RUN, so there are no errors and forces to tell.");
+    AppendLine(
+        &text,
+        "Not run: the state RUN was never reached, so there are no errors or forces to report.");
   else
     AppendLine(&text, "%.2f s emulated in %llu ticks, %s, seed %llu", s.duration(),
                static_cast<unsigned long long>(s.ticks()),

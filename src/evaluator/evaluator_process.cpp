@@ -14,7 +14,7 @@
 namespace predictor::evaluator {
 namespace {
 
-constexpr int kPause = 5;      // between two looks at the ring [ms]
+constexpr int kPause = 5;      // pause between two checks of the ring [ms]
 constexpr int kPriority = 10;  // lower than that of the run and the viewer
 
 // Returns false if the run has ended, which closes the channel.
@@ -34,15 +34,14 @@ class Evaluator {
   }
 
  private:
-  // A contradiction stays, so it is said once, and nothing is judged from then on.
+  // A contradiction persists, so it is reported once, and nothing is judged from then on.
   bool Add(const TickRecord& record) {
     try {
       return person_.Add(record);
     } catch (const InputError& error) {
       failed_ = true;
       SendLine(kControlDescriptor,
-               {{"say", std::string("The person is not evaluated any more: ") + error.what()}},
-               false);
+               {{"say", std::string("The person is no longer evaluated: ") + error.what()}}, false);
       return false;
     }
   }

@@ -20,11 +20,11 @@ class EvaluatorProcess {
   // Shows a message to the user; called from a separate thread.
   using Tell = std::function<void(const std::string& text)>;
 
-  // Starts the evaluator and waits until it follows `board`. It writes its states to `states`, and
-  // may do nothing else. It runs at a lower priority than the run's threads, and the run never
-  // waits for it. If it dies, a message reports this, and it is restarted; damage and fatigue then
-  // begin again. The descriptors of both are borrowed. Throws InputError if body or stance are
-  // missing or impossible, or std::runtime_error if no process can be started.
+  // Starts the evaluator and waits until it follows `board`. The evaluator writes its states to
+  // `states` and may do nothing else. It runs at a lower priority than the run's threads, and the
+  // run never waits for it. If it dies, a message reports this, and it is restarted; damage and
+  // fatigue then begin again. The descriptors of both are borrowed. Throws InputError if body or
+  // stance are missing or impossible, or std::runtime_error if no process can be started.
   EvaluatorProcess(const Scenario& scenario, const Shared<RunBoard>& board,
                    const Shared<EvaluationBoard>& states, Tell show);
   int pid() const { return process_.pid(); }  // 0 while no process is running

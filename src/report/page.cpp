@@ -89,7 +89,7 @@ std::string Dump(const Json& json) {
   return JsonInScript(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-// Beyond it, numbers in a browser are no longer exact integers.
+// Larger numbers are no longer exact integers in a browser.
 constexpr double kMaxSteps = 4e15;
 
 double StepOf(const std::vector<double>& values, double step) {

@@ -36,7 +36,7 @@ class PageData {
 // The page contains its plots as data; its script draws them on the screen and on paper.
 class ReportPage {
  public:
-  // `words`: HTML shown under the title.
+  // `words`: HTML shown below the title.
   explicit ReportPage(std::string title, std::string words = "");
 
   // Starts a chapter. `id` is unique within the page.

@@ -104,7 +104,7 @@ std::string ForceWords(const RunData& run) {
   return text;
 }
 
-// The worst window, and whether it needs attention.
+// Reports the worst window, and whether it needs attention.
 std::string OscillationWords(const RunData& run) {
   const auto largest = [&](const char* key) {
     double value = 0;
@@ -318,11 +318,11 @@ std::string SummaryWords(const RunData& run) {
   };
   html += Paragraph("The hands supplied " + energy("energy.supplied_j") +
                     " J in total and received " + energy("energy.returned_j") +
-                    " J back; the sum was " + energy("energy.lowest_j") + " J at its lowest" +
+                    " J back; the balance was " + energy("energy.lowest_j") + " J at its lowest" +
                     (run.summary.Get<double>("energy.lowest_j") < PortEnergy::kEpisode
-                         ? ": some energy came out before it was supplied, for example from a "
+                         ? ": some energy was returned before it was supplied, for example from a "
                            "spring that is loaded at the start."
-                         : ": never more came out than was supplied.") +
+                         : ": the energy returned never exceeded the energy supplied.") +
                     " " + TimingWords(run));
   return html;
 }
@@ -386,9 +386,9 @@ std::string ResultTables(const RunData& run, Chapter chapter) {
 }
 
 std::string EnergyTable(const RunData& run) {
-  std::vector<std::vector<std::string>> rows = {{"port", "supplied [J]", "lowest sum [J]",
+  std::vector<std::vector<std::string>> rows = {{"port", "supplied [J]", "lowest balance [J]",
                                                  "times below −0.05 J", "returned [J]",
-                                                 "largest power back [W]"}};
+                                                 "largest power received [W]"}};
   for (const int i : run.present) {
     const auto k = static_cast<std::size_t>(i);
     rows.push_back(PortRow(std::string(HandName(i)) + " hand, real handle", run.hand_port[k]));
@@ -404,8 +404,8 @@ std::string EnergyTable(const RunData& run) {
                   energy("energy.returned_j"), energy("energy.peak_return_w")});
   return HtmlTable(rows) +
          Paragraph(
-             "A port is passive if its sum never falls below the negative of the energy stored at "
-             "the start. The virtual world stores " +
+             "A port is passive if its balance never falls below the negative of the energy stored "
+             "at the start. The virtual world stores " +
              Significant(run.stored) + " J more than at the start; " + Significant(run.dissipated) +
              " J of the energy from hands and coupling was dissipated by its friction and damping "
              "(a controller that moves its set-point can also supply energy).");

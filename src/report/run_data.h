@@ -24,8 +24,8 @@ namespace predictor {
 struct RunInfo {
   std::string name;           // file name, or another name that distinguishes the run
   std::string file;           // full file name, if `name` is shortened
-  Scenario scenario;          // resolved
-  std::string scenario_yaml;  // resolved
+  Scenario scenario;          // with all values resolved
+  std::string scenario_yaml;  // with all values resolved
   std::string program_version;
   std::map<std::string, std::string> labels;
   std::optional<PredictedLoop> loop;
@@ -90,7 +90,7 @@ constexpr std::size_t ChannelOf(RunChannel channel, int joint = 0) {
 // A stop and its time and distance.
 struct ReportedStop {
   std::uint64_t tick = 0;       // tick of the decision
-  StopSummary summary;          // its time is on the report's axis
+  StopSummary summary;          // its time is on the report's time axis
   std::uint64_t power_off = 0;  // tick at which summary.harder occurred; 0: it did not occur
 };
 
@@ -151,7 +151,7 @@ struct RunData {
   double kkt_max = 0;
 
   static constexpr int kTickBins = 20;
-  // [s] on the report's axis.
+  // [s] on the report's time axis.
   double TimeOf(std::uint64_t tick) const {
     return (static_cast<double>(tick) - static_cast<double>(origin)) * dt;
   }

@@ -28,7 +28,7 @@ std::string MeanText(const StatementSummary& s) {
 
 // `counted`: name of the counted items. `zero`: meaning of a zero.
 std::string ShiftTable(const char* counted, const char* zero, const ShiftSummaries& summaries) {
-  Rows rows = {{"", counted, zero, "shift", "interval", "its confidence", "p", "p by Holm"}};
+  Rows rows = {{"", counted, zero, "shift", "interval", "its confidence", "p", "p (Holm)"}};
   for (std::size_t i = 0; i < kStatements; ++i) {
     const ShiftSummary& s = summaries[i];
     if (s.count == 0) {
@@ -78,7 +78,8 @@ void AddCondition(const ConditionSummary& c, Condition condition, ReportPage* pa
   page->Section(Name(condition), std::string("After the ") + Name(condition) + " system");
   page->Paragraph(PeopleText(c));
   page->Html(ScoreTable(c, condition == Condition::kEmulated));
-  page->Html("<h3>Against neutral (0)</h3>\n" + ShiftTable("answers", "neutral", c.from_neutral));
+  page->Html("<h3>Compared with neutral (0)</h3>\n" +
+             ShiftTable("answers", "neutral", c.from_neutral));
 }
 
 void AddPaired(const SurveyReport& report, ReportPage* page) {
@@ -129,10 +130,10 @@ std::string Method() {
          std::to_string(kMaxEnumerated) +
          " values, and above that by the normal approximation with corrections for ties and "
          "continuity. The shift is the Hodges–Lehmann median of the Walsh averages, including "
-         "zeros. Its interval has at least the stated confidence (95 % was requested; few answers "
-         "cannot provide it). p by Holm is adjusted for testing all statements at once. The levels "
-         "are treated as equally spaced. A large p does not prove that there is no difference: "
-         "consider the interval.";
+         "zeros. Its interval has at least the stated confidence (95 % was requested; with few "
+         "answers, this may be unattainable). p (Holm) is adjusted for testing all statements at "
+         "once. The levels are treated as equally spaced. A large p does not prove that there is "
+         "no difference: consider the interval.";
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ class Trace {
   std::size_t channels_;
   double dt_;
   std::uint64_t bin_ticks_, block_ticks_;
-  std::size_t room_;  // blocks
+  std::size_t room_;  // room for detailed ticks [blocks]
   bool complete_ = true;
   Block open_;
   bool has_open_ = false;

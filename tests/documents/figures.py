@@ -219,7 +219,7 @@ def check_documents(root, update):
 # ---- the output of the program in a page ---------------------------------------------------------------------------
 
 # These depend on the computer.
-BY_THE_CLOCK = re.compile(r"times real time|^Time a tick|^  (read|sense|simulate|render|monitor|guard|write|tick) ")
+BY_THE_CLOCK = re.compile(r"times real time|^Time per tick|^  (read|sense|simulate|render|monitor|guard|write|tick) ")
 FIGURE = re.compile(r"\d+(?:\.\d+)?")
 
 

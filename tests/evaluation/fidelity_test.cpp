@@ -487,7 +487,7 @@ TEST(Fidelity, WarnsWhereErrorsAreNotKnown) {
   const FidelityReport report = CompareFidelity(a, b, false);
   ASSERT_EQ(report.warnings.size(), 1u);
   const std::string text = FidelityText(report, "real", "emulated");
-  EXPECT_NE(text.find("Warning: With fewer than two cycles"), std::string::npos) << text;
+  EXPECT_NE(text.find("Warning: A run has fewer than two cycles"), std::string::npos) << text;
   EXPECT_NE(text.find("noticeable, error unknown"), std::string::npos) << text;
   EXPECT_NE(FidelityJson(report, "a", "b").find("fewer than two cycles"), std::string::npos);
   EXPECT_TRUE(CompareFidelity(a, b).warnings.empty());

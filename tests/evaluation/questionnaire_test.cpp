@@ -404,7 +404,7 @@ TEST(SurveyReport, HoldsThePapersAnswersAgainstNeutral) {
     EXPECT_GE(s.shift.confidence, 0.95) << i;
   }
   const std::string table = SurveyTable(report);
-  EXPECT_NE(table.find("against neutral (0)"), std::string::npos) << table;
+  EXPECT_NE(table.find("compared with neutral (0)"), std::string::npos) << table;
   EXPECT_NE(table.find("S1    17      1   +1.50"), std::string::npos) << table;
 }
 

@@ -323,7 +323,7 @@ TEST(Summary, OfWhatNeverRanHasNoFigures) {
   const std::string table = SummaryTable(builder.summary());
   EXPECT_NE(table.find("Not run:"), std::string::npos) << table;
   EXPECT_NE(table.find("by cause 'device', hand left"), std::string::npos) << table;
-  for (const char* figure : {"While gripping", "Hands", "Height", "Time a tick"})
+  for (const char* figure : {"While gripping", "Hands", "Height", "Time per tick"})
     EXPECT_EQ(table.find(figure), std::string::npos) << table;
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
   EXPECT_TRUE(json["tracking"]["left"].is_null());

@@ -22,7 +22,7 @@ std::size_t Count(const std::string& text, const std::string& what) {
 
 TEST(SurveyPage, ComparesThePapersAnswersWithNeutral) {
   const std::string page = SurveyPage(SummariseSurvey(PapersAnswers()));
-  EXPECT_NE(page.find("Against neutral (0)"), std::string::npos);
+  EXPECT_NE(page.find("Compared with neutral (0)"), std::string::npos);
   EXPECT_NE(page.find("<td>0.0001</td><td>0.0006</td>"), std::string::npos);      // S2
   EXPECT_NE(page.find("<td>&lt;0.0001</td><td>0.0002</td>"), std::string::npos);  // S1
 }

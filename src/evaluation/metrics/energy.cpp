@@ -1,4 +1,4 @@
-// Energy that the hands exchange with the real handles, from the start of RUN, also while stopping.
+// Energy that the hands exchange with the real handles in RUN and while stopping.
 #include <cstdint>
 
 #include "evaluation/metrics/registry.h"
@@ -36,12 +36,13 @@ class Energy final : public Metric {
         "energy that the hands supplied to the real handles in RUN and while stopping, minus what "
         "they received",
         hands_.sum, true);
-    add("lowest_j", "lowest sum", kJoule, "lowest value of that sum during the run", hands_.lowest,
+    add("lowest_j", "lowest balance", kJoule, "lowest value of that balance during the run",
+        hands_.lowest, false);
+    add("episodes", "times below −0.05 J", units::kNone,
+        "how often that balance fell below −0.05 J", static_cast<std::uint64_t>(hands_.episodes),
         false);
-    add("episodes", "times below −0.05 J", units::kNone, "how often that sum fell below −0.05 J",
-        static_cast<std::uint64_t>(hands_.episodes), false);
     add("returned_j", "returned", kJoule, "energy that the hands received", hands_.returned, true);
-    add("peak_return_w", "largest power back", kWatt, "largest power that the hands received",
+    add("peak_return_w", "largest power received", kWatt, "largest power that the hands received",
         hands_.peak_return, false);
   }
 

@@ -39,15 +39,14 @@ class Oscillation final : public Metric {
       };
       const Hand& of = hands_[i];
       add("index", "largest index", kIndex,
-          "largest share of 3 to 10 Hz in the force's power up to 10 Hz, of windows of 4 s in "
-          "which "
-          "the force varied by more than 1 N rms",
+          "largest share of the power from 3 to 10 Hz in the force's power up to 10 Hz, in windows "
+          "of 4 s in which the force varied by more than 1 N rms",
           of.index, true);
       add("strong_index", "largest index above 3 N", kIndex,
-          "the same, of windows in which the force varied by more than 3 N rms", of.strong_index,
+          "the same, in windows in which the force varied by more than 3 N rms", of.strong_index,
           false);
       add("rms_n", "largest rms from 3 to 10 Hz", units::kNewton,
-          "largest rms of the force from 3 to 10 Hz, of windows of 4 s", of.rms, true);
+          "largest rms of the force from 3 to 10 Hz, in windows of 4 s", of.rms, true);
     }
   }
 

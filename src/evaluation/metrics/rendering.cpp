@@ -34,7 +34,7 @@ class Rendering final : public Metric {
                         .group = "Rendering",
                         .label = "quadratic programs",
                         .column = "iterations",
-                        .meaning = "iterations of the solver for a quadratic program",
+                        .meaning = "iterations of the solver per quadratic program",
                         .value = iterations_,
                         .shown = false});
   }

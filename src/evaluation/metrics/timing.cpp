@@ -17,7 +17,7 @@ class Timing final : public Metric {
       const bool whole = static_cast<Stage>(k) == Stage::kTick;
       results->push_back(
           {.path = std::string("timing_us.") + kStageNames[k],
-           .group = "Time a tick",
+           .group = "Time per tick",
            .label = kStageNames[k],
            .unit = units::kMicrosecond,
            .meaning = whole ? std::string("computing time of a tick")

@@ -73,7 +73,7 @@ test('a person agrees, answers, is told what is wrong, and gets a pseudonym', as
 
   await page.click('#send');
   await page.waitForSelector('#problem', {state: 'visible'});
-  assert.match(await page.locator('#problem').textContent(), /Not one statement is answered/);
+  assert.match(await page.locator('#problem').textContent(), /No statement was answered/);
 
   await agreeWithAll(page, 1);
   await page.check('#S3 input[value=""]');
