@@ -37,7 +37,7 @@ std::vector<std::string> CellsOfLine(std::string_view line) {
   return cells;
 }
 
-// The number in a cell; `least` is its smallest allowed value.
+// Parses the number in a cell; `least` is its smallest allowed value.
 double NumberIn(const std::string& cell, std::size_t column, double least, bool or_equal,
                 const std::string& place) {
   double x = 0;
@@ -116,7 +116,7 @@ ContactLimits ParseContactLimits(const std::string& text, const std::string& nam
     }
   }
   if (limits.points.empty())
-    throw InputError(name, "the file has no limits. Give the edition, then the header " +
+    throw InputError(name, "the file contains no limits. Give the edition, then the header " +
                                std::string(kContactHeader) + ", then a row for each point.");
   return limits;
 }

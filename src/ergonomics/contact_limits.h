@@ -2,8 +2,8 @@
 // of ISO/TS 15066: a person lets go and is hit, is clamped against a fixture, or the cobot moves
 // unexpectedly.
 //
-// Never a verdict on the forces at a handle: holding it is intended contact (hand guiding). And
-// never a statement of conformity: a real application is measured (ISO/PAS 5672).
+// They never judge the forces at a handle, because holding a handle is intended contact (hand
+// guiding). Nor do they prove conformity: a real application must be measured (ISO/PAS 5672).
 //
 // The limits come from a file that the user provides and that names its edition. The model (spring
 // and two masses) is verified.
@@ -27,7 +27,7 @@ struct ContactLimit {
 };
 
 struct ContactLimits {
-  std::string edition;  // as the file names it
+  std::string edition;  // as given in the file
   std::vector<ContactLimit> points;
 };
 
@@ -43,20 +43,20 @@ ContactLimits ParseContactLimits(const std::string& text, const std::string& nam
 
 enum class ContactKind {
   kTransient,    // the body part can recoil
-  kQuasiStatic,  // it is clamped, against a fixture for example
+  kQuasiStatic,  // it is clamped, for example against a fixture
 };
 
 // Limits at this point; 0 if the point must not be hit.
 double ForceLimit(const ContactLimit& limit, ContactKind kind);     // [N]
 double PressureLimit(const ContactLimit& limit, ContactKind kind);  // [Pa]
 
-// [kg] m_R = M/2 + m_L: half of the moving mass of the robot, and its load including the object.
+// [kg] m_R = M/2 + m_L: half of the moving mass of the robot, plus its load including the object.
 double EffectiveRobotMass(double moving_mass, double load);
-// [kg] 1 / (1/m_H + 1/m_R). A heavy load makes it nearly independent of the robot.
+// [kg] 1 / (1/m_H + 1/m_R). With a heavy load, it hardly depends on the robot.
 double ReducedMass(double body_mass, double robot_mass);
 
-// A contact that moves or clamps. The area is that of the contact [m²]; 0: not known, so that only
-// the force counts.
+// A transient or clamping contact. `area`: of the contact [m²]; 0: unknown, so only the force
+// counts.
 struct Contact {
   ContactKind kind = ContactKind::kTransient;
   double robot_mass = 0;  // [kg] effective
@@ -65,13 +65,13 @@ struct Contact {
 
 struct ContactSpeed {
   double speed = 0;          // [m/s] relative speed at which the limit is reached
-  double energy = 0;         // [J] F²/2k that the body part then absorbs
-  bool by_pressure = false;  // the pressure is reached first
+  double energy = 0;         // [J] energy F²/2k that the body part then absorbs
+  bool by_pressure = false;  // the limit of pressure is reached first
 };
-// 0 if the point must not be hit.
+// The speed is 0 if the point must not be hit.
 ContactSpeed MaxContactSpeed(const ContactLimit& limit, const Contact& contact);
 
-// A measured or simulated peak, as multiples of the limits. Infinite if the point must not be hit.
+// A measured or simulated peak as a multiple of the limits. Infinite if the point must not be hit.
 struct ContactRatio {
   double force = 0, pressure = 0;
   bool within() const { return force <= 1 && pressure <= 1; }

@@ -11,7 +11,7 @@ namespace {
 constexpr double kArmWeight = 8.6 * kPoundForce;                 // [N]
 constexpr double kShoulderStrength = 681 * kInch * kPoundForce;  // [N·m]
 
-// Of one cycle of a tendon at `stress`, in % of its ultimate stress (Schechtman & Bader 1997;
+// Damage per cycle of a tendon at `stress`, in % of its ultimate stress (Schechtman & Bader 1997;
 // verified in a public copy).
 double TendonDamage(double stress) { return std::pow(10, (stress - 101.25) / 14.83); }
 
@@ -29,7 +29,8 @@ double DamageRisk::DailyDamage(double probability) const {
 double LiftDamage(double load_moment) { return std::exp(0.038 * load_moment + 0.32) / 1902416; }
 
 double HandDamage(double effort) {
-  // The greatest effort strains a tendon to 1/1.4 of failure. DUET's table gives 3.6 % to effort 0.
+  // The greatest effort strains a tendon to 1/1.4 of failure. DUET's table assigns 3.6 % to effort
+  // 0.
   return TendonDamage(std::max(3.6, 10 * effort / 1.4));
 }
 

@@ -1,19 +1,19 @@
 // Cumulative damage of a working day by fatigue failure of tissue: LiFFT (back), DUET (hand and
-// forearm), Shoulder Tool. Each repetition costs damage, and damages add up (Palmgren-Miner).
+// forearm), Shoulder Tool. Each repetition causes damage, and the damages add up (Palmgren-Miner).
 //
-// In contrast to posture scores, the damage changes smoothly with load and lever, so it says what a
-// change of a design is worth. It may be used with measured moments, and assistance reduces it
-// (Zelik et al. 2022 do this for exoskeletons).
+// In contrast to posture scores, the damage changes smoothly with load and lever arm, so it shows
+// how much a change of a design is worth. The methods may be used with measured moments, and
+// assistance reduces the damage (Zelik et al. 2022 do this for exoskeletons).
 //
-// Traps, all of which were found in public code:
-// - Another form of LiFFT takes compression, e^(0.162 S) / 902416 with S in % of 10 kN. Mixed up
-//   with the moment form below, the damage doubles.
+// Pitfalls, all of which were found in public code:
+// - Another form of LiFFT takes compression, e^(0.162 S) / 902416 with S in % of 10 kN. If it is
+//   mixed up with the moment form below, the damage doubles.
 // - A second DUET (S = 10 OMNI, 0.766, 1.515) was fitted to two examples. It agrees with one
 //   published example and is wrong elsewhere, so one example proves nothing.
 // - The probabilities are those of a *job* with many injuries in US car plants. They are not the
 //   risk of a person.
 //
-// Left out because no source could be verified: Potvin's maximum acceptable effort (public copies
+// Omitted because no source could be verified: Potvin's maximum acceptable effort (public copies
 // differ in a constant), ACGIH's hand activity level, the revised strain index and RCRA.
 #pragma once
 
@@ -23,19 +23,20 @@
 
 namespace predictor::ergonomics {
 
-// Probability of the outcome for a day's damage: logistic in log10(damage).
+// Probability of the outcome for a day's damage: a logistic function of log10(damage).
 struct DamageRisk {
   double constant = 0, slope = 0;
   double Probability(double daily_damage) const;  // 0 … 1; 0 without damage
-  // The inverse: the daily damage that has this probability, 0 < probability < 1.
+  // The inverse: the daily damage with this probability, 0 < probability < 1.
   double DailyDamage(double probability) const;
 };
 
 // ---- Back: LiFFT (Gallagher et al. 2017, as printed by Zelik et al. 2022; verified) ----
 // Outcome: a job with at least 12 low back injuries per 200 000 h.
 inline constexpr DamageRisk kLiftRisk = {1.72, 1.03};
-// `load_moment` [N·m]: of the handled load alone about the lower back, that is load times its
-// horizontal distance, without the weight of the trunk. Interpret results above 100 N·m with care.
+// `load_moment` [N·m]: moment of the handled load alone about the lower back, that is, load times
+// its horizontal distance, without the weight of the trunk. Interpret results above 100 N·m with
+// care.
 double LiftDamage(double load_moment);
 
 // ---- Hand and forearm: DUET (Gallagher et al. 2018; verified against its table and examples) ----
@@ -47,22 +48,23 @@ double HandDamage(double effort);
 // ---- Shoulder Tool (Bani Hani et al. 2021; verified against published examples) ----
 // Outcome: first visit to the plant's clinic because of the shoulder.
 inline constexpr DamageRisk kShoulderRisk = {0.870, 0.932};
-// `moment` [N·m] of the shoulder. 76.9 N·m (681 in·lb) is the strength of the median man.
+// `moment` [N·m]: of the shoulder. 76.9 N·m (681 in·lb) is the strength of the median man.
 double ShoulderDamage(double moment);
-// [N·m] of holding `force` [N] with one hand at the horizontal distance `lever` [m] from the
-// shoulder, with an arm of 8.6 lb at half the distance. For pushes and pulls, use force · lever.
+// [N·m] Moment due to holding `force` [N] with one hand at the horizontal distance `lever` [m] from
+// the shoulder, with an arm of 8.6 lb at half the distance. For pushes and pulls, use force ·
+// lever.
 double ShoulderMoment(double force, double lever);
 
 // ---- A run, and a shift ----
 
-// The damage of a run: the sum over its rainflow cycles. A cycle counts by its range, so a constant
-// moment, and the mean of a cycle, do no damage (design choice: the tools know loads only that
-// begin and end at zero).
+// The damage of a run: the sum over its rainflow cycles. A cycle counts with its range, so a
+// constant moment, or the mean of a cycle, causes no damage (design choice: the tools only consider
+// loads that begin and end at zero).
 double DamageOf(std::span<const LoadCycle> cycles, double (*damage_per_cycle)(double));
 
-// The reference day (design choice): the day whose damage has a probability of one half by the
-// tool's own curve. A lift that costs 0.1 % of it may be done 1000 times before the job is as
-// likely as not to be one of the outcome.
+// The reference day (design choice): the day whose damage has a probability of one half on the
+// tool's own curve. A lift that causes 0.1 % of this damage may be done 1000 times before the job
+// is as likely as not to be one with the outcome.
 inline constexpr double kReferenceProbability = 0.5;
 // `damage` as a share of the reference day: 0.001 is 0.1 %.
 double ShareOfReferenceDay(double damage, const DamageRisk& risk);

@@ -10,13 +10,13 @@ namespace {
 constexpr double kForEver = std::numeric_limits<double>::infinity();
 constexpr double kDevelopment = 10;       // LD = LR [1/s]
 constexpr double kMaxFatigueStep = 0.05;  // [s]
-constexpr double kExhausted = 0.993;      // the fatigue that Peternel calls exhaustion
+constexpr double kExhausted = 0.993;      // fatigue that counts as exhaustion in Peternel's model
 constexpr double kMinRohmertLoad = 0.15;
 
 struct JointFatigue {
   std::string_view name;
   FatigueRates rates;
-  double b0, b1;  // [s] power law
+  double b0, b1;  // parameters of the power law [s]
 };
 constexpr JointFatigue kJointFatigue[kFatigueJoints] = {
     {"ankle", {0.00589, 0.00058, 15}, 34.71, -2.06},

@@ -21,7 +21,7 @@ std::string_view NameOf(FatigueJoint joint);
 struct FatigueRates {
   double fatigue = 0;          // F [1/s]
   double recovery = 0;         // R [1/s]
-  double rest_multiplier = 1;  // r: the recovery is r R while the load is 0
+  double rest_multiplier = 1;  // r: the recovery rate is r R while the load is 0
 };
 
 // F and R: Frey-Law, Looft & Heitsman 2012 (verified in MyoSuite's test; the extremes also in the
@@ -32,19 +32,20 @@ FatigueRates FatigueRatesOf(FatigueJoint joint);
 // Shares of the muscle; their sum is 1.
 struct Compartments {
   double active = 0, resting = 1, fatigued = 0;
-  // The strength that is left, as a share of full strength.
+  // The remaining strength, as a share of full strength.
   double capacity() const { return active + resting; }
 };
 
-// The state after `dt` [s] of constant load 0 … 1. Runge-Kutta in steps of at most 0.05 s, which is
-// stable for the development rate of 10 1/s.
+// The state after `dt` [s] at constant load 0 … 1. Uses Runge-Kutta steps of at most 0.05 s, which
+// are stable for the development rate of 10 1/s.
 Compartments Fatigued(const Compartments& state, double load, double dt, const FatigueRates& rates);
 
-// The same in closed form, of a person rested at first who holds a load from the start: the
+// The same in closed form, for an initially rested person who holds a load from the start: the
 // fatigued share after `time` [s], valid until the endurance time.
 double FatiguedShareUnderConstantLoad(double load, double time, const FatigueRates& rates);
 
-// [s] For how long a rested person can hold the load in this model; infinite if for ever.
+// [s] The time for which a rested person can hold the load in this model; infinite if there is no
+// limit.
 double EnduranceTime(double load, const FatigueRates& rates);
 
 // ---- Endurance from experiments ----
@@ -64,24 +65,24 @@ struct CapacityRates {
   double fatigue = 1.0 / 60;
   double recovery = 2.4 / 60;  // [1/s] 2.4 per minute (recalled, not re-checked)
 };
-// The share of strength that is left after `dt` [s] of constant load. Exact for any dt: while
-// loaded c exp(−k load dt), at rest it returns to 1 exponentially (form verified).
+// The remaining share of strength after `dt` [s] at constant load. Exact for any dt: under load it
+// is c exp(−k load dt); at rest it returns to 1 exponentially (form verified).
 double Capacity(double capacity, double load, double dt, const CapacityRates& rates = {});
 // [s] −ln(load) / (k load).
 double CapacityEnduranceTime(double load, const CapacityRates& rates = {});
 
 // ---- One state: Peternel et al. 2018 ----
 
-// From one trial: a reference load was held until exhaustion (form and constants recalled, not
-// re-checked).
+// Parameters from one trial in which a reference load was held until exhaustion (form and constants
+// recalled, not re-checked).
 struct TrialFatigue {
   double reference_load = 0.5;  // 0 … 1
   double reference_time = 60;   // [s]
   double threshold = 0.1;       // loads below it count as rest
-  double recovery = 0.5;        // R, a share of the reference effort
+  double recovery = 0.5;        // R, as a share of the reference effort
   double Effort() const;        // C [s]: −load · time / ln(1 − 0.993)
 };
-// The fatigue 0 … 1 after `dt` [s] of constant load. Exact for any dt.
+// The fatigue 0 … 1 after `dt` [s] at constant load. Exact for any dt.
 double TrialFatigueAfter(double fatigue, double load, double dt, const TrialFatigue& trial);
 
 }  // namespace predictor::ergonomics

@@ -15,7 +15,7 @@ constexpr int Cell(std::string_view row, int column) {
   return cell >= 'A' ? cell - 'A' + 10 : cell - '0';
 }
 
-// 1 … 4: within 20° of hanging, to 45° or stretched backwards, to 90°, above.
+// 1 … 4: within 20° of hanging; up to 45°, or stretched backwards; up to 90°; above.
 inline int UpperArmFlexionScore(double flexion) {
   if (flexion > Degrees(90)) return 4;
   if (flexion > Degrees(45)) return 3;
@@ -27,8 +27,8 @@ inline int ElbowScore(double flexion) {
   return flexion >= Degrees(60) && flexion <= Degrees(100) ? 1 : 2;
 }
 
-// 1 upright, 2 to 20° either way, 3 to 60° or bent backwards by more than 20°, 4 above. RULA's
-// worksheet has no extension; it is scored as REBA scores it (design choice).
+// 1 upright; 2 up to 20° either way; 3 up to 60°, or bent backwards by more than 20°; 4 above.
+// RULA's worksheet has no extension; it is scored as in REBA (design choice).
 inline int TrunkFlexionScore(double flexion, const PostureThresholds& thresholds) {
   if (std::abs(flexion) <= thresholds.neutral) return 1;
   if (flexion > Degrees(60)) return 4;

@@ -73,7 +73,7 @@ Acceptable Vertical(const VerticalHandling& task, Sex sex, double reference, dou
   return a;
 }
 
-// Women's distance factor is of d, men's of ln d.
+// Women's distance factor is a function of d, men's of ln d.
 struct HorizontalEquation {
   double reference, variation;
   const Factor &height, &distance;
@@ -93,7 +93,7 @@ Acceptable Horizontal(const HorizontalHandling& task, const HorizontalEquation& 
   return a;
 }
 
-// Push and pull of women differ in the variation only.
+// Push and pull of women differ only in the variation.
 HorizontalEquation ForceEquation(bool push, ForcePhase phase, Sex sex) {
   const bool initial = phase == ForcePhase::kInitial;
   if (sex == Sex::kFemale) {

@@ -2,10 +2,10 @@
 // share of women or men accepts for a working day.
 //
 // Source: Potvin, Ciriello, Snook, Maynard & Brogmus 2021, Ergonomics 64, 955–970. Two public
-// transcriptions in one repository and memory agree with these constants (verified), except that
-// one of them has 0.6687 for the 0.6887 of the sustained push of men. Only 0.6887 makes that factor
-// 1 under the reference condition, as all other factors are (tested). The paper itself was not
-// available.
+// transcriptions in one repository agree with these constants, and so does our recollection
+// (verified), except that one of them has 0.6687 instead of 0.6887 for the sustained push of men.
+// Only 0.6887 makes that factor 1 under the reference condition, as all other factors are (tested).
+// The paper itself was not available.
 //
 // Not for: injury risk (acceptability was judged by people, not by tissue), one hand, or sitting.
 #pragma once
@@ -14,23 +14,23 @@
 
 namespace predictor::ergonomics {
 
-// What people accept: normally distributed.
+// Distribution of what people accept: a normal distribution.
 struct Acceptable {
   double mean = 0;       // [kg] for lift, lower and carry, [N] for push and pull
   double variation = 0;  // standard deviation / mean
-  bool outside = false;  // a value was outside the range of the study and was limited to it
+  bool outside = false;  // an input was outside the range of the study and was limited to it
 
   // The load that this share of people accepts, at least 0. ForShare(0.75) is the usual design
   // limit.
   double ForShare(double share) const;
-  // The share of people, 0 … 1, that accepts this load.
+  // The share of people, 0 … 1, who accept this load.
   double ShareThatAccepts(double load) const;
 };
 
 struct VerticalHandling {
-  double reach = 0;  // [m] H, horizontal, of the hands from the ankles. Women 0.20 … 0.68, men
-                     // 0.25 … 0.73
-  double mid_height = 0;  // [m] middle between the first and the last height of the hands
+  double reach = 0;  // [m] H, horizontal distance of the hands from the ankles. Women 0.20 … 0.68,
+                     // men 0.25 … 0.73
+  double mid_height = 0;  // [m] mean of the first and the last height of the hands
   double travel = 0;      // [m] vertical, at least 0.25
   double frequency = 0;   // [1/min] 1/480 … 20
 };

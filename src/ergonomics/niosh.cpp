@@ -13,7 +13,8 @@ namespace predictor::ergonomics {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();  // index if no load is allowed
-constexpr double kKnuckleHeight = 0.75;      // [m] the best height, and the border of two tables
+constexpr double kKnuckleHeight = 0.75;      // [m] optimal height, and the boundary between two
+                                             // tables
 constexpr double kMaxLiftHeight = 1.75;      // [m]
 constexpr double kMinLiftHorizontal = 0.25;  // [m]
 constexpr double kMaxLiftHorizontal = 0.63;  // [m]
@@ -62,7 +63,7 @@ double Ratio(double load, double limit) {
   return load > 0 ? kNoLimit : 0;
 }
 
-// What the composite index needs of a task.
+// The properties of a task that the composite index needs.
 struct RatedTask {
   const LiftTask* task;
   double frequency_independent_index;  // FILI
@@ -76,7 +77,7 @@ RatedTask Rate(const LiftTask& task) {
           Ratio(task.mean_load, lift.limit)};
 }
 
-// The lowest multiplier among these tasks at the sum of their frequencies.
+// The lowest multiplier of these tasks at the sum of their frequencies.
 double CombinedMultiplier(std::span<const RatedTask> tasks) {
   double frequency = 0, lowest = 1;
   for (const RatedTask& rated : tasks) frequency += rated.task->frequency;

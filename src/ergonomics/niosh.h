@@ -17,28 +17,29 @@
 
 namespace predictor::ergonomics {
 
-inline constexpr double kLoadConstant = 23;  // [kg] the limit under the best conditions
+inline constexpr double kLoadConstant = 23;  // [kg] limit under optimal conditions
 
 // The duration of continuous lifting, and the light work that follows it.
 enum class LiftDuration {
-  kShort,     // at most 1 h, then as much time to recover
-  kModerate,  // at most 2 h, then 0.3 times as much
+  kShort,     // at most 1 h, then at least the same time for recovery
+  kModerate,  // at most 2 h, then at least 0.3 times as long for recovery
   kLong,      // at most 8 h, with the usual breaks
 };
 
-// Where the hands hold the load (the point between the large knuckles).
+// Where the hands hold the load (the point between the third knuckles).
 struct HandPlace {
-  double horizontal = 0;  // [m] from the middle between the ankles
+  double horizontal = 0;  // [m] from the midpoint between the ankles
   double height = 0;      // [m] above the floor
-  double asymmetry = 0;   // [rad] of the load from the person's sagittal plane; either side
+  double asymmetry = 0;   // [rad] angle of the load from the person's sagittal plane, to either
+                          // side
 };
 
 struct LiftTask {
   double mean_load = 0;  // [kg]
   double max_load = 0;   // [kg]; used only in the composite index
   HandPlace origin, destination;
-  // The person must grasp again, hold or place the load carefully at the destination. The limit at
-  // the destination then counts as well.
+  // At the destination, the person must regrasp, hold or carefully place the load. The limit at the
+  // destination then counts as well.
   bool controlled_at_destination = false;
   double frequency = 0;  // [1/min] mean over 15 minutes
   LiftDuration duration = LiftDuration::kShort;
@@ -67,13 +68,13 @@ struct LiftAssessment {
 LiftAssessment AssessLift(const LiftTask& task);
 
 // The manual's table 5. The height is that at the origin, also for the limit at the destination.
-// Linear between the rows; 0 above the last row that is not 0 (the manual leaves interpolation into
-// a 0 open). Frequencies below 0.2 count as 0.2.
+// Linear between the rows; 0 above the last row that is not 0 (the manual does not say how to
+// interpolate towards a 0). Frequencies below 0.2 count as 0.2.
 double FrequencyMultiplier(double per_minute, LiftDuration duration, double height_at_origin);
 
-// CLI of a job of several tasks. The frequencies of tasks add up; for the sum, the lowest
-// multiplier among the heights and durations of these tasks is used (the manual leaves this open;
-// design choice). Infinite if a limit is 0, and 0 without tasks.
+// CLI of a job with several tasks. The frequencies of the tasks add up; for the sum, the lowest
+// multiplier among the heights and durations of these tasks is used (the manual does not specify
+// this; design choice). Infinite if a limit is 0, and 0 without tasks.
 double CompositeLiftingIndex(std::span<const LiftTask> tasks);
 
 // A lift that a cobot assists. NIOSH's equation assumes that the person carries the whole load. The
@@ -81,12 +82,12 @@ double CompositeLiftingIndex(std::span<const LiftTask> tasks);
 // label.
 struct AssistedLift {
   LiftAssessment carried;     // adapted: mass = mean vertical force of both hands / g
-  LiftAssessment unassisted;  // the same lift of the whole mass
+  LiftAssessment unassisted;  // the same lift with the whole mass
   static constexpr const char* kCarriedLabel = "adapted, not NIOSH";
 };
 
-// `whole` describes the lift without help; mean_vertical_force [N] is the mean over the lift of the
-// vertical force that both hands exert on the load, upwards positive.
+// `whole` describes the lift without help; mean_vertical_force [N] is the vertical force that both
+// hands exert on the load, averaged over the lift, positive upwards.
 AssistedLift AssessAssistedLift(const LiftTask& whole, double mean_vertical_force);
 
 }  // namespace predictor::ergonomics

@@ -1,9 +1,10 @@
 // OWAS, Ovako Working posture Analysing System (Karhu, Kansi & Kuorinka 1977).
 //
-// Source: one stored copy of the table (verified) and memory. They differ in one cell: back 3, arms
-// 3, legs 7, load 3 (memory 1, stored copy 2). The larger value is used, and `contested` marks it.
+// Source: a stored copy of the table (verified) and our recollection of it. They differ in one
+// cell: back 3, arms 3, legs 7, load 3 (recollection 1, stored copy 2). The larger value is used,
+// and `contested` marks it.
 //
-// Not for: arms (three classes only), necks and wrists, which it ignores.
+// Not for: arms (only three classes), or necks and wrists, which the method ignores.
 #pragma once
 
 #include "ergonomics/posture.h"
@@ -38,8 +39,8 @@ Action OwasAction(int category);
 
 OwasScore AssessOwas(OwasBack back, OwasArms arms, OwasLegs legs, OwasLoad load);
 
-// The classes of a measured posture. Kneeling and walking cannot be seen in it: pass them to the
-// function above. A knee is bent beyond 30° (design choice). No allocation.
+// The classes of a measured posture. Kneeling and walking cannot be detected from it: pass them to
+// the function above. A knee counts as bent beyond 30° (design choice). No allocation.
 OwasScore AssessOwas(const BodyPosture& body, const ArmPosture& left, const ArmPosture& right,
                      double load,  // [kg]
                      const PostureThresholds& thresholds = kDeclaredThresholds);

@@ -1,7 +1,8 @@
-// What RULA, REBA and OWAS look at: the posture of a person and what the person exerts.
+// What RULA, REBA and OWAS assess: a person's posture and exertion.
 //
-// All angles are in radians and finite; the assessments do not check this. A sign says which way a
-// joint bends, as stated at each member; side bend and twist count equally to both sides.
+// All angles are in radians and finite; the assessments do not check this. Signs give the direction
+// in which a joint bends, as stated for each member; side bend and twist count equally in both
+// directions.
 #pragma once
 
 #include <numbers>
@@ -12,21 +13,21 @@ constexpr double Degrees(double degrees) { return degrees * std::numbers::pi / 1
 
 // The whole body without the arms.
 struct BodyPosture {
-  double neck_flexion = 0;     // [rad] head against trunk, forward positive
-  double neck_side_bend = 0;   // [rad] to the right positive
-  double neck_twist = 0;       // [rad] to the left positive
-  double trunk_flexion = 0;    // [rad] trunk against the vertical, forward positive
-  double trunk_side_bend = 0;  // [rad] to the right positive
-  double trunk_twist = 0;      // [rad] shoulders against pelvis, to the left positive
+  double neck_flexion = 0;     // [rad] head relative to trunk, forward positive
+  double neck_side_bend = 0;   // [rad] positive to the right
+  double neck_twist = 0;       // [rad] positive to the left
+  double trunk_flexion = 0;    // [rad] trunk relative to the vertical, forward positive
+  double trunk_side_bend = 0;  // [rad] positive to the right
+  double trunk_twist = 0;      // [rad] shoulders relative to pelvis, positive to the left
   double knee_flexion = 0;     // [rad] of the knee that is bent more; 0: straight
   bool on_both_feet = true;    // weight evenly on both feet, or seated with both feet supported
   bool sitting = false;
 };
 
-// One arm. The members are the same for the left and the right arm: a mirrored person has the same
-// values in the other arm.
+// One arm. The members have the same meaning for both arms: in a mirrored posture, the other arm
+// has the same values.
 struct ArmPosture {
-  double upper_arm_flexion = 0;    // [rad] against the trunk; 0: hangs, forward positive
+  double upper_arm_flexion = 0;    // [rad] relative to the trunk; 0: hangs; forward positive
   double upper_arm_abduction = 0;  // [rad] away from the body positive
   double upper_arm_rotation = 0;   // [rad] about its own axis, inwards positive; 0: neutral
   double elbow_flexion = 0;        // [rad] 0: straight
@@ -47,13 +48,13 @@ struct Exertion {
   bool shock = false;               // sudden or rapidly rising force
   bool held = false;                // posture static for more than a minute
   bool repeated = false;            // four times a minute or more
-  bool large_rapid_change = false;  // of posture, or an unstable base
+  bool large_rapid_change = false;  // large rapid change of posture, or an unstable base
   Coupling coupling = Coupling::kGood;
 };
 
 // The worksheets were made for observers who see "neutral", "twisted" or "abducted". A measured
-// angle is never exactly zero, so these limits are needed. Design choice: no source gives them, and
-// a report must state them beside its scores.
+// angle is never exactly zero, so these limits are needed. They are a design choice: no source
+// gives them, and a report must state them beside its scores.
 struct PostureThresholds {
   double neutral = Degrees(5);             // |wrist| flexion, trunk upright, neck not in extension
   double side_or_twist = Degrees(10);      // of neck, trunk; deviation of the wrist
@@ -64,9 +65,9 @@ struct PostureThresholds {
 };
 inline constexpr PostureThresholds kDeclaredThresholds{};
 
-// A conclusion as the method words it.
+// A conclusion in the words of the method.
 struct Action {
-  int level = 0;              // 1 is the least
+  int level = 0;              // 1 is the lowest
   const char* sentence = "";  // static text
 };
 

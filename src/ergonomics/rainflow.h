@@ -10,12 +10,12 @@ namespace predictor::ergonomics {
 
 struct LoadCycle {
   double range = 0;  // peak minus valley, in the signal's unit
-  double mean = 0;   // middle between both
-  double count = 1;  // 1, or 0.5 for a half cycle at the signal's begin or end
+  double mean = 0;   // mean of peak and valley
+  double count = 1;  // 1, or 0.5 for a half cycle at the beginning or end of the signal
 };
 
 // The cycles in the order in which they close. A cycle with a range below `min_range` (in the
-// signal's unit) does not count: noise alone would otherwise add a cycle with each pair of samples.
+// signal's unit) does not count; otherwise, noise alone would add a cycle for each pair of samples.
 std::vector<LoadCycle> CountRainflow(std::span<const double> signal, double min_range = 0);
 
 }  // namespace predictor::ergonomics

@@ -1,9 +1,9 @@
 // REBA, Rapid Entire Body Assessment (Hignett & McAtamney 2000), for one arm.
 //
-// Sources: the tables agree cell by cell with two copies of the worksheet (tested), with memory,
-// and are monotone in every score (verified). Other public code holds invented tables. The
-// definitions of group A were compared with a stored handbook chapter (verified). Thresholds of
-// measured angles are a design choice (posture.h).
+// Sources: the tables agree cell by cell with two copies of the worksheet (tested) and with our
+// recollection, and increase monotonically with every score (verified). Other public code contains
+// invented tables. The definitions of group A were compared with a stored handbook chapter
+// (verified). Thresholds of measured angles are a design choice (posture.h).
 //
 // Not for: the risk of a person, or the choice between designs with the same score.
 #pragma once
@@ -35,8 +35,8 @@ struct RebaScores {
   Action action;     // level 1 … 5
 };
 
-// The scores of the posture with this arm. No allocation. A person's score is the worse one of both
-// arms.
+// The scores of the posture with this arm. No allocation. A person's score is the worse of the two
+// arms' scores.
 RebaScores AssessReba(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion,
                       const PostureThresholds& thresholds = kDeclaredThresholds);
 

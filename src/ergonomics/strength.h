@@ -1,11 +1,11 @@
-// How strong the joints of a population are, and what share of it can exert a torque.
+// The joint strengths of a population, and the share of it that can exert a torque.
 //
 // Source: mean strengths of elbow and shoulder by joint angle after Stobbe, in Chaffin & Andersson,
 // Occupational Biomechanics. Recalled, not re-checked: no public copy of the equations was found.
 // The elbow flexion at 90° agrees with the book's table of means (men 77, women 41 N·m; recalled).
 // Static, isometric exertions of US industrial workers.
 //
-// Not for: a particular person, fast movement, other joints, or the hand's grip.
+// Not for: a particular person, fast movement, other joints, or the grip of the hand.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ inline constexpr int kStrengthDirections = 4;
 inline constexpr double kStrengthVariation = 0.3;
 // Correlation between the strengths of two joints of a person (recalled, about 0.7).
 inline constexpr double kStrengthCorrelation = 0.7;
-// No sampled person is weaker than this share of the mean: a normal distribution would make one of
-// 2000 weaker than nothing (design choice).
+// No sampled person is weaker than this share of the mean: with a normal distribution, one person
+// in 2000 would have a negative strength (design choice).
 inline constexpr double kMinStrengthShare = 0.1;
 
 // [N·m] Mean strength of one arm, at least 0. `elbow` [rad]: included angle, π is straight.
@@ -41,8 +41,8 @@ double ShareCapable(double torque, double mean_strength);
 // A person's strength as a multiple of the mean, by direction.
 using StrengthShares = std::array<double, kStrengthDirections>;
 
-// A random person: normal, with the variation and correlation above. Draws one number more than
-// there are directions. No allocation.
+// Samples a person's strength: normal, with the variation and correlation above. Draws one number
+// more than there are directions. No allocation.
 StrengthShares SampleStrength(RandomStream* random);
 
 }  // namespace predictor::ergonomics
