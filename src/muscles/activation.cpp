@@ -10,12 +10,12 @@ namespace {
 constexpr int kMaxIterations = 200;
 constexpr double kTolerance = 1e-10;  // of the slope, relative to the largest torque
 
-// The dual at one λ, negated so that it is to be minimised.
+// The dual at one λ, negated so that it is minimised.
 struct Dual {
   double value = 0;
   ArmVector slope;
   MuscleVector activation;
-  MuscleVector gain;  // of the activation with Bᵀλ; 0 at a bound
+  MuscleVector gain;  // derivative of the activation with respect to Bᵀλ; 0 at a bound
 };
 
 double CostOf(const ActivationProblem& p, double square, int i, double a) {
@@ -24,12 +24,12 @@ double CostOf(const ActivationProblem& p, double square, int i, double a) {
   return p.weight[i] * effort + p.trust[i] * miss * miss / 2;
 }
 
-// The activation at which the cost rises by `gain` for a little more activation, and how fast that
-// activation changes with it.
+// The activation at which the marginal cost equals `gain`, and the derivative of that activation
+// with respect to `gain`.
 double ActivationAt(const ActivationProblem& p, double square, int i, double gain, double* slope) {
   const double w = p.weight[i];
   const double pulled = gain + p.trust[i] * p.measured[i];
-  // Cost of the square of the activation, twice.
+  // Twice the cost of the square of the activation.
   const double v = p.trust[i] + square * w;
   if (p.power == 2) {
     *slope = 1 / v;
@@ -60,7 +60,7 @@ Dual DualAt(const ActivationProblem& p, const ArmVector& reserve_scale, double s
   return dual;
 }
 
-// Newton's method from result->multiplier.
+// Newton's method, starting from result->multiplier.
 void Minimise(const ActivationProblem& problem, double square, ActivationResult* result) {
   const ArmVector reserve_scale = problem.reserve_unit.cwiseAbs2() / problem.reserve_cost;
   const double small = kTolerance * std::max(1.0, problem.target.cwiseAbs().maxCoeff());
@@ -77,7 +77,7 @@ void Minimise(const ActivationProblem& problem, double square, ActivationResult*
         H.noalias() += dual.gain[i] * problem.torque.col(i) * problem.torque.col(i).transpose();
     const ArmVector step = -Eigen::LLT<ArmMatrix>(H).solve(dual.slope);
     const double descent = dual.slope.dot(step);
-    constexpr double kMinShare = 1e-4;  // of the descent that the slope promises
+    constexpr double kMinShare = 1e-4;  // required share of the decrease that the slope predicts
     const double rounding = 1e-14 * (1 + std::abs(dual.value));
     double share = 1;
     Dual next = DualAt(problem, reserve_scale, square, lambda + step);
@@ -99,7 +99,8 @@ ActivationResult Activate(const ActivationProblem& problem) noexcept {
   result.multiplier.setZero();
   double square = 1;
   Minimise(problem, square, &result);
-  // Cubes come from squares by degrees, so that Newton's method starts near the solution.
+  // The cubic cost is approached from the quadratic one step by step, so that Newton's method
+  // starts near the solution.
   while (problem.power == 3 && square > kSquareShare) {
     square = std::max(square / 4, kSquareShare);
     Minimise(problem, square, &result);

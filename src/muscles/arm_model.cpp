@@ -60,7 +60,7 @@ struct Point {
   int level;
 };
 
-// Adds the straight line between two points: its length, and -∂l/∂q of the joints that move only
+// Adds the straight line between two points: its length, and -∂l/∂q for the joints that move only
 // one of them.
 void AddStraight(const ArmPlacement& arm, const Point& from, const Point& to, double* length,
                  ArmVector* moment_arm) {
@@ -77,7 +77,7 @@ void AddStraight(const ArmPlacement& arm, const Point& from, const Point& to, do
   }
 }
 
-// The contact with the obstacle between two points, and the level of the obstacle.
+// The contact with the obstacle between two points, and the joint level of the obstacle.
 std::optional<Contact> ContactOf(const ArmPlacement& arm, Wrap wrap, double radius,
                                  const Vector3& from, const Vector3& to, int* level) {
   constexpr auto kRotation = static_cast<std::size_t>(ArmJoint::kShoulderRotation);
@@ -104,7 +104,7 @@ std::optional<Contact> ContactOf(const ArmPlacement& arm, Wrap wrap, double radi
   }
 }
 
-// How strong the person's muscles of a group are, as a multiple of the mean (D: the mean of the
+// Strength of the person's muscles of a group, as a multiple of the mean (D: the mean of the
 // person's multiples where none is given).
 double StrengthOf(const BodySpec& spec, MuscleGroup group) {
   const auto& given = spec.strength;
@@ -122,7 +122,7 @@ double StrengthOf(const BodySpec& spec, MuscleGroup group) {
   }
 }
 
-// One end of each joint's working range, the end that bit i of `corner` names (D).
+// For each joint, the end of its working range that bit i of `corner` selects (D).
 ArmVector WorkingCorner(int corner) {
   constexpr double kRange[person::kArmJoints][2] = {{0, 90},   {0, 60},   {-30, 45}, {0, 130},
                                                     {-70, 70}, {-45, 45}, {-15, 25}};
@@ -154,7 +154,7 @@ void ArmModel::PlaceMuscle(int i) {
   const double upper = kMetre * a.upper_arm.length / kTableUpperArm;
   const double fore = kMetre * a.forearm.length / kTableForearm;
   const double hand = kMetre * a.hand.length / kTableHand;
-  const double mirror = hand_ == 0 ? -1 : 1;  // the table is of a right arm
+  const double mirror = hand_ == 0 ? -1 : 1;  // the table describes a right arm
   Line& line = lines_[static_cast<std::size_t>(i)];
   for (const PathPoint& point : MuscleTable()[static_cast<std::size_t>(i)].path) {
     if (point.part == Part::kNone) break;
@@ -203,7 +203,7 @@ MuscleLines ArmModel::LinesAt(const ArmVector& q) const noexcept {
       const Point to = place(node);
       int level = 0;
       if (const auto contact = ContactOf(arm, node.wrap, node.radius, from.p, to.p, &level)) {
-        // The way is a shortest one, so its length does not change to first order when the ends of
+        // The path is a shortest one, so its length does not change to first order when the ends of
         // the contact slide: they count as points of the obstacle.
         AddStraight(arm, from, {contact->begin, level}, &length, &moment_arm);
         length += contact->length;

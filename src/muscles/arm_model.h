@@ -14,7 +14,7 @@ using ArmMatrix = Eigen::Matrix<double, person::kArmJoints, person::kArmJoints>;
 using MuscleVector = Eigen::Matrix<double, kMuscles, 1>;
 using MomentArms = Eigen::Matrix<double, person::kArmJoints, kMuscles>;
 
-// The joints of a hand's arm within vectors of the whole body.
+// The values of the joints of a hand's arm in a vector for the whole body.
 inline ArmVector ArmOf(const person::BodyVector& q, int hand) {
   return q.segment<person::kArmJoints>(person::Of(hand, person::ArmJoint::kShoulderFlexion));
 }
@@ -36,9 +36,10 @@ class ArmModel {
  public:
   // An arm of the body (hand 0: left). The lines scale with the lengths of upper arm, forearm and
   // hand. Forces scale with mass times height over length, relative to 75 kg and 1.75 m (a muscle's
-  // volume goes with mass times height, R), are 0.7 of that for women (D), and are multiplied by
-  // the person's own strength. Tendons are as long as makes the longest fibres kLongestFibre over
-  // the corners of the working range, flexion 0 to 90°, abduction 0 to 60° and so on (D).
+  // volume is proportional to mass times height, R), are 0.7 of that for women (D), and are
+  // multiplied by the person's own strength. Tendon lengths are chosen so that the longest fibres
+  // over the corners of the working range have kLongestFibre: flexion 0 to 90°, abduction 0 to 60°
+  // and so on (D).
   ArmModel(const BodySpec& spec, int hand);
 
   int hand() const { return hand_; }
@@ -52,7 +53,7 @@ class ArmModel {
 
  private:
   struct Node {
-    int level = 0;  // the last of the arm's joints that moves the point; -1: none
+    int level = 0;  // the last joint of the arm that moves the point; -1: none
     Vector3 p = Vector3::Zero();
     Wrap wrap = Wrap::kNone;
     double radius = 0;
@@ -71,7 +72,7 @@ class ArmModel {
   std::array<Line, kMuscles> lines_;
 };
 
-// Longest fibres in the working range, relative to the optimal length (D).
+// Length of the longest fibres in the working range, relative to the optimal length (D).
 inline constexpr double kLongestFibre = 1.2;
 
 }  // namespace predictor::muscles

@@ -12,7 +12,7 @@ namespace {
 
 using Filter = Butterworth<double>;
 
-// Forward and backward, so without delay.
+// Filters forward and backward, so without delay.
 void Filtered(Filter::Pass pass, double cutoff, double dt, std::vector<double>* values) {
   for (int direction = 0; direction < 2; ++direction) {
     Filter filter(pass, cutoff, dt, values->front());
@@ -29,10 +29,10 @@ void Check(const EmgProcessing& p) {
                      " Hz. Give a rising band, and a rate above twice its upper end.");
   if (!(p.envelope > 0 && p.envelope < p.band_low))
     throw InputError("The envelope's cutoff is " + FormatNumber(p.envelope) +
-                     " Hz. Give one between 0 and the lower end of the band.");
+                     " Hz. Give a cutoff between 0 and the lower end of the band.");
   if (!(p.mvc > 0))
     throw InputError("The envelope of the maximum voluntary contraction is " + FormatNumber(p.mvc) +
-                     ". Give a positive one.");
+                     ". Give a positive value.");
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ double ActiveForceLength(double length) {
 }
 
 double PassiveForceLength(double length) {
-  constexpr double kShape = 4, kStrain = 0.6;  // strain at which the passive force is max_force
+  constexpr double kShape = 4, kStrain = 0.6;  // strain at which the passive force equals max_force
   return std::expm1(kShape * std::max(length - 1, 0.0) / kStrain) / std::expm1(kShape);
 }
 

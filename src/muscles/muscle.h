@@ -1,4 +1,5 @@
-// A muscle with a stiff tendon: the force that its fibres can produce at a length and a velocity.
+// A muscle with a stiff tendon: the force that its fibres can produce at a given length and
+// velocity.
 //
 // Marks of the figures: V, agrees with an independent copy; R, recalled from the literature; D, our
 // choice.
@@ -7,14 +8,14 @@
 namespace predictor::muscles {
 
 struct MuscleParameters {
-  double max_force = 0;     // of fully active fibres at their optimal length, isometric [N]
-  double fibre_length = 0;  // optimal [m]
-  double pennation = 0;     // between fibres and tendon at the optimal length [rad]
+  double max_force = 0;     // isometric force of fully active fibres at their optimal length [N]
+  double fibre_length = 0;  // optimal length [m]
+  double pennation = 0;     // angle between fibres and tendon at the optimal length [rad]
   double tendon_slack = 0;  // length of the tendon, which does not stretch [m]
 };
 
-// Fibres at one moment. A path shorter than the tendon leaves them slack: then length and forces
-// are zero.
+// Fibres at one moment. A path shorter than the tendon leaves them slack: length and forces are
+// then zero.
 struct Fibre {
   double length = 0;         // relative to the optimal length
   double velocity = 0;       // positive while lengthening, relative to kMaxVelocity
@@ -23,11 +24,11 @@ struct Fibre {
 // path_length [m] and its rate [m/s] are those of the whole line from origin to insertion.
 Fibre FibreOf(const MuscleParameters& muscle, double path_length, double path_rate);
 
-// Shortening at which no force is left, per second and optimal length (Thelen 2003, V: the default
-// of a public simulator).
+// Shortening velocity at which no force is left, in optimal lengths per second (Thelen 2003, V: the
+// default of a public simulator).
 inline constexpr double kMaxVelocity = 10;
 
-// Active force over max_force of fibres at full activation, exp(-(l - 1)² / 0.45) (Thelen 2003, R).
+// Active force of fibres at full activation over max_force, exp(-(l - 1)² / 0.45) (Thelen 2003, R).
 double ActiveForceLength(double length);
 // Passive force over max_force, (exp(4 (l - 1) / 0.6) - 1) / (exp(4) - 1) above the optimal length,
 // else 0 (Thelen 2003, R).

@@ -6,8 +6,8 @@ namespace {
 using enum MuscleGroup;
 using enum Part;
 
-// Of MyoArm's forces of wrist and fingers (D): with the whole forces the moments of the wrist are
-// more than twice the measured ones.
+// Factor of MyoArm's forces of wrist and fingers (D): with the full forces, the moments of the
+// wrist are more than twice the measured ones.
 constexpr double kWrist = 0.5;
 
 constexpr PathPoint OverHead(Part part, double x, double y, double z, double radius) {
@@ -98,7 +98,8 @@ constexpr MuscleSpec kTable[kMuscles] = {
      138.5,
      25,
      {{{kTorso, 73, 132, -110}, {kTorso, 62, 75, -75}, OverHead(kUpperArm, 12, -9, -44, 22)}}},
-    // The three lines of Holzbaur et al. as two; forces halved and summed.
+    // The three lines of Holzbaur et al. are combined into two, each with half of the summed
+    // forces.
     {"latissimus dorsi, upper",
      "latissimus_upper",
      kShoulderExtensors,

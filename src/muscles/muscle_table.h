@@ -1,14 +1,13 @@
-// The muscles of an arm: what they are called, where they run, and how strong they are.
+// The muscles of an arm: their names, paths and strengths.
 //
 // Sources. Lines: attachments and via points were read from the MyoArm model of the package myo-sim
 // 0.2.4 (Apache-2.0) in the posture of zero angles, expressed in the segments of our body, rounded
-// to millimetres and reduced to a few points (V for what was read, D for what was left out or
+// to millimetres and reduced to a few points (V for what was read, D for what was omitted or
 // moved). Wraps: D, chosen so that moment arms agree with measured ones (docs/concepts/muscles.md).
 // Forces: Holzbaur, Murray & Delp 2005 for shoulder and elbow (triceps, biceps and brachialis V
-// against the public model arm26; the others R); of the forearm those of MyoArm (V), which
-// are larger, with the four lines of each finger muscle added up, and half of them for wrist and
-// fingers (D). Fibre lengths and pennation: Holzbaur et al.
-// 2005 (the same six V, the others R).
+// against the public model arm26; the others R); for the forearm those of MyoArm (V), which are
+// larger, with the four lines of each finger muscle added up, and half of them for wrist and
+// fingers (D). Fibre lengths and pennation: Holzbaur et al. 2005 (the same six V, the others R).
 #pragma once
 
 #include <array>
@@ -16,7 +15,7 @@
 
 namespace predictor::muscles {
 
-// What muscles are reported together.
+// Groups of muscles that are reported together.
 enum class MuscleGroup : int {
   kShoulderFlexors,
   kShoulderExtensors,  // and adductors
@@ -28,7 +27,7 @@ enum class MuscleGroup : int {
 };
 inline constexpr int kMuscleGroups = 7;
 const char* GroupName(int group);
-// Whether the group's muscles act at the shoulder, where the model is not valid with a raised arm.
+// True if the group's muscles act at the shoulder, where the model is not valid with a raised arm.
 constexpr bool ActsAtShoulder(int group) {
   return group <= static_cast<int>(MuscleGroup::kRotatorCuff);
 }
@@ -37,14 +36,14 @@ constexpr bool ActsAtShoulder(int group) {
 // posture (hanging, straight, thumb forward): x forward, y to the left, z up.
 enum class Part : int {
   kNone,
-  kTorso,     // from the shoulder joint; the shoulder girdle does not move against it
+  kTorso,     // from the shoulder joint; the shoulder girdle does not move relative to it
   kUpperArm,  // from the shoulder joint
   kUlna,      // from the elbow joint
   kRadius,    // from the elbow joint; turns about the forearm's long axis
   kHand,      // from the wrist joint
 };
 
-// Round obstacles. A muscle takes the shortest way around, on the named side.
+// Round obstacles. A muscle takes the shortest path around the obstacle, on the given side.
 enum class Wrap : int {
   kNone,
   kHead,          // ball about the shoulder joint; the shorter side
@@ -56,21 +55,21 @@ enum class Wrap : int {
   kForearmInner,  // cylinder about the forearm's axis; the muscle pronates
 };
 
-// A point of a line, and the obstacle between it and the point before it.
+// A point of a line, and the obstacle between it and the previous point.
 struct PathPoint {
   Part part = Part::kNone;
   double x = 0, y = 0, z = 0;  // [mm]
   Wrap wrap = Wrap::kNone;
-  double radius = 0;  // of the wrap [mm]
+  double radius = 0;  // radius of the obstacle [mm]
 };
 inline constexpr int kMaxPathPoints = 7;
 
 struct MuscleSpec {
   const char* name;
-  const char* key;  // in files
+  const char* key;  // name in files
   MuscleGroup group;
   double max_force;                            // [N]
-  double fibre_length;                         // optimal [mm]
+  double fibre_length;                         // optimal length [mm]
   double pennation;                            // [°]
   std::array<PathPoint, kMaxPathPoints> path;  // origin first; ends at the first kNone
 };
@@ -78,7 +77,8 @@ struct MuscleSpec {
 inline constexpr int kMuscles = 33;
 std::span<const MuscleSpec, kMuscles> MuscleTable();
 
-// Lengths of the segments to which the points belong [m]; those of other bodies scale them.
+// Lengths of the segments in which the points are given [m]; the points scale with the lengths of a
+// body's own segments.
 inline constexpr double kTableUpperArm = 0.2904, kTableForearm = 0.2535, kTableHand = 0.080;
 
 }  // namespace predictor::muscles

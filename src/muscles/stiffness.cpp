@@ -19,7 +19,7 @@ ArmMatrix JointStiffness(const ArmModel& arm, const ArmVector& q, const MuscleVe
     K.col(j) -=
         (arm.LinesAt(q + step).moment_arm - arm.LinesAt(q - step).moment_arm) * force / (2 * kStep);
   }
-  // Second derivatives commute, so that only rounding makes it unsymmetric.
+  // Second derivatives commute, so only rounding makes the matrix asymmetric.
   return (K + K.transpose()) / 2;
 }
 
@@ -31,7 +31,7 @@ HandPoint HandPointAt(const person::BodyModel& body, const person::Placement& at
   point.J = person::JacobianAt(body, at, last, p).middleCols<person::kArmJoints>(first);
   for (int i = 0; i < person::kArmJoints; ++i)
     for (int j = 0; j <= i; ++j) {
-      // The inner joint turns the outer one's axis and lever.
+      // The inner joint turns the axis and the lever arm of the outer one.
       const Vector3& inner = at.axis[static_cast<std::size_t>(first + j)];
       const Vector3 lever = point.J.col(i).head<3>();
       point.turning(i, j) = point.turning(j, i) = inner.cross(lever).dot(force);
@@ -67,7 +67,7 @@ double CoContractionFor(const ArmModel& arm, const ArmVector& q, const MuscleFor
     const auto stiffness = EndpointStiffness(K, point);
     return stiffness && PrincipalStiffness(*stiffness)[0] >= target;
   };
-  int low = -1, high = kSteps;  // reaches(high), or the most there is
+  int low = -1, high = kSteps;  // reaches(high), or high is the largest possible value
   while (high - low > 1) {
     const int middle = (low + high) / 2;
     (reaches(middle) ? high : low) = middle;

@@ -7,20 +7,21 @@
 
 namespace predictor::muscles {
 
-// Of a muscle's line along its force, over force per optimal fibre length: k = 23 F / l0
+// Stiffness of a muscle's line in its direction, over force per optimal fibre length: k = 23 F / l0
 // (short-range stiffness of active fibres, Rack & Westbury 1974, Cui et al. 2008, R; the tendon
-// counts as stiff, so that k is too large for muscles with a long tendon).
+// counts as rigid, so k is too large for muscles with a long tendon).
 inline constexpr double kShortRangeStiffness = 23;
 
-// K = -∂τ/∂q [N·m/rad] with constant activations: Rᵀ diag(k) R - (∂Rᵀ/∂q) F, where R is the matrix
-// of moment arms with one row for each muscle. Only `active_force` [N] stretches stiffly; all of
-// `force` [N] turns with the posture. The second term is a central difference of the moment arms.
+// K = -∂τ/∂q [N·m/rad] at constant activations: Rᵀ diag(k) R - (∂Rᵀ/∂q) F, where R is the matrix of
+// moment arms with one row for each muscle. Only `active_force` [N] contributes to the stiffness k;
+// all of `force` [N] contributes to the second term. That term is a central difference of the
+// moment arms.
 ArmMatrix JointStiffness(const ArmModel& arm, const ArmVector& q, const MuscleVector& active_force,
                          const MuscleVector& force) noexcept;
 
 // A point of the hand, in a posture of the whole body.
 struct HandPoint {
-  // Twist of the frame at the point per velocity of the arm's joints.
+  // Twist of the frame at the point, per velocity of the arm's joints.
   Eigen::Matrix<double, 6, person::kArmJoints> J;
   // ∂(JᵀF)/∂q for the force F on the hand [N·m/rad].
   ArmMatrix turning;
@@ -29,19 +30,19 @@ struct HandPoint {
 HandPoint HandPointAt(const person::BodyModel& body, const person::Placement& at, int hand,
                       const Vector3& p, const Vector3& force) noexcept;
 
-// Stiffness [N/m] that the hand's point shows in small displacements without rotation, as of a
-// handle that keeps its orientation: the block of the position in
-// (J (K - ∂(JᵀF)/∂q)⁻¹ Jᵀ)⁻¹. Weights and the moment on the hand are neglected. Empty if the
-// posture is not stable, or if the arm cannot move the hand in all directions.
+// Stiffness [N/m] of the hand's point for small displacements without rotation, as with a handle
+// that keeps its orientation: the block of the position in (J (K - ∂(JᵀF)/∂q)⁻¹ Jᵀ)⁻¹. Weights and
+// the moment on the hand are neglected. Empty if the posture is not stable, or if the arm cannot
+// move the hand in all directions.
 std::optional<Matrix3> EndpointStiffness(const ArmMatrix& joint_stiffness,
                                          const HandPoint& point) noexcept;
 
 // Principal stiffnesses in ascending order [N/m].
 Vector3 PrincipalStiffness(const Matrix3& stiffness) noexcept;
 
-// The smallest common lower bound of all activations, in steps of 1/256, with which the smallest
-// principal stiffness of the hand's point reaches `target` [N/m]; 1 if none does. `problem` is
-// left with that bound. `forces`: those of the problem.
+// The smallest common lower bound of all activations, in steps of 1/256, at which the smallest
+// principal stiffness of the hand's point reaches `target` [N/m]; 1 if no bound suffices. `problem`
+// has that bound afterwards. `forces`: those of the problem.
 double CoContractionFor(const ArmModel& arm, const ArmVector& q, const MuscleForces& forces,
                         const HandPoint& point, double target, ActivationProblem* problem) noexcept;
 

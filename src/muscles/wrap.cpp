@@ -7,10 +7,10 @@
 namespace predictor::muscles {
 namespace {
 
-// Angle at the centre between a point at distance rho and the point where its tangent touches.
+// Angle at the centre between a point at distance rho and the point at which its tangent touches.
 double TangentAngle(double radius, double rho) { return std::acos(std::min(1.0, radius / rho)); }
 
-// Distance from the point to where its tangent touches.
+// Distance from the point to the point at which its tangent touches.
 double TangentLength(double radius, double rho) {
   return std::sqrt(std::max(0.0, rho * rho - radius * radius));
 }
@@ -48,7 +48,7 @@ std::optional<Contact> AroundCylinder(const Vector3& from, const Vector3& to, co
   double turn = between - before - TangentAngle(radius, rho_b);
   if (turn <= kMaxTurn - 2 * kPi) turn += 2 * kPi;
   if (!(turn > 0)) return {};
-  // Unrolled, the way is a straight line: it climbs along the axis in proportion to its flat
+  // Unrolled, the path is a straight line: it rises along the axis in proportion to its flat
   // length.
   const double first = TangentLength(radius, rho_a), arc = radius * turn;
   const double flat = first + arc + TangentLength(radius, rho_b);

@@ -1,4 +1,4 @@
-// Shortest ways around round obstacles.
+// Shortest paths around round obstacles.
 #pragma once
 
 #include <optional>
@@ -7,21 +7,21 @@
 
 namespace predictor::muscles {
 
-// The part of a shortest way that touches the obstacle: where it begins and ends [m], and its
-// length there [m].
+// The part of a shortest path that touches the obstacle: where it begins and ends [m], and its
+// length [m].
 struct Contact {
   Vector3 begin, end;
   double length = 0;
 };
 
-// Around the ball about `center`, on the shorter side. Empty if the straight line misses the ball.
-// A point inside the ball counts as if it were on its surface.
+// Path around the ball about `center`, on the shorter side. Empty if the straight line misses the
+// ball. A point inside the ball counts as if it were on the surface.
 std::optional<Contact> AroundBall(const Vector3& from, const Vector3& to, const Vector3& center,
                                   double radius);
 
-// Around the cylinder about the line through `center` along the unit vector `axis`, turning in the
-// positive sense about `axis`, by at most 210°. Empty if the straight line passes on that side. A
-// point inside the cylinder counts as if it were on its surface.
+// Path around the cylinder about the line through `center` along the unit vector `axis`, turning in
+// the positive sense about `axis`, by at most 210°. Empty if the straight line passes on that side.
+// A point inside the cylinder counts as if it were on the surface.
 std::optional<Contact> AroundCylinder(const Vector3& from, const Vector3& to, const Vector3& center,
                                       const Vector3& axis, double radius);
 
