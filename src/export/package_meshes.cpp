@@ -146,7 +146,7 @@ std::string PackageMeshes::AddReferring(const fs::path& file, const std::string&
   return name;
 }
 
-// A file that cannot be copied costs a colour, not the whole scene.
+// A file that cannot be copied only causes a wrong colour, so the scene is exported anyway.
 std::string PackageMeshes::AddReferred(const std::string& uri, const fs::path& by) {
   try {
     const fs::path file = ResolveModelPath(uri, by.parent_path(), scenario_folder_);

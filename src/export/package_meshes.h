@@ -13,7 +13,7 @@
 namespace predictor::scene_export {
 
 // All files are in the package's folder "meshes". Their names differ even without extension and
-// without regard to case, because Unity's URDF-Importer names assets and MuJoCo names meshes by the
+// when case is ignored, because Unity's URDF-Importer names assets and MuJoCo names meshes by the
 // file name without its extension.
 class PackageMeshes {
  public:

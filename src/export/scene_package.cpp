@@ -244,10 +244,7 @@ std::string Readme(const Scenario& scenario, const SceneTree& tree,
       << " kg m^2, because some readers refuse zero.\n"
          "Gravity of the scenario: "
       << FormatNumber(scenario.environment.gravity) << " m/s^2.\n";
-  if (!left_out.empty())
-    out << "\n"
-           "Not found and therefore left out: "
-        << Join(left_out) << ".\n";
+  if (!left_out.empty()) out << "\nNot found and therefore omitted: " << Join(left_out) << ".\n";
   return out.str();
 }
 

@@ -14,7 +14,7 @@ constexpr double kMetresPerNewton = 0.01;      // length of a force arrow
 constexpr double kMetresPerNewtonMetre = 0.1;  // length of a torque arrow
 constexpr double kHandleRadius = 0.02;         // [m]
 constexpr double kHandleLength = 0.12;         // [m]
-constexpr double kLinkRadius = 0.04;           // of the drawn cobot [m]
+constexpr double kLinkRadius = 0.04;           // radius of the drawn cobot [m]
 constexpr double kJointRadius = 0.055;         // [m]
 constexpr int kCirclePoints = 72;
 

@@ -1,5 +1,6 @@
-// The questionnaire as a page. A person who has the code agrees, answers, and gets a pseudonym. It
-// uses the viewer's server and follows its rules; docs/how-to/questionnaire.md describes the texts.
+// The questionnaire as a page. A person who has the code consents, answers, and receives a
+// pseudonym. It uses the viewer's server and follows its rules; docs/how-to/questionnaire.md
+// describes the texts.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +23,7 @@ std::string_view SurveyPageFile(std::string_view name);
 
 struct SurveySetup {
   std::vector<std::string> hosts;  // host names of this server, without port
-  // The condition that the person used before; empty: the page asks.
+  // The condition that the person used before answering; empty: the page asks.
   std::optional<Condition> condition;
   // Stores an answer, which has a pseudonym by then. May throw InputError, which is shown to the
   // person.
@@ -36,7 +37,7 @@ enum class SurveyEnd { kNone, kStored, kDeclined };
 class SurveyApp : public viewer::Application {
  public:
   static constexpr std::uint64_t kHelloTime = 5'000'000'000;  // [ns]
-  static constexpr int kMostMessages = 100;                   // of one connection
+  static constexpr int kMostMessages = 100;                   // limit for one connection
 
   explicit SurveyApp(SurveySetup setup);
   ~SurveyApp() override;
