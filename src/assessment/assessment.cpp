@@ -238,7 +238,7 @@ void AddPictures(const NominalChain& nominal, std::span<const PersonSample> samp
 
 void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) {
   a->assumptions = {
-      "The feet stay where operator.stance puts them.",
+      "The feet stay where operator.stance places them.",
       "Only the hands were measured: the rest of the posture is the most comfortable one.",
       "The acceleration of the trunk is neglected, because the trunk moves slowly.",
       std::string("For RULA and REBA, the postures are ") + (work.repeated ? "" : "not ") +
@@ -259,8 +259,8 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
                       {"raised shoulders", "the shoulder girdle does not move in the model"}};
   if (scenario.operator_.type == "browser")
     a->not_evaluable.push_back({"the person at the page",
-                                "a mouse moved the handles, so the posture is that of a person "
-                                "who would have held them"});
+                                "a mouse moved the handles, so the posture is that of an imaginary "
+                                "person who holds them"});
 }
 
 void AddLifts(std::optional<double> object_mass, const SampleCollector& run, Assessment* a) {

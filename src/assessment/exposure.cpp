@@ -12,7 +12,7 @@ namespace predictor::assessment {
 namespace {
 
 constexpr double kShift = 8 * 3600;              // [s]
-constexpr std::size_t kStride = 10;              // samples per step of fatigue
+constexpr std::size_t kStride = 10;              // samples per step of the fatigue model
 constexpr double kStep = kStride / kSampleRate;  // [s]
 
 // Loads at 10 Hz: means of the samples at 100 Hz.

@@ -19,7 +19,7 @@ struct WorkPattern {
   bool repeated = false;  // the same posture at least four times a minute
   bool held = false;      // a posture is static for more than a minute
   ergonomics::Coupling coupling = ergonomics::Coupling::kGood;
-  // Of the person, as a multiple of the mean for the person's sex (BodySpec::strength).
+  // Strength of the person, as a multiple of the mean for the person's sex (BodySpec::strength).
   std::array<double, ergonomics::kStrengthDirections> strength = {1, 1, 1, 1};
 };
 
@@ -40,7 +40,7 @@ struct Frame {
 
 struct FrameInput {
   const person::BodySample& sample;
-  std::array<double, kHands> force_rate;  // of each hand's force, over 0.1 s [N/s]
+  std::array<double, kHands> force_rate;  // rate of change of each hand's force, over 0.1 s [N/s]
 };
 
 Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,

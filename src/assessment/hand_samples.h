@@ -25,7 +25,7 @@ struct PersonSample {
   bool continues = true;
 };
 
-// Makes one sample of successive ticks: the means of position and wrench, and the orientation at
+// Makes one sample from successive ticks: the means of position and wrench, and the orientation at
 // the middle tick. A hand is present if it grips in most of the ticks.
 PersonSample SampleOf(std::span<const TickRecord> ticks);
 

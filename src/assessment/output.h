@@ -24,8 +24,7 @@ std::string AssessmentSchema();
 std::string AssessmentCsv(const Assessment& a);
 std::string AssessmentPage(const Assessment& a, const std::string& program_version);
 
-// The person of a run that a report shows: the assessment, or a sentence that says why there is
-// none.
+// The person of a run in a report: the assessment, or a sentence that explains its absence.
 struct PersonOfRun {
   std::string name;  // of the run, if the report compares several
   std::optional<Assessment> assessment;

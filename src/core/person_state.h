@@ -180,7 +180,7 @@ struct ScoreState {
   std::uint8_t score = 0;  // of the nominal posture; 0: not known
   std::uint8_t level = 0;  // its action level
   std::uint16_t reserved = 0;
-  // Of each action level, over the possible persons, at interval_time; the first is level 1.
+  // Probability of each action level among the possible persons, at interval_time; first: level 1.
   std::array<float, kMaxClasses> probability = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
 };
 struct PartState {

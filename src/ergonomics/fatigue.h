@@ -1,7 +1,7 @@
 // Models of muscle fatigue by joint. All of them take the load as a share of strength, u = torque /
 // strength in that direction, 0 … 1, and have no memory beyond their state. No allocation.
 //
-// Not for: a person's own endurance without a trial (people differ by a factor of two and more),
+// Not for: a person's own endurance without a trial (people differ by a factor of two or more),
 // eccentric or fast movement, or pain.
 #pragma once
 

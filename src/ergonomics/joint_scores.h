@@ -1,4 +1,4 @@
-// The parts of the worksheets that RULA and REBA have in common, and how their tables are stored.
+// The parts that the worksheets of RULA and REBA have in common, and how their tables are stored.
 #pragma once
 
 #include <algorithm>

@@ -19,7 +19,7 @@ namespace predictor::ergonomics {
 
 inline constexpr double kLoadConstant = 23;  // [kg] limit under optimal conditions
 
-// The duration of continuous lifting, and the light work that follows it.
+// The duration of continuous lifting, and the light work that must follow it.
 enum class LiftDuration {
   kShort,     // at most 1 h, then at least the same time for recovery
   kModerate,  // at most 2 h, then at least 0.3 times as long for recovery

@@ -11,7 +11,7 @@ namespace predictor::ergonomics {
 
 constexpr double Degrees(double degrees) { return degrees * std::numbers::pi / 180; }
 
-// The whole body without the arms.
+// The whole body except for the arms.
 struct BodyPosture {
   double neck_flexion = 0;     // [rad] head relative to trunk, forward positive
   double neck_side_bend = 0;   // [rad] positive to the right

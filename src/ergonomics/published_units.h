@@ -1,4 +1,4 @@
-// Units of the sources that are not SI.
+// Non-SI units that the sources use.
 #pragma once
 
 namespace predictor::ergonomics {

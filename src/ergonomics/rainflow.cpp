@@ -13,7 +13,7 @@ std::vector<double> Reversals(std::span<const double> signal) {
     const std::size_t n = points.size();
     if (n > 0 && x == points[n - 1]) continue;
     if (n > 1 && (points[n - 1] > points[n - 2]) == (x > points[n - 1]))
-      points[n - 1] = x;  // still in the same direction
+      points[n - 1] = x;  // continues in the same direction
     else
       points.push_back(x);
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kJoined = 0.5;  // a sample further from the circle than this share of its radius
                                  // is ignored
-constexpr double kShort = 0.02;  // by which the last cycle may be too short [cycles]
+constexpr double kShort = 0.02;  // permitted shortfall of the last cycle [cycles]
 constexpr int kFits = 4;  // iterations of the circle fit, each using the samples near the previous
                           // circle
 

@@ -139,8 +139,9 @@ std::string FidelityText(const FidelityReport& report, const std::string& name_a
              "ratio");
   for (const ChannelFidelity& channel : report.channels) AppendChannel(channel, &text);
   if (report.perceived.empty()) return text;
-  AppendLine(&text,
-             "What a hand would feel: a and b (± standard error), b less a and its JND in %% of a");
+  AppendLine(
+      &text,
+      "What a hand would feel: a and b (± standard error), b minus a and its JND in %% of a");
   for (const PerceivedQuantity& quantity : report.perceived) AppendPerceived(quantity, &text);
   return text;
 }

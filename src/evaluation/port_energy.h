@@ -20,7 +20,7 @@ struct PortEnergy {
   double lowest = 0;       // lowest value of the running sum [J]
   double returned = 0;     // energy returned by the device, as a positive number [J]
   double peak_return = 0;  // peak power of that return [W]
-  int episodes = 0;        // number of times the sum fell below kEpisode
+  int episodes = 0;        // number of times the balance fell below kEpisode
   bool below = false;
   static constexpr double kEpisode = -0.05;  // [J]
   // Adds a power [W] over dt [s].

@@ -1,4 +1,5 @@
-// An arm with muscles on the joints of the body: lengths, moment arms and forces in one posture.
+// An arm with muscles across the joints of the body: lengths, moment arms and forces in one
+// posture.
 #pragma once
 
 #include <array>

@@ -67,7 +67,7 @@ struct BodyJoint {
   double lower = 0, upper = 0;        // [rad] or [m]
   double mass = 0;                    // [kg]
   Vector3 com = Vector3::Zero();      // in this joint's frame [m]
-  Vector3 inertia = Vector3::Zero();  // about the centre of mass, about x, y, z [kg·m²]
+  Vector3 inertia = Vector3::Zero();  // about the axes x, y, z through the centre of mass [kg·m²]
 };
 
 // The grip frame G in the axes of the hand: x along the bar towards the thumb, z from the knuckles

@@ -18,7 +18,7 @@ struct PostureSpread {
   double pelvis_forward = 0.03;    // [m]
   double pelvis_sideways = 0.02;   // [m]
   double pelvis_tilt = 0.087;      // 5° [rad]
-  double spine_share = 0.7;        // of the logarithm of the weights of torso, pelvis and lowering
+  double spine_share = 0.7;        // of the logarithms of the weights of torso, pelvis and lowering
   double neck = 0.26;              // 15° [rad]
   double comfort = 0.12;           // of each arm joint's comfort [rad]
   double length = 0.05;            // of the length of each segment that is not measured, as a

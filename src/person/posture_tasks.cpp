@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kElbowWeight = 1;    // [1/m²]
 constexpr double kHeadWeight = 0.3;   // [1/m²]; times kRotationLength² [1/rad²]
-constexpr double kDifference = 1e-6;  // of numerical differentiation [m]
+constexpr double kDifference = 1e-6;  // step of numerical differentiation [m]
 
 // Points of an arm in S [m].
 struct ArmPoints {

@@ -97,7 +97,7 @@ class Judge {
   void Torques() {
     const ModelsReport& m = report_->models;
     const char* unit = m.torque_is_force ? "N" : "N·m";
-    // Beyond its torque limit the world has no equilibrium.
+    // Beyond its torque limit, the virtual world has no equilibrium.
     if (m.torque_share < kNearTorqueLimit) return;
     Warn(
         Formatted("Holding the object at rest needs %.1f %s at the cobot's joint %s, whose limit "

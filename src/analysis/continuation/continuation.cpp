@@ -214,8 +214,8 @@ Interval90 Continuation::IntervalOf(double ContinuedRun::*value) const {
   for (const ContinuedRun& run : runs)
     if (std::isfinite(run.*value)) values.push_back({run.*value, run.ending == Ending::kFault});
   // With these probabilities, one further draw lies within the interval with 90 % probability, for
-  // any number n of draws. The order statistics are p (n + 1); Quantile numbers them as 1 + p' (n -
-  // 1).
+  // any number n of draws. The ranks of the order statistics are p (n + 1); Quantile counts them as
+  // 1 + p' (n - 1).
   const auto n = static_cast<double>(values.size());
   const auto probability = [n](double p) {
     return n < 2 ? p : std::clamp((p * (n + 1) - 1) / (n - 1), 0.0, 1.0);

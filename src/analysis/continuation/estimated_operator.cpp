@@ -13,8 +13,8 @@ Vector3 SpeedOf(const TickRecord& record, std::size_t hand) {
   return {twist[0], twist[1], twist[2]};
 }
 
-// Acceleration of the handle at each record: a backward difference, because the future of the last
-// one is not known [m/s²].
+// Acceleration of the handle at each record [m/s²]: a backward difference, because the motion after
+// the last record is not known.
 std::vector<Vector3> AccelerationsOf(std::span<const TickRecord> past, std::size_t hand,
                                      double step) {
   const auto lag = static_cast<std::size_t>(std::max(1L, std::lround(kAccelerationTime / step)));

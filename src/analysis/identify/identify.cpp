@@ -80,7 +80,7 @@ constexpr double kLeastMoving = 2;     // minimum time of motion of a joint in e
 constexpr double kLeastSpeeds = 1.5;   // minimum ratio of a joint's fast speeds to its slow ones
 constexpr double kLeastLoad = 0.25;    // largest half-width of the load's mass, as a share of the
                                        // mass
-constexpr double kStrain = 3;          // in standard deviations of a sum of squares
+constexpr double kStrain = 3;          // threshold, in standard deviations of a sum of squares
 constexpr int kBlocks = 10;            // blocks of the cross-validation
 constexpr int kBody = 10;              // number of inertial parameters of a body
 

@@ -92,7 +92,7 @@ class RowBuilder {
   Eigen::MatrixXd x_;  // current equation, without friction
   Eigen::VectorXd y_;
   std::vector<JointRows> rows_;
-  std::uint64_t used_ = 0, not_finite_ = 0;  // number of equations; number of ticks
+  std::uint64_t used_ = 0, not_finite_ = 0;  // number of used ticks; number of skipped ticks
   int recorded_joints_ = 0;
 };
 

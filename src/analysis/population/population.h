@@ -56,7 +56,7 @@ struct PopulationDesign {
   std::vector<PopulationRun> runs;  // by person
 };
 
-// A share with its 95 % interval by Wilson's score (Wilson 1927).
+// A share with its 95 % Wilson score interval (Wilson 1927).
 struct Share {
   int count = 0, of = 0;
   double low = 0, high = 1;

@@ -247,7 +247,7 @@ class Scenery {
   std::array<std::unique_ptr<Figure>, kHands> arms_;
 };
 
-// A camera on the operator's side and above it, directed at the load of the cobot.
+// A camera above the operator's side, directed at the load of the cobot.
 RasterCamera CameraOf(const Scenario& scenario) {
   const Vector3 base = scenario.cobot.base.xyz;
   return {base + Vector3(2.3, -1.55, 1.15), base + Vector3(0.33, 0.03, 0.14), 0.5};

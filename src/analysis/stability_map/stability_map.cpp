@@ -23,7 +23,7 @@ namespace predictor {
 namespace {
 
 constexpr const char* kFormat =
-    "stability map 1";  // format of stored points: a new format makes a new map
+    "stability map 1";  // format of the stored points; changing it invalidates them
 constexpr const char* kStoreFile = "points.jsonl";
 constexpr const char* kPageFile = "index.html";
 constexpr double kSimulatedWork = 12;   // work for a simulated point relative to a point that is

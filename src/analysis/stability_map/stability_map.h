@@ -95,8 +95,8 @@ struct BoundaryPair {
 };
 std::vector<BoundaryPair> PairsOf(const MapPoint& point);
 
-// Agreement of prediction and simulation over all boundaries of a map. Each boundary counts once,
-// although the scenario's own values are in every picture.
+// Agreement of prediction and simulation over all boundaries of a map. Each boundary counts only
+// once, although the scenario's own values are in every picture.
 struct MapAgreement {
   int held = 0, held_agree = 0;    // boundaries for which the assumptions hold
   int other = 0, other_agree = 0;  // boundaries for which they do not hold

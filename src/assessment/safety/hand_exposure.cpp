@@ -126,8 +126,8 @@ void HandExposure::AppendHand(std::size_t i, std::vector<Result>* results) const
   add("peak_return_w", "peak power received", kPowerUnit, "by the hand from the real handle",
       hand.device.peak_return);
   add("lowest_j", "lowest energy", kEnergyUnit,
-      "lowest energy balance at the real handle; for a passive device, it stays above minus the "
-      "energy stored at the start",
+      "lowest energy balance at the real handle; a passive device keeps it above the negative of "
+      "the energy stored at the start",
       hand.device.lowest);
   add("active_episodes", "active episodes", kNumberUnit,
       "how often that balance fell below −0.05 J: the handle gave more than it had received",
