@@ -5,8 +5,7 @@ namespace predictor {
 
 struct PredictedLoop {
   double lead = 0;    // time by which the reference leads the arms [s]
-  double margin = 0;  // factor by which the hands' impedance may grow before the loop becomes
-                      // unstable
+  double margin = 0;  // factor of the hands' impedance at which the loop becomes unstable
 
   bool stable() const { return margin >= 1; }
 };

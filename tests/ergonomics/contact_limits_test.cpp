@@ -46,8 +46,8 @@ TEST(ContactLimitFile, IsReadInSiUnits) {
 }
 
 TEST(ContactLimitFile, RefusesWhatItCannotUse) {
-  ExpectError("", "limits.csv", "has no limits");
-  ExpectError(kStart, "limits.csv", "has no limits");
+  ExpectError("", "limits.csv", "contains no limits");
+  ExpectError(kStart, "limits.csv", "contains no limits");
   ExpectError(kHeader, "limits.csv:1", "Begin it with a line such as");
   ExpectError("edition,\n" + kHeader, "limits.csv:1", "does not name its edition");
   ExpectError("edition,x\nregion,point\n", "limits.csv:2", "it must be region,point,force_N");
