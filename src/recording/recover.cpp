@@ -52,8 +52,8 @@ std::string DecompressSome(const InputFile& file, std::uint64_t offset, std::uin
 
 class Recovery {
  public:
-  Recovery(const InputFile& in, const Opening& opening, McapFile* out)
-      : in_(in), channels_(kEventChannel + opening.scene.size()), out_(out) {}
+  Recovery(const InputFile& in, const Opening& opening, bool markers, McapFile* out)
+      : in_(in), channels_(kEventChannel + opening.scene.size()), markers_(markers), out_(out) {}
 
   RecoverReport Run(std::uint64_t at) {
     MarkFinder finder(in_, std::string(kMark), kMarkAt, mcap::Op::kChunk);
@@ -133,10 +133,21 @@ class Recovery {
         return TakeTick(message.time, trusted);
       case TickDecoder::Result::kOther:
         if (!trusted) return;
+        if (!markers_ && IsMarker(message)) {
+          ++report_.left_out_markers;
+          return;
+        }
         report_.snapshots += message.channel == kSnapshotChannel;
         report_.events += message.channel == kEventChannel;
         builder_.Add(message.channel, message.sequence, message.time, message.data);
     }
+  }
+
+  // Events with a text of a person or a program. The others are derived from the ticks.
+  static bool IsMarker(const Message& message) {
+    RecordingEvent event;
+    return message.channel == kEventChannel && ParseEvent(message.data, &event) &&
+           (event.kind == "marker" || event.kind == "event");
   }
 
   void TakeTick(std::uint64_t time, bool trusted) {
@@ -173,6 +184,7 @@ class Recovery {
 
   const InputFile& in_;
   std::size_t channels_;
+  bool markers_;
   McapFile* out_;
   RecoverReport report_;
   ChunkBuilder builder_;
@@ -196,13 +208,16 @@ bool IsIntact(const std::string& path) {
 }  // namespace
 }  // namespace recording
 
-RecoverReport Recover(const std::string& in, const std::string& out, FileCalls* calls) {
+RecoverReport Recover(const std::string& in, const std::string& out, FileCalls* calls,
+                      const Rewriting& rewriting) {
   FileCalls real;
   const recording::InputFile file(in);
-  const recording::Opening opening = ReadOpening(file);
+  recording::Opening opening = ReadOpening(file);
+  if (rewriting.change) rewriting.change(&opening.header);
   recording::McapFile mended(out, recording::MakePreamble(opening.header, opening.scene),
                              calls ? calls : &real);
-  RecoverReport report = recording::Recovery(file, opening, &mended).Run(opening.end);
+  RecoverReport report =
+      recording::Recovery(file, opening, rewriting.markers, &mended).Run(opening.end);
   if (!mended.End())
     throw RecordingError(out + ": The recording could not be written: " + mended.error() +
                          ". Choose a disk with more space.");

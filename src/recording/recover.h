@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "recording/file_calls.h"
+#include "recording/header.h"
 
 namespace predictor {
 
@@ -17,16 +19,24 @@ struct RecoverReport {
   std::uint64_t lost_ticks = 0;  // ticks lost between kept ones; the number after the last kept one
                                  // is unknown
   std::uint64_t snapshots = 0, events = 0;  // numbers of those kept
+  std::uint64_t left_out_markers = 0;       // as Rewriting asks
   std::uint64_t gave_up_at = 0;             // byte at which the search was abandoned; 0: it was not
   std::string preamble;  // sentences about repaired or lost parts of the preamble; empty: none
 
   std::string Text() const;  // Sentences for the user.
 };
 
+// What a copy changes on purpose.
+struct Rewriting {
+  std::function<void(RecordingHeader*)> change;  // of the header; may throw; empty: none
+  bool markers = true;                           // keep events with free text
+};
+
 // Writes all intact parts of `in` to `out`, with a new index. From a damaged chunk, only ticks with
 // a valid CRC are kept. `in` is not changed. Throws InputError if `in` is not a recording or is
 // damaged before its first tick, or if `out` exists. Throws RecordingError if `out` cannot be
 // written. `calls` is borrowed.
-RecoverReport Recover(const std::string& in, const std::string& out, FileCalls* calls = nullptr);
+RecoverReport Recover(const std::string& in, const std::string& out, FileCalls* calls = nullptr,
+                      const Rewriting& rewriting = {});
 
 }  // namespace predictor
