@@ -142,4 +142,19 @@ JointLoads InverseDynamics(const BodyModel& model, const BodyVector& q, const Bo
 // and do not move.
 std::string MjcfOf(const BodyModel& model);
 
+// A part of the body that moves as one: the joints first ... last are at one place, and the last
+// carries its mass.
+struct BodyPart {
+  const char* name;  // "pelvis", "left_hand"
+  int first, last;
+};
+std::span<const BodyPart> BodyParts();
+
+// The body as an OpenSim model (4.x): the same joints, names, limits and masses, without legs and
+// muscles. Forces and torques of its pelvis are the legs' action. x forward, y up, z right, as is
+// usual there.
+std::string OpenSimModelOf(const BodyModel& model);
+// A vector of S in OpenSim's axes.
+inline Vector3 InOpenSim(const Vector3& v) { return {v.x(), v.z(), -v.y()}; }
+
 }  // namespace predictor::person

@@ -44,7 +44,8 @@ struct HandSample {
 struct BodySample {
   double time = 0;  // [s]
   std::array<HandSample, kHands> hands;
-  std::optional<Pose> X_WHead;                               // frame at the eyes, x forward, z up
+  std::optional<Pose> X_WHead;         // frame at the eyes, x forward, z up
+  bool head_rotation_measured = true;  // otherwise only the position of X_WHead counts
   std::array<std::optional<Vector3>, kHands> p_WElbow = {};  // elbow joints [m]
 };
 

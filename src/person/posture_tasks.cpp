@@ -59,7 +59,7 @@ void Append(double scale, const Jacobian* J, const Error& e, TaskRows* rows) {
 PostureTasks::PostureTasks(const BodyModel& model, const Stance& stance,
                            const std::array<Grip, kHands>& grips, const PosturePrior& prior,
                            const BodySample& sample)
-    : model_(model), prior_(prior) {
+    : model_(model), prior_(prior), head_turn_counts_(sample.head_rotation_measured) {
   const Pose X_SW = stance.X_WS.Inverse();
   for (int hand = 0; hand < kHands; ++hand) {
     const auto k = static_cast<std::size_t>(hand);
@@ -159,11 +159,12 @@ void PostureTasks::AddHead(const Placement& at, bool with_jacobian, TaskRows* ro
   const Pose now =
       at.FrameOf(kNeckTwist) * Pose{model_.anthropometry().eyes, Quaternion::Identity()};
   Vector6 e = PoseError(*head_goal_, now);
-  e.tail<3>() *= kRotationLength;
+  const double rotation = head_turn_counts_ ? kRotationLength : 0;
+  e.tail<3>() *= rotation;
   BodyJacobian J;
   if (with_jacobian) {
     J = JacobianAt(model_, at, kNeckTwist, now.p);
-    J.bottomRows<3>() *= kRotationLength;
+    J.bottomRows<3>() *= rotation;
   }
   Append(std::sqrt(kHeadWeight), with_jacobian ? &J : nullptr, e, rows);
 }

@@ -52,6 +52,7 @@ class PostureTasks {
   std::array<bool, kHands> turns_ = {};
   std::array<std::optional<Vector3>, kHands> elbow_goal_;
   std::optional<Pose> head_goal_;
+  bool head_turn_counts_;
 };
 
 }  // namespace predictor::person
