@@ -31,15 +31,6 @@ void AddCheck(CLI::App* app, Request* r) {
       "Exit code 1: the scenario fails the check.\n");
 }
 
-void AddPersonOverrides(CLI::App* command, std::vector<std::string>* set) {
-  AddOption(command, "Person", "--set", set, "KEY=VALUE",
-            "Override a value of the recorded scenario, for example operator.body.height=1.62 "
-            "(repeatable)")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
-}
-
 void AddReport(CLI::App* app, Request* r) {
   ReportOptions* o = &r->report;
   CLI::App* report =
@@ -84,9 +75,14 @@ void AddEvaluate(CLI::App* app, Request* r) {
       "Judge the person in a recording: posture, joint loads, scores, lifts, damage, fatigue", r,
       [o] { return EvaluateCommand(*o); });
   AddRecording(evaluate, &o->recording);
-  AddPersonOverrides(evaluate, &o->set);
+  AddPerson(evaluate, o);
   AddOption(evaluate, "Person", "--against", &o->against, "RECORDING",
             "Also compare with this recording of another design, for the same person");
+  AddOption(evaluate, "Person", "--against-track", &o->against_tracks, "FILE",
+            "As --track, of the person in the other recording (repeatable)")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
   evaluate
       ->add_flag("--intervals,!--no-intervals", o->intervals,
                  "Also evaluate 64 possible postures and bodies, for intervals and probabilities "

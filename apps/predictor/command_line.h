@@ -24,6 +24,8 @@ struct Request {
   ReproduceCommandOptions reproduce;
   EvaluateOptions evaluate;
   ContinueCommandOptions continue_run;
+  ExportPersonOptions person;
+  ImportOptions imported;
   HazardsCommandOptions hazards;
   PopulationCommandOptions population;
   SurveyOptions survey;
@@ -54,6 +56,9 @@ CLI::Option* AddOption(CLI::App* app, const char* group, const char* name, T* va
 }
 
 // Options that several commands share.
+void AddPersonOverrides(CLI::App* app, std::vector<std::string>* set);
+// --set and --track of the person in a recording.
+void AddPerson(CLI::App* app, PersonOptions* o);
 void AddScenario(CLI::App* app, ScenarioOptions* o);
 void AddRecording(CLI::App* app, std::string* recording);
 // --json, --force and --quiet.

@@ -129,11 +129,17 @@ struct ReproduceCommandOptions : OutputOptions {
   std::string only;  // name of a single experiment; empty: all
 };
 
-// Input and output of `evaluate`.
-struct EvaluateOptions : OutputOptions {
+// Who held the handles in a recording.
+struct PersonOptions : OutputOptions {
   std::string recording;
-  std::string against;           // a recording of another design; empty: none
-  std::vector<std::string> set;  // overrides of the recorded scenario, for body and stance
+  std::vector<std::string> set;     // overrides of the recorded scenario, for body and stance
+  std::vector<std::string> tracks;  // files with further measurements of the person
+};
+
+// Input and output of `evaluate`.
+struct EvaluateOptions : PersonOptions {
+  std::string against;                      // a recording of another design; empty: none
+  std::vector<std::string> against_tracks;  // further measurements of its person
   bool intervals = true;
   bool repeated = false, held = false;  // see assessment::WorkPattern
   std::string contact_limits;           // file of limits for unintended contact; empty: none
@@ -149,6 +155,18 @@ struct ContinueCommandOptions : OutputOptions {
   double horizon = 1.5;    // [s]
   std::uint64_t seed = 1;  // seed of the possible operators
   std::string page;        // empty: NAME.continued.html
+};
+
+// Output of `export person`.
+struct ExportPersonOptions : PersonOptions {
+  std::string folder;  // empty: NAME.opensim
+};
+
+// Input and output of `import`.
+struct ImportOptions : OutputOptions {
+  std::string file;    // of another system
+  std::string map;     // mapping, YAML
+  std::string output;  // empty: NAME.person.csv
 };
 
 // Input and output of `hazards`.
@@ -212,6 +230,8 @@ int ExportEventsCommand(const RecordingOptions& options);
 int ListChannelsCommand(const RecordingOptions& options);
 // Writes to `output`, or to NAME.repaired.mcap next to the recording.
 int RepairCommand(const RecordingOptions& options);
+// Writes to `output`, or to NAME.shared.mcap next to the recording.
+int ShareCommand(const RecordingOptions& options);
 // Shows a recording in the viewer until asked to end.
 int ReplayCommand(const std::string& recording, const ServeOptions& options);
 // Returns the exit code kDeparted if the recomputed run differs.
@@ -222,6 +242,8 @@ int TrialCommand(const ScenarioOptions& options, const std::string& recording);
 int IdentifyCommand(const IdentifyCommandOptions& options);
 int EvaluateCommand(const EvaluateOptions& options);
 int ContinueCommand(const ContinueCommandOptions& options);
+int ExportPersonCommand(const ExportPersonOptions& options);
+int ImportCommand(const ImportOptions& options);
 int HazardsCommand(const HazardsCommandOptions& options);
 int PopulationCommand(const PopulationCommandOptions& options);
 int ReproduceCommand(const ReproduceCommandOptions& options);

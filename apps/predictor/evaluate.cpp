@@ -8,15 +8,10 @@
 #include "assessment/output.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "models/object_model.h"
-#include "models/urdf.h"
+#include "evaluated_run.h"
 #include "progress.h"
-#include "recorded_run.h"
-#include "recording/provenance.h"
 #include "recording/reader.h"
-#include "scenario/paths.h"
 #include "scenario/scenario_io.h"
-#include "screen.h"
 
 namespace predictor {
 namespace {
@@ -25,54 +20,32 @@ namespace {
 // a slow computer [s].
 constexpr double kMaxIntervals = 120;
 
-// Empty if the recorded models cannot be read; the reason is printed.
-std::optional<assessment::SceneMasses> MassesOf(const RecordingHeader& header) {
-  try {
-    const TemporaryFolder folder;
-    const Scenario scenario = RestoreScenario(header, folder.path());
-    const CobotSpec& cobot = scenario.cobot;
-    const UrdfModel urdf = ReadUrdf(ResolveModelPath(cobot.model, scenario.folder()),
-                                    cobot.remove_links, scenario.folder());
-    return assessment::SceneMasses{.cobot = urdf.MovingMass(),
-                                   .object = LoadObject(scenario.object, scenario.folder()).mass};
-  } catch (const InputError& error) {
-    TheScreen().Tell(std::string("The masses of the virtual scene are not known: ") + error.what());
-    return {};
+void AddSafety(const EvaluatedRun& run, const EvaluateOptions& options,
+               assessment::Assessment* result) {
+  if (!run.safety) {
+    result->not_evaluable.push_back(
+        {"the safety of the collaboration",
+         "a recording of another system has no stops, limits and energies"});
+    return;
   }
+  assessment::SafetyOptions judge{.intervals = options.intervals, .masses = run.masses};
+  if (!options.contact_limits.empty())
+    judge.limits = ergonomics::ReadContactLimits(options.contact_limits);
+  result->safety = JudgeSafety(run.scenario, result->setup, *run.safety, judge);
 }
 
-assessment::Assessment Evaluate(const EvaluateOptions& options, const std::string& file) {
-  RecordingReader reader(file);
-  const RecordingHeader& header = reader.header();
-  if (header.scenario_yaml.empty())
-    throw InputError(file, "The recording has lost its scenario, so the person is not known.");
-  const Scenario scenario = ParseScenario(header.scenario_yaml, file, ".", options.set);
-  if (const auto missing = assessment::MissingForPosture(scenario); !missing.empty())
-    throw InputError(file, missing.front() +
-                               " For this recording, give it on the command line, for example "
-                               "--set 'operator.body={height: 1.75, mass: 75, sex: male}' --set "
-                               "'operator.stance={ground: [1, 0, -0.85], facing: 180 deg}'.");
-  assessment::SampleCollector samples(scenario);
-  assessment::SafetyCollector safety(scenario);
-  ReadTicks(&reader, "Reading", options.quiet, [&](const TickRecord& record) {
-    samples.Add(record);
-    safety.Add(record);
-  });
-  if (!reader.problem().empty()) TheScreen().Tell(reader.problem());
+assessment::Assessment Evaluate(const EvaluateOptions& options, const std::string& file,
+                                const std::vector<std::string>& tracks) {
+  const EvaluatedRun run = OpenRun(file, options, tracks);
   Progress progress("Evaluating", 1, options.quiet);
-  assessment::AssessOptions how;
+  assessment::AssessOptions how = run.Options();
   how.intervals = options.intervals;
   how.work = {.repeated = options.repeated, .held = options.held};
   how.progress = [&](double share) { progress.Update(share); };
-  const std::optional<assessment::SceneMasses> masses = MassesOf(header);
-  assessment::Assessment result =
-      Assess(scenario, masses ? std::optional(masses->object) : std::nullopt, samples, how);
-  assessment::SafetyOptions judge{.intervals = options.intervals, .masses = masses};
-  if (!options.contact_limits.empty())
-    judge.limits = ergonomics::ReadContactLimits(options.contact_limits);
-  result.safety = JudgeSafety(scenario, result.setup, safety, judge);
+  assessment::Assessment result = Assess(run.scenario, run.object_mass, run.run, how);
+  AddSafety(run, options, &result);
   progress.Finish();
-  result.recording = std::filesystem::path(file).filename().string();
+  result.recording = run.file;
   return result;
 }
 
@@ -100,7 +73,7 @@ assessment::PersonOfRun PersonIn(const std::string& file, double duration,
   const bool too_long = duration > kMaxIntervals;
   evaluate.intervals = !too_long;
   try {
-    person.assessment = Evaluate(evaluate, file);
+    person.assessment = Evaluate(evaluate, file, {});
   } catch (const InputError& error) {
     person.why = error.what();
     return person;
@@ -119,11 +92,11 @@ int EvaluateCommand(const EvaluateOptions& options) {
   options.CheckWritable();
   options.RefuseToReplace(page);
   options.RefuseToReplace(options.csv);
-  const assessment::Assessment result = Evaluate(options, options.recording);
+  const assessment::Assessment result = Evaluate(options, options.recording, options.tracks);
   std::string text = AssessmentText(result);
   std::optional<assessment::Comparison> comparison;
   if (!options.against.empty()) {
-    comparison = Compare(result, Evaluate(options, options.against));
+    comparison = Compare(result, Evaluate(options, options.against, options.against_tracks));
     text += ComparisonText(*comparison);
   }
   WriteFile(page, AssessmentPage(result, PREDICTOR_VERSION));

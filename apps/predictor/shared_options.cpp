@@ -30,6 +30,25 @@ CLI::Option* AddPort(CLI::App* app, const char* group, const char* name, std::ui
       ->capture_default_str();
 }
 
+void AddPersonOverrides(CLI::App* app, std::vector<std::string>* set) {
+  AddOption(app, "Person", "--set", set, "KEY=VALUE",
+            "Override a value of the recorded scenario, for example operator.body.height=1.62 "
+            "(repeatable)")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+}
+
+void AddPerson(CLI::App* app, PersonOptions* o) {
+  AddPersonOverrides(app, &o->set);
+  AddOption(app, "Person", "--track", &o->tracks, "FILE",
+            "Measured head, elbows or signals: a table (CSV), or a mapping (YAML) of a CSV, TRC or "
+            "C3D file (repeatable)")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+}
+
 void AddRecording(CLI::App* app, std::string* recording) {
   app->add_option("recording", *recording, "Recording (MCAP)")->required();
 }

@@ -23,9 +23,11 @@ void AddTable(CLI::App* app, RecordingOptions* o) {
 }
 
 void AddExport(CLI::App* app, Request* r) {
-  CLI::App* all = app->add_subcommand("export", "Export recordings as CSV, or the scene as URDF")
-                      ->group(kToolGroup)
-                      ->require_subcommand(1);
+  CLI::App* all =
+      app->add_subcommand("export",
+                          "Export recordings as CSV, the person for OpenSim, or the scene as URDF")
+          ->group(kToolGroup)
+          ->require_subcommand(1);
   RecordingOptions* o = &r->recording;
   CLI::App* data = AddCommand(all, "Commands", "data", "Channels of a recording as CSV", r,
                               [o] { return ExportDataCommand(*o); });
@@ -52,6 +54,18 @@ void AddExport(CLI::App* app, Request* r) {
   AddOutput(channels, o);
   channels->footer("Example:\n  predictor export channels run.mcap\n");
 
+  ExportPersonOptions* p = &r->person;
+  CLI::App* person =
+      AddCommand(all, "Commands", "person",
+                 "The body, its motion and the forces of the hands in a recording, for OpenSim", r,
+                 [p] { return ExportPersonCommand(*p); });
+  AddRecording(person, &p->recording);
+  AddPerson(person, p);
+  AddOption(person, "Output", "-o,--output", &p->folder, "FOLDER",
+            "Folder to write [default: NAME.opensim]");
+  AddOutput(person, p);
+  person->footer("Example:\n  predictor export person run.mcap -o run.opensim\n");
+
   CLI::App* scene = AddCommand(all, "Commands", "scene",
                                "The virtual scene as one URDF file with its meshes, for Unity", r,
                                [r] { return ExportSceneCommand(r->scenario, r->scene); });
@@ -60,6 +74,23 @@ void AddExport(CLI::App* app, Request* r) {
             "Folder to write [default: SCENARIO_scene]");
   AddOutput(scene, &r->scenario);
   scene->footer("Example:\n  predictor export scene scenarios/box_9kg.yaml -o unity/box\n");
+}
+
+void AddImport(CLI::App* app, Request* r) {
+  ImportOptions* o = &r->imported;
+  CLI::App* command =
+      AddCommand(app, kToolGroup, "import",
+                 "Import what hands did from another system, so that `evaluate` can judge it", r,
+                 [o] { return ImportCommand(*o); });
+  command->add_option("file", o->file, "Table (CSV), markers (TRC, C3D) or ROS 2 bag (MCAP, db3)")
+      ->required();
+  AddOption(command, "Input", "--map", &o->map, "MAP.yaml",
+            "Which channels are the handles' poses and the hands' forces")
+      ->required();
+  AddOption(command, "Output", "-o,--output", &o->output, "FILE.person.csv",
+            "File to write [default: NAME.person.csv]");
+  AddOutput(command, o);
+  command->footer("Example:\n  predictor import lift.mcap --map lift.yaml -o lift.person.csv\n");
 }
 
 void AddRepair(CLI::App* app, Request* r) {
@@ -72,6 +103,18 @@ void AddRepair(CLI::App* app, Request* r) {
             "File to write [default: NAME.repaired.mcap]");
   AddOutput(repair, o);
   repair->footer("Example:\n  predictor repair runs/cut.mcap\n");
+}
+
+void AddShare(CLI::App* app, Request* r) {
+  RecordingOptions* o = &r->recording;
+  CLI::App* share = AddCommand(app, kToolGroup, "share",
+                               "Copy a recording without body, place and labels of the person", r,
+                               [o] { return ShareCommand(*o); });
+  AddRecording(share, &o->recording);
+  AddOption(share, "Output", "-o,--output", &o->output, "FILE.mcap",
+            "File to write [default: NAME.shared.mcap]");
+  AddOutput(share, o);
+  share->footer("Example:\n  predictor share runs/p07_real.mcap -o shared/07.mcap\n");
 }
 
 // Adds a command that prints a text.
@@ -119,7 +162,9 @@ int ShowHelp(const CLI::App* app, const std::vector<std::string>& words) {
 
 void AddToolCommands(CLI::App* app, Request* r) {
   AddExport(app, r);
+  AddImport(app, r);
   AddRepair(app, r);
+  AddShare(app, r);
   AddSchema(app, r);
   CLI::App* help = AddCommand(app, kToolGroup, "help", "Show the help of a command", r,
                               [app, r] { return ShowHelp(app, r->help); });

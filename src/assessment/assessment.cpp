@@ -193,12 +193,12 @@ void CheckPlace(std::span<const PersonSample> samples, Assessment* a) {
         std::hypot(mean.x(), mean.y())));
 }
 
-void AddStopWarning(const SampleCollector& run, Assessment* a) {
-  if (!IsLimit(run.stopped())) return;
+void AddStopWarning(const PersonRun& run, Assessment* a) {
+  if (!IsLimit(run.stopped)) return;
   a->warnings.push_back(Formatted(
       "The emulator stopped this run at a limit (%s). Its largest values are therefore only lower "
       "bounds of what the person would have experienced; `predictor continue` predicts them.",
-      Name(run.stopped())));
+      Name(run.stopped)));
 }
 
 void AddBalanceWarning(const NominalChain& nominal, Assessment* a) {
@@ -239,7 +239,7 @@ void AddPictures(const NominalChain& nominal, std::span<const PersonSample> samp
 void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) {
   a->assumptions = {
       "The feet stay where operator.stance places them.",
-      "Only the hands were measured: the rest of the posture is the most comfortable one.",
+      MeasuredSentence(a->measured),
       "The acceleration of the trunk is neglected, because the trunk moves slowly.",
       std::string("For RULA and REBA, the postures are ") + (work.repeated ? "" : "not ") +
           "repeated four times a minute and " + (work.held ? "" : "not ") +
@@ -263,33 +263,36 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
                                 "person who holds them"});
 }
 
-void AddLifts(std::optional<double> object_mass, const SampleCollector& run, Assessment* a) {
+void AddLifts(std::optional<double> object_mass, const PersonRun& run, Assessment* a) {
   if (object_mass)
-    a->lifts = LiftsOf(run.samples(), a->setup.stance, *object_mass, a->setup.body.sex);
+    a->lifts = LiftsOf(run.samples, a->setup.stance, *object_mass, a->setup.body.sex);
   else
     a->not_evaluable.push_back({"lifting equations", "the mass of the object is not known"});
 }
 
 }  // namespace
 
-Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
-                  const SampleCollector& run, const AssessOptions& options) {
-  if (run.samples().empty())
+Assessment Assess(const Scenario& scenario, std::optional<double> object_mass, const PersonRun& run,
+                  const AssessOptions& options) {
+  if (run.samples.empty())
     throw InputError(
         "No simulated time passed in this run, so there is nothing to evaluate. Record a run that "
         "reaches RUN.");
-  const std::vector<PersonSample> samples = Held(run.samples());
+  std::vector<PersonSample> samples = Held(run.samples);
   if (samples.empty())
     throw InputError("No hand held a handle in this run, so there is nothing to evaluate.");
   Assessment a;
   a.scenario = scenario.name;
   a.operator_type = scenario.operator_.type;
-  a.setup = SetupOf(scenario, run.first());
+  a.setup = SetupOf(scenario, run.handles);
   a.hands = {scenario.Has(0), scenario.Has(1)};
-  a.duration = static_cast<double>(run.samples().size()) / kSampleRate;
+  a.duration = static_cast<double>(run.samples.size()) / kSampleRate;
   a.held = static_cast<double>(samples.size()) / kSampleRate;
+  a.warnings = options.notes;
   CheckPlace(samples, &a);
   AddStopWarning(run, &a);
+  a.measured = AddTracks(options.tracks, a.setup, options.start_unix, &samples);
+  a.warnings.insert(a.warnings.end(), a.measured.warnings.begin(), a.measured.warnings.end());
   const double share = options.intervals ? 0.3 : 1;  // share of the progress that the nominal chain
                                                      // accounts for
   WorkPattern work = options.work;
@@ -310,8 +313,9 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
     a.worksheets.push_back(WorksheetOf(kind, nominal, sampled));
   AddReach(nominal, sampled, &a);
   AddBalanceWarning(nominal, &a);
-  AddDamage(scenario, nominal, run.samples(), &a);
-  AddFatigue(scenario, nominal, run.samples(), &a);
+  AddMisfit(nominal.postures, &a.measured, &a.warnings);
+  AddDamage(scenario, nominal, run.samples, &a);
+  AddFatigue(scenario, nominal, run.samples, &a);
   AddPictures(nominal, samples, options.intervals, &a);
   AddWords(scenario, work, &a);
   AddMuscleWords(nominal, &a.warnings, &a.assumptions, &a.not_evaluable);

@@ -11,6 +11,8 @@
 
 #include "assessment/exposure.h"
 #include "assessment/lifts.h"
+#include "assessment/measured_body.h"
+#include "assessment/person_run.h"
 #include "assessment/person_setup.h"
 #include "assessment/picture.h"
 #include "assessment/quantities.h"
@@ -65,6 +67,7 @@ struct Assessment {
   BodyPicture worst;                       // at WorstSample()
   std::vector<BodyPicture> pictures;       // evenly spaced over the judged time
   std::optional<SafetyAssessment> safety;  // filled by JudgeSafety; empty: not judged
+  MeasuredBody measured;                   // beside the hands
   std::vector<std::string> warnings;       // about doubtful input
   std::vector<std::string> assumptions;
   std::vector<NotEvaluable> not_evaluable;
@@ -73,12 +76,21 @@ struct Assessment {
 struct AssessOptions {
   bool intervals = true;  // false: only the nominal posture
   WorkPattern work;
+  std::vector<tracks::BodyTrack> tracks;  // further measurements of the person
+  double start_unix = 0;                  // of the recording, for tracks in this clock [s]
+  std::vector<std::string> notes;         // about what was missing in the recording
   std::function<void(double share)> progress = [](double) {};
 };
 
 // Judges the samples of a run. Throws InputError if the body or the place of the person is unknown,
-// no adult has such a body, or there are no samples.
-Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
-                  const SampleCollector& run, const AssessOptions& options);
+// no adult has such a body, there are no samples, or a track does not belong to this run
+// (AddTracks).
+Assessment Assess(const Scenario& scenario, std::optional<double> object_mass, const PersonRun& run,
+                  const AssessOptions& options);
+
+inline Assessment Assess(const Scenario& scenario, std::optional<double> object_mass,
+                         const SampleCollector& run, const AssessOptions& options) {
+  return Assess(scenario, object_mass, RunOf(run), options);
+}
 
 }  // namespace predictor::assessment

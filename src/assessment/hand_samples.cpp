@@ -48,6 +48,7 @@ SampleBuilder::SampleBuilder(const Scenario& scenario)
 }
 
 std::optional<PersonSample> SampleBuilder::Add(const TickRecord& record) {
+  if (!start_) start_ = record.tick;
   const bool follows = !last_time_ || record.run_time < *last_time_ + 1.5 * dt_;
   if (!record.ran || !follows) {
     // A partial sample would have a different bandwidth, so it is dropped.
@@ -64,6 +65,7 @@ std::optional<PersonSample> SampleBuilder::Add(const TickRecord& record) {
 
 PersonSample SampleBuilder::Close() {
   PersonSample sample = SampleOf(pending_);
+  sample.recorded = dt_ * static_cast<double>(pending_[pending_.size() / 2].tick - *start_);
   const std::array<bool, kHands> present = {sample.body.hands[0].present,
                                             sample.body.hands[1].present};
   sample.continues = !interrupted_ && (!present_ || *present_ == present);

@@ -19,6 +19,7 @@ std::size_t TicksPerSample(double rate);
 
 struct PersonSample {
   person::BodySample body;
+  double recorded = 0;                         // since the first tick of the recording [s]
   std::array<double, kHands> peak_force = {};  // largest over the ticks of the sample [N]
   // False if, before this sample, simulated time was paused, ticks were lost, or a hand gripped or
   // let go.
@@ -43,6 +44,7 @@ class SampleBuilder {
 
   std::uint64_t ticks_per_sample_;
   double dt_;
+  std::optional<std::uint64_t> start_;  // first tick of the recording
   TickRecord first_{};
   std::vector<TickRecord> pending_;
   std::optional<double> last_time_;                  // of the last tick in RUN [s]

@@ -3,6 +3,7 @@
 
 #include "assessment/output.h"
 #include "core/format.h"
+#include "core/text.h"
 
 namespace predictor::assessment {
 namespace {
@@ -22,6 +23,9 @@ std::string HeadOf(const Assessment& a) {
     AppendHead(*q.kind, ".high", &text);
   }
   for (const WorksheetResult& w : a.worksheets) Append(&text, ",%s", w.kind->name);
+  for (const MeasuredSignal& signal : a.measured.signals)
+    text += "," + CsvCell("measured." + signal.name +
+                          (signal.unit.empty() ? "" : " [" + signal.unit + "]"));
   return text + '\n';
 }
 
@@ -43,6 +47,8 @@ std::string AssessmentCsv(const Assessment& a) {
         text += ",,";
     }
     for (const WorksheetResult& w : a.worksheets) Append(&text, ",%d", w.values[i]);
+    for (const MeasuredSignal& signal : a.measured.signals)
+      text += std::isfinite(signal.values[i]) ? Formatted(",%.9g", signal.values[i]) : ",";
     text += '\n';
     k += sampled ? 1 : 0;
   }

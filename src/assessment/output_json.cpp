@@ -79,6 +79,30 @@ Json ToJson(const FatigueResult& f) {
           {"time_to_limit_s", NumberOrNull(f.time_to_limit)}};
 }
 
+Json ToJson(const UsedTrack& track) {
+  const auto& estimate = track.estimate;
+  return {{"source", track.source},
+          {"offset_s", track.offset},
+          {"offset_uncertainty_s", estimate ? Json(estimate->uncertainty) : Json(nullptr)},
+          {"offset_correlation", estimate ? Json(estimate->correlation) : Json(nullptr)}};
+}
+
+Json ToJson(const MeasuredPart& part) {
+  return {{"what", part.what},
+          {"origin", Name(Origin::kMeasured)},
+          {"source", part.source},
+          {"share_of_time", part.share},
+          {"misfit_m", part.misfit ? Json(*part.misfit) : Json(nullptr)}};
+}
+
+Json ToJson(const MeasuredSignal& signal) {
+  return {{"name", signal.name},
+          {"unit", signal.unit},
+          {"origin", Name(Origin::kMeasured)},
+          {"source", signal.source},
+          {"share_of_time", signal.share}};
+}
+
 template <class T>
 Json ListOf(const std::vector<T>& list) {
   Json json = Json::array();
@@ -168,6 +192,9 @@ std::string AssessmentJson(const Assessment& a, const Comparison* comparison) {
   json["damage"] = ListOf(a.damage);
   json["fatigue"] = ListOf(a.fatigue);
   json["safety"] = a.safety ? SafetyJson(*a.safety) : Json(nullptr);
+  json["measured"] = {{"parts", ListOf(a.measured.parts)},
+                      {"signals", ListOf(a.measured.signals)},
+                      {"clocks", ListOf(a.measured.tracks)}};
   json["warnings"] = a.warnings;
   json["assumptions"] = a.assumptions;
   json["not_evaluable"] = Json::array();
@@ -210,6 +237,13 @@ std::string AssessmentSchema() {
        {"damage", ListSchema("cumulative damage", ToJson(DamageResult{}))},
        {"fatigue", ListSchema("fatigue of joints", ToJson(FatigueResult{}))},
        {"safety", SafetySchema()},
+       {"measured",
+        schema::Object(
+            {{"parts", ListSchema("parts of the body beside the hands", ToJson(MeasuredPart{}))},
+             {"signals", ListSchema("signals that no score uses", ToJson(MeasuredSignal{}))},
+             {"clocks",
+              ListSchema("offsets added to the times of the files", ToJson(UsedTrack{}))}},
+            "measurements beside the hands")},
        {"warnings", schema::Array(text, "doubtful input")},
        {"assumptions", schema::Array(text, "what was assumed")},
        {"not_evaluable", schema::Array(schema::Object({{"what", text}, {"why", text}}, "a gap"),

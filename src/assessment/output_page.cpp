@@ -256,6 +256,15 @@ void AddSummary(const Assessment& a, ReportPage* page) {
   page->Html(PicturesHtml(a));
 }
 
+void AddMeasured(const MeasuredBody& measured, Outline* outline) {
+  if (measured.tracks.empty()) return;
+  outline->Begin("measured", "Measured beside the hands");
+  ReportPage& page = outline->page();
+  for (const MeasuredPart& part : measured.parts) page.Paragraph(Sentence(part));
+  for (const MeasuredSignal& signal : measured.signals) page.Paragraph(Sentence(signal));
+  for (const UsedTrack& track : measured.tracks) page.Paragraph(Sentence(track));
+}
+
 void AddSafety(const SafetyAssessment& safety, Outline* outline) {
   ReportPage& page = outline->page();
   int number = 0;
@@ -283,6 +292,7 @@ void AddParts(const Assessment& a, Outline* outline) {
   page.Html(ScoreBars(a));
   page.Html(ScoreTable(a));
   page.Figure(ScorePlot(a));
+  AddMeasured(a.measured, outline);
   AddGroups(a, outline);
   AddCosts(a, outline);
   if (a.safety) AddSafety(*a.safety, outline);

@@ -132,6 +132,10 @@ std::string AssessmentText(const Assessment& a) {
   AppendLine(&text, "%s %s", OperatorSentence(a).c_str(), ReachSentence(a).c_str());
   for (const std::string& line : a.warnings) AppendLine(&text, "Warning: %s", line.c_str());
   AppendLine(&text, "%s.", OriginWords().c_str());
+  AppendSentences("Measured beside the hands", a.measured.parts, &text);
+  AppendSentences("Measured signals", a.measured.signals, &text);
+  AppendSentences("Clocks", a.measured.tracks, &text);
+  if (!a.measured.tracks.empty()) text += '\n';
   text +=
       "p5, p95: percentiles over time, of the nominal posture. Tail: 90 % interval of p95 (of p5 "
       "for balance) over 64 possible postures and bodies.\n\n";

@@ -20,7 +20,7 @@ std::vector<std::string> MissingForPosture(const Scenario& scenario) {
   return missing;
 }
 
-PersonSetup SetupOf(const Scenario& scenario, const TickRecord& first) {
+PersonSetup SetupOf(const Scenario& scenario, const std::array<Pose, kHands>& handles) {
   if (const auto missing = MissingForPosture(scenario); !missing.empty())
     throw InputError(Join(missing, " "));
   const StanceSpec& stands = *scenario.operator_.stance;
@@ -32,11 +32,16 @@ PersonSetup SetupOf(const Scenario& scenario, const TickRecord& first) {
     if (!scenario.Has(hand)) continue;
     const auto h = static_cast<std::size_t>(hand);
     const GripSpec& grip = scenario.handle(hand).grip;
-    const Pose X_WD = FromRecord(first.hands[h].real.pose);
     setup.grips[h].kind = grip.kind;
-    setup.grips[h].X_DG = person::GripOn(grip.bar, X_WD.q.conjugate() * -forward);
+    setup.grips[h].X_DG = person::GripOn(grip.bar, handles[h].q.conjugate() * -forward);
   }
   return setup;
+}
+
+PersonSetup SetupOf(const Scenario& scenario, const TickRecord& first) {
+  std::array<Pose, kHands> handles;
+  for (std::size_t h = 0; h < kHands; ++h) handles[h] = FromRecord(first.hands[h].real.pose);
+  return SetupOf(scenario, handles);
 }
 
 }  // namespace predictor::assessment

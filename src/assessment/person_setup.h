@@ -26,8 +26,10 @@ struct PersonSetup {
   std::array<person::Grip, kHands> grips;
 };
 
-// `first`: a record with the initial places of the handles; the wrists are on the person's side of
-// the handles. Throws InputError if something is missing or no adult has such a body.
+// `handles`: X_WD at the start; the wrists are on the person's side of the handles. Throws
+// InputError if something is missing or no adult has such a body.
+PersonSetup SetupOf(const Scenario& scenario, const std::array<Pose, kHands>& handles);
+// `first`: a record with the initial places of the handles.
 PersonSetup SetupOf(const Scenario& scenario, const TickRecord& first);
 
 }  // namespace predictor::assessment

@@ -114,5 +114,57 @@ TEST_F(Evaluate, OfAnAbsurdBodyOrAForeignFileIsRefused) {
   EXPECT_EQ(child.Wait(), 2);
 }
 
+TEST_F(Evaluate, JudgesAnImportedLogAndExportsIt) {
+  const std::string log = folder_.path() / "log.csv", map = folder_.path() / "map.yaml";
+  std::ofstream table(log);
+  table << "time,x,y,z,w,i,j,k,fx,fy,fz\n";
+  for (int n = 0; n < 300; ++n)
+    table << 0.01 * n << ",500,0," << 100 + 0.1 * n << ",1,0,0,0,0,0,30\n";
+  table.close();
+  std::ofstream(map) << "unit: mm\nforce_unit: N\n"
+                        "operator: {body: {height: 1.75, mass: 75, sex: male}, stance: {ground: "
+                        "[0.95, 0, -0.85], facing: 180 deg}}\n"
+                        "right_hand: {position: [x, y, z], rotation: [w, i, j, k], force: [fx, fy, "
+                        "fz]}\n";
+  const std::string person = folder_.path() / "log.person.csv";
+  Child import({"import", log, "--map", map});
+  ASSERT_EQ(import.Wait(), 0) << import.errors();
+  EXPECT_NE(import.output().find("torque was not measured"), std::string::npos) << import.output();
+  Child child({"evaluate", person, "--no-intervals", "--json", "-"});
+  ASSERT_EQ(child.Wait(), 0) << child.errors();
+  const auto json = nlohmann::json::parse(child.output());
+  EXPECT_EQ(json["person"]["operator"], "imported");
+  EXPECT_NEAR(json["quantities"]["hands.right.force_n"]["mean"].get<double>(), 30, 1e-6);
+  EXPECT_FALSE(json["quantities"].contains("hands.left.force_n"));
+  Child exported({"export", "person", person, "-o", folder_.path() / "opensim"});
+  ASSERT_EQ(exported.Wait(), 0) << exported.errors();
+  EXPECT_TRUE(fs::exists(folder_.path() / "opensim" / "person.osim"));
+}
+
+// A head that rests above the place where the operator stands.
+TEST_F(Evaluate, TakesAMeasuredHeadFromATable) {
+  const std::string recording = Record("box_9kg"), table = folder_.path() / "head.csv";
+  const auto write = [&](double height, const std::string& unit) {
+    std::ofstream out(table);
+    out << "time [s],head.p.x [" << unit << "],head.p.y [" << unit << "],head.p.z [" << unit
+        << "],pulse [1/min]\n";
+    for (int i = 0; i < 500; ++i) out << 0.01 * i << ",0.8,0.05," << height << ",72\n";
+  };
+  write(0.65, "m");
+  const std::string csv = folder_.path() / "person.csv";
+  Child child({"evaluate", recording, "--track", table, "--csv", csv, "--json", "-"});
+  ASSERT_EQ(child.Wait(), 0) << child.errors();
+  const auto json = nlohmann::json::parse(child.output());
+  EXPECT_GT(json["measured"]["parts"][0]["share_of_time"].get<double>(), 0.99);
+  std::ifstream in(csv);
+  std::string header;
+  std::getline(in, header);
+  EXPECT_TRUE(header.ends_with("measured.pulse [1/min]")) << header;
+  write(650, "m");
+  Child wrong({"evaluate", recording, "--track", table, "--force"});
+  EXPECT_EQ(wrong.Wait(), 2);
+  EXPECT_NE(wrong.errors().find("Check the unit"), std::string::npos) << wrong.errors();
+}
+
 }  // namespace
 }  // namespace predictor

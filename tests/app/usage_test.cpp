@@ -96,6 +96,9 @@ TEST(Help, OfEachCommandHasExamplesAndDefaultsAndFitsTheTerminal) {
                                                   {"export", "events"},
                                                   {"export", "channels"},
                                                   {"export", "scene"},
+                                                  {"export", "person"},
+                                                  {"import"},
+                                                  {"share"},
                                                   {"repair"}}) {
     std::vector<std::string> by_option = command, by_command = command;
     by_option.emplace_back("--help");
@@ -183,6 +186,7 @@ TEST_F(Written, FilesAreReplacedByForceOnly) {
       {"export", "data", recording, "cobot.q", "-o", Path("a.csv"), "--quiet"},
       {"export", "events", recording, "-o", Path("e.csv"), "--quiet"},
       {"repair", recording, "--quiet"},
+      {"share", recording, "--quiet"},
       {"init", Path("mine"), "--quiet"}};
   for (std::vector<std::string> command : commands) {
     ASSERT_EQ(Do(command), 0) << command[0] << said_;

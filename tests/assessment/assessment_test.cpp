@@ -18,7 +18,7 @@ Assessment Judge(double force, bool intervals = false, const BodySpec& body = {}
   scenario.operator_.body = body;
   const SampleCollector run =
       Collect(scenario, 1, [&](std::uint64_t tick) { return RecordOf(tick, 1.0, force); });
-  return Assess(scenario, 9, run, {.intervals = intervals});
+  return Assess(scenario, 9, RunOf(run), {.intervals = intervals});
 }
 
 const QuantityResult& Find(const Assessment& a, const std::string& path) {
@@ -33,7 +33,7 @@ TEST(Assessment, TheBackHoldsTheForceTimesItsLever) {
   const Scenario scenario = PersonScenario();
   const SampleCollector run =
       Collect(scenario, 1, [&](std::uint64_t tick) { return RecordOf(tick, 1.0, 40); });
-  const PersonSetup setup = SetupOf(scenario, run.first());
+  const PersonSetup setup = SetupOf(scenario, RunOf(run).handles);
   const NominalChain chain = RunNominal(setup, run.samples(), {}, [](double) {});
   const person::BodyModel model(setup.body);
   const person::BodyVector& q = chain.postures.back().q;
@@ -82,7 +82,7 @@ TEST(Assessment, ASqueezeIsNoLoad) {
       record.hands[1].wrench[1] = -inward;
       return record;
     });
-    return Assess(scenario, 9, run, {.intervals = false});
+    return Assess(scenario, 9, RunOf(run), {.intervals = false});
   };
   EXPECT_EQ(judge(60).worksheets[0].worst, judge(0).worksheets[0].worst);
   EXPECT_EQ(judge(60).worksheets[2].worst, judge(0).worksheets[2].worst);
@@ -96,7 +96,7 @@ TEST(Assessment, OnlyARealStepOfForceIsAShock) {
     const SampleCollector run = Collect(scenario, 2, [&](std::uint64_t tick) {
       return RecordOf(tick, 1.0, 2 + (tick > 1000 ? step : 0) + noise * random.Normal());
     });
-    return Assess(scenario, 9, run, {.intervals = false}).worksheets[1].worst;
+    return Assess(scenario, 9, RunOf(run), {.intervals = false}).worksheets[1].worst;
   };
   EXPECT_EQ(worst(0, 3), worst(0, 0));
   EXPECT_GT(worst(45, 0), worst(20, 0));
@@ -107,7 +107,7 @@ TEST(Assessment, WarnsOfAnImpossiblePlace) {
   const auto judge = [&] {
     const SampleCollector run =
         Collect(scenario, 0.5, [&](std::uint64_t tick) { return RecordOf(tick, 1.0, 5); });
-    return Assess(scenario, 9, run, {.intervals = false});
+    return Assess(scenario, 9, RunOf(run), {.intervals = false});
   };
   EXPECT_TRUE(judge().warnings.empty());
   scenario.operator_.stance->facing = 0;
@@ -126,7 +126,7 @@ TEST(Assessment, OneHandHasNoRightSide) {
     record.hands[1] = {};
     return record;
   });
-  const Assessment a = Assess(scenario, 9, run, {.intervals = false});
+  const Assessment a = Assess(scenario, 9, RunOf(run), {.intervals = false});
   for (const QuantityResult& q : a.quantities) EXPECT_NE(q.kind->hand, 1) << q.kind->path;
   for (const FatigueResult& f : a.fatigue) EXPECT_EQ(f.joint.find("right"), std::string::npos);
 }
@@ -134,14 +134,14 @@ TEST(Assessment, OneHandHasNoRightSide) {
 TEST(Assessment, RefusesAnAbsurdBodyAndAnEmptyRun) {
   EXPECT_THROW(Judge(0, false, {.height = 5, .mass = 75}), InputError);
   const Scenario scenario = PersonScenario();
-  EXPECT_THROW(Assess(scenario, 9, SampleCollector(scenario), {}), InputError);
+  EXPECT_THROW(Assess(scenario, 9, RunOf(SampleCollector(scenario)), {}), InputError);
 }
 
 TEST(Assessment, SaysWhatItCouldNotJudge) {
   Scenario scenario = PersonScenario();
   const SampleCollector run =
       Collect(scenario, 1, [&](std::uint64_t tick) { return RecordOf(tick, 1.0, 5); });
-  const Assessment a = Assess(scenario, {}, run, {.intervals = false});
+  const Assessment a = Assess(scenario, {}, RunOf(run), {.intervals = false});
   bool lifting = false;
   for (const NotEvaluable& n : a.not_evaluable) lifting = lifting || n.what == "lifting equations";
   EXPECT_TRUE(lifting);

@@ -18,7 +18,7 @@ std::vector<Lift> LiftsIn(
     for (HandRecord& hand : record.hands) hand.gripping = holds(t) ? 1 : 0;
     return record;
   });
-  const PersonSetup setup = SetupOf(scenario, run.first());
+  const PersonSetup setup = SetupOf(scenario, RunOf(run).handles);
   return LiftsOf(run.samples(), setup.stance, 18, Sex::kMale);
 }
 
@@ -71,7 +71,8 @@ TEST(Lifts, AreNotMadeByAChangeOfHands) {
     if (tick > 2000) record.hands[0].gripping = 0;
     return record;
   });
-  EXPECT_TRUE(LiftsOf(run.samples(), SetupOf(scenario, run.first()).stance, 9, Sex::kMale).empty());
+  EXPECT_TRUE(
+      LiftsOf(run.samples(), SetupOf(scenario, RunOf(run).handles).stance, 9, Sex::kMale).empty());
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "assessment/hand_samples.h"
+#include "assessment/person_run.h"
 #include "assessment/person_setup.h"
 
 namespace predictor::assessment {

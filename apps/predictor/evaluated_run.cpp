@@ -1,0 +1,96 @@
+#include "evaluated_run.h"
+
+#include "core/error.h"
+#include "models/object_model.h"
+#include "models/urdf.h"
+#include "progress.h"
+#include "recorded_run.h"
+#include "recording/provenance.h"
+#include "recording/reader.h"
+#include "scenario/paths.h"
+#include "scenario/scenario_io.h"
+#include "screen.h"
+
+namespace predictor {
+namespace {
+
+// Empty if the recorded models cannot be read; the reason is printed.
+std::optional<assessment::SceneMasses> MassesOf(const RecordingHeader& header) {
+  try {
+    const TemporaryFolder folder;
+    const Scenario scenario = RestoreScenario(header, folder.path());
+    const CobotSpec& cobot = scenario.cobot;
+    const UrdfModel urdf = ReadUrdf(ResolveModelPath(cobot.model, scenario.folder()),
+                                    cobot.remove_links, scenario.folder());
+    return assessment::SceneMasses{.cobot = urdf.MovingMass(),
+                                   .object = LoadObject(scenario.object, scenario.folder()).mass};
+  } catch (const InputError& error) {
+    TheScreen().Tell(std::string("The masses of the virtual scene are not known: ") + error.what());
+    return {};
+  }
+}
+
+void RefuseUnknown(const Scenario& scenario, const std::string& file) {
+  if (const auto missing = assessment::MissingForPosture(scenario); !missing.empty())
+    throw InputError(file, missing.front() +
+                               " For this recording, give it on the command line, for example "
+                               "--set 'operator.body={height: 1.75, mass: 75, sex: male}' --set "
+                               "'operator.stance={ground: [1, 0, -0.85], facing: 180 deg}'.");
+}
+
+EvaluatedRun OpenTicks(const std::string& file, const PersonOptions& options) {
+  RecordingReader reader(file);
+  const RecordingHeader& header = reader.header();
+  if (header.scenario_yaml.empty())
+    throw InputError(file, "The recording has lost its scenario, so the person is not known.");
+  EvaluatedRun run;
+  run.scenario = ParseScenario(header.scenario_yaml, file, ".", options.set);
+  RefuseUnknown(run.scenario, file);
+  assessment::SampleCollector samples(run.scenario);
+  run.safety.emplace(run.scenario);
+  ReadTicks(&reader, "Reading", options.quiet, [&](const TickRecord& record) {
+    samples.Add(record);
+    run.safety->Add(record);
+  });
+  TellProblem(reader.problem());
+  run.run = assessment::RunOf(samples);
+  run.masses = MassesOf(header);
+  if (run.masses) run.object_mass = run.masses->object;
+  run.start_unix = 1e-9 * static_cast<double>(header.start_unix_ns);
+  return run;
+}
+
+EvaluatedRun OpenImported(const std::string& file, const PersonOptions& options) {
+  const tracks::PersonFile person = tracks::ReadPersonFile(file, options.set);
+  EvaluatedRun run;
+  run.scenario = assessment::ScenarioOf(person.header, person.track);
+  RefuseUnknown(run.scenario, file);
+  run.run = assessment::RunOf(person);
+  run.object_mass = person.header.object_mass;
+  run.notes = person.header.notes;
+  if (person.track.head || person.track.elbows[0] || person.track.elbows[1] ||
+      !person.track.signals.empty())
+    run.tracks.push_back(person.track);
+  return run;
+}
+
+}  // namespace
+
+assessment::AssessOptions EvaluatedRun::Options() const {
+  assessment::AssessOptions options;
+  options.tracks = tracks;
+  options.start_unix = start_unix;
+  options.notes = notes;
+  return options;
+}
+
+EvaluatedRun OpenRun(const std::string& file, const PersonOptions& options,
+                     const std::vector<std::string>& tracks) {
+  EvaluatedRun run =
+      tracks::IsPersonFile(file) ? OpenImported(file, options) : OpenTicks(file, options);
+  run.file = std::filesystem::path(file).filename().string();
+  for (const std::string& track : tracks) run.tracks.push_back(tracks::LoadBodyTrack(track));
+  return run;
+}
+
+}  // namespace predictor

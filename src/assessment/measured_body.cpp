@@ -1,0 +1,262 @@
+#include "assessment/measured_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "core/error.h"
+#include "core/format.h"
+#include "core/text.h"
+#include "evaluation/statistics_samples.h"
+
+namespace predictor::assessment {
+namespace {
+
+// Limits of what is possible, as shares of the height (design choices). They only have to
+// distinguish a person from a wrong unit, frame or marker.
+constexpr double kLowest = 0.1, kHighest = 1.25, kFarthest = 1.0;
+constexpr double kElbowToHandle = 0.4;
+
+struct Finding {
+  std::size_t measured = 0, impossible = 0;
+  std::vector<double> heights, distances;  // of impossible positions, in S [m]
+};
+
+bool IsPossible(const PersonSetup& setup, const Vector3& p_W, Finding* finding) {
+  const Vector3 p = setup.stance.X_WS.Inverse() * p_W;
+  const double height = setup.body.height, distance = std::hypot(p.x(), p.y());
+  ++finding->measured;
+  if (p.z() > kLowest * height && p.z() < kHighest * height && distance < kFarthest * height)
+    return true;
+  ++finding->impossible;
+  finding->heights.push_back(p.z());
+  finding->distances.push_back(distance);
+  return false;
+}
+
+void Judge(const Finding& finding, const std::string& what, const std::string& source,
+           const PersonSetup& setup, MeasuredBody* body) {
+  if (finding.impossible == 0) return;
+  if (2 * finding.impossible > finding.measured)
+    throw InputError(
+        source,
+        Formatted("The %s is %.2f m above the operator's ground and %.2f m beside the feet, which "
+                  "is impossible for a person of %.2f m. Check the unit and the frame in the "
+                  "mapping, and operator.stance.",
+                  what.c_str(), Median(finding.heights), Median(finding.distances),
+                  setup.body.height));
+  body->warnings.push_back(Formatted(
+      "%s: %.1f %% of the positions of the %s are impossible and are left out.",
+      Printable(source).c_str(),
+      100 * static_cast<double>(finding.impossible) / static_cast<double>(finding.measured),
+      what.c_str()));
+}
+
+double Share(std::size_t count, std::size_t all) {
+  return static_cast<double>(count) / static_cast<double>(all);
+}
+
+void AddHead(const tracks::PartTrack& head, const UsedTrack& track, const PersonSetup& setup,
+             std::vector<PersonSample>* samples, MeasuredBody* body) {
+  Finding finding;
+  std::size_t positions = 0, rotations = 0;
+  for (PersonSample& sample : *samples) {
+    const double time = sample.recorded - track.offset;
+    const auto p = head.PositionAt(time);
+    if (!p || !IsPossible(setup, *p, &finding)) continue;
+    const auto q = head.RotationAt(time);
+    sample.body.X_WHead = Pose{*p, q.value_or(Quaternion::Identity())};
+    sample.body.head_rotation_measured = q.has_value();
+    ++positions;
+    rotations += q ? 1 : 0;
+  }
+  Judge(finding, "head", track.source, setup, body);
+  body->parts.push_back({"head", track.source, Share(positions, samples->size()), {}});
+  if (!head.q.empty())
+    body->parts.push_back({"head rotation", track.source, Share(rotations, samples->size()), {}});
+}
+
+void AddElbow(const tracks::PartTrack& elbow, int hand, const UsedTrack& track,
+              const PersonSetup& setup, std::vector<PersonSample>* samples, MeasuredBody* body) {
+  const auto h = static_cast<std::size_t>(hand);
+  const std::string what = std::string(HandName(hand)) + " elbow";
+  Finding finding;
+  std::vector<double> to_handle;
+  std::size_t positions = 0;
+  for (PersonSample& sample : *samples) {
+    const auto p = elbow.PositionAt(sample.recorded - track.offset);
+    if (!p || !IsPossible(setup, *p, &finding)) continue;
+    if (sample.body.hands[h].present)
+      to_handle.push_back((*p - sample.body.hands[h].X_WD.p).norm());
+    sample.body.p_WElbow[h] = *p;
+    ++positions;
+  }
+  Judge(finding, what, track.source, setup, body);
+  if (!to_handle.empty() && Median(to_handle) > kElbowToHandle * setup.body.height)
+    throw InputError(track.source,
+                     Formatted("The %s is %.2f m away from its handle, farther than a forearm "
+                               "reaches. Check the frame, and that left and right are not "
+                               "exchanged.",
+                               what.c_str(), Median(to_handle)));
+  body->parts.push_back({what, track.source, Share(positions, samples->size()), {}});
+}
+
+void AddSignals(const tracks::BodyTrack& track, const UsedTrack& used,
+                const std::vector<PersonSample>& samples, MeasuredBody* body) {
+  for (const tracks::SignalTrack& signal : track.signals) {
+    MeasuredSignal result{signal.name, signal.unit, used.source, 0, {}};
+    std::size_t measured = 0;
+    for (const PersonSample& sample : samples) {
+      result.values.push_back(signal.At(sample.recorded - used.offset, 1 / kSampleRate));
+      measured += std::isfinite(result.values.back()) ? 1 : 0;
+    }
+    result.share = Share(measured, samples.size());
+    body->signals.push_back(std::move(result));
+  }
+}
+
+// The offset from the hand whose speeds agree better.
+tracks::ClockOffset Estimate(const tracks::BodyTrack& track,
+                             const std::vector<PersonSample>& samples) {
+  std::vector<double> times;
+  for (const PersonSample& sample : samples) times.push_back(sample.recorded);
+  std::optional<tracks::ClockOffset> best;
+  for (std::size_t h = 0; h < kHands; ++h) {
+    if (!track.hands[h]) continue;
+    std::vector<Vector3> handle;
+    for (const PersonSample& sample : samples)
+      handle.push_back(sample.body.hands[h].present ? sample.body.hands[h].X_WD.p
+                                                    : Vector3::Constant(std::nan("")));
+    const tracks::PartTrack& hand = track.hands[h]->pose;
+    const auto found = tracks::EstimateOffset({times, handle}, {hand.times, hand.p}, track.source);
+    if (!best || found.correlation > best->correlation) best = found;
+  }
+  return *best;  // a mapping with an unknown clock has a hand
+}
+
+UsedTrack Relate(const tracks::BodyTrack& track, double start_unix,
+                 const std::vector<PersonSample>& samples) {
+  UsedTrack used{std::filesystem::path(track.source).filename().string(), track.offset, {}};
+  if (track.clock == tracks::TrackClock::kUnix) used.offset -= start_unix;
+  if (track.clock == tracks::TrackClock::kAuto) {
+    used.estimate = Estimate(track, samples);
+    used.offset = used.estimate->offset;
+  }
+  return used;
+}
+
+std::pair<double, double> SpanOf(const tracks::BodyTrack& track) {
+  double first = INFINITY, last = -INFINITY;
+  const auto add = [&](const std::vector<double>& times) {
+    first = std::min(first, times.front());
+    last = std::max(last, times.back());
+  };
+  if (track.head) add(track.head->times);
+  for (std::size_t h = 0; h < kHands; ++h) {
+    if (track.elbows[h]) add(track.elbows[h]->times);
+    if (track.hands[h]) add(track.hands[h]->pose.times);
+  }
+  for (const tracks::SignalTrack& signal : track.signals) add(signal.times);
+  return {first, last};
+}
+
+void CheckOverlap(const tracks::BodyTrack& track, const UsedTrack& used,
+                  const std::vector<PersonSample>& samples) {
+  const auto [first, last] = SpanOf(track);
+  if (first + used.offset <= samples.back().recorded &&
+      last + used.offset >= samples.front().recorded)
+    return;
+  throw InputError(track.source,
+                   Formatted("The file covers %.1f to %.1f s of the recording's time, and the "
+                             "hands hold the handles from %.1f to %.1f s. Check clock and offset "
+                             "in the mapping.",
+                             first + used.offset, last + used.offset, samples.front().recorded,
+                             samples.back().recorded));
+}
+
+// Two measurements of one part would contradict each other.
+void CheckUnique(const MeasuredBody& body) {
+  for (const MeasuredPart& a : body.parts)
+    for (const MeasuredPart& b : body.parts)
+      if (&a < &b && a.what == b.what)
+        throw InputError(b.source, "The " + b.what + " is also measured in " + a.source +
+                                       ". Map it in one of the files only.");
+}
+
+}  // namespace
+
+MeasuredBody AddTracks(std::span<const tracks::BodyTrack> tracks, const PersonSetup& setup,
+                       double start_unix, std::vector<PersonSample>* samples) {
+  MeasuredBody body;
+  for (const tracks::BodyTrack& track : tracks) {
+    const UsedTrack used = Relate(track, start_unix, *samples);
+    CheckOverlap(track, used, *samples);
+    body.tracks.push_back(used);
+    for (const std::string& warning : track.warnings)
+      body.warnings.push_back(used.source + ": " + warning);
+    if (track.head) AddHead(*track.head, used, setup, samples, &body);
+    for (int hand = 0; hand < kHands; ++hand)
+      if (const auto& elbow = track.elbows[static_cast<std::size_t>(hand)])
+        AddElbow(*elbow, hand, used, setup, samples, &body);
+    AddSignals(track, used, *samples, &body);
+    CheckUnique(body);
+  }
+  return body;
+}
+
+void AddMisfit(std::span<const person::Posture> postures, MeasuredBody* measured,
+               std::vector<std::string>* warnings) {
+  for (MeasuredPart& part : measured->parts) {
+    std::vector<double> misfits;
+    for (const person::Posture& posture : postures) {
+      const double misfit = part.what == "head"          ? posture.head_error
+                            : part.what == "left elbow"  ? posture.elbow_error[0]
+                            : part.what == "right elbow" ? posture.elbow_error[1]
+                                                         : 0;
+      if (misfit > 0) misfits.push_back(misfit);  // 0: not measured at this time
+    }
+    if (misfits.empty()) continue;
+    part.misfit = Median(misfits);
+    if (*part.misfit > kMaxMisfit)
+      warnings->push_back(Formatted(
+          "The body stays %.0f mm away from the measured %s in %s. Check the frame in the mapping, "
+          "operator.stance and operator.body.",
+          1e3 * *part.misfit, part.what.c_str(), Printable(part.source).c_str()));
+  }
+}
+
+std::string MeasuredSentence(const MeasuredBody& measured) {
+  if (measured.parts.empty())
+    return "Only the hands were measured: the rest of the posture is the most comfortable one.";
+  std::vector<std::string> parts = {"the hands"};
+  for (const MeasuredPart& part : measured.parts)
+    parts.push_back(Formatted("the %s (%.0f %% of the time)", part.what.c_str(), 100 * part.share));
+  return "Measured were " + Join(parts) + ": the rest of the posture is the most comfortable one.";
+}
+
+std::string Sentence(const MeasuredPart& part) {
+  std::string text = Formatted("%s: measured for %.1f %% of the time (%s)", part.what.c_str(),
+                               100 * part.share, Printable(part.source).c_str());
+  if (part.misfit) Append(&text, ", %.0f mm from the nominal body", 1e3 * *part.misfit);
+  return text + ".";
+}
+
+std::string Sentence(const MeasuredSignal& signal) {
+  const std::string unit = signal.unit.empty() ? "" : " [" + signal.unit + "]";
+  return Formatted("%s: measured for %.1f %% of the time (%s); no score uses it.",
+                   Printable(signal.name + unit).c_str(), 100 * signal.share,
+                   Printable(signal.source).c_str());
+}
+
+std::string Sentence(const UsedTrack& track) {
+  std::string text =
+      Formatted("%s: its times plus %.3f s", Printable(track.source).c_str(), track.offset);
+  if (track.estimate)
+    Append(&text,
+           ", estimated from the motion of the hands (± %.3f s with 95 %% confidence, correlation "
+           "%.2f)",
+           track.estimate->uncertainty, track.estimate->correlation);
+  return text + ".";
+}
+
+}  // namespace predictor::assessment

@@ -1,0 +1,71 @@
+// Measured motion of parts of a person, in W.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+#include "tracks/series.h"
+#include "tracks/track_map.h"
+
+namespace predictor::tracks {
+
+// The pose of a part over time.
+struct PartTrack {
+  std::vector<double> times;  // in the file's clock [s]
+  std::vector<Vector3> p;     // in W [m]; NaN: missing
+  std::vector<Quaternion> q;  // R_WT; empty: not measured; NaN: missing
+
+  // Linear between two measurements that are at most `gap` [s] apart; nothing outside of them.
+  std::optional<Vector3> PositionAt(double time, double gap = kMaxGap) const;
+  std::optional<Quaternion> RotationAt(double time, double gap = kMaxGap) const;
+
+  // A missing part is not invented over longer times (design choice) [s].
+  static constexpr double kMaxGap = 0.05;
+};
+
+struct HandTrack {
+  PartTrack pose;
+  std::vector<double> wrench_times;  // [s]
+  std::vector<Wrench> F;             // on the handle, about the point `about`, in `axes`; or NaN
+  std::vector<double> holds_times, holds;
+  bool along_handle = false;        // F is along the handle's axes, otherwise along those of W
+  Vector3 about = Vector3::Zero();  // in the handle's frame [m]
+
+  // F_D_W, about the handle's origin; nothing where pose or wrench are missing. Mean within `width`
+  // [s] about the time, if there are several values; otherwise linear.
+  std::optional<Wrench> WrenchAt(double time, double width = 0) const;
+  bool HoldsAt(double time) const;
+};
+
+// Other measured numbers, such as EMG or heart rate.
+struct SignalTrack {
+  std::string name, unit;
+  std::vector<double> times, values;
+
+  // Mean of the values within `width` [s] about the time, if there are several; otherwise linear
+  // between neighbours that are at most twice the median interval apart. NaN: missing.
+  double At(double time, double width) const;
+};
+
+struct BodyTrack {
+  std::string source;  // file
+  TrackClock clock = TrackClock::kRecording;
+  double offset = 0;  // [s]
+  std::optional<PartTrack> head;
+  std::array<std::optional<PartTrack>, kHands> elbows;
+  std::array<std::optional<HandTrack>, kHands> hands;
+  std::vector<SignalTrack> signals;
+  std::vector<std::string> warnings;
+};
+
+// Applies a mapping. Throws InputError if a channel is missing, a position has no unit, a rotation
+// is no unit quaternion, or a part was never seen.
+BodyTrack ApplyMap(const TrackMap& map, const SeriesFile& file);
+
+// A mapping (.yaml) with its file, or a table with named columns (MapOfColumns). Throws InputError.
+BodyTrack LoadBodyTrack(const std::filesystem::path& file);
+
+}  // namespace predictor::tracks

@@ -1,0 +1,41 @@
+// The offset between the clocks of two measurements of the same hand.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+
+namespace predictor::tracks {
+
+// Positions of a point over time; NaN: missing. Times ascend [s].
+struct Path {
+  std::span<const double> times;
+  std::span<const Vector3> p;  // in any frame that rests [m]
+};
+
+struct ClockOffset {
+  double offset = 0;       // to be added to the times of `track` to get those of `reference` [s]
+  double uncertainty = 0;  // half of the 95 % interval [s]
+  double correlation = 0;  // of the speeds at this offset
+};
+
+// Estimates the offset from the speeds, whose course does not depend on the frames. The normalised
+// cross-correlation of the speeds has its maximum at the offset. The offsets of eight parts of the
+// record give its uncertainty (a jackknife over blocks, because errors of neighbouring samples are
+// not independent).
+//
+// Throws InputError, which begins with `what`, if the records overlap too little, the hand moves
+// too little, the best correlation is below kMinCorrelation, another offset fits nearly as well
+// (kMaxSecond of the best, as a periodic motion has), or the offset changes within the record (a
+// clock that jumps or drifts).
+ClockOffset EstimateOffset(const Path& reference, const Path& track, const std::string& what);
+
+// Design choices.
+inline constexpr double kMinCorrelation = 0.8;
+inline constexpr double kMaxSecond = 0.9;
+inline constexpr double kMinOverlap = 3;  // [s]
+inline constexpr double kMaxDrift = 0.1;  // between parts of the record [s]
+
+}  // namespace predictor::tracks

@@ -1,0 +1,56 @@
+// Recordings of a person that come from another system: what the hands did, and what of it matters
+// to judge the person. A table with named columns (MapOfColumns) at 100 Hz, and before it comments
+// with a few keys in YAML. They are no recordings of the emulator, because they have no ticks.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenario/scenario.h"
+#include "tracks/body_track.h"
+#include "tracks/track_map.h"
+
+namespace predictor::tracks {
+
+struct PersonHeader {
+  int format = 1;
+  std::string name;                   // of the task
+  std::string source;                 // file from which it was imported
+  bool simulated = false;             // no person, but a simulation held the handles
+  std::optional<double> object_mass;  // that the hands move together with a robot [kg]
+  std::optional<BodySpec> body;
+  std::optional<StanceSpec> stance;
+  GripSpec left, right;            // how the hands hold their handles
+  std::vector<std::string> notes;  // what was missing, as sentences
+};
+
+struct PersonFile {
+  PersonHeader header;
+  BodyTrack track;  // hands with poses and wrenches; perhaps head, elbows, signals
+};
+
+inline constexpr double kPersonRate = 100;  // rows [Hz]
+
+// A mapping for `predictor import`: that of a track without its file, and the header's keys.
+struct ImportMap {
+  TrackMap channels;
+  PersonHeader person;
+};
+
+// Throws InputError with file:line:column.
+ImportMap ParseImportMap(const std::string& text, const std::string& name);
+
+// The text of a recording of a person. Throws InputError that names what is missing: a hand, its
+// rotation or force, a time in which all of them are measured. Means of the forces within 10 ms; a
+// pose or force that is missing for more than PartTrack::kMaxGap counts as not holding, and the
+// header says for how long.
+std::string ImportPerson(const ImportMap& map, const SeriesFile& file);
+
+bool IsPersonFile(const std::filesystem::path& file);
+// `overrides` are "key=value" of the header. Throws InputError.
+PersonFile ReadPersonFile(const std::filesystem::path& file,
+                          const std::vector<std::string>& overrides = {});
+
+}  // namespace predictor::tracks

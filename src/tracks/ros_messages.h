@@ -1,0 +1,50 @@
+// Messages of ROS 2 as numbers over time.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tracks/series.h"
+
+namespace predictor::tracks {
+
+// Whose clock gives a message its time.
+enum class MessageTime {
+  kStamp,     // header.stamp, if the message has one
+  kReceived,  // when the recorder received it
+};
+
+// Collects the messages of one topic as channels TOPIC.FIELD, for example
+// /left/wrench.wrench.force.x. Known are Wrench, Pose, Point, Vector3 and Quaternion of
+// geometry_msgs with and without Stamped, TransformStamped, JointState (as TOPIC.position[JOINT])
+// and Float64 of std_msgs, in CDR of either byte order. Positions have the unit m, forces N,
+// torques N m (REP 103).
+class RosTopic {
+ public:
+  RosTopic(std::string topic, const std::string& type);
+  static bool IsKnown(const std::string& type);
+
+  // `received` [ns]. Throws InputError if the bytes are no such message.
+  void Add(std::string_view cdr, std::int64_t received, MessageTime clock);
+  // Moves the channels to `series`. Throws InputError if the times go back. Messages that repeat
+  // the time of the one before are left out.
+  void Finish(const std::string& file, std::vector<Series>* series);
+
+ private:
+  void Put(const std::string& field, const char* unit, double value);
+
+  std::string topic_, type_;
+  std::vector<double> times_;
+  std::vector<std::string> order_;
+  std::map<std::string, Series> channels_;  // by field
+};
+
+// A bag of ROS 2, by its kind: MCAP or SQLite (.db3), or the folder that contains one such file.
+// Topics of other types are left out; their names are in the error about a missing channel.
+SeriesFile ReadRosBag(const std::filesystem::path& file, MessageTime clock);
+
+}  // namespace predictor::tracks

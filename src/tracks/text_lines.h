@@ -1,0 +1,33 @@
+// Lines and cells of text files.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace predictor::tracks {
+
+// Takes one line after another, without their ends (LF or CR LF) and without a byte order mark.
+class TextLines {
+ public:
+  explicit TextLines(std::string_view text);
+  // Returns false at the end.
+  bool Next(std::string_view* line);
+  int number() const { return number_; }  // of the last line, from 1
+
+ private:
+  std::string_view rest_;
+  int number_ = 0;
+};
+
+// Cells between separators, without spaces and quotation marks around them.
+std::vector<std::string_view> CellsOf(std::string_view line, char separator);
+
+// NaN for an empty cell and for "nan" in any spelling; nothing if the text is not a number.
+std::optional<double> NumberIn(std::string_view cell);
+
+// "file:line", the place for messages.
+std::string LineOf(const std::string& file, int line);
+
+}  // namespace predictor::tracks

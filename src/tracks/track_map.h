@@ -1,0 +1,74 @@
+// The mapping from the channels of a foreign file to parts of a person's body.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenario/problems.h"
+#include "scenario/scenario.h"
+#include "scenario/yaml_tree.h"
+#include "tracks/series.h"
+
+namespace predictor::tracks {
+
+// Where a part of the body is. Its frame is T as tracked, times the pose `xyz`, `rpy`.
+struct PartMap {
+  std::vector<std::string> position;  // three channels, or NAME for NAME.x, NAME.y, NAME.z
+  std::vector<std::string> markers;   // or points whose mean it is; one missing: all missing
+  std::vector<std::string> rotation;  // four channels w, x, y, z, or NAME for NAME.w, ...
+  // Or markers on its sides: x of T from back to front, y from right to left.
+  std::vector<std::string> front, back, left, right;
+  Vector3 xyz = Vector3::Zero(), rpy = Vector3::Zero();
+};
+
+enum class WrenchAxes { kFile, kHand };
+enum class WrenchOn { kHandle, kHand };
+
+struct HandMap : PartMap {                 // of the handle's frame
+  std::vector<std::string> force, torque;  // as `position`
+  WrenchAxes axes = WrenchAxes::kFile;     // whose axes the components are along
+  WrenchOn on = WrenchOn::kHandle;         // that the wrench acts on
+  Vector3 about = Vector3::Zero();         // point of the torque, in the handle's frame [m]
+  std::string holds;                       // channel that is above 0.5 while the hand holds
+};
+
+struct SeriesMap {
+  std::string name, channel, unit;  // unit: "": as the file states it
+};
+
+// What a time of the file means.
+enum class TrackClock {
+  kRecording,  // seconds since the first tick of the recording
+  kUnix,       // seconds since 1970, by a computer whose clock agrees with that of the run
+  kAuto,       // unknown: estimated from the motion of the hands
+};
+
+struct TrackMap {
+  std::string file;  // relative to the mapping
+  std::string time, time_unit;
+  double rate = 0;  // of the rows of a table without times [Hz]
+
+  TimeColumn TimeOf() const { return {time, time_unit, rate}; }
+  TrackClock clock = TrackClock::kRecording;
+  double offset = 0;                          // added to the file's times [s]
+  PoseSpec frame;                             // of the file, in W
+  std::string unit, force_unit, torque_unit;  // "": as the file states it
+  std::optional<PartMap> head, left_elbow, right_elbow;
+  std::optional<HandMap> left_hand, right_hand;
+  std::vector<SeriesMap> series;
+};
+
+// The mapping of a table whose columns are named like the parts: head.p.x [m], head.q.w,
+// left_elbow.p.x [m], left_hand.p.x [m], left_hand.force.x [N], left_hand.torque.x [N m],
+// left_hand.holds, ..., in W and in the clock of the recording. All other columns are series.
+TrackMap MapOfColumns(const SeriesFile& file);
+
+// Throws InputError with file:line:column, and what to write instead.
+TrackMap ParseTrackMap(const std::string& text, const std::string& name);
+TrackMap LoadTrackMap(const std::filesystem::path& file);
+// Reports parts that are described incompletely or twice.
+void CheckTrackMap(const TrackMap& map, const YamlNode& root, Problems* problems);
+
+}  // namespace predictor::tracks
