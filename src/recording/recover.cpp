@@ -52,8 +52,11 @@ std::string DecompressSome(const InputFile& file, std::uint64_t offset, std::uin
 
 class Recovery {
  public:
-  Recovery(const InputFile& in, const Opening& opening, bool markers, McapFile* out)
-      : in_(in), channels_(kEventChannel + opening.scene.size()), markers_(markers), out_(out) {}
+  Recovery(const InputFile& in, const Opening& opening, bool person, McapFile* out)
+      : in_(in), channels_(kEventChannel + opening.scene.size()), person_(person), out_(out) {
+    for (std::size_t i = 0; i < opening.scene.size(); ++i)
+      if (opening.scene[i].topic == kPersonTopic) states_ = kEventChannel + 1 + i;
+  }
 
   RecoverReport Run(std::uint64_t at) {
     MarkFinder finder(in_, std::string(kMark), kMarkAt, mcap::Op::kChunk);
@@ -133,8 +136,8 @@ class Recovery {
         return TakeTick(message.time, trusted);
       case TickDecoder::Result::kOther:
         if (!trusted) return;
-        if (!markers_ && IsMarker(message)) {
-          ++report_.left_out_markers;
+        if (!person_ && IsOfPerson(message)) {
+          ++(message.channel == states_ ? report_.left_out_states : report_.left_out_markers);
           return;
         }
         report_.snapshots += message.channel == kSnapshotChannel;
@@ -143,8 +146,10 @@ class Recovery {
     }
   }
 
-  // Events with a text of a person or a program. The others are derived from the ticks.
-  static bool IsMarker(const Message& message) {
+  // States of the person, and events with a text of a person or a program. The others are derived
+  // from the ticks.
+  bool IsOfPerson(const Message& message) const {
+    if (message.channel == states_) return true;
     RecordingEvent event;
     return message.channel == kEventChannel && ParseEvent(message.data, &event) &&
            (event.kind == "marker" || event.kind == "event");
@@ -184,7 +189,8 @@ class Recovery {
 
   const InputFile& in_;
   std::size_t channels_;
-  bool markers_;
+  std::size_t states_ = 0;  // channel of the person's states; 0: none
+  bool person_;
   McapFile* out_;
   RecoverReport report_;
   ChunkBuilder builder_;
@@ -217,7 +223,7 @@ RecoverReport Recover(const std::string& in, const std::string& out, FileCalls* 
   recording::McapFile mended(out, recording::MakePreamble(opening.header, opening.scene),
                              calls ? calls : &real);
   RecoverReport report =
-      recording::Recovery(file, opening, rewriting.markers, &mended).Run(opening.end);
+      recording::Recovery(file, opening, rewriting.person, &mended).Run(opening.end);
   if (!mended.End())
     throw RecordingError(out + ": The recording could not be written: " + mended.error() +
                          ". Choose a disk with more space.");

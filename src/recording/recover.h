@@ -18,9 +18,9 @@ struct RecoverReport {
   std::uint64_t salvaged_ticks = 0;  // number of `ticks` that come from damaged chunks
   std::uint64_t lost_ticks = 0;  // ticks lost between kept ones; the number after the last kept one
                                  // is unknown
-  std::uint64_t snapshots = 0, events = 0;  // numbers of those kept
-  std::uint64_t left_out_markers = 0;       // as Rewriting asks
-  std::uint64_t gave_up_at = 0;             // byte at which the search was abandoned; 0: it was not
+  std::uint64_t snapshots = 0, events = 0;                  // numbers of those kept
+  std::uint64_t left_out_markers = 0, left_out_states = 0;  // as Rewriting asks
+  std::uint64_t gave_up_at = 0;  // byte at which the search was abandoned; 0: it was not
   std::string preamble;  // sentences about repaired or lost parts of the preamble; empty: none
 
   std::string Text() const;  // Sentences for the user.
@@ -29,7 +29,7 @@ struct RecoverReport {
 // What a copy changes on purpose.
 struct Rewriting {
   std::function<void(RecordingHeader*)> change;  // of the header; may throw; empty: none
-  bool markers = true;                           // keep events with free text
+  bool person = true;  // keep events with free text, and the states of the person
 };
 
 // Writes all intact parts of `in` to `out`, with a new index. From a damaged chunk, only ticks with

@@ -46,10 +46,12 @@ std::vector<std::string> WriteShared(const std::string& in, const std::string& o
   std::vector<std::string> removed;
   Rewriting rewriting;
   rewriting.change = [&](RecordingHeader* header) { removed = RemovePerson(header); };
-  rewriting.markers = false;
+  rewriting.person = false;
   const RecoverReport report = Recover(in, out, nullptr, rewriting);
   if (report.left_out_markers > 0)
     removed.push_back(std::to_string(report.left_out_markers) + " markers");
+  if (report.left_out_states > 0)
+    removed.push_back(std::to_string(report.left_out_states) + " states of the person");
   return removed;
 }
 

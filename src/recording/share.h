@@ -15,8 +15,9 @@ namespace predictor {
 std::vector<std::string> RemovePerson(RecordingHeader* header);
 
 // Writes all of `in` to the new file `out`, but without the person (RemovePerson) and without
-// markers, whose text a person wrote. The ticks stay the same, so a replay repeats them. Throws
-// InputError and RecordingError as Recover does. Returns what was removed.
+// the states of the person, which follow from the body, and markers, whose text a person wrote. The
+// ticks stay the same, so a replay repeats them. Throws InputError and RecordingError as Recover
+// does. Returns what was removed.
 std::vector<std::string> WriteShared(const std::string& in, const std::string& out);
 
 }  // namespace predictor

@@ -10,6 +10,7 @@
 #include "recording/recorder.h"
 #include "recording/recover.h"
 #include "recording/samples.h"
+#include "recording/share.h"
 
 namespace predictor {
 namespace {
@@ -115,6 +116,18 @@ TEST(PersonStream, IsKeptByRepair) {
   const auto before = PersonsOf(file), after = PersonsOf(mended);
   ASSERT_EQ(after.size(), before.size());
   for (std::size_t i = 0; i < after.size(); ++i) EXPECT_EQ(after[i].text, before[i].text);
+}
+
+// The states follow from the body, so a shared copy has none.
+TEST(PersonStream, IsNotShared) {
+  const Folder folder;
+  const std::string file = folder.File("run.mcap"), shared = folder.File("shared.mcap");
+  Record(file, true);
+  const std::vector<std::string> removed = WriteShared(file, shared);
+  EXPECT_EQ(removed.back(), "100 states of the person");
+  RecordingReader(shared).Check();
+  EXPECT_EQ(TicksOf(shared), 1000u);
+  EXPECT_EQ(PersonsOf(shared).size(), 0u);
 }
 
 TEST(PersonStream, IsAbsentIfNobodyIsJudged) {
