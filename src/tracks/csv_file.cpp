@@ -43,10 +43,8 @@ class CsvReader {
       if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
       if (file_.series.empty() && line.starts_with('#'))
         file_.comments.emplace_back(line.substr(1));
-      else if (file_.series.empty())
-        ReadHeader(line);
       else
-        ReadRow(line);
+        ReadLine(line);
     }
     return Finish();
   }
@@ -54,6 +52,22 @@ class CsvReader {
  private:
   [[noreturn]] void Fail(const std::string& sentence) const {
     throw InputError(LineOf(file_.name, line_), sentence);
+  }
+
+  // Some programs write the names of the columns as a comment.
+  void ReadLine(std::string_view line) {
+    if (!file_.series.empty()) return ReadRow(line);
+    separator_ = SeparatorOf(line);
+    const std::vector<std::string_view> cells = CellsOf(line, separator_);
+    if (!std::ranges::all_of(cells,
+                             [](std::string_view cell) { return NumberIn(cell).has_value(); }))
+      return ReadHeader(line);
+    const std::string names = file_.comments.empty() ? "" : file_.comments.back();
+    if (names.empty() || CellsOf(names, separator_).size() != cells.size())
+      Fail("The first line has only numbers. Put a line before it that names the columns.");
+    file_.comments.pop_back();
+    ReadHeader(names);
+    ReadRow(line);
   }
 
   void ReadHeader(std::string_view line) {

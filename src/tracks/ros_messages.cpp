@@ -10,8 +10,6 @@
 #include "core/text.h"
 
 namespace predictor::tracks {
-namespace {
-
 // Reads untrusted CDR: each number is aligned to its size after the header of four bytes.
 class Cdr {
  public:
@@ -57,6 +55,8 @@ class Cdr {
   bool ok_ = false, swapped_ = false;
 };
 
+namespace {
+
 struct Field {
   const char* name;
   const char* unit;
@@ -76,7 +76,7 @@ const std::vector<Field> kWrench = {{"force.x", "N"},    {"force.y", "N"},    {"
                                     {"torque.x", "N m"}, {"torque.y", "N m"}, {"torque.z", "N m"}};
 const std::vector<Field> kNumber = {{"data", ""}};
 
-// Messages that are a sequence of float64: after a header, `prefix` names the group.
+// Messages that begin with a sequence of float64: after a header, `prefix` names the group.
 struct Layout {
   bool stamped;
   std::string prefix;
@@ -94,6 +94,8 @@ const std::map<std::string, Layout>& Layouts() {
       {"geometry_msgs/QuaternionStamped", {true, "quaternion.", false, &kQuaternion}},
       {"geometry_msgs/Pose", {false, "", false, &kPose}},
       {"geometry_msgs/PoseStamped", {true, "pose.", false, &kPose}},
+      {"geometry_msgs/PoseWithCovarianceStamped", {true, "pose.pose.", false, &kPose}},
+      {"nav_msgs/Odometry", {true, "pose.pose.", true, &kPose}},
       {"geometry_msgs/Wrench", {false, "", false, &kWrench}},
       {"geometry_msgs/WrenchStamped", {true, "wrench.", false, &kWrench}},
       {"geometry_msgs/TransformStamped", {true, "transform.", true, &kTransform}},
@@ -102,6 +104,10 @@ const std::map<std::string, Layout>& Layouts() {
 }
 
 constexpr const char* kJointState = "sensor_msgs/JointState";
+constexpr const char* kTransforms = "tf2_msgs/TFMessage";  // a list of these:
+constexpr const char* kTransformStamped = "geometry_msgs/TransformStamped";
+constexpr std::size_t kTransformBytes = 72;  // at least
+constexpr std::size_t kMaxFrames = 1000;     // of a topic
 
 // "geometry_msgs/msg/Pose" and "geometry_msgs/Pose" are the same.
 std::string ShortType(const std::string& type) {
@@ -124,7 +130,7 @@ RosTopic::RosTopic(std::string topic, const std::string& type)
 
 bool RosTopic::IsKnown(const std::string& type) {
   const std::string known = ShortType(type);
-  return known == kJointState || Layouts().contains(known);
+  return known == kJointState || known == kTransforms || Layouts().contains(known);
 }
 
 void RosTopic::Put(const std::string& field, const char* unit, double value) {
@@ -141,38 +147,61 @@ void RosTopic::Put(const std::string& field, const char* unit, double value) {
 
 void RosTopic::Add(std::string_view bytes, std::int64_t received, MessageTime clock) {
   Cdr cdr(bytes);
+  if (type_ == kTransforms)
+    AddTransforms(&cdr, received, clock);
+  else
+    AddOne(&cdr, received, clock);
+  if (!cdr.ok())
+    throw InputError(topic_, "A message is no " + type_ + " in CDR. Record the topic again.");
+}
+
+void RosTopic::AddTransforms(Cdr* cdr, std::int64_t received, MessageTime clock) {
+  const std::size_t n = cdr->Count(kTransformBytes);
+  for (std::size_t i = 0; i < n && cdr->ok(); ++i) {
+    Cdr ahead = *cdr;
+    StampOf(&ahead);
+    const std::string name = topic_ + "[" + ahead.Text() + "]";
+    if (!ahead.ok()) break;
+    auto frame = std::ranges::find(frames_, name, &RosTopic::topic_);
+    if (frame == frames_.end() && frames_.size() == kMaxFrames)
+      throw InputError(topic_, "The topic has transforms of more than 1000 frames.");
+    if (frame == frames_.end()) frame = frames_.emplace(frame, name, kTransformStamped);
+    frame->AddOne(cdr, received, clock);
+  }
+}
+
+void RosTopic::AddOne(Cdr* cdr, std::int64_t received, MessageTime clock) {
   const auto found = Layouts().find(type_);
   const bool stamped = found == Layouts().end() || found->second.stamped;
   double time = 1e-9 * static_cast<double>(received);
   if (stamped) {
-    const double stamp = StampOf(&cdr);
+    const double stamp = StampOf(cdr);
     if (clock == MessageTime::kStamp && stamp != 0) time = stamp;
   }
   const bool again = !times_.empty() && times_.back() == time;
   if (!again) times_.push_back(time);
   const auto put = [&](const std::string& field, const char* unit, double value) {
-    if (cdr.ok() && !again) Put(field, unit, value);
+    if (cdr->ok() && !again) Put(field, unit, value);
   };
   if (found != Layouts().end()) {
-    if (found->second.has_child_frame) cdr.Text();
+    if (found->second.has_child_frame) cdr->Text();
     for (const Field& field : *found->second.fields)
-      put(found->second.prefix + field.name, field.unit, cdr.Number<double>());
+      put(found->second.prefix + field.name, field.unit, cdr->Number<double>());
   } else {
-    std::vector<std::string> joints(cdr.Count(4));
-    for (std::string& joint : joints) joint = cdr.Text();
+    std::vector<std::string> joints(cdr->Count(4));
+    for (std::string& joint : joints) joint = cdr->Text();
     for (const char* what : {"position", "velocity", "effort"}) {
-      const std::size_t n = cdr.Count(8);
+      const std::size_t n = cdr->Count(8);
       for (std::size_t i = 0; i < n; ++i) {
-        const double value = cdr.Number<double>();
+        const double value = cdr->Number<double>();
         if (i < joints.size()) put(std::string(what) + "[" + joints[i] + "]", "", value);
       }
     }
   }
-  if (!cdr.ok())
-    throw InputError(topic_, "A message is no " + type_ + " in CDR. Record the topic again.");
 }
 
 void RosTopic::Finish(const std::string& file, std::vector<Series>* series) {
+  for (RosTopic& frame : frames_) frame.Finish(file, series);
   for (std::size_t i = 1; i < times_.size(); ++i)
     if (times_[i] < times_[i - 1])
       throw InputError(file,

@@ -18,11 +18,14 @@ enum class MessageTime {
   kReceived,  // when the recorder received it
 };
 
+class Cdr;  // reader of serialised messages
+
 // Collects the messages of one topic as channels TOPIC.FIELD, for example
 // /left/wrench.wrench.force.x. Known are Wrench, Pose, Point, Vector3 and Quaternion of
-// geometry_msgs with and without Stamped, TransformStamped, JointState (as TOPIC.position[JOINT])
-// and Float64 of std_msgs, in CDR of either byte order. Positions have the unit m, forces N,
-// torques N m (REP 103).
+// geometry_msgs with and without Stamped, PoseWithCovarianceStamped, TransformStamped, TFMessage
+// (as TOPIC[CHILD FRAME].transform; from its parent, whatever that is), Odometry (its pose),
+// JointState (as TOPIC.position[JOINT]) and Float64 of std_msgs, in CDR of either byte order.
+// Positions have the unit m, forces N, torques N m (REP 103).
 class RosTopic {
  public:
   RosTopic(std::string topic, const std::string& type);
@@ -35,12 +38,16 @@ class RosTopic {
   void Finish(const std::string& file, std::vector<Series>* series);
 
  private:
+  // `cdr` contains one message, or one transform of a TFMessage, from here on.
+  void AddOne(Cdr* cdr, std::int64_t received, MessageTime clock);
+  void AddTransforms(Cdr* cdr, std::int64_t received, MessageTime clock);
   void Put(const std::string& field, const char* unit, double value);
 
   std::string topic_, type_;
   std::vector<double> times_;
   std::vector<std::string> order_;
   std::map<std::string, Series> channels_;  // by field
+  std::vector<RosTopic> frames_;            // of a TFMessage: one for each child frame
 };
 
 // A bag of ROS 2, by its kind: MCAP or SQLite (.db3), or the folder that contains one such file.

@@ -164,6 +164,36 @@ TEST_F(Import, RefusesADamagedBag) {
               {"/wrench", "CDR"});
 }
 
+// Counts and lengths of strings that the message does not contain.
+TEST_F(Import, RefusesTransformsThatAreCutOff) {
+  std::string transforms("\0\1\0\0\2\0\0\0", 8);
+  for (const char frame : {'a', 'b'}) {
+    mcap::Bytes bytes;
+    bytes.U32(7).U32(0).U32(2).text.append("w\0", 2);
+    bytes.text.append(2, '\0');
+    bytes.U32(2).text.append({frame, '\0'});
+    bytes.text.append(frame == 'a' ? 6 : 2, '\0');  // aligns to 8
+    for (int i = 0; i < 7; ++i) bytes.Number(1.5 + i);
+    transforms += bytes.text;
+  }
+  for (std::size_t n = 0; n < transforms.size(); ++n) {
+    RosTopic topic("/tf", "tf2_msgs/msg/TFMessage");
+    ExpectWords(ErrorOf([&] { topic.Add(transforms.substr(0, n), 0, MessageTime::kStamp); }),
+                {"/tf", "CDR"});
+  }
+  RosTopic topic("/tf", "tf2_msgs/msg/TFMessage");
+  topic.Add(transforms, 0, MessageTime::kStamp);
+  for (const std::size_t stamp : {8, 92}) transforms[stamp] = 8;  // one second later
+  topic.Add(transforms, 0, MessageTime::kStamp);
+  std::vector<Series> series;
+  topic.Finish("file", &series);
+  ASSERT_EQ(series.size(), 14u);
+  EXPECT_EQ(series[0].name, "/tf[a].transform.translation.x");
+  EXPECT_EQ(series[0].values[0], 1.5);
+  EXPECT_EQ(series[13].name, "/tf[b].transform.rotation.w");
+  EXPECT_EQ(series[13].values[0], 7.5);
+}
+
 TEST_F(Import, ReadsABagInSqlite) {
   const std::string file = folder_.path() / "bag.db3";
   sqlite3* database = nullptr;

@@ -43,6 +43,22 @@ TEST_F(Csv, WithoutTimesHasTheGivenRate) {
   EXPECT_EQ(file.At("y").values, (std::vector<double>{2, 4, 6}));
 }
 
+// As the ground truth of EuRoC has them.
+TEST_F(Csv, TakesNamesFromAComment) {
+  const SeriesFile file = ReadCsv(Write("a.csv",
+                                        "# a remark\n#timestamp, p_x [m], q_w []\n"
+                                        "1403715524907143168,0.5,1\n1403715524912143104,0.6,1\n"),
+                                  {"", "ns"});
+  ASSERT_EQ(file.series.size(), 2u);
+  EXPECT_EQ(file.At("p_x").unit, "m");
+  EXPECT_EQ(file.At("q_w").unit, "");
+  EXPECT_EQ(file.At("p_x").values, (std::vector<double>{0.5, 0.6}));
+  EXPECT_NEAR((*file.At("p_x").times)[1] - 1403715524.912143104, 0, 1e-6);
+  EXPECT_EQ(file.comments, (std::vector<std::string>{" a remark"}));
+  ExpectWords(ErrorOf([&] { ReadCsv(Write("b.csv", "# remark\n0,1,2\n1,2,3\n")); }),
+              {"b.csv:2", "only numbers", "names the columns"});
+}
+
 TEST_F(Csv, NamesTheLineAndTheRemedyOfAProblem) {
   const auto error = [&](const std::string& text, const TimeColumn& time = {}) {
     return ErrorOf([&] { ReadCsv(Write("bad.csv", text), time); });

@@ -64,6 +64,48 @@ def wrench(t):
                                                 torque=vector(x=0.0, y=0.0, z=0.5)))
 
 
+def odometry(hand, t):
+    make = TYPES.types
+    still = make["geometry_msgs/msg/Vector3"](x=0.0, y=0.0, z=0.0)
+    return make["nav_msgs/msg/Odometry"](
+        header=header(t), child_frame_id=hand,
+        pose=make["geometry_msgs/msg/PoseWithCovariance"](pose=pose(hand, t).pose, covariance=np.zeros(36)),
+        twist=make["geometry_msgs/msg/TwistWithCovariance"](
+            twist=make["geometry_msgs/msg/Twist"](linear=still, angular=still), covariance=np.zeros(36)))
+
+
+def transforms(hand, t):
+    """The hand between two frames of other names, which differ in length: strings move what follows."""
+    make = TYPES.types
+
+    def transform(frame, p, q):
+        return make["geometry_msgs/msg/TransformStamped"](
+            header=header(t), child_frame_id=frame,
+            transform=make["geometry_msgs/msg/Transform"](
+                translation=make["geometry_msgs/msg/Vector3"](x=p[0], y=p[1], z=p[2]), rotation=q))
+
+    q = pose(hand, t).pose.orientation
+    frames = [transform("camera_link", [9.0, 9.0, 9.0], q), transform(hand, position(hand, t - START), q),
+              transform("x", [8.0, 8.0, 8.0], q)]
+    return make["tf2_msgs/msg/TFMessage"](transforms=frames)
+
+
+def write_other_poses(folder):
+    """The left pose as odometry, the right one as a transform."""
+    with Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        for hand, name, msgtype, make in (("left", "/left/odom", "nav_msgs/msg/Odometry", odometry),
+                                          ("right", "/tf", "tf2_msgs/msg/TFMessage", transforms)):
+            topic = writer.add_connection(name, msgtype, typestore=TYPES)
+            for i in range(3 * 125):
+                t = START + i / 125
+                writer.write(topic, round((t + 0.02) * 1e9), TYPES.serialize_cdr(make(hand, t), msgtype))
+            msgtype = "geometry_msgs/msg/WrenchStamped"
+            topic = writer.add_connection(f"/{hand}/wrench", msgtype, typestore=TYPES)
+            for i in range(3 * 500):
+                t = START + i / 500
+                writer.write(topic, round((t + 0.02) * 1e9), TYPES.serialize_cdr(wrench(t), msgtype))
+
+
 def write_bag(folder, storage):
     with Writer(folder, version=9, storage_plugin=storage) as writer:
         for hand in ("left", "right"):
@@ -82,18 +124,18 @@ def run(*arguments):
 
 
 class Bags(unittest.TestCase):
-    def imported(self, storage):
+    def imported(self, write, text):
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
         folder = Path(temporary.name)
-        write_bag(folder / "bag", storage)
-        (folder / "map.yaml").write_text(mapping())
+        write(folder / "bag")
+        (folder / "map.yaml").write_text(text)
         done = run("import", folder / "bag", "--map", folder / "map.yaml", "-o", folder / "lift.person.csv")
         self.assertEqual(done.returncode, 0, done.stderr)
         return folder / "lift.person.csv"
 
-    def check(self, storage):
-        file = self.imported(storage)
+    def check(self, write, text):
+        file = self.imported(write, text)
         with open(file) as lines:
             rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
         self.assertGreater(len(rows), 290)
@@ -114,10 +156,20 @@ class Bags(unittest.TestCase):
         self.assertGreater(result["quantities"]["lower_back.compression_n"]["mean"], 800)
 
     def test_sqlite(self):
-        self.check(StoragePlugin.SQLITE3)
+        self.check(lambda folder: write_bag(folder, StoragePlugin.SQLITE3), mapping())
 
     def test_mcap(self):
-        self.check(StoragePlugin.MCAP)
+        self.check(lambda folder: write_bag(folder, StoragePlugin.MCAP), mapping())
+
+    def test_odometry_and_transforms(self):
+        text = mapping()
+        for old, new in (("/left/pose.pose.", "/left/odom.pose.pose."),
+                         ("/right/pose.pose.position", "/tf[right].transform.translation"),
+                         ("/right/pose.pose.orientation", "/tf[right].transform.rotation")):
+            text = text.replace(old, new)
+        self.check(write_other_poses, text.replace("position: [/tf[right].transform.translation]",
+                                                   'position: ["/tf[right].transform.translation"]')
+                   .replace("rotation: [/tf[right].transform.rotation]", 'rotation: ["/tf[right].transform.rotation"]'))
 
 
 if __name__ == "__main__":
