@@ -28,15 +28,17 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
   const auto A = qp.A();
   double scale = std::max(1.0, qp.f().lpNorm<Eigen::Infinity>());
   for (int k = 0; k < n + m; ++k) scale = std::max(scale, std::abs(y[k]));
+  // The rows of the symmetric H are also its columns, so all elements are summed together.
+  Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMaxQpVariables> gradient(n);
+  for (int i = 0; i < n; ++i) gradient[i] = qp.f()[i] + y[i];
+  for (int j = 0; j < n; ++j) gradient += x[j] * H.row(j);
+  for (int r = 0; r < m; ++r) gradient += y[n + r] * A.row(r);
   double residual = 0;
   double sum = 0;  // sum of all values: not finite if any of them is not finite (a maximum would
                    // miss NaN)
   for (int i = 0; i < n; ++i) {
-    double gradient = qp.f()[i] + y[i];
-    for (int j = 0; j < n; ++j) gradient += H(i, j) * x[j];
-    for (int r = 0; r < m; ++r) gradient += A(r, i) * y[n + r];
-    residual = std::max(residual, std::abs(gradient) / scale);
-    sum += gradient + x[i];
+    residual = std::max(residual, std::abs(gradient[i]) / scale);
+    sum += gradient[i] + x[i];
   }
   for (int k = 0; k < n + m; ++k) {
     double value = 0;
@@ -91,6 +93,16 @@ struct QpSolver::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
+  // Copies only the numbers in use: the arrays have room for the largest problem.
+  void Load(const Qp& qp) noexcept {
+    const int n = qp.n(), m = qp.m();
+    std::copy_n(qp.H().data(), n * n, problem.H().data());
+    std::copy_n(qp.f().data(), n, problem.f().data());
+    std::copy_n(qp.A().data(), m * n, problem.A().data());
+    std::copy_n(qp.lower().data(), n + m, problem.lower().data());
+    std::copy_n(qp.upper().data(), n + m, problem.upper().data());
+  }
+
   void Point() {
     daqp.n = problem.n();
     daqp.m = problem.n() + problem.m();
@@ -118,7 +130,7 @@ QpSolver::~QpSolver() = default;
 
 void QpSolver::Solve(const Qp& qp, QpSolution* solution) noexcept {
   Impl& s = *impl_;
-  s.problem = qp;
+  s.Load(qp);
   s.sense.fill(0);
   constexpr int kAll = DAQP_UPDATE_Rinv | DAQP_UPDATE_M | DAQP_UPDATE_v | DAQP_UPDATE_d |
                        DAQP_UPDATE_sense | DAQP_UPDATE_unconstrained;

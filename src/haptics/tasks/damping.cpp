@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/triangular.h"
 #include "haptics/assemble.h"
 #include "haptics/registry.h"
 
@@ -13,6 +14,14 @@ namespace {
 
 constexpr double kRegularDamping = 1e-5;  // ε away from singularities
 constexpr double kSingularValue = 0.05;   // smallest singular value below which ε grows
+
+// tr(A⁻¹) = ‖L⁻ᵀ‖² (Frobenius) for A = L Lᵀ.
+double TraceOfInverse(const Matrix6& A) {
+  const Eigen::LLT<Matrix6> factor(A);
+  Matrix6 inverse_transpose = Matrix6::Identity();
+  MultiplyByInverseTranspose(factor.matrixLLT(), &inverse_transpose);
+  return inverse_transpose.squaredNorm();
+}
 
 class Damping final : public Task {
  public:
@@ -35,8 +44,7 @@ class Damping final : public Task {
         JJt.noalias() += column * column.transpose();
       }
       // 1/tr((J Jᵀ)⁻¹) lies between σ_min²/6 and σ_min². It is cheap to compute and smooth in q.
-      const Matrix6 inverse = JJt.llt().solve(Matrix6::Identity());
-      const double sigma = 1 / std::sqrt(inverse.trace());
+      const double sigma = 1 / std::sqrt(TraceOfInverse(JJt));
       const double near = std::max(0.0, 1 - sigma / kSingularValue);
       joints->damping.segment(context.offset[i], J.cols()).array() +=
           kSingularDamping * near * near;
