@@ -47,7 +47,7 @@ class Terminal final : public commissioning::Person {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  void Tell(const std::string& line) override;
+  void Show(const std::string& line) override;
   char Key() override;
 
  private:
@@ -62,7 +62,7 @@ Terminal::Terminal() {
   keys_.emplace(true);
 }
 
-void Terminal::Tell(const std::string& line) {
+void Terminal::Show(const std::string& line) {
   std::fprintf(stderr, "%s\n", Printable(line, Lines::kMany).c_str());
 }
 
@@ -88,12 +88,12 @@ class Commissioner {
     commissioning::Session session = Begin();
     const commissioning::HandleCalibration found = commissioning::MeasureHandle(&session, station);
     const HandlePayloadSpec before = station.spec().arm.payload;
-    options_.Tell(commissioning::HandleText(found, before));
+    options_.Print(commissioning::HandleText(found, before));
     MachineArm after = station.spec();
     after.arm.payload = commissioning::WithCalibration(before, found);
     if (const std::string refusal = commissioning::PayloadRefusal(station.facts(), after);
         !refusal.empty())
-      session.Tell(refusal);
+      session.Show(refusal);
     return Keep(&session, hand, ToJson(found),
                 [&](Machine* machine) { ArmOf(machine, hand).arm.payload = after.arm.payload; });
   }
@@ -106,7 +106,7 @@ class Commissioner {
     const commissioning::BaseCalibration found =
         commissioning::MeasureBases(&session, a, b, options_.tip);
     const Pose X_RA = a.spec().arm.base.X_RB();
-    options_.Tell(commissioning::BasesText(found, X_RA.Inverse() * b.spec().arm.base.X_RB()));
+    options_.Print(commissioning::BasesText(found, X_RA.Inverse() * b.spec().arm.base.X_RB()));
     const Pose X_RB = X_RA * found.X_AB;
     return Keep(&session, moved, ToJson(found, X_RB), [&](Machine* machine) {
       ArmOf(machine, moved).arm.base = {X_RB.p, RpyOf(X_RB.q)};
@@ -130,7 +130,7 @@ class Commissioner {
       KeepSwings(file, before, &kept);
     }
     const commissioning::LoopFit found = Fit(&alone, file, kept.swings);
-    options_.Tell(commissioning::LoopText(found, machine_.arm(hand)->arm.loop));
+    options_.Print(commissioning::LoopText(found, machine_.arm(hand)->arm.loop));
     Json result = Keep(&alone, hand, ToJson(found), [&](Machine* machine) {
       MachineArm& arm = ArmOf(machine, hand);
       arm.arm.loop = found.spec();
@@ -152,7 +152,7 @@ class Commissioner {
       if (!stations_[i] || (!options_.arm.empty() && options_.arm != kHandNames[i])) continue;
       commissioning::TestPushes(&session, *stations_[i], stations_[1 - i].get());
       const std::string hash = HashOf(*machine_.arm(hand));
-      session.Tell("The " + stations_[i]->name() + " handle's readings agree with the pushes.");
+      session.Show("The " + stations_[i]->name() + " handle's readings agree with the pushes.");
       const auto copy =
           commissioning::ChangeMachine(options_.machine, Date(), [&](Machine* machine) {
             MachineArm& arm = ArmOf(machine, hand);
@@ -164,7 +164,7 @@ class Commissioner {
             arm.commissioned->push_test = Date();
             arm.commissioned->of = hash;
           });
-      session.Tell("Result written to " + options_.machine +
+      session.Show("Result written to " + options_.machine +
                    " (copy of the old file: " + copy.string() + ").");
       passed.push_back({{"arm", kHandNames[i]}, {"copy", copy.string()}});
     }
@@ -199,7 +199,7 @@ class Commissioner {
     const auto i = static_cast<std::size_t>(hand);
     if (!machine_.arm(hand)) throw NoArm(hand);
     const MachineArm& side = *machine_.arm(hand);
-    person_.Tell(std::string("Connecting to the ") + kHandNames[i] +
+    person_.Show(std::string("Connecting to the ") + kHandNames[i] +
                  " arm. (We have never run its driver on hardware.)");
     auto sensor = ConnectSensor(side, network_.get());
     auto arm = ConnectArm(side, use, network_.get());
@@ -210,10 +210,10 @@ class Commissioner {
       throw Located(error, machine_);
     }
     const DeviceFacts& facts = stations_[i]->facts();
-    person_.Tell("  " + facts.name);
-    for (const std::string& remark : facts.remarks) person_.Tell("  " + remark);
+    person_.Show("  " + facts.name);
+    for (const std::string& remark : facts.remarks) person_.Show("  " + remark);
     if (const std::string refusal = commissioning::PayloadRefusal(facts, side); !refusal.empty())
-      person_.Tell("  " + refusal);
+      person_.Show("  " + refusal);
     return *stations_[i];
   }
 
@@ -242,7 +242,7 @@ class Commissioner {
     if (const int joints = kept.swings.joints; joints > 0 && joints != JointsOf(hand))
       kept = {{}, "", Formatted("has %d joints, but the arm has %d", joints, JointsOf(hand))};
     if (!kept.remark.empty())
-      alone->Tell(path + " " + kept.remark + ". All joints will be measured again.");
+      alone->Show(path + " " + kept.remark + ". All joints will be measured again.");
     const commissioning::Swings& swings = kept.swings;
     if (swings.records.empty()) return {};
     const std::string next = swings.complete()
@@ -275,14 +275,14 @@ class Commissioner {
     try {
       if (swings.measured() > before) file.Save(swings, kept->date = Date());
       const std::string path = file.path().string();
-      person_.Tell(swings.complete()
+      person_.Show(swings.complete()
                        ? "All joints have been measured. The results are kept in " + path +
                              " until the loop is written to the machine file."
                        : Formatted("%d of %d joints have been measured. The results are kept in "
                                    "%s. Run the same command again to continue.",
                                    swings.measured(), swings.joints, path.c_str()));
     } catch (const InputError& error) {
-      person_.Tell(error.what());
+      person_.Show(error.what());
     }
   }
 
@@ -316,8 +316,8 @@ class Commissioner {
     std::array<bool, kHands> moves = {};
     moves[static_cast<std::size_t>(station->hand())] = true;
     const watchdog::WatchdogProcess watchdog(
-        machine_, moves, board, [this](const std::string& text) { person_.Tell(text); });
-    session->Tell("Watchdog  " + watchdog.Describe() + ".");
+        machine_, moves, board, [this](const std::string& text) { person_.Show(text); });
+    session->Show("Watchdog  " + watchdog.Describe() + ".");
     const auto record = std::make_unique<TickRecord>();
     Heartbeat heartbeat;
     session->OnStep([&](bool moving) -> std::string {
@@ -330,7 +330,7 @@ class Commissioner {
              CauseAdvice({StopCause::kWatchdog}) + " " + Message("next.again");
     });
     const RealTimeScheduling scheduling;
-    session->Tell("Real-time scheduling: " + scheduling.got() + ".");
+    session->Show("Real-time scheduling: " + scheduling.got() + ".");
     commissioning::SwingJoints(session, station, options, swings);
     session->OnStep({});
   }
@@ -347,11 +347,11 @@ class Commissioner {
                    {"copy", nullptr}};
     if (session->Ask("Write these values to " + options_.machine + "? Press y or n.", "yn") ==
         'n') {
-      session->Tell("Nothing was written.");
+      session->Show("Nothing was written.");
       return result;
     }
     const auto copy = commissioning::ChangeMachine(options_.machine, Date(), change);
-    session->Tell("Written. The old file, with its comments, was kept as " + copy.string() +
+    session->Show("Written. The old file, with its comments, was kept as " + copy.string() +
                   ". The arm's settings have changed: when all calibration steps are done, run "
                   "`predictor calibrate push --machine " +
                   options_.machine + "` before the next run.");

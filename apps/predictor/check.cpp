@@ -39,7 +39,7 @@ int CheckCommand(const ScenarioOptions& options, bool search, const std::string&
   progress.Finish();
   std::string text = CheckText(report);
   if (options.quiet)
-    for (const std::string& problem : report.problems) TheScreen().Tell("Unfit: " + problem);
+    for (const std::string& problem : report.problems) TheScreen().Print("Unfit: " + problem);
   if (!map.empty()) text += MakeMap(scenario, map, options.quiet);
   options.Write(text, CheckJson(report));
   return report.fit() ? kFinished : kUnfit;

@@ -43,7 +43,7 @@ struct OutputOptions {
   // The same, but also removes a file that may be replaced, for outputs that must be new files.
   void MakeRoom(const std::string& file) const;
   // Prints text for people unless quiet: to standard error if standard output gets the JSON.
-  void Tell(const std::string& text) const;
+  void Print(const std::string& text) const;
   // Writes a command's result to `json`.
   void WriteJson(const std::string& result) const;
   // Both.
@@ -65,7 +65,7 @@ struct ScenarioOptions : OutputOptions {
   Scenario Load(const Machine* on = nullptr) const;
 };
 
-// The servers that `run` starts beside the loop.
+// The servers that `run` starts alongside the loop.
 struct ServeOptions {
   bool viewer = true;
   // Whether the program continues at rest until it is asked to end. Default: at a terminal, and
@@ -213,7 +213,7 @@ struct CalibrateOptions : OutputOptions {
 // Writes `text`, made printable, to standard output. Throws std::runtime_error on a write error.
 void WriteOut(const std::string& text);
 // Prints a problem of a recording to standard error, unless it is empty.
-void TellProblem(const std::string& problem);
+void ShowProblem(const std::string& problem);
 
 // All commands throw InputError.
 int RunCommand(const ScenarioOptions& options, ServeOptions serve, RecordOptions record);

@@ -39,10 +39,10 @@ Compared Read(const std::string& file, bool quiet) {
     collector.Add(record);
     if (run.stopped == StopCause::kNone) run.stopped = record.cause;
   });
-  TellProblem(reader.problem());
+  ShowProblem(reader.problem());
   run.signals = collector.signals();
   if (run.signals.filled > 0)
-    TheScreen().Tell(
+    TheScreen().Print(
         Formatted("%s: %zu of its samples (10 ms each) are missing and were interpolated.",
                   file.c_str(), run.signals.filled));
   return run;

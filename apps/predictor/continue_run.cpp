@@ -17,7 +17,7 @@ namespace {
 // folder: for the recorded models, which the continuation needs as well.
 StoppedRun ReadStop(const ContinueCommandOptions& options, const TemporaryFolder& folder) {
   RecordingReader reader(options.recording);
-  TellProblem(reader.problem());
+  ShowProblem(reader.problem());
   const Scenario scenario = RestoreScenario(reader.header(), folder.path());
   Progress progress("Reading", static_cast<double>(reader.count()), options.quiet);
   try {

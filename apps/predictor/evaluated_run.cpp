@@ -25,7 +25,8 @@ std::optional<assessment::SceneMasses> MassesOf(const RecordingHeader& header) {
     return assessment::SceneMasses{.cobot = urdf.MovingMass(),
                                    .object = LoadObject(scenario.object, scenario.folder()).mass};
   } catch (const InputError& error) {
-    TheScreen().Tell(std::string("The masses of the virtual scene are not known: ") + error.what());
+    TheScreen().Print(std::string("The masses of the virtual scene are not known: ") +
+                      error.what());
     return {};
   }
 }
@@ -52,7 +53,7 @@ EvaluatedRun OpenTicks(const std::string& file, const PersonOptions& options) {
     samples.Add(record);
     run.safety->Add(record);
   });
-  TellProblem(reader.problem());
+  ShowProblem(reader.problem());
   run.run = assessment::RunOf(samples);
   run.masses = MassesOf(header);
   if (run.masses) run.object_mass = run.masses->object;

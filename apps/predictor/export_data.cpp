@@ -54,7 +54,7 @@ class Table {
 
 // The reader's first record. Throws InputError if the recording is empty.
 TickRecord FirstRecord(const RecordingOptions& options, RecordingReader* reader) {
-  TellProblem(reader->problem());
+  ShowProblem(reader->problem());
   TickRecord record;
   if (!reader->Next(&record))
     throw InputError(options.recording,
@@ -151,7 +151,7 @@ int ExportEventsCommand(const RecordingOptions& options) {
   Table out(options.output);
   out.Finish(out.Add(text));
   if (reader.more_events() > 0)
-    TheScreen().Tell(
+    TheScreen().Print(
         Formatted("%llu events are missing: the file has more events than the program can read.",
                   static_cast<unsigned long long>(reader.more_events())));
   return kFinished;

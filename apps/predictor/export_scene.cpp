@@ -35,7 +35,7 @@ int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to) 
       to.folder.empty() ? scenario.file.stem().string() + "_scene" : to.folder;
   const scene_export::ScenePackage package = PackageOf(scenario);
   scene_export::WriteScenePackage(package, folder, options.force);
-  for (const std::string& note : package.notes) TheScreen().Tell(note);
+  for (const std::string& note : package.notes) TheScreen().Print(note);
   options.Write("Wrote " + std::to_string(package.files.size()) + " files to " + folder.string() +
                     ". " + (folder / "README.txt").string() +
                     " explains how to load them in Unity.\n",

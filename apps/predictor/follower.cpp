@@ -37,7 +37,7 @@ Summary Follower::Finish() {
 void Follower::Fail(const char* why) {
   failed_ = true;
   *quit_ = true;
-  TheScreen().Tell(
+  TheScreen().Print(
       std::string("The run was ended, because this program can no longer monitor it (") + why +
       ").");
 }
@@ -50,54 +50,54 @@ void Follower::Follow() {
     while (reader_.Next(&record)) {
       builder_.Add(record);
       curves_.Add(record);
-      MarkWhatPagesMark(record);
+      RecordPageMarkers(record);
       if (record.tick % 64 == 0 && !is_held_) progress_.Update(record.run_time, Name(record.state));
-      TellWhenHeld(record);
+      ReportHeld(record);
       if (options_.device)
-        TellThePersonBeside(record);
+        ReportToOperator(record);
       else
-        TellRefusal(record);
+        ReportRefusal(record);
     }
     if (!last) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 }
 
-void Follower::MarkWhatPagesMark(const TickRecord& record) {
+void Follower::RecordPageMarkers(const TickRecord& record) {
   for (std::size_t i = 0; options_.recording && i < record.input_count; ++i)
     if (record.inputs[i].kind == InputKind::kMarker)
       options_.recording->Mark("marker of page " + std::to_string(record.inputs[i].client));
 }
 
-void Follower::TellWhenHeld(const TickRecord& record) {
+void Follower::ReportHeld(const TickRecord& record) {
   const bool held = record.state == RunState::kHeld || record.state == RunState::kUnpowered;
   if (is_held_ && !held)
     if (const std::string kept = viewer::KeptThresholds(scenario_, record); !kept.empty())
-      TheScreen().Tell(kept);
+      TheScreen().Print(kept);
   if (held && !is_held_) progress_.Finish();
   if (held && !is_held_ && !options_.held.empty())
-    TheScreen().Tell(record.cause == StopCause::kNone
-                         ? "Done. " + options_.held
-                         : Message("stop.after", {{"state", Name(record.state)},
-                                                  {"name", Name(record.cause)},
-                                                  {"cause", StopCauseWords(record)}}) +
-                               " " + options_.held);
+    TheScreen().Print(record.cause == StopCause::kNone
+                          ? "Done. " + options_.held
+                          : Message("stop.after", {{"state", Name(record.state)},
+                                                   {"name", Name(record.cause)},
+                                                   {"cause", StopCauseWords(record)}}) +
+                                " " + options_.held);
   is_held_ = held;
 }
 
 // Reports why a page's request was refused; the pages show the same text.
-void Follower::TellRefusal(const TickRecord& record) {
-  if (const std::string why = refusals_.See(record); !why.empty()) TheScreen().Tell(why);
+void Follower::ReportRefusal(const TickRecord& record) {
+  if (const std::string why = refusals_.See(record); !why.empty()) TheScreen().Print(why);
 }
 
-void Follower::TellThePersonBeside(const TickRecord& record) {
+void Follower::ReportToOperator(const TickRecord& record) {
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     for (const std::string& words : NewWarnings(warnings_[hand], record.hands[hand], hand))
-      TheScreen().Tell(words);
+      TheScreen().Print(words);
     warnings_[hand] = record.hands[hand].warnings;
   }
   for (const std::string& words : words_.See(record, [this] { return options_.device->Trouble(); }))
-    TheScreen().Tell(words);
-  for (const std::string& words : loaded_.See(record)) TheScreen().Tell(words);
+    TheScreen().Print(words);
+  for (const std::string& words : loaded_.See(record)) TheScreen().Print(words);
 }
 
 }  // namespace predictor

@@ -44,10 +44,10 @@ class Follower {
  private:
   void Fail(const char* why);
   void Follow();
-  void MarkWhatPagesMark(const TickRecord& record);
-  void TellWhenHeld(const TickRecord& record);
-  void TellRefusal(const TickRecord& record);
-  void TellThePersonBeside(const TickRecord& record);
+  void RecordPageMarkers(const TickRecord& record);
+  void ReportHeld(const TickRecord& record);
+  void ReportRefusal(const TickRecord& record);
+  void ReportToOperator(const TickRecord& record);
 
   RingReader<TickRecord, kRecordRing> reader_;
   FollowerOptions options_;

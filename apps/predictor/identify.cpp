@@ -88,7 +88,7 @@ int IdentifyCommand(const IdentifyCommandOptions& options) {
   options.RefuseToReplace(options.output);
   options.CheckWritable();
   RecordingReader reader(options.recording);
-  TellProblem(reader.problem());
+  ShowProblem(reader.problem());
   const Identification result = IdentifyRecording(options, &reader);
   options.Write(IdentificationText(result), IdentificationJson(result));
   if (!options.output.empty()) WriteScenario(options, reader.header(), result);

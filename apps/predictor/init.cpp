@@ -207,7 +207,7 @@ std::string JsonOf(const Draft& draft, const std::string& file) {
   return result.dump(2) + "\n";
 }
 
-std::string Told(const InitOptions& o, const Draft& draft, const std::string& file) {
+std::string ResultText(const InitOptions& o, const Draft& draft, const std::string& file) {
   const InitCobot& cobot = draft.cobot;
   std::string text;
   if (!o.urdf.empty())
@@ -233,8 +233,8 @@ int InitCommand(const InitOptions& options) {
     throw InputError("--end-effector is a link of your cobot. Give its URDF as well: --urdf FILE.");
   const Draft draft = Choose(options, file);
   WriteFile(file, TextOf(options, draft));
-  for (const std::string& problem : draft.problems) TheScreen().Tell("Unfit: " + problem);
-  options.Write(Told(options, draft, file), JsonOf(draft, file));
+  for (const std::string& problem : draft.problems) TheScreen().Print("Unfit: " + problem);
+  options.Write(ResultText(options, draft, file), JsonOf(draft, file));
   return draft.problems.empty() ? kFinished : kUnfit;
 }
 

@@ -1,4 +1,4 @@
-// The evaluator beside a run or a replay.
+// The evaluator alongside a run or a replay.
 #pragma once
 
 #include <functional>
@@ -12,9 +12,9 @@ namespace predictor {
 
 class LiveEvaluation {
  public:
-  // Starts the evaluator if it is wanted and the scenario says enough about the person. Whatever
-  // prevents it does not prevent the run: why_not() gives the reason, and `show` gets it if it is
-  // an error. `board` is borrowed.
+  // Starts the evaluator if it is wanted and the scenario describes the person sufficiently. If it
+  // cannot start, the run continues: why_not() gives the reason, and `show` receives it if it is an
+  // error. `board` is borrowed.
   LiveEvaluation(bool wanted, const Scenario& scenario, const Shared<RunBoard>& board,
                  const std::function<void(const std::string&)>& show);
 

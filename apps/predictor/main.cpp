@@ -67,7 +67,7 @@ int Parse(CLI::App* app, int argc, char** argv) {
     return -1;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app->exit(error) == 0 ? kFinished : kBadInput;
-    TheScreen().Tell(UsageError(*app, error));
+    TheScreen().Print(UsageError(*app, error));
     return kBadInput;
   }
 }
@@ -91,10 +91,10 @@ int main(int argc, char** argv) {
   try {
     return request.command();
   } catch (const InputError& error) {
-    TheScreen().Tell(std::string("predictor: error: ") + error.what());
+    TheScreen().Print(std::string("predictor: error: ") + error.what());
     return kBadInput;
   } catch (const std::exception& error) {
-    TheScreen().Tell(std::string("predictor: error: ") + error.what());
+    TheScreen().Print(std::string("predictor: error: ") + error.what());
     return kDeviceFailure;
   }
 }

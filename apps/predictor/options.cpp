@@ -52,8 +52,8 @@ void WriteFile(const std::string& name, const std::string& text) {
   if (!out.flush()) throw InputError(name, "The file could not be written.");
 }
 
-void TellProblem(const std::string& problem) {
-  if (!problem.empty()) TheScreen().Tell(problem);
+void ShowProblem(const std::string& problem) {
+  if (!problem.empty()) TheScreen().Print(problem);
 }
 
 Scenario ScenarioOptions::Load(const Machine* on) const {
@@ -104,12 +104,12 @@ void OutputOptions::CheckWritable() const {
   if (!existed) std::filesystem::remove(json, error);
 }
 
-void OutputOptions::Tell(const std::string& text) const {
+void OutputOptions::Print(const std::string& text) const {
   if (!quiet) std::fputs(Printable(text, Lines::kMany).c_str(), json == "-" ? stderr : stdout);
 }
 
 void OutputOptions::Write(const std::string& text, const std::string& result) const {
-  Tell(text);
+  Print(text);
   WriteJson(result);
 }
 

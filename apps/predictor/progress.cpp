@@ -46,9 +46,9 @@ void Progress::Update(double done, const std::string& note) {
   } else if (static_cast<int>(share * 10) > tenth_) {
     tenth_ = static_cast<int>(share * 10);
     const std::string left = RemainingText(share, Elapsed());
-    TheScreen().Tell(Formatted("%s: %d %%%s%s%s%s", title_.c_str(), 10 * tenth_,
-                               left.empty() ? "" : ", ", left.c_str(), note.empty() ? "" : ", ",
-                               note.c_str()));
+    TheScreen().Print(Formatted("%s: %d %%%s%s%s%s", title_.c_str(), 10 * tenth_,
+                                left.empty() ? "" : ", ", left.c_str(), note.empty() ? "" : ", ",
+                                note.c_str()));
   }
 }
 

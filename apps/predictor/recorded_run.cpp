@@ -25,7 +25,7 @@ RecorderOptions Options(const EvaluationBoard* person = nullptr) {
   RecorderOptions options;
   options.person = person;
   options.snapshot_bytes = kStateBytes;
-  options.tell = [](const std::string& text) { TheScreen().Tell(text); };
+  options.notify = [](const std::string& text) { TheScreen().Print(text); };
   return options;
 }
 
@@ -108,7 +108,7 @@ void VirtualRecording::Add(const TickRecord& record) {
   writer_.AddSnapshot(record.tick, std::span(state_).first(size));
 }
 
-std::string VirtualRecording::Told() const {
+std::string VirtualRecording::Summary() const {
   return Formatted("Recorded %s: %llu ticks, %.1f MB.", file_.c_str(),
                    static_cast<unsigned long long>(writer_.ticks()),
                    1e-6 * static_cast<double>(writer_.bytes()));
@@ -134,15 +134,15 @@ bool RunRecording::Close(bool quiet) {
   const bool whole = status.ended_why.empty() && status.lost == 0;
   if (quiet && whole) return true;
   Screen& screen = TheScreen();
-  screen.Tell(Formatted("Recorded %s: %llu ticks, %.1f MB%s", file_.c_str(),
-                        static_cast<unsigned long long>(status.ticks),
-                        1e-6 * static_cast<double>(status.bytes),
-                        whole ? "." : ", NOT the whole run:"));
+  screen.Print(Formatted("Recorded %s: %llu ticks, %.1f MB%s", file_.c_str(),
+                         static_cast<unsigned long long>(status.ticks),
+                         1e-6 * static_cast<double>(status.bytes),
+                         whole ? "." : ", NOT the whole run:"));
   if (status.lost > 0)
-    screen.Tell(Formatted("%llu ticks could not be written in time. The recording marks the gaps.",
-                          static_cast<unsigned long long>(status.lost)));
-  if (!status.ended_why.empty()) screen.Tell(status.ended_why);
-  if (!quiet && whole) screen.Tell("To make a report, run: predictor report " + file_);
+    screen.Print(Formatted("%llu ticks could not be written in time. The recording marks the gaps.",
+                           static_cast<unsigned long long>(status.lost)));
+  if (!status.ended_why.empty()) screen.Print(status.ended_why);
+  if (!quiet && whole) screen.Print("To make a report, run: predictor report " + file_);
   return status.ended_why.empty();
 }
 

@@ -50,7 +50,7 @@ class VirtualRecording {
   // Call after each tick. Throws RecordingError.
   void Add(const TickRecord& record);
   void Close() { writer_.Close(); }
-  std::string Told() const;  // summary of the written file, as a sentence
+  std::string Summary() const;  // summary of the written file, as a sentence
 
  private:
   Emulator* emulator_;

@@ -186,13 +186,13 @@ std::string JsonOf(const Verification& v) {
 int ReplayCommand(const std::string& recording, const ServeOptions& options) {
   QuitOn({SIGINT, SIGTERM});
   RecordingReader reader(recording);
-  TellProblem(reader.problem());
+  ShowProblem(reader.problem());
   const TemporaryFolder folder;
   const Scenario scenario = RestoreScenario(reader.header(), folder.path());
   Shared<RunBoard> board;
   Shared<RunMailbox> mailbox;
   Player player(&reader, &*board, &*mailbox);
-  const auto show = [](const std::string& text) { TheScreen().Tell(text); };
+  const auto show = [](const std::string& text) { TheScreen().Print(text); };
   const LiveEvaluation evaluation(options.evaluation, scenario, board, show);
   viewer::ViewerOptions page = options.page;
   page.why_not_judged = evaluation.why_not();
@@ -200,8 +200,8 @@ int ReplayCommand(const std::string& recording, const ServeOptions& options) {
   page.replay = {player.duration(), player.first_tick()};
   page.object_start = FromRecord(player.first().object.pose).p;
   viewer::ViewerProcess viewer(scenario, page, board, mailbox, show, evaluation.states());
-  TheScreen().Tell(Formatted("%.1f s of %s. Press Ctrl-C to end.", player.duration(),
-                             Quote(scenario.name).c_str()));
+  TheScreen().Print(Formatted("%.1f s of %s. Press Ctrl-C to end.", player.duration(),
+                              Quote(scenario.name).c_str()));
   player.Play();
   viewer.EndRun("The replay was ended from the console.");
   return kFinished;
@@ -210,9 +210,9 @@ int ReplayCommand(const std::string& recording, const ServeOptions& options) {
 int VerifyCommand(const RecordingOptions& options) {
   options.CheckWritable();
   RecordingReader reader(options.recording);
-  TellProblem(reader.problem());
+  ShowProblem(reader.problem());
   if (reader.header().program_version != PREDICTOR_VERSION)
-    TheScreen().Tell(
+    TheScreen().Print(
         Formatted("The recording was made by version %s, but this program is version %s. The "
                   "replay may therefore differ.",
                   Printable(reader.header().program_version).c_str(), PREDICTOR_VERSION));

@@ -11,7 +11,7 @@ namespace {
 
 void PrintWhyNotStarted(const Emulator& emulator) {
   if (const std::string why = emulator.WhyNotAligned(); !why.empty())
-    return TheScreen().Tell("predictor: error: the run did not start.\n" + why);
+    return TheScreen().Print("predictor: error: the run did not start.\n" + why);
   const SafetySpec& safety = emulator.scenario().safety;
   std::string arms;
   for (std::size_t i = 0; i < kHands; ++i) {
@@ -26,7 +26,7 @@ void PrintWhyNotStarted(const Emulator& emulator) {
     Append(&arms, "%sthe %s arm remained %.1f mm and %.2f° away from its virtual handle",
            arms.empty() ? "" : ", ", kHandNames[i], 1e3 * distance, kDegrees * angle);
   }
-  TheScreen().Tell(
+  TheScreen().Print(
       arms.empty()
           ? "predictor: error: the run did not start, because no start was requested."
           : Formatted("predictor: error: the run did not start: %s (limits %.1f mm and %.2f°).\n"
@@ -40,7 +40,7 @@ void PrintWhyNotStarted(const Emulator& emulator) {
 void PrintSetup(const Emulator& emulator, bool quiet) {
   if (quiet) return;
   const EmulatorSetup& setup = emulator.setup();
-  TheScreen().Tell("Device    " + setup.device);
+  TheScreen().Print("Device    " + setup.device);
   if (emulator.scenario().mode == Mode::kDirect) return;
   const double margin = setup.lead.margin.gain;
   std::string text =
@@ -52,7 +52,7 @@ void PrintSetup(const Emulator& emulator, bool quiet) {
         "Stability margin TOO LOW: %.1f (at least 2 required). Run `predictor check`.", margin);
   else
     text += Formatted("Stability margin: %.1f (at least 2 required).", margin);
-  TheScreen().Tell(text);
+  TheScreen().Print(text);
 }
 
 std::optional<PredictedLoop> PredictedLoopOf(const Emulator& emulator) {

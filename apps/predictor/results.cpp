@@ -163,7 +163,7 @@ std::filesystem::path WriteRunReport(const std::string& recording, double durati
     *remark = std::string("The report could not be made: ") + error.what();
     return {};
   }
-  TheScreen().Tell("Report    " + file.string());
+  TheScreen().Print("Report    " + file.string());
   return std::filesystem::absolute(file);
 }
 

@@ -45,8 +45,8 @@ RigConsole::RigConsole(std::function<void(RunEvent)> request,
       "console", [this] { Listen(); },
       [this](const char* why) {
         request_(RunEvent::kStopRequested);
-        TheScreen().Tell(std::string("The console no longer receives keys (") + why +
-                         "), so the arms are stopping. Ctrl-C ends the run.");
+        TheScreen().Print(std::string("The console no longer receives keys (") + why +
+                          "), so the arms are stopping. Ctrl-C ends the run.");
       });
 }
 
@@ -89,21 +89,21 @@ void RigConsole::Hear(Asking* asking, char key, double now) {
   if (asking->key.held() && !asking->by_touch && sign != KeySign::kNone)
     enabling_.fetch_add(1, std::memory_order_release);
   if (asks) request_(asking->event);
-  Tell(*asking, sign);
+  ReportIgnored(*asking, sign);
 }
 
 // Reports why a key had no effect.
-void RigConsole::Tell(const Asking& asking, KeySign sign) {
+void RigConsole::ReportIgnored(const Asking& asking, KeySign sign) {
   const char key = asking.key.key();
   if (sign == KeySign::kHeld && asking.by_touch)
-    TheScreen().Tell(
+    TheScreen().Print(
         Formatted("Key %c counts once, however long it is held. To repeat the request, release the "
                   "key for a second, then tap it.",
                   key));
   if (sign == KeySign::kNotHeld && !asking.by_touch)
-    TheScreen().Tell(Formatted("Not done: key %c was only tapped. Hold it down.", key));
+    TheScreen().Print(Formatted("Not done: key %c was only tapped. Hold it down.", key));
   if (sign == KeySign::kLate)
-    TheScreen().Tell(
+    TheScreen().Print(
         Formatted("Not done: the presses of key %c arrived late, all at once. %s it again. If the "
                   "connection stalls, use the keyboard of this computer.",
                   key, asking.by_touch ? "Tap" : "Hold"));

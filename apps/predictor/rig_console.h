@@ -51,7 +51,7 @@ class RigConsole {
   void Key(char key, double now);
   void Type(char key);
   void Hear(Asking* asking, char key, double now);  // key: 0 if no key was pressed
-  static void Tell(const Asking& asking, KeySign sign);
+  static void ReportIgnored(const Asking& asking, KeySign sign);
 
   std::function<void(RunEvent)> request_;
   std::function<void(const std::string&)> line_;

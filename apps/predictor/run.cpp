@@ -63,7 +63,7 @@ class Commands {
     if (line == "mark" || line.starts_with("mark ")) return Mark(line.substr(4));
     if (!viewer_) {
       if (!line.empty())
-        TheScreen().Tell(
+        TheScreen().Print(
             "Unknown command. Without a viewer page, the only command is mark [TEXT]. Ctrl-C ends "
             "the run.");
       return;
@@ -81,7 +81,7 @@ class Commands {
     else if (line == "status")
       viewer_->AskStatus();
     else if (!line.empty())
-      TheScreen().Tell(
+      TheScreen().Print(
           "Unknown command. The commands are: pin look, pin operator, pin control, revoke "
           "operator, revoke control, kick N (a client's number), kick foxglove, mark [TEXT], "
           "foxglove, status. Ctrl-C ends the run.");
@@ -92,7 +92,7 @@ class Commands {
     if (recording_)
       recording_->Mark("marker:" + (text.empty() ? " console" : text));
     else
-      TheScreen().Tell("This run is not recorded.");
+      TheScreen().Print("This run is not recorded.");
   }
   // N of "kick N"; 0 for any other text.
   static unsigned long ClientOf(const std::string& line) {
@@ -118,8 +118,8 @@ class Console {
     thread_ = ContainedThread(
         "console", [this] { Listen(); },
         [](const char* why) {
-          TheScreen().Tell(std::string("The console no longer accepts commands (") + why +
-                           "). Ctrl-C ends the run.");
+          TheScreen().Print(std::string("The console no longer accepts commands (") + why +
+                            "). Ctrl-C ends the run.");
         });
   }
   ~Console() {
@@ -172,7 +172,7 @@ class Run {
         device_(device.get()),
         emulator_(scenario, std::move(device)) {
     PrintSetup(emulator_, options.quiet);
-    const auto show = [](const std::string& text) { TheScreen().Tell(text); };
+    const auto show = [](const std::string& text) { TheScreen().Print(text); };
     evaluation_.emplace(serve.evaluation, scenario, board_, show);
     if (!record.off) {
       options.MakeRoom(record.file);
@@ -180,7 +180,7 @@ class Run {
     }
     if (machine) {
       watchdog_.emplace(*machine, std::array{scenario.Has(0), scenario.Has(1)}, board_, show);
-      TheScreen().Tell("Watchdog  " + watchdog_->Describe());
+      TheScreen().Print("Watchdog  " + watchdog_->Describe());
       enabling_device_ = machine->enabling.has_value();
     }
     const EmulatorSetup& setup = emulator_.setup();
@@ -293,7 +293,7 @@ class Run {
     }
     viewer_.emplace(
         scenario_, serve.page, board_, mailbox_,
-        [](const std::string& text) { TheScreen().Tell(text); }, evaluation_->states());
+        [](const std::string& text) { TheScreen().Print(text); }, evaluation_->states());
     Commands commands(&*viewer_, nullptr);
     std::optional<Console> console;
     if (isatty(STDIN_FILENO) == 1) console.emplace(&commands);
@@ -355,10 +355,10 @@ ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOpti
   const bool same = std::filesystem::absolute(first.file) == file;
   if (!same) options.set.clear();
   if (!same && !first.set.empty())
-    TheScreen().Tell(options.file + " runs without --set " + Join(first.set, " --set ") +
-                     ", which applies only to " + first.file + ".");
+    TheScreen().Print(options.file + " runs without --set " + Join(first.set, " --set ") +
+                      ", which applies only to " + first.file + ".");
   if (options.json != first.json)
-    TheScreen().Tell("Its summary is written to " + options.json + ".");
+    TheScreen().Print("Its summary is written to " + options.json + ".");
   return options;
 }
 
@@ -384,7 +384,7 @@ void CheckArms(const Machine& machine, const ArmModels& models, const RealDevice
   for (int hand = 0; hand < kHands; ++hand) {
     const DeviceFacts* facts = device.arm_facts(hand);
     if (facts == nullptr) continue;
-    for (const std::string& remark : facts->remarks) TheScreen().Tell(facts->name + ": " + remark);
+    for (const std::string& remark : facts->remarks) TheScreen().Print(facts->name + ": " + remark);
     const MachineArm& side = *machine.arm(hand);
     const RobotModel& model = *models[static_cast<std::size_t>(hand)];
     for (const std::string& refusal : {commissioning::KinematicsRefusal(*facts, side.arm, model),
@@ -406,7 +406,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
   const ArmModels models = LoadArmModels(machine);
   RequirePushTests(machine, scenario);
   RequireRealTime(machine);
-  for (const std::string& line : UnmeasuredLoops(machine, scenario)) TheScreen().Tell(line);
+  for (const std::string& line : UnmeasuredLoops(machine, scenario)) TheScreen().Print(line);
   RequireStability(machine, scenario);
   std::fputs(
       "Connecting to the arms. We have never run these drivers on hardware: keep the emergency "
@@ -457,7 +457,7 @@ int RunCommand(const ScenarioOptions& first, ServeOptions serve, RecordOptions r
       scenario = LoadForRealTime(options);
       run.emplace(scenario, options, serve, record);
     } catch (const InputError& error) {
-      TheScreen().Tell(error.what());
+      TheScreen().Print(error.what());
       serve.page.notice = "The scenario " + name + " cannot be run: " + error.what();
       scenario = before;
       options = options_before;

@@ -21,7 +21,7 @@ Screen::Screen() {
   terminal_ = isatty(STDERR_FILENO) == 1 && term != nullptr && std::string(term) != "dumb";
 }
 
-void Screen::Tell(const std::string& line) {
+void Screen::Print(const std::string& line) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (std::exchange(drawn_, false)) std::fputs("\r\033[K", stderr);
   std::fprintf(stderr, "%s\n", Printable(line, Lines::kMany).c_str());
@@ -54,7 +54,7 @@ bool TypedLine::Type(char key) {
     if (!text_.empty()) text_.pop_back();
   } else if (static_cast<unsigned char>(key) < ' ') {
     return false;
-  } else if (text_.size() < kMost) {
+  } else if (text_.size() < kMaxTyped) {
     text_.push_back(key);
   }
   Show();
@@ -65,7 +65,7 @@ void TypedLine::Show() const { TheScreen().Typed(": " + text_); }
 
 std::string TypedLine::Take(const std::string& why) {
   TheScreen().Typed("");
-  TheScreen().Tell(": " + text_ + why);
+  TheScreen().Print(": " + text_ + why);
   return std::exchange(text_, "");
 }
 

@@ -13,7 +13,7 @@ class Screen {
  public:
   Screen();
   // Prints a permanent line; `line` has no newline.
-  void Tell(const std::string& line);
+  void Print(const std::string& line);
   // Shows progress; "" hides it. Hidden while a command is being typed.
   void Bar(const std::string& bar);
   // Shows the command being typed; "" when typing has ended.
@@ -44,7 +44,7 @@ class TypedLine {
   bool empty() const { return text_.empty(); }
 
  private:
-  static constexpr std::size_t kMost = 80;
+  static constexpr std::size_t kMaxTyped = 80;
   std::string text_;
 };
 

@@ -30,7 +30,7 @@ int SimulateCommand(const ScenarioOptions& options, const RecordOptions& record)
   progress.Finish();
   if (recording) recording->Close();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  if (recording && !options.quiet) TheScreen().Tell(recording->Told());
+  if (recording && !options.quiet) TheScreen().Print(recording->Summary());
   Summary summary = builder.summary();
   return Report(emulator, end, wall.count(), options, &summary);
 }

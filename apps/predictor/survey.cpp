@@ -109,8 +109,8 @@ void GiveUpRights(const fs::path& folder) {
   Preparation may;
   may.write = {folder};
   if (const std::string missing = EnterPreparation(may); !missing.empty())
-    TheScreen().Tell("Warning: the server is not fully sandboxed, because this system lacks " +
-                     missing + ".");
+    TheScreen().Print("Warning: the server is not fully sandboxed, because this system lacks " +
+                      missing + ".");
 }
 
 Json JsonOf(const StatementSummary& s) {
@@ -175,16 +175,16 @@ int SurveyAskCommand(const SurveyOptions& options) {
   app.OnOver([&] {
     if (running) server.Stop();
   });
-  TheScreen().Tell(
+  TheScreen().Print(
       Formatted("Questionnaire: http://localhost:%u/#code=%s (works in one browser only)",
                 static_cast<unsigned>(server.port()), app.code().c_str()));
   server.Run();
   running = false;
   // The pseudonym is not printed: only the person and the file should contain it.
   if (app.end() == survey::SurveyEnd::kStored)
-    TheScreen().Tell("The answer was stored in " + to.folder.string() + ".");
+    TheScreen().Print("The answer was stored in " + to.folder.string() + ".");
   else
-    TheScreen().Tell("No answer was given.");
+    TheScreen().Print("No answer was given.");
   return kFinished;
 }
 

@@ -149,7 +149,7 @@ int ShowHelp(const CLI::App* app, const std::vector<std::string>& words) {
     const std::vector<const CLI::App*> commands = CommandsOf(*app);
     const auto found = std::ranges::find(commands, word, &CLI::App::get_name);
     if (found == commands.end()) {
-      TheScreen().Tell(UnknownCommand(*app, word));
+      TheScreen().Print(UnknownCommand(*app, word));
       return kBadInput;
     }
     app = *found;

@@ -85,8 +85,8 @@ std::string ToolXml(double begin, double end) {
 std::vector<NamedFile> OpenSimFiles(const PersonSetup& setup,
                                     std::span<const PersonSample> samples) {
   const auto [begin, count] = LongestPart(samples);
-  constexpr std::size_t kFewest = 10;
-  if (count < kFewest)
+  constexpr std::size_t kMinSamples = 10;
+  if (count < kMinSamples)
     throw InputError(
         "No hand holds a handle for 0.1 s without interruption, so there is no motion "
         "to export.");

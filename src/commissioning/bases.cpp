@@ -14,9 +14,9 @@ namespace {
 
 // If the points are closer to a line than this, they determine the rotation about it too poorly:
 // rms distance [m].
-constexpr double kLeastSpread = 0.05;
+constexpr double kMinSpread = 0.05;
 // Largest residual of touched points: a person places a tip to within about 1 mm [m].
-constexpr double kMostResidual = 0.005;
+constexpr double kMaxResidual = 0.005;
 
 using Points = std::span<const TouchedPoint>;
 
@@ -57,13 +57,13 @@ Quaternion BestRotation(Points points, const Centres& centres) {
 
 void CheckResiduals(const BaseCalibration& found) {
   const auto worst = std::max_element(found.distances.begin(), found.distances.end());
-  if (*worst <= kMostResidual) return;
+  if (*worst <= kMaxResidual) return;
   throw InputError(
       Formatted("The points are inconsistent: point %zu is off by %.1f mm (limit %.1f mm). Touch "
                 "all points again with both arms, in the same order. If the error persists, check "
                 "the position of the tip and the models of the arms.",
                 static_cast<std::size_t>(worst - found.distances.begin()) + 1, 1e3 * *worst,
-                1e3 * kMostResidual));
+                1e3 * kMaxResidual));
 }
 
 // The errors of the points are assumed to be equal in all directions. Rotation about the centre and
@@ -92,16 +92,16 @@ void AddCovariance(Points points, const Centres& centres, BaseCalibration* found
 }  // namespace
 
 BaseCalibration CalibrateBases(Points points) {
-  if (points.size() < static_cast<std::size_t>(kLeastBasePoints))
+  if (points.size() < static_cast<std::size_t>(kMinBasePoints))
     throw InputError(Formatted("%zu points are too few. Touch at least %d; six are better.",
-                               points.size(), kLeastBasePoints));
+                               points.size(), kMinBasePoints));
   const Centres centres(points);
-  if (const double spread = SpreadOf(points, centres.A); spread < kLeastSpread)
+  if (const double spread = SpreadOf(points, centres.A); spread < kMinSpread)
     throw InputError(
         Formatted("The points are nearly on a line or too close together (%.0f mm from their "
                   "common line; %.0f mm are needed). Choose points further apart, for example the "
                   "corners of a table and a point above it.",
-                  1e3 * spread, 1e3 * kLeastSpread));
+                  1e3 * spread, 1e3 * kMinSpread));
   BaseCalibration found;
   found.X_AB.q = BestRotation(points, centres);
   found.X_AB.p = centres.A - found.X_AB.q * centres.B;

@@ -27,7 +27,7 @@ struct BaseCalibration {
   std::vector<double> distances;  // distance of each point [m]
 };
 
-inline constexpr int kLeastBasePoints = 3;
+inline constexpr int kMinBasePoints = 3;
 
 // The rigid motion that best maps the p_B onto the p_A (least squares; Horn 1987, by the largest
 // eigenvector of a 4 × 4 matrix, so never a reflection), with a covariance from the residuals.

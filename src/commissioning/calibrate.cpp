@@ -63,7 +63,7 @@ std::vector<Vector3> TakePoints(Session* session, const Station& station, const 
                                 std::size_t count) {
   std::vector<Vector3> points;
   for (;;) {
-    const bool enough = count == 0 && points.size() >= static_cast<std::size_t>(kLeastBasePoints);
+    const bool enough = count == 0 && points.size() >= static_cast<std::size_t>(kMinBasePoints);
     if (count > 0 && points.size() == count) return points;
     const char key =
         session->Ask(Formatted("Touch point %zu with the tip of the %s arm and press Enter%s.",
@@ -72,7 +72,7 @@ std::vector<Vector3> TakePoints(Session* session, const Station& station, const 
                      enough ? std::string{kEnter, 'd'} : std::string{kEnter});
     if (key == 'd') return points;
     points.push_back(TakePoint(session, station, tip));
-    session->Tell(Formatted("  at (%.1f, %.1f, %.1f) mm in its base.", 1e3 * points.back().x(),
+    session->Show(Formatted("  at (%.1f, %.1f, %.1f) mm in its base.", 1e3 * points.back().x(),
                             1e3 * points.back().y(), 1e3 * points.back().z()));
   }
 }
@@ -100,10 +100,10 @@ Wrench Feel(Feeler* feeler, const Station& station) {
 }
 
 // One misread push shows that there is an error; all three together show which error.
-void TellReading(Session* session, const PushTest& test, int axis) {
-  session->Tell(Formatted("  reads %s.", Name(test.readings()[static_cast<std::size_t>(axis)])));
+void ShowReading(Session* session, const PushTest& test, int axis) {
+  session->Show(Formatted("  reads %s.", Name(test.readings()[static_cast<std::size_t>(axis)])));
   if (const std::string wrong = test.Wrong(axis); !wrong.empty())
-    session->Tell(
+    session->Show(
         "  DIFFERS FROM THE PUSH. " + wrong +
         (test.done() ? "" : " Continue anyway: all three pushes together show the reason."));
 }
@@ -111,19 +111,18 @@ void TellReading(Session* session, const PushTest& test, int axis) {
 }  // namespace
 
 HandleCalibration MeasureHandle(Session* session, const Station& station) {
-  session->Tell(
+  session->Show(
       Formatted("The handle of the %s arm is measured in %d poses or more. For each pose, guide "
                 "the arm in free-drive and tilt the handle in a new direction (it is best if "
                 "each axis points down once). Then take your hands off.",
-                station.name().c_str(), kLeastHandlePoses));
+                station.name().c_str(), kMinHandlePoses));
   PoseRecorder recorder(station.spec().arm.sensor);
   std::vector<RestingPose> poses;
   for (;;) {
     const char key = session->Ask(
-        Formatted(
-            "Pose %zu: Enter takes the pose%s; u removes the last pose; q cancels.",
-            poses.size() + 1,
-            poses.size() >= static_cast<std::size_t>(kLeastHandlePoses) ? "; d finishes" : ""),
+        Formatted("Pose %zu: Enter takes the pose%s; u removes the last pose; q cancels.",
+                  poses.size() + 1,
+                  poses.size() >= static_cast<std::size_t>(kMinHandlePoses) ? "; d finishes" : ""),
         {kEnter, 'd', 'u'});
     if (key == 'u') {
       if (!poses.empty()) poses.pop_back();
@@ -131,23 +130,23 @@ HandleCalibration MeasureHandle(Session* session, const Station& station) {
       try {
         return CalibrateHandle(poses, station.spec().arm.sensor);
       } catch (const InputError& error) {
-        session->Tell(error.what());
+        session->Show(error.what());
       }
     } else if (const std::string refusal = TakePose(session, station, &recorder);
                !refusal.empty()) {
-      session->Tell(refusal);
+      session->Show(refusal);
     } else {
       poses.push_back(recorder.pose());
-      session->Tell(PoseText(poses.size(), poses.back()));
+      session->Show(PoseText(poses.size(), poses.back()));
     }
   }
 }
 
 BaseCalibration MeasureBases(Session* session, const Station& a, const Station& b,
-                             const std::optional<Vector3>& told) {
-  if (!told) AskForNoTip(session, a, b);
-  const Vector3 tip = told.value_or(Vector3::Zero());
-  session->Tell(
+                             const std::optional<Vector3>& given) {
+  if (!given) AskForNoTip(session, a, b);
+  const Vector3 tip = given.value_or(Vector3::Zero());
+  session->Show(
       "Mark three points or more (six are better) that both arms can reach. They must be far "
       "apart, not on a line, and not all at one height. Guide the arms in free-drive.");
   const std::vector<Vector3> by_a = TakePoints(session, a, tip, 0);
@@ -163,26 +162,26 @@ void TestPushes(Session* session, const Station& pushed, const Station* other) {
   std::optional<Feeler> far;
   if (other) far.emplace(*other).Tare(session);
   PushTest test;
-  int told = -1;
+  int shown = -1;
   double since = session->Now();
   auto hint = PushTest::Hint::kNone;
   while (!test.done()) {
     session->Step();
     test.Update(Feel(&own, pushed), far ? Feel(&*far, *other) : Wrench::Zero(), Session::kStep);
-    if (test.axis() != told) {
-      if (told >= 0) TellReading(session, test, told);
-      told = test.axis();
+    if (test.axis() != shown) {
+      if (shown >= 0) ShowReading(session, test, shown);
+      shown = test.axis();
       if (test.done()) break;
-      session->Tell(
+      session->Show(
           Formatted("Push the %s handle steadily along +%c of the world%s with 5 to 25 N.",
-                    pushed.name().c_str(), "xyz"[told], told == 2 ? " (up)" : ""));
+                    pushed.name().c_str(), "xyz"[shown], shown == 2 ? " (up)" : ""));
       since = session->Now();
     }
     // A persistent hint is shown, and repeated after a while.
     if (test.hint() != hint || test.hint() == PushTest::Hint::kNone) since = session->Now();
     hint = test.hint();
     if (session->Now() - since > 2) {
-      session->Tell(Sentence(hint));
+      session->Show(Sentence(hint));
       since = session->Now() + 3;
     }
   }

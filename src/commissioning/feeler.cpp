@@ -22,7 +22,7 @@ void Feeler::Tare(Session* session) {
         throw DeviceError("The " + station_.name() + " sensor is outside its range.");
     }
     if (estimator_.FinishTare().ok()) return;
-    session->Tell("The readings are not steady: someone or something touches the handle.");
+    session->Show("The readings are not steady: someone or something touches the handle.");
   }
 }
 

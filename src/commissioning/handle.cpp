@@ -14,17 +14,17 @@ namespace {
 
 // Spread of the directions of gravity about their mean, rms along the axis with the second largest
 // spread: about that of poses that tilt the handle by 20° in either direction.
-constexpr double kLeastTilt = 0.2;
+constexpr double kMinTilt = 0.2;
 // Residual of a pose that sensor and cables can cause: a constant, the resolution, and a share of
 // the weight [N], [N·m].
 constexpr double kResidualForce = 0.1;
 constexpr double kResidualTorque = 0.01;
 constexpr double kResidualPart = 0.02;
 // Required accuracy.
-constexpr double kMostMassError = 0.05;     // as a share of the mass
-constexpr double kMostMass = 0.010;         // or as an amount [kg]
-constexpr double kNoMass = 0.020;           // a smaller mass counts as no weight [kg]
-constexpr double kMostCenterError = 0.005;  // [m]
+constexpr double kMaxRelativeMassError = 0.05;  // as a share of the mass
+constexpr double kMaxMassError = 0.010;         // or as an amount [kg]
+constexpr double kNoMass = 0.020;               // a smaller mass counts as no weight [kg]
+constexpr double kMaxCenterError = 0.005;       // [m]
 
 using Poses = std::span<const RestingPose>;
 
@@ -83,7 +83,7 @@ struct Allowed {
   }
 };
 
-// How strongly the poses tilt the handle: see kLeastTilt.
+// How strongly the poses tilt the handle: see kMinTilt.
 double TiltOf(Poses poses) {
   Vector3 mean = Vector3::Zero();
   for (const RestingPose& pose : poses)
@@ -129,7 +129,7 @@ std::pair<std::size_t, double> OddOne(Poses poses, const Allowed& allowed) {
 
 void CheckSureness(const HandleCalibration& found) {
   const double mass = found.mass.value;
-  if (mass < -std::max(kMostMass, found.mass.half_width))
+  if (mass < -std::max(kMaxMassError, found.mass.half_width))
     throw InputError(
         Formatted("The handle's mass would be %.3f kg. The readings have the wrong sign, or the "
                   "sensor is mounted upside down (sensor.pose).",
@@ -137,8 +137,8 @@ void CheckSureness(const HandleCalibration& found) {
   const double center =
       std::max({found.center_of_mass[0].half_width, found.center_of_mass[1].half_width,
                 found.center_of_mass[2].half_width});
-  const bool sure = found.mass.half_width <= std::max(kMostMass, kMostMassError * mass);
-  const bool placed = center <= kMostCenterError || mass < kNoMass;
+  const bool sure = found.mass.half_width <= std::max(kMaxMassError, kMaxRelativeMassError * mass);
+  const bool placed = center <= kMaxCenterError || mass < kNoMass;
   if (sure && placed) return;
   throw InputError(
       Formatted("The result is too uncertain: ± %.0f g for the mass, ± %.1f mm for the centre of "
@@ -215,15 +215,15 @@ std::string PoseRecorder::Refusal() const {
 RestingPose PoseRecorder::pose() const { return {time_, g_S_, first_ + sum_ / count_}; }
 
 HandleCalibration CalibrateHandle(Poses poses, const SensorSpec& sensor) {
-  if (poses.size() < static_cast<std::size_t>(kLeastHandlePoses))
+  if (poses.size() < static_cast<std::size_t>(kMinHandlePoses))
     throw InputError(
-        Formatted("%zu poses are too few. Take at least %d.", poses.size(), kLeastHandlePoses));
-  if (const double tilt = TiltOf(poses); tilt < kLeastTilt)
+        Formatted("%zu poses are too few. Take at least %d.", poses.size(), kMinHandlePoses));
+  if (const double tilt = TiltOf(poses); tilt < kMinTilt)
     throw InputError(
         Formatted("The poses are too alike (the direction of gravity at the handle varies by %.2f; "
                   "%.2f is needed about two axes). Tilt the handle far to the left, right, front "
                   "and back. It is best if each of its axes points down once.",
-                  tilt, kLeastTilt));
+                  tilt, kMinTilt));
   const HandleFit fit(poses);
   const Allowed allowed(fit, sensor);
   if (allowed.WorstShare(fit, poses.size()) > 1) RefuseResiduals(poses, fit, allowed);

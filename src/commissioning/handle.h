@@ -61,7 +61,7 @@ struct HandleCalibration {
   int poses = 0;
 };
 
-inline constexpr int kLeastHandlePoses = 6;
+inline constexpr int kMinHandlePoses = 6;
 
 // Throws InputError with a sentence for the user: too few poses, poses that are too similar, a pose
 // that does not fit the others (the handle was touched), or readings that no handle explains.

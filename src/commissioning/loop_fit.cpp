@@ -19,18 +19,19 @@ constexpr int kIterations = 60;
 constexpr double kConverged = 1e-7;
 constexpr int kLags = 40;  // lags of the residuals' autocorrelation [samples]
 // Limits beyond which a fit is refused.
-constexpr std::size_t kLeastSamples = 300;
-constexpr double kMostRelative = 0.10;  // half-width of the intervals of bandwidth and damping
-                                        // ratio
-constexpr double kMostDelay = 0.002;    // half-width [s]
-constexpr double kMostGain = 0.05;      // largest deviation from 1
-constexpr double kMostMisfit = 0.25;
-constexpr double kMostLate = 0.05, kMostLost = 0.05;  // share of the ticks; share of the samples
-constexpr double kBlock = 0.25;                       // time over which the misfit is evaluated [s]
+constexpr std::size_t kMinSamples = 300;
+constexpr double kMaxRelativeWidth = 0.10;  // half-width of the intervals of bandwidth and damping
+                                            // ratio
+constexpr double kMaxDelayWidth = 0.002;    // half-width [s]
+constexpr double kMaxGainError = 0.05;      // largest deviation from 1
+constexpr double kMaxMisfit = 0.25;
+constexpr double kMaxLateShare = 0.05,
+                 kMaxLostShare = 0.05;  // share of the ticks; share of the samples
+constexpr double kBlock = 0.25;         // time over which the misfit is evaluated [s]
 constexpr double kShows = 6;  // least motion of a block to be evaluated, as a multiple of the noise
-constexpr double kCounts = 0.05;  // and as a share of the largest block's motion: see Misfit
-constexpr double kTells = 3;      // the same for a block to be fitted: resolution matters less
-constexpr std::size_t kLeastBlock = 8;  // samples per block
+constexpr double kCounts = 0.05;      // and as a share of the largest block's motion: see Misfit
+constexpr double kFits = 3;           // the same for a block to be fitted: resolution matters less
+constexpr std::size_t kMinBlock = 8;  // samples per block
 
 using Records = std::span<const LoopRecord>;
 
@@ -84,7 +85,7 @@ void ForBlocks(const std::vector<LoopRecord::Sample>& samples, const Use& use) {
   for (std::size_t from = 0, to = 0; from < samples.size(); from = to) {
     const double end = samples[from].time + kBlock;
     while (to < samples.size() && samples[to].time < end) ++to;
-    if (to - from >= kLeastBlock) use(from, to);
+    if (to - from >= kMinBlock) use(from, to);
   }
 }
 
@@ -248,14 +249,14 @@ long CountBlocks(const LoopRecord& record) {
 }
 
 // The blocks whose motion exceeds the noise.
-LoopRecord Telling(const LoopRecord& record, double noise) {
-  LoopRecord telling{record.joint, record.u, {}, {}};
+LoopRecord FittableBlocks(const LoopRecord& record, double noise) {
+  LoopRecord fittable{record.joint, record.u, {}, {}};
   ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
-    const double least = kTells * noise;
+    const double least = kFits * noise;
     if (MotionSquares(record, from, to) < static_cast<double>(to - from) * least * least) return;
-    for (std::size_t i = from; i < to; ++i) telling.samples.push_back(record.samples[i]);
+    for (std::size_t i = from; i < to; ++i) fittable.samples.push_back(record.samples[i]);
   });
-  return telling;
+  return fittable;
 }
 
 // The unexplained share of the motion in the worst block. Blocks correspond to frequencies of the
@@ -285,13 +286,14 @@ constexpr const char* kQuiet =
     "Close other programs on this computer, use a separate network for the arm, and measure again.";
 
 void CheckGaps(const Gaps& gaps) {
-  if (gaps.late_share() <= kMostLate && gaps.lost_share() <= kMostLost) return;
-  throw InputError("The measurement has too many gaps: " + GapsText(gaps) +
-                   Formatted(" (limits %.0f %% and %.0f %%). ", 1e2 * kMostLate, 1e2 * kMostLost) +
-                   kQuiet +
-                   (gaps.lost_share() > kMostLost ? " Run `predictor devices` to check that the "
-                                                    "arm sends at the machine file's sample_rate."
-                                                  : ""));
+  if (gaps.late_share() <= kMaxLateShare && gaps.lost_share() <= kMaxLostShare) return;
+  throw InputError(
+      "The measurement has too many gaps: " + GapsText(gaps) +
+      Formatted(" (limits %.0f %% and %.0f %%). ", 1e2 * kMaxLateShare, 1e2 * kMaxLostShare) +
+      kQuiet +
+      (gaps.lost_share() > kMaxLostShare ? " Run `predictor devices` to check that the "
+                                           "arm sends at the machine file's sample_rate."
+                                         : ""));
 }
 
 // Adds gaps in the measurement as a possible reason.
@@ -303,19 +305,19 @@ void CheckGaps(const Gaps& gaps) {
 }
 
 void Check(const LoopFit& fit) {
-  if (fit.misfit > kMostMisfit)
+  if (fit.misfit > kMaxMisfit)
     Refuse(fit.gaps,
            Formatted("A second-order velocity loop does not explain the motion (worst misfit %.0f "
                      "%%). A hand may have been on the handle, the arm may have touched something, "
                      "or an acceleration limit may have cut the commands.",
                      1e2 * fit.misfit));
-  if (std::abs(fit.gain.value - 1) > kMostGain)
+  if (std::abs(fit.gain.value - 1) > kMaxGainError)
     Refuse(fit.gaps, Formatted("The joint moved by %.2f of the commanded distance. Something "
                                "limits its speed, or another program moves it.",
                                fit.gain.value));
-  const bool sure = fit.bandwidth.half_width <= kMostRelative * fit.bandwidth.value &&
-                    fit.damping_ratio.half_width <= kMostRelative * fit.damping_ratio.value &&
-                    fit.delay.half_width <= kMostDelay;
+  const bool sure = fit.bandwidth.half_width <= kMaxRelativeWidth * fit.bandwidth.value &&
+                    fit.damping_ratio.half_width <= kMaxRelativeWidth * fit.damping_ratio.value &&
+                    fit.delay.half_width <= kMaxDelayWidth;
   if (!sure)
     Refuse(fit.gaps,
            Formatted(
@@ -344,14 +346,14 @@ LoopFit FitLoop(Records all) {
   for (const LoopRecord& record : all) {
     const double noise = NoiseOf(record);
     fit.noise = std::max(fit.noise, noise);
-    records.push_back(Telling(record, noise));
+    records.push_back(FittableBlocks(record, noise));
     if (record.u.empty()) records.back().samples.clear();
     if (records.back().samples.empty())
       records.pop_back();
     else
       samples += records.back().samples.size();
   }
-  if (samples < kLeastSamples)
+  if (samples < kMinSamples)
     throw InputError("The measurement has too few samples of the arm in motion. Measure again.");
   Fitter fitter(records);
   const Parameters p = fitter.Run();

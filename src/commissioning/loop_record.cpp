@@ -13,7 +13,7 @@ constexpr double kQuantum = 1e-9;  // smaller steps are rounding errors [rad]
 
 }  // namespace
 
-void LoopRecorder::Told(double due, double time, double u) {
+void LoopRecorder::AddCommand(double due, double time, double u) {
   dues_.push_back(due);
   times_.push_back(time);
   commands_.push_back(u);

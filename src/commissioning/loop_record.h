@@ -52,9 +52,9 @@ class LoopRecorder {
   // period: sample period of the arm [s].
   LoopRecorder(int joint, double period) : period_(period) { record_.joint = joint; }
   // due: scheduled time in the session. time: time of the command [s]. Both ascend. u [rad/s].
-  void Told(double due, double time, double u);
+  void AddCommand(double due, double time, double u);
   // A new sample measured at `time` [s].
-  void Seen(double time, double q) { record_.samples.push_back({time, q}); }
+  void AddSample(double time, double q) { record_.samples.push_back({time, q}); }
   // Times are relative to the first command.
   LoopRecord Finish() &&;
 

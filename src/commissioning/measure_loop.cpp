@@ -40,7 +40,7 @@ class Swing {
     const double begin = session_->Now();
     for (double now = begin; now - begin < chirp_.duration() + 2 * kRest; now = session_->Now()) {
       if (!consent_->Update(session_->key(), now)) {
-        session_->Tell(Rest() +
+        session_->Show(Rest() +
                        " You released the key or device, or pressed another key. This joint will "
                        "be measured again.");
         return std::nullopt;
@@ -50,11 +50,11 @@ class Swing {
     Rest();
     return std::move(recorder_).Finish();
   } catch (const HeldUp& late) {
-    session_->Tell(Rest() + " " + late.what() + " This joint will be measured again.");
+    session_->Show(Rest() + " " + late.what() + " This joint will be measured again.");
     consent_->Revoke(session_->Now());
     return std::nullopt;
   } catch (...) {
-    session_->Tell(Rest());
+    session_->Show(Rest());
     throw;
   }
 
@@ -70,8 +70,9 @@ class Swing {
       return command = watch_->Bounded(command);
     });
     const ArmReading& reading = station_->reading();
-    if (station_->fresh_joints()) recorder_.Seen(session_->Now() - reading.age, reading.q[joint_]);
-    recorder_.Told(session_->due(), session_->Now(), command[joint_]);
+    if (station_->fresh_joints())
+      recorder_.AddSample(session_->Now() - reading.age, reading.q[joint_]);
+    recorder_.AddCommand(session_->due(), session_->Now(), command[joint_]);
   }
 
   void CheckPath() const {
@@ -117,27 +118,27 @@ void CheckRoom(const Station& station, int joint, double reach) {
 // Returns whether the person consents before `until` [s]. Explains to the person why a key is not
 // sufficient.
 bool Consents(Consent* consent, Session* session, double until) {
-  double touched = HUGE_VAL, told = -HUGE_VAL;
+  double touched = HUGE_VAL, reminded = -HUGE_VAL;
   for (double now = session->Now(); now < until; now = session->Now()) {
     if (consent->Update(session->key(), now)) return true;
-    if (session->key() == kSwingKey && now - told > kRemind) touched = std::min(touched, now);
+    if (session->key() == kSwingKey && now - reminded > kRemind) touched = std::min(touched, now);
     if (now - touched > HeldKey::kFirstRepeat) {
-      session->Tell("Not accepted yet: " + consent->Wanted() + ".");
+      session->Show("Not accepted yet: " + consent->Wanted() + ".");
       touched = HUGE_VAL;
-      told = now;
+      reminded = now;
     }
     session->Step();
   }
   return false;
 }
 
-// goes_on: the previous joint was measured to its end, so the person may still be consenting.
-void Await(Consent* consent, Session* session, const std::string& joint, bool goes_on) {
-  if (goes_on && Consents(consent, session, session->Now() + kHeldOn)) {
-    session->Tell(joint + " starts immediately, because the key or device is still held.");
+// continues: the previous joint was measured to its end, so the person may still be consenting.
+void Await(Consent* consent, Session* session, const std::string& joint, bool continues) {
+  if (continues && Consents(consent, session, session->Now() + kHeldOn)) {
+    session->Show(joint + " starts immediately, because the key or device is still held.");
     return;
   }
-  session->Tell(joint + ": " + consent->Wanted() + ".");
+  session->Show(joint + ": " + consent->Wanted() + ".");
   static_cast<void>(Consents(consent, session, HUGE_VAL));
 }
 
@@ -147,7 +148,7 @@ void SwingJoints(Session* session, Station* station, const SwingOptions& options
   const ChirpOptions& chirp_options = options.chirp;
   const int joints = station->model().dof();
   if (swings->joints != joints) *swings = {joints, {}};
-  session->Tell(Formatted(
+  session->Show(Formatted(
       "THE %s ARM WILL MOVE: each joint oscillates by at most %.0f mrad for %.0f s. Keep your "
       "hands off the handle, keep everyone out of reach, and keep one hand on the emergency stop. "
       "%s to let the arm move. Releasing it, or pressing any other key, stops the arm.",
@@ -158,13 +159,13 @@ void SwingJoints(Session* session, Station* station, const SwingOptions& options
   watch.Tare(session);
   Consent consent(kSwingKey, options.enabling);
   consent.Update(0, session->Now());  // a device that is already pressed does not count
-  for (bool goes_on = false; !swings->complete();) {
+  for (bool continues = false; !swings->complete();) {
     const int joint = swings->measured();
-    Await(&consent, session, Formatted("Joint %d of %d", joint + 1, joints), goes_on);
+    Await(&consent, session, Formatted("Joint %d of %d", joint + 1, joints), continues);
     const Chirp chirp(OptionsFor(*station, joint, options.limits.align_speed, chirp_options));
     CheckRoom(*station, joint, chirp.reach());
     auto record = Swing(session, station, joint, chirp, &consent, &watch).Run();
-    goes_on = record.has_value();
+    continues = record.has_value();
     if (record) swings->records.push_back(std::move(*record));
   }
 }
@@ -172,11 +173,11 @@ void SwingJoints(Session* session, Station* station, const SwingOptions& options
 LoopFit FitSwings(Session* session, const std::vector<LoopRecord>& records) {
   for (const LoopRecord& record : records) try {
       const LoopFit fit = FitLoop(std::span(&record, 1));
-      session->Tell(Formatted("  joint %d alone: %.1f Hz, %.2f, %.1f ms; lag %.1f ms",
+      session->Show(Formatted("  joint %d alone: %.1f Hz, %.2f, %.1f ms; lag %.1f ms",
                               record.joint + 1, fit.bandwidth.value, fit.damping_ratio.value,
                               1e3 * fit.delay.value, 1e3 * fit.lag()));
     } catch (const InputError& error) {
-      session->Tell(Formatted("  joint %d alone: %s", record.joint + 1, error.what()));
+      session->Show(Formatted("  joint %d alone: %s", record.joint + 1, error.what()));
     }
   return FitLoop(records);
 }

@@ -258,14 +258,14 @@ std::vector<Probed> ProbeMachine(const Machine& machine, const Connector& connec
         name + " arm", [&] { return connector.arm(side, network); },
         [&](Arm* arm, Probed* probed) {
           prober.ProbeArm(arm, probed);
-          const double told = arm->facts().rate;
-          CompareRate(told > 0 ? told : probed->times.rate, side.arm.sample_rate,
+          const double reported = arm->facts().rate;
+          CompareRate(reported > 0 ? reported : probed->times.rate, side.arm.sample_rate,
                       "arms." + name + ".arm.sample_rate", probed);
-          if (told > 0 && DiffersMuch(probed->times.rate, told))
+          if (reported > 0 && DiffersMuch(probed->times.rate, reported))
             probed->remarks.push_back(
                 Formatted("It should send %.0f samples per second. Check whether the network or "
                           "this computer is busy.",
-                          told));
+                          reported));
           CompareModel(machine, hand, arm->facts(), probed);
           probed->remarks.insert(probed->remarks.end(), arm->facts().remarks.begin(),
                                  arm->facts().remarks.end());

@@ -94,7 +94,7 @@ const char* Sentence(PushTest::Hint hint) noexcept {
 void PushTest::Update(const Wrench& pushed, const Wrench& other, double dt) noexcept {
   if (done()) return;
   const Vector3 own = pushed.head<3>(), far = other.head<3>();
-  const bool swapped = own.norm() < kNoOne && far.norm() >= kLeast;
+  const bool swapped = own.norm() < kNoOne && far.norm() >= kMinForce;
   const Vector3& force = swapped ? far : own;
   const double size = force.norm();
   if (!std::isfinite(size)) {
@@ -109,9 +109,9 @@ void PushTest::Update(const Wrench& pushed, const Wrench& other, double dt) noex
   }
   AxisReading reading = DirectionOf(force);
   reading.other_hand = swapped && reading.axis >= 0;
-  if (size < kLeast) {
+  if (size < kMinForce) {
     hint_ = Hint::kPush;
-  } else if (size > kMost) {
+  } else if (size > kMaxForce) {
     hint_ = Hint::kSofter;
   } else if (reading.axis < 0) {
     hint_ = Hint::kStraighter;

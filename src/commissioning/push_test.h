@@ -23,10 +23,11 @@ struct AxisReading {
 // the estimated wrenches of the hands. No heap, no exception.
 class PushTest {
  public:
-  static constexpr double kLeast = 5, kMost = 25;  // smallest force of a push that counts [N]
-  static constexpr double kDominant = 3;           // smallest ratio to each of the other components
-  static constexpr double kLong = 0.3;             // minimum duration [s]
-  static constexpr double kFree = 2;               // a smaller force is not a push [N]
+  static constexpr double kMinForce = 5,
+                          kMaxForce = 25;  // smallest force of a push that counts [N]
+  static constexpr double kDominant = 3;   // smallest ratio to each of the other components
+  static constexpr double kLong = 0.3;     // minimum duration [s]
+  static constexpr double kFree = 2;       // a smaller force is not a push [N]
   static constexpr int kAxes = 3;
 
   enum class Hint : std::uint8_t { kNone, kPush, kSofter, kStraighter, kLetGo };

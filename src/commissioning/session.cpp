@@ -41,20 +41,20 @@ void Session::Step(Station* moving, const std::function<JointVector()>& command)
   if (moving) {
     const JointVector v = command();
     moving->Move(v);
-    told_ = v;
+    commanded_ = v;
   }
   key_ = person_->Key();
   if (key_ == kGiveUp) throw InputError("Cancelled. The machine file was not changed any further.");
 }
 
 Session::Rest Session::SlowDown(Station* moving, double deceleration, double* time) {
-  double speed = told_.cwiseAbs().maxCoeff();
+  double speed = commanded_.cwiseAbs().maxCoeff();
   while (speed > 0) {
-    told_ *= std::max(0.0, 1 - deceleration * kStep / speed);
-    speed = told_.cwiseAbs().maxCoeff();
+    commanded_ *= std::max(0.0, 1 - deceleration * kStep / speed);
+    speed = commanded_.cwiseAbs().maxCoeff();
     Wait(true);
     *time += kStep;
-    if (!moving->Slow(told_, true)) return Rest::kSilent;
+    if (!moving->Slow(commanded_, true)) return Rest::kSilent;
   }
   return AwaitRest(moving);
 }
@@ -66,7 +66,7 @@ Session::Rest Session::AwaitRest(Station* moving) {
   for (const double begin = since; Now() - since < kStandsFor;) {
     if (Now() - begin > kRestPatience) return Rest::kMoves;
     Wait(true);
-    if (!moving->Slow(told_, true)) return Rest::kSilent;
+    if (!moving->Slow(commanded_, true)) return Rest::kSilent;
     const ArmReading& reading = moving->reading();
     if (reading.age <= kNew && (reading.q - q).cwiseAbs().maxCoeff() <= kStands) continue;
     q = reading.q;
@@ -74,14 +74,14 @@ Session::Rest Session::AwaitRest(Station* moving) {
   }
   for (const double begin = Now(); Now() - begin < kLeaving;) {
     Wait(false);
-    static_cast<void>(moving->Slow(told_, false));
+    static_cast<void>(moving->Slow(commanded_, false));
   }
   return Rest::kRests;
 }
 
 std::string Session::BringToRest(Station* moving, double deceleration) {
   const std::string arm = "The " + moving->name() + " arm ";
-  if (told_.size() != moving->model().dof()) told_.setZero(moving->model().dof());
+  if (commanded_.size() != moving->model().dof()) commanded_.setZero(moving->model().dof());
   double time = 0;
   switch (SlowDown(moving, deceleration, &time)) {
     case Rest::kSilent:
@@ -100,7 +100,7 @@ std::string Session::BringToRest(Station* moving, double deceleration) {
 }
 
 char Session::Ask(const std::string& prompt, const std::string& keys) {
-  Tell(prompt);
+  Show(prompt);
   for (;;) {
     Step();
     if (key_ != 0 && keys.find(key_) != std::string::npos) return key_;

@@ -16,7 +16,7 @@ namespace predictor::commissioning {
 class Person {
  public:
   virtual ~Person() = default;
-  virtual void Tell(const std::string& line) = 0;
+  virtual void Show(const std::string& line) = 0;
   // A key that was pressed since the last call; 0: none. Never waits. Buffered keys are returned
   // one per step, which is too fast for a HeldKey.
   virtual char Key() = 0;
@@ -40,7 +40,7 @@ class Session {
   double Now() const { return 1e-9 * static_cast<double>(network_->Now()); }
   // Scheduled time of the last step, a whole number of steps even if the step was late [s].
   double due() const { return 1e-9 * static_cast<double>(due_); }
-  void Tell(const std::string& line) { person_->Tell(line); }
+  void Show(const std::string& line) { person_->Show(line); }
 
   // The next millisecond of the clock, in which all arms stand still and are read. This and the
   // functions below throw DeviceError, and InputError if the person gives up.
@@ -71,7 +71,7 @@ class Session {
   Rest AwaitRest(Station* moving);
 
   std::vector<Station*> stations_;
-  JointVector told_;       // last command to the moving arm [rad/s]
+  JointVector commanded_;  // last command to the moving arm [rad/s]
   std::uint64_t due_ = 0;  // scheduled start of the current step [ns]
   char key_ = 0;
 };

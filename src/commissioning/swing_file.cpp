@@ -10,9 +10,9 @@
 namespace predictor::commissioning {
 namespace {
 
-constexpr std::size_t kMostNumbers = 1'000'000;  // numbers per record: a quarter of an hour
-constexpr double kLongest = 1e4;                 // duration of a swing [s]
-constexpr int kMostJoints = 64;
+constexpr std::size_t kMaxNumbers = 1'000'000;  // numbers per record: a quarter of an hour
+constexpr double kLongest = 1e4;                // duration of a swing [s]
+constexpr int kMaxSwingJoints = 64;
 
 bool ReadWord(std::istream& in, std::string_view expected) {
   std::string word;
@@ -35,7 +35,7 @@ bool ReadRecord(std::istream& in, int joint, LoopRecord* record) {
       !(in >> record->joint >> ticks >> samples >> gaps.ticks >> gaps.late >> gaps.samples >>
         gaps.lost >> gaps.longest_tick >> gaps.longest_hole))
     return false;
-  if (record->joint != joint || ticks < 1 || ticks > kMostNumbers || samples > kMostNumbers)
+  if (record->joint != joint || ticks < 1 || ticks > kMaxNumbers || samples > kMaxNumbers)
     return false;
   record->u.resize(ticks);
   for (double& u : record->u) in >> u;
@@ -47,7 +47,7 @@ bool ReadRecord(std::istream& in, int joint, LoopRecord* record) {
 // Reads everything after the header, including its last word.
 bool ReadSwings(std::istream& in, Swings* swings) {
   int measured = 0;
-  if (!(in >> swings->joints >> measured) || swings->joints > kMostJoints || measured < 1 ||
+  if (!(in >> swings->joints >> measured) || swings->joints > kMaxSwingJoints || measured < 1 ||
       measured > swings->joints)
     return false;
   swings->records.resize(static_cast<std::size_t>(measured));

@@ -1,5 +1,5 @@
-// Threads that run beside the loop. An exception in one of them must not end the process while the
-// arms move.
+// Threads that run alongside the loop. An exception in one of them must not end the process while
+// the arms move.
 #pragma once
 
 #include <pthread.h>

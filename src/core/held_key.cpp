@@ -33,7 +33,7 @@ KeySign HeldKey::Take(double now) {
   if (held()) {
     if (together) return KeySign::kNone;
     sign_ = now;
-    return KeySign::kGoesOn;
+    return KeySign::kContinues;
   }
   if (together || fresh_) letters_ = 0;
   waits_ = !together;

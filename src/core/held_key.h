@@ -6,11 +6,11 @@ namespace predictor {
 // Events of a key, each reported once.
 enum class KeySign {
   kNone,
-  kTouched,  // a letter arrived after at least kFirstRepeat without one
-  kHeld,     // a second letter arrived: the key now counts as held
-  kGoesOn,   // another letter arrived while the key is held
-  kNotHeld,  // the key was only tapped; no second letter arrived within kFirstRepeat
-  kLate,     // the letters arrived together, and none followed within kFirstRepeat
+  kTouched,    // a letter arrived after at least kFirstRepeat without one
+  kHeld,       // a second letter arrived: the key now counts as held
+  kContinues,  // another letter arrived while the key is held
+  kNotHeld,    // the key was only tapped; no second letter arrived within kFirstRepeat
+  kLate,       // the letters arrived together, and none followed within kFirstRepeat
 };
 
 // A key that is held sends its letter repeatedly. It counts as held from the second letter until it

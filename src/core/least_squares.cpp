@@ -8,7 +8,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kLeastMode = 1e-15;  // smallest eigenvalue of a Gram matrix of unit columns
+constexpr double kMinMode = 1e-15;  // smallest eigenvalue of a Gram matrix of unit columns
 
 }  // namespace
 
@@ -28,8 +28,7 @@ LinearFit FitLinear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
   const SymmetricModes modes =
       SymmetricModesOf(scaled.transpose() * scaled, Eigen::MatrixXd::Identity(A.cols(), A.cols()));
   const Eigen::MatrixXd V = unit.asDiagonal() * modes.eigenvectors;
-  fit.spread =
-      V * modes.eigenvalues.cwiseMax(kLeastMode).cwiseInverse().asDiagonal() * V.transpose();
+  fit.spread = V * modes.eigenvalues.cwiseMax(kMinMode).cwiseInverse().asDiagonal() * V.transpose();
   fit.value = LeastSquares(A, b);
   fit.residual = b - A * fit.value;
   fit.freedom = static_cast<int>(A.rows() - A.cols());

@@ -31,9 +31,10 @@ std::vector<std::string> LoadedHands::See(const TickRecord& record) {
     const double force = std::hypot(F[0], F[1], F[2]);
     const bool loaded = record.hands[i].present && force > force_;
     Hand& hand = hands_[i];
-    if (hand.since == 0 || loaded != hand.loaded) hand = {record.tick, loaded, hand.told};
-    if (static_cast<double>(record.tick - hand.since) < patience_ || hand.told == loaded) continue;
-    hand.told = loaded;
+    if (hand.since == 0 || loaded != hand.loaded) hand = {record.tick, loaded, hand.reported};
+    if (static_cast<double>(record.tick - hand.since) < patience_ || hand.reported == loaded)
+      continue;
+    hand.reported = loaded;
     if (!loaded) continue;
     const std::string caught =
         NothingMovesAnyMore(record)

@@ -35,7 +35,7 @@ class LoadedHands {
  private:
   struct Hand {
     std::uint64_t since = 0;  // tick of the last change of state
-    bool loaded = false, told = false;
+    bool loaded = false, reported = false;
   };
 
   double force_, patience_;  // [N], [ticks]

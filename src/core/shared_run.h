@@ -1,5 +1,5 @@
-// Memory that a run shares with the processes beside it: one piece that all of them read, and one
-// for each process that may send something.
+// Memory that a run shares with the processes alongside it: one piece that all of them read, and
+// one for each process that may send something.
 #pragma once
 
 #include <cstdint>

@@ -119,11 +119,11 @@ std::string Printable(std::string_view text, Lines lines) {
 }
 
 std::string Quote(std::string_view x) {
-  constexpr std::size_t kMost = 60;
-  if (x.size() <= kMost) return "\"" + Printable(x) + "\"";
+  constexpr std::size_t kMaxShown = 60;
+  if (x.size() <= kMaxShown) return "\"" + Printable(x) + "\"";
   // A multi-byte character that would be cut is omitted.
-  std::size_t end = kMost;
-  while (end > kMost - 3 && (static_cast<unsigned char>(x[end]) & 0xc0) == 0x80) --end;
+  std::size_t end = kMaxShown;
+  while (end > kMaxShown - 3 && (static_cast<unsigned char>(x[end]) & 0xc0) == 0x80) --end;
   return "\"" + Printable(x.substr(0, end)) + "...\"";
 }
 

@@ -45,13 +45,13 @@ struct ArmReading {
 };
 
 // The payload configured in an arm's controller: everything on the flange.
-struct ToldPayload {
+struct ReportedPayload {
   double mass = 0;                           // [kg]
   Vector3 center_of_mass = Vector3::Zero();  // centre of mass in the flange [m]
 };
 
 // The flange pose that an arm's controller reports for the joints q.
-struct ToldFlange {
+struct ReportedFlange {
   JointVector q;     // [rad]
   Pose X_BF;         // pose of the flange in the base, with the manufacturer's axes
   std::string link;  // the manufacturer's name of the flange, which is the end of the link's name
@@ -68,8 +68,8 @@ struct DeviceFacts {
   double watchdog = 0;      // the arm stops by itself after this time without commands [s]
   // Limits of each joint that the driver enforces [rad/s], [rad/s²]; may be empty.
   std::vector<double> velocity = {}, acceleration = {};
-  std::optional<ToldPayload> payload = std::nullopt;  // set if the arm reports it
-  std::optional<ToldFlange> flange = std::nullopt;    // set if the arm reports it
+  std::optional<ReportedPayload> payload = std::nullopt;  // set if the arm reports it
+  std::optional<ReportedFlange> flange = std::nullopt;    // set if the arm reports it
   bool payload_taken_off = false;  // the payload's weight is excluded from the arm's own wrench
   std::vector<std::string> remarks = {};  // notes for the user, one sentence each
 };

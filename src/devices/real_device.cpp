@@ -23,7 +23,7 @@ void Extrapolate(const ArmReading& reading, const JointVector& sent, ArmSample* 
   sample->q = reading.q;
   sample->v = reading.v;
   if (sent.size() != reading.q.size()) return;
-  const double ahead = std::clamp(reading.age, 0.0, RealDevice::kMostExtrapolation);
+  const double ahead = std::clamp(reading.age, 0.0, RealDevice::kMaxExtrapolation);
   sample->q += ahead * sent;
 }
 

@@ -35,7 +35,7 @@ inline constexpr double kInputAge = 0.025;
 class RealDevice final : public Device {
  public:
   // A sample is extrapolated for at most this time [s]; beyond it, the sample's age stops the run.
-  static constexpr double kMostExtrapolation = 0.010;
+  static constexpr double kMaxExtrapolation = 0.010;
 
   // Absent sides have no arm. `network`: connects to the devices. Throws DeviceError if an arm has
   // no wrench or an enabling device is wired to an absent arm.

@@ -25,7 +25,7 @@ class UrStopChannel final : public StopChannel {
     if (lost_) return Link::kLost;
     std::array<std::byte, 4096> unread;
     int size = 1;
-    for (int i = 0; i < kMostReads && size > 0; ++i) {
+    for (int i = 0; i < kMaxReads && size > 0; ++i) {
       size = stream_->Read(unread);
       if (size > 0) heard_ = network_->Now();
     }
@@ -39,7 +39,7 @@ class UrStopChannel final : public StopChannel {
   }
 
  private:
-  static constexpr int kMostReads = 16;
+  static constexpr int kMaxReads = 16;
 
   Network* network_;
   std::unique_ptr<Stream> stream_;

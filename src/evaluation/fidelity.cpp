@@ -12,7 +12,7 @@ namespace predictor {
 namespace {
 
 constexpr std::size_t kPoints = 400;      // points per cycle when cycles are compared by phase
-constexpr std::size_t kLeastCycles = 2;   // with fewer cycles, there are no repeats
+constexpr std::size_t kMinCycles = 2;     // with fewer cycles, there are no repeats
 constexpr double kLongestLag = 0.25;      // share of a cycle or of the run
 constexpr double kSegment = 8;            // segment of Welch's estimate without cycles [s]
 constexpr double kEdge = 1e-6;            // rounding tolerance as a share of a step
@@ -47,7 +47,7 @@ std::vector<Run> RunsOf(std::span<const FidelitySignals> all) {
 
 bool GoRound(const std::vector<Run>& runs) {
   return std::all_of(runs.begin(), runs.end(),
-                     [](const Run& run) { return run.cycles >= kLeastCycles; });
+                     [](const Run& run) { return run.cycles >= kMinCycles; });
 }
 
 // Mean duration of the compared cycles [s].
@@ -277,7 +277,7 @@ FidelityReport CompareFidelity(std::span<const FidelitySignals> a,
   for (const FidelityChannel& channel : a[0].channels)
     if (FindChannel(b[0], channel.name))
       report.channels.push_back(CompareChannel(channel, runs_a, runs_b, alignment));
-  if (report.channels.empty()) throw InputError("The two runs have no signal of the same name.");
+  if (report.channels.empty()) throw InputError("The two runs have no signal in common.");
   report.perceived =
       ComparePerceived(a[0], PartsOf(runs_a[0], alignment), b[0], PartsOf(runs_b[0], alignment));
   if (std::any_of(report.perceived.begin(), report.perceived.end(), ErrorUnknown))

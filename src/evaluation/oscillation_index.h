@@ -27,7 +27,7 @@ class OscillationIndex {
     double rms = 0;    // of the force from 3 to 10 Hz [N]
     double total = 0;  // rms up to 10 Hz, with the mean removed [N]
     // False if the force hardly varies: the index is then meaningless.
-    bool Tells() const { return total > kMinForce; }
+    bool IsMeaningful() const { return total > kMinForce; }
     bool IsStrong() const { return total > kStopForce; }
   };
 

@@ -42,7 +42,7 @@ const Json* Find(const Json& object, const char* key) {
 std::string ReadText(const Json& object, const char* key) {
   const Json* value = Find(object, key);
   if (!value) return "";
-  if (!value->is_string()) throw InputError::At(key, std::string(key) + " must be a text.");
+  if (!value->is_string()) throw InputError::At(key, std::string(key) + " must be text.");
   return value->get<std::string>();
 }
 
@@ -192,18 +192,14 @@ std::optional<Condition> ConditionNamed(std::string_view name) {
 }
 
 const char* ConsentText() {
-  return "You are asked for your opinion of the system that you have just used: eight statements, "
-         "and, if you like, your age, your sex and a comment. Answering is voluntary; you may "
-         "leave "
-         "out any question, and you may stop at any time without giving a reason. Your answers are "
-         "kept in a file on this computer, beside the recording of your run, under a pseudonym "
-         "that "
-         "is drawn at random; neither your name nor the time of your answer is asked for or "
-         "written "
-         "down. The pseudonym is shown to you once, at the end: whoever tells it to the "
-         "experimenter "
-         "can have the answers removed. Please write nothing in the comment that tells who you "
-         "are.";
+  return "You are asked for your opinion of the system that you have just used: eight statements "
+         "and, if you like, your age, your sex and a comment. Answering is voluntary: you may "
+         "leave out any question, and you may stop at any time without giving a reason. Your "
+         "answers are stored in a file on this computer, beside the recording of your run, under "
+         "a randomly drawn pseudonym. Neither your name nor the time of your answer is asked for "
+         "or recorded. The pseudonym is shown to you once, at the end. Give it to the "
+         "experimenter if you want your answers removed. Please write nothing in the comment "
+         "that could identify you.";
 }
 
 bool IsPseudonym(std::string_view text) {

@@ -161,7 +161,8 @@ std::string NeutralTable(const ConditionSummary& c, Condition condition) {
 
 std::string PairedTable(const SurveyReport& report) {
   if (report.paired_people == 0)
-    return "Nobody answered once for each system, so the answers are compared with neutral only.\n";
+    return "No one answered exactly once for each system, so the answers are compared with neutral "
+           "only.\n";
   return "Emulated minus real, " + std::to_string(report.paired_people) +
          (report.paired_people == 1 ? " person" : " people") + " who answered for both\n" +
          ShiftTable("pairs", report.paired);

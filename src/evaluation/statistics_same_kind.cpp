@@ -37,7 +37,7 @@ Eigen::MatrixXd DistancesOf(const std::vector<std::span<const double>>& repeats)
 
 // One divided by the number of ways to divide the repeats into the two sets; twice that if the sets
 // have the same size and are therefore interchangeable.
-double LeastP(std::size_t a, std::size_t b, int draws) {
+double MinP(std::size_t a, std::size_t b, int draws) {
   double ways = 1;
   for (std::size_t k = 1; k <= a; ++k) ways *= static_cast<double>(b + k) / static_cast<double>(k);
   return std::max((a == b ? 2 : 1) / ways, 1.0 / (draws + 1));
@@ -54,7 +54,7 @@ SameKindTest TestSameKind(std::span<const std::vector<double>> a,
   std::fill_n(is_a.begin(), a.size(), true);
   SameKindTest test;
   test.distance = EnergyDistance(distances, is_a);
-  test.least_p = LeastP(a.size(), b.size(), draws);
+  test.min_p = MinP(a.size(), b.size(), draws);
   const double as_far = test.distance - kRounding * distances.maxCoeff();
   std::mt19937_64 random(1);
   int count = 1;

@@ -14,11 +14,11 @@ struct SameKindTest {
   // Energy distance (Székely & Rizzo 2013): the mean distance between repeats of different sets,
   // minus the mean distance between repeats of the same set. Both sets have equal weight.
   double distance = 0;
-  double p = 1;  // probability that randomly assigned repeats are at least as far apart as the
-                 // actual sets
-  double least_p = 1;  // smallest p possible with this number of repeats
-  bool can_tell() const { return least_p <= kSignificance; }
-  bool told_apart() const { return p <= kSignificance; }
+  double p = 1;      // probability that randomly assigned repeats are at least as far apart as the
+                     // actual sets
+  double min_p = 1;  // smallest p possible with this number of repeats
+  bool can_distinguish() const { return min_p <= kSignificance; }
+  bool distinguished() const { return p <= kSignificance; }
 };
 
 // `a` and `b`: repeats, each a series of the same length. Their distance is the rms difference. The

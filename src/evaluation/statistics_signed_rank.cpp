@@ -79,7 +79,7 @@ CriticalPlace ApproximatePlace(std::size_t n, double alpha) {
 }  // namespace
 
 SignedRankTest TestSignedRank(std::span<const double> differences, ZeroRule zeros,
-                              std::size_t most_enumerated) {
+                              std::size_t max_enumerated) {
   SignedRankTest test;
   test.count = differences.size();
   std::vector<double> sorted(differences.begin(), differences.end());
@@ -104,7 +104,7 @@ SignedRankTest TestSignedRank(std::span<const double> differences, ZeroRule zero
   test.plus = static_cast<double>(plus) / 2;
   test.minus = static_cast<double>(minus) / 2;
   if (ranks.empty()) return test;
-  test.exact = ranks.size() <= most_enumerated;
+  test.exact = ranks.size() <= max_enumerated;
   if (test.exact) {
     test.p = ExactTwoSided(ranks, std::min(plus, minus));
     return test;
@@ -116,7 +116,7 @@ SignedRankTest TestSignedRank(std::span<const double> differences, ZeroRule zero
 }
 
 ShiftEstimate HodgesLehmann(std::span<const double> differences, double confidence,
-                            std::size_t most_enumerated) {
+                            std::size_t max_enumerated) {
   const std::size_t n = differences.size();
   if (n == 0) return {kUndefined, kUndefined, kUndefined, 0};
   std::vector<double> walsh;
@@ -124,8 +124,8 @@ ShiftEstimate HodgesLehmann(std::span<const double> differences, double confiden
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i; j < n; ++j) walsh.push_back((differences[i] + differences[j]) / 2);
   std::sort(walsh.begin(), walsh.end());
-  const CriticalPlace critical = n <= most_enumerated ? EnumeratedPlace(n, 1 - confidence)
-                                                      : ApproximatePlace(n, 1 - confidence);
+  const CriticalPlace critical = n <= max_enumerated ? EnumeratedPlace(n, 1 - confidence)
+                                                     : ApproximatePlace(n, 1 - confidence);
   return {Median(walsh), walsh[critical.place - 1], walsh[walsh.size() - critical.place],
           critical.confidence};
 }

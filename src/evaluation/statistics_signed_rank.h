@@ -34,7 +34,7 @@ struct SignedRankTest {
 // values first.
 SignedRankTest TestSignedRank(std::span<const double> differences,
                               ZeroRule zeros = ZeroRule::kDropped,
-                              std::size_t most_enumerated = kMaxEnumerated);
+                              std::size_t max_enumerated = kMaxEnumerated);
 
 struct ShiftEstimate {
   double estimate = 0;          // median of the Walsh averages (Hodges & Lehmann 1963)
@@ -48,6 +48,6 @@ struct ShiftEstimate {
 // The centre of symmetry of the differences, including zeros. The ends of the interval are Walsh
 // averages chosen by the untied distribution of the signed-rank statistic. NaN without differences.
 ShiftEstimate HodgesLehmann(std::span<const double> differences, double confidence = 0.95,
-                            std::size_t most_enumerated = kMaxEnumerated);
+                            std::size_t max_enumerated = kMaxEnumerated);
 
 }  // namespace predictor

@@ -128,15 +128,15 @@ void AddEvents(const Summary& s, std::string* text) {
 }
 
 void AddStops(const Summary& s, std::string* text) {
-  constexpr std::size_t kTold = 10;
+  constexpr std::size_t kMaxListed = 10;
   if (s.stops.empty()) return AppendLine(text, "No safety stop.");
   if (s.stop_count > 1)
     AppendLine(text, "%llu stops:", static_cast<unsigned long long>(s.stop_count));
-  const std::size_t told = std::min(s.stops.size(), kTold);
-  for (std::size_t i = 0; i < told; ++i) AddStop(s.stops[i], text);
-  if (s.stop_count > told)
+  const std::size_t listed = std::min(s.stops.size(), kMaxListed);
+  for (std::size_t i = 0; i < listed; ++i) AddStop(s.stops[i], text);
+  if (s.stop_count > listed)
     AppendLine(text, "And %llu more; --json FILE.json lists %zu.",
-               static_cast<unsigned long long>(s.stop_count - told), s.stops.size());
+               static_cast<unsigned long long>(s.stop_count - listed), s.stops.size());
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ void Serve(const Json& start) {
 }  // namespace
 
 EvaluatorProcess::EvaluatorProcess(const Scenario& scenario, const Shared<RunBoard>& board,
-                                   const Shared<EvaluationBoard>& states, Tell show)
+                                   const Shared<EvaluationBoard>& states, Notify show)
     : process_({"The evaluator", kEvaluatorSubcommand, RunLine(scenario, Vector3::Zero()),
                 board.descriptor(), states.descriptor(), std::move(show), [](const Json&) {}}) {}
 

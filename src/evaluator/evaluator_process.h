@@ -1,4 +1,4 @@
-// The evaluator: a process beside the run that judges the person live.
+// The evaluator: a process alongside the run that judges the person live.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@ int EvaluatorMain();
 class EvaluatorProcess {
  public:
   // Shows a message to the user; called from a separate thread.
-  using Tell = std::function<void(const std::string& text)>;
+  using Notify = std::function<void(const std::string& text)>;
 
   // Starts the evaluator and waits until it follows `board`. The evaluator writes its states to
   // `states` and may do nothing else. It runs at a lower priority than the run's threads, and the
@@ -26,7 +26,7 @@ class EvaluatorProcess {
   // fatigue then begin again. The descriptors of both are borrowed. Throws InputError if body or
   // stance are missing or impossible, or std::runtime_error if no process can be started.
   EvaluatorProcess(const Scenario& scenario, const Shared<RunBoard>& board,
-                   const Shared<EvaluationBoard>& states, Tell show);
+                   const Shared<EvaluationBoard>& states, Notify show);
   int pid() const { return process_.pid(); }  // 0 while no process is running
 
  private:

@@ -8,11 +8,11 @@
 namespace predictor {
 namespace {
 
-constexpr double kTolerance = 1e-6;      // [m] and [rad]
-constexpr int kIterations = 200;         // iterations per start
-constexpr double kLength = 0.2;          // weighs rotation against translation [m/rad]
-constexpr double kLargestStep = 0.5;     // largest step of a joint in one iteration [rad] or [m]
-constexpr double kLeastDamping = 1e-12;  // [m²]
+constexpr double kTolerance = 1e-6;    // [m] and [rad]
+constexpr int kIterations = 200;       // iterations per start
+constexpr double kLength = 0.2;        // weighs rotation against translation [m/rad]
+constexpr double kLargestStep = 0.5;   // largest step of a joint in one iteration [rad] or [m]
+constexpr double kMinDamping = 1e-12;  // [m²]
 constexpr double kPi = 3.14159265358979323846;
 
 class Solver {
@@ -46,9 +46,9 @@ class Solver {
       if (error < *best) {
         *q = trial;
         *best = error;
-        damping = std::max(kLeastDamping, damping * 0.1);
+        damping = std::max(kMinDamping, damping * 0.1);
       } else {
-        damping = damping * 10 + kLeastDamping;
+        damping = damping * 10 + kMinDamping;
         if (damping > 1e6) return false;  // a local minimum
         error_ = error_before;
       }

@@ -57,11 +57,11 @@ void CheckMeshSizes(const ObjectModel& object) {
   std::size_t triangles = 0;
   for (const ModelShape& shape : object.collisions) {
     if (shape.kind == ShapeKind::kMesh) triangles += CountTriangles(shape.mesh);
-    if (triangles <= kMostCollisionTriangles) continue;
+    if (triangles <= kMaxCollisionTriangles) continue;
     throw InputError(shape.place, "With the mesh " + shape.mesh.string() +
                                       ", the object's collision shape has " +
                                       std::to_string(triangles) + " triangles, but at most " +
-                                      std::to_string(kMostCollisionTriangles) +
+                                      std::to_string(kMaxCollisionTriangles) +
                                       " are possible. Simplify the mesh, or give <collision> a "
                                       "box, cylinder or sphere.");
   }

@@ -13,10 +13,10 @@
 namespace predictor {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 4u << 20;  // maximum size of a URDF
-constexpr std::size_t kMostLinks = 1000;
-constexpr double kLeastInertia = 1e-11;  // smallest trace that counts as inertia [kg·m²]: a cube of
-                                         // 1 g and 0.1 mm
+constexpr std::uintmax_t kMaxUrdfBytes = 4u << 20;  // maximum size of a URDF
+constexpr std::size_t kMaxLinks = 1000;
+constexpr double kMinInertia = 1e-11;  // smallest trace that counts as inertia [kg·m²]: a cube of
+                                       // 1 g and 0.1 mm
 
 std::string ReadText(const std::filesystem::path& file) {
   std::error_code error;
@@ -24,10 +24,10 @@ std::string ReadText(const std::filesystem::path& file) {
     throw InputError(file.string(), "This file does not exist or is not a file. Give a URDF file.");
   }
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
-  if (error || bytes > kMostBytes) {
+  if (error || bytes > kMaxUrdfBytes) {
     throw InputError(file.string(), "The file has " + std::to_string(bytes) +
                                         " bytes, but a URDF can have at most " +
-                                        std::to_string(kMostBytes) +
+                                        std::to_string(kMaxUrdfBytes) +
                                         ". Move shapes into mesh files.");
   }
   std::string text(bytes, '\0');
@@ -63,9 +63,9 @@ void ReadLinkNames(const UrdfSource& source, XmlElement* robot, UrdfDocument* to
     to->links.push_back(e);
   }
   const std::size_t count = to->model.links.size();
-  if (count == 0 || count > kMostLinks) {
+  if (count == 0 || count > kMaxLinks) {
     source.Fail(*robot, "The robot has " + std::to_string(count) + " links; it must have 1 to " +
-                            std::to_string(kMostLinks) + ".");
+                            std::to_string(kMaxLinks) + ".");
   }
 }
 
@@ -112,7 +112,7 @@ void CheckMovingMasses(const UrdfSource& source, const UrdfModel& model) {
     if (joint->type == UrdfJointType::kFixed) {  // lumps fixed links; a lever arm adds inertia
       inertia[parent] += inertia[child] + mass[child] * joint->X_PJ.p.squaredNorm();
       mass[parent] += mass[child];
-    } else if (mass[child] <= 0 || inertia[child] <= kLeastInertia) {
+    } else if (mass[child] <= 0 || inertia[child] <= kMinInertia) {
       throw InputError(source.name + ":" + std::to_string(model.links[child].line),
                        "Link " + Quote(model.links[child].name) + " is moved by joint " +
                            Quote(joint->name) + ", but it has the " +
@@ -168,10 +168,10 @@ UrdfModel ParseUrdf(const std::string& text, const std::string& name,
                     const std::filesystem::path& folder,
                     const std::vector<std::string>& remove_links,
                     const std::filesystem::path& scenario_folder) {
-  if (text.size() > kMostBytes) {
+  if (text.size() > kMaxUrdfBytes) {
     throw InputError(name, "The text has " + std::to_string(text.size()) +
-                               " bytes, but a URDF can have at most " + std::to_string(kMostBytes) +
-                               ".");
+                               " bytes, but a URDF can have at most " +
+                               std::to_string(kMaxUrdfBytes) + ".");
   }
   const UrdfSource source{name, folder, scenario_folder};
   tinyxml2::XMLDocument doc;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kInertiaRounding = 1e-6;  // rounding of decimal numbers, as a share of the largest
                                            // moment
-constexpr double kLeastMoment = 1e-12;  // smallest moment that the physics engine accepts [kg·m²]
+constexpr double kMinMoment = 1e-12;    // smallest moment that the physics engine accepts [kg·m²]
 constexpr double kLargestLimit = 1e30;  // some files use a huge limit to mean "none"
 
 double PositiveNumber(const UrdfSource& source, const XmlElement& element, const char* attribute,
@@ -131,7 +131,7 @@ bool RepairRounding(double mass, Matrix3* inertia) {
   if (mass == 0 && inertia->isZero(0)) return false;  // a frame without a body
   const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(*inertia);
   const Vector3 w = eigen.eigenvalues();
-  const double least = std::max(kLeastMoment, 1e-9 * w[2]);
+  const double least = std::max(kMinMoment, 1e-9 * w[2]);
   if (w[0] >= least && w[0] + w[1] >= w[2]) return false;
   Vector3 lifted = w.cwiseMax(least);
   lifted[0] = std::max(lifted[0], (1 + 1e-9) * lifted[2] - lifted[1]);
@@ -182,7 +182,7 @@ UrdfJointType ReadType(const UrdfSource& source, const XmlElement& joint, const 
 std::string WhatIsWrongWithInertia(const Matrix3& inertia) {
   const Vector3 moments =
       Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
-  const double rounding = kLeastMoment + kInertiaRounding * moments.cwiseAbs().maxCoeff();
+  const double rounding = kMinMoment + kInertiaRounding * moments.cwiseAbs().maxCoeff();
   std::array<char, 100> text;
   std::snprintf(text.data(), text.size(), "%.6g, %.6g, %.6g kg·m²", moments[0], moments[1],
                 moments[2]);

@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-constexpr int kMostAttributes = 100;  // maximum number of attributes per element
+constexpr int kMaxAttributes = 100;  // maximum number of attributes per element
 
 [[noreturn]] void FailAt(const std::string& text, std::size_t position, const std::string& name,
                          const std::string& sentence) {
@@ -33,9 +33,9 @@ std::size_t EndOfTag(const std::string& text, std::size_t at, const std::string&
       quote = c;
     } else if (c == '>') {
       return i;
-    } else if (c == '=' && ++attributes > kMostAttributes) {
+    } else if (c == '=' && ++attributes > kMaxAttributes) {
       FailAt(text, at, name,
-             "An element has more than " + std::to_string(kMostAttributes) +
+             "An element has more than " + std::to_string(kMaxAttributes) +
                  " attributes. No element of a URDF needs that many.");
     }
   }

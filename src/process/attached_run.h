@@ -1,4 +1,4 @@
-// The run as seen by a process beside it.
+// The run as seen by a process alongside it.
 #pragma once
 
 #include "core/shared_run.h"
@@ -20,7 +20,7 @@ enum : int {
 // start [m in W].
 Json RunLine(const Scenario& scenario, const Vector3& object_start);
 
-// The run as seen by a process beside it, built from the board and that first line.
+// The run as seen by a process alongside it, built from the board and that first line.
 struct AttachedRun {
   // Throws std::runtime_error if the memory does not belong to a run of this version.
   explicit AttachedRun(const Json& start);

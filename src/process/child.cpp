@@ -18,8 +18,8 @@ namespace {
 enum : int { kEnded = 0, kBadInput = 2, kFailed = 3 };  // exit codes
 
 constexpr uid_t kNobody = 65534;
-constexpr rlim_t kMostDescriptors = 512;
-constexpr rlim_t kMostMemory = 3ul << 30;  // address space [bytes]
+constexpr rlim_t kMaxDescriptors = 512;
+constexpr rlim_t kMaxChildMemory = 3ul << 30;  // address space [bytes]
 
 void Limit(int resource, rlim_t most) {
   const rlimit limit{most, most};
@@ -43,8 +43,8 @@ void LimitResources(const char* name) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   Limit(RLIMIT_CORE, 0);
-  Limit(RLIMIT_NOFILE, kMostDescriptors);
-  if (!kSanitized) Limit(RLIMIT_AS, kMostMemory);
+  Limit(RLIMIT_NOFILE, kMaxDescriptors);
+  if (!kSanitized) Limit(RLIMIT_AS, kMaxChildMemory);
 }
 
 Json ReadStart() {

@@ -1,4 +1,4 @@
-// The child's side of a process beside the run: its input, the rights it gives up, and its end.
+// The child's side of a process alongside the run: its input, the rights it gives up, and its end.
 #pragma once
 
 #include <functional>

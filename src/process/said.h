@@ -1,4 +1,4 @@
-// Limits the messages that a process beside the run shows to the user to a readable amount.
+// Limits the messages that a process alongside the run shows to the user to a readable amount.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@ namespace predictor {
 
 class SaidFilter {
  public:
-  static constexpr std::size_t kLongest = 16'384;            // bytes per message
-  static constexpr double kMostAtOnce = 30, kPerSecond = 5;  // messages
+  static constexpr std::size_t kLongest = 16'384;           // bytes per message
+  static constexpr double kMaxAtOnce = 30, kPerSecond = 5;  // messages
   using Time = std::chrono::steady_clock::time_point;
 
   explicit SaidFilter(std::string name) : name_(std::move(name)) {}  // name of the process
@@ -26,7 +26,7 @@ class SaidFilter {
   // messages that were omitted before it.
   std::vector<std::string> Take(const std::string& text, Time now) {
     const std::chrono::duration<double> since = now - std::exchange(last_, now);
-    room_ = std::min(kMostAtOnce, room_ + kPerSecond * since.count());
+    room_ = std::min(kMaxAtOnce, room_ + kPerSecond * since.count());
     if (room_ < 1) {
       ++left_out_;
       return {};
@@ -41,7 +41,7 @@ class SaidFilter {
 
  private:
   std::string name_;
-  double room_ = kMostAtOnce;
+  double room_ = kMaxAtOnce;
   Time last_;
   int left_out_ = 0;
 };

@@ -226,9 +226,9 @@ bool SupervisedProcess::Impl::IsAlive() {
   const double silence = heartbeat.Silence(setup.beats->load(std::memory_order_acquire),
                                            static_cast<std::uint64_t>(ns.count()));
   if (silence > kSilent && !silent)
-    setup.tell(setup.name + " does not respond: " + setup.without +
-               ". Close other programs on this computer.");
-  if (silence < kSilent && silent) setup.tell(setup.name + " responds again.");
+    setup.notify(setup.name + " does not respond: " + setup.without +
+                 ". Close other programs on this computer.");
+  if (silence < kSilent && silent) setup.notify(setup.name + " responds again.");
   silent = silence > kSilent;
   return silence < kDead;
 }
@@ -261,7 +261,7 @@ void SupervisedProcess::Impl::Supervise() noexcept {
   while (!over) {
     Contain([this] { Attend(); },
             [this](const char* why) {
-              setup.tell(setup.name + ": " + why + ". Supervision continues.");
+              setup.notify(setup.name + ": " + why + ". Supervision continues.");
             });
     over = over || !Pause(kLook);
   }
@@ -280,7 +280,7 @@ void SupervisedProcess::Impl::Attend() {
       pause = std::min(kFirstPause, setup.longest_pause);
     if (end == End::kBySilence) kill(pid, SIGKILL);
     const std::string how = HowItEnded(Reap());
-    setup.tell(
+    setup.notify(
         setup.name +
         (end == End::kBySilence ? " did not respond and was ended" : " has ended (" + how + ")") +
         "; " + setup.without + ". It is being restarted.");
@@ -317,19 +317,19 @@ int SupervisedProcess::Impl::Reap() {
 void SupervisedProcess::Impl::Hear(const Json& line) {
   if (line.contains("error")) {
     error = SaidFilter::Shortened(Text(line, "error"));
-    if (supervised) setup.tell(setup.name + ": " + error);
+    if (supervised) setup.notify(setup.name + ": " + error);
     return;
   }
   if (line.contains("say")) {
     for (const std::string& text : said.Take(Text(line, "say"), std::chrono::steady_clock::now()))
-      setup.tell(text);
+      setup.notify(text);
     return;
   }
   if (line.contains("ready")) {
     const std::lock_guard lock(mutex);
-    const auto told = line.find("port");
-    if (told != line.end() && told->is_number_unsigned() && *told <= UINT16_MAX)
-      setup.start["port"] = port = told->get<std::uint16_t>();
+    const auto reported = line.find("port");
+    if (reported != line.end() && reported->is_number_unsigned() && *reported <= UINT16_MAX)
+      setup.start["port"] = port = reported->get<std::uint16_t>();
     ready = true;
   }
   setup.hear(line);

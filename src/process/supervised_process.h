@@ -1,5 +1,5 @@
-// The run's side of a process beside the run. It starts the process, listens to it, and restarts it
-// if it dies or falls silent. Neither its messages nor its death can move the arms.
+// The run's side of a process alongside the run. It starts the process, listens to it, and restarts
+// it if it dies or falls silent. Neither its messages nor its death can move the arms.
 #pragma once
 
 #include <atomic>
@@ -23,9 +23,9 @@ struct ChildSetup {
   int mailbox = -1;  // likewise: the only memory that the process may write; -1: none
   // Receives messages for the user, of one or several lines. Like `hear`, it is called by a
   // separate thread, and before that by the constructor.
-  std::function<void(const std::string& text)> tell;
-  // Receives each line from the process except {"say": …} and {"error": …}, which go to `tell`. The
-  // content is not trusted.
+  std::function<void(const std::string& text)> notify;
+  // Receives each line from the process except {"say": …} and {"error": …}, which go to `notify`.
+  // The content is not trusted.
   std::function<void(const Json& line)> hear;
   // Longest pause before a restart. The pause grows after each short-lived start.
   std::chrono::milliseconds longest_pause{60'000};

@@ -24,10 +24,10 @@ std::string DiskWatch::Look(const McapFile& file) {
            Gigabytes(rules_.end_below);
   if (free_ >= rules_.warn_below || warned_) return "";
   warned_ = true;
-  if (rules_.tell)
-    rules_.tell(file.path() + ": Only " + Gigabytes(free_) +
-                " are free on the recording's disk. Recording stops below " +
-                Gigabytes(rules_.end_below) + ".");
+  if (rules_.notify)
+    rules_.notify(file.path() + ": Only " + Gigabytes(free_) +
+                  " are free on the recording's disk. Recording stops below " +
+                  Gigabytes(rules_.end_below) + ".");
   return "";
 }
 

@@ -15,7 +15,7 @@ struct DiskRules {
   std::chrono::milliseconds sync_period{2000};
   // Receives sentences for the user: little space is left, or the recording has ended. Called by a
   // thread of the recorder.
-  std::function<void(const std::string&)> tell;
+  std::function<void(const std::string&)> notify;
 };
 
 namespace recording {

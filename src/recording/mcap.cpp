@@ -30,14 +30,14 @@ std::string Record(Op op, std::string_view content) {
 }
 
 Map Parser::Strings() {
-  constexpr std::size_t kMost = 10'000;  // limit, because each entry takes far more memory than
-                                         // space in the file
+  constexpr std::size_t kMaxEntries = 10'000;  // limit, because each entry takes far more memory
+                                               // than space in the file
   Map map;
   Parser inner{String()};
   while (ok && !inner.rest.empty()) {
     const std::string key(inner.String());
     const std::string value(inner.String());
-    ok = inner.ok && map.size() < kMost;
+    ok = inner.ok && map.size() < kMaxEntries;
     if (ok) map[key] = value;
   }
   return map;

@@ -17,7 +17,7 @@ namespace predictor::recording {
 namespace {
 
 constexpr std::uint64_t kLargestPreamble = 128U << 20U;  // [bytes]
-constexpr std::size_t kMostPreambleRecords = 10'000;
+constexpr std::size_t kMaxPreambleRecords = 10'000;
 constexpr double kShortestTick = 1e-4, kLongestTick = 1;  // [s]
 
 template <class T>
@@ -55,10 +55,10 @@ constexpr std::uint64_t kCopyNameAt = mcap::kHead + 8 + 8;  // position in the a
 // Start of the data of the copy whose run metadata are intact; empty if there is none.
 std::optional<std::uint64_t> FindCopy(const InputFile& file) {
   constexpr std::uint64_t kFarthest = kLargestPreamble + 2 * kLargestChunk;
-  constexpr int kMostTried = 16;  // limit, because a hostile file may contain many
+  constexpr int kMaxTries = 16;  // limit, because a hostile file may contain many
   MarkFinder finder(file, CopyHead(), kCopyNameAt, mcap::Op::kAttachment, kFarthest);
   std::uint64_t at = finder.Next(0);
-  for (int tried = 0; at < finder.end() && tried < kMostTried; ++tried, at = finder.Next(at + 1)) {
+  for (int tried = 0; at < finder.end() && tried < kMaxTries; ++tried, at = finder.Next(at + 1)) {
     const std::uint64_t data = at + kCopyNameAt + CopyHead().size() + 8;
     const auto run = RunAt(file, data);
     if (run && run->proven()) return data;
@@ -92,7 +92,7 @@ class OpeningReader {
     int copied = 0;
     for (std::string name; contents >> bytes >> crc >> copied && contents.get() == ' ' &&
                            std::getline(contents, name);) {
-      if (++pieces > kMostPreambleRecords || bytes > kLargestPreamble ||
+      if (++pieces > kMaxPreambleRecords || bytes > kLargestPreamble ||
           at + bytes > start_ + kLargestPreamble)
         TooMuch(at);
       TakePiece({name, at, copied != 0 ? copied_at : 0, bytes, crc});
@@ -103,7 +103,7 @@ class OpeningReader {
     if (at > file_.size())
       file_.Fail(file_.size(), "The recording ends before its first tick, so it is empty.");
     CheckTopics(Entry(run, kLayout));
-    TellDamage();
+    DescribeDamage();
     return std::move(opening_);
   }
 
@@ -205,7 +205,7 @@ class OpeningReader {
     }
     mcap::Parser from{*bytes};
     while (from.ok && !from.rest.empty()) {
-      if (++records_ > kMostPreambleRecords) TooMuch(piece.at);
+      if (++records_ > kMaxPreambleRecords) TooMuch(piece.at);
       const auto op = from.Number<mcap::Op>();
       const std::uint64_t length = from.U64();
       from.ok = from.ok && TakeRecord(op, mcap::Parser{from.Take(length)});
@@ -300,7 +300,7 @@ class OpeningReader {
                       Quote(opening_.header.program_version) + ").");
   }
 
-  void TellDamage() {
+  void DescribeDamage() {
     std::vector<std::string>& lost = opening_.header.lost;
     std::sort(lost.begin(), lost.end());
     lost.erase(std::unique(lost.begin(), lost.end()), lost.end());

@@ -22,10 +22,10 @@ namespace {
 
 // A hostile file must not exhaust memory. No real run has this many events; further events are only
 // counted.
-constexpr std::size_t kMostEvents = 200'000;
-constexpr std::size_t kMostEventBytes = 64U << 20U;
+constexpr std::size_t kMaxLoggedEvents = 200'000;
+constexpr std::size_t kMaxEventBytes = 64U << 20U;
 constexpr std::size_t kLongestEvent = 64 * 1024;  // [bytes]
-constexpr std::size_t kMostSnapshots = 1'000'000;
+constexpr std::size_t kMaxSnapshots = 1'000'000;
 constexpr std::uint64_t kReadAtOnce = 1U << 20U;  // [bytes]
 
 }  // namespace
@@ -195,7 +195,7 @@ std::optional<std::uint64_t> RecordingReader::Impl::FirstTick(std::size_t i) {
 // ---- events and snapshots -----------------------------------------------------------------------
 
 void RecordingReader::Impl::TakeEvent(std::size_t i, const Message& message) {
-  if (events.size() == kMostEvents || event_bytes + message.data.size() > kMostEventBytes) {
+  if (events.size() == kMaxLoggedEvents || event_bytes + message.data.size() > kMaxEventBytes) {
     ++more_events;
     return;
   }
@@ -221,7 +221,7 @@ void RecordingReader::Impl::FindOthersIn(std::size_t i) {
       TakeEvent(i, message);
     } else if (message.channel == recording::kSnapshotChannel) {
       recording::SnapshotView snapshot;
-      if (snapshots.size() >= kMostSnapshots || !recording::ParseSnapshot(message.data, &snapshot))
+      if (snapshots.size() >= kMaxSnapshots || !recording::ParseSnapshot(message.data, &snapshot))
         file.Fail(chunks[i].offset, "This chunk contains an invalid saved state.");
       snapshots.push_back(snapshot.tick);
       places.push_back({i, offset});

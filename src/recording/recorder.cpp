@@ -131,7 +131,7 @@ struct Recorder::Impl {
         snapshot(options.snapshot_bytes),
         file(path, recording::MakePreamble(header, scene), given_calls ? given_calls : &calls),
         encoder(header, std::move(scene)),
-        queue(options.most_queued),
+        queue(options.max_queued),
         disk(options) {
     if (options.person) persons.emplace(options.person->states);
     free_bytes = file.FreeBytes();
@@ -165,8 +165,8 @@ struct Recorder::Impl {
   std::string SyncProblem() const;
   void Close();
 
-  void Tell(const std::string& sentence) const {
-    if (options.tell) options.tell(sentence);
+  void Notify(const std::string& sentence) const {
+    if (options.notify) options.notify(sentence);
   }
 
   FileCalls calls;
@@ -341,7 +341,7 @@ void Recorder::Impl::End(const std::string& why) {
     ended_why = sentence;
     recording = false;
   }
-  Tell(sentence);
+  Notify(sentence);
 }
 
 void Recorder::Impl::LookAtDisk() {

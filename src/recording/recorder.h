@@ -28,14 +28,14 @@ struct RecorderStatus {
 struct RecorderOptions : DiskRules {
   std::chrono::milliseconds snapshot_period{10'000};
   std::size_t snapshot_bytes = 1U << 20U;  // maximum size of a snapshot
-  std::size_t most_queued = 64U << 20U;    // maximum size of the chunks that wait for the disk
+  std::size_t max_queued = 64U << 20U;     // maximum size of the chunks that wait for the disk
                                            // [bytes]
   const EvaluationBoard* person =
       nullptr;  // whose states are recorded as well; null: none; borrowed
 };
 
 // One thread reads the ring, encodes and compresses; another writes; a third synchronises the disk.
-// A slow disk therefore delays the second and third thread, and the first only after `most_queued`.
+// A slow disk therefore delays the second and third thread, and the first only after `max_queued`.
 class Recorder {
  public:
   // Records everything that is published from now on. `ring` and `calls` are borrowed. Throws

@@ -25,7 +25,7 @@ constexpr std::string_view kMark{"\4\0\0\0zstd", 8};
 constexpr std::uint64_t kMarkAt = mcap::kHead + 8 + 8 + 8 + 4;
 // A hostile file may contain many apparent chunks, each of which seems to contain the rest of the
 // file.
-constexpr std::uint64_t kMostWasted = 2 * kLargestChunk, kMostWastedPerByte = 16;  // [bytes]
+constexpr std::uint64_t kMaxWasted = 2 * kLargestChunk, kMaxWastedPerByte = 16;  // [bytes]
 
 // The part of the chunk at `offset` (which ends before `end`) that can be decompressed, whatever
 // length its header claims.
@@ -61,7 +61,7 @@ class Recovery {
   RecoverReport Run(std::uint64_t at) {
     MarkFinder finder(in_, std::string(kMark), kMarkAt, mcap::Op::kChunk);
     while (at < in_.size()) {
-      if (wasted_ > kMostWasted + kMostWastedPerByte * in_.size()) {
+      if (wasted_ > kMaxWasted + kMaxWastedPerByte * in_.size()) {
         report_.gave_up_at = at;
         break;
       }

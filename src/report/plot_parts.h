@@ -9,7 +9,7 @@
 
 namespace predictor {
 
-inline constexpr std::size_t kMostNotes = 10;
+inline constexpr std::size_t kMaxNotes = 10;
 inline constexpr int kPair = 2;  // colour of curves that concern both handles
 
 inline bool Single(const Runs& runs) { return runs.size() == 1; }

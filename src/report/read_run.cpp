@@ -16,8 +16,8 @@ namespace predictor {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t kMostEvents = 1000, kMostParts = 2000, kMostPages = 64;
-constexpr std::size_t kMostMarkers = 6;    // number of markers around which every tick is
+constexpr std::size_t kMaxShownEvents = 1000, kMaxParts = 2000, kMaxPages = 64;
+constexpr std::size_t kMaxMarkers = 6;     // number of markers around which every tick is
                                            // kept
 constexpr std::size_t kDetailedStops = 4;  // likewise for stops
 constexpr double kAfterStop = 2;           // [s]
@@ -108,7 +108,7 @@ void RunCollector::Impl::Begin(const TickRecord& record) {
 }
 
 void RunCollector::Impl::Note(std::uint64_t tick, std::string text, bool marker) {
-  if (d_.events.size() == kMostEvents) {
+  if (d_.events.size() == kMaxShownEvents) {
     ++d_.more_events;
     return;
   }
@@ -126,7 +126,7 @@ void RunCollector::Impl::Compare(Worst* worst, double value, std::uint64_t tick)
 void RunCollector::Impl::FollowStates(const TickRecord& record) {
   if (record.state != state_) {
     Note(record.tick, std::string("state ") + Name(record.state));
-    if (d_.parts.size() < kMostParts) {
+    if (d_.parts.size() < kMaxParts) {
       d_.parts.back().to = record.tick;
       d_.parts.push_back({record.tick, record.tick, record.state});
     }
@@ -197,7 +197,7 @@ void RunCollector::Impl::FollowInputs(const TickRecord& record) {
                std::string("a page: ") + Name(input.parameter) + " = " + Significant(input.value));
         break;
       case InputKind::kLatency:
-        if (d_.pages.size() < kMostPages || d_.pages.contains(input.client)) {
+        if (d_.pages.size() < kMaxPages || d_.pages.contains(input.client)) {
           d_.pages[input.client].received.Add(std::max(0.0, input.p[1]));
           d_.pages[input.client].rendered.Add(std::max(0.0, input.p[2]));
         }
@@ -213,7 +213,7 @@ void RunCollector::Impl::FollowMarkers(std::uint64_t tick) {
   const auto& events = d_.info.events;
   for (; next_marker_ < events.size() && events[next_marker_].tick <= tick; ++next_marker_) {
     Note(events[next_marker_].tick, events[next_marker_].text, true);
-    if (++markers_ <= kMostMarkers)
+    if (++markers_ <= kMaxMarkers)
       d_.trace.Keep({events[next_marker_].tick, 5, 5, 2, "marker: " + events[next_marker_].text});
   }
 }

@@ -27,16 +27,16 @@ std::string Header(const RunData& run, const std::string& program_version) {
 }
 
 void AddStops(const RunCurves& curves, ReportPage* page) {
-  constexpr std::size_t kTold = 4;
+  constexpr std::size_t kMaxListed = 4;
   const RunData& run = curves.run();
   if (run.stops.empty()) return;
   page->Section("stops", run.stops.size() == 1 ? "The stop" : "The stops");
-  for (std::size_t i = 0; i < run.stops.size() && i < kTold; ++i) {
+  for (std::size_t i = 0; i < run.stops.size() && i < kMaxListed; ++i) {
     page->Html(StopWords(run, run.stops[i]));
     page->Figure(StopPlot(curves, run.stops[i], i + 1));
   }
-  if (run.stops.size() > kTold)
-    page->Paragraph("And " + std::to_string(run.stops.size() - kTold) +
+  if (run.stops.size() > kMaxListed)
+    page->Paragraph("And " + std::to_string(run.stops.size() - kMaxListed) +
                     " more stops; see the events.");
 }
 

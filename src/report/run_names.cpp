@@ -28,8 +28,8 @@ std::string NameOf(const std::filesystem::path& file, int folders) {
 
 // Adds as many folders as needed to make the names unique. Empty if a file is named twice.
 std::optional<Names> NamesOf(const std::vector<NamedRun>& runs) {
-  constexpr int kMostFolders = 64;
-  for (int folders = 0; folders < kMostFolders; ++folders) {
+  constexpr int kMaxFolders = 64;
+  for (int folders = 0; folders < kMaxFolders; ++folders) {
     Names names;
     for (const NamedRun& run : runs)
       names.push_back(NameOf(absolute(run.file).lexically_normal(), folders));

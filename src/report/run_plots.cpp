@@ -38,15 +38,15 @@ Plot TimePlot(const Runs& runs, const std::string& id, const std::string& title)
     if (part.state != RunState::kRun)
       plot.spans.push_back({run.TimeOf(part.from), run.TimeOf(part.to), Lower(Name(part.state))});
   for (const ReportedStop& stop : run.stops)
-    if (plot.notes.size() < kMostNotes)
+    if (plot.notes.size() < kMaxNotes)
       plot.notes.push_back(
           {run.TimeOf(stop.tick), std::string("stop: ") + Name(stop.summary.cause)});
   for (const ReportedStop& stop : run.stops)
-    if (stop.power_off != 0 && plot.notes.size() < kMostNotes)
+    if (stop.power_off != 0 && plot.notes.size() < kMaxNotes)
       plot.notes.push_back({run.TimeOf(stop.power_off),
                             std::string("power off: ") + Name(stop.summary.harder.cause)});
   for (const ReportedEvent& event : run.events)
-    if (event.marker && plot.notes.size() < kMostNotes)
+    if (event.marker && plot.notes.size() < kMaxNotes)
       plot.notes.push_back({run.TimeOf(event.tick), event.text.substr(0, 40)});
   return plot;
 }
@@ -285,10 +285,10 @@ Plot OscillationPlot(const Runs& runs) {
         force.push_back(window.rms);
         // Extends to half the distance of the next window's middle on each side, so a single window
         // is visible too.
-        const double half = window.Tells() ? OscillationIndex::kWindow / 4 : 0;
+        const double half = window.IsMeaningful() ? OscillationIndex::kWindow / 4 : 0;
         for (const double at : {window.time - half, window.time + half}) {
           steps.push_back(at);
-          y.push_back(window.Tells() ? window.index : NAN);
+          y.push_back(window.IsMeaningful() ? window.index : NAN);
         }
       }
       PlotSeries series{.label = Single(runs) ? HandName(i) : LabelOf(runs, r) + ", " + HandName(i),

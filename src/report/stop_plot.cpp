@@ -56,7 +56,7 @@ Plot StopPlot(const RunCurves& curves, const ReportedStop& stop, std::size_t num
   plot.notes.push_back({0, std::string("decided: ") + Name(stop.summary.cause)});
   if (!DidNotRest(stop.summary)) plot.notes.push_back({stop.summary.duration, "at rest"});
   for (const ReportedEvent& event : run.events)
-    if (event.tick >= from && event.tick < stop.tick && plot.notes.size() < kMostNotes &&
+    if (event.tick >= from && event.tick < stop.tick && plot.notes.size() < kMaxNotes &&
         event.text.rfind("state ", 0) != 0)
       plot.notes.push_back(
           {(static_cast<double>(event.tick) - static_cast<double>(stop.tick)) * run.dt,

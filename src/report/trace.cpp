@@ -14,10 +14,10 @@ constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 // Maximum number of interests, so that a recording with a thousand markers does not cause a
 // thousand searches per second.
-constexpr std::size_t kMostInterests = 64;
+constexpr std::size_t kMaxInterests = 64;
 // Maximum number of blocks whose lowest and highest values are kept (350 MB for all channels). This
 // is eight hours if no ticks are missing. A hostile recording may have a single tick in each block.
-constexpr std::size_t kMostBlocks = 8 * 3600;
+constexpr std::size_t kMaxBlocks = 8 * 3600;
 
 // Lowest and highest of n values, in order of occurrence.
 void Extremes(const float* values, std::size_t n, float* two) {
@@ -54,8 +54,8 @@ void Trace::Add(std::uint64_t tick, const float* values) {
 }
 
 void Trace::Close() {
-  if (bins_.size() == kMostBlocks)
-    throw InputError("The recording has ticks in more than " + std::to_string(kMostBlocks) +
+  if (bins_.size() == kMaxBlocks)
+    throw InputError("The recording has ticks in more than " + std::to_string(kMaxBlocks) +
                      " seconds (eight hours), which is more than a report can show. View it with "
                      "`predictor replay`, or export channels with `predictor export data`.");
   Bins bins{open_.number, std::vector<float>(channels_ * 2 * kBinsPerBlock)};
@@ -71,7 +71,7 @@ void Trace::Close() {
 }
 
 std::size_t Trace::Keep(TraceInterest interest) {
-  if (interests_.size() == kMostInterests) interests_.pop_back();
+  if (interests_.size() == kMaxInterests) interests_.pop_back();
   interests_.push_back(std::move(interest));
   return interests_.size() - 1;
 }

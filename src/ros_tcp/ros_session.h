@@ -13,7 +13,7 @@ namespace predictor::ros_tcp {
 
 class RosSession {
  public:
-  static constexpr std::size_t kMostTopics = 64;  // limit of the topics subscribed to or announced
+  static constexpr std::size_t kMaxTopics = 64;  // limit of the topics subscribed to or announced
 
   // on_stop is called when a client requests a stop. `topics` is borrowed.
   RosSession(const RosTopics* topics, RosDialect dialect, std::function<void()> on_stop);

@@ -52,10 +52,10 @@ void Serve(const Json& start) {
 RosTcpProcess::RosTcpProcess(const RosTcpOptions& options, const Scenario& scenario,
                              const std::vector<std::string>& joints, const Vector3& object_start,
                              const Shared<RunBoard>& board, const Shared<StopMailbox>& mailbox,
-                             Tell tell)
+                             Notify notify)
     : process_({"The ROS-TCP server", kRosTcpSubcommand,
                 ToJson(options, scenario, joints, object_start), board.descriptor(),
-                mailbox.descriptor(), std::move(tell), [](const Json&) {}}) {}
+                mailbox.descriptor(), std::move(notify), [](const Json&) {}}) {}
 
 int RosTcpMain() { return ChildMain("ros-tcp", Serve); }
 

@@ -20,7 +20,7 @@ int RosTcpMain();
 class RosTcpProcess {
  public:
   // Shows a message to the user; called from a separate thread.
-  using Tell = std::function<void(const std::string& text)>;
+  using Notify = std::function<void(const std::string& text)>;
 
   // Starts the server with the same privileges as the viewer's process and waits until it accepts
   // clients. If the server dies, a message reports this and the server restarts on the same port.
@@ -29,7 +29,7 @@ class RosTcpProcess {
   // started.
   RosTcpProcess(const RosTcpOptions& options, const Scenario& scenario,
                 const std::vector<std::string>& joints, const Vector3& object_start,
-                const Shared<RunBoard>& board, const Shared<StopMailbox>& mailbox, Tell tell);
+                const Shared<RunBoard>& board, const Shared<StopMailbox>& mailbox, Notify notify);
   std::uint16_t port() const { return process_.port(); }
   int pid() const { return process_.pid(); }  // 0 while no process is running
 

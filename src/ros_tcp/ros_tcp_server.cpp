@@ -31,7 +31,7 @@ std::uint64_t UnixNow() {
   return NanosecondsOf(std::chrono::system_clock::now().time_since_epoch());
 }
 
-constexpr std::size_t kMostBacklog = 256 * 1024;  // queued answers to one client [bytes]
+constexpr std::size_t kMaxBacklog = 256 * 1024;  // queued answers to one client [bytes]
 
 struct Network {
   std::uint32_t address, mask;  // in host byte order
@@ -192,7 +192,7 @@ bool RosTcpServer::Impl::Receive(Client* client) {
   }
   while (const std::optional<RosFrame> frame = client->reader.Next())
     client->unsent += client->session.OnFrame(*frame);
-  return !client->reader.broken() && client->unsent.size() <= kMostBacklog;
+  return !client->reader.broken() && client->unsent.size() <= kMaxBacklog;
 }
 
 bool RosTcpServer::Impl::Flush(Client* client) {

@@ -52,14 +52,14 @@ std::vector<std::string> ConsoleWords::See(const TickRecord& record,
                                            const std::function<std::string()>& trouble) {
   // A stop in the same tick takes precedence over a refused request.
   if (record.refused != 0 && record.state != RunState::kStopping)
-    TellRefusal(record, trouble);
+    AddRefusal(record, trouble);
   else
-    TellWrongTime(record);
+    AddWrongTime(record);
   if (record.state != state_) {
     state_ = record.state;
-    TellState(record, trouble);
+    AddState(record, trouble);
   } else {
-    TellFaults(record, trouble);
+    AddFaults(record, trouble);
   }
   for (std::size_t i = 0; i < kHands; ++i) faults_[i] = ArmAtFault(record.hands[i]);
   return std::exchange(lines_, {});
@@ -67,8 +67,8 @@ std::vector<std::string> ConsoleWords::See(const TickRecord& record,
 
 // An arm's fault after a stop changes neither state nor cause, but it changes the operator's
 // options. HELD and UNPOWERED report it when they begin. In any other state it causes a stop.
-void ConsoleWords::TellFaults(const TickRecord& record,
-                              const std::function<std::string()>& trouble) {
+void ConsoleWords::AddFaults(const TickRecord& record,
+                             const std::function<std::string()>& trouble) {
   if (record.state != RunState::kStopping && record.state != RunState::kHeld &&
       record.state != RunState::kUnpowered)
     return;
@@ -82,14 +82,14 @@ void ConsoleWords::TellFaults(const TickRecord& record,
 
 // A held key repeats its request; one message is shown until the key is released.
 bool ConsoleWords::Again(RunEvent event, std::uint64_t tick) {
-  std::uint64_t& told = told_[static_cast<std::size_t>(event)];
-  const bool again = told != 0 && tick - told < again_;
-  told = tick + 1;
+  std::uint64_t& reported = reported_[static_cast<std::size_t>(event)];
+  const bool again = reported != 0 && tick - reported < again_;
+  reported = tick + 1;
   return again;
 }
 
-void ConsoleWords::TellRefusal(const TickRecord& record,
-                               const std::function<std::string()>& trouble) {
+void ConsoleWords::AddRefusal(const TickRecord& record,
+                              const std::function<std::string()>& trouble) {
   const auto event = static_cast<RunEvent>(record.refused - 1);
   const auto why = static_cast<Refusal>(record.why_refused);
   if (Again(event, record.tick)) return;
@@ -107,7 +107,7 @@ void ConsoleWords::TellRefusal(const TickRecord& record,
 }
 
 // The state does not allow the request; while the arms follow a task, the request stops them.
-void ConsoleWords::TellWrongTime(const TickRecord& record) {
+void ConsoleWords::AddWrongTime(const TickRecord& record) {
   const bool begins = record.state == RunState::kStopping && state_ != RunState::kStopping;
   const bool stops = begins && FollowsTask(state_);
   // Any other stop in this tick has its own message.
@@ -146,8 +146,7 @@ std::string ConsoleWords::Possible(const TickRecord& record) const {
 }
 
 // Danger first, then the cause, the advice and the keys.
-void ConsoleWords::TellState(const TickRecord& record,
-                             const std::function<std::string()>& trouble) {
+void ConsoleWords::AddState(const TickRecord& record, const std::function<std::string()>& trouble) {
   const MessageValue state{"state", Name(record.state)};
   if (record.state == RunState::kSelfTest || record.state == RunState::kIdle ||
       record.state == RunState::kArmed)

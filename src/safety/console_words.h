@@ -34,10 +34,10 @@ class ConsoleWords {
                                const std::function<std::string()>& trouble);
 
  private:
-  void TellRefusal(const TickRecord& record, const std::function<std::string()>& trouble);
-  void TellWrongTime(const TickRecord& record);
-  void TellState(const TickRecord& record, const std::function<std::string()>& trouble);
-  void TellFaults(const TickRecord& record, const std::function<std::string()>& trouble);
+  void AddRefusal(const TickRecord& record, const std::function<std::string()>& trouble);
+  void AddWrongTime(const TickRecord& record);
+  void AddState(const TickRecord& record, const std::function<std::string()>& trouble);
+  void AddFaults(const TickRecord& record, const std::function<std::string()>& trouble);
   bool Granted(const Request& request, RunState now) const;
   bool Again(RunEvent event, std::uint64_t tick);
   std::string Possible(const TickRecord& record) const;
@@ -45,8 +45,9 @@ class ConsoleWords {
   bool enabling_device_;
   std::uint64_t again_;  // maximum time between repeated letters of a held key [ticks]
   RunState state_ = RunState::kInit;
-  std::array<bool, kHands> faults_ = {};             // faults in the previous record
-  std::array<std::uint64_t, kRunEvents> told_ = {};  // tick after the latest one with that request
+  std::array<bool, kHands> faults_ = {};  // faults in the previous record
+  std::array<std::uint64_t, kRunEvents> reported_ =
+      {};  // tick after the latest one with that request
   std::vector<std::string> lines_;
 };
 

@@ -83,11 +83,11 @@ void RequireRate(const Scenario& s) {
 
 // A large weight moves the handles away from their targets and moves elbows that no one monitors.
 void RequireLittleManipulability(const Scenario& s) {
-  constexpr double kMost = 0.01;
-  if (s.rendering.manipulability > kMost)
+  constexpr double kMaxManipulability = 0.01;
+  if (s.rendering.manipulability > kMaxManipulability)
     Refuse(s, "rendering.manipulability",
            "is " + FormatNumber(s.rendering.manipulability) + "; with real arms it must be " +
-               FormatNumber(kMost) +
+               FormatNumber(kMaxManipulability) +
                " or less, because a larger value moves the handles away from their targets.");
 }
 

@@ -16,8 +16,8 @@
 namespace predictor {
 namespace {
 
-constexpr double kMostHandleDistance = 0.3;  // maximum distance of a handle's origin from its body
-                                             // [m]
+constexpr double kMaxHandleDistance = 0.3;  // maximum distance of a handle's origin from its body
+                                            // [m]
 
 constexpr double kMaxShift = 10;  // maximum displacement of the scene [m]
 
@@ -139,10 +139,10 @@ void Checker::Handles() const {
     const std::string path = std::string("handles.") + HandName(hand);
     if (!s_.Has(hand) || !s_.object.primitive) continue;
     const double distance = DistanceFrom(*s_.object.primitive, s_.handle(hand).pose.xyz);
-    Unless(distance <= kMostHandleDistance, path + ".xyz",
+    Unless(distance <= kMaxHandleDistance, path + ".xyz",
            "is " + FormatNumber(distance) +
                " m away from the object. A handle must be on the object, at " + "most " +
-               FormatNumber(kMostHandleDistance) + " m from its surface.");
+               FormatNumber(kMaxHandleDistance) + " m from its surface.");
   }
 }
 

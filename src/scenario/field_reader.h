@@ -88,7 +88,7 @@ class FieldReader {
   // keys, not also as missing ones.
   void FindMisspelt() {
     for (const YamlNode& item : at_.node.items)
-      if (misspelt_.size() < Problems::kMost && !IsKnown(item.key))
+      if (misspelt_.size() < Problems::kMaxReported && !IsKnown(item.key))
         misspelt_.push_back(Nearest(item.key, known_));
   }
   bool IsMisspelt(const std::string& key) const {

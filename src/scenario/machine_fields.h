@@ -14,7 +14,7 @@ inline std::vector<std::string> NamesOf(ArmMake) { return {"ur", "franka"}; }
 inline std::vector<std::string> NamesOf(SensorMake) { return {"own", "net_ft", "onrobot"}; }
 
 // Largest handle speed that any machine may allow, because hands must be able to follow [m/s].
-inline constexpr double kMostHandleSpeed = 0.5;
+inline constexpr double kMaxHandleSpeed = 0.5;
 
 template <class V>
 void Fields(V& v, CollisionThresholds& s) {
@@ -76,7 +76,7 @@ template <class V>
 void Fields(V& v, MachineLimits& s) {
   v("force", s.force, Number("N", "force of a hand", Above(0, 200)));
   v("torque", s.torque, Number("N·m", "torque of a hand", Above(0, 50)));
-  v("handle_speed", s.handle_speed, Number("m/s", "speed of a handle", Above(0, kMostHandleSpeed)));
+  v("handle_speed", s.handle_speed, Number("m/s", "speed of a handle", Above(0, kMaxHandleSpeed)));
   v("handle_rotation_speed", s.handle_rotation_speed,
     Number("rad/s", "rotation speed of a handle", Above(0, 3)));
   v("stop_acceleration", s.stop_acceleration,

@@ -13,9 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kMostBytes = 64u << 20;  // maximum size of a model or mesh file
-constexpr std::size_t kMostNames = 1000;  // maximum number of names in a folder that are compared
-                                          // for a suggestion
+constexpr std::uintmax_t kMaxModelBytes = 64u << 20;  // maximum size of a model or mesh file
+constexpr std::size_t kMaxNames = 1000;  // maximum number of names in a folder that are compared
+                                         // for a suggestion
 constexpr std::size_t kLongestUri = 4096;
 
 // share/predictor beside the folder of the running program; "" if it does not exist, as in a build.
@@ -45,7 +45,7 @@ std::vector<std::string> NamesIn(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (names.size() == kMostNames) break;
+    if (names.size() == kMaxNames) break;
     names.push_back(it->path().filename().string());
   }
   std::sort(names.begin(), names.end());
@@ -77,10 +77,10 @@ void CheckFile(const std::string& uri, const fs::path& file) {
                      " is a folder or a device. Give the model file itself.");
   }
   const std::uintmax_t bytes = fs::file_size(file, error);
-  if (error || bytes > kMostBytes) {
+  if (error || bytes > kMaxModelBytes) {
     throw InputError(Quote(uri) + " is too large: " + file.string() + " has " +
-                     std::to_string(bytes) + " bytes, but at most " + std::to_string(kMostBytes) +
-                     " are allowed. Simplify the model.");
+                     std::to_string(bytes) + " bytes, but at most " +
+                     std::to_string(kMaxModelBytes) + " are allowed. Simplify the model.");
   }
 }
 

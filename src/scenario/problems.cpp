@@ -9,7 +9,7 @@ namespace predictor {
 
 void Problems::Add(const Place& place, const std::string& sentence) {
   ++count_;
-  if (found_.size() < kMost) found_.push_back({place, sentence});
+  if (found_.size() < kMaxReported) found_.push_back({place, sentence});
 }
 
 void Problems::ThrowIfAny() {

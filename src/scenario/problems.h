@@ -10,10 +10,12 @@ namespace predictor {
 
 class Problems {
  public:
-  static constexpr std::size_t kMost = 10;  // maximum number of reported problems
+  static constexpr std::size_t kMaxReported = 10;  // maximum number of reported problems
 
   void Add(const Place& place, const std::string& sentence);
-  bool IsFull() const { return found_.size() == kMost; }  // further problems are only counted
+  bool IsFull() const {
+    return found_.size() == kMaxReported;
+  }  // further problems are only counted
   bool empty() const { return found_.empty(); }
   // Throws InputError with one line per problem, in the order of the file. Returns if there are
   // none.

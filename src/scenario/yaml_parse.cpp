@@ -13,7 +13,7 @@
 namespace predictor {
 namespace {
 
-constexpr int kMostBrackets = 20000;
+constexpr int kMaxBrackets = 20000;
 constexpr const char* kNoAliases =
     "anchors (&) and aliases (*) are not allowed. Write the value out where it is used.";
 
@@ -112,8 +112,8 @@ class TreeBuilder : public YAML::EventHandler {
 
   // Pointers to open nodes stay valid, because only the innermost list or map grows.
   YamlNode* Add(const YAML::Mark& mark, YamlNode::Kind kind) {
-    if (++nodes_ > kMostYamlNodes) {
-      Refuse(mark, "the file contains more than " + std::to_string(kMostYamlNodes) +
+    if (++nodes_ > kMaxYamlNodes) {
+      Refuse(mark, "the file contains more than " + std::to_string(kMaxYamlNodes) +
                        " values. Shorten it.");
     }
     YamlNode* node = root_;
@@ -137,8 +137,8 @@ class TreeBuilder : public YAML::EventHandler {
       Refuse(mark,
              "here is a list or a group instead of a key. Close every bracket, and use a word as "
              "each key.");
-    if (open_.size() >= kMostYamlDepth) {
-      Refuse(mark, "lists and groups are nested deeper than " + std::to_string(kMostYamlDepth) +
+    if (open_.size() >= kMaxYamlDepth) {
+      Refuse(mark, "lists and groups are nested deeper than " + std::to_string(kMaxYamlDepth) +
                        " levels. Flatten them.");
     }
     open_.push_back({Add(mark, kind), {}, false, {}, {}});
@@ -154,13 +154,13 @@ class TreeBuilder : public YAML::EventHandler {
 // Refuses content that must not reach the parser. Brackets are counted everywhere, because the
 // parser reads ahead through open ones before any event and needs a quarter of a kilobyte for each.
 void CheckBytes(const std::string& text, const Source& source) {
-  if (text.size() > kMostYamlBytes) {
-    throw InputError(*source, "the file has more than " + std::to_string(kMostYamlBytes) +
+  if (text.size() > kMaxYamlBytes) {
+    throw InputError(*source, "the file has more than " + std::to_string(kMaxYamlBytes) +
                                   " bytes, which is too large for a scenario. Give another file.");
   }
   if (std::count_if(text.begin(), text.end(), [](char c) { return c == '[' || c == '{'; }) >
-      kMostBrackets) {
-    throw InputError(*source, "the file has more than " + std::to_string(kMostBrackets) +
+      kMaxBrackets) {
+    throw InputError(*source, "the file has more than " + std::to_string(kMaxBrackets) +
                                   " opening brackets. Shorten it.");
   }
   Place place{source, 1, 1};

@@ -145,7 +145,7 @@ void ApplyOverride(const std::string& assignment, YamlNode* root) {
   if (equals == std::string::npos) {
     throw InputError("--set " + Quote(assignment) + ": \"=\" is missing. Write path.to.key=value.");
   }
-  if (std::count(path.begin(), path.end(), '.') >= kMostYamlDepth) {
+  if (std::count(path.begin(), path.end(), '.') >= kMaxYamlDepth) {
     throw InputError("--set " + Quote(path) + ": the path is too long.");
   }
   YamlNode value = ParseYaml(assignment.substr(equals + 1), *source);
@@ -178,7 +178,7 @@ std::string ReadYamlText(const std::filesystem::path& file, const std::string& w
     throw InputError(file.string(), "this is not a file. Give the path of " + what + ".");
   std::ifstream stream(file, std::ios::binary);
   // One byte more than permitted shows that the text is too long.
-  std::string text(kMostYamlBytes + 1, '\0');
+  std::string text(kMaxYamlBytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!stream.eof() && !stream) throw InputError(file.string(), "the file cannot be read.");
   text.resize(static_cast<std::size_t>(stream.gcount()));

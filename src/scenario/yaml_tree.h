@@ -32,15 +32,15 @@ struct YamlNode {
   YamlNode* Find(const std::string& name);
 };
 
-inline constexpr std::size_t kMostYamlBytes = 1u << 20;
-inline constexpr int kMostYamlDepth = 32;
-inline constexpr int kMostYamlNodes = 50000;
+inline constexpr std::size_t kMaxYamlBytes = 1u << 20;
+inline constexpr int kMaxYamlDepth = 32;
+inline constexpr int kMaxYamlNodes = 50000;
 
 // The text of a file, at most one byte more than permitted. `what`: expected content, such as "a
 // scenario". Throws InputError.
 std::string ReadYamlText(const std::filesystem::path& file, const std::string& what);
 
-// Reads one document of at most kMostYamlBytes. Throws InputError for invalid UTF-8, anchors and
+// Reads one document of at most kMaxYamlBytes. Throws InputError for invalid UTF-8, anchors and
 // aliases, tags, several documents, duplicate keys, keys that are not plain words, and more depth
 // or nodes than the limits above. It does so before a larger tree exists.
 YamlNode ParseYaml(const std::string& text, const std::string& source);

@@ -20,9 +20,9 @@ namespace {
 struct Header {
   std::uint32_t vertices, faces;
 };
-constexpr std::size_t kMaxVertices = 3 * kMostCollisionTriangles;
+constexpr std::size_t kMaxVertices = 3 * kMaxCollisionTriangles;
 constexpr std::size_t kMaxBytes =
-    sizeof(Header) + 3 * (kMaxVertices * sizeof(float) + kMostCollisionTriangles * sizeof(int));
+    sizeof(Header) + 3 * (kMaxVertices * sizeof(float) + kMaxCollisionTriangles * sizeof(int));
 constexpr double kMaxReadTime = 20;  // [s]
 
 void Append(const void* data, std::size_t size, std::vector<std::byte>* to) {
@@ -47,8 +47,8 @@ std::vector<std::byte> ReadByEngine(const std::filesystem::path& file) {
   if (model == nullptr) throw std::runtime_error(FirstLine(spec.get()));
   const Header header = {static_cast<std::uint32_t>(model->nmeshvert),
                          static_cast<std::uint32_t>(model->nmeshface)};
-  if (header.vertices > kMaxVertices || header.faces > kMostCollisionTriangles)
-    throw std::runtime_error("it has more than " + std::to_string(kMostCollisionTriangles) +
+  if (header.vertices > kMaxVertices || header.faces > kMaxCollisionTriangles)
+    throw std::runtime_error("it has more than " + std::to_string(kMaxCollisionTriangles) +
                              " triangles");
   std::vector<std::byte> bytes;
   Append(&header, sizeof header, &bytes);
@@ -72,7 +72,7 @@ CollisionMesh Checked(const std::vector<std::byte>& bytes) {
   Header header;
   if (bytes.size() < sizeof header) throw wrong;
   std::memcpy(&header, bytes.data(), sizeof header);
-  if (header.vertices > kMaxVertices || header.faces > kMostCollisionTriangles) throw wrong;
+  if (header.vertices > kMaxVertices || header.faces > kMaxCollisionTriangles) throw wrong;
   CollisionMesh mesh;
   mesh.vertices.resize(3 * std::size_t{header.vertices});
   mesh.faces.resize(3 * std::size_t{header.faces});

@@ -13,7 +13,7 @@ struct CollisionMesh {
 };
 
 // Reads the file of a mesh shape (binary STL, OBJ, MSH) with the physics engine's readers. They run
-// in a sandboxed child whose answer is checked: finite numbers, at most kMostCollisionTriangles
+// in a sandboxed child whose answer is checked: finite numbers, at most kMaxCollisionTriangles
 // triangles, and valid vertex indices. Throws InputError with the place in the URDF, the file, and
 // a remedy. Not for the tick.
 CollisionMesh ReadCollisionMesh(const ModelShape& shape);

@@ -22,13 +22,13 @@ int WholeSteps(double time, double step, const char* key, const std::string& val
 
 }  // namespace
 
-ControlTiming::ControlTiming(const ControlSpec& spec, double step, double most_added)
+ControlTiming::ControlTiming(const ControlSpec& spec, double step, double max_added)
     : step_(step),
       period_(
           WholeSteps(1 / spec.rate, step, "cobot.control.rate", FormatNumber(spec.rate) + " Hz")),
       delay_(WholeSteps(spec.delay, step, "cobot.control.delay",
                         FormatNumber(1e3 * spec.delay) + " ms")),
-      past_(static_cast<std::size_t>(delay_ + std::lround(most_added / step)) + 1) {}
+      past_(static_cast<std::size_t>(delay_ + std::lround(max_added / step)) + 1) {}
 
 void ControlTiming::Reset(const JointVector& torque) noexcept {
   count_ = 0;

@@ -12,9 +12,9 @@ namespace predictor {
 // A zero-order hold with a delay, in sub-steps of the simulation.
 class ControlTiming {
  public:
-  // step: duration of a sub-step [s]. most_added: largest delay that AddDelay adds [s]. Throws
+  // step: duration of a sub-step [s]. max_added: largest delay that AddDelay adds [s]. Throws
   // InputError if period or delay is not a whole number of sub-steps.
-  ControlTiming(const ControlSpec& spec, double step, double most_added = 0);
+  ControlTiming(const ControlSpec& spec, double step, double max_added = 0);
 
   // The controller's period [sub-steps, s], and the delay of its torques [sub-steps].
   int period() const noexcept { return period_; }
@@ -27,7 +27,7 @@ class ControlTiming {
 
   // From now on, `torque` has been applied for a long time [N·m].
   void Reset(const JointVector& torque) noexcept;
-  // Delays the torques by `time` more [s], to the nearest sub-step, at most by most_added.
+  // Delays the torques by `time` more [s], to the nearest sub-step, at most by max_added.
   void AddDelay(double time) noexcept;
   // True if the controller computes in this sub-step.
   bool is_due() const noexcept { return count_ % static_cast<std::uint32_t>(period_) == 0; }

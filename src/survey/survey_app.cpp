@@ -66,8 +66,7 @@ class SurveyApp::Client final : public viewer::Session {
 
   void OnText(std::string_view text) override {
     if (ended_) return;
-    if (++messages_ > kMostMessages)
-      return Close(viewer::CloseCode::kRefused, "Too many messages.");
+    if (++messages_ > kMaxMessages) return Close(viewer::CloseCode::kRefused, "Too many messages.");
     const viewer::Json message = viewer::Json::parse(text, nullptr, false);
     const auto type = message.is_object() ? message.find("type") : message.end();
     if (type == message.end() || !type->is_string())

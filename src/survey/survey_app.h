@@ -37,7 +37,7 @@ enum class SurveyEnd { kNone, kStored, kDeclined };
 class SurveyApp : public viewer::Application {
  public:
   static constexpr std::uint64_t kHelloTime = 5'000'000'000;  // [ns]
-  static constexpr int kMostMessages = 100;                   // limit for one connection
+  static constexpr int kMaxMessages = 100;                    // limit for one connection
 
   explicit SurveyApp(SurveySetup setup);
   ~SurveyApp() override;

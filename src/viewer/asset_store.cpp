@@ -33,14 +33,14 @@ std::string TypeOf(const std::string& extension) {
   return "application/octet-stream";
 }
 
-std::string ReadFile(const std::filesystem::path& file, std::size_t most_bytes) {
+std::string ReadFile(const std::filesystem::path& file, std::size_t max_bytes) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   if (error) throw InputError(file.string(), "The file cannot be read: " + error.message() + ".");
-  if (bytes > most_bytes)
+  if (bytes > max_bytes)
     throw InputError(file.string(), "The file has " + std::to_string(bytes) +
                                         " bytes, but the viewer has space for only " +
-                                        std::to_string(most_bytes) +
+                                        std::to_string(max_bytes) +
                                         " more bytes. Simplify the mesh.");
   std::string text(bytes, '\0');
   std::ifstream stream(file, std::ios::binary);
@@ -103,9 +103,9 @@ std::string RewriteFileNames(const std::string& urdf,
 
 void AssetStore::Add(const std::string& path, Asset asset) {
   const std::size_t bytes = asset.bytes.size();
-  if (bytes > most_bytes_ - bytes_)
+  if (bytes > max_bytes_ - bytes_)
     throw InputError("The models of the scene are too large for the viewer: together more than " +
-                     std::to_string(most_bytes_ >> 20) +
+                     std::to_string(max_bytes_ >> 20) +
                      " MB. Simplify their meshes, or run without the viewer.");
   if (assets_.emplace(path, std::move(asset)).second) bytes_ += bytes;
 }
@@ -124,7 +124,7 @@ std::string AssetStore::AddModel(const UrdfModel& urdf) {
     if (found != names.end()) return found->second;
     const std::string extension = Extension(file);
     const std::string name = std::to_string(names.size()) + "." + extension;
-    Add(folder + name, {ReadFile(file, most_bytes_ - bytes_), TypeOf(extension), true});
+    Add(folder + name, {ReadFile(file, max_bytes_ - bytes_), TypeOf(extension), true});
     return names[file] = name;
   };
   std::string text = RewriteFileNames(urdf.text, rename);

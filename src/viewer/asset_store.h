@@ -18,9 +18,9 @@ struct Asset {
 
 class AssetStore {
  public:
-  static constexpr std::size_t kMostBytes = 256u << 20;  // total of all assets
+  static constexpr std::size_t kMaxBytes = 256u << 20;  // total of all assets
 
-  explicit AssetStore(std::size_t most_bytes = kMostBytes) : most_bytes_(most_bytes) {}
+  explicit AssetStore(std::size_t max_bytes = kMaxBytes) : max_bytes_(max_bytes) {}
 
   // Adds the page's three files as "/", "/app.js" and "/app.css"; they need no token.
   void AddPage();
@@ -39,7 +39,7 @@ class AssetStore {
   std::size_t bytes() const { return bytes_; }
 
  private:
-  std::size_t most_bytes_;
+  std::size_t max_bytes_;
   std::size_t bytes_ = 0;
   std::map<std::string, Asset, std::less<>> assets_;
   std::map<std::string, std::string> models_;  // URDF text -> path

@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 
 constexpr long kLife = 2 * 365 * 24 * 3600L;  // [s]
 constexpr long kSoon = 30 * 24 * 3600L;       // a certificate with less time left is replaced [s]
-constexpr std::uintmax_t kMostBytes = 1u << 20;
+constexpr std::uintmax_t kMaxCertificateBytes = 1u << 20;
 
 template <auto Free>
 struct Freer {
@@ -52,7 +52,7 @@ using NamesPtr = std::unique_ptr<GENERAL_NAMES, Freer<GENERAL_NAMES_free>>;
 
 std::string ReadText(const fs::path& file) {
   std::error_code error;
-  if (fs::file_size(file, error) > kMostBytes || error)
+  if (fs::file_size(file, error) > kMaxCertificateBytes || error)
     throw InputError(file.string(),
                      "This file does not contain a certificate or key in PEM format.");
   std::ifstream stream(file, std::ios::binary);

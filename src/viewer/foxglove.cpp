@@ -117,7 +117,7 @@ class Foxglove::Client : public Session {
       const auto channel = entry.is_object() ? Id(entry.value("channelId", Json())) : std::nullopt;
       if (!id || !channel || *channel == 0 || *channel > foxglove_->channels_.size())
         Warn("This channel does not exist.");
-      else if (subscriptions_.size() >= kMostSubscriptions)
+      else if (subscriptions_.size() >= kMaxSubscriptions)
         Warn("Too many subscriptions.");
       else if (!subscriptions_.emplace(*id, *channel).second)
         Warn("This subscription ID is already in use.");

@@ -17,8 +17,8 @@ namespace predictor::viewer {
 
 class Foxglove {
  public:
-  static constexpr std::size_t kMostClients = 16;
-  static constexpr std::size_t kMostSubscriptions = 64;  // maximum number per client
+  static constexpr std::size_t kMaxClients = 16;
+  static constexpr std::size_t kMaxSubscriptions = 64;  // maximum number per client
   static constexpr std::size_t kLongestMessage = 16 * 1024;
   // Minimum time between messages of a channel [ns]
   static constexpr std::uint64_t kPeriod = 20'000'000;

@@ -34,7 +34,7 @@ class Hub::Client : public Session {
     hub_->leases_.Leave(id_, token_);
     for (Headset& headset : hub_->headsets_)
       if (headset.client == id_ && headset.gone_ns == 0) headset.gone_ns = hub_->clock_();
-    hub_->TellLeases();
+    hub_->SendLeases();
   }
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
@@ -153,7 +153,7 @@ void Hub::Client::OnText(std::string_view text) {
 
 void Hub::Client::Admit(const HelloRequest& hello) {
   // This is not a refusal: the client's token stays valid.
-  if (hub_->clients() >= kMostClients)
+  if (hub_->clients() >= kMaxClients)
     return End(CloseCode::kTryLater, "64 clients are connected already.");
   Admission& admission = *hub_->admission_;
   std::optional<Admission::Grant> grant;
@@ -182,7 +182,7 @@ void Hub::Client::Admit(const HelloRequest& hello) {
       hub_->leases_.Leave(other->id(), token_);
   hub_->leases_.Return(id_, token_, hub_->clock_());
   connection_->SendText(Welcome());
-  hub_->TellLeases();
+  hub_->SendLeases();
   if (hub_->frame_) connection_->SendNewest(kStates, MessageKind::kBinary, hub_->frame_);
   if (hub_->person_) connection_->SendNewest(kPerson, MessageKind::kText, hub_->person_);
   if (hub_->ended()) SayGoodbye();
@@ -216,7 +216,7 @@ bool Hub::Client::Commands(const char* what) {
 void Hub::Client::On(const LeaseRequest& request) {
   Leases& leases = hub_->leases_;
   if (!request.take) {
-    if (leases.Release(request.what, id_)) hub_->TellLeases();
+    if (leases.Release(request.what, id_)) hub_->SendLeases();
     return;
   }
   if (!Leases::MayHold(role_, request.what))
@@ -224,7 +224,7 @@ void Hub::Client::On(const LeaseRequest& request) {
   const std::uint32_t before = leases.Holder(request.what);
   if (!leases.Take(request.what, id_, hub_->clock_()))
     return Deny("lease", "Client " + std::to_string(before) + " holds this lease.");
-  if (before != id_) hub_->TellLeases();
+  if (before != id_) hub_->SendLeases();
 }
 
 void Hub::Client::On(const CommandRequest& request) {
@@ -359,7 +359,7 @@ void Hub::Tick() {
   const std::uint64_t now = clock_();
   for (Client* client : sessions_) client->ExpireHello(now);
   ExpireLeases();
-  TellHeadsets();
+  PublishHeadsets();
 }
 
 // Why no seat is available, or null. Neither a single client nor all clients that only look can
@@ -367,16 +367,16 @@ void Hub::Tick() {
 const char* Hub::NoSeatFor(const Admission::Grant& grant) const {
   const auto same = [&](const Client* c) { return c->admitted() && c->token() == grant.token; };
   if (static_cast<std::size_t>(std::count_if(sessions_.begin(), sessions_.end(), same)) >=
-      kMostOfOneToken)
+      kMaxClientsPerToken)
     return "Eight pages are already connected with this token.";
-  if (grant.role == Role::kLook && clients() >= kMostClients - kKeptSeats)
+  if (grant.role == Role::kLook && clients() >= kMaxClients - kKeptSeats)
     return "The remaining connections are reserved for clients that can do more than look.";
   return nullptr;
 }
 
 void Hub::Revoke(LeaseKind kind) {
   leases_.Revoke(kind);
-  TellLeases();
+  SendLeases();
 }
 
 void Hub::ThrowOut(Client* client) {
@@ -394,7 +394,7 @@ bool Hub::Kick(std::uint32_t client, const Generations& generations) {
     for (Client* each : sessions_)
       if (each->admitted() && each->token() == token) ThrowOut(each);
   }
-  TellLeases();
+  SendLeases();
   admission_->Renew(generations);
   for (Client* each : sessions_)
     if (each->admitted()) each->RenewToken();
@@ -405,10 +405,10 @@ void Hub::KickAll(const Generations& generations) {
   admission_->Renew(generations);
   for (Client* each : sessions_)
     if (each->admitted()) ThrowOut(each);
-  TellLeases();
+  SendLeases();
 }
 
-void Hub::Notify(const std::string& text) { Tell(NoticeText(text)); }
+void Hub::Notify(const std::string& text) { SendToAll(NoticeText(text)); }
 
 void Hub::EndRun(const std::string& text, bool results_follow) {
   how_ended_ = text;
@@ -417,20 +417,20 @@ void Hub::EndRun(const std::string& text, bool results_follow) {
     if (client->admitted()) client->SayGoodbye();
 }
 
-void Hub::Tell(const std::string& text) {
+void Hub::SendToAll(const std::string& text) {
   for (Client* client : sessions_)
     if (client->admitted()) client->connection()->SendText(text);
 }
 
-void Hub::TellLeases() {
+void Hub::SendLeases() {
   mailbox_->clients.store(static_cast<std::uint32_t>(clients()), std::memory_order_relaxed);
-  Tell(LeasesText(leases_, clients()));
+  SendToAll(LeasesText(leases_, clients()));
 }
 
 // Called before any query of the leases. A client that lost a lease through silence is notified,
 // and so are the clients that may now take it.
 void Hub::ExpireLeases() {
-  if (leases_.Expire(clock_())) TellLeases();
+  if (leases_.Expire(clock_())) SendLeases();
 }
 
 // Lets an experimenter's page show the view of the headset's wearer.
@@ -458,12 +458,12 @@ void Hub::See(std::uint32_t client, const ImmersiveRequest& request) {
     else if (found->gone_ns == 0)
       found->gone_ns = now;
   }
-  TellHeadsets();
+  PublishHeadsets();
 }
 
 // The run stops real arms when a headset falls silent. The headset with the oldest picture
 // therefore counts, and a headset whose page has disconnected is kept for a while.
-void Hub::TellHeadsets() {
+void Hub::PublishHeadsets() {
   const std::uint64_t now = clock_();
   std::erase_if(headsets_, [now](const Headset& h) {
     return h.gone_ns != 0 && now - h.gone_ns > kImmersiveLinger;

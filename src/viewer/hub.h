@@ -41,8 +41,8 @@ struct ClientStatus {
 
 class Hub {
  public:
-  static constexpr std::size_t kMostClients = 64;
-  static constexpr std::size_t kMostOfOneToken = 8;
+  static constexpr std::size_t kMaxClients = 64;
+  static constexpr std::size_t kMaxClientsPerToken = 8;
   static constexpr std::size_t kKeptSeats = 8;  // reserved for roles that may do more than look
   static constexpr std::uint64_t kSilent = 1'500'000'000;     // heartbeats come every second [ns]
   static constexpr std::uint64_t kHelloTime = 5'000'000'000;  // [ns]
@@ -87,14 +87,14 @@ class Hub {
   };
 
   const char* NoSeatFor(const Admission::Grant& grant) const;
-  void Tell(const std::string& text);
+  void SendToAll(const std::string& text);
   bool ended() const { return !how_ended_.empty(); }
-  void TellLeases();
+  void SendLeases();
   void ExpireLeases();
   void ThrowOut(Client* client);
   void See(std::uint32_t client, const ImmersiveRequest& request);
   void ShowHead(std::uint32_t client, const ImmersiveRequest& request);
-  void TellHeadsets();
+  void PublishHeadsets();
 
   HubSetup setup_;
   Admission* admission_;

@@ -61,7 +61,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
   void SendText(std::string text) override {
     if (!Talks()) return;
     waiting_text_ += text.size();
-    if (waiting_text_ > server_->options.most_waiting_text) return Drop();
+    if (waiting_text_ > server_->options.max_waiting_text) return Drop();
     texts_.push_back(std::move(text));
     Pump();
   }

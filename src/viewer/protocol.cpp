@@ -13,10 +13,10 @@ constexpr std::size_t kLongestSecret = 80;
 constexpr double kFarthest = 100;  // maximum distance of a hand from the origin [m]
 // Tolerance of its norm, because pages use single precision.
 constexpr double kQuaternionSlip = 1e-2;
-constexpr double kLargestTime = 1e15;   // [ms]
-constexpr double kMostSteps = 1e6;      // maximum number of steps in one request to a replay
-constexpr double kMostSpeed = 64;       // maximum speed of a replay
-constexpr double kLargestClock = 9e18;  // [ns]
+constexpr double kLargestTime = 1e15;    // [ms]
+constexpr double kMaxReplaySteps = 1e6;  // maximum number of steps in one request to a replay
+constexpr double kMaxReplaySpeed = 64;   // maximum speed of a replay
+constexpr double kLargestClock = 9e18;   // [ns]
 
 // Reads the members of a message; `good` becomes false once one is missing or invalid.
 class Reader {
@@ -141,8 +141,8 @@ void ReadPose(Reader* r, Request* request) {
 ReplayRequest ReadReplay(Reader* r) {
   r->Require(r->Has("play") + r->Has("seek") + r->Has("step") == 1);
   if (r->Has("seek")) return {InputKind::kSeek, r->Number("seek", kLargestTime)};
-  if (r->Has("step")) return {InputKind::kStep, r->Number("step", kMostSteps)};
-  const double speed = r->Number("play", kMostSpeed);
+  if (r->Has("step")) return {InputKind::kStep, r->Number("step", kMaxReplaySteps)};
+  const double speed = r->Number("play", kMaxReplaySpeed);
   r->Require(speed >= 0);
   return {InputKind::kPlay, speed};
 }

@@ -22,14 +22,14 @@ struct ServerOptions {
   std::chrono::milliseconds idle_time{20000};    // time limit without any data on a WebSocket
   std::size_t longest_head = 8192;               // [bytes]
   // Maximum number of connections before admission; one more drops the oldest.
-  std::size_t most_guests = 256;
-  std::size_t most_guests_per_address = 128;  // the same limit for each address
+  std::size_t max_guests = 256;
+  std::size_t max_guests_per_address = 128;  // the same limit for each address
   // Maximum number of TLS handshakes that begin per second; further ones wait within head_time.
   // Handshakes cost the single thread most, and a stop has to wait for them.
   double handshake_rate = 100;
   double handshake_rate_per_address = 40;
-  std::size_t most_waiting_text = 256 * 1024;  // limit for one client [bytes]
-  double tick_rate = 60;                       // rate of Application::Tick [Hz]
+  std::size_t max_waiting_text = 256 * 1024;  // limit for one client [bytes]
+  double tick_rate = 60;                      // rate of Application::Tick [Hz]
 };
 
 class Server {

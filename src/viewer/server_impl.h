@@ -26,7 +26,7 @@ namespace predictor::viewer {
 
 using Clock = std::chrono::steady_clock;
 
-inline constexpr std::size_t kMostAddresses = 1024;  // maximum number that is remembered
+inline constexpr std::size_t kMaxAddresses = 1024;  // maximum number that is remembered
 
 // A connection of either kind, as the server uses it.
 class Member {
@@ -57,16 +57,16 @@ struct Server::Impl {
       return guest->address() == member->address();
     };
     if (static_cast<std::size_t>(std::count_if(guests.begin(), guests.end(), same)) >
-        options.most_guests_per_address)
+        options.max_guests_per_address)
       (*std::find_if(guests.begin(), guests.end(), same))->Drop();
-    if (guests.size() > options.most_guests) guests.front()->Drop();
+    if (guests.size() > options.max_guests) guests.front()->Drop();
   }
   void Forget(Member* member) { guests.remove(member); }
 
   // Whether a connection from this address may begin its handshake now.
   bool MayShakeHands(const asio::ip::address& from) {
     const auto now = static_cast<std::uint64_t>(Clock::now().time_since_epoch().count());
-    if (handshakes_from.size() > kMostAddresses) handshakes_from.clear();
+    if (handshakes_from.size() > kMaxAddresses) handshakes_from.clear();
     RateLimit& theirs =
         handshakes_from.try_emplace(from, options.handshake_rate_per_address).first->second;
     return theirs.Take(now) && handshakes.Take(now);

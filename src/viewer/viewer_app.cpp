@@ -15,7 +15,7 @@
 namespace predictor::viewer {
 namespace {
 
-constexpr std::uint64_t kMostRecords = kRecordRing / 2;  // most between two shown states
+constexpr std::uint64_t kMaxRecords = kRecordRing / 2;  // most between two shown states
 constexpr const char* kReportPath = "/report.html";
 
 HubSetup HubSetupOf(const Scenario& scenario, Json scene) {
@@ -173,7 +173,7 @@ UpgradeReply ViewerApp::UpgradeFoxglove(const HttpRequest& request, std::string_
     return Refuse({401, "", "A read-only token is needed: ?token=...\n"});
   const std::string subprotocol = Foxglove::Choose(request.subprotocols);
   if (subprotocol.empty()) return Refuse({400, "", "The subprotocol must be foxglove.sdk.v1.\n"});
-  if (foxglove_->clients() >= Foxglove::kMostClients)
+  if (foxglove_->clients() >= Foxglove::kMaxClients)
     return Refuse({503, "", "Too many clients are connected already.\n"});
   return {{}, subprotocol, Foxglove::kLongestMessage, [this](Connection* connection) {
             return foxglove_->Open(connection);
@@ -189,10 +189,10 @@ void ViewerApp::EndRun(const std::string& text, bool results_follow) {
 
 void ViewerApp::Tick() {
   hub_->Tick();
-  if (const std::string address = admission_.TakeLockedOut(); !address.empty() && setup_.tell)
-    setup_.tell("The address " + address +
-                " entered five wrong pins and can no longer use the existing pins. Other clients "
-                "still can; `pin` creates a new pin for everyone.");
+  if (const std::string address = admission_.TakeLockedOut(); !address.empty() && setup_.notify)
+    setup_.notify("The address " + address +
+                  " entered five wrong pins and can no longer use the existing pins. Other clients "
+                  "still can; `pin` creates a new pin for everyone.");
   ShowPerson();
   const std::uint64_t written = board_->records.written();
   TickRecord record;
@@ -200,8 +200,8 @@ void ViewerApp::Tick() {
   // tick then tries again.
   if (written == shown_ || !board_->records.Get(written - 1, &record)) return;
   const Peaks peaks = SeeRecords(std::exchange(shown_, written), written);
-  TellOfReset(record);
-  TellOfWarnings(record);
+  ReportReset(record);
+  ReportWarnings(record);
   hub_->Publish(
       std::make_shared<const std::string>(PackFrame(
           record, peaks, clock_(), board_->recording.load(std::memory_order_relaxed) != 0)),
@@ -224,22 +224,22 @@ void ViewerApp::ShowPerson() {
 Peaks ViewerApp::SeeRecords(std::uint64_t first, std::uint64_t end) {
   Peaks peaks;
   TickRecord record;
-  if (end - first > kMostRecords) first = end - kMostRecords;
+  if (end - first > kMaxRecords) first = end - kMaxRecords;
   for (; first != end; ++first) {
     if (!board_->records.Get(first, &record)) continue;
     peaks.See(record);
-    TellOfRefusal(record);
+    ReportRefusal(record);
   }
   return peaks;
 }
 
 // If pages may not start a run, only the console reports why a request was refused.
-void ViewerApp::TellOfRefusal(const TickRecord& record) {
+void ViewerApp::ReportRefusal(const TickRecord& record) {
   if (!RulesFor(scenario_).remote_start) return;
   if (const std::string why = refusals_.See(record); !why.empty()) hub_->Notify(why);
 }
 
-void ViewerApp::TellOfReset(const TickRecord& record) {
+void ViewerApp::ReportReset(const TickRecord& record) {
   const RunState before = std::exchange(state_, record.state);
   const bool at_rest = before == RunState::kHeld || before == RunState::kUnpowered;
   if (!at_rest || before == record.state) return;
@@ -247,19 +247,19 @@ void ViewerApp::TellOfReset(const TickRecord& record) {
 }
 
 // Sends a warning when it begins and repeats it while it lasts, for clients that connect later.
-void ViewerApp::TellOfWarnings(const TickRecord& record) {
+void ViewerApp::ReportWarnings(const TickRecord& record) {
   constexpr double kAgain = 10;  // [s]
   const bool again = record.tick > warned_ + static_cast<std::uint64_t>(kAgain * scenario_.rate);
   if (again) warnings_ = {};
-  std::vector<std::string> told;
+  std::vector<std::string> messages;
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     for (std::string& words : NewWarnings(warnings_[hand], record.hands[hand], hand))
-      told.push_back(std::move(words));
+      messages.push_back(std::move(words));
     warnings_[hand] = record.hands[hand].warnings;
   }
-  if (told.empty()) return;
+  if (messages.empty()) return;
   warned_ = record.tick;
-  hub_->Notify(Join(told, " "));
+  hub_->Notify(Join(messages, " "));
 }
 
 std::uint64_t MonotonicNow() {

@@ -33,8 +33,8 @@ struct AppSetup {
   std::string notice;
   Json results;        // results of a finished run (ViewerOptions::results); null during a run
   std::string report;  // report of that run, an HTML page; empty: no report
-  std::function<void(const std::string&)> tell;  // shows messages at the console; may be empty
-  std::vector<std::string> origins;              // additional origins, for Foxglove only
+  std::function<void(const std::string&)> notify;  // shows messages at the console; may be empty
+  std::vector<std::string> origins;                // additional origins, for Foxglove only
   const EvaluationBoard* states =
       nullptr;                 // states of the person; borrowed; null: the person is not judged
   std::string why_not_judged;  // shown if there are no states; a sentence
@@ -73,9 +73,9 @@ class ViewerApp : public Application {
   UpgradeReply UpgradeFoxglove(const HttpRequest& request, std::string_view query);
   void ShowPerson();
   Peaks SeeRecords(std::uint64_t first, std::uint64_t end);
-  void TellOfRefusal(const TickRecord& record);
-  void TellOfReset(const TickRecord& record);
-  void TellOfWarnings(const TickRecord& record);
+  void ReportRefusal(const TickRecord& record);
+  void ReportReset(const TickRecord& record);
+  void ReportWarnings(const TickRecord& record);
 
   AppSetup setup_;
   Scenario scenario_;

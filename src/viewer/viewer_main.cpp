@@ -210,7 +210,7 @@ void Serve(const Json& start) {
   setup.results = start["results"];
   setup.report = ReadReport(start["report"]);
   setup.origins = start["foxglove_origins"].get<std::vector<std::string>>();
-  setup.tell = [](const std::string& text) {
+  setup.notify = [](const std::string& text) {
     SendLine(kControlDescriptor, {{"say", text}}, false);
   };
   ViewerApp app(setup, run.scenario, run.object_start, &*run.board, &*mailbox, MonotonicNow);

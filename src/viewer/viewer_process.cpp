@@ -114,7 +114,7 @@ void ViewerProcess::HearReady(const Json& line) {
     process_.Remember("last_client", kClientsOfOneStart * starts_);
   }
   if (unanswered)
-    tell_(
+    notify_(
         "The viewer restarted before it had answered the last request. A client that was to be "
         "removed is disconnected, and no client holds a lease.");
   // The generation changed while the process was starting.
@@ -136,7 +136,7 @@ void ViewerProcess::Hear(const Json& line) {
     where = "Viewer: " + url_;
     if (!fingerprint_.empty()) where += "\n        certificate (SHA-256): " + fingerprint_;
   }
-  tell_(where);
+  notify_(where);
 }
 
 // Sends a request that must not be lost. if_absent: message about the situation if no process is
@@ -151,7 +151,7 @@ void ViewerProcess::Ask(const Json& line, const std::string& if_absent) {
   }
   if (!hangs && process_.Ask(line)) return;
   if (hangs || process_.pid() != 0) {
-    tell_("The viewer does not respond and is being restarted. " + if_absent);
+    notify_("The viewer does not respond and is being restarted. " + if_absent);
     process_.Kill();
     return;
   }
@@ -159,7 +159,7 @@ void ViewerProcess::Ask(const Json& line, const std::string& if_absent) {
     const std::lock_guard lock(mutex_);
     waits_since_.reset();
   }
-  tell_("The viewer is restarting. " + if_absent);
+  notify_("The viewer is restarting. " + if_absent);
 }
 
 void ViewerProcess::Renew(std::uint32_t Generations::*which, Json line, const std::string& who) {
@@ -174,12 +174,12 @@ void ViewerProcess::Renew(std::uint32_t Generations::*which, Json line, const st
 
 ViewerProcess::ViewerProcess(const Scenario& scenario, const ViewerOptions& options,
                              const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox,
-                             Tell tell, const Shared<EvaluationBoard>* states)
-    : tell_(std::move(tell)),
+                             Notify notify, const Shared<EvaluationBoard>* states)
+    : notify_(std::move(notify)),
       generations_(options.generations),
       process_(WithStates({"The viewer", kViewerSubcommand,
                            ToJson(scenario, options, states != nullptr), board.descriptor(),
-                           mailbox.descriptor(), tell_, [this](const Json& line) { Hear(line); }},
+                           mailbox.descriptor(), notify_, [this](const Json& line) { Hear(line); }},
                           states)) {
   process_.Remember("last_client", kClientsOfOneStart);
 }

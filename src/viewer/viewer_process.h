@@ -1,4 +1,4 @@
-// The viewer as a separate process beside the run: neither its actions nor its death can cause
+// The viewer as a separate process alongside the run: neither its actions nor its death can cause
 // motion.
 #pragma once
 
@@ -58,14 +58,14 @@ int ViewerMain();
 class ViewerProcess {
  public:
   // Shows a message of one or several lines to the user; called in the viewer's own thread.
-  using Tell = std::function<void(const std::string& text)>;
+  using Notify = std::function<void(const std::string& text)>;
 
   // Starts the process and waits until it accepts clients. Throws InputError, for instance if the
   // port is in use, the certificate cannot be read, or the address needs `expose`. The descriptors
   // of `board`, `mailbox` and `states` are borrowed. states: of the person; null: the person is not
   // judged.
   ViewerProcess(const Scenario& scenario, const ViewerOptions& options,
-                const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Tell tell,
+                const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Notify notify,
                 const Shared<EvaluationBoard>* states = nullptr);
 
   // The page's address with the access code; with real arms, it changes when the viewer restarts.
@@ -101,7 +101,7 @@ class ViewerProcess {
   void Ask(const Json& line, const std::string& if_absent);
   void Renew(std::uint32_t Generations::*which, Json line, const std::string& who);
 
-  Tell tell_;
+  Notify notify_;
   mutable std::mutex mutex_;  // protects the members below
   std::string url_, fingerprint_;
   Generations generations_;

@@ -206,17 +206,17 @@ std::string DescriptionOf(const Machine& machine, const Hands& hands) {
 }  // namespace
 
 WatchdogProcess::WatchdogProcess(const Machine& machine, const Hands& hands,
-                                 const Shared<RunBoard>& board, const Tell& tell)
+                                 const Shared<RunBoard>& board, const Notify& notify)
     : description_(DescriptionOf(machine, hands)),
       process_({"The watchdog",
                 kWatchdogSubcommand,
                 {{"hosts", Hosts(machine, hands)}, {kOutlivesTheRun, true}},
                 board.descriptor(),
                 mailbox_.descriptor(),
-                tell,
-                [tell, first = true](const Json& line) mutable {
+                notify,
+                [notify, first = true](const Json& line) mutable {
                   if (line.contains("ready") && !std::exchange(first, false))
-                    tell("The watchdog is running again.");
+                    notify("The watchdog is running again.");
                 },
                 std::chrono::milliseconds(250),
                 &mailbox_->beats,

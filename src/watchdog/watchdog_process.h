@@ -1,5 +1,5 @@
-// The watchdog as a separate process beside the run, with its own channel to each arm that accepts
-// one.
+// The watchdog as a separate process alongside the run, with its own channel to each arm that
+// accepts one.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ int WatchdogMain();
 
 class WatchdogProcess {
  public:
-  using Tell = std::function<void(const std::string& text)>;
+  using Notify = std::function<void(const std::string& text)>;
 
   // Starts the watchdog and waits until it has its channels. If it dies, hangs or is stopped, a
   // message reports this, and it is restarted until that succeeds. hands: whose arms move. The
@@ -28,7 +28,7 @@ class WatchdogProcess {
   // cease, or this process ends, in a state in which arms may move. Throws InputError with the
   // watchdog's error message, or std::runtime_error if no process can be started.
   WatchdogProcess(const Machine& machine, const std::array<bool, kHands>& hands,
-                  const Shared<RunBoard>& board, const Tell& tell);
+                  const Shared<RunBoard>& board, const Notify& notify);
   int pid() const { return process_.pid(); }  // 0 while no process is running
   // Heartbeat counter. If it stops, motion must end, because a hanging loop would not be detected.
   const std::atomic<std::uint32_t>& beats() const { return (*mailbox_).beats; }

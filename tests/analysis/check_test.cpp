@@ -168,7 +168,7 @@ TEST(Check, DirectModeHasNoDeviceToJudge) {
   EXPECT_NE(CheckText(report).find("do not apply"), std::string::npos);
 }
 
-TEST(Check, TellsHowLongAStopTakesWithTheArmsLagInIt) {
+TEST(Check, ReportsTheDurationOfAStopIncludingTheArmsLag) {
   const Scenario s = Load("box_9kg.yaml");
   const CheckReport report = Check(s, NoSearch());
   const StopBudget budget = WorstStop(s.safety.handle_speed, 5, 250);
@@ -177,9 +177,9 @@ TEST(Check, TellsHowLongAStopTakesWithTheArmsLagInIt) {
   EXPECT_GT(report.stop->way, budget.way);
   EXPECT_GT(report.longest_stop->time, report.stop->time);
   for (const StopBudget& stop : {*report.stop, *report.longest_stop}) {
-    const std::string told =
+    const std::string reported =
         Formatted("within %4.0f ms, after at most %.1f mm", 1e3 * stop.time, 1e3 * stop.way);
-    EXPECT_NE(CheckText(report).find(told), std::string::npos) << CheckText(report);
+    EXPECT_NE(CheckText(report).find(reported), std::string::npos) << CheckText(report);
   }
   // A joint with a low limit on its deceleration lengthens the stop further.
   const CheckReport gentle =
@@ -208,7 +208,7 @@ std::string MachineText() {
   return text;
 }
 
-TEST(Check, OnAMachineTellsWhatWasNotCommissioned) {
+TEST(Check, OnAMachineReportsWhatWasNotCommissioned) {
   Machine machine = ParseMachine(MachineText(), "lab.yaml");
   const auto check = [&] {
     Scenario s = Load("dual_ur5.yaml", {"device.type=real", "operator.type=person"});

@@ -157,7 +157,7 @@ TEST(Continuation, CountsRunsThatEndedByAFaultAsBounds) {
   EXPECT_EQ(c.CountOf(Ending::kFault), 9);
 }
 
-TEST(Continuation, WritesWhatItsSchemaRequires) {
+TEST(Continuation, ConformsToItsSchema) {
   const StoppedPerson person = Pusher();
   const auto stop = RunToStop(person);
   ASSERT_TRUE(stop);
@@ -241,7 +241,7 @@ TEST(ArmDistribution, PriorIsAroundTheHand) {
   EXPECT_NEAR(std::log(Quantile(stiffness, 0.95) / hand.stiffness[0]), 1.645 * 0.4031, 0.05);
 }
 
-TEST(ArmDistribution, RefusesFilesThatAreNone) {
+TEST(ArmDistribution, RefusesInvalidFiles) {
   const test::TemporaryFolder folder;
   const std::string file = folder.path() / "arm.json";
   const auto refuses = [&](const std::string& text, const std::string& why) {

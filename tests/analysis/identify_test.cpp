@@ -37,16 +37,16 @@ class IdentifyTest : public testing::Test {
 
   // Passes each tick of the real cobot's excitation to `look`, with noise added to the torque.
   void Excite(const RealCobot& real, const std::function<void(const TickRecord&)>& look) {
-    Emulator emulator(MakeReal(believed_, real, folder_));
+    Emulator emulator(MakeReal(nominal_, real, folder_));
     TorqueNoise noise(real);
-    const RunEnd end = Simulate(&emulator, believed_.duration, [&](TickRecord record) {
+    const RunEnd end = Simulate(&emulator, nominal_.duration, [&](TickRecord record) {
       noise.Add(&record);
       look(record);
     });
     ASSERT_EQ(end, RunEnd::kFinished);
   }
 
-  const Scenario believed_ = Load("excite_cobot.yaml");
+  const Scenario nominal_ = Load("excite_cobot.yaml");
   const fs::path folder_;
 };
 
@@ -72,8 +72,8 @@ struct Tally {
   // At least 90 % of the intervals must contain the true value, and no estimate may be far off. If
   // the noise widens the intervals to about 5 %, one estimate in twenty may count as `off`, because
   // the intervals are 95 % intervals.
-  void Expect(double most_off = 0) const {
-    EXPECT_LE(off, most_off) << "of " << intervals << " intervals";
+  void Expect(double max_off = 0) const {
+    EXPECT_LE(off, max_off) << "of " << intervals << " intervals";
     EXPECT_LT(worst, 3) << "half-widths";
     EXPECT_GE(held, intervals > 300 ? 0.9 * intervals : 0.8 * intervals)
         << "of " << intervals << " intervals";
@@ -86,7 +86,7 @@ TEST_F(IdentifyTest, FrictionAndItsIntervalsSoak) {
   const long seeds = Count(3, 50);
   for (long seed = 1; seed <= seeds; ++seed) {
     const RealCobot real = DrawRealCobot(kJoints, static_cast<std::uint64_t>(seed));
-    Identifier identifier(believed_);
+    Identifier identifier(nominal_);
     Excite(real, [&](const TickRecord& record) { identifier.Add(record); });
     const Identification found = identifier.Finish();
     ASSERT_TRUE(found.complete()) << IdentificationText(found);
@@ -115,7 +115,7 @@ TEST_F(IdentifyTest, IntervalsCountWhatNeighbouringResidualsHaveInCommonSoak) {
     RandomStream random(real.seed, "drift");
     const double pole = std::exp(-0.001 / 0.5);
     std::array<double, kJoints> drift = {};
-    Identifier with(believed_), without(believed_);
+    Identifier with(nominal_), without(nominal_);
     Excite(real, [&](TickRecord record) {
       without.Add(record);
       for (std::size_t j = 0; j < kJoints; ++j) {
@@ -137,7 +137,7 @@ TEST_F(IdentifyTest, IntervalsCountWhatNeighbouringResidualsHaveInCommonSoak) {
 TEST_F(IdentifyTest, AJointThatDoesNotTurnIsRefusedTheOthersAreNot) {
   RealCobot real = DrawRealCobot(kJoints, 4);
   real.coulomb[6] = 200;  // the joint sticks
-  Identifier identifier(believed_);
+  Identifier identifier(nominal_);
   Excite(real, [&](const TickRecord& record) { identifier.Add(record); });
   const Identification found = identifier.Finish();
   EXPECT_FALSE(found.complete());
@@ -149,7 +149,7 @@ TEST_F(IdentifyTest, AJointThatDoesNotTurnIsRefusedTheOthersAreNot) {
   EXPECT_EQ(tally.intervals, 2 * (kJoints - 1)) << IdentificationText(found);
   tally.Expect();
 
-  const Scenario written = WithFriction(believed_, found);
+  const Scenario written = WithFriction(nominal_, found);
   EXPECT_EQ(written.cobot.joint_friction.viscous[6], 1.0);  // unchanged
   EXPECT_EQ(written.cobot.joint_friction.coulomb[6], 0.0);
   EXPECT_EQ(written.cobot.joint_friction.viscous[0], found.joints[0].viscous.value);
@@ -158,7 +158,7 @@ TEST_F(IdentifyTest, AJointThatDoesNotTurnIsRefusedTheOthersAreNot) {
 }
 
 TEST_F(IdentifyTest, FindsTheLoadAndPassesOverGaps) {
-  Scenario other = believed_;  // assumes a different load
+  Scenario other = nominal_;  // assumes a different load
   other.object.model.clear();
   other.object.primitive = PrimitiveSpec{};
   other.object.primitive->size = {0.1, 0.6, 0.1};
@@ -182,7 +182,7 @@ TEST_F(IdentifyTest, FindsTheLoadAndPassesOverGaps) {
 // A damaged or hostile recording contains NaN, huge values, ticks in the wrong order, and a last
 // tick in the far future. The identifier must not allocate memory up to that tick.
 TEST_F(IdentifyTest, LeavesOutWhatCannotBe) {
-  Identifier identifier(believed_);
+  Identifier identifier(nominal_);
   const RealCobot real = DrawRealCobot(kJoints, 5);
   std::uint64_t spoilt = 0;
   Excite(real, [&](TickRecord record) {
@@ -215,7 +215,7 @@ TEST_F(IdentifyTest, LinksFarFromTheirModelAreNoticed) {
   RealCobot real = DrawRealCobot(kJoints, 6);
   real.mass_error = 0.3;
   real.com_error = 0.03;
-  Identifier identifier(believed_);
+  Identifier identifier(nominal_);
   Excite(real, [&](const TickRecord& record) { identifier.Add(record); });
   const Identification found = identifier.Finish();
   EXPECT_TRUE(found.strained) << found.strain;
@@ -226,8 +226,8 @@ TEST_F(IdentifyTest, LinksFarFromTheirModelAreNoticed) {
 }
 
 // Needs no simulation, because the identifier uses only the positions here.
-TEST_F(IdentifyTest, OneSpeedTellsNothing) {
-  Identifier identifier(believed_);
+TEST_F(IdentifyTest, OneSpeedIsNotEnough) {
+  Identifier identifier(nominal_);
   TickRecord record{};
   record.cobot_dof = kJoints;
   record.ran = 1;
@@ -246,7 +246,7 @@ TEST_F(IdentifyTest, OneSpeedTellsNothing) {
 }
 
 TEST_F(IdentifyTest, SaysWhatItCannotWorkWith) {
-  Identifier identifier(believed_);
+  Identifier identifier(nominal_);
   EXPECT_THROW(identifier.Finish(), InputError);  // no data yet
   TickRecord record{};
   record.cobot_dof = 6;

@@ -16,7 +16,7 @@ TEST(DoInParallel, DoesEachPieceOnce) {
   for (const auto& times : done) EXPECT_EQ(times, 1);
 }
 
-TEST(DoInParallel, TellsWhatWentWrongAndEndsTheRest) {
+TEST(DoInParallel, ReportsTheErrorAndEndsTheRest) {
   std::atomic<int> done = 0;
   const auto piece = [&](std::size_t i) {
     if (i == 3) throw std::bad_alloc();

@@ -173,7 +173,7 @@ TEST(Output, JsonFitsItsSchemaAndTablesAreComplete) {
   EXPECT_NE(PopulationPage(study, "1").find("RULA"), std::string::npos);
 }
 
-TEST(RunStore, FindsWhatWasAddedAndSkipsALineThatWasCut) {
+TEST(RunStore, FindsAddedRunsAndSkipsATruncatedLine) {
   const test::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "runs.jsonl";
   PopulationRun run = MadeUp(1, 0).designs[0].runs[0];

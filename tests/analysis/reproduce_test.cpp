@@ -218,7 +218,7 @@ TEST_F(ReproduceTest, HoldsTheCircleAgainstTheRealOne) {
 }
 
 // Each reconstructed set of answers reproduces the printed numbers (ten numbers for 8 statements).
-TEST_F(ReproduceTest, ListsTheAnswersBehindTableOne) {
+TEST_F(ReproduceTest, ListsTheAnswersOfTableOne) {
   options_.only = "questionnaire";
   const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
   EXPECT_EQ(e.numbers.size(), 10u);
@@ -252,7 +252,7 @@ TEST_F(ReproduceTest, WritesWhatItFound) {
   EXPECT_NE(page.find("<figure class=\"plot\" id=\"fig11\">"), std::string::npos);
 }
 
-TEST_F(ReproduceTest, SaysWhatIsWrong) {
+TEST_F(ReproduceTest, ReportsTheError) {
   const auto message = [&] {
     try {
       Reproduce(options_);
@@ -347,7 +347,7 @@ void AddWall(double x, double y0, double y1, const Vector3& color, Raster* raste
   raster->Triangle({x, y0, -0.2}, {x, y1, 0.2}, {x, y0, 0.2}, color, false);
 }
 
-TEST(Raster, PutsThingsWhereTheyAreSeen) {
+TEST(Raster, ProjectsCorrectly) {
   Raster raster(kWidth, kHeight, kAhead);
   AddWall(0, 0.1, 0.4, {1, 0, 0}, &raster);  // +y is to the left of +x
   const Picture picture = Decode(raster.Png());
@@ -367,7 +367,7 @@ TEST(Raster, PutsThingsWhereTheyAreSeen) {
   EXPECT_NE(picture.At((left + right) / 2, high - 2), red);
 }
 
-TEST(Raster, ShowsTheNearerWhateverIsDrawnFirst) {
+TEST(Raster, ShowsTheNearerInAnyDrawingOrder) {
   for (const bool near_first : {true, false}) {
     Raster raster(kWidth, kHeight, kAhead);
     for (const bool near : {near_first, !near_first})
@@ -377,7 +377,7 @@ TEST(Raster, ShowsTheNearerWhateverIsDrawnFirst) {
   }
 }
 
-TEST(Raster, DrawsOverWhatWasThereOnceDepthIsForgotten) {
+TEST(Raster, DrawsOverEverythingAfterClearingTheDepth) {
   Raster raster(kWidth, kHeight, kAhead);
   AddWall(-0.5, -0.4, 0.4, {0, 1, 0}, &raster);
   raster.ForgetDepth();
@@ -386,7 +386,7 @@ TEST(Raster, DrawsOverWhatWasThereOnceDepthIsForgotten) {
             (std::array<int, 3>{255, 0, 0}));
 }
 
-TEST(Raster, LeavesOutWhatIsBehindTheCamera) {
+TEST(Raster, OmitsObjectsBehindTheCamera) {
   Raster empty(kWidth, kHeight, kAhead), behind(kWidth, kHeight, kAhead);
   AddWall(-3, -0.4, 0.4, {1, 0, 0}, &behind);
   behind.Triangle({-3, 0, 0}, {1, 1, 0}, {1, -1, 0.1}, {1, 0, 0});  // partly behind the camera

@@ -35,7 +35,7 @@ MapPoint SomePoint() {
   return point;
 }
 
-TEST(MapStore, KeepsWhatIsFinishedThroughACut) {
+TEST(MapStore, KeepsFinishedPointsAfterTruncation) {
   const test::TemporaryFolder folder;
   const fs::path file = folder.path() / "points.jsonl";
   MapPoint read;
@@ -88,7 +88,7 @@ TEST(MapStore, SaysWhenThereIsNoRoom) {
   EXPECT_EXIT(add_without_room(), testing::ExitedWithCode(0), "disk with free space");
 }
 
-TEST(MapStore, PassesOverWhatIsNoPoint) {
+TEST(MapStore, SkipsInvalidPoints) {
   const test::TemporaryFolder folder;
   const fs::path file = folder.path() / "points.jsonl";
   std::ofstream(file) << "no json\n[1]\n{\"key\": 3}\n{\"key\": \"x\", \"value\": \"y\"}\n\n";
@@ -178,7 +178,7 @@ TEST(MapPlot, HasLabelsWithUnitsAndALegend) {
 
 // The plot shows the points of the map in its own unit. Crosses mark the values at which nothing is
 // stable.
-TEST(MapPlot, ShowsWhatWasPredictedAndFound) {
+TEST(MapPlot, ShowsPredictionsAndResults) {
   const StabilityMap map = SomeMap();
   for (const MapPicture& picture : map.pictures) {
     const Plot plot = MapPlot(map, picture);

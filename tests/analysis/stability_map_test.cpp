@@ -36,7 +36,7 @@ FoundExtent Search(const std::vector<double>& hints, bool (*grows)(double), int*
   });
 }
 
-TEST(FindExtent, FindsWhereTheSignChangesWhateverIsPredicted) {
+TEST(FindExtent, FindsTheSignChangeForAnyPrediction) {
   for (const std::vector<double>& hints :
        {std::vector<double>{}, std::vector<double>{700}, std::vector<double>{60, 5000}}) {
     const FoundExtent found = Search(hints, [](double k) { return k > 703; });

@@ -184,7 +184,7 @@ TEST_F(VerifyTest, AnInputThatWasNotGivenIsFound) {
   EXPECT_LE(result.departure->tick, 2503U);
 }
 
-TEST_F(VerifyTest, AfterAGapItGoesOnFromTheNextState) {
+TEST_F(VerifyTest, AfterAGapItContinuesFromTheNextState) {
   const Verification result = VerifyFile(
       Record([](TickRecord* record) { return record->tick < 1500 || record->tick >= 1600; }));
   EXPECT_FALSE(result.departure);
@@ -279,7 +279,7 @@ TEST_F(VerifyRealArms, SoAreItsStops) {
   }
 }
 
-TEST_F(VerifyRealArms, WhatWasChangedInTheRecordingIsFound) {
+TEST_F(VerifyRealArms, ChangesInTheRecordingAreFound) {
   const Case what = {"dual_ur5", {"ur", "ur"}, {}};
   const auto run = [&](const std::function<void(TickRecord*)>& change) {
     const Verification result = VerifyFile(RecordBench(
@@ -311,7 +311,7 @@ TEST_F(VerifyRealArms, WhatWasChangedInTheRecordingIsFound) {
   EXPECT_EQ(status.tick, 5000U);
 }
 
-TEST_F(VerifyRealArms, AfterAGapItGoesOnFromTheNextState) {
+TEST_F(VerifyRealArms, AfterAGapItContinuesFromTheNextState) {
   const Verification result = VerifyFile(RecordBench(
       {"dual_ur5", {"ur", "ur"}, {}}, [](Bench&) {},
       [](TickRecord* record) { return record->tick < 4500 || record->tick >= 4600; }));
@@ -322,7 +322,7 @@ TEST_F(VerifyRealArms, AfterAGapItGoesOnFromTheNextState) {
 
 // The saved state includes the cause that removed the power at the end of a stop, even if the
 // recording lost the stop itself.
-TEST_F(VerifyRealArms, AfterAGapInWhichThePowerWentItGoesOn) {
+TEST_F(VerifyRealArms, AfterAGapWithPowerOffItContinues) {
   const auto fault = [](Bench& b) {
     b.Hold(false);
     b.Pass(0.15);

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(ExitCode, TellsHowItEnded) {
+TEST(ExitCode, ShowsHowItEnded) {
   const struct {
     std::vector<std::string> arguments;
     int code;
@@ -43,13 +43,13 @@ TEST(ExitCode, TellsHowItEnded) {
   }
 }
 
-TEST(ExitCode, OfARunThatNeverStartedComesWithTheArmAndItsDistance) {
+TEST(ExitCode, OfARunThatNeverStartedNamesTheArmAndItsDistance) {
   Child child({"simulate", Scenario("box_9kg"), "--quiet", "--set", "safety.align_tolerance=1e-9"});
   EXPECT_EQ(child.Wait(), 3);
   EXPECT_NE(child.errors().find("the left arm remained"), std::string::npos) << child.errors();
 }
 
-TEST(ExitCode, OfARunWhoseStartIsRefusedComesWithReasonPlaceAndRemedy) {
+TEST(ExitCode, OfARefusedStartGivesReasonPlaceAndRemedy) {
   Child child({"simulate", Scenario("box_9kg"), "--quiet", "--set", "rendering.joint_security=1",
                "--set", "rendering.joint_influence=1.1"});
   EXPECT_EQ(child.Wait(), 3);
@@ -91,13 +91,13 @@ TEST(Terminal, ObeysNoNameOfAScenario) {
   EXPECT_NE(replay.errors().find(shown), std::string::npos) << replay.errors();
 }
 
-TEST(ExitCode, OfAnUnknownCommandComesWithItsName) {
+TEST(ExitCode, OfAnUnknownCommandNamesIt) {
   Child child({"dance"});
   EXPECT_EQ(child.Wait(), 2);
   EXPECT_NE(child.errors().find("no command \"dance\""), std::string::npos) << child.errors();
 }
 
-TEST(ExitCode, OfNothingComesWithTheCommandsThatThereAre) {
+TEST(ExitCode, WithoutACommandListsTheCommands) {
   Child child(std::vector<std::string>{});
   EXPECT_EQ(child.Wait(), 2);
   for (const char* text : {"Analyse:", "Run a scenario in real time", "calibrate"})
@@ -105,7 +105,7 @@ TEST(ExitCode, OfNothingComesWithTheCommandsThatThereAre) {
 }
 
 // An option that would have no effect must be refused with the reason.
-TEST(ExitCode, OfOptionsThatWouldDoNothingComesWithTheirReason) {
+TEST(ExitCode, OfOptionsWithoutEffectGivesTheReason) {
   const struct {
     std::vector<std::string> options;
     const char* reason;
@@ -129,7 +129,7 @@ TEST(ExitCode, OfOptionsThatWouldDoNothingComesWithTheirReason) {
 }
 
 // In real time a person may hold the handles.
-TEST(ExitCode, OfARunWithoutItsOscillationDetectorsComesWithTheReason) {
+TEST(ExitCode, OfARunWithoutOscillationDetectorsGivesTheReason) {
   const std::vector<std::string> off = {"--set", "safety.oscillation.enabled=false"};
   Child run({"run", Scenario("box_9kg"), "--no-viewer", "--no-record", off[0], off[1]});
   EXPECT_EQ(run.Wait(), 2);
@@ -141,7 +141,7 @@ TEST(ExitCode, OfARunWithoutItsOscillationDetectorsComesWithTheReason) {
   EXPECT_EQ(simulate.Wait(), 0) << simulate.errors();
 }
 
-TEST(ExitCode, OfARunWithoutAllRepairsOfThePapersFormulationComesWithTheReason) {
+TEST(ExitCode, OfARunWithoutAllRepairsGivesTheReason) {
   const std::vector<std::string> paper = {"--set", "rendering.formulation=paper"};
   Child run({"run", Scenario("box_9kg"), "--no-viewer", "--no-record", paper[0], paper[1]});
   EXPECT_EQ(run.Wait(), 2);
@@ -189,7 +189,7 @@ TEST(Summary, GoesToStandardOutputAloneOrToAFile) {
   fs::remove(file);
 }
 
-TEST(Summary, ThatCannotBeWrittenIsToldBeforeTheRunOrFails) {
+TEST(Summary, ThatCannotBeWrittenIsReportedBeforeTheRunOrFails) {
   Child nowhere({"simulate", Scenario("box_9kg"), "--json", "/no/such/folder/file"});
   EXPECT_EQ(nowhere.Wait(), 2);
   EXPECT_NE(nowhere.errors().find("cannot be written"), std::string::npos);
@@ -216,7 +216,7 @@ TEST_P(Signals, EndARunAtRest) {
   EXPECT_GT(summary["ticks"], 0);
 }
 
-TEST(Signals, BeforeTheStartAreNoFailure) {
+TEST(Signals, BeforeTheStartAreNotAFailure) {
   Child child({"run", Scenario("box_9kg"), "--no-viewer"});
   ASSERT_TRUE(child.Says("Device"));
   child.Send(SIGINT);
@@ -260,7 +260,7 @@ TEST(Viewer, OfASecondRunOnTheSamePortIsRefusedInWords) {
   EXPECT_NE(second.errors().find("--port"), std::string::npos) << second.errors();
 }
 
-TEST(RosTcp, IsServedBesideTheRun) {
+TEST(RosTcp, IsServedDuringTheRun) {
   Child child({"run", Scenario("box_9kg"), "--no-viewer", "--ros-tcp", "--ros-tcp-port", "0",
                "--ros-tcp-mode", "ros2", "--duration", "1"});
   EXPECT_TRUE(child.Says("ROS-TCP   port ")) << child.errors();

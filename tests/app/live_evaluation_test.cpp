@@ -1,4 +1,4 @@
-// The person is judged while a run goes on, and the run does not notice.
+// The person is judged during a run, and the run is not affected.
 #include <gtest/gtest.h>
 
 #include <cmath>

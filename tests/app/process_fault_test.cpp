@@ -47,7 +47,7 @@ void ExpectVerified(const std::string& recording) {
 }
 
 // The limit is set during the run, because the run's shared memory is larger than this recording.
-TEST(FileSizeLimit, EndsTheRecordingOfARunThatGoesOn) {
+TEST(FileSizeLimit, EndsTheRecordingButNotTheRun) {
   const test::TemporaryFolder folder;
   const std::string recording = folder.path() / "a.mcap";
   Child run({"run", Scenario("box_9kg"), "--duration", "10", "--no-viewer", "--json", "-",
@@ -66,14 +66,14 @@ TEST(FileSizeLimit, EndsTheRecordingOfARunThatGoesOn) {
 }
 
 // The limit is too low for the run's shared memory, so the run is refused before anything moves.
-TEST(FileSizeLimit, ThatLeavesNoRoomForARunIsToldAtItsStart) {
+TEST(FileSizeLimit, ThatLeavesNoRoomForARunIsReportedAtItsStart) {
   const FileSize limit(1U << 20U);
   Child run({"run", Scenario("box_9kg"), "--duration", "1", "--no-viewer"});
   EXPECT_EQ(run.Wait(), 3);
   EXPECT_NE(run.errors().find("ulimit -f"), std::string::npos) << run.errors();
 }
 
-TEST(FileSizeLimit, IsToldWhereARunIsSimulated) {
+TEST(FileSizeLimit, IsReportedForASimulatedRun) {
   const test::TemporaryFolder folder;
   const std::string recording = folder.path() / "a.mcap";
   {
@@ -130,7 +130,7 @@ TEST(UnreadOutput, DoesNotKeepARunFromEnding) {
   EXPECT_EQ(again.Wait(), 0) << again.output() << again.errors();
 }
 
-TEST(Memory, WhereTheFollowerHasNoneTheRunIsEnded) {
+TEST(Memory, OfTheFollowerExhaustedEndsTheRun) {
   const FaultySystem system("FAULTY_MEMORY", "follower,4,1");
   Child run({"run", Scenario("box_9kg"), "--duration", "40", "--no-viewer", "--stay"});
   EXPECT_EQ(run.Wait(), 3) << run.errors();
@@ -139,7 +139,7 @@ TEST(Memory, WhereTheFollowerHasNoneTheRunIsEnded) {
       << run.errors();
 }
 
-TEST(Memory, WhereTheRecorderHasNoneTheRecordingEndsAndTheRunGoesOn) {
+TEST(Memory, OfTheRecorderExhaustedEndsTheRecordingNotTheRun) {
   // The first size is that of a chunk's buffer. Smaller allocations may belong to nlohmann's JSON,
   // whose destructor needs memory.
   for (const std::string fault : {"record encode,2,16384", "record write,2,64"}) {
@@ -157,7 +157,7 @@ TEST(Memory, WhereTheRecorderHasNoneTheRecordingEndsAndTheRunGoesOn) {
 }
 
 // The thread that supervises the viewer process has no memory when that process dies.
-TEST(Memory, WhereTheSupervisorHasNoneItGoesOn) {
+TEST(Memory, OfTheSupervisorExhaustedDoesNotEndIt) {
   const FaultySystem system("FAULTY_MEMORY", "supervisor,1,1");
   Child run({"run", Scenario("box_9kg"), "--duration", "3600", "--port", "0", "--no-evaluation"});
   ASSERT_TRUE(run.Says("Viewer: http")) << run.errors();

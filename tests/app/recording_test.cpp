@@ -184,7 +184,7 @@ TEST_F(RecordedProgram, EventsAreATable) {
 
 // The paper's complaint: the emulated cobot yields too easily, because its joints have less
 // friction.
-TEST_F(RecordedProgram, OfACobotThatRubsLessIsToldFromTheRealOne) {
+TEST_F(RecordedProgram, OfACobotWithLessFrictionDiffersFromTheRealOne) {
   const std::string other = folder_ / "emulated.mcap";
   ASSERT_EQ(
       Do({"simulate", Scenario("bar_circle"), "--quiet", "--record", file_, "--set", "mode=direct",
@@ -227,7 +227,7 @@ TEST_F(RecordedProgram, OfAnotherTaskIsComparedWithAWarning) {
       << printed_;
 }
 
-TEST_F(RecordedProgram, TellsItsCobotsFriction) {
+TEST_F(RecordedProgram, StatesItsCobotsFriction) {
   fs::create_directory(folder_ / "scenarios");
   fs::copy(fs::path(PREDICTOR_SOURCE_DIR) / "assets", folder_ / "assets",
            fs::copy_options::recursive);

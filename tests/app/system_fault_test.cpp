@@ -40,7 +40,7 @@ TEST(SystemFault, AWallClockThatJumpsChangesNothing) {
 }
 
 // Fault 33, the milder variant: a simulated rig waits, and the program prints a warning.
-TEST(SystemFault, WithoutRealTimePriorityASimulatedRunGoesOn) {
+TEST(SystemFault, WithoutRealTimePriorityASimulatedRunContinues) {
   const FaultySystem system("FAULTY_PRIORITY", "1");
   Child run({"run", Scenario("box_9kg"), "--duration", "1", "--no-viewer"});
   EXPECT_EQ(run.Wait(), 0) << run.errors();

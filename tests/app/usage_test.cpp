@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr int kBadInput = 2;
 
-TEST(Usage, OfWhatIsMisspeltComesWithWhatWasMeant) {
+TEST(Usage, AMisspeltNameGetsASuggestion) {
   const struct {
     std::vector<std::string> arguments;
     std::string error, hint;
@@ -261,7 +261,7 @@ TEST_F(Written, FirstScenariosPassTheirCheckAndRun) {
   }
 }
 
-TEST_F(Written, InitTellsWhichLinksItLeavesOut) {
+TEST_F(Written, InitReportsWhichLinksItLeavesOut) {
   ASSERT_EQ(Do({"init", Path("panda"), "--urdf",
                 "package://example-robot-data/robots/panda_description/urdf/panda.urdf"}),
             0);

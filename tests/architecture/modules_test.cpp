@@ -73,7 +73,7 @@ TEST(Modules, HaveNoCircle) {
   for (const auto& [module, uses] : Declared()) EXPECT_FALSE(uses.contains(module)) << module;
 }
 
-TEST(Modules, OfTheTickDoNotKnowOneAnother) {
+TEST(Modules, OfTheTickDoNotDependOnOneAnother) {
   const std::set<std::string> tick = {"sensing", "simulation", "haptics", "safety", "devices"};
   for (const auto& [module, uses] : Included()) {
     if (!tick.contains(module)) continue;

@@ -73,7 +73,7 @@ TEST(Assessment, AHigherForceScoresNoBetter) {
 }
 
 // The hands push each other together: that is no load for the worksheets.
-TEST(Assessment, ASqueezeIsNoLoad) {
+TEST(Assessment, ASqueezeIsNotALoad) {
   Scenario scenario = PersonScenario();
   const auto judge = [&](double inward) {
     const SampleCollector run = Collect(scenario, 1, [&](std::uint64_t tick) {
@@ -180,7 +180,7 @@ void ExpectDescribed(const Json& value, const Json& schema, const std::string& p
     for (const Json& item : value) ExpectDescribed(item, schema["items"], path + "/…");
 }
 
-TEST(AssessmentOutput, JsonIsWhatItsSchemaDescribes) {
+TEST(AssessmentOutput, ConformsToItsSchema) {
   const Json schema = Json::parse(AssessmentSchema());
   const Json json = Json::parse(AssessmentJson(Judge(20, true)));
   ExpectDescribed(json, schema, "");

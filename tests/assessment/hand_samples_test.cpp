@@ -32,7 +32,7 @@ TEST(Samples, DoNotContinueAcrossAPauseOrLostTicks) {
   EXPECT_EQ(continues, (std::vector<bool>{true, false, true, false}));
 }
 
-TEST(Samples, TellWhichHandHolds) {
+TEST(Samples, ShowWhichHandHolds) {
   for (const std::size_t open : {0U, 1U}) {
     const SampleCollector run = Collect(PersonScenario(), 0.01, [&](std::uint64_t tick) {
       TickRecord record = RecordOf(tick, 1, 5);

@@ -57,7 +57,7 @@ TEST(Lifts, AreRisesThatEndInAReversalAndNotNoise) {
   EXPECT_TRUE(LiftsIn(4, [](double t) { return 1.2 - 0.1 * t; }).empty());  // lowered
 }
 
-TEST(Lifts, EndWhereTheHandsLetGo) {
+TEST(Lifts, EndWhenTheHandsRelease) {
   const auto holds = [](double t) { return t < 1.5 || t > 3.5; };
   EXPECT_EQ(LiftsIn(6, OneLift, holds).size(), 0U);  // it had risen by 0.04 m, and rests later
 }

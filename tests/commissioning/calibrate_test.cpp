@@ -1,4 +1,4 @@
-// Measurements at an arm of the rig that a person leads or pushes. The measurements in which the
+// Measurements at an arm of the rig that a person guides or pushes. The measurements in which the
 // arm moves by itself are in measure_loop_test.cpp.
 #include "commissioning/calibrate.h"
 
@@ -28,7 +28,7 @@ std::vector<JointVector> Postures(const JointVector& start, int count) {
   return all;
 }
 
-TEST(MeasureHandle, OfALedArmFindsTheHandleOfTheRig) {
+TEST(MeasureHandle, OfAGuidedArmFindsTheHandleOfTheRig) {
   Bench bench;
   Leader leader(&bench.hand);
   const auto postures = Postures(bench.q(), 8);
@@ -54,7 +54,7 @@ TEST(MeasureHandle, OfALedArmFindsTheHandleOfTheRig) {
   EXPECT_NE(text.find("mass"), std::string::npos);
 }
 
-TEST(MeasureHandle, TellsWhatIsWrongAndGoesOn) {
+TEST(MeasureHandle, ReportsTheErrorAndContinues) {
   Bench bench;
   Leader leader(&bench.hand);
   const auto postures = Postures(bench.q(), 8);
@@ -78,11 +78,11 @@ TEST(MeasureHandle, TellsWhatIsWrongAndGoesOn) {
   EXPECT_NE(person.All().find("too few"), std::string::npos) << person.All();
 }
 
-TEST(Station, GoesOnReadingAnArmThatIsLedAndNotOneThatIsSilent) {
+TEST(Station, KeepsReadingAGuidedArmButNotASilentOne) {
   Bench bench;
   ScriptedPerson person([](const std::string&) -> char { return 0; });
   Session session(&bench.time, &person, {&bench.station});
-  bench.hand.trouble = "somebody leads it";
+  bench.hand.trouble = "it is being guided by hand";
   for (int k = 0; k < 100; ++k) session.Step();
   EXPECT_THROW(session.Step(&bench.station, [] { return JointVector::Zero(7); }), DeviceError);
   bench.hand.silent = true;
@@ -105,7 +105,7 @@ TEST(Station, RefusesAModelOfAnotherArm) {
                DeviceError);
 }
 
-TEST(MeasureBases, OfTwoLedArmsFindsWhereOneStands) {
+TEST(MeasureBases, OfTwoGuidedArmsFindsTheBaseOfOne) {
   VirtualTime time;
   const Scenario first = ArmScenario(1);
   Scenario second = ArmScenario(1);
@@ -113,10 +113,10 @@ TEST(MeasureBases, OfTwoLedArmsFindsWhereOneStands) {
   second.device.left->base.rpy = {0.01, -0.02, 3.0};
   RigHand hand_a(first, &time, ArmStart(1)[0]), hand_b(second, &time, ArmStart(1)[0]);
   // The machine file has a wrong base pose for the second arm.
-  MachineArm believed = MachineArmOf(second);
-  believed.arm.base = {{1.0, 0, 0}, {0, 0, M_PI}};
+  MachineArm nominal = MachineArmOf(second);
+  nominal.arm.base = {{1.0, 0, 0}, {0, 0, M_PI}};
   Station a(0, MachineArmOf(first), std::make_unique<RigDriver>(&hand_a), nullptr);
-  Station b(1, believed, std::make_unique<RigDriver>(&hand_b), nullptr);
+  Station b(1, nominal, std::make_unique<RigDriver>(&hand_b), nullptr);
   const Vector3 tip(0.01, 0.02, 0.15);
   const auto joints = [&](const Scenario& scenario, const Vector3& point) {
     const ArmSpec& spec = *scenario.device.left;
@@ -151,7 +151,8 @@ TEST(MeasureBases, OfTwoLedArmsFindsWhereOneStands) {
   Session session(&time, &person, {&a, &b});
   const BaseCalibration found = MeasureBases(&session, a, b, tip);
   const Pose truth = first.device.left->base.X_RB().Inverse() * second.device.left->base.X_RB();
-  // The leader stops within 0.2 mrad of the goal, which moves the tip by less than a millimetre.
+  // The guiding hand stops within 0.2 mrad of the goal, which moves the tip by less than a
+  // millimetre.
   EXPECT_LT(PoseError(found.X_AB, truth).head<3>().norm(), 0.004) << person.All();
   EXPECT_LT(PoseError(found.X_AB, truth).tail<3>().norm(), 0.006);
   EXPECT_LT(found.residual, 0.001);
@@ -185,15 +186,15 @@ TEST(MeasureBases, WithoutATipAsksWhetherTheEndEffectorTouches) {
 
 // A person pushes as instructed. In the machine file, the sensor is rotated by `turned` [rad] about
 // the axes of the world.
-std::string RefusalOfPushes(const Vector3& turned, std::string* told = nullptr) {
+std::string RefusalOfPushes(const Vector3& turned, std::string* reported = nullptr) {
   const Scenario scenario = ArmScenario(1);
   Bench bench(scenario);
   bench.station.Watch();
   const Quaternion q_WE = bench.station.EndEffectorPose().q;
-  MachineArm believed = MachineArmOf(scenario);
-  PoseSpec& pose = believed.arm.sensor.pose;
+  MachineArm nominal = MachineArmOf(scenario);
+  PoseSpec& pose = nominal.arm.sensor.pose;
   pose.rpy = RpyOf(q_WE.conjugate() * RotationFromVector(turned) * q_WE * pose.ToPose().q);
-  Station station(0, believed, std::make_unique<RigDriver>(&bench.hand), nullptr);
+  Station station(0, nominal, std::make_unique<RigDriver>(&bench.hand), nullptr);
   int axis = -1;
   double since = 0;
   ScriptedPerson person([&](const std::string& last) -> char {
@@ -212,10 +213,10 @@ std::string RefusalOfPushes(const Vector3& turned, std::string* told = nullptr) 
   Session session(&bench.time, &person, {&station, &bench.station});
   try {
     TestPushes(&session, station, nullptr);
-    if (told) *told = person.All();
+    if (reported) *reported = person.All();
     return "";
   } catch (const InputError& error) {
-    if (told) *told = person.All();
+    if (reported) *reported = person.All();
     return error.what();
   }
 }
@@ -227,19 +228,20 @@ TEST(TestPushes, PassesThroughTheEstimatorAndRefusesATurnedSensor) {
   EXPECT_NE(RefusalOfPushes({M_PI / 2, 0, 0}).find("reads"), std::string::npos);
 }
 
-TEST(TestPushes, TellsAWrongPushBeforeTheNextOne) {
-  std::string told;
-  EXPECT_EQ(RefusalOfPushes({0, 0, 0}, &told), "");
-  EXPECT_EQ(told.find("DIFFERS FROM THE PUSH"), std::string::npos) << told;
-  EXPECT_NE(RefusalOfPushes({0, 0, M_PI}, &told), "");
-  const auto x = told.find("DIFFERS FROM THE PUSH. The push along +x reads -x: mirrored.");
-  const auto y = told.find("DIFFERS FROM THE PUSH. The push along +y reads -y: mirrored.");
-  ASSERT_NE(x, std::string::npos) << told;
-  ASSERT_NE(y, std::string::npos) << told;
-  EXPECT_LT(x, told.find("handle along +y"));
-  EXPECT_LT(y, told.find("handle along +z"));
-  EXPECT_EQ(told.find("The push along +z"), std::string::npos) << told;  // the sensor read this
-                                                                         // push correctly
+TEST(TestPushes, ReportsAWrongPushBeforeTheNextOne) {
+  std::string reported;
+  EXPECT_EQ(RefusalOfPushes({0, 0, 0}, &reported), "");
+  EXPECT_EQ(reported.find("DIFFERS FROM THE PUSH"), std::string::npos) << reported;
+  EXPECT_NE(RefusalOfPushes({0, 0, M_PI}, &reported), "");
+  const auto x = reported.find("DIFFERS FROM THE PUSH. The push along +x reads -x: mirrored.");
+  const auto y = reported.find("DIFFERS FROM THE PUSH. The push along +y reads -y: mirrored.");
+  ASSERT_NE(x, std::string::npos) << reported;
+  ASSERT_NE(y, std::string::npos) << reported;
+  EXPECT_LT(x, reported.find("handle along +y"));
+  EXPECT_LT(y, reported.find("handle along +z"));
+  EXPECT_EQ(reported.find("The push along +z"), std::string::npos)
+      << reported;  // the sensor read this
+                    // push correctly
 }
 
 }  // namespace

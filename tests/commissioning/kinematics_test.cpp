@@ -40,9 +40,9 @@ UrVector Anywhere(RandomStream* random) {
   return q;
 }
 
-DeviceFacts Told(const UrGeometry& arm, const UrVector& q) {
+DeviceFacts Reported(const UrGeometry& arm, const UrVector& q) {
   DeviceFacts facts;
-  facts.flange = ToldFlange{Eigen::Map<const Vector6>(q.data()), FlangeOf(arm, q), "tool0"};
+  facts.flange = ReportedFlange{Eigen::Map<const Vector6>(q.data()), FlangeOf(arm, q), "tool0"};
   return facts;
 }
 
@@ -61,7 +61,7 @@ DeviceFacts Connected(const FakeUrOptions& options, const UrVector& q,
 }
 
 // The fake uses the maker's published parameters; the model does not.
-TEST(KinematicsRefusal, LetsNoArmOfUniversalRobotsPassAsAnother) {
+TEST(KinematicsRefusal, DistinguishesAllArmsOfUniversalRobots) {
   for (const auto& [urdf, own] :
        {std::pair{"ur5_robot.urdf", "ur5"}, {"ur10_robot.urdf", "ur10"}}) {
     const ArmSpec spec = UrSpec(urdf);
@@ -70,7 +70,7 @@ TEST(KinematicsRefusal, LetsNoArmOfUniversalRobotsPassAsAnother) {
     for (int i = 0; i < 300; ++i) {
       const UrVector q = Anywhere(&random);
       for (const UrGeometry& arm : kUrGeometries)
-        ASSERT_EQ(KinematicsRefusal(Told(arm, q), spec, *model).empty(),
+        ASSERT_EQ(KinematicsRefusal(Reported(arm, q), spec, *model).empty(),
                   arm.model == std::string(own))
             << arm.model << " as " << urdf;
     }
@@ -81,7 +81,7 @@ TEST(KinematicsRefusal, GrantsWhatACalibrationMakesUpAndNoMore) {
   const ArmSpec spec = UrSpec("ur5_robot.urdf");
   const UrVector q = {0.3, -1.2, 1.8, -2.2, -1.5, 0.4};
   for (const double beside : {0.99, 1.01}) {
-    DeviceFacts moved = Told(kUr5, q), turned = moved;
+    DeviceFacts moved = Reported(kUr5, q), turned = moved;
     moved.flange->X_BF.p.y() += beside * kFlangeSlack;
     EXPECT_EQ(Refusal(moved, spec).empty(), beside < 1);
     Quaternion& rotation = turned.flange->X_BF.q;
@@ -90,25 +90,25 @@ TEST(KinematicsRefusal, GrantsWhatACalibrationMakesUpAndNoMore) {
   }
 }
 
-TEST(KinematicsRefusal, OfAnotherBaseIsToldByHalfATurnAtMost) {
+TEST(KinematicsRefusal, OfAnotherBaseIgnoresHalfATurn) {
   const ArmSpec spec = UrSpec("ur5_robot.urdf");
   const UrVector q = {0.3, -1.2, 1.8, -2.2, -1.5, 0.4};
   for (const double turn : {0.0, 0.5, 1.0}) {  // in half turns
-    DeviceFacts facts = Told(kUr5, q);
+    DeviceFacts facts = Reported(kUr5, q);
     const Pose X = PoseFromXyzRpy(Vector3::Zero(), {0, 0, turn * std::numbers::pi});
     facts.flange->X_BF = X * facts.flange->X_BF;
     EXPECT_EQ(Refusal(facts, spec).empty(), turn != 0.5) << turn;
   }
 }
 
-TEST(KinematicsRefusal, OfNumbersThatAreNoneAndOfOtherJoints) {
+TEST(KinematicsRefusal, OfInvalidNumbersAndOtherJoints) {
   const ArmSpec spec = UrSpec("ur5_robot.urdf");
   DeviceFacts facts;
   EXPECT_EQ(Refusal(facts, spec), "");  // the arm reports no flange pose
-  facts = Told(kUr5, {});
+  facts = Reported(kUr5, {});
   facts.flange->X_BF.p.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(Refusal(facts, spec), "");
-  EXPECT_NE(Refusal(Told(kUr5, {}), PandaSpec()).find("It has 6 joints, but arm.model has 7"),
+  EXPECT_NE(Refusal(Reported(kUr5, {}), PandaSpec()).find("It has 6 joints, but arm.model has 7"),
             std::string::npos);
 }
 
@@ -131,7 +131,7 @@ TEST(KinematicsRefusal, OfAUrGoesByItsToolAndTheToolsOffset) {
   EXPECT_EQ(Refusal(Connected(bare, q, "tcp_offset"), spec), "");
 }
 
-TEST(KinematicsRefusal, IsNoneOfAUrWithoutPower) {
+TEST(KinematicsRefusal, IsEmptyForAUrWithoutPower) {
   for (const bool power : {true, false}) {
     UrBench bench;
     bench.network.Pass(0.01);
@@ -154,7 +154,7 @@ TEST(KinematicsRefusal, OfAFrankaGoesByItsEndEffector) {
 }
 
 // Every calibration begins with this check.
-TEST(Station, IsNoneOfAnArmThatIsAnother) {
+TEST(Station, RefusesADifferentArm) {
   for (const bool own : {true, false}) {
     FakeUrOptions options;
     if (!own) options.geometry = kUrGeometries[5];

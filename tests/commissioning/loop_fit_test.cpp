@@ -51,11 +51,11 @@ LoopRecord Swing(const Arrangement& a) {
   const double begin = now();
   while (now() - begin < chirp.duration() + 2 * kRest) {
     EXPECT_TRUE(driver.Read(&reading).ok());
-    if (reading.sequence != seen) recorder.Seen(now() - reading.age, reading.q[kJoint]);
+    if (reading.sequence != seen) recorder.AddSample(now() - reading.age, reading.q[kJoint]);
     seen = reading.sequence;
     JointVector v = JointVector::Zero(7);
     v[kJoint] = chirp.v(now() - begin - kRest);
-    recorder.Told(now(), now(), v[kJoint]);
+    recorder.AddCommand(now(), now(), v[kJoint]);
     sent.emplace_back(now() + 0.001 * static_cast<double>(random() % (a.waver + 1U)), v);
     for (; !sent.empty() && sent.front().first < now() + 1e-6; sent.erase(sent.begin()))
       EXPECT_TRUE(driver.Write(sent.front().second, true).ok());
@@ -111,11 +111,11 @@ TEST(LoopRecorder, KeepsTheWayOfCommandsThatComeAtAnyTime) {
   const double steps[] = {0.0013, 0.0004, 0.0009, 0.0031, 0.001, 0.0022};
   for (int k = 0; k < 60; ++k) {
     const double u = std::sin(0.3 * k);
-    recorder.Told(time, time, u);
+    recorder.AddCommand(time, time, u);
     if (k < 59) way += u * steps[k % 6];
     time += steps[k % 6];
   }
-  recorder.Told(time, time, 0);
+  recorder.AddCommand(time, time, 0);
   way += std::sin(0.3 * 59) * steps[59 % 6];
   const LoopRecord record = std::move(recorder).Finish();
   double sum = 0;
@@ -127,10 +127,10 @@ TEST(LoopRecorder, CountsLateTicksAndLostSamples) {
   LoopRecorder recorder(0, 0.002);
   double time = 7;
   for (int k = 0; k < 1000; ++k) {
-    recorder.Told(time, time, 0);
+    recorder.AddCommand(time, time, 0);
     // A sample in every other tick, with a varying age. Of the 500 samples, those of k = 400 … 419
     // are lost.
-    if (k % 2 == 0 && (k < 400 || k >= 420)) recorder.Seen(time - 0.0004 * (k % 3), 0);
+    if (k % 2 == 0 && (k < 400 || k >= 420)) recorder.AddSample(time - 0.0004 * (k % 3), 0);
     time += k % 100 == 50 ? 0.0042 : k % 100 == 51 ? 0.0014 : k % 100 == 60 ? 0.0019 : 0.001;
   }
   const Gaps gaps = std::move(recorder).Finish().gaps;
@@ -220,7 +220,7 @@ TEST(FitLoop, RefusesAHandOnTheHandle) {
 }
 
 // A refusal because of a hand on the handle also reports gaps in the measurement itself.
-TEST(FitLoop, TellsOfLateTicksAndLostSamplesWhereItRefuses) {
+TEST(FitLoop, RefusalReportsLateTicksAndLostSamples) {
   LoopRecord record = Swing({});
   const auto refusal = [&] {
     try {

@@ -66,7 +66,7 @@ TEST_F(MachineFile, IsChangedAndItsCopyKept) {
   EXPECT_EQ(Files(), 3);
 }
 
-TEST_F(MachineFile, IsChangedBehindALink) {
+TEST_F(MachineFile, IsChangedThroughALink) {
   const fs::path link = folder_ / "link.yaml";
   fs::create_symlink("rig.yaml", link);
   ChangeMachine(link, "now", [](Machine* machine) { machine->name = "other"; });
@@ -74,7 +74,7 @@ TEST_F(MachineFile, IsChangedBehindALink) {
   EXPECT_EQ(LoadMachine(file_).name, "other");
 }
 
-TEST_F(MachineFile, StaysAsItWasIfTheChangeIsNone) {
+TEST_F(MachineFile, IsUnchangedByAnEmptyChange) {
   EXPECT_THROW(
       ChangeMachine(file_, "now", [](Machine* machine) { machine->left->arm.payload.mass = -1; }),
       InputError);
@@ -116,7 +116,7 @@ TEST_F(MachineFile, StampHoldsUntilTheArmIsChanged) {
   }
 }
 
-TEST_F(MachineFile, HashIsOfWhatIsSaidNotOfHow) {
+TEST_F(MachineFile, HashDependsOnTheContentNotOnTheFormat) {
   const std::string hash = HashOf(*LoadMachine(file_).left);
   EXPECT_EQ(hash.size(), 16u);
   std::ofstream(file_) << R"(predictor_machine: 1

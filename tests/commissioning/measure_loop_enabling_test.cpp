@@ -71,7 +71,7 @@ TEST_F(MeasureLoopWithADevice, AHeldKeyIsNotEnough) {
       << person_->All();
 }
 
-TEST_F(MeasureLoopWithADevice, NorIsTheDeviceAlone) {
+TEST_F(MeasureLoopWithADevice, TheDeviceAloneIsNotEnough) {
   Swing([&](double t) -> char {
     Press(t > 0.2);
     EXPECT_FALSE(Moves());
@@ -79,7 +79,7 @@ TEST_F(MeasureLoopWithADevice, NorIsTheDeviceAlone) {
   });
 }
 
-TEST_F(MeasureLoopWithADevice, OneThatIsTapedDownCountsForNothing) {
+TEST_F(MeasureLoopWithADevice, ADeviceThatIsTapedDownDoesNotCount) {
   Press(true);
   Swing([&](double t) -> char {
     EXPECT_FALSE(Moves());
@@ -91,7 +91,7 @@ TEST_F(MeasureLoopWithADevice, OneThatIsTapedDownCountsForNothing) {
       << person_->All();
 }
 
-TEST_F(MeasureLoopWithADevice, AnyOtherKeyStopsUntilItWasLetGo) {
+TEST_F(MeasureLoopWithADevice, AnyOtherKeyStopsUntilItIsReleased) {
   bool moved = false;
   Swing([&](double t) -> char {
     Press(t > 0.2);
@@ -106,7 +106,7 @@ TEST_F(MeasureLoopWithADevice, AnyOtherKeyStopsUntilItWasLetGo) {
 
 // Letters that were typed while a connection was stalled do not count as a touch of the key;
 // neither does a jammed key.
-TEST_F(MeasureLoopWithADevice, LettersThatStoodInLineAreNoTouch) {
+TEST_F(MeasureLoopWithADevice, BufferedLettersAreNotATouch) {
   Swing([&](double t) -> char {
     Press(t > 0.2);
     EXPECT_FALSE(Moves()) << t;
@@ -115,7 +115,7 @@ TEST_F(MeasureLoopWithADevice, LettersThatStoodInLineAreNoTouch) {
   });
 }
 
-TEST_F(MeasureLoopWithADevice, AKeyThatIsJammedIsNoTouch) {
+TEST_F(MeasureLoopWithADevice, AJammedKeyIsNotATouch) {
   Swing([&](double t) -> char {
     Press(t > 0.5);
     EXPECT_FALSE(Moves()) << t;

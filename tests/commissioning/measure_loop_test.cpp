@@ -64,11 +64,11 @@ TEST(MeasureLoop, MovesOnlyWhileTheKeyIsHeldAndNeverFast) {
 }
 
 // Joints that were measured before an interruption are not measured again.
-TEST(MeasureLoop, GoesOnWithTheJointsThatAreLeft) {
+TEST(MeasureLoop, ContinuesWithTheRemainingJoints) {
   Bench bench;
   Swings swings;
-  std::vector<std::vector<std::string>> told;
-  for (const char* last_joint : {"Joint 3 of 7", "never told"}) {
+  std::vector<std::vector<std::string>> reported;
+  for (const char* last_joint : {"Joint 3 of 7", "never shown"}) {
     Holder holder(&bench.time);
     holder.holds = true;
     ScriptedPerson person([&](const std::string& last) {
@@ -137,26 +137,26 @@ TEST(MeasureLoop, DoesNotBeginWithAHandOnTheHandle) {
   EXPECT_NE(why.find("Something presses on the left handle (8."), std::string::npos) << why;
 }
 
-TEST(MeasureLoop, DoesNotMoveAnArmThatWasToldOfAnotherPayload) {
+TEST(MeasureLoop, DoesNotMoveAnArmThatIsSetToAnotherPayload) {
   Bench bench;
   auto driver = std::make_unique<RigDriver>(&bench.hand);
-  driver->mutable_facts().payload = ToldPayload{3.0, Vector3::Zero()};
+  driver->mutable_facts().payload = ReportedPayload{3.0, Vector3::Zero()};
   bench.station = Station(0, MachineArmOf(bench.scenario), std::move(driver), nullptr);
   const std::string why = RefusalToBegin(&bench, [] {});
   EXPECT_NE(why.find("is set to 3.00 kg"), std::string::npos) << why;
 }
 
 // The external watchdog is notified every millisecond, including whether the arm moves.
-TEST(MeasureLoop, TellsEachStepWhetherTheArmMoves) {
+TEST(MeasureLoop, ReportsAtEachStepWhetherTheArmMoves) {
   Bench bench;
   Holder holder(&bench.time);
   holder.holds = true;
   int steps = 0;
-  bool told = false;
+  bool reported = false;
   double longest = 0, last_step = 0;
   ScriptedPerson person([&](const std::string& last) -> char {
     if (bench.hand.sample().v.cwiseAbs().maxCoeff() > 0.03) {
-      EXPECT_TRUE(told);
+      EXPECT_TRUE(reported);
       if (++steps > 300) return kGiveUp;
     }
     return holder.Key(last);
@@ -166,13 +166,13 @@ TEST(MeasureLoop, TellsEachStepWhetherTheArmMoves) {
     const double now = session.Now();
     if (last_step > 0) longest = std::max(longest, now - last_step);
     last_step = now;
-    told = moves;
+    reported = moves;
     if (moves || bench.hand.command().size() == 0) return "";
     EXPECT_EQ(bench.hand.command().norm(), 0);
     return "";
   });
   EXPECT_THROW(SwingAll(&session, &bench.station, Short()), InputError);
-  EXPECT_FALSE(told);  // at rest at the end
+  EXPECT_FALSE(reported);  // at rest at the end
   EXPECT_LT(longest, 0.0011);
 }
 

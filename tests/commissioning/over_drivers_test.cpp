@@ -89,7 +89,7 @@ TEST_P(OverDrivers, WhoGivesUpInMotionLeavesAnArmAtRest) {
   EXPECT_LT(rig_->motion().distance, 1e-3);
 }
 
-TEST_P(OverDrivers, WhereTheProgramHangsTheArmBrakesByItselfAndThePersonIsTold) {
+TEST_P(OverDrivers, IfTheProgramHangsTheArmBrakesByItselfAndAMessageIsShown) {
   int moving = 0;
   ScriptedPerson person([&](const std::string& last) -> char {
     moving += Speed() > 0.005;

@@ -47,7 +47,7 @@ struct OneArm {
   Connector connector;
   bool own_wrench = true;
   double rate = 0;  // rate of its controller version [Hz]
-  std::optional<ToldPayload> payload;
+  std::optional<ReportedPayload> payload;
 };
 
 TEST(ProbeMachine, MeasuresRateAgeAndWrench) {
@@ -87,7 +87,7 @@ TEST(ProbeMachine, SeesWhatALoopOfAMillisecondWouldNot) {
   EXPECT_NEAR(probed[0].times.rate, 1000, 10);
 }
 
-TEST(ProbeMachine, TellsSilenceFaultAndWrongRate) {
+TEST(ProbeMachine, ReportsSilenceFaultAndWrongRate) {
   OneArm silent;
   silent.hand.silent = true;
   EXPECT_NE(silent.Probe()[0].trouble.find("no sample for 0.5 s"), std::string::npos);
@@ -153,7 +153,7 @@ TEST(ProbeMachine, HoldsTheModelAgainstTheArmThatAnswers) {
             std::string::npos);
 }
 
-TEST(ProbeMachine, GoesOnWhereOneDoesNotAnswer) {
+TEST(ProbeMachine, ContinuesIfOneDoesNotAnswer) {
   OneArm one;
   one.machine.right = one.machine.left;
   const auto arm = one.connector.arm;
@@ -208,13 +208,13 @@ TEST(PayloadRefusal, ComparesMassAndCentreOfGravity) {
   side.arm.payload.center_of_mass = {0, 0, 0.06};
   side.arm.sensor.pose.xyz = {0, 0, 0.02};
   EXPECT_EQ(PayloadRefusal(facts, side), "");  // the arm reports no payload
-  facts.payload = ToldPayload{0.52, {0, 0, 0.08}};
+  facts.payload = ReportedPayload{0.52, {0, 0, 0.08}};
   EXPECT_EQ(PayloadRefusal(facts, side), "");
-  facts.payload = ToldPayload{0, {0, 0, 0}};
+  facts.payload = ReportedPayload{0, {0, 0, 0}};
   EXPECT_NE(PayloadRefusal(facts, side).find("Enter 0.50 kg at the pendant"), std::string::npos);
-  facts.payload = ToldPayload{1.2, {0, 0, 0.08}};
+  facts.payload = ReportedPayload{1.2, {0, 0, 0.08}};
   EXPECT_NE(PayloadRefusal(facts, side).find("set to 1.20 kg"), std::string::npos);
-  facts.payload = ToldPayload{0.5, {0, 0.05, 0.08}};
+  facts.payload = ReportedPayload{0.5, {0, 0.05, 0.08}};
   EXPECT_NE(PayloadRefusal(facts, side).find("centre of gravity at (0, 50, 80) mm"),
             std::string::npos);
   // A separate sensor also adds its weight and shifts the centre of gravity accordingly.
@@ -222,12 +222,12 @@ TEST(PayloadRefusal, ComparesMassAndCentreOfGravity) {
   EXPECT_NE(PayloadRefusal(facts, side).find("of sensor and handle together at the pendant"),
             std::string::npos);
   for (const double z : {0.79, 0.81}) {  // 0.5 kg at 80 mm, 0.5 kg within 100 mm, 0.01 kg·m
-    facts.payload = ToldPayload{1, {0, 0, 0.04 + 0.05 + 0.01 + 0.01 * (z - 0.8)}};
+    facts.payload = ReportedPayload{1, {0, 0, 0.04 + 0.05 + 0.01 + 0.01 * (z - 0.8)}};
     EXPECT_EQ(PayloadRefusal(facts, side).empty(), z < 0.8) << z;
   }
-  facts.payload = ToldPayload{1.2, {0, 0, 0.03}};
+  facts.payload = ReportedPayload{1.2, {0, 0, 0.03}};
   EXPECT_EQ(PayloadRefusal(facts, side), "");
-  facts.payload = ToldPayload{2.0, {0, 0, 0.03}};
+  facts.payload = ReportedPayload{2.0, {0, 0, 0.03}};
   EXPECT_NE(PayloadRefusal(facts, side).find("the sensor's mass"), std::string::npos);
 }
 
@@ -235,12 +235,12 @@ TEST(PayloadRefusal, OfAnArmThatTakesItOffItselfOnlyOneMayHaveTheWeight) {
   DeviceFacts facts;
   facts.payload_taken_off = true;
   MachineArm side;
-  for (const double told : {0.0, 0.5})
+  for (const double reported : {0.0, 0.5})
     for (const double ours : {0.0, 0.5}) {
-      facts.payload = ToldPayload{told, {0, 0, 0.08}};
+      facts.payload = ReportedPayload{reported, {0, 0, 0.08}};
       side.arm.payload.mass = ours;
       EXPECT_EQ(PayloadRefusal(facts, side).find("subtracted twice") != std::string::npos,
-                told > 0 && ours > 0);
+                reported > 0 && ours > 0);
     }
   // With a separate sensor, the arm's own estimate is not used.
   side.sensor.make = SensorMake::kNetFt;

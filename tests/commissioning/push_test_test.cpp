@@ -82,7 +82,7 @@ std::string RefusalFor(const Matrix3& R, bool swapped = false) {
   return pusher.test.Refusal();
 }
 
-TEST(PushTest, NamesWhatItLooksLike) {
+TEST(PushTest, NamesTheLikelyError) {
   const Matrix3 I = Matrix3::Identity();
   Matrix3 mirrored = I;
   mirrored(1, 1) = -1;
@@ -178,7 +178,7 @@ TEST(PushTest, WaitsUntilTheOtherHandleIsFreeToo) {
   EXPECT_EQ(test.axis(), 0);
 }
 
-TEST(PushTest, IsNotFooledByWhatIsNoNumber) {
+TEST(PushTest, IgnoresInvalidNumbers) {
   PushTest test;
   Wrench F = Wrench::Zero();
   for (int k = 0; k < 100; ++k) test.Update(F, F, kDt);

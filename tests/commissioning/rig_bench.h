@@ -24,7 +24,7 @@ struct Bench {
   Station station;
 };
 
-// A person who leads the arm to given joint angles. Lead returns true once the arm rests there.
+// A person who guides the arm to given joint angles. Lead returns true once the arm rests there.
 class Leader {
  public:
   explicit Leader(RigHand* hand) : hand_(hand) {}

@@ -41,7 +41,7 @@ class VirtualTime : public Network {
   std::vector<std::function<void(double)>> steps_;
 };
 
-// The left arm of a rig. A test models the person who leads the arm as a velocity.
+// The left arm of a rig. A test models the person who guides the arm as a velocity.
 class RigHand {
  public:
   RigHand(const Scenario& scenario, VirtualTime* time, JointVector start, double rate = 1000)
@@ -66,7 +66,7 @@ class RigHand {
   const JointVector& command() const { return command_; }
   bool motion() const { return motion_; }
   double hardest() const { return hardest_; }
-  // Joint velocity due to a person who leads the arm [rad/s]; empty if no person does.
+  // Joint velocity due to a person who guides the arm [rad/s]; empty if no person does.
   void Lead(const JointVector& v) { lead_ = v; }
   // Disturbances of the measured wrench and joints.
   Wrench touch = Wrench::Zero();
@@ -147,19 +147,19 @@ class ScriptedPerson final : public Person {
  public:
   using Reaction = std::function<char(const std::string& last)>;
   explicit ScriptedPerson(Reaction react) : react_(std::move(react)) {}
-  void Tell(const std::string& line) override { told.push_back(line); }
+  void Show(const std::string& line) override { shown.push_back(line); }
   char Key() override {
-    if (++calls_ > kPatience) throw std::runtime_error("It never ends: " + told.back());
-    const char key = react_(answered_ == told.size() ? "" : told.back());
-    if (key != 0) answered_ = told.size();
+    if (++calls_ > kPatience) throw std::runtime_error("It never ends: " + shown.back());
+    const char key = react_(answered_ == shown.size() ? "" : shown.back());
+    if (key != 0) answered_ = shown.size();
     return key;
   }
   std::string All() const {
     std::string text;
-    for (const std::string& line : told) text += line + "\n";
+    for (const std::string& line : shown) text += line + "\n";
     return text;
   }
-  std::vector<std::string> told;
+  std::vector<std::string> shown;
 
  private:
   static constexpr int kPatience = 200'000;  // number of steps

@@ -19,7 +19,7 @@ class LateTime final : public VirtualTime {
   void Work(double time) { VirtualTime::Wait(time); }
 };
 
-TEST(SessionPace, WhoWakesLateAndWorksLosesNoneOfARobotsStates) {
+TEST(SessionPace, LateWakingAndWorkLoseNoStatesOfARobot) {
   constexpr int kSteps = 10'000;
   LateTime time;
   ScriptedPerson person([&](const std::string&) {
@@ -33,9 +33,9 @@ TEST(SessionPace, WhoWakesLateAndWorksLosesNoneOfARobotsStates) {
   const std::uint64_t begin = time.Now();
   session.OnStep([&](bool) -> std::string {
     const std::uint64_t state = time.Now() / kPeriod;
-    if (state != last) recorder.Seen(1e-9 * static_cast<double>(state * kPeriod), 0);
+    if (state != last) recorder.AddSample(1e-9 * static_cast<double>(state * kPeriod), 0);
     last = state;
-    recorder.Told(session.due(), session.Now(), 0);
+    recorder.AddCommand(session.due(), session.Now(), 0);
     return "";
   });
   for (int k = 0; k < kSteps; ++k) session.Step();

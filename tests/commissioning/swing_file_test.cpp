@@ -41,7 +41,7 @@ class SwingFileTest : public testing::Test {
   SwingFile file_{machine_, "left", "0123456789abcdef"};
 };
 
-TEST_F(SwingFileTest, GivesBackWhatItWasGiven) {
+TEST_F(SwingFileTest, ReadsWhatItWrote) {
   EXPECT_TRUE(file_.Load().swings.records.empty());
   EXPECT_EQ(file_.Load().remark, "");
   const Swings before = TwoOfSix();
@@ -76,7 +76,7 @@ TEST_F(SwingFileTest, IsOfNoOtherArm) {
   EXPECT_TRUE(SwingFile(machine_, "right", "0123456789abcdef").Load().swings.records.empty());
 }
 
-TEST_F(SwingFileTest, TakesNothingOutOfAFileThatIsCut) {
+TEST_F(SwingFileTest, TakesNothingFromATruncatedFile) {
   file_.Save(TwoOfSix(), "now");
   const std::string whole = Text();
   for (std::size_t length = 0; length + 1 < whole.size(); ++length) {

@@ -22,7 +22,7 @@ TEST(ContainedThread, EndsAloneAndSaysWhy) {
   EXPECT_STREQ(name.c_str(), "a thread");
 }
 
-TEST(ContainedThread, ContainsWhatIsNoStandardException) {
+TEST(ContainedThread, ContainsNonStandardExceptions) {
   std::string why;
   ContainedThread(
       "a thread", [] { throw 7; }, [&](const char* reason) { why = reason; })

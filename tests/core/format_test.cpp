@@ -5,7 +5,7 @@
 namespace predictor {
 namespace {
 
-TEST(SeenAndAllowed, HasThreeDigitsOrAsManyAsTellThemApart) {
+TEST(SeenAndAllowed, HasThreeDigitsOrAsManyAsDistinguishThem) {
   EXPECT_EQ(SeenAndAllowed(30.5312, 30, Quantity::kForce), "30.5 N, limit 30 N");
   EXPECT_EQ(SeenAndAllowed(30.0312, 30, Quantity::kForce), "30.03 N, limit 30 N");
   EXPECT_EQ(SeenAndAllowed(0.4, 0.35, Quantity::kAngle), "22.9°, limit 20.1°");

@@ -60,12 +60,12 @@ TEST_F(HeldKeyTest, IsHeldFromTheSecondLetterUntilItIsSilent) {
   EXPECT_TRUE(key_.held());
   Pass(0.010);
   EXPECT_FALSE(key_.held());
-  EXPECT_EQ(signs_, (std::vector{KeySign::kTouched, KeySign::kHeld, KeySign::kGoesOn,
-                                 KeySign::kGoesOn, KeySign::kGoesOn}));
+  EXPECT_EQ(signs_, (std::vector{KeySign::kTouched, KeySign::kHeld, KeySign::kContinues,
+                                 KeySign::kContinues, KeySign::kContinues}));
 }
 
 // Silence releases the key. Afterwards one letter does not count as held, two do.
-TEST_F(HeldKeyTest, MustBeHeldAnewAfterSilence) {
+TEST_F(HeldKeyTest, MustBeHeldAgainAfterSilence) {
   Hold();
   Letters({0.15});
   Pass(0.05);
@@ -76,14 +76,14 @@ TEST_F(HeldKeyTest, MustBeHeldAnewAfterSilence) {
 }
 
 // Silence also releases the key without updates in between.
-TEST_F(HeldKeyTest, IsLetGoBySilenceThatNobodySaw) {
+TEST_F(HeldKeyTest, IsReleasedByUnobservedSilence) {
   Hold();
   now_ += 0.5;
   EXPECT_EQ(key_.Update('s', now_), KeySign::kNone);
   EXPECT_FALSE(key_.held());
 }
 
-TEST_F(HeldKeyTest, AnotherKeyLetsGo) {
+TEST_F(HeldKeyTest, AnotherKeyReleases) {
   Hold();
   EXPECT_TRUE(key_.held());
   Letters({0.01}, 'x');
@@ -93,7 +93,7 @@ TEST_F(HeldKeyTest, AnotherKeyLetsGo) {
   EXPECT_FALSE(key_.held());
 }
 
-TEST_F(HeldKeyTest, TwoTouchesFarApartAreNoHold) {
+TEST_F(HeldKeyTest, TwoTouchesFarApartAreNotHolding) {
   Letters({1, 0.9, 0.9});
   Pass(0.9);
   EXPECT_EQ(Count(KeySign::kTouched), 3);
@@ -101,7 +101,7 @@ TEST_F(HeldKeyTest, TwoTouchesFarApartAreNoHold) {
   EXPECT_EQ(Count(KeySign::kHeld), 0);
 }
 
-TEST_F(HeldKeyTest, NorAreTheyWhereNobodyLookedInBetween) {
+TEST_F(HeldKeyTest, TwoTouchesWithoutAnUpdateInBetweenAreNotHoldingEither) {
   Letters({1});
   Pass(0.02);
   now_ += 0.9;
@@ -112,7 +112,7 @@ TEST_F(HeldKeyTest, NorAreTheyWhereNobodyLookedInBetween) {
 }
 
 // The letters of half a second arrive together, after the key has been released.
-TEST_F(HeldKeyTest, ABacklogIsNoHold) {
+TEST_F(HeldKeyTest, ABacklogDoesNotCountAsHolding) {
   for (int letters = 2; letters < 20; ++letters) {
     signs_.clear();
     Letters({1});
@@ -123,7 +123,7 @@ TEST_F(HeldKeyTest, ABacklogIsNoHold) {
 }
 
 // A backlog does not count either if it arrives in pieces or without the pauses of a held key.
-TEST_F(HeldKeyTest, NorIsABacklogInPieces) {
+TEST_F(HeldKeyTest, ABacklogInPiecesDoesNotCountAsHoldingEither) {
   for (const std::vector<double>& gaps : {std::vector<double>{1, 0.05, 0, 0, 0},
                                           {1, 0, 0, 0.05},
                                           {1, 0.05, 0.001, 0.001},
@@ -152,16 +152,16 @@ TEST_F(HeldKeyTest, ALetterThatWasNotJudgedInTimeBeginsNothing) {
 }
 
 // A busy computer sometimes delivers two letters together.
-TEST_F(HeldKeyTest, PairsOfLettersDoNotLetGo) {
+TEST_F(HeldKeyTest, PairsOfLettersDoNotRelease) {
   Hold();
-  const int before = Count(KeySign::kGoesOn);
+  const int before = Count(KeySign::kContinues);
   for (int i = 0; i < 10; ++i) Letters({2 * kRepeat, 0});
   EXPECT_TRUE(key_.held());
-  EXPECT_EQ(Count(KeySign::kGoesOn) - before, 10);  // one sign for each pair
+  EXPECT_EQ(Count(KeySign::kContinues) - before, 10);  // one sign for each pair
 }
 
 // Letters that arrive together are one sign, so a rapid burst lasts only until the time-out.
-TEST_F(HeldKeyTest, ABacklogDoesNotGoOnHolding) {
+TEST_F(HeldKeyTest, ABacklogDoesNotKeepHolding) {
   Hold();
   for (int i = 0; i < 60; ++i) Letters({0.002});
   EXPECT_FALSE(key_.held());

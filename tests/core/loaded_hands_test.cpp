@@ -16,7 +16,7 @@ class LoadedHandsTest : public testing::Test {
   // messages.
   std::vector<std::string> Pass(int milliseconds, RunState state, double force,
                                 bool fault = false) {
-    std::vector<std::string> told;
+    std::vector<std::string> reported;
     for (int i = 0; i < milliseconds; ++i) {
       TickRecord record{};
       record.tick = ++tick_;
@@ -26,22 +26,22 @@ class LoadedHandsTest : public testing::Test {
       record.hands[1].present = fault;
       record.hands[1].arm_fault = fault;
       record.hands[1].wrench[0] = fault ? 0 : 50;
-      for (const std::string& words : hands_.See(record)) told.push_back(words);
+      for (const std::string& words : hands_.See(record)) reported.push_back(words);
     }
-    return told;
+    return reported;
   }
 
   LoadedHands hands_{5, 1000};
   std::uint64_t tick_ = 0;
 };
 
-TEST_F(LoadedHandsTest, AreToldOnceWhileTheyAreLoaded) {
+TEST_F(LoadedHandsTest, AreReportedOnceWhileTheyAreLoaded) {
   EXPECT_TRUE(Pass(2000, RunState::kRun, 20).empty());
   EXPECT_TRUE(Pass(499, RunState::kHeld, 20).empty());
-  const auto told = Pass(2, RunState::kHeld, 20);
-  ASSERT_EQ(told.size(), 1U);
+  const auto reported = Pass(2, RunState::kHeld, 20);
+  ASSERT_EQ(reported.size(), 1U);
   EXPECT_EQ(
-      told[0],
+      reported[0],
       Message("danger.loaded",
               {{"side", "left"},
                {"force", "20"},
@@ -49,11 +49,11 @@ TEST_F(LoadedHandsTest, AreToldOnceWhileTheyAreLoaded) {
   EXPECT_TRUE(Pass(60'000, RunState::kHeld, 20).empty());
 }
 
-TEST_F(LoadedHandsTest, AreToldWhatToHoldAtThisRig) {
+TEST_F(LoadedHandsTest, AreReportedWithTheKeyOfThisRig) {
   hands_ = {5, 1000, true};
-  const auto told = Pass(501, RunState::kHeld, 20);
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_NE(told[0].find(HowToHold('r', true)), std::string::npos) << told[0];
+  const auto reported = Pass(501, RunState::kHeld, 20);
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_NE(reported[0].find(HowToHold('r', true)), std::string::npos) << reported[0];
 }
 
 // One hand is caught later; another one was free and is caught again.
@@ -72,19 +72,19 @@ TEST_F(LoadedHandsTest, AreWatchedAsLongAsTheArmsStand) {
 }
 
 TEST_F(LoadedHandsTest, OfARobotWithoutPowerHaveOtherAdvice) {
-  const auto told = Pass(600, RunState::kUnpowered, 12);
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].find(HowToHold('r', false)), std::string::npos) << told[0];
-  EXPECT_TRUE(told[0].ends_with(Message("danger.caught_free"))) << told[0];
+  const auto reported = Pass(600, RunState::kUnpowered, 12);
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_EQ(reported[0].find(HowToHold('r', false)), std::string::npos) << reported[0];
+  EXPECT_TRUE(reported[0].ends_with(Message("danger.caught_free"))) << reported[0];
   EXPECT_TRUE(Pass(2000, RunState::kUnpowered, std::numeric_limits<double>::quiet_NaN()).empty());
 }
 
 // RECOVERY would stop immediately, because the arm obeys again only with a new driver.
 TEST_F(LoadedHandsTest, AreNotFreedByRecoveryWhereAnArmIsAtFault) {
-  const auto told = Pass(600, RunState::kHeld, 12, true);
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].find(HowToHold('r', false)), std::string::npos) << told[0];
-  EXPECT_TRUE(told[0].ends_with(Message("danger.caught_free"))) << told[0];
+  const auto reported = Pass(600, RunState::kHeld, 12, true);
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_EQ(reported[0].find(HowToHold('r', false)), std::string::npos) << reported[0];
+  EXPECT_TRUE(reported[0].ends_with(Message("danger.caught_free"))) << reported[0];
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST(ConnectMachine, AnArmOfAnotherRateIsRefused) {
 }
 
 // If a Franka's driver limited one joint but not the others, the handle would leave its path.
-TEST(ConnectMachine, AScenarioAsksOfAFrankaWhatItsDriverLetsThrough) {
+TEST(ConnectMachine, AScenarioGetsTheLimitsOfAFrankasDriver) {
   Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/box_9kg.yaml");
   FarRig rig(scenario);
   TwoArms arms("franka", ArmMake::kFranka, scenario, &rig);

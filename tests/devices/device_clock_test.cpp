@@ -7,7 +7,7 @@
 namespace predictor {
 namespace {
 
-TEST(DeviceClock, TellsTheDelayBeyondTheQuickestPackage) {
+TEST(DeviceClock, MeasuresTheDelayBeyondTheQuickestPackage) {
   DeviceClock clock;
   EXPECT_GE(clock.Age(5), 1e9);
   std::uint64_t now = 7'000'000'000;

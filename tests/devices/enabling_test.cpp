@@ -75,7 +75,7 @@ class EnablingDevice : public testing::Test {
   }
   void Press() { arms_[1]->Do("press " + std::to_string(kInput)); }
   void Release() { arms_[1]->Do("release " + std::to_string(kInput)); }
-  void PressAnew() {
+  void PressAgain() {
     Release();
     Tick(50);
     Press();
@@ -95,7 +95,7 @@ class EnablingDevice : public testing::Test {
     Ask(RunEvent::kStartRequested);
     return emulator_->state() == RunState::kRun;
   }
-  bool Told(StopCause cause) const { return emulator_->record().cause == cause; }
+  bool HasCause(StopCause cause) const { return emulator_->record().cause == cause; }
 
   std::unique_ptr<FarRig> rig_;
   std::array<std::unique_ptr<FakeDevice>, kHands> arms_;
@@ -123,7 +123,7 @@ TEST_F(EnablingDevice, LettingGoStopsAtOnce) {
   Release();
   Tick(4);
   EXPECT_EQ(emulator_->state(), RunState::kStopping);
-  EXPECT_TRUE(Told(StopCause::kEnabling));
+  EXPECT_TRUE(HasCause(StopCause::kEnabling));
   EXPECT_EQ(emulator_->record().cause_quantity, Quantity::kNone);  // not by a time-out
   EXPECT_TRUE(Await(RunState::kHeld));
 }
@@ -133,16 +133,16 @@ class TapedDevice : public EnablingDevice {
   TapedDevice() : EnablingDevice(true) {}
 };
 
-TEST_F(TapedDevice, CountsForNothingBeforeItWasLetGo) {
+TEST_F(TapedDevice, DoesNotCountBeforeItWasReleased) {
   ASSERT_TRUE(Await(RunState::kIdle));
   Tick(200);
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNotEnabled);
-  PressAnew();
+  PressAgain();
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNone);
   EXPECT_EQ(emulator_->state(), RunState::kAlign);
 }
 
-TEST_F(EnablingDevice, AfterAStopItMustBeLetGoFirst) {
+TEST_F(EnablingDevice, AfterAStopItMustBeReleasedFirst) {
   ASSERT_TRUE(ToRun());
   Tick(500);
   Ask(RunEvent::kStopRequested);
@@ -160,7 +160,7 @@ TEST_F(EnablingDevice, AfterAStopItMustBeLetGoFirst) {
 }
 
 // A release during the silence would not have been noticed.
-TEST_F(EnablingDevice, AfterAStopThroughWhichItWasSilentItMustBeLetGoToo) {
+TEST_F(EnablingDevice, AfterSilenceDuringAStopItMustBeReleasedToo) {
   ASSERT_TRUE(ToRun());
   Tick(500);
   silent_ = true;
@@ -171,7 +171,7 @@ TEST_F(EnablingDevice, AfterAStopThroughWhichItWasSilentItMustBeLetGoToo) {
   Tick(1000);
   ASSERT_EQ(Ask(RunEvent::kReset), Refusal::kNone);
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNotEnabled);
-  PressAnew();
+  PressAgain();
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNone);
 }
 

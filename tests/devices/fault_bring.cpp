@@ -20,8 +20,8 @@ constexpr double kBefore = 0.05;  // audited time before a fault [s]
 // Literal limits, so that the judgement does not depend on the prediction: for quick arms (the
 // budget at 0.25 m/s, 30 ms of following, and 10 ms of lag; 120 ms for a Franka's impedance), and
 // with a Franka of 15 Hz.
-constexpr StopBudget kMost{0.240, 0.0134 + 0.25 * 0.040}, kMostOfSlow{0.260, 0.037};
-constexpr double kMostDrift = 0.002, kMostTurn = 0.5 / kDegrees;
+constexpr StopBudget kMaxStop{0.240, 0.0134 + 0.25 * 0.040}, kMaxSlowStop{0.260, 0.037};
+constexpr double kMaxDrift = 0.002, kMaxTurn = 0.5 / kDegrees;
 
 double Speed(Bench& bench) {
   double speed = 0;
@@ -35,17 +35,18 @@ int AnyHand(const Fault& fault, const FaultRig& rig, RandomStream* random) {
   return hands[random->Next() % hands.size()];
 }
 
-bool GoesOn(const Fault& fault) {
-  return fault.expect == Expect::kGoesOn || fault.expect == Expect::kWarned;
+bool Continues(const Fault& fault) {
+  return fault.expect == Expect::kContinues || fault.expect == Expect::kWarned;
 }
 
-StopBudget MostOf(const Bench& bench, const Fault& fault, const FaultRig& rig, std::uint64_t seed) {
+StopBudget MaxStopOf(const Bench& bench, const Fault& fault, const FaultRig& rig,
+                     std::uint64_t seed) {
   Scenario s = bench.scenario();
   for (std::optional<ArmSpec>* arm : {&s.device.left, &s.device.right})
     (*arm)->loop.delay += fault.lag;
   StopBudget most = StopOfArms(s);
   if (fault.lag > 0) return most;
-  const StopBudget cap = HasSlowFranka(rig, seed) ? kMostOfSlow : kMost;
+  const StopBudget cap = HasSlowFranka(rig, seed) ? kMaxSlowStop : kMaxStop;
   return {std::min(most.time, cap.time), std::min(most.way, cap.way)};
 }
 
@@ -53,27 +54,27 @@ bool Warns(const Bench& bench) {
   return (bench.record().hands[0].warnings | bench.record().hands[1].warnings) != 0;
 }
 
-void JudgeGoingOn(const Bench& bench, const Fault& fault, FaultOutcome* o) {
-  o->Require(o->end == RunState::kRun, "stops: " + Told(bench));
-  if (fault.expect == Expect::kWarned) o->Require(Warns(bench), "nobody is warned");
-  if (fault.expect == Expect::kGoesOn) o->Require(!Warns(bench), "warns: " + Told(bench));
+void JudgeContinuing(const Bench& bench, const Fault& fault, FaultOutcome* o) {
+  o->Require(o->end == RunState::kRun, "stops: " + Messages(bench));
+  if (fault.expect == Expect::kWarned) o->Require(Warns(bench), "shows no warning");
+  if (fault.expect == Expect::kContinues) o->Require(!Warns(bench), "warns: " + Messages(bench));
 }
 
 }  // namespace
 
-std::string Told(const Bench& bench) {
+std::string Messages(const Bench& bench) {
   const TickRecord& record = bench.record();
-  std::string told;
-  const auto add = [&told](const std::string& words) {
-    if (!told.empty() && !words.empty()) told += " ";
-    told += words;
+  std::string reported;
+  const auto add = [&reported](const std::string& words) {
+    if (!reported.empty() && !words.empty()) reported += " ";
+    reported += words;
   };
   add(StopCauseWords(record));
   add(StopAdvice(record));
   for (std::size_t hand = 0; hand < kHands; ++hand)
     for (const std::string& words : NewWarnings(0, record.hands[hand], hand)) add(words);
   add(bench.device().Trouble());
-  return told;
+  return reported;
 }
 
 void Take(const BenchStop& stop, FaultOutcome* outcome) {
@@ -88,28 +89,28 @@ void Take(const BenchStop& stop, FaultOutcome* outcome) {
   outcome->apart = stop.apart;
 }
 
-void JudgeTold(const Fault& fault, int hand, FaultOutcome* o) {
+void JudgeMessage(const Fault& fault, int hand, FaultOutcome* o) {
   const FaultWords* words = WordsOf(fault);
-  if (words == nullptr) return o->Fail("nobody says what must be told");
-  const std::string told = o->told.data();
-  o->Require(!told.empty(), "nobody is told");
-  o->Require(
-      std::any_of(words->any.begin(), words->any.end(),
-                  [&](const std::string& text) { return told.find(text) != std::string::npos; }),
-      "is not told in the words of its cause: " + told);
+  if (words == nullptr) return o->Fail("FaultWords has no entry for this fault");
+  const std::string reported = o->message.data();
+  o->Require(!reported.empty(), "shows no message");
+  o->Require(std::any_of(
+                 words->any.begin(), words->any.end(),
+                 [&](const std::string& text) { return reported.find(text) != std::string::npos; }),
+             "the message does not describe the cause: " + reported);
   if (!words->names_hand) return;
   // The text may be "Left hand: ..." or "... of the left sensor's readings ...".
-  std::string text = told;
+  std::string text = reported;
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
   const auto place = [&text](const std::string& name) { return text.find(name + " "); };
   const auto right = static_cast<std::size_t>(hand), wrong = 1 - right;
   o->Require(place(kHandNames[right]) < place(kHandNames[wrong]),
-             std::string("does not name the ") + kHandNames[right] + " hand: " + told);
+             std::string("does not name the ") + kHandNames[right] + " hand: " + reported);
 }
 
 void JudgeReach(const StopBudget& most, FaultOutcome* o) {
   o->Require(o->time <= most.time, Formatted("rests after %.0f ms", 1e3 * o->time));
-  o->Require(o->distance <= most.way, Formatted("goes on for %.1f mm", 1e3 * o->distance));
+  o->Require(o->distance <= most.way, Formatted("continues for %.1f mm", 1e3 * o->distance));
 }
 
 void JudgeStop(const Fault& fault, const StopBudget& most, FaultOutcome* o) {
@@ -125,8 +126,8 @@ void JudgeStop(const Fault& fault, const StopBudget& most, FaultOutcome* o) {
   }
   JudgeReach(most, o);
   if (!fault.together) return;
-  o->Require(o->drift <= kMostDrift, Formatted("the handles part by %.2f mm", 1e3 * o->drift));
-  o->Require(o->turn <= kMostTurn, Formatted("the handles turn by %.2f deg", kDegrees * o->turn));
+  o->Require(o->drift <= kMaxDrift, Formatted("the handles part by %.2f mm", 1e3 * o->drift));
+  o->Require(o->turn <= kMaxTurn, Formatted("the handles turn by %.2f deg", kDegrees * o->turn));
 }
 
 void JudgeRest(Bench& bench, FaultOutcome* o) {
@@ -152,15 +153,15 @@ FaultOutcome Bring(Bench& bench, const Fault& fault, const FaultRig& rig, std::u
   }
   const std::uint64_t tick = bench.record().tick;
   fault.inject(bench, hand);
-  const double patience = fault.expect == Expect::kGoesOn ? 0.5 : 1.5;
+  const double patience = fault.expect == Expect::kContinues ? 0.5 : 1.5;
   const BenchStop stop = bench.AwaitStop(tick, patience);
   Take(stop, &outcome);
-  outcome.Tell(Told(bench));
-  if (fault.expect != Expect::kGoesOn) JudgeTold(fault, hand, &outcome);
-  if (GoesOn(fault)) {
-    JudgeGoingOn(bench, fault, &outcome);
+  outcome.SetMessage(Messages(bench));
+  if (fault.expect != Expect::kContinues) JudgeMessage(fault, hand, &outcome);
+  if (Continues(fault)) {
+    JudgeContinuing(bench, fault, &outcome);
   } else {
-    JudgeStop(fault, MostOf(bench, fault, rig, seed), &outcome);
+    JudgeStop(fault, MaxStopOf(bench, fault, rig, seed), &outcome);
     JudgeRest(bench, &outcome);
   }
   AppendForAudit(audit, fault, seed, rig, bench, stop);
@@ -188,19 +189,19 @@ void JudgeRestWithoutLoop(Bench& bench, const std::function<void()>& each, Fault
 
 // Whether a run may end in this state, apart from rest after a stop.
 bool MayEnd(RunState end, const Fault& first, const Fault& second) {
-  const auto lets_go_on = [](const Fault& f) { return f.Begins() || GoesOn(f); };
-  if (end == RunState::kRun) return lets_go_on(first) && lets_go_on(second);
+  const auto lets_continue = [](const Fault& f) { return f.Begins() || Continues(f); };
+  if (end == RunState::kRun) return lets_continue(first) && lets_continue(second);
   // There is no emulation while the arms recover.
   if (end == RunState::kRecovery)
     return (first.recovers || second.recovers) &&
-           (lets_go_on(second) || second.carrier == Carrier::kLoop);
+           (lets_continue(second) || second.carrier == Carrier::kLoop);
   return end == RunState::kIdle && first.Begins();  // it never ran
 }
 
 void JudgeBoth(Bench& bench, const Fault& first, const Fault& second, FaultOutcome* o) {
-  o->Tell(Told(bench));
+  o->SetMessage(Messages(bench));
   const bool held = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
-  o->Require(!held || o->told[0] != 0, "nobody is told");
+  o->Require(!held || o->message[0] != 0, "shows no message");
   o->Require(held || MayEnd(o->end, first, second), std::string("ends ") + Name(o->end));
   if (held || o->end == RunState::kIdle) JudgeRest(bench, o);
   // The second fault may be detected only after the first fault's stop has come to rest.

@@ -16,11 +16,11 @@ FaultOutcome BringBoth(Bench& bench, const Fault& first, const Fault& second, co
                        std::uint64_t seed, const std::string& audit);
 
 // The text that a person at the console sees: stop, warnings, and troubles of devices.
-std::string Told(const Bench& bench);
+std::string Messages(const Bench& bench);
 
-// Parts of the judgement, for other kinds of faults. JudgeTold checks that the message describes
+// Parts of the judgement, for other kinds of faults. JudgeMessage checks that the message describes
 // the fault and names its hand first.
-void JudgeTold(const Fault& fault, int hand, FaultOutcome* outcome);
+void JudgeMessage(const Fault& fault, int hand, FaultOutcome* outcome);
 void Take(const BenchStop& stop, FaultOutcome* outcome);
 // Checks the time and the distance of a stop.
 void JudgeReach(const StopBudget& most, FaultOutcome* outcome);

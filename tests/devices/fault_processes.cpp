@@ -25,16 +25,17 @@ void WithoutUs(Bench& bench, FaultOutcome* o, int bound, const std::function<voi
   const auto handles = [&](std::size_t i) { return bench.rig().rig().true_handles()[i].X_W; };
   const std::array<Pose, kHands> begin = {handles(0), handles(1)};
   std::array<Pose, kHands> last = begin;
-  std::array<double, kHands> told{}, way{};
+  std::array<double, kHands> commanded{}, way{};
   std::array<int, kHands> braked = {-1, -1};
-  for (std::size_t i = 0; i < kHands; ++i) told[i] = bench.rig().told(static_cast<int>(i)).norm();
+  for (std::size_t i = 0; i < kHands; ++i)
+    commanded[i] = bench.rig().commanded(static_cast<int>(i)).norm();
   for (int k = 1; k <= 600; ++k) {
     if (each) each();
     bench.Hang(0.001);
     for (std::size_t i = 0; i < kHands; ++i) {
-      const double now = bench.rig().told(static_cast<int>(i)).norm();
-      if (braked[i] < 0 && now < 0.97 * told[i]) braked[i] = k;
-      told[i] = std::max(told[i], now);
+      const double now = bench.rig().commanded(static_cast<int>(i)).norm();
+      if (braked[i] < 0 && now < 0.97 * commanded[i]) braked[i] = k;
+      commanded[i] = std::max(commanded[i], now);
       const double step = (handles(i).p - last[i].p).norm();
       way[i] += step;
       if (step > kSlow) o->time = 0.001 * k;
@@ -50,12 +51,12 @@ void WithoutUs(Bench& bench, FaultOutcome* o, int bound, const std::function<voi
   o->Require(o->ticks <= bound, Formatted("brakes after %d ms", o->ticks));
   o->Require(o->time < 0.25, Formatted("rests after %.0f ms", 1e3 * o->time));
   o->Require(o->distance < 0.0134 + 0.25 * 0.060,
-             Formatted("goes on for %.1f mm", 1e3 * o->distance));
+             Formatted("continues for %.1f mm", 1e3 * o->distance));
 }
 
 void ProcessDies(Bench& bench, int, FaultOutcome* o) {
   WithoutUs(bench, o, 23, nullptr);
-  o->Tell("(Nobody is left to tell: the robot's own panel.)");
+  o->SetMessage("(No process is left to report it; see the robot's own panel.)");
 }
 
 // The watchdog has channels to URs. A Franka accepts only one client and relies on its own
@@ -85,7 +86,7 @@ void LoopHangs(Bench& bench, int, FaultOutcome* o) {
   for (int hand = 0; hand < kHands; ++hand) all = all && bench.arm(hand).tcp_ports().size() > 1;
   // The watchdog takes 10 ms, looks every millisecond, and the controller needs two cycles.
   WithoutUs(bench, o, all ? 14 : 23, WatchdogOf(bench));
-  o->Tell("The control loop hung, and the watchdog stopped the arms.");
+  o->SetMessage("The control loop hung, and the watchdog stopped the arms.");
 }
 
 void EndIsAskedFor(Bench& bench, int, FaultOutcome* o) {

@@ -76,12 +76,12 @@ FaultOutcome InChild(const std::function<FaultOutcome()>& work) {
     _exit(WriteAll(ends[1], &outcome, sizeof outcome) ? 0 : 1);
   }
   close(ends[1]);
-  const bool told = pid > 0 && ReadAll(ends[0], &outcome, sizeof outcome);
+  const bool reported = pid > 0 && ReadAll(ends[0], &outcome, sizeof outcome);
   close(ends[0]);
   int status = 0;
   if (pid > 0) waitpid(pid, &status, 0);
-  if (!told) outcome = {};
-  if (!told) outcome.Fail("the process died (status " + std::to_string(status) + ")");
+  if (!reported) outcome = {};
+  if (!reported) outcome.Fail("the process died (status " + std::to_string(status) + ")");
   return outcome;
 }
 
@@ -214,9 +214,9 @@ bool Start(Bench& bench, const Beginning& beginning) {
   return recovers ? StartToRecover(bench) : bench.Start();
 }
 
-// Performs all runs of a beginning; calls `tell` after each one.
+// Performs all runs of a beginning; calls `report` after each one.
 void RunDue(const FaultRig& rig, Beginning beginning,
-            const std::function<void(const FaultRun&)>& tell) {
+            const std::function<void(const FaultRun&)>& report) {
   const std::uint64_t seed = beginning.seed;
   std::vector<Due>& due = beginning.due;
   const auto on_a_run = [](const Due& d) {
@@ -233,7 +233,7 @@ void RunDue(const FaultRig& rig, Beginning beginning,
       Faults()[it->run.fault].alone(rig, seed, audit, &outcome);
       return outcome;
     });
-    tell(it->run);
+    report(it->run);
   }
   Bench bench(OptionsOf(rig, beginning));
   bench.Capture();
@@ -243,10 +243,10 @@ void RunDue(const FaultRig& rig, Beginning beginning,
     if (runs) bench.Pass(it->time - now);
     now = std::max(now, it->time);
     it->run.outcome = InChild([&] { return OnARun(bench, rig, it->run, audit); });
-    tell(it->run);
+    report(it->run);
   }
   AppendForAudit(audit, "seed " + std::to_string(seed) + " before its faults", rig, bench, {});
-  tell(Audited(seed, audit));
+  report(Audited(seed, audit));
 }
 
 // Distributes the beginnings over one process per processor.

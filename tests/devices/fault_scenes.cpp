@@ -56,7 +56,7 @@ void RunsToSomeEnd(Bench& bench, double time, const Fault& fault, const FaultRig
   const BenchStop stop = bench.AwaitStop(bench.record().tick, 0.5);
   Take(stop, o);
   o->ran = runs;
-  o->Tell(Told(bench));
+  o->SetMessage(Messages(bench));
   const bool rests = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
   o->Require(rests || o->end == RunState::kRun || o->end == RunState::kIdle,
              std::string("ends ") + Name(o->end));
@@ -79,7 +79,7 @@ void StiffModel(const FaultRig& rig, std::uint64_t seed, const std::string& audi
     Bench bench(options);
     RunsToSomeEnd(bench, 4, fault, rig, seed, audit, o);
   } catch (const InputError& error) {
-    o->Tell(error.what());
+    o->SetMessage(error.what());
   }
 }
 
@@ -106,7 +106,7 @@ void Underdamped(const FaultRig& rig, std::uint64_t seed, const std::string& aud
   BeginUnderdamped(rig, seed, &options);
   Bench bench(options);
   bench.Capture();
-  if (!bench.Start()) return o->Fail("no run: " + Told(bench));
+  if (!bench.Start()) return o->Fail("no run: " + Messages(bench));
   // Counts the peaks of the vertical force independently of the detector.
   std::vector<double> force;
   for (int k = 0; k < 20'000 && bench.emulator().state() == RunState::kRun; ++k) {
@@ -115,8 +115,8 @@ void Underdamped(const FaultRig& rig, std::uint64_t seed, const std::string& aud
   }
   const BenchStop stop = bench.AwaitStop(bench.record().tick, 1);
   Take(stop, o);
-  o->Tell(Told(bench));
-  JudgeTold(fault, -1, o);
+  o->SetMessage(Messages(bench));
+  JudgeMessage(fault, -1, o);
   o->Require(o->cause == StopCause::kOscillation,
              std::string("ends ") + Name(o->end) + ", " + Name(o->cause));
   // The run must stop at the third growing cycle above the amplitude from which cycles count.
@@ -174,7 +174,7 @@ void NearlySingular(const FaultRig& rig, std::uint64_t seed, const std::string& 
     Bench bench(options);
     RunsToSomeEnd(bench, 4, fault, rig, seed, audit, o);
   } catch (const InputError& error) {
-    o->Tell(error.what());
+    o->SetMessage(error.what());
   }
 }
 
@@ -206,7 +206,7 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
   Bench bench(OptionsOf(rig, seed));
   bench.Capture();
   BeginMirrored(bench, seed);
-  if (!bench.Start()) return o->Fail("no run: " + Told(bench));
+  if (!bench.Start()) return o->Fail("no run: " + Messages(bench));
   constexpr double kNoise = 2;  // tolerance for sensor noise and the deciding tick [N]
   int fast = 0;
   double hardest = 0;
@@ -236,10 +236,10 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
   const BenchStop stop = bench.AwaitStop(bench.record().tick, 1);
   Take(stop, o);
   o->ticks = fast;
-  o->Tell(Told(bench));
+  o->SetMessage(Messages(bench));
   const bool rests = o->end == RunState::kHeld || o->end == RunState::kUnpowered;
-  o->Require(rests || fast == 0, "drags the hand along, and goes on");
-  if (rests) JudgeTold(fault, -1, o);
+  o->Require(rests || fast == 0, "drags the hand along and continues");
+  if (rests) JudgeMessage(fault, -1, o);
   o->Require(fast <= fault.bound, Formatted("runs away for %d ms", fast));
   o->Require(hardest <= bench.scenario().safety.force + kNoise,
              Formatted("drags the hand along with %.1f N besides the handle's weight", hardest));

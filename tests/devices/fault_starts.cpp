@@ -20,7 +20,7 @@ namespace {
 using enum Carrier;
 using enum Expect;
 
-constexpr double kMostInRecovery = 0.050;  // [m/s]
+constexpr double kMaxRecoverySpeed = 0.050;  // [m/s]
 
 std::size_t Index(int hand) { return static_cast<std::size_t>(hand); }
 
@@ -42,9 +42,9 @@ void UnknownVersion(Carrier carrier, const char* option, const char* version, co
   const std::vector<int> hands = HandsWith(carrier, rig);
   options.arm_options[Index(hands[seed % hands.size()])][option] = version;
   const std::string why = WhyNot(options);
-  o->Tell(why);
+  o->SetMessage(why);
   o->Require(!why.empty(), "connects");
-  o->Require(why.find(word) != std::string::npos, "does not say what is wrong: " + why);
+  o->Require(why.find(word) != std::string::npos, "the message does not name the error: " + why);
 }
 
 // The sequence numbers begin so that they wrap around during the run.
@@ -61,12 +61,12 @@ void SequencesWrap(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
   BenchOptions options = OptionsOf(rig, seed);
   BeginBeforeWrap(rig, seed, &options);
   Bench bench(options);
-  if (!bench.Start()) return o->Fail("no run: " + Told(bench));
+  if (!bench.Start()) return o->Fail("no run: " + Messages(bench));
   bench.Pass(5);
   o->end = bench.emulator().state();
-  o->Require(o->end == RunState::kRun, "stops: " + Told(bench));
+  o->Require(o->end == RunState::kRun, "stops: " + Messages(bench));
   o->Require((bench.record().hands[0].warnings | bench.record().hands[1].warnings) == 0,
-             "warns: " + Told(bench));
+             "warns: " + Messages(bench));
   for (const int hand : HandsWith(kNetFt, rig))
     o->Require(bench.record().hands[Index(hand)].sensor_sequence > 0, "no readings");
 }
@@ -96,9 +96,9 @@ void SensorDrifts(const FaultRig& rig, std::uint64_t seed, const std::string&, c
     bench.Tick();
     o->ticks = k;
   }
-  o->Tell(Told(bench));
-  o->Require(warned(), "nobody is warned");
-  JudgeTold(fault, hand, o);
+  o->SetMessage(Messages(bench));
+  o->Require(warned(), "shows no warning");
+  JudgeMessage(fault, hand, o);
   bench.rig().Drift(hand, Wrench::Zero());
   bench.rig().Disturb(hand, JointVector(), Wrench(6.5 * rate.normalized()));
   bench.Hold(true);
@@ -129,7 +129,7 @@ void PushesAreRefused(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) 
   Bench bench(OptionsOf(rig, seed));
   const auto hand = static_cast<int>(seed % kHands);
   bench.rig().Wire(hand, Mounting(seed));
-  if (!bench.Await(RunState::kIdle, 2)) return o->Fail("not idle: " + Told(bench));
+  if (!bench.Await(RunState::kIdle, 2)) return o->Fail("not idle: " + Messages(bench));
   const auto wrench = [&](int h) {
     return Wrench(Eigen::Map<const Vector6>(bench.record().hands[Index(h)].wrench.data()));
   };
@@ -144,11 +144,11 @@ void PushesAreRefused(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) 
   }
   // The sensor's axes may be at an angle to those of the world. Then no push counts as one along an
   // axis, and the test does not advance.
-  o->Tell(test.done() ? test.Refusal() : commissioning::Sentence(hint));
+  o->SetMessage(test.done() ? test.Refusal() : commissioning::Sentence(hint));
   o->Require(!test.passed(), "passes");
   o->Require(
       test.done() ? !test.Refusal().empty() : hint == commissioning::PushTest::Hint::kStraighter,
-      "the person is told: " + std::string(o->told.data()));
+      "the message is: " + std::string(o->message.data()));
 }
 
 // Distance of the nearest links at the start of the run [m].
@@ -159,13 +159,13 @@ double ElbowDistance(const BenchOptions& options) {
 
 // RECOVERY moves the arm back slowly, and only while the key is held.
 void Recovers(Bench& bench, FaultOutcome* o, Refusal expected) {
-  if (!bench.Await(RunState::kIdle, 2)) return o->Fail("not idle: " + Told(bench));
+  if (!bench.Await(RunState::kIdle, 2)) return o->Fail("not idle: " + Messages(bench));
   bench.Hold(true);
   bench.Pass(0.2);
   bench.emulator().Request(RunEvent::kAlignRequested);
   bench.Tick();
   const auto why = static_cast<Refusal>(bench.record().why_refused);
-  o->Tell(Sentence(why));
+  o->SetMessage(Sentence(why));
   o->Require(why == expected, std::string("not refused: ") + Name(bench.emulator().state()));
   bench.emulator().Request(RunEvent::kRecoverRequested);
   bench.Tick();
@@ -174,11 +174,11 @@ void Recovers(Bench& bench, FaultOutcome* o, Refusal expected) {
   bench.Pass(8);
   o->speed = bench.rig().motion().fastest;
   o->Require(o->speed > 1e-3, "does not move");
-  o->Require(o->speed <= kMostInRecovery, Formatted("recovers at %.1f mm/s", 1e3 * o->speed));
+  o->Require(o->speed <= kMaxRecoverySpeed, Formatted("recovers at %.1f mm/s", 1e3 * o->speed));
   bench.Hold(false);
   o->Require(
       bench.Await(RunState::kIdle, 1),
-      std::string("does not come back: ") + Name(bench.emulator().state()) + " " + Told(bench));
+      std::string("does not come back: ") + Name(bench.emulator().state()) + " " + Messages(bench));
   bench.Hold(true);
   bench.Pass(0.2);
   bench.emulator().Request(RunEvent::kAlignRequested);
@@ -246,7 +246,7 @@ void ScenarioLoosens(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
   };
   const double looser = 1 + std::pow(10, -6 + 7 * random.Uniform());
   const std::string why = with(limit.least ? 1 / looser : looser);
-  o->Tell(why);
+  o->SetMessage(why);
   o->Require(why.find(std::string("safety.") + limit.key) != std::string::npos,
              "not refused: " + why);
   const double tighter = limit.least ? 1 + 0.2 * random.Uniform() : 1 - 0.5 * random.Uniform();
@@ -283,7 +283,7 @@ std::vector<Fault> FaultsOfStarts() {
     return [run](const FaultRig& rig, std::uint64_t seed, const std::string&, const Fault&,
                  FaultOutcome* o) { run(rig, seed, o); };
   };
-  add(7, "sequences come round to zero", kLoop, kGoesOn, 0, unaudited(SequencesWrap));
+  add(7, "sequences come round to zero", kLoop, kContinues, 0, unaudited(SequencesWrap));
   add(14, "RTDE of another version", kUr, kRefused, 0,
       unaudited([](const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
         UnknownVersion(kUr, "protocol", "1", "version", rig, seed, o);

@@ -9,14 +9,13 @@ import re
 import sys
 
 RIG = re.compile(r'(?:\d+: )?([\w ]+): (\d+) runs$')
-ROW = re.compile(r'(?:\d+: )? ?(\d+)  (.{50}) (goes on|warned|holds|power off|refused|arms stop|ends well)\s*(.*)$')
+ROW = re.compile(r'(?:\d+: )? ?(\d+)  (.{50}) (continues|warned|holds|power off|refused|arms stop|ends well)\s*(.*)$')
 STOP = re.compile(r'seen after +(-?\d+) of +(\d+) ticks; .* at rest after +(\d+) ms, +([\d.]+) mm; '
                   r'apart ([\d.]+) mm, ([\d.]+) deg[^;]*(?:; power off asked for after (\d+) of)?')
 
 # How the names of faults and outcomes begin, and their words on the page. The names themselves seed random numbers.
 PAGE = {
     "joints that are no numbers any more": "joint positions that are not numbers",
-    "datagrams of": "datagrams from another sender",
     "the arm's last package for ever": "the arm repeats its last package",
     "the arm's last state for ever": "the arm repeats its last state",
     "sequences come round to zero": "sequence numbers wrap around to zero",
@@ -45,7 +44,6 @@ PAGE = {
     "each fiftieth deadline missed": "every fiftieth deadline missed",
     "states late by 12 ms: no command comes in time": "states late by 12 ms, so no command is in time",
     "states late by 1 ms: each command is too late": "states late by 1 ms, so every command is too late",
-    "goes on": "continues",
     "ends well": "ends safely",
 }
 

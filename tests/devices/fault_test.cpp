@@ -24,8 +24,8 @@ constexpr double kWatchdog = 0.020;  // time-out of our program on a controller 
 
 const char* Words(Expect expect) {
   switch (expect) {
-    case Expect::kGoesOn:
-      return "goes on";
+    case Expect::kContinues:
+      return "continues";
     case Expect::kWarned:
       return "warned";
     case Expect::kHold:
@@ -92,7 +92,7 @@ void PrintRow(const Fault& fault, const std::vector<const FaultOutcome*>& runs) 
   if (fault.off > 0)
     std::printf("; power off asked for after %d of %d ticks", worst.off, fault.off);
   std::printf("\n");
-  if (worst.told[0] != 0) std::printf("      \"%s\"\n", worst.told.data());
+  if (worst.message[0] != 0) std::printf("      \"%s\"\n", worst.message.data());
 }
 
 void ExpectAudited(const FaultRuns& runs) {
@@ -157,15 +157,15 @@ TEST_P(Faults, InPairsEndAtRestSoak) {
 
 // Every fault that stops the run or warns has expected words, and every entry of expected words
 // belongs to a fault.
-TEST(FaultWords, AreAskedForAfterEachFaultThatIsTold) {
+TEST(FaultWords, AreRequiredAfterEachReportedFault) {
   std::set<const FaultWords*> used;
   for (const Fault& fault : predictor::Faults()) {
     const FaultWords* words = WordsOf(fault);
     used.insert(words);
-    const bool told =
+    const bool reported =
         !fault.upon && (fault.expect == Expect::kWarned || fault.expect == Expect::kHold ||
                         fault.expect == Expect::kPowerOff);
-    EXPECT_TRUE(words != nullptr || !told) << fault.ToString();
+    EXPECT_TRUE(words != nullptr || !reported) << fault.ToString();
   }
   for (const FaultWords& words : AllFaultWords())
     EXPECT_TRUE(used.contains(&words)) << words.number << " " << words.fault;
@@ -178,10 +178,10 @@ TEST(FaultWords, AreThoseOfTheFaultAndOfItsHandFirst) {
     return fault.ToString() == "3 sensor silent";
   });
   ASSERT_NE(silent, all.end());
-  const auto well = [&](const std::string& told, int hand) {
+  const auto well = [&](const std::string& reported, int hand) {
     FaultOutcome outcome;
-    outcome.Tell(told);
-    JudgeTold(*silent, hand, &outcome);
+    outcome.SetMessage(reported);
+    JudgeMessage(*silent, hand, &outcome);
     return outcome.well;
   };
   const auto cause = [](StopCause why, int hand, Quantity quantity) {
@@ -239,7 +239,7 @@ TEST(Fault, DISABLED_Trace) {
         FaultOutcome outcome;
         const std::string audit = "/tmp/predictor-audit-trace";
         fault.alone(rig, std::stoull(seed), audit, &outcome);
-        std::printf("%s%s\n%.0f ms, %.1f mm; see %s\n", outcome.told.data(), outcome.why.data(),
+        std::printf("%s%s\n%.0f ms, %.1f mm; see %s\n", outcome.message.data(), outcome.why.data(),
                     1e3 * outcome.time, 1e3 * outcome.distance, audit.c_str());
         continue;
       }

@@ -96,13 +96,13 @@ void CutEachTenth(WireFaults* wire) {
 
 // The time or the state numbers restart from zero, as after a restart of the arm, but on the same
 // connection.
-void BeginTimeOfUrAnew(WireFaults* wire) {
+void RestartUrClock(WireFaults* wire) {
   ChangeUr(wire, kTimeOfUr, [begun = -1.0](double time) mutable {
     if (begun < 0) begun = time;
     return time - begun;
   });
 }
-void BeginNumbersOfFrankaAnew(WireFaults* wire) {
+void RestartFrankaNumbering(WireFaults* wire) {
   Corrupt(wire, [begun = std::optional<std::uint64_t>()](Bytes* bytes) mutable {
     if (bytes->size() != sizeof(fci::Research3State)) return;
     const auto there = std::span(*bytes).first(sizeof(std::uint64_t));
@@ -187,9 +187,9 @@ std::vector<Fault> FaultsOfWires() {
               ToWire([](WireFaults* w) { w->silent = true; }), false}),
       Silent({3, "sensor silent", kNetFt, kPowerOff, 9,
               ToSensorsWire([](WireFaults* w) { w->silent = true; })}),
-      {4, "samples late by 0 to 2 ms", kUr, kGoesOn, 0,
+      {4, "samples late by 0 to 2 ms", kUr, kContinues, 0,
        ToWire([](WireFaults* w) { w->jitter = 0.002; })},
-      {4, "readings late by 0 to 2 ms", kNetFt, kGoesOn, 0,
+      {4, "readings late by 0 to 2 ms", kNetFt, kContinues, 0,
        ToSensorsWire([](WireFaults* w) { w->jitter = 0.002; })},
       {4, "states late by 1 ms: each command is too late", kFranka, kHold, 30,
        ToWire([](WireFaults* w) { w->delay += 0.001; }), false},
@@ -197,31 +197,31 @@ std::vector<Fault> FaultsOfWires() {
        ToSensorsWire([](WireFaults* w) { w->reorder = 0.5; })},
       {5, "arm's states out of order", kFranka, kWarned, 0,
        ToWire([](WireFaults* w) { w->reorder = 0.05; })},
-      {6, "sensor's datagrams twice", kNetFt, kGoesOn, 0,
+      {6, "sensor's datagrams twice", kNetFt, kContinues, 0,
        ToSensorsWire([](WireFaults* w) { w->duplicate = 0.5; })},
-      {6, "arm's states twice", kFranka, kGoesOn, 0,
+      {6, "arm's states twice", kFranka, kContinues, 0,
        ToWire([](WireFaults* w) { w->duplicate = 0.5; })},
       Silent({6, "the arm's last package for ever", kUr, kPowerOff, 9, ToArm("repeat")}),
       Silent({6, "the arm's last state for ever", kFranka, kPowerOff, 9, ToArm("replay state"),
               false}),
       // After a restart of its counter, a device looks old until the counter has passed its
       // previous value, so this is equivalent to silence.
-      Silent({7, "a sensor restarts its numbering", kNetFt, kPowerOff, 9, ToSensor("anew")}),
-      Silent({7, "an arm restarts its clock", kUr, kPowerOff, 9, ToWire(BeginTimeOfUrAnew)}),
+      Silent({7, "a sensor restarts its numbering", kNetFt, kPowerOff, 9, ToSensor("restart")}),
+      Silent({7, "an arm restarts its clock", kUr, kPowerOff, 9, ToWire(RestartUrClock)}),
       Silent({7, "an arm restarts its numbering", kFranka, kPowerOff, 9,
-              ToWire(BeginNumbersOfFrankaAnew), false}),
+              ToWire(RestartFrankaNumbering), false}),
       Silent({8, "sensor's datagrams cut", kNetFt, kPowerOff, 9, ToSensor("short")}),
       // The bench's network counts these datagrams; sockets_test.cpp shows that a socket discards
       // and counts them. Here the operator must see a warning with the count, and the run
       // continues.
-      {8, "datagrams of somebody else", kNetFt, kWarned, 0,
+      {8, "datagrams from another sender", kNetFt, kWarned, 0,
        ToSensorsWire([](WireFaults* w) { w->spoofed = true; })},
       {8, "a tenth of the sensor's datagrams cut", kNetFt, kWarned, 0,
        ToSensorsWire([](WireFaults* w) { CutEachTenth(w); })},
       {8, "a tenth of the arm's states cut", kFranka, kWarned, 0,
        ToWire([](WireFaults* w) { CutEachTenth(w); })},
       {9, "malformed frame", kUr, kPowerOff, 4, ToArm("malformed"), false},
-      {10, "stream cut at every byte", kUr, kGoesOn, 0,
+      {10, "stream cut at every byte", kUr, kContinues, 0,
        ToWire([](WireFaults* w) { w->split = true; })},
       Silent({11, "half-open connection", kArm, kPowerOff, 9,
               ToWire([](WireFaults* w) { w->silent = w->deaf = true; }), false}),
@@ -286,7 +286,7 @@ std::vector<Fault> FaultsOfTheLoop() {
        [](Bench&, int) { BreakQp(QpFault::kNotANumber); }},
       {27, "the solver comes to its limit of iterations", kLoop, kHold, 3,
        [](Bench&, int) { BreakQp(QpFault::kIterationLimit); }},
-      {30, "one deadline missed", kLoop, kGoesOn, 0, [](Bench& b, int) { b.Tick(1); }},
+      {30, "one deadline missed", kLoop, kContinues, 0, [](Bench& b, int) { b.Tick(1); }},
       {30, "three deadlines missed", kLoop, kHold, 1, [](Bench& b, int) { b.Tick(3); }},
       // Single missed deadlines, 2 % of those in a second. The limit of 1 % is reached after half a
       // second.
@@ -328,7 +328,7 @@ const std::vector<FaultWords>& AllFaultWords() {
       {7, "an arm restarts its clock", {"has restarted its clock, as after a reboot"}},
       {7, "an arm restarts its numbering", {kArmOld}},
       {8, "sensor's datagrams cut", {kSensorOld}},
-      {8, "datagrams of somebody else", {kDropped}},
+      {8, "datagrams from another sender", {kDropped}},
       {8, "a tenth", {kDropped}},
       {9, "", {"sends data that is not RTDE"}},
       {11, "half-open", {kArmOld}},
@@ -363,7 +363,7 @@ const FaultWords* WordsOf(const Fault& fault) {
   return nullptr;
 }
 
-void FaultOutcome::Tell(const std::string& text) { Copy(text, &told); }
+void FaultOutcome::SetMessage(const std::string& text) { Copy(text, &message); }
 
 void FaultOutcome::Fail(const std::string& text) {
   if (well) Copy(text, &why);

@@ -22,7 +22,7 @@ const std::vector<FaultRig>& FaultRigs();
 
 // The expected result of a fault.
 enum class Expect {
-  kGoesOn,
+  kContinues,
   kWarned,
   kHold,
   kPowerOff,
@@ -42,17 +42,17 @@ struct FaultOutcome {
   bool ran = false;  // for kAnyEnd: whether RUN was reached
   RunState end = RunState::kInit;
   StopCause cause = StopCause::kNone;
-  int ticks = -1;                // from the fault to the decision
-  int off = -1;                  // from the fault to the power-off request
-  double speed = 0;              // speed of the faster handle at the fault [m/s]
-  double time = 0;               // from the decision until the handles rest [s]
-  double distance = 0;           // [m]
-  double drift = 0, turn = 0;    // change of the handles' relative pose until rest [m], [rad]
-  double apart = 0;              // largest change of their distance during the stop [m]
-  std::array<char, 600> told{};  // the message to a person
-  std::array<char, 600> why{};   // the deviation from the expected result
+  int ticks = -1;                   // from the fault to the decision
+  int off = -1;                     // from the fault to the power-off request
+  double speed = 0;                 // speed of the faster handle at the fault [m/s]
+  double time = 0;                  // from the decision until the handles rest [s]
+  double distance = 0;              // [m]
+  double drift = 0, turn = 0;       // change of the handles' relative pose until rest [m], [rad]
+  double apart = 0;                 // largest change of their distance during the stop [m]
+  std::array<char, 600> message{};  // the message to a person
+  std::array<char, 600> why{};      // the deviation from the expected result
 
-  void Tell(const std::string& text);
+  void SetMessage(const std::string& text);
   // Records a failure; only the first reason is kept.
   void Fail(const std::string& text);
   void Require(bool good, const std::string& text) {

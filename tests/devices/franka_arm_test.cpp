@@ -27,7 +27,7 @@ class FrankaDriver : public testing::TestWithParam<std::uint16_t> {
   FrankaRig rig_;
 };
 
-TEST_P(FrankaDriver, FindsTheVersionAndSaysWhatTheArmIs) {
+TEST_P(FrankaDriver, FindsTheVersionAndDescribesTheArm) {
   rig_.Connect();
   const DeviceFacts& facts = rig_.arm->facts();
   EXPECT_EQ(facts.joints, 7);
@@ -96,7 +96,7 @@ TEST_P(FrankaDriver, AnArmAtFaultIsNotWaitedFor) {
 }
 
 // Without this, a caller that waits for rest would wait forever.
-TEST_P(FrankaDriver, AnArmThatSaysThatItMovesThoughToldToRestIsGivenUp) {
+TEST_P(FrankaDriver, AnArmThatReportsMotionThoughCommandedToRestIsGivenUp) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(50));
   ASSERT_TRUE(rig_.fake.Do("say it moves"));
@@ -107,7 +107,7 @@ TEST_P(FrankaDriver, AnArmThatSaysThatItMovesThoughToldToRestIsGivenUp) {
       << rig_.arm->Trouble();
 }
 
-TEST_P(FrankaDriver, SaysWhatItLetsThrough) {
+TEST_P(FrankaDriver, ReportsItsLimits) {
   rig_.Connect();
   const DeviceFacts& facts = rig_.arm->facts();
   const fci::JointLimits& published = fci::PublishedLimits(GetParam() == 5 ? 5 : 10);
@@ -161,7 +161,7 @@ TEST_P(FrankaDriver, EndsAMotionThatWasNotYetBegun) {
 }
 
 // The arm has not come to rest, so its motion has not ended and need not start again.
-TEST_P(FrankaDriver, GoesOnWhereItIsToldToBeforeItHasComeToRest) {
+TEST_P(FrankaDriver, ContinuesWhenCommandedBeforeItIsAtRest) {
   rig_.Connect();
   rig_.v.setConstant(0.2);
   ASSERT_TRUE(rig_.Ticks(200));
@@ -187,7 +187,7 @@ TEST_P(FrankaDriver, StopsWithinTheLimits) {
 }
 
 // A NaN in any joint invalidates the whole command.
-TEST_P(FrankaDriver, BrakesAllJointsWhereOneIsAskedForNoNumber) {
+TEST_P(FrankaDriver, ANanForOneJointBrakesAllJoints) {
   rig_.Connect();
   rig_.v.setConstant(0.2);
   ASSERT_TRUE(rig_.Ticks(200));
@@ -318,7 +318,7 @@ TEST_P(FrankaDriver, CountsTheCommandsThatTheArmDidNotTake) {
   EXPECT_EQ(rig_.arm->counts().lost_commands, 4U);
 }
 
-TEST_P(FrankaDriver, TellsTheAgeOfWhatItReads) {
+TEST_P(FrankaDriver, ReportsTheAgeOfItsReadings) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(20, false));
   const std::uint64_t sequence = rig_.reading.sequence;
@@ -335,7 +335,7 @@ TEST_P(FrankaDriver, TellsTheAgeOfWhatItReads) {
   EXPECT_EQ(rig_.arm->counts().missed_states, 7U);
 }
 
-TEST_P(FrankaDriver, KnowsThatALateStateIsOld) {
+TEST_P(FrankaDriver, ALateStateIsOld) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(20, false));
   rig_.fake.Do("delay states 8");
@@ -368,7 +368,7 @@ TEST_P(FrankaDriver, NeverGoesBackToAnOlderState) {
   EXPECT_EQ(rig_.arm->counts().commands, before.commands + 1);
 }
 
-TEST_P(FrankaDriver, DropsAndCountsWhatIsNoState) {
+TEST_P(FrankaDriver, DropsAndCountsInvalidStates) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(5, false));
   const std::uint64_t sequence = rig_.reading.sequence;

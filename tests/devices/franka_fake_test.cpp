@@ -25,15 +25,15 @@ class Client {
   }
 
   // Answers the last state and receives the next one.
-  void Tell(const fci::Joints& v, bool finished = false) {
+  void Command(const fci::Joints& v, bool finished = false) {
     fci::CommandBuffer buffer;
     datagrams_->Send(fci::EncodeVelocity(version_, state_.message_id, v, finished, &buffer));
     Pass();
   }
-  void Tell(int joint, double v) {
+  void Command(int joint, double v) {
     fci::Joints all{};
     all[static_cast<std::size_t>(joint)] = v;
-    Tell(all);
+    Command(all);
   }
   void Pass() {
     rig_.network.Pass(1e-3);
@@ -82,16 +82,16 @@ class FakeFrankaControl : public testing::TestWithParam<std::uint16_t> {
 };
 
 TEST_P(FakeFrankaControl, TakesAMotionToItsEnd) {
-  for (int i = 1; i <= 100; ++i) client_.Tell(0, 1e-4 * i);
-  for (int i = 100; i >= 0; --i) client_.Tell(0, 1e-4 * i);
+  for (int i = 1; i <= 100; ++i) client_.Command(0, 1e-4 * i);
+  for (int i = 100; i >= 0; --i) client_.Command(0, 1e-4 * i);
   EXPECT_EQ(client_.state().mode, fci::RobotMode::kMove);
-  client_.Tell(fci::Joints{}, true);
+  client_.Command(fci::Joints{}, true);
   EXPECT_EQ(client_.state().mode, fci::RobotMode::kIdle);
   EXPECT_EQ(client_.status(), fci::MoveStatus::kSuccess);
 }
 
 TEST_P(FakeFrankaControl, StopsAtAJump) {
-  client_.Tell(2, 0.5);
+  client_.Command(2, 0.5);
   ExpectReflex(
       "joint motion generator velocity discontinuity, joint motion generator acceleration "
       "discontinuity");
@@ -100,15 +100,15 @@ TEST_P(FakeFrankaControl, StopsAtAJump) {
 TEST_P(FakeFrankaControl, StopsAtAnAccelerationBeyondItsLimit) {
   const double a = limit(0).acceleration;
   double v = 0;
-  client_.Tell(0, v += 0.4 * a * 1e-3);
-  client_.Tell(0, v += 0.8 * a * 1e-3);
+  client_.Command(0, v += 0.4 * a * 1e-3);
+  client_.Command(0, v += 0.8 * a * 1e-3);
   EXPECT_EQ(client_.state().mode, fci::RobotMode::kMove);
-  client_.Tell(0, v += 1.1 * a * 1e-3);
+  client_.Command(0, v += 1.1 * a * 1e-3);
   ExpectReflex("joint motion generator velocity discontinuity");
 }
 
 TEST_P(FakeFrankaControl, StopsAtAJerkBeyondItsLimit) {
-  client_.Tell(0, 0.6 * limit(0).acceleration * 1e-3);
+  client_.Command(0, 0.6 * limit(0).acceleration * 1e-3);
   ExpectReflex("joint motion generator acceleration discontinuity");
 }
 
@@ -116,9 +116,9 @@ TEST_P(FakeFrankaControl, StopsAtItsVelocityLimit) {
   // Starts in the middle of the range.
   const double a = 0.4 * limit(0).acceleration;
   double v = 0;
-  while (v + a * 1e-3 < limit(0).velocity) client_.Tell(0, v += a * 1e-3);
+  while (v + a * 1e-3 < limit(0).velocity) client_.Command(0, v += a * 1e-3);
   EXPECT_EQ(client_.state().mode, fci::RobotMode::kMove);
-  client_.Tell(0, v += 1.2 * a * 1e-3);
+  client_.Command(0, v += 1.2 * a * 1e-3);
   ExpectReflex("joint motion generator velocity limits violation");
 }
 
@@ -128,21 +128,21 @@ TEST_P(FakeFrankaControl, StopsAtTheEndOfAJointsRange) {
     // Moves as fast as the limit near the end of the range permits, until the arm exceeds it.
     const double fastest = 0.9 * std::min(0.3, limit(1).FastestDown(client_.state().q_d[1] - 0.05));
     v = std::max(-std::max(fastest, 0.02), v - 1e-3);
-    client_.Tell(1, v);
+    client_.Command(1, v);
   }
   EXPECT_EQ(client_.state().mode, fci::RobotMode::kReflex);
   EXPECT_NE(fci::ErrorWords(client_.state().errors).find("limits violation"), std::string::npos);
   EXPECT_NEAR(client_.state().q[1], limit(1).lower, 0.02);
 }
 
-TEST_P(FakeFrankaControl, CannotReadWhatIsNoNumber) {
-  client_.Tell(0, kNan);
+TEST_P(FakeFrankaControl, CannotReadNan) {
+  client_.Command(0, kNan);
   EXPECT_EQ(client_.status(), fci::MoveStatus::kInputErrorAborted);
   EXPECT_NE(client_.state().mode, fci::RobotMode::kMove);
 }
 
-TEST_P(FakeFrankaControl, GoesOnAtConstantAccelerationWithoutCommands) {
-  for (int i = 1; i <= 50; ++i) client_.Tell(0, 1e-3 * i);
+TEST_P(FakeFrankaControl, ContinuesAtConstantAccelerationWithoutCommands) {
+  for (int i = 1; i <= 50; ++i) client_.Command(0, 1e-3 * i);
   for (int i = 0; i < 19; ++i) {
     client_.Pass();
     EXPECT_NEAR(client_.state().dq_d[0], 1e-3 * (51 + i), 1e-6);
@@ -154,7 +154,7 @@ TEST_P(FakeFrankaControl, GoesOnAtConstantAccelerationWithoutCommands) {
 
 TEST_P(FakeFrankaControl, TakesNoCommandForAnOlderState) {
   fci::CommandBuffer buffer;
-  client_.Tell(0, 1e-3);
+  client_.Command(0, 1e-3);
   const auto lost = client_.rig().fake.lost_commands();
   client_.rig().fake.ReceivedDatagram(
       1337, 1, fci::EncodeVelocity(GetParam(), client_.state().message_id - 1, {}, false, &buffer));

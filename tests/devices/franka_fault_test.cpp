@@ -17,7 +17,7 @@ class FrankaFault : public testing::TestWithParam<std::uint16_t> {
   FrankaFault() : rig_(FrankaOfVersion(GetParam())) {}
 
   // Applies a fault in motion and returns the number of ticks until the driver reports it [ms].
-  int TicksUntilTold(const std::string& what) {
+  int TicksUntilReported(const std::string& what) {
     Move();
     EXPECT_TRUE(rig_.fake.Do(what)) << what;
     int ticks = 1;
@@ -30,16 +30,16 @@ class FrankaFault : public testing::TestWithParam<std::uint16_t> {
     ASSERT_TRUE(rig_.Ticks(100));
   }
   // Applies a fault at rest, which the driver must report immediately in these words.
-  void ExpectToldAtRest(const std::string& what, const std::string& words) {
+  void ExpectMessageAtRest(const std::string& what, const std::string& words) {
     rig_.Connect();
     ASSERT_TRUE(rig_.Ticks(10, false));
     ASSERT_TRUE(rig_.fake.Do(what)) << what;
     EXPECT_FALSE(rig_.Tick(false));
-    ExpectTold(words);
+    ExpectMessage(words);
   }
   // The fault persists in the results of Read and Write and in the reading, and no more commands
   // are sent.
-  void ExpectTold(const std::string& words) {
+  void ExpectMessage(const std::string& words) {
     EXPECT_TRUE(Contains(rig_.arm->Trouble(), words)) << rig_.arm->Trouble();
     EXPECT_TRUE(Contains(rig_.arm->Trouble(), "192.0.2.10:1337 ")) << rig_.arm->Trouble();
     const std::uint64_t commands = rig_.arm->counts().commands;
@@ -57,39 +57,39 @@ class FrankaFault : public testing::TestWithParam<std::uint16_t> {
 };
 
 TEST_P(FrankaFault, ReflexIsNamed) {
-  EXPECT_LE(TicksUntilTold("reflex joint_velocity_violation"), 2);
-  ExpectTold("stopped by a reflex (joint velocity violation)");
+  EXPECT_LE(TicksUntilReported("reflex joint_velocity_violation"), 2);
+  ExpectMessage("stopped by a reflex (joint velocity violation)");
 }
 
 TEST_P(FrankaFault, ReflexAtRestIsNamed) {
-  ExpectToldAtRest("reflex cartesian_reflex", "is stopped by a reflex (cartesian reflex)");
+  ExpectMessageAtRest("reflex cartesian_reflex", "is stopped by a reflex (cartesian reflex)");
 }
 
 TEST_P(FrankaFault, ErrorThatChangesNoModeIsNamed) {
-  ExpectToldAtRest("error power_limit_violation", "reports an error (power limit violation)");
+  ExpectMessageAtRest("error power_limit_violation", "reports an error (power limit violation)");
 }
 
 TEST_P(FrankaFault, IsNeverClearedFromHere) {
-  TicksUntilTold("reflex joint_reflex");
+  TicksUntilReported("reflex joint_reflex");
   ASSERT_TRUE(rig_.fake.Do("release"));
-  ExpectTold("joint reflex");
+  ExpectMessage("joint reflex");
   for (const std::string& line : rig_.fake.log()) EXPECT_FALSE(Contains(line, "recovery"));
 }
 
 TEST_P(FrankaFault, UserStop) {
-  EXPECT_LE(TicksUntilTold("user stop"), 2);
-  ExpectTold("stopped by");
+  EXPECT_LE(TicksUntilReported("user stop"), 2);
+  ExpectMessage("stopped by");
   EXPECT_TRUE(Contains(rig_.arm->Trouble(), "user stop"));
 }
 
 TEST_P(FrankaFault, EmergencyStop) {
-  EXPECT_LE(TicksUntilTold("emergency stop"), 2);
-  ExpectTold("");
+  EXPECT_LE(TicksUntilReported("emergency stop"), 2);
+  ExpectMessage("");
 }
 
 TEST_P(FrankaFault, GuidingByHand) {
-  EXPECT_LE(TicksUntilTold("guide"), 2);
-  ExpectTold("");
+  EXPECT_LE(TicksUntilReported("guide"), 2);
+  ExpectMessage("");
 }
 
 // If a person has pressed the stop button or the state of the arm is unknown, it must not be left
@@ -127,19 +127,19 @@ TEST(FrankaFaultRecord, EndsWithoutPowerByWhatTheArmAnswersOrSaysThatItIs) {
     EXPECT_FALSE(ends(fault, 0));
 }
 
-TEST_P(FrankaFault, AnswersThatAreNone) {
-  EXPECT_LE(TicksUntilTold("babble"), 2);
-  ExpectTold("sent an answer that does not belong to the Franka Control Interface");
+TEST_P(FrankaFault, InvalidAnswers) {
+  EXPECT_LE(TicksUntilReported("babble"), 2);
+  ExpectMessage("sent an answer that does not belong to the Franka Control Interface");
 }
 
-TEST_P(FrankaFault, AnswerToARequestThatNobodyMade) {
-  EXPECT_LE(TicksUntilTold("answer another"), 2);
-  ExpectTold("sent an answer that does not belong to the Franka Control Interface");
+TEST_P(FrankaFault, AnswerWithoutARequest) {
+  EXPECT_LE(TicksUntilReported("answer another"), 2);
+  ExpectMessage("sent an answer that does not belong to the Franka Control Interface");
 }
 
 TEST_P(FrankaFault, MotionThatEndsWithoutAnAnswer) {
-  EXPECT_LE(TicksUntilTold("forget"), 2);
-  ExpectTold("aborted the motion");
+  EXPECT_LE(TicksUntilReported("forget"), 2);
+  ExpectMessage("aborted the motion");
 }
 
 // This holds even if the arm becomes ready again.
@@ -153,33 +153,33 @@ TEST_P(FrankaFault, NoMotionBeginsAfterAFault) {
   EXPECT_EQ(rig_.arm->counts().commands, 0U);
 }
 
-TEST_P(FrankaFault, AnotherProgramThatMovesIt) { ExpectToldAtRest("moved", "moves"); }
+TEST_P(FrankaFault, AnotherProgramThatMovesIt) { ExpectMessageAtRest("moved", "moves"); }
 
 TEST_P(FrankaFault, TwentyLostCommandsAreNamed) {
-  const int ticks = TicksUntilTold("lose commands 1000");
+  const int ticks = TicksUntilReported("lose commands 1000");
   EXPECT_GE(ticks, 20);
   EXPECT_LE(ticks, 22);
-  ExpectTold("communication constraints violation");
+  ExpectMessage("communication constraints violation");
 }
 
-TEST_P(FrankaFault, NineteenLostCommandsAreNone) {
+TEST_P(FrankaFault, NineteenLostCommandsAreNoFault) {
   Move();
   ASSERT_TRUE(rig_.fake.Do("lose commands 19"));
   EXPECT_TRUE(rig_.Ticks(100));
 }
 
 TEST_P(FrankaFault, Silence) {
-  const int ticks = TicksUntilTold("freeze");
+  const int ticks = TicksUntilReported("freeze");
   EXPECT_GE(ticks, 20);
   EXPECT_LE(ticks, 21);
-  ExpectTold("no longer sends states");
+  ExpectMessage("no longer sends states");
   EXPECT_NEAR(rig_.reading.age, 0.070, 0.002);
 }
 
 // The arm receives no answers either and stops on its own.
 TEST_P(FrankaFault, LostStatesInMotion) {
-  EXPECT_LE(TicksUntilTold("lose states 1000"), 22);
-  ExpectTold("stopped by a reflex");
+  EXPECT_LE(TicksUntilReported("lose states 1000"), 22);
+  ExpectMessage("stopped by a reflex");
 }
 
 TEST_P(FrankaFault, RepeatedStatesAreSilenceToo) {
@@ -191,12 +191,12 @@ TEST_P(FrankaFault, RepeatedStatesAreSilenceToo) {
     EXPECT_NEAR(rig_.reading.age, 1e-3 * (tick + 1), 1e-4);
   }
   EXPECT_FALSE(rig_.Ticks(4, false));
-  ExpectTold("no longer sends states");
+  ExpectMessage("no longer sends states");
 }
 
 TEST_P(FrankaFault, ClosedConnection) {
-  EXPECT_LE(TicksUntilTold("drop link"), 2);
-  ExpectTold("closed the connection");
+  EXPECT_LE(TicksUntilReported("drop link"), 2);
+  ExpectMessage("closed the connection");
 }
 
 TEST_P(FrankaFault, MotionThatNeverBegins) {
@@ -204,7 +204,7 @@ TEST_P(FrankaFault, MotionThatNeverBegins) {
   ASSERT_TRUE(rig_.fake.Do("no start"));
   EXPECT_TRUE(rig_.Ticks(1000));
   EXPECT_FALSE(rig_.Ticks(10));
-  ExpectTold("did not start its motion");
+  ExpectMessage("did not start its motion");
 }
 
 TEST_P(FrankaFault, MotionThatNeverEnds) {
@@ -212,12 +212,12 @@ TEST_P(FrankaFault, MotionThatNeverEnds) {
   ASSERT_TRUE(rig_.fake.Do("no end"));
   EXPECT_TRUE(rig_.Ticks(1000, false));
   EXPECT_FALSE(rig_.Ticks(200, false));
-  ExpectTold("did not end its motion");
+  ExpectMessage("did not end its motion");
 }
 
 TEST_P(FrankaFault, MotionThatEndsUnasked) {
-  EXPECT_LE(TicksUntilTold("answer 0"), 2);
-  ExpectTold("has ended the motion");
+  EXPECT_LE(TicksUntilReported("answer 0"), 2);
+  ExpectMessage("has ended the motion");
 }
 
 TEST_P(FrankaFault, RefusalToMove) {
@@ -227,7 +227,7 @@ TEST_P(FrankaFault, RefusalToMove) {
   ASSERT_TRUE(rig_.fake.Do("lose states 3"));
   ASSERT_TRUE(rig_.fake.Do("user stop"));
   EXPECT_FALSE(rig_.Ticks(3));
-  ExpectTold("refuses to move in its current mode");
+  ExpectMessage("refuses to move in its current mode");
 }
 
 // The driver must not allocate memory in a tick, either in motion or after a fault.
@@ -272,7 +272,7 @@ std::string Refusal(FrankaRig* rig, const FrankaOptions& options) {
 }
 std::string Refusal(FrankaRig* rig) { return Refusal(rig, rig->options()); }
 
-TEST(FrankaRefusal, NobodyThere) {
+TEST(FrankaRefusal, NoAnswer) {
   FrankaRig rig;
   FrankaOptions options = rig.options();
   options.host = "192.0.2.99";

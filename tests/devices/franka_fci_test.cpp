@@ -200,7 +200,7 @@ TEST(FrankaState, ThatCannotBeIsRefusedAndChangesNothing) {
   }
 }
 
-TEST(FrankaState, HasNoWrenchWhereItsFramesAreNone) {
+TEST(FrankaState, HasNoWrenchIfItsFramesAreInvalid) {
   for (const Layout& l : kLayouts) {
     for (const char* frame : {"F_T_EE", "EE_T_K"}) {
       for (const double bad : {2.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
@@ -215,7 +215,7 @@ TEST(FrankaState, HasNoWrenchWhereItsFramesAreNone) {
   }
 }
 
-TEST(FrankaState, HasNoFlangeWhereItsFramesAreNone) {
+TEST(FrankaState, HasNoFlangeIfItsFramesAreInvalid) {
   for (const Layout& l : kLayouts)
     for (const char* frame : {"O_T_EE", "F_T_EE", "EE_T_K"}) {
       Written w(l);

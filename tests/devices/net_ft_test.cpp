@@ -149,12 +149,12 @@ TEST_F(NetFtTest, DoesNotGoBack) {
   EXPECT_EQ(sensor->Trouble(), "");  // the trouble has passed
 }
 
-TEST_F(NetFtTest, TellsThatItCountsAnew) {
+TEST_F(NetFtTest, ReportsARestartedCounter) {
   const auto sensor = Connect();
   network_.Pass(0.3);
   WrenchReading reading;
   EXPECT_TRUE(sensor->Read(&reading).ok());
-  fake_->Do("anew");
+  fake_->Do("restart");
   int ticks = 0;
   while (sensor->Trouble().empty() && ticks < 300) {
     network_.Pass(0.001);
@@ -227,7 +227,7 @@ TEST_F(NetFtTest, ANumberSomewhatAheadCostsMilliseconds) {
 }
 
 // After a disconnected cable, the numbers continue at the sensor's current value.
-TEST_F(NetFtTest, WhatIsAheadAfterASilenceIsTaken) {
+TEST_F(NetFtTest, ARecordAheadIsAcceptedAfterSilence) {
   const auto sensor = Connect();
   WrenchReading reading;
   network_.Pass(0.010);
@@ -274,7 +274,7 @@ TEST_F(NetFtTest, CountsWhatIsLostAndWhatItRefuses) {
 
 // While other devices are being connected, nothing reads the socket. Its queue holds about 270
 // readings, and newer ones are dropped.
-TEST_F(NetFtTest, AfterAPauseReadsAllThatStandsInLine) {
+TEST_F(NetFtTest, AfterAPauseReadsTheWholeBuffer) {
   const auto sensor = Connect();
   WrenchReading before, after;
   network_.Pass(0.002);
@@ -286,14 +286,14 @@ TEST_F(NetFtTest, AfterAPauseReadsAllThatStandsInLine) {
   network_.Pass(0.001);
   EXPECT_TRUE(sensor->Read(&after).ok());
   EXPECT_LE(after.age, 0.001);
-  EXPECT_EQ(after.link.lost, before.link.lost) << "nobody was there to take them";
+  EXPECT_EQ(after.link.lost, before.link.lost) << "they were sent while nothing was reading";
   fake_->Do("skip");
   network_.Pass(0.001);
   EXPECT_TRUE(sensor->Read(&after).ok());
   EXPECT_EQ(after.link.lost, before.link.lost + 3);
 }
 
-TEST_F(NetFtTest, TellsSaturationAndErrors) {
+TEST_F(NetFtTest, ReportsSaturationAndErrors) {
   const auto sensor = Connect();
   WrenchReading reading;
   fake_->Do("saturate");
@@ -336,7 +336,7 @@ TEST_F(NetFtTest, AQueueThatGrowsSlowlyIsSeen) {
   }
 }
 
-TEST_F(NetFtTest, WhatComesTwiceIsNoNews) {
+TEST_F(NetFtTest, ADuplicateIsNotANewReading) {
   fake_ = MakeFakeNetFt({});
   network_.Add(kHost, fake_.get(), &mechanics_);
   FaultyNetwork wire(&network_, 1);
@@ -354,7 +354,7 @@ TEST_F(NetFtTest, WhatComesTwiceIsNoNews) {
 }
 
 // Small differences between clocks are normal; larger ones are reported explicitly.
-TEST_F(NetFtTest, ARateThatIsNotTheFilesIsTold) {
+TEST_F(NetFtTest, ARateThatDiffersFromTheFileIsReported) {
   for (const double rate : {1000.5, 999.0, 990.0}) {
     const auto sensor = Connect({{"rate", std::to_string(rate)}});
     double oldest = 0;
@@ -374,7 +374,7 @@ TEST_F(NetFtTest, ARateThatIsNotTheFilesIsTold) {
   }
 }
 
-TEST_F(NetFtTest, TellsWhatIsWrongWithAnOnRobotSensor) {
+TEST_F(NetFtTest, ReportsTheErrorOfAnOnRobotSensor) {
   const auto sensor = Connect({{"onrobot", ""}}, NetFtMake::kOnRobot);
   struct Case {
     const char* status;
@@ -430,7 +430,7 @@ TEST_F(NetFtTest, RefusesRatesThatNoSensorSendsAt) {
 }
 
 // A request that is lost is repeated, and the sensor then sends at the requested rate.
-TEST_F(NetFtTest, AsksAgainWhereARequestIsLost) {
+TEST_F(NetFtTest, RepeatsALostRequest) {
   fake_ = MakeFakeNetFt({{"onrobot", ""}});
   network_.Add(kHost, fake_.get(), &mechanics_);
   FaultyNetwork wire(&network_, 1);

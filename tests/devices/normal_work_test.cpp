@@ -87,9 +87,9 @@ struct Work {
 
 class NormalWork : public testing::TestWithParam<Work> {};
 
-// The largest measured force of a hand in the whole run. `told` receives the messages if there is a
-// problem.
-double GreatestForce(const Work& work, std::uint64_t seed, std::string* told) {
+// The largest measured force of a hand in the whole run. `reported` receives the messages if there
+// is a problem.
+double GreatestForce(const Work& work, std::uint64_t seed, std::string* reported) {
   BenchOptions options;
   options.scenario = PREDICTOR_SOURCE_DIR "/scenarios/" + std::string(work.scenario) + ".yaml";
   for (std::size_t i = 0; i < kHands; ++i) {
@@ -104,30 +104,30 @@ double GreatestForce(const Work& work, std::uint64_t seed, std::string* told) {
   Bench bench(options);
   EXPECT_NE(bench.device().Describe().find(work.device), std::string::npos)
       << bench.device().Describe();
-  if (!bench.Start()) return *told = "no run: " + Told(bench), 0;
+  if (!bench.Start()) return *reported = "no run: " + Messages(bench), 0;
   double force = 0;
   std::uint8_t warnings = 0;
   bench.Watch([&](const TickRecord& record) {
     for (const HandRecord& hand : record.hands) {
       force = std::max(force, Eigen::Map<const Vector3>(hand.wrench.data()).norm());
       warnings = static_cast<std::uint8_t>(warnings | hand.warnings);
-      if (warnings != 0 && told->empty()) *told = Told(bench);
+      if (warnings != 0 && reported->empty()) *reported = Messages(bench);
     }
   });
   const double duration = bench.scenario().duration;
   while (bench.record().run_time < duration && bench.emulator().state() == RunState::kRun)
     bench.Tick();
   if (bench.emulator().state() != RunState::kRun)
-    *told = std::to_string(bench.record().run_time) + " s: " + Told(bench);
+    *reported = std::to_string(bench.record().run_time) + " s: " + Messages(bench);
   return force;
 }
 
 TEST_P(NormalWork, RaisesNoAlarmOnRealArmsSoak) {
   const Work& work = GetParam();
   for (long seed = 1; seed <= Count(1, 20); ++seed) {
-    std::string told;
-    const double force = GreatestForce(work, static_cast<std::uint64_t>(seed), &told);
-    EXPECT_EQ(told, "") << work.name << ", seed " << seed << ", up to " << force << " N";
+    std::string reported;
+    const double force = GreatestForce(work, static_cast<std::uint64_t>(seed), &reported);
+    EXPECT_EQ(reported, "") << work.name << ", seed " << seed << ", up to " << force << " N";
     EXPECT_GT(force, work.busy) << work.name << ", seed " << seed;
   }
 }

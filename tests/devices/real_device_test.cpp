@@ -94,7 +94,7 @@ class RealDeviceTest : public testing::Test {
   std::unique_ptr<RealDevice> device_;
 };
 
-TEST_F(RealDeviceTest, SaysWhichArmIsLedToRestStillAndWhichCannotMoveYet) {
+TEST_F(RealDeviceTest, ReportsWhichArmIsStillBroughtToRestAndWhichCannotMoveYet) {
   for (const std::size_t hand : {0, 1}) {
     said_[hand].reading.in_motion = said_[1 - hand].reading.waits = true;
     said_[1 - hand].reading.in_motion = said_[hand].reading.waits = false;
@@ -119,7 +119,7 @@ TEST_F(RealDeviceTest, TakesTheWrenchOfTheSensorOrOfTheArm) {
 
 // Between samples, the joints are extrapolated with their command, so there is no step when a
 // sample arrives.
-TEST_F(RealDeviceTest, JointsGoOnBetweenSamples) {
+TEST_F(RealDeviceTest, JointsAreExtrapolatedBetweenSamples) {
   ASSERT_TRUE(device_->Write(Command(RunState::kRun, 0.2)).ok());
   DeviceSample sample;
   for (int ms = 0; ms < 8; ++ms) {
@@ -142,7 +142,7 @@ TEST_F(RealDeviceTest, JointsAreWhereTheyWereBeforeTheFirstCommand) {
 }
 
 // The monitor uses these values.
-TEST_F(RealDeviceTest, TellsHowOldEverythingIsAndWhatIsBeyondItsRange) {
+TEST_F(RealDeviceTest, ReportsAgesAndWhatIsBeyondItsRange) {
   said_[0].reading.age = 0.003;
   said_[1].reading.age = 0.004;
   said_[0].reading.wrench.age = 0.006;
@@ -193,22 +193,24 @@ TEST_F(RealDeviceTest, EndsWithoutPowerIfAnyOfThemMustNotBeLeftHolding) {
     }
 }
 
-TEST_F(RealDeviceTest, TellsWhichOfArmAndSensorIsSilent) {
+TEST_F(RealDeviceTest, ReportsWhichOfArmAndSensorIsSilent) {
   DeviceSample sample;
-  const auto told = [&] {
+  const auto reported = [&] {
     EXPECT_TRUE(device_->Read(&sample).ok());
     return device_->Trouble();
   };
-  EXPECT_EQ(told(), "");
+  EXPECT_EQ(reported(), "");
   outside_.age = 0.051;
-  EXPECT_TRUE(told().starts_with("right: the sensor, a sensor, no longer sends new data"))
-      << told();
+  EXPECT_TRUE(reported().starts_with("right: the sensor, a sensor, no longer sends new data"))
+      << reported();
   said_[1].reading.age = 0.051;  // both are silent: the arm comes first
-  EXPECT_TRUE(told().starts_with("right: the arm, an arm, no longer sends new data")) << told();
+  EXPECT_TRUE(reported().starts_with("right: the arm, an arm, no longer sends new data"))
+      << reported();
   outside_.age = said_[1].reading.age = 0.049;
-  EXPECT_EQ(told(), "");
+  EXPECT_EQ(reported(), "");
   said_[0].reading.wrench.age = 0.051;
-  EXPECT_TRUE(told().starts_with("left: the arm, an arm, no longer sends a wrench")) << told();
+  EXPECT_TRUE(reported().starts_with("left: the arm, an arm, no longer sends a wrench"))
+      << reported();
   // A driver that reports its own fault needs no additional words.
   said_[0].status = {StopCause::kDevice};
   said_[0].reading.age = 1;
@@ -226,7 +228,7 @@ TEST_F(RealDeviceTest, MovesOnlyInStatesThatMove) {
   }
 }
 
-TEST_F(RealDeviceTest, WantsNoPowerWhileUnpoweredOnly) {
+TEST_F(RealDeviceTest, RequestsPowerOffOnlyWhileUnpowered) {
   for (int s = 0; s < kRunStates; ++s) {
     const auto state = static_cast<RunState>(s);
     ASSERT_TRUE(device_->Write(Command(state, 0)).ok());
@@ -234,7 +236,7 @@ TEST_F(RealDeviceTest, WantsNoPowerWhileUnpoweredOnly) {
   }
 }
 
-TEST_F(RealDeviceTest, SaysWhoKeepsItsPowerAndWhoCannotBeAskedToCutIt) {
+TEST_F(RealDeviceTest, ReportsWhichArmKeepsItsPowerAndWhichCannotCutIt) {
   said_[0].reading.keeps_power = true;
   said_[1].reading.no_power_off = true;
   DeviceSample sample;

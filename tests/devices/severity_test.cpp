@@ -32,7 +32,7 @@ struct Course {
   std::string scenario;
   std::array<std::string, 2> arms, sensors;
   Happening lesser, worse;
-  const char* told = "";  // message about the worse fault, in addition to the first
+  const char* message = "";  // message about the worse fault, in addition to the first
 
   friend std::ostream& operator<<(std::ostream& out, const Course& course) {
     return out << course.name;
@@ -65,7 +65,7 @@ TEST_P(Severity, TheLesserHoldsAndTheWorseEndsWithoutPower) {
   bench.Pass(0.2);  // by now the driver knows it as well
   const std::string both = bench.device().Trouble();
   EXPECT_NE(both.find(first.substr(0, first.find('.'))), std::string::npos) << both;
-  EXPECT_NE(both.find(GetParam().told), std::string::npos) << both;
+  EXPECT_NE(both.find(GetParam().message), std::string::npos) << both;
 }
 
 // If a robot does not obey a power-off request, the danger continues after the stop.

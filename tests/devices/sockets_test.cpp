@@ -16,9 +16,9 @@ namespace predictor {
 namespace {
 
 // Another sender in the network, at an address of this computer.
-class Somebody {
+class Sender {
  public:
-  explicit Somebody(const char* host, std::uint16_t at = 0)
+  explicit Sender(const char* host, std::uint16_t at = 0)
       : socket_(socket(AF_INET, SOCK_DGRAM, 0)) {
     sockaddr_in own{};
     own.sin_family = AF_INET;
@@ -29,9 +29,9 @@ class Somebody {
     getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &size);
     port = ntohs(own.sin_port);
   }
-  ~Somebody() { close(socket_); }
-  Somebody(const Somebody&) = delete;
-  Somebody& operator=(const Somebody&) = delete;
+  ~Sender() { close(socket_); }
+  Sender(const Sender&) = delete;
+  Sender& operator=(const Sender&) = delete;
 
   void Send(std::uint16_t to, std::span<const std::byte> bytes) const {
     sockaddr_in peer{};
@@ -48,9 +48,9 @@ class Somebody {
   int socket_;
 };
 
-TEST(Sockets, DropAndCountDatagramsOfSomebodyElse) {
-  const Somebody device("127.0.0.2"), stranger("127.0.0.3"), neighbour("127.0.0.2");
-  const Somebody namesake("127.0.0.4", device.port);
+TEST(Sockets, DropAndCountDatagramsFromAnotherSender) {
+  const Sender device("127.0.0.2"), stranger("127.0.0.3"), neighbour("127.0.0.2");
+  const Sender namesake("127.0.0.4", device.port);
   const auto network = SocketNetwork();
   const auto datagrams = network->Open({"127.0.0.2", device.port}, 0);
   const std::array<std::byte, 3> word = {std::byte{1}, std::byte{2}, std::byte{3}};

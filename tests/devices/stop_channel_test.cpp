@@ -41,7 +41,7 @@ TEST_F(StopChannelTest, BrakesTheArm) {
   EXPECT_EQ(bench_.speed(), 0);
 }
 
-TEST_F(StopChannelTest, KnowsAtOnceThatItIsClosed) {
+TEST_F(StopChannelTest, DetectsImmediatelyThatItIsClosed) {
   Tend(250);
   bench_.fake.Do("drop primary");
   EXPECT_EQ(Tend(3), Link::kLost);
@@ -50,7 +50,7 @@ TEST_F(StopChannelTest, KnowsAtOnceThatItIsClosed) {
   EXPECT_EQ(Tend(1000), Link::kTalks);
 }
 
-TEST_F(StopChannelTest, KnowsThatTheControllerIsSilent) {
+TEST_F(StopChannelTest, DetectsThatTheControllerIsSilent) {
   Tend(250);
   bench_.fake.Do("mute primary");
   EXPECT_EQ(Tend(400), Link::kTalks);

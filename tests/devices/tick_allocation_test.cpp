@@ -86,7 +86,7 @@ const TickFault kOfAnyMake[] = {
 
 class TickAllocation : public testing::TestWithParam<std::string> {};
 
-TEST_P(TickAllocation, NoTickTakesFromTheHeapWhateverHappens) {
+TEST_P(TickAllocation, NoTickEverAllocates) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   int stops = 0;
   for (const TickFault& fault : kOfAnyMake) stops += ExpectNoAllocation(GetParam(), fault);
@@ -96,7 +96,7 @@ TEST_P(TickAllocation, NoTickTakesFromTheHeapWhateverHappens) {
 INSTANTIATE_TEST_SUITE_P(Of, TickAllocation, testing::Values("ur", "franka", "mixed"),
                          [](const auto& rig) { return rig.param; });
 
-TEST(TickAllocation, NoTickTakesFromTheHeapInAControllersOwnFaults) {
+TEST(TickAllocation, NoTickAllocatesInAControllersOwnFaults) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   int stops = 0;
   for (const char* what : {"protective stop", "emergency stop", "power off", "slider 50", "repeat",

@@ -15,7 +15,7 @@
 namespace predictor {
 namespace {
 
-TEST_P(UrArmTest, SaysWhatItFound) {
+TEST_P(UrArmTest, DescribesTheConnectedArm) {
   UrBench bench(GetParam());
   const DeviceFacts& facts = bench.Connect().arm->facts();
   const bool cb3 = GetParam().version.major == 3;
@@ -140,8 +140,8 @@ TEST_P(UrArmTest, LatePackagesAreAsOldAsTheyAre) {
   EXPECT_TRUE(bench.read.ok());
 }
 
-// A sample that old tells us nothing about what the arm is receiving now.
-TEST_P(UrArmTest, LatePackagesAreNoProofThatItIsDeaf) {
+// A sample that old does not show what the arm is receiving now.
+TEST_P(UrArmTest, LatePackagesDoNotProveThatItIsDeaf) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(500, 0);
   bench.fake.Do("late 200");
@@ -151,7 +151,7 @@ TEST_P(UrArmTest, LatePackagesAreNoProofThatItIsDeaf) {
 }
 
 // While the program on the controller brakes, it does not read commands.
-TEST_P(UrArmTest, LongBrakingIsNoProofThatItIsDeaf) {
+TEST_P(UrArmTest, LongBrakingDoesNotProveThatItIsDeaf) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(300, 3.0);
   ASSERT_DOUBLE_EQ(bench.speed(), 3.0);
@@ -173,7 +173,7 @@ TEST_P(UrArmTest, RepeatedPackageDoesNotRefreshItsAge) {
   EXPECT_EQ(bench.reading.sequence, last);
 }
 
-TEST_P(UrArmTest, TimeThatGoesBackIsNoNews) {
+TEST_P(UrArmTest, AnEarlierTimeIsNotANewSample) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(100, 0);
   bench.fake.Do("rewind");
@@ -189,7 +189,7 @@ TEST_P(UrArmTest, TimeThatGoesBackIsNoNews) {
   EXPECT_EQ(bench.arm->Trouble(), "");
 }
 
-TEST_P(UrArmTest, PackageThatComesForEverIsNoTimeThatBeginsAnew) {
+TEST_P(UrArmTest, ARepeatedPackageIsNotARestartedClock) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(100, 0);
   bench.fake.Do("repeat");
@@ -292,7 +292,7 @@ TEST(UrArm, EndsItsProgramWhenItIsGone) {
   EXPECT_DOUBLE_EQ(bench.speed(), 0.2);
 }
 
-TEST_P(UrArmTest, ListensToAnArmThatSomebodyElseMoves) {
+TEST_P(UrArmTest, ListensToAnArmThatAnotherProgramMoves) {
   UrBench bench(GetParam());
   bench.fake.Do("local control");
   bench.fake.Do("freedrive");

@@ -23,7 +23,7 @@ std::string Refusal(UrBench* bench, const UrOptions& options = {.host = kUrHost}
   return ::testing::AssertionFailure() << "\"" << part << "\" is not in \"" << sentence << "\"";
 }
 
-TEST(UrConnect, NobodyAnswers) {
+TEST(UrConnect, NoAnswer) {
   UrBench bench;
   EXPECT_TRUE(Says(Refusal(&bench, {.host = "192.0.2.99"}), "192.0.2.99:30004 does not answer"));
 }
@@ -127,7 +127,7 @@ TEST(UrConnect, ArmsThatCannotMove) {
   }
 }
 
-TEST(UrConnect, ASpeedSliderBelowItsEndIsRefusedAndSaidToAListener) {
+TEST(UrConnect, AReducedSpeedSliderIsRefusedAndReportedToAListener) {
   UrBench bench;
   bench.fake.Do("slider 50");
   EXPECT_TRUE(Says(Refusal(&bench), "Set the pendant's speed slider to 100 %"));
@@ -140,7 +140,7 @@ TEST(UrConnect, ASpeedSliderBelowItsEndIsRefusedAndSaidToAListener) {
   EXPECT_TRUE(whole.arm->facts().remarks.empty());
 }
 
-TEST(UrConnect, ThePayloadIsToldWhereTheControllerKnowsIt) {
+TEST(UrConnect, ThePayloadIsReportedIfAvailable) {
   UrBench older;
   older.Connect();
   EXPECT_FALSE(older.arm->facts().payload);
@@ -167,10 +167,10 @@ TEST(UrConnect, TheFlangeIsTheToolLessItsOffset) {
   bench.network.Pass(0.01);
   bench.Connect({.host = kUrHost, .listen = true});
   ASSERT_TRUE(bench.arm->facts().flange);
-  const Pose& told = bench.arm->facts().flange->X_BF;
+  const Pose& reported = bench.arm->facts().flange->X_BF;
   const Pose X_BF = FlangeOf(kUr5, q);
-  EXPECT_LT((told.p - X_BF.p).norm(), 1e-9);
-  EXPECT_LT(RotationError(told.q, X_BF.q).norm(), 1e-9);
+  EXPECT_LT((reported.p - X_BF.p).norm(), 1e-9);
+  EXPECT_LT(RotationError(reported.q, X_BF.q).norm(), 1e-9);
 }
 
 // The program runs but does not echo the registers, so it is unknown what it would follow.
@@ -181,7 +181,7 @@ TEST(UrConnect, AControllerThatTakesNoRegistersIsRefused) {
   EXPECT_EQ(bench.arm, nullptr);
 }
 
-TEST(UrConnect, AnArmThatIsTakenInHandWhileItsProgramStartsIsRefused) {
+TEST(UrConnect, AnArmThatIsGuidedWhileItsProgramStartsIsRefused) {
   UrBench bench;
   bench.network.SetWorld([&] {  // after the registers were cleared
     if (bench.fake.controller().input_int[24] != 0) bench.fake.Do("freedrive");
@@ -221,7 +221,7 @@ TEST(UrConnect, LocalControlIsNamed) {
 }
 
 // As with PolyScope X: the operator must know that the program cannot remove the power.
-TEST(UrConnect, WithoutADashboardItIsToldThatPowerOffCannotBeAskedFor) {
+TEST(UrConnect, WithoutADashboardARemarkSaysThatPowerCannotBeSwitchedOff) {
   const std::uint16_t ports[] = {0, 30009, 30003};  // disabled; no listener; no greeting
   for (const bool listen : {true, false})
     for (const std::uint16_t port : ports) {
@@ -236,7 +236,7 @@ TEST(UrConnect, WithoutADashboardItIsToldThatPowerOffCannotBeAskedFor) {
 }
 
 // The port sent no greeting, so the driver never waits for it again and does not use it.
-TEST(UrConnect, WhoDoesNotGreetIsNoDashboard) {
+TEST(UrConnect, AServerWithoutAGreetingIsNotADashboard) {
   constexpr double kGreeting = 2;  // time-out for the greeting [s]
   const auto connect = [](UrBench* bench, std::uint16_t port) {
     bench->Connect({.host = kUrHost, .dashboard_port = port});

@@ -22,7 +22,7 @@ struct UrFault {
 
 class UrFaultTest : public testing::TestWithParam<std::tuple<FakeUrOptions, UrFault>> {};
 
-TEST_P(UrFaultTest, IsToldWithinACycleForGoodAndTheArmStands) {
+TEST_P(UrFaultTest, IsReportedWithinACyclePermanentlyAndTheArmStands) {
   const auto& [options, fault] = GetParam();
   UrBench bench(options);
   bench.Connect().Ticks(100, 0.3);
@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(Controllers, UrFaultTest, testing::Combine(UrController
                          NameOfCase);
 
 // The following stop may bring the arm to rest, but must not move it for long or again.
-TEST(UrArm, WhoseNumbersAreNoneFollowsOneStopOnly) {
+TEST(UrArm, WithInvalidNumbersFollowsOneStopOnly) {
   for (const int stop : {100, 1000}) {
     UrBench bench;
     bench.Connect().Ticks(100, 0.3);
@@ -80,7 +80,7 @@ TEST(UrArm, WhoseNumbersAreNoneFollowsOneStopOnly) {
   }
 }
 
-TEST(UrArm, TellsWhetherItMayBeLeftHolding) {
+TEST(UrArm, ReportsWhetherItMayBeLeftHolding) {
   const std::vector<std::pair<const char*, bool>> ends = {
       {"protective stop", false}, {"emergency stop", true}, {"drop link", true},
       {"malformed", true},        {"stop program", false},  {"not a number", false}};
@@ -135,7 +135,7 @@ TEST(UrArm, ProgramThatRunsOnWithoutHearingIsAFault) {
   EXPECT_NE(bench.arm->Trouble().find("accepts no commands"), std::string::npos);
 }
 
-TEST(UrArm, WhatIsNotSixFiniteNumbersIsNotSent) {
+TEST(UrArm, OnlySixFiniteNumbersAreSent) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const JointVector& v :
        {JointVector(JointVector::Zero(7)), JointVector(),
@@ -210,7 +210,7 @@ TEST(UrArm, AListenerSendsNothing) {
 }
 
 // A listener writes nothing, so only its reads can detect the closed connection.
-TEST(UrArm, AListenersReadingTellsThatTheConnectionIsClosed) {
+TEST(UrArm, AListenersReadingReportsThatTheConnectionIsClosed) {
   UrBench bench;
   bench.Connect({.host = kUrHost, .listen = true}).Ticks(50, 0, false);
   ASSERT_TRUE(bench.read.ok());

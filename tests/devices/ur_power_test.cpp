@@ -67,7 +67,7 @@ TEST_P(UrArmTest, KeepsItsPowerWhereTheStopIsReset) {
 }
 
 // An old state may have changed since.
-TEST_P(UrArmTest, SaysNothingOfItsPowerWhileItIsSilent) {
+TEST_P(UrArmTest, ReportsNoPowerWhileItIsSilent) {
   UrBench bench(GetParam());
   bench.Connect({.host = kUrHost, .dashboard_port = 0}).Ticks(50, 0);
   bench.arm->PowerOff(true);
@@ -78,7 +78,7 @@ TEST_P(UrArmTest, SaysNothingOfItsPowerWhileItIsSilent) {
   EXPECT_FALSE(bench.reading.keeps_power);
 }
 
-TEST_P(UrArmTest, SaysAtOnceThatItsDashboardIsLost) {
+TEST_P(UrArmTest, ReportsImmediatelyThatItsDashboardIsLost) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(50, 0.1);
   ASSERT_TRUE(bench.fake.Do("drop dashboard"));

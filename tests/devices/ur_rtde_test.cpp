@@ -154,7 +154,7 @@ TEST(Rtde, SizesThatCannotBeBreakTheStream) {
   }
 }
 
-TEST(Rtde, TypesThatAreNoneBreakTheStream) {
+TEST(Rtde, InvalidTypesBreakTheStream) {
   bool broken = false;
   Parse({Hex("00 03 00")}, &broken);
   EXPECT_TRUE(broken);
@@ -308,7 +308,7 @@ TEST(UrState, EachBitThatKeepsAnArmFromMovingIsAFault) {
   }
 }
 
-TEST(UrState, ASpeedSliderThatIsNoNumberIsNotAtItsEnd) {
+TEST(UrState, ANanSpeedSliderIsNotAtItsEnd) {
   UrState state;
   for (const double whole : {0.995, 1.0}) {
     state.slider = whole;

@@ -39,14 +39,14 @@ class Bench {
     for (double t = 0; t < time - 1e-9; t += options_.cycle) Cycle();
   }
   // Writes the registers as a tick does, with the velocity of the first joint.
-  void Tell(double v, bool follow) {
+  void Command(double v, bool follow) {
     ++controller.input_int[Register(0)];
     controller.input_int[Register(1)] = follow ? 1 : 0;
     controller.input_double[Register(0)] = v;
   }
   void Follow(double v, double time) {
     for (double t = 0; t < time - 1e-9; t += options_.cycle) {
-      Tell(v, true);
+      Command(v, true);
       Cycle();
     }
   }
@@ -70,7 +70,7 @@ class Bench {
 
 class UrScriptTest : public testing::TestWithParam<UrScriptOptions> {};
 
-TEST_P(UrScriptTest, StandsUntilTheCounterMovesWhateverTheRegistersHold) {
+TEST_P(UrScriptTest, StandsUntilTheCounterChangesWithAnyRegisters) {
   Bench bench(GetParam());
   bench.Cycles(1);
   EXPECT_TRUE(bench.running);
@@ -103,18 +103,18 @@ TEST_P(UrScriptTest, ActsInTheCycleThatSeesTheCommand) {
   Bench bench(GetParam());
   bench.Cycle();
   bench.Follow(0.3, 0.1);
-  bench.Tell(0.4, true);
+  bench.Command(0.4, true);
   bench.Cycle();
   EXPECT_GT(bench.speed(), 0.3);
 }
 
-TEST_P(UrScriptTest, StandsAsToldAndFollowsAgain) {
+TEST_P(UrScriptTest, StandsOnCommandAndFollowsAgain) {
   Bench bench(GetParam());
   bench.Cycle();
   bench.Follow(0.5, 0.1);
   bool stopping = false;
   for (int i = 0; i < 100; ++i) {
-    bench.Tell(0.5, false);  // the velocity without `follow` causes no motion
+    bench.Command(0.5, false);  // the velocity without `follow` causes no motion
     bench.Cycle();
     stopping = stopping || bench.state() == kStopping;
   }
@@ -135,7 +135,7 @@ TEST_P(UrScriptTest, BrakesWithinTwentyMillisecondsOfSilenceAndForGood) {
     bench.Cycle();
     bench.Follow(0.5, 0.2);
     double silence = 0;
-    bench.Tell(0.5, true);  // just after the start of a cycle, later in each test
+    bench.Command(0.5, true);  // just after the start of a cycle, later in each test
     for (int i = phase; bench.speed() >= 0.5; ++i) {
       silence += kStep;
       if (i % steps == steps - 1) bench.Cycle();
@@ -147,7 +147,7 @@ TEST_P(UrScriptTest, BrakesWithinTwentyMillisecondsOfSilenceAndForGood) {
     // The arm brakes to a standstill with the given deceleration, whatever arrives now.
     double last = bench.speed();
     for (double t = 0; t < 0.2; t += cycle) {
-      bench.Tell(0.5, true);
+      bench.Command(0.5, true);
       bench.Cycle();
       EXPECT_LE(bench.speed(), std::max(0.0, last - 0.999 * GetParam().deceleration * cycle));
       last = bench.speed();
@@ -172,7 +172,7 @@ TEST_P(UrScriptTest, ShorterSilenceIsBorne) {
 TEST_P(UrScriptTest, SilenceEndsAStandingProgramToo) {
   Bench bench(GetParam());
   bench.Cycle();
-  bench.Tell(0, false);
+  bench.Command(0, false);
   bench.Cycles(0.05);
   EXPECT_FALSE(bench.running);
   bench.Follow(0.5, 0.1);

@@ -82,7 +82,7 @@ TEST(RelativePose, AndHandlesAfterTheReleaseAreAsPrinted) {
 }
 
 // Avoids an inverse crime: the arms are slower or faster than the lead assumes.
-TEST_P(Accuracy, WithArmsOtherThanBelievedIsAsPrinted) {
+TEST_P(Accuracy, WithArmsOtherThanNominalIsAsPrinted) {
   const Printed& printed = GetParam();
   const std::pair<const char*, double> arms[] = {{"rig.loop.bandwidth=10", printed.slower_arms},
                                                  {"rig.loop.bandwidth=25", printed.faster_arms}};

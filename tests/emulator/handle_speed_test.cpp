@@ -37,7 +37,7 @@ double FarFromOneAnother(const TickRecord& record, double* angle) {
 
 struct Aligning {
   double distance = 0, angle = 0;  // initial error of the relative pose [m], [rad]
-  Speeds told, came;
+  Speeds reported, came;
   bool armed = false;
 };
 
@@ -56,13 +56,13 @@ Aligning Align(const Scenario& scenario, Turned turned) {
     seen.armed = record.state == RunState::kArmed;
     if (record.state != RunState::kAlign) continue;
     if (seen.distance == 0) seen.distance = FarFromOneAnother(record, &seen.angle);
-    seen.told.See(handles.Commanded(record));
+    seen.reported.See(handles.Commanded(record));
     for (const FrameMotion& handle : rig.true_handles()) seen.came.See(handle.V_W);
   }
   return seen;
 }
 
-TEST(HandleSpeed, OfAlignIsKeptHoweverWrongTheArmsStandToOneAnother) {
+TEST(HandleSpeed, OfAlignIsKeptForAnyErrorOfTheArmsRelativePose) {
   for (const char* gain : {"1", "1000"})
     for (const Turned turned : {Turned::kNone, Turned::kHalf, Turned::kFurther}) {
       const std::string value = gain;
@@ -75,9 +75,10 @@ TEST(HandleSpeed, OfAlignIsKeptHoweverWrongTheArmsStandToOneAnother) {
         EXPECT_GT(seen.angle, 2.8);
       }
       const double cap = scenario.safety.align_speed;
-      EXPECT_GT(std::max(seen.told.translation / cap, seen.told.rotation / kAlignRotation), 0.95);
-      EXPECT_LE(seen.told.translation, kPosture * cap);
-      EXPECT_LE(seen.told.rotation, kPosture * kAlignRotation);
+      EXPECT_GT(std::max(seen.reported.translation / cap, seen.reported.rotation / kAlignRotation),
+                0.95);
+      EXPECT_LE(seen.reported.translation, kPosture * cap);
+      EXPECT_LE(seen.reported.rotation, kPosture * kAlignRotation);
       EXPECT_LE(seen.came.translation, kOvershoot * cap);
       EXPECT_LE(seen.came.rotation, kOvershoot * kAlignRotation);
       // With too high a gain, the relative pose oscillates because of the arms' lag; that does not
@@ -86,7 +87,7 @@ TEST(HandleSpeed, OfAlignIsKeptHoweverWrongTheArmsStandToOneAnother) {
     }
 }
 
-TEST(HandleSpeed, OfARunIsKeptHoweverHardSomebodyPushes) {
+TEST(HandleSpeed, OfARunIsKeptHoweverHardThePush) {
   const std::vector<std::string> set = {"duration=10",
                                         "safety.force=900",
                                         "safety.torque=99",
@@ -101,10 +102,10 @@ TEST(HandleSpeed, OfARunIsKeptHoweverHardSomebodyPushes) {
                                         "rendering.relative_kp=50"};
   const Scenario scenario = LoadTestScenario("push", set);
   HandleSpeeds handles(scenario);
-  Speeds told, measured, virtual_;
+  Speeds reported, measured, virtual_;
   RunScenario("push", set, [&](const TickRecord& record) {
     if (record.state != RunState::kRun) return;
-    told.See(handles.Commanded(record));
+    reported.See(handles.Commanded(record));
     for (const HandRecord& hand : record.hands) {
       measured.See(Eigen::Map<const Vector6>(hand.real.twist.data()));
       virtual_.See(Eigen::Map<const Vector6>(hand.virtual_.twist.data()));
@@ -112,9 +113,9 @@ TEST(HandleSpeed, OfARunIsKeptHoweverHardSomebodyPushes) {
   });
   const double cap = scenario.safety.handle_speed;
   EXPECT_GT(virtual_.translation, 1.5 * cap);  // proves that the push is hard
-  EXPECT_GT(told.translation, 0.99 * cap);
-  EXPECT_LE(told.translation, kPosture * cap);
-  EXPECT_LE(told.rotation, kPosture * scenario.safety.handle_rotation_speed);
+  EXPECT_GT(reported.translation, 0.99 * cap);
+  EXPECT_LE(reported.translation, kPosture * cap);
+  EXPECT_LE(reported.rotation, kPosture * scenario.safety.handle_rotation_speed);
   EXPECT_LE(measured.translation, kOvershoot * cap + 0.002);  // for noise of the joint velocities
 }
 

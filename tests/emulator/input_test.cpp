@@ -127,7 +127,7 @@ TEST(Hands, OfAPageAreTakenFromABrowserOperatorAlone) {
 }
 
 // Both hands lift the box by 8 cm with inputs at the rate of a page. Then the page stops sending.
-TEST(Hands, LiftTheBoxWithinTheirLimitAndLetGoInSilence) {
+TEST(Hands, LiftTheBoxWithinTheirLimitAndReleaseOnSilence) {
   Emulator emulator(
       LoadTestScenario("box_9kg", {"operator.type=browser", "operator.script=[]", "duration=100"}));
   Pass(&emulator, 0.2, [] {});

@@ -26,7 +26,7 @@ TEST(Instructions, OfAPersonFollowTheClock) {
   EXPECT_NEAR(circle, scenario.operator_.script[1].start, 0.002);
 }
 
-TEST(Instructions, AreTheLastBegunOfWhatGoesOn) {
+TEST(Instructions, AreTheLastBegunOfTheActiveActions) {
   const std::vector<ActionSpan> script = {{1, 11}, {3, 5}, {20, 21}};
   const std::vector<std::pair<double, int>> times = {{0, -1}, {1, 0},   {2.9, 0},  {3, 1},
                                                      {5, 0},  {11, -1}, {20.5, 2}, {21, -1}};

@@ -42,7 +42,7 @@ TEST_F(RealArms, RecoveryFreesAHandAfterAStop) {
 
 // The hand pulls in changing directions. The command follows without exceeding the speed limit, and
 // all joints come to rest together when the key is released.
-TEST_F(RealArms, RecoveryIsSlowWhateverTheHandDoes) {
+TEST_F(RealArms, RecoveryIsSlowForAnyHand) {
   ASSERT_TRUE(ToRun());
   Tick(500);
   Ask(RunEvent::kStopRequested);
@@ -115,7 +115,7 @@ TEST_F(RealArms, RecoveryStopsWhenAHandIsLoadedMore) {
 
 // RECOVERY may continue after the duration of the run, because it frees a hand. A request to end
 // the program also ends RECOVERY.
-TEST_F(RealArms, RecoveryAfterARunsEndGoesOnUntilTheProgramIsToEnd) {
+TEST_F(RealArms, RecoveryAfterARunsEndContinuesUntilTheProgramMustEnd) {
   ASSERT_TRUE(ToRun());
   Tick(500);
   EXPECT_TRUE(IsOver(*emulator_, 0.1));
@@ -142,7 +142,7 @@ TEST_F(RealArms, RecoveryAfterARunsEndGoesOnUntilTheProgramIsToEnd) {
   }
 }
 
-TEST_F(RealArms, RecoveryIsNoWayToRun) {
+TEST_F(RealArms, RecoveryDoesNotLeadToRun) {
   ASSERT_TRUE(ToRun());
   Tick(200);
   Ask(RunEvent::kStopRequested);
@@ -171,7 +171,7 @@ class LedToRest : public RealArms {
   LedToRest() {
     device_->spoil = [this](DeviceSample* sample) { sample->arms[hand_].in_motion = in_motion_; };
   }
-  bool ToldToRest() const {
+  bool CommandedToRest() const {
     for (const HandRecord& hand : record().hands)
       for (int i = 0; i < hand.arm_dof; ++i)
         if (hand.command[static_cast<std::size_t>(i)] != 0) return false;
@@ -188,11 +188,11 @@ TEST_F(LedToRest, NothingIsArmedBefore) {
     ASSERT_TRUE(ToEnabled());
     Ask(RunEvent::kAlignRequested);
     Tick(10);
-    EXPECT_TRUE(hand_ == 1 || !ToldToRest());  // already aligned the second time
-    for (int k = 0; k < 20'000 && !ToldToRest(); ++k) Tick();
+    EXPECT_TRUE(hand_ == 1 || !CommandedToRest());  // already aligned the second time
+    for (int k = 0; k < 20'000 && !CommandedToRest(); ++k) Tick();
     for (int k = 0; k < 500; ++k) {
       Tick();
-      ASSERT_TRUE(ToldToRest());
+      ASSERT_TRUE(CommandedToRest());
     }
     EXPECT_EQ(emulator_->state(), RunState::kAlign);
     in_motion_ = false;
@@ -202,7 +202,7 @@ TEST_F(LedToRest, NothingIsArmedBefore) {
     Ask(RunEvent::kStartRequested);
     Tick(100);
     EXPECT_EQ(emulator_->state(), RunState::kRun);
-    EXPECT_FALSE(ToldToRest());
+    EXPECT_FALSE(CommandedToRest());
     in_motion_ = true;
     Ask(RunEvent::kStopRequested);
     Tick(300);
@@ -218,11 +218,11 @@ TEST_F(LedToRest, NothingIsArmedBefore) {
 
 // Once the handles have reached their goal, they may drift within the tolerance without a new
 // motion.
-TEST_F(LedToRest, MayStrayALittleMeanwhile) {
+TEST_F(LedToRest, MayDeviateSlightlyMeanwhile) {
   ASSERT_TRUE(ToEnabled());
   Ask(RunEvent::kAlignRequested);
   Tick(10);
-  for (int k = 0; k < 20'000 && !ToldToRest(); ++k) Tick();
+  for (int k = 0; k < 20'000 && !CommandedToRest(); ++k) Tick();
   double strayed = 0;
   device_->spoil = [this, &strayed](DeviceSample* sample) {
     sample->arms[0].in_motion = in_motion_;
@@ -231,7 +231,7 @@ TEST_F(LedToRest, MayStrayALittleMeanwhile) {
   for (int k = 0; k < 500; ++k) {
     strayed = std::min(1e-3, strayed + 1e-5);
     Tick();
-    ASSERT_TRUE(ToldToRest()) << k;
+    ASSERT_TRUE(CommandedToRest()) << k;
   }
   EXPECT_EQ(emulator_->state(), RunState::kAlign);
   in_motion_ = false;
@@ -239,7 +239,7 @@ TEST_F(LedToRest, MayStrayALittleMeanwhile) {
   EXPECT_EQ(emulator_->state(), RunState::kArmed);
 }
 
-TEST_F(LedToRest, ThatNeverComesThereLosesItsPowerAndIsNamed) {
+TEST_F(LedToRest, AnArmThatNeverRestsLosesItsPowerAndIsNamed) {
   hand_ = 1;
   in_motion_ = false;
   ASSERT_TRUE(ToRun());
@@ -261,7 +261,7 @@ TEST_F(LedToRest, NoRecoveryEndsBefore) {
   ASSERT_EQ(emulator_->state(), RunState::kRecovery);
   holds_ = false;
   Tick(300);
-  EXPECT_TRUE(ToldToRest());
+  EXPECT_TRUE(CommandedToRest());
   EXPECT_EQ(emulator_->state(), RunState::kRecovery);
   in_motion_ = false;
   Tick();

@@ -82,7 +82,7 @@ TEST_F(RealArms, TheMostSevereWins) {
 
 // The reported reason for the power-off is the fault that required it (a silent arm), not an
 // earlier problem (a hand that still pushes).
-TEST_F(RealArms, WhatTookThePowerIsNotWhatWasWrongBefore) {
+TEST_F(RealArms, TheReasonForPowerOffIsNotAnEarlierFault) {
   ASSERT_TRUE(ToRun());
   Tick(500);
   device_->spoil = [](DeviceSample* sample) { sample->arms[1].F_S_raw[2] += 60; };

@@ -114,7 +114,7 @@ TEST_F(RealArms, ASavedStateThatIsArmedStarts) {
 }
 
 // The arm was moved after the alignment, so a start would pull the handle back.
-TEST_F(RealArms, NothingStartsFromWhereItIsNotAligned) {
+TEST_F(RealArms, NothingStartsUnaligned) {
   ASSERT_TRUE(ToEnabled());
   Ask(RunEvent::kAlignRequested);
   ASSERT_TRUE(Await(RunState::kArmed));
@@ -172,7 +172,7 @@ TEST_F(RealArms, ThatGiveNoFreshSamplesAreNotWaitedForLong) {
 
 // Before the first self-test has passed, a sensor's bias is unknown. A large bias must neither stop
 // the run nor count as a hand.
-TEST_F(RealArms, AfterAFailedSelfTestTheBiasIsNoHand) {
+TEST_F(RealArms, AfterAFailedSelfTestTheBiasIsNotTakenForAHand) {
   int tick = 0;
   device_->spoil = [&tick](DeviceSample* sample) {
     sample->arms[0].F_S_raw[1] += 40 + (tick++ < 400 ? tick % 7 : 0);
@@ -216,7 +216,7 @@ TEST_F(FootSwitch, EnablesWhileItIsPressedAndStopsAtOnceWhenItIsNot) {
   EXPECT_EQ(record().cause, StopCause::kEnabling);
 }
 
-TEST_F(FootSwitch, SilentForATenthOfASecondItIsLetGo) {
+TEST_F(FootSwitch, CountsAsReleasedAfterATenthOfASecondOfSilence) {
   ASSERT_TRUE(Run());
   Tick(500);
   Put(Enabling::kSilent, 75);
@@ -226,7 +226,7 @@ TEST_F(FootSwitch, SilentForATenthOfASecondItIsLetGo) {
   EXPECT_EQ(record().cause, StopCause::kEnabling);
 }
 
-TEST_F(FootSwitch, ThatWasNeverLetGoCountsForNothing) {
+TEST_F(FootSwitch, DoesNotCountUntilItWasReleased) {
   device_->foot = Enabling::kPressed;  // taped down
   ASSERT_TRUE(Await(RunState::kIdle));
   Tick(200);
@@ -258,7 +258,7 @@ class WaitsForAnArm : public RealArms {
       if (presses_) sample->arms[1].F_S_raw[2] += 20;
     };
   }
-  double Told() const {
+  double FastestCommand() const {
     double fastest = 0;
     for (const HandRecord& hand : record().hands)
       for (const double v : hand.command) fastest = std::max(fastest, std::abs(v));
@@ -267,14 +267,14 @@ class WaitsForAnArm : public RealArms {
   void ExpectNothingMovesBeforeItCan(RunState state) {
     for (int k = 0; k < 300; ++k) {
       ASSERT_EQ(emulator_->state(), state);
-      EXPECT_EQ(Told(), 0) << k;
+      EXPECT_EQ(FastestCommand(), 0) << k;
       EXPECT_EQ(record().hands[hand_].arm_waits, 1);
       EXPECT_EQ(record().run_time, run_time_);
       Tick();
     }
     waits_ = false;
     Tick(200);
-    EXPECT_GT(Told(), 1e-4);
+    EXPECT_GT(FastestCommand(), 1e-4);
   }
   std::size_t hand_ = 0;
   bool waits_ = true, presses_ = false;
@@ -347,7 +347,7 @@ TEST_F(RealArms, TaringIsBumpless) {
   EXPECT_LT(felt, 0.5);
 }
 
-TEST(RealTimeArms, NobodyEnablesFromAfar) {
+TEST(RealTimeArms, CannotBeEnabledRemotely) {
   Scenario scenario = LoadTestScenario("box_9kg");
   const auto start = Emulator(scenario).setup().start;
   auto device = std::make_unique<PassedOff>(scenario, start);

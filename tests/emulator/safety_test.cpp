@@ -78,7 +78,7 @@ std::vector<std::string> ToAndFro(double duration) {
 // A scripted motion differs from an oscillation in that it is slower (docs/developer/decisions.md).
 // Outside the frequency band nothing counts, however much it grows. Inside the band, the monitor
 // stops a motion at 0.5 Hz whose force grows, whatever its origin.
-TEST(Stop, AScriptsOwnMotionIsNoOscillationUnlessItIsAsFastAsOne) {
+TEST(Stop, AScriptsMotionIsNotAnOscillationUnlessAsFast) {
   EXPECT_EQ(RunScenario("box_9kg", ToAndFro(1.6)).end, RunEnd::kFinished);
   EXPECT_EQ(RunScenario("box_9kg", ToAndFro(2.5)).end, RunEnd::kFinished);
 }
@@ -310,7 +310,7 @@ struct Asked {
   RunState end;
 };
 
-TEST(Stop, TheMoreSevereWinsWheneverItIsAskedFor) {
+TEST(Stop, TheMoreSevereWinsWheneverRequested) {
   const auto stop = RunEvent::kStopRequested, off = RunEvent::kStopAndPowerOff;
   for (const Asked& asked : {Asked{"stop", {stop}, {}, {}, RunState::kHeld},
                              Asked{"power off", {off}, {}, {}, RunState::kUnpowered},
@@ -349,7 +349,7 @@ TEST(Stop, BeforeTheFirstTickIsNotLost) {
 }
 
 // A stop request during the normal end of a run still becomes the cause.
-TEST(Stop, DuringTheEndOfARunIsTold) {
+TEST(Stop, DuringTheEndOfARunIsReported) {
   Emulator emulator(LoadTestScenario("box_9kg"));
   Simulate(&emulator, 2, [](const TickRecord&) {});
   emulator.RequestEnd();
@@ -460,7 +460,7 @@ TEST(BadLists, AreRefusedBeforeAnythingMoves) {
     EXPECT_THROW(Emulator(LoadTestScenario("box_9kg", {set})), InputError) << set;
 }
 
-TEST(Stop, AnybodyMayAskForIt) {
+TEST(Stop, AnyClientMayRequestIt) {
   Emulator emulator(LoadTestScenario("box_9kg"));
   Simulate(&emulator, 2.0, [](const TickRecord&) {});
   ASSERT_EQ(emulator.state(), RunState::kRun);

@@ -1,6 +1,7 @@
 // environment.shift moves the virtual world relative to the arms. Nothing else changes.
 #include <gtest/gtest.h>
 
+#include "core/error.h"
 #include "runs.h"
 
 namespace predictor {

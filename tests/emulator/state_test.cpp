@@ -124,7 +124,7 @@ TEST_P(StateTest, LoadsIntoOneThatNeverTicked) {
 }
 
 // Uninitialised bytes would make the states of equal runs differ and could be refused as NaN.
-TEST_P(StateTest, HoldsNothingButWhatWasWritten) {
+TEST_P(StateTest, ContainsOnlyWhatWasWritten) {
   const Scenario scenario = LoadTestScenario(GetParam().first, GetParam().second);
   std::vector<std::byte> states[2];
   for (int k = 0; k < 2; ++k) {
@@ -199,7 +199,7 @@ TEST(State, WithAnyByteChangedIsRefusedOrHarmlessSoak) {
   EXPECT_EQ(Save(&emulator), state);
 }
 
-TEST(State, WhatIsNoStateOfThisScenarioIsRefused) {
+TEST(State, StatesOfOtherScenariosAreRefused) {
   Emulator emulator(LoadTestScenario("box_9kg"));
   Emulator other(LoadTestScenario("single_arm"));
   emulator.Tick();

@@ -169,7 +169,7 @@ TEST_F(SupervisorTest, ALaterFaultMayOnlyRaiseTheLevel) {
   EXPECT_EQ(supervisor_.power_off_cause().cause, StopCause::kSensor);
 }
 
-TEST_F(SupervisorTest, AStopDropsWhateverElseIsRequestedInItsTick) {
+TEST_F(SupervisorTest, AStopDropsOtherRequestsInItsTick) {
   ASSERT_TRUE(Await(RunState::kIdle));
   supervisor_.Request(RunEvent::kAlignRequested);
   Ask(RunEvent::kStopRequested);

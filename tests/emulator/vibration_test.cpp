@@ -141,7 +141,7 @@ struct Combination {
 std::size_t Step(std::size_t sample) { return InFull() ? 1 : sample; }
 
 // Prints the number of runs for the record of long runs.
-void Tell(long runs) {
+void PrintCount(long runs) {
   if (InFull()) std::printf("soak: count=%ld\n", runs);
 }
 
@@ -182,7 +182,7 @@ Misses Unstable(const std::string& kind, std::size_t step) {
                   kind.c_str(), i, c.scenario.c_str(), c.rate, c.frequency,
                   static_cast<int>(outcome.cause), outcome.time, outcome.peak);
   }
-  Tell(count.runs);
+  PrintCount(count.runs);
   std::printf("%s: %ld runs, %ld not stopped, %ld at 5 N or more, %ld stopped by another cause\n",
               kind.c_str(), count.runs, count.missed, count.late, count.by_another);
   return count;
@@ -212,7 +212,7 @@ TEST(VibrationRun, NoStableLoopIsStoppedSoak) {
     EXPECT_FALSE(outcome.stopped())
         << i << " by " << Name(outcome.cause) << " at " << outcome.time << " s";
   }
-  Tell(runs);
+  PrintCount(runs);
 }
 
 constexpr const char* kWithAPerson[] = {"bar_circle", "box_18kg",     "box_9kg",

@@ -64,7 +64,7 @@ void ExpectBegins(const std::string& error, const std::string& beginning) {
 
 // ---- in the file ------------------------------------------------------------------------------
 
-TEST(Wiring, TellsWhichLinkIsNone) {
+TEST(Wiring, ReportsAnUnknownLink) {
   const std::string cobot = Replace(Box(), "panda_link8", "panda_lnk8", 0);
   ExpectBegins(ErrorOf(cobot), PlaceIn(cobot, "panda_lnk8") +
                                    "cobot.end_effector: \"panda_lnk8\" is not a link of the robot "
@@ -77,7 +77,7 @@ TEST(Wiring, TellsWhichLinkIsNone) {
   ExpectBegins(ErrorOf(right), PlaceIn(right, "nope") + "device.arms.right.elbow: \"nope\" is not");
 }
 
-TEST(Wiring, TellsWhichLinkCannotBeRemoved) {
+TEST(Wiring, ReportsWhichLinkCannotBeRemoved) {
   const std::array<const char*, 3> keys = {"cobot", "device.arms.left", "device.arms.right"};
   for (int i = 0; i < 3; ++i) {
     const std::string text = Replace(Box(), "[panda_hand]", "[panda_hand, nope]", i);
@@ -90,7 +90,7 @@ TEST(Wiring, TellsWhichLinkCannotBeRemoved) {
 }
 
 // Only the search for an equilibrium finds these errors.
-TEST(Wiring, TellsWhyTheCobotCannotHoldTheObject) {
+TEST(Wiring, ReportsWhyTheCobotCannotHoldTheObject) {
   const std::string heavy = Replace(Box(), "box_9kg.urdf", "box_18kg.urdf");
   ExpectBegins(ErrorOf(heavy), PlaceIn(heavy, "model: package") +
                                    "cobot.effort_limit: the cobot cannot hold the object");
@@ -102,7 +102,7 @@ TEST(Wiring, TellsWhyTheCobotCannotHoldTheObject) {
                    "until joint \"panda_joint4\" reaches its position limit");
 }
 
-TEST(Wiring, TellsWhichModelIsMissing) {
+TEST(Wiring, ReportsWhichModelIsMissing) {
   const std::string object = Replace(Box(), "box_9kg.urdf", "box_9kgs.urdf");
   ExpectBegins(ErrorOf(object), PlaceIn(object, "../assets/box_9kgs.urdf") +
                                     "object.model: \"../assets/box_9kgs.urdf\" does not exist:");

@@ -67,7 +67,7 @@ TEST(CyclePhase, WaitsBeforeAtAndAfterTheCircle) {
   EXPECT_TRUE(std::is_sorted(phase.begin(), phase.end()));
 }
 
-TEST(CyclePhase, NeverGoesBackAndKnowsWhatIsNoPath) {
+TEST(CyclePhase, NeverGoesBackAndRefusesInvalidPaths) {
   const auto x =
       Sampled(800, [](double t) { return std::cos(kTurn * (t / 4 + 0.1 * std::sin(3 * t))); });
   const auto y =
@@ -217,7 +217,7 @@ TEST(Repeats, OfOneKindHaveARatioOfOne) {
 
 // ---- impedance
 
-TEST(Impedance, IsFoundAgainWhereTheMotionTellsItApart) {
+TEST(Impedance, IsIdentifiedIfTheMotionAllows) {
   const auto x = [](double t) { return 0.1 * std::sin(1.3 * t) + 0.03 * std::sin(4.1 * t + 1); };
   const auto v = [](double t) { return 0.13 * std::cos(1.3 * t) + 0.123 * std::cos(4.1 * t + 1); };
   const auto a = [](double t) {
@@ -234,7 +234,7 @@ TEST(Impedance, IsFoundAgainWhereTheMotionTellsItApart) {
   EXPECT_GT(found.separable, kSeparable);
 }
 
-TEST(Impedance, OfOneSineDoesNotTellMassFromStiffness) {
+TEST(Impedance, OfOneSineCannotSeparateMassFromStiffness) {
   const double w = kTurn / 8;
   const auto position = Sampled(1600, [w](double t) { return 0.15 * std::sin(w * t); });
   const auto force = Sampled(1600, [w](double t) {
@@ -251,7 +251,7 @@ TEST(Impedance, OfOneSineDoesNotTellMassFromStiffness) {
 
 // If the person only yields, the force is that of the hand, F = −(mass a + …), so it contains no
 // information about the object.
-TEST(Impedance, IsNotToldOfAnAxisThatIsNotLed) {
+TEST(Impedance, IsNotReportedForAnAxisWithoutMotion) {
   const auto position = Sampled(1000, [](double t) { return 1e-3 * std::sin(2 * t); });
   const auto force = Sampled(1000, [](double t) { return -0.6 * std::sin(2 * t); });
   EXPECT_TRUE(std::isnan(FitImpedance(position, force).stiffness));
@@ -377,7 +377,7 @@ TEST(FidelityCollector, RefusesTimesThatCannotBe) {
   EXPECT_EQ(SignalsOf(records).channels[0].samples.size(), 5u * 3600 * 100 + 1);
 }
 
-TEST(FidelityCollector, BeginsAnewWithTheRunAndKnowsOneHand) {
+TEST(FidelityCollector, StartsAgainWithTheRunAndKnowsOneHand) {
   std::vector<TickRecord> records = Records({.period = 2, .cycles = 2});
   const auto again = Records({.period = 2, .cycles = 1, .start = 0, .hands = 1});
   records.insert(records.end(), again.begin(), again.end());
@@ -467,7 +467,7 @@ TEST(Fidelity, RefusesWhatCannotBeCompared) {
   EXPECT_THROW(CompareFidelity(run, still, true), InputError);
 }
 
-TEST(Fidelity, IsToldInWords) {
+TEST(Fidelity, IsDescribedInWords) {
   const std::vector<FidelitySignals> a = {SignalsOf(Task{.noise = 0.1})},
                                      b = {
                                          SignalsOf(Task{.viscosity = 30, .noise = 0.1, .seed = 3})};

@@ -32,7 +32,7 @@ TEST(OscillationIndex, IsThePartOfThePowerFromThreeToTenHertz) {
   }
 }
 
-TEST(PortEnergy, TellsWhatCameBackAndHowLowTheSumFell) {
+TEST(PortEnergy, MeasuresTheReturnedEnergyAndTheLowestSum) {
   PortEnergy port;
   for (int i = 0; i < 1000; ++i) port.Add(2, 0.001);
   for (int i = 0; i < 1000; ++i) port.Add(-3, 0.001);
@@ -64,7 +64,7 @@ Summary OfForce(
   return builder.summary();
 }
 
-TEST(Metrics, TellTheOscillationOfEachHand) {
+TEST(Metrics, ContainTheOscillationOfEachHand) {
   const auto force = [](double t) {
     return 3 * std::sin(2 * M_PI * t) + 2 * std::sin(2 * M_PI * 5 * t);
   };
@@ -81,7 +81,7 @@ TEST(Metrics, TellTheOscillationOfEachHand) {
   EXPECT_TRUE(IsMissing(paused.At("oscillation.left.rms_n").value));
 }
 
-TEST(Metrics, TellTheEnergyOfBothHands) {
+TEST(Metrics, ContainTheEnergyOfBothHands) {
   const Summary summary = OfForce(
       3, [](double t) { return t < 1   ? 4
                                : t < 2 ? -6
@@ -97,7 +97,7 @@ TEST(Metrics, TellTheEnergyOfBothHands) {
   EXPECT_EQ(summary.Get<std::uint64_t>("energy.episodes"), 1u);
 }
 
-TEST(Metrics, TellTheDistanceFromTheGuidance) {
+TEST(Metrics, ContainTheDistanceFromTheGuidance) {
   Scenario scenario;
   scenario.guidance.type = "circle";
   scenario.guidance.center = {-0.2, 0, 0};

@@ -133,7 +133,7 @@ TEST(SurveyForm, IsTakenAsItIs) {
   EXPECT_EQ(answer.pseudonym, "");
 }
 
-TEST(SurveyForm, MayLeaveOutWhatNobodyMustTell) {
+TEST(SurveyForm, MayLeaveOutOptionalAnswers) {
   Json form = Form();
   form["age"] = form["sex"] = form["answers"]["S3"] = nullptr;
   form.erase("comment");
@@ -186,7 +186,7 @@ TEST(SurveyForm, CountsCharactersNotBytes) {
   EXPECT_EQ(ParseSurveyForm(form.dump()).comment, comment);
 }
 
-TEST(SurveyForm, RefusesWhatIsNoForm) {
+TEST(SurveyForm, RefusesInvalidForms) {
   for (const char* text : {"", "[]", "null", "{", "\"a\"", "{\"consent\": true}"})
     EXPECT_THROW(ParseSurveyForm(text), InputError) << text;
   EXPECT_THROW(ParseSurveyForm(std::string(kLongestAnswer + 1, ' ')), InputError);
@@ -243,7 +243,7 @@ class SurveyFiles : public ::testing::Test {
   const fs::path folder_ = temporary_.path();
 };
 
-TEST_F(SurveyFiles, KeepWhatWasAnswered) {
+TEST_F(SurveyFiles, KeepTheAnswers) {
   SurveyAnswer answer = Answer("ABCDEFGF", Condition::kEmulated, -2);
   answer.scores[4] = {};
   answer.age = {};
@@ -288,7 +288,7 @@ TEST_F(SurveyFiles, AreRemovedAlone) {
   EXPECT_THROW(RemoveSurveyAnswers({folder_ / "absent"}, "ABCDEFGF"), InputError);
 }
 
-TEST_F(SurveyFiles, NameTheOneThatIsSpoilt) {
+TEST_F(SurveyFiles, NameTheInvalidOne) {
   const fs::path file = StoreSurveyAnswer(folder_, Answer("ABCDEFGF", Condition::kReal, 1));
   const std::string whole = Text(file);
   for (std::size_t length = 0; length + 2 < whole.size(); ++length) {
@@ -357,7 +357,7 @@ TEST(SurveyReport, ComparesPairsByTheSignedRanks) {
   EXPECT_EQ(report.paired[2].test.p, 1);
 }
 
-TEST(SurveyReport, RefusesNobodyAndTwiceTheSame) {
+TEST(SurveyReport, RefusesNoPeopleAndDuplicates) {
   EXPECT_THROW(SummariseSurvey({}), InputError);
   EXPECT_THROW(
       SummariseSurvey({Stored("A", Condition::kReal, 1), Stored("A", Condition::kReal, 2)}),
@@ -370,7 +370,7 @@ TEST(SurveyReport, ShowsThePapersStudyAsThePaperDoes) {
   for (const char* line : {"S1    17    1.47 ± 0.62      2.0", "S3    17    0.76 ± 0.56      1.0",
                            "S6    17    1.76 ± 0.56      2.0", "S8    17    1.29 ± 0.47      1.0"})
     EXPECT_NE(table.find(line), std::string::npos) << line << "\n" << table;
-  EXPECT_NE(table.find("Nobody answered once for each"), std::string::npos);
+  EXPECT_NE(table.find("No one answered exactly once for each"), std::string::npos);
 }
 
 // Computed with scipy 1.17.1: wilcoxon(x, zero_method="wilcox",

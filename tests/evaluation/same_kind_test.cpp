@@ -24,27 +24,27 @@ Repeats Waves(std::size_t count, double size, std::mt19937_64* random) {
   return repeats;
 }
 
-int ToldApart(double size, int trials, std::size_t count) {
+int CountDistinguished(double size, int trials, std::size_t count) {
   std::mt19937_64 random(7);
-  int told = 0;
+  int distinguished = 0;
   for (int k = 0; k < trials; ++k) {
     const Repeats a = Waves(count, 1, &random), b = Waves(count, size, &random);
-    told += TestSameKind(a, b, 199).told_apart();
+    distinguished += TestSameKind(a, b, 199).distinguished();
   }
-  return told;
+  return distinguished;
 }
 
-TEST(SameKind, OneInTwentyOfEqualKindsIsToldApart) {
+TEST(SameKind, OneInTwentyOfEqualKindsIsDistinguished) {
   // Binomial distribution of 400 trials at 5 %: 20 ± 4.4. The limits are three and a half
   // deviations away, which is exceeded about once in two thousand cases.
-  const int told = ToldApart(1, 400, 17);
-  EXPECT_GE(told, 5);
-  EXPECT_LE(told, 35);
+  const int distinguished = CountDistinguished(1, 400, 17);
+  EXPECT_GE(distinguished, 5);
+  EXPECT_LE(distinguished, 35);
 }
 
-TEST(SameKind, UnequalKindsAreToldApart) {
+TEST(SameKind, UnequalKindsAreDistinguished) {
   // The sizes differ by 1.5 deviations. Student's test would detect 98 of 100 cases.
-  EXPECT_GE(ToldApart(1.3, 100, 17), 90);
+  EXPECT_GE(CountDistinguished(1.3, 100, 17), 90);
   // Kinds with the same mean but different variances are detected as well.
   std::mt19937_64 random(3);
   Repeats narrow(17, {0.0}), wide = narrow;
@@ -52,7 +52,7 @@ TEST(SameKind, UnequalKindsAreToldApart) {
     narrow[k][0] = 0.1 * (static_cast<double>(k) - 8);
     wide[k][0] = 10 * narrow[k][0];
   }
-  EXPECT_TRUE(TestSameKind(narrow, wide).told_apart());
+  EXPECT_TRUE(TestSameKind(narrow, wide).distinguished());
 }
 
 // All 20 ways to divide six numbers into two sets. For series of one sample, |x − y| is their rms
@@ -62,18 +62,19 @@ TEST(SameKind, PIsThatOfGoingThroughAllWays) {
   const Repeats low = {{1}, {2}, {3}}, high = {{11}, {12}, {13}};
   const SameKindTest test = TestSameKind(low, high);
   EXPECT_DOUBLE_EQ(test.distance, 10 - 4.0 / 3);  // distances within each set: 1, 1 and 2
-  EXPECT_DOUBLE_EQ(test.least_p, 2.0 / 20);
-  EXPECT_FALSE(test.can_tell());
+  EXPECT_DOUBLE_EQ(test.min_p, 2.0 / 20);
+  EXPECT_FALSE(test.can_distinguish());
   // The standard error for 9999 draws is 0.003.
   EXPECT_NEAR(test.p, 0.1, 0.012);
-  EXPECT_FALSE(TestSameKind(low, low).told_apart());
+  EXPECT_FALSE(TestSameKind(low, low).distinguished());
 }
 
-TEST(SameKind, SaysFromHowManyRepeatsItCanTell) {
+TEST(SameKind, SaysFromHowManyRepeatsItCanDistinguish) {
   std::mt19937_64 random(1);
   for (const std::size_t n : {2u, 3u, 4u, 17u})
-    EXPECT_EQ(TestSameKind(Waves(n, 1, &random), Waves(n, 9, &random)).can_tell(), n >= 4) << n;
-  EXPECT_TRUE(TestSameKind(Waves(4, 1, &random), Waves(4, 9, &random)).told_apart());
+    EXPECT_EQ(TestSameKind(Waves(n, 1, &random), Waves(n, 9, &random)).can_distinguish(), n >= 4)
+        << n;
+  EXPECT_TRUE(TestSameKind(Waves(4, 1, &random), Waves(4, 9, &random)).distinguished());
 }
 
 }  // namespace

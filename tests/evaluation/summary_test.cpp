@@ -147,7 +147,7 @@ TEST(Summary, ComputesMeansDeviationsAndTheReleasedPartApart) {
 // A rotation of the left handle about its own origin keeps the distance between the handles. In the
 // left handle's frame, it moves the right handle by the chord of the arc. A common translation
 // changes neither value.
-TEST(Summary, TellsTheRightHandleSeenFromTheLeftApartFromTheDistance) {
+TEST(Summary, SeparatesTheRelativePoseFromTheDistance) {
   constexpr double kAngle = 0.1, kDistance = 0.2, kShift = 0.03;
   TickRecord turned = Running(0.001, kShift, 0);
   turned.hands[0].real.pose.q = {std::cos(kAngle / 2), 0, 0, std::sin(kAngle / 2)};
@@ -179,7 +179,7 @@ TEST(Summary, OfTheWholeRunIsThatOfItsParts) {
   EXPECT_NE(SummaryTable(s).find("Whole run"), std::string::npos);
 }
 
-TEST(Summary, TellsTheStopAndWhenTheTruthCrossedTheThreshold) {
+TEST(Summary, ReportsTheStopAndWhenTheTruthCrossedTheThreshold) {
   SummaryBuilder builder(Named("name", 1));
   for (int k = 0; k < 5; ++k) {
     TickRecord r = Running(0.001 * k, 0, 29);
@@ -213,7 +213,7 @@ TEST(Summary, TellsTheStopAndWhenTheTruthCrossedTheThreshold) {
   EXPECT_NE(SummaryTable(builder.summary()).find("30.5 N, limit 30 N"), std::string::npos);
 }
 
-TEST(Summary, TellsWhatMadeTheEndOfAStopHarder) {
+TEST(Summary, ReportsWhatMadeTheEndOfAStopHarder) {
   SummaryBuilder builder(Named("name", 1));
   TickRecord stop = Running(0.001, 0, 1);
   stop.state = RunState::kStopping;
@@ -235,7 +235,7 @@ TEST(Summary, TellsWhatMadeTheEndOfAStopHarder) {
 }
 
 // The reason is found even if it comes in the tick of the decision and no record follows.
-TEST(Summary, TellsWhatMadeAStopHarderInItsOwnTick) {
+TEST(Summary, ReportsWhatMadeAStopHarderInItsOwnTick) {
   SummaryBuilder builder(Named("name", 1));
   TickRecord stop = Running(0.001, 0, 1);
   stop.state = RunState::kStopping;
@@ -263,10 +263,10 @@ TEST(Summary, OfArmsThatDidNotRestSaysSo) {
     stop.harder = harder;
     builder.Add(stop);
     const std::string table = SummaryTable(builder.summary());
-    const bool told = table.find("At rest after") != std::string::npos;
-    EXPECT_NE(told, table.find("The arms had not come to rest.") != std::string::npos) << table;
-    EXPECT_NE(told, DidNotRest(builder.stops().stops().front()));
-    return told;
+    const bool reported = table.find("At rest after") != std::string::npos;
+    EXPECT_NE(reported, table.find("The arms had not come to rest.") != std::string::npos) << table;
+    EXPECT_NE(reported, DidNotRest(builder.stops().stops().front()));
+    return reported;
   };
   const auto device = [](Quantity quantity) {
     return StatusRecord{StopCause::kDevice, 1, quantity, 1, {}, 0.02, 0.0025};
@@ -280,8 +280,8 @@ TEST(Summary, OfArmsThatDidNotRestSaysSo) {
   EXPECT_TRUE(rested(StopCause::kTracking, Quantity::kSpeed, {}));
 }
 
-TEST(Summary, TellsEachQuantityInItsOwnUnit) {
-  const auto told = [](StopCause cause, Quantity quantity, double value) {
+TEST(Summary, ShowsEachQuantityInItsOwnUnit) {
+  const auto reported = [](StopCause cause, Quantity quantity, double value) {
     SummaryBuilder builder(Named("name", 1));
     TickRecord stop = Running(0.001, 0, 1);
     stop.state = RunState::kStopping;
@@ -296,18 +296,18 @@ TEST(Summary, TellsEachQuantityInItsOwnUnit) {
                         table.find("\n", table.find("by cause")) - table.find("by cause"));
   };
   const double degree = 0.017453292519943295;
-  EXPECT_EQ(told(StopCause::kTracking, Quantity::kLength, 0.02),
+  EXPECT_EQ(reported(StopCause::kTracking, Quantity::kLength, 0.02),
             "by cause 'tracking': 20 mm, limit 10 mm.");
-  EXPECT_EQ(told(StopCause::kTracking, Quantity::kAngle, 6 * degree),
+  EXPECT_EQ(reported(StopCause::kTracking, Quantity::kAngle, 6 * degree),
             "by cause 'tracking': 6°, limit 3°.");
-  EXPECT_EQ(told(StopCause::kTracking, Quantity::kSpeed, 0.004),
+  EXPECT_EQ(reported(StopCause::kTracking, Quantity::kSpeed, 0.004),
             "by cause 'tracking': 4 mm/s, limit 2 mm/s.");
-  EXPECT_EQ(told(StopCause::kTracking, Quantity::kAngularSpeed, degree),
+  EXPECT_EQ(reported(StopCause::kTracking, Quantity::kAngularSpeed, degree),
             "by cause 'tracking': 1°/s, limit 0.5°/s.");
-  EXPECT_EQ(told(StopCause::kCoupling, Quantity::kTorque, 8),
+  EXPECT_EQ(reported(StopCause::kCoupling, Quantity::kTorque, 8),
             "by cause 'coupling': 8 N·m, limit 4 N·m.");
-  EXPECT_EQ(told(StopCause::kStale, Quantity::kCount, 50), "by cause 'stale': 50, limit 25.");
-  EXPECT_EQ(told(StopCause::kOperator, Quantity::kNone, 0), "by cause 'operator'.");
+  EXPECT_EQ(reported(StopCause::kStale, Quantity::kCount, 50), "by cause 'stale': 50, limit 25.");
+  EXPECT_EQ(reported(StopCause::kOperator, Quantity::kNone, 0), "by cause 'operator'.");
 }
 
 TEST(Summary, OfWhatNeverRanHasNoFigures) {
@@ -361,7 +361,7 @@ TEST(Summary, RestsWhereTheStopRests) {
 }
 
 // One stop after 3 ticks and, after a reset, another one after 2 more ticks.
-TEST(Summary, TellsEachStop) {
+TEST(Summary, ReportsEachStop) {
   SummaryBuilder builder(Named("name", 1));
   const auto stop = [&](StopCause cause, std::int8_t hand, int ran, double way) {
     for (int k = 0; k < ran; ++k) builder.Add(Running(0.001 * k, 0, 10));

@@ -33,7 +33,7 @@ class EvaluatorProcessTest : public testing::Test {
     evaluator_ = std::make_unique<EvaluatorProcess>(scenario, board_, states_,
                                                     [this](const std::string& text) {
                                                       const std::lock_guard lock(mutex_);
-                                                      told_ += text + "\n";
+                                                      reported_ += text + "\n";
                                                     });
   }
   void Run(std::uint64_t first, std::uint64_t last, double height = 1) {
@@ -47,17 +47,17 @@ class EvaluatorProcessTest : public testing::Test {
     if (written > 0) (*states_).states.Get(written - 1, &state);
     return state;
   }
-  bool Tells(const std::string& text) {
+  bool Reports(const std::string& text) {
     return Becomes([&] {
       const std::lock_guard lock(mutex_);
-      return told_.find(text) != std::string::npos;
+      return reported_.find(text) != std::string::npos;
     });
   }
 
   Shared<RunBoard> board_;
   Shared<EvaluationBoard> states_;
   std::mutex mutex_;
-  std::string told_;
+  std::string reported_;
   std::unique_ptr<EvaluatorProcess> evaluator_;
 };
 
@@ -98,13 +98,13 @@ TEST_F(EvaluatorProcessTest, HasNoRightsAndWritesItsStatesOnly) {
   }
 }
 
-TEST_F(EvaluatorProcessTest, ItsDeathIsToldAndItStartsAgain) {
+TEST_F(EvaluatorProcessTest, ItsDeathIsReportedAndItRestarts) {
   Start(Box());
   Run(1, 200);
   ASSERT_TRUE(Becomes([&] { return Newest().tick == 200; }));
   const int pid = evaluator_->pid();
   ASSERT_EQ(kill(pid, SIGKILL), 0);
-  EXPECT_TRUE(Tells("The evaluator has ended (signal 9); the run continues."));
+  EXPECT_TRUE(Reports("The evaluator has ended (signal 9); the run continues."));
   ASSERT_TRUE(Becomes([&] { return evaluator_->pid() != 0 && evaluator_->pid() != pid; }));
   Run(201, 400);
   ASSERT_TRUE(Becomes([&] { return Newest().tick == 400; }));

@@ -36,7 +36,7 @@ Result Export(const std::string& arguments, const fs::path& from = ".") {
 
 const std::string kScenario = PREDICTOR_SOURCE_DIR "/scenarios/single_arm.yaml";
 
-TEST(ExportCommand, WritesThePackageAndSaysWhere) {
+TEST(ExportCommand, WritesThePackageAndNamesItsFolder) {
   const test::TemporaryFolder to;
   const Result result = Export(kScenario + " -o '" + (to.path() / "scene").string() + "'");
   EXPECT_EQ(result.code, 0) << result.text;

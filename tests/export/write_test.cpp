@@ -64,7 +64,7 @@ TEST(WriteScenePackage, RefusesAFolderThatIsNotEmptyAndForceReplacesOnlyItsOwn) 
   EXPECT_EQ(Shown(to.path()), expected);
 }
 
-TEST(WriteScenePackage, ForceRefusesAFileOfSomebodyElse) {
+TEST(WriteScenePackage, ForceDoesNotReplaceForeignFiles) {
   for (const std::string path : {"scene.urdf", "meshes/a.stl", ".predictor-scene", "meshes"}) {
     const test::TemporaryFolder to;
     Write(to.path() / path, "not written by an export");
@@ -93,7 +93,7 @@ TEST(WriteScenePackage, FollowsNoLink) {
 }
 
 // A forged list must not remove files outside the folder, nor through a symbolic link.
-TEST(WriteScenePackage, BelievesNoListThatLeadsElsewhere) {
+TEST(WriteScenePackage, RejectsAListThatLeadsElsewhere) {
   const test::TemporaryFolder around;
   const fs::path to = around.path() / "to";
   Write(around.path() / "precious", "p");

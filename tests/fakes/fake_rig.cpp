@@ -31,19 +31,19 @@ namespace {
 
 constexpr const char* kHelp =
     "run, rest                the person at the handles begins to work, or rests\n"
-    "press SIDE X Y Z         somebody pushes that handle: axes of the world [N]; 0 0 0 lets go\n"
-    "lead SIDE Q ...          somebody leads that arm to these joints [rad]; without any lets go\n"
+    "press SIDE X Y Z         pushes that handle: axes of the world [N]; 0 0 0 lets go\n"
+    "lead SIDE Q ...          guides that arm to these joints [rad]; without any, lets go\n"
     "led SIDE                 yes once it is there, or no\n"
     "state, joints SIDE       where the joints are [rad], and how fast [rad/s]\n"
     "mark, motion             watch the handles from here on; what they did: last moving after "
     "[s],\n"
     "                         fastest [m/s], hardest [m/s^2], way [m], fastest joint [rad/s],\n"
-    "                         hardest that one was told to brake [rad/s^2]\n"
+    "                         its hardest commanded braking [rad/s^2]\n"
     "wire SIDE M ...          that sensor reads this matrix (9 numbers) times what it should\n"
     "do SIDE PLACE WHAT       what happens to a fake, the PLACE-th of that side (0: the first)\n"
     "                         UR: press INPUT, release INPUT, protective stop, unlock,\n"
     "                             emergency stop, slider PERCENT, freedrive, freedrive off\n"
-    "                         Franka: user stop, emergency stop, release, guide, freeze, go on\n"
+    "                         Franka: user stop, emergency stop, release, guide, freeze, continue\n"
     "late FROM TO             how late between these times of the monotonic clock [ns]: a "
     "processor\n"
     "                         at the worst, and in sum; the rig; the longest silence of a client;\n"
@@ -117,7 +117,7 @@ class FarEnd {
     if (!OneOf(what, {"joints", "lead", "led", "press", "wire", "do", "log"}))
       return "There is no command \"" + what + "\": help lists them.";
     words >> side;
-    if (!OneOf(side, {"left", "right"})) return what + " whom? left or right: help tells how.";
+    if (!OneOf(side, {"left", "right"})) return what + " left or right? See help.";
     const int hand = side == "left" ? 0 : 1;
     return OneOf(what, {"do", "log"}) ? OfFake(what, hand, &words) : ByHand(what, hand, &words);
   }

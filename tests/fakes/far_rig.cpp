@@ -102,9 +102,9 @@ void FarRig::Step() {
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     if (const JointVector& goal = by_hand_[hand].lead; goal.size() == command.v[hand].size())
       command.v[hand] = (kGain * (goal - sample_.arms[hand].q)).cwiseMax(-kBrisk).cwiseMin(kBrisk);
-    told_[hand].push_front(command.v[hand]);
-    if (told_[hand].size() > kMostLate) told_[hand].pop_back();
-    command.v[hand] = told_[hand][std::min(late_[hand], told_[hand].size() - 1)];
+    commanded_[hand].push_front(command.v[hand]);
+    if (commanded_[hand].size() > kMaxLate) commanded_[hand].pop_back();
+    command.v[hand] = commanded_[hand][std::min(late_[hand], commanded_[hand].size() - 1)];
   }
   rig_->Step(command, 0.001);
   for (Disturbance& disturbance : disturbances_) disturbance.drifted += 0.001 * disturbance.drift;
@@ -130,10 +130,10 @@ void FarRig::Watch() {
     motion_.hardest = std::max(motion_.hardest, (v - v_[i]).norm() / 0.001);
     if (const JointVector& turning = sample_.arms[i].v; turning.size() > 0)
       motion_.joint = std::max(motion_.joint, turning.cwiseAbs().maxCoeff());
-    if (told_[i].size() > kWindow && told_[i][0].size() > 0)
-      motion_.braking =
-          std::max(motion_.braking,
-                   (told_[i][0] - told_[i][kWindow]).cwiseAbs().maxCoeff() / (0.001 * kWindow));
+    if (commanded_[i].size() > kWindow && commanded_[i][0].size() > 0)
+      motion_.braking = std::max(
+          motion_.braking,
+          (commanded_[i][0] - commanded_[i][kWindow]).cwiseAbs().maxCoeff() / (0.001 * kWindow));
     way_[i] += 0.001 * v.norm();
     motion_.distance = std::max(motion_.distance, way_[i]);
     if (moving > kRest) motion_.rest_after = since_mark_;

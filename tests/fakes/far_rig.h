@@ -36,8 +36,8 @@ class FarRig {
   // From now on, adds a drift to the wrench [N/s], [N·m/s].
   void Drift(int hand, const Wrench& rate);
 
-  // From now on, delays the commands of this arm by this number of milliseconds, at most kMostLate.
-  static constexpr std::size_t kMostLate = 64;
+  // From now on, delays the commands of this arm by this number of milliseconds, at most kMaxLate.
+  static constexpr std::size_t kMaxLate = 64;
   void Hinder(int hand, std::size_t milliseconds);
   // A person leads an arm to these joints [rad], regardless of its controller; empty: the person
   // lets go.
@@ -71,7 +71,9 @@ class FarRig {
 
   const Rig& rig() const { return *rig_; }
   // Last command of a controller to its arm [rad/s].
-  const JointVector& told(int hand) const { return told_[static_cast<std::size_t>(hand)].front(); }
+  const JointVector& commanded(int hand) const {
+    return commanded_[static_cast<std::size_t>(hand)].front();
+  }
   // The joints and their velocities as text.
   std::string ToString();
 
@@ -98,7 +100,7 @@ class FarRig {
 
   std::unique_ptr<Rig> rig_;
   std::vector<Place> places_;
-  std::array<std::deque<JointVector>, kHands> told_;  // the latest commands, newest first
+  std::array<std::deque<JointVector>, kHands> commanded_;  // the latest commands, newest first
   std::array<std::size_t, kHands> late_ = {};
   std::array<Disturbance, kHands> disturbances_;
   std::array<ByHand, kHands> by_hand_;

@@ -41,7 +41,7 @@ class FaultyStream final : public Stream {
   }
 
   bool Write(std::span<const std::byte> from) noexcept override {
-    clock_->Tell(host_, from);
+    clock_->Observe(host_, from);
     if (faults_->closed) return false;
     return faults_->deaf || stream_->Write(from);
   }
@@ -91,7 +91,7 @@ class FaultyDatagrams final : public Datagrams {
     return static_cast<int>(bytes.size());
   }
   bool Send(std::span<const std::byte> from) noexcept override {
-    clock_->Tell(host_, from);
+    clock_->Observe(host_, from);
     return faults_->deaf || faults_->closed || datagrams_->Send(from);
   }
   std::uint16_t port() const noexcept override { return datagrams_->port(); }

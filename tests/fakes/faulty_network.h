@@ -42,7 +42,7 @@ class FaultyNetwork final : public Network {
   // or a datagram.
   using Heard = std::function<void(const std::string& host, std::span<const std::byte> bytes)>;
   void SetHeard(Heard heard) { heard_ = std::move(heard); }
-  void Tell(const std::string& host, std::span<const std::byte> bytes) const {
+  void Observe(const std::string& host, std::span<const std::byte> bytes) const {
     if (heard_) heard_(host, bytes);
   }
 

@@ -116,7 +116,7 @@ TEST_F(RecoveryTest, AJointNearerToItsLimitThanRenderingKeepsIsBeyond) {
   }
 }
 
-TEST_F(RecoveryTest, ANumberThatIsNoneIsBeyond) {
+TEST_F(RecoveryTest, NanIsBeyond) {
   Inside();
   two_.q_[1][2] = std::nan("");
   EXPECT_EQ(recovery_.Find(two_.arms_), Beyond::kJoint);
@@ -196,7 +196,7 @@ TEST_F(RecoveryTest, NeverMovesAgainstAHandThatIsLoaded) {
   EXPECT_GT(yields, 50);
 }
 
-TEST_F(RecoveryTest, StandsWhereNothingIsWrong) {
+TEST_F(RecoveryTest, StandsWithinTheLimits) {
   Inside();
   while (recovery_.Find(two_.arms_) != Beyond::kNothing) Inside();
   for (HandWrench& wrench : wrench_) wrench = {true, 0.9 * Recovery::kForce * Wrench::Unit(1)};

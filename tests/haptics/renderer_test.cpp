@@ -153,7 +153,7 @@ TEST(Renderer, PublishesTheSlackOfEachLimit) {
 
 // With any gain, handles with a wrong relative pose approach each other no faster than a handle's
 // caps allow.
-TEST(RelativePose, AsksForNoMoreThanTheCaps) {
+TEST(RelativePose, DemandsNoMoreThanTheCaps) {
   RandomStream random(11, "caps");
   double fastest = 0, quickest = 0;
   for (int k = 0; k < 100; ++k) {

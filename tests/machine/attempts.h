@@ -13,7 +13,7 @@
 namespace predictor {
 
 // The cause of the lateness, judged from the run's `screen`.
-enum class Late { kNobody, kComputer, kProgram };
+enum class Late { kNothing, kComputer, kProgram };
 
 // A delay that stops arms is longer than the usual delays of a computer. Three missed deadlines in
 // a row take at least 2 ms (Monitor::kMissedDeadlines). The thread that watches a processor wakes
@@ -29,10 +29,10 @@ inline constexpr std::uint64_t kJustBefore = 500'000'000, kASecond = 1'500'000'0
 inline Late Judge(const std::string& screen, bool letter_was_late, const RigLateness& once,
                   double sum) {
   if (screen.find("the stop 'enabling'") != std::string::npos)
-    return letter_was_late || once.ordinary >= kLetterLate ? Late::kComputer : Late::kNobody;
+    return letter_was_late || once.ordinary >= kLetterLate ? Late::kComputer : Late::kNothing;
   bool late = false;
   for (const char* sign : kLateSigns) late |= screen.find(sign) != std::string::npos;
-  if (!late) return Late::kNobody;
+  if (!late) return Late::kNothing;
   return once.processor >= kLateOnce || once.rig >= kLateOnce || sum >= kLateInSum ? Late::kComputer
                                                                                    : Late::kProgram;
 }
@@ -42,9 +42,9 @@ inline std::string StopWords(const std::string& screen) {
   std::istringstream lines(screen);
   std::string words;
   for (std::string line; std::getline(lines, line);) {
-    bool tells = line.find("the stop '") != std::string::npos || line.starts_with("Loop: ");
-    for (const char* sign : kLateSigns) tells |= line.find(sign) != std::string::npos;
-    if (tells) words += "\n  " + line.substr(0, line.find('\r'));
+    bool relevant = line.find("the stop '") != std::string::npos || line.starts_with("Loop: ");
+    for (const char* sign : kLateSigns) relevant |= line.find(sign) != std::string::npos;
+    if (relevant) words += "\n  " + line.substr(0, line.find('\r'));
   }
   return words.empty() ? "\n  (no word of a stop)" : words;
 }
@@ -72,7 +72,7 @@ class Attempts {
                       long_before = rig->Late(at - kASecond, at);
     const std::string screen = terminal.Screen();
     const Late late = Judge(screen, terminal.letter_was_late(), once, long_before.processor_sum);
-    if (late != Late::kNobody) Note(screen, once, long_before.processor_sum);
+    if (late != Late::kNothing) Note(screen, once, long_before.processor_sum);
     if (late == Late::kProgram)
       ADD_FAILURE() << "The program was late while the computer was not:" << words_ << "\n"
                     << screen;
@@ -93,7 +93,7 @@ class Attempts {
     terminal->Kill(SIGINT);
     const int code = terminal->Wait();
     if (WasSpoiled(*terminal, rig)) return true;
-    ADD_FAILURE() << "It ended with " << code << ", and nobody was late:\n" << terminal->Screen();
+    ADD_FAILURE() << "It ended with " << code << ", and nothing was late:\n" << terminal->Screen();
     return false;
   }
 

@@ -154,10 +154,10 @@ class FrankaLoopAtTheTerminal : public LoopAtTheTerminal {
 
   // Measures the first joint. Returns nullopt if this computer was too busy.
   std::optional<commissioning::LoopRecord> SwingOne(Terminal* terminal) const {
-    constexpr int kAnew = 8;
+    constexpr int kMaxTries = 8;
     Begin(terminal);
     bool measured = false;
-    for (int i = 0; i < kAnew && !measured; ++i) {
+    for (int i = 0; i < kMaxTries && !measured; ++i) {
       measured = terminal->Line("Joint ", 20).starts_with("2 of 7");
       terminal->Let();
       std::this_thread::sleep_for(std::chrono::milliseconds(300));
@@ -175,7 +175,7 @@ class FrankaLoopAtTheTerminal : public LoopAtTheTerminal {
 };
 
 TEST_F(FrankaLoopAtTheTerminal, ItsStatesAreSeenAndAnsweredAsItSendsThem) {
-  constexpr double kMostLost = 0.02;
+  constexpr double kMaxLostShare = 0.02;
   Attempts attempts;
   while (attempts.Next()) {
     SwitchOn({"left=franka:" + HostOf(kLeft), "right=franka:" + HostOf(kRight)});
@@ -193,7 +193,7 @@ TEST_F(FrankaLoopAtTheTerminal, ItsStatesAreSeenAndAnsweredAsItSendsThem) {
         static_cast<double>(gaps.late) * gaps.longest_tick / commissioning::LoopRecord::kStep;
     EXPECT_GE(static_cast<double>(gaps.ticks) + late, 0.99 * static_cast<double>(record->u.size()))
         << seen;
-    if (gaps.lost_share() <= kMostLost) return;
+    if (gaps.lost_share() <= kMaxLostShare) return;
     // Each delay of the computer may also lose one or two adjacent states.
     const double lost = 1e3 * gaps.lost_share() * static_cast<double>(record->u.size()) *
                         commissioning::LoopRecord::kStep,
@@ -213,8 +213,8 @@ commissioning::Swings SwingsOf(const VelocityLoopSpec& spec, int measured) {
     VelocityLoop loop(spec, 0, commissioning::LoopRecord::kStep, 1e9, 1e9);
     commissioning::LoopRecorder recorder(joint, commissioning::LoopRecord::kStep);
     for (double t = 0; t < chirp.duration() + 2 * kRest; t += commissioning::LoopRecord::kStep) {
-      recorder.Seen(t, kQuantum * std::round(loop.q() / kQuantum));
-      recorder.Told(t, t, chirp.v(t - kRest));
+      recorder.AddSample(t, kQuantum * std::round(loop.q() / kQuantum));
+      recorder.AddCommand(t, t, chirp.v(t - kRest));
       loop.Step(chirp.v(t - kRest));
     }
     swings.records.push_back(std::move(recorder).Finish());

@@ -23,7 +23,7 @@ double NumberIn(const std::string& text, const std::string& pattern) {
 
 // ---- devices ------------------------------------------------------------------------------------
 
-TEST_F(Commissioning, DevicesTellsWhoAnswersAndGoesOnWhereOneDoesNot) {
+TEST_F(Commissioning, DevicesReportsWhichAnswerAndContinuesIfOneDoesNot) {
   SwitchOn();
   {
     Terminal all = Predictor({"devices", "--duration", "0.5"});
@@ -36,11 +36,12 @@ TEST_F(Commissioning, DevicesTellsWhoAnswersAndGoesOnWhereOneDoesNot) {
   {
     SwitchOn({Left(",payload=1.2"), Right()});
     rig_->Ask("do right 0 slider 70");
-    Terminal told = Predictor({"devices", "--duration", "0.5"});
-    EXPECT_EQ(told.Wait(), 0) << told.Screen();
-    EXPECT_NE(told.Screen().find("is set to 1.20 kg at the flange"), std::string::npos)
-        << told.Screen();
-    EXPECT_NE(told.Screen().find("speed slider is at 70 %"), std::string::npos) << told.Screen();
+    Terminal reported = Predictor({"devices", "--duration", "0.5"});
+    EXPECT_EQ(reported.Wait(), 0) << reported.Screen();
+    EXPECT_NE(reported.Screen().find("is set to 1.20 kg at the flange"), std::string::npos)
+        << reported.Screen();
+    EXPECT_NE(reported.Screen().find("speed slider is at 70 %"), std::string::npos)
+        << reported.Screen();
   }
   {
     SwitchOn();

@@ -71,14 +71,14 @@ class Commissioning : public testing::Test {
     const char* forces[] = {"12 0 0", "0 12 0", "0 0 12"};
     for (int n = 0; n < pushes; ++n) {
       // "left handle along +x of the world, ..."
-      const std::string told = terminal->Line("Push the ");
-      const auto at = told.find("along +");
+      const std::string reported = terminal->Line("Push the ");
+      const auto at = reported.find("along +");
       ASSERT_NE(at, std::string::npos) << terminal->Screen();
-      const std::string hand = told.substr(0, told.find(' '));
+      const std::string hand = reported.substr(0, reported.find(' '));
       bool read = false;
       for (int attempt = 0; attempt < 5 && !read; ++attempt) {
         std::this_thread::sleep_for(std::chrono::milliseconds(300));  // hands off in between
-        rig_->Ask("press " + hand + " " + forces[told[at + 7] - 'x']);
+        rig_->Ask("press " + hand + " " + forces[reported[at + 7] - 'x']);
         read = terminal->Says("  reads ", 4);
         rig_->Ask("press " + hand + " 0 0 0");
       }

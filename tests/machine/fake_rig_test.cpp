@@ -22,7 +22,7 @@ TEST_F(FakeRigsLines, AreListedByHelp) {
 TEST_F(FakeRigsLines, AreDoneOnlyIfUnderstoodToTheirLastWord) {
   EXPECT_EQ(rig_.Ask("dance"), "There is no command \"dance\": help lists them.");
   EXPECT_EQ(rig_.Ask("state left"), "state stands alone: left is too much.");
-  EXPECT_EQ(rig_.Ask("press up 1 2 3"), "press whom? left or right: help tells how.");
+  EXPECT_EQ(rig_.Ask("press up 1 2 3"), "press left or right? See help.");
   EXPECT_EQ(rig_.Ask("press left 1 2"),
             "press takes 3 numbers, and 2 were given: nothing was done.");
   EXPECT_EQ(rig_.Ask("press left 1 2 3 4"),
@@ -41,7 +41,7 @@ TEST_F(FakeRigsLines, AreDoneOnlyIfUnderstoodToTheirLastWord) {
     EXPECT_EQ(rig_.Ask(line), "ok") << line;
 }
 
-TEST_F(FakeRigsLines, TellUnits) {
+TEST_F(FakeRigsLines, StateUnits) {
   const std::string state = rig_.Ask("state");
   std::istringstream words(state);
   std::vector<std::string> all{std::istream_iterator<std::string>(words), {}};

@@ -13,7 +13,7 @@ struct FaultAtRest {
   std::array<const char*, 2> makes;    // of left and right
   std::array<const char*, 2> sensors;  // "net_ft", or "": own
   std::vector<const char*> does;       // requests to the rig, sent in quick succession
-  std::vector<const char*> tells;      // what the screen must report
+  std::vector<const char*> expected;   // what the screen must report
   bool late = false;                   // a silence, for which the arms stop as for lateness
 };
 
@@ -47,7 +47,7 @@ class IdleFault : public testing::TestWithParam<FaultAtRest> {
 
 // The faults may arrive in one tick or in two, in either order: the arms always end without power,
 // and the program reports all faults.
-TEST_P(IdleFault, EndsWithoutPowerAndIsTold) {
+TEST_P(IdleFault, EndsWithoutPowerAndIsReported) {
   Attempts attempts;
   while (attempts.Next()) {
     FakeRig rig(scenario_, Fakes());
@@ -71,7 +71,7 @@ TEST_P(IdleFault, EndsWithoutPowerAndIsTold) {
     if (!GetParam().late && attempts.WasSpoiled(terminal, &rig)) continue;
     EXPECT_TRUE(unpowered) << screen;
     EXPECT_EQ(code, 1) << screen;
-    for (const char* words : GetParam().tells)
+    for (const char* words : GetParam().expected)
       EXPECT_NE(screen.find(words), std::string::npos) << words << "\n" << screen;
     EXPECT_EQ(screen.find("Now ALIGN"), std::string::npos) << screen;
     return;
@@ -153,7 +153,7 @@ TEST(IdleFaults, AnEmergencyStopWhileTheArmsAreHeldTakesThePowerAway) {
       const bool held = terminal.Says("Now HELD", 10) && terminal.Says("is in protective stop");
       EXPECT_EQ(rig.Ask("do " + side + " 0 emergency stop"), "ok");
       const bool unpowered = terminal.Says("Now UNPOWERED", 10);
-      const bool told = terminal.Says(side + ": ") && terminal.Says("is in emergency stop", 2);
+      const bool reported = terminal.Says(side + ": ") && terminal.Says("is in emergency stop", 2);
       terminal.Kill(SIGINT);
       EXPECT_EQ(terminal.Wait() == 0, false);
       const std::string screen = terminal.Screen();
@@ -161,7 +161,7 @@ TEST(IdleFaults, AnEmergencyStopWhileTheArmsAreHeldTakesThePowerAway) {
       judged = true;
       EXPECT_TRUE(held) << screen;
       EXPECT_TRUE(unpowered) << screen;
-      EXPECT_TRUE(told) << screen;
+      EXPECT_TRUE(reported) << screen;
     }
     if (!judged) GIVE_UP_BUSY(attempts.Words());
   }

@@ -16,10 +16,10 @@ TEST(LatenessIsJudged, ByTheFarEndAndNotByTheStopAlone) {
   EXPECT_EQ(Judge(stale, false, stalled, 12), Late::kComputer);
   EXPECT_EQ(Judge(stale, false, rig, 1), Late::kComputer);
   EXPECT_EQ(Judge("HELD after the stop 'deadline'.", false, calm, 9), Late::kComputer);
-  EXPECT_EQ(Judge(push, false, stalled, 12), Late::kNobody);
-  EXPECT_EQ(Judge("it crashed", false, stalled, 12), Late::kNobody);
+  EXPECT_EQ(Judge(push, false, stalled, 12), Late::kNothing);
+  EXPECT_EQ(Judge("it crashed", false, stalled, 12), Late::kNothing);
   // The simulated person held the key all the time.
-  EXPECT_EQ(Judge(key, false, calm, 0), Late::kNobody);
+  EXPECT_EQ(Judge(key, false, calm, 0), Late::kNothing);
   EXPECT_EQ(Judge(key, true, calm, 0), Late::kComputer);
   EXPECT_EQ(Judge(key, false, busy, 0), Late::kComputer);
   // The program's loop has priority over the busy threads.

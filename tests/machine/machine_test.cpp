@@ -231,7 +231,7 @@ TEST_P(OnMachine, OutlivesAKilledProgramSoak) {
     const Advertised advertised(GetParam().makes, motion.joint);
     std::printf(
         "%s: at %.0f mm/s, %.2f rad/s when killed; rest after %.0f ms (advertised %.0f) and %.1f "
-        "mm, told to brake by at most %.1f rad/s², handles by %.1f m/s²\n",
+        "mm, commanded to brake by at most %.1f rad/s², handles by %.1f m/s²\n",
         GetParam().name, 1e3 * motion.fastest, motion.joint, 1e3 * motion.rest_after,
         1e3 * advertised.rest_after, 1e3 * motion.distance, motion.braking, motion.hardest);
     EXPECT_LT(motion.rest_after, advertised.rest_after + lived_on.count());
@@ -260,7 +260,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // Readings queue at a sensor's socket while the program connects to the arms. These old readings
 // must not cause a stop.
-TEST(NetFtOnMachine, IsReadyThoughOldReadingsStoodInLine) {
+TEST(NetFtOnMachine, IsReadyDespiteBufferedReadings) {
   const MachineFolder folder({"ur", "ur"}, {"net_ft", "net_ft"});
   folder.NotePushTests();
   Attempts attempts;
@@ -330,7 +330,7 @@ TEST_F(PushTests, AreAskedForAgainAfterEveryChangeOfTheArm) {
 
 // Checked over the wire before anything moves: the payload in the arm's controller contradicts the
 // file.
-TEST_F(PushTests, ThePayloadThatTheRobotWasToldIsComparedToo) {
+TEST_F(PushTests, ThePayloadThatTheRobotIsSetToIsComparedToo) {
   folder_.NotePushTests();
   for (const bool fits : {false, true}) {
     const FakeRig rig(FileOf("dual_ur5"),
@@ -447,19 +447,19 @@ TEST_F(RigsConsole, LettersThatComeAtOnceHoldNothing) {
 TEST_F(RigsConsole, ResetsOncePerTouch) {
   InIdle([](Terminal* terminal, bool* expected) {
     terminal->Hold('z');
-    const bool told = terminal->Says("z counts once", 5);
+    const bool reported = terminal->Says("z counts once", 5);
     terminal->Type("x");
     const bool held = Stops(terminal), reset = terminal->Says("Now IDLE", 2);
     terminal->Let();
     std::this_thread::sleep_for(std::chrono::seconds(1));
     terminal->Type("z");
-    *expected = told && held && !reset && terminal->Says("Now IDLE", 5);
+    *expected = reported && held && !reset && terminal->Says("Now IDLE", 5);
   });
 }
 
 // The progress is redrawn ten times a second, and other threads print lines. Neither interrupts the
 // command that the user is typing.
-TEST(Console, KeepsWhatIsTyped) {
+TEST(Console, KeepsTheTypedText) {
   Terminal terminal({"run", FileOf("box_9kg"), "--no-viewer", "--no-record", "--duration", "60"});
   ASSERT_TRUE(terminal.Says("Running", 60)) << terminal.Screen();
   terminal.Type("mark it");

@@ -62,7 +62,7 @@ TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
 }
 
 // The end of a run is not a hang: the loop itself brings the arms to rest and reports it.
-TEST(ProcessFault, CtrlCInARunIsNoHang) {
+TEST(ProcessFault, CtrlCInARunIsNotAHang) {
   const MachineFolder folder({"ur", "ur"});
   folder.NotePushTests();
   Attempts attempts;
@@ -89,7 +89,7 @@ TEST(ProcessFault, CtrlCInARunIsNoHang) {
 // The watchdog's channel is closed during the run. The program reports this immediately, not only
 // when the channel is needed, and the channel is restored automatically. Lateness may stop the loop
 // meanwhile, but the watchdog keeps watching.
-TEST(ProcessFault, AStopChannelThatIsLostIsToldAndComesBack) {
+TEST(ProcessFault, ALostStopChannelIsReportedAndRestored) {
   const MachineFolder folder({"ur", "franka"});
   folder.NotePushTests();
   FakeRig rig(FileOf("ur_and_panda"),

@@ -259,10 +259,10 @@ class Terminal {
     }
     return false;
   }
-  static bool TellsOfAStop(const std::string& said) {
-    const auto tells = [&](const char* sign) { return said.find(sign) != std::string::npos; };
-    return tells("Now STOPPING") || tells("Now UNPOWERED") ||
-           std::ranges::any_of(kLateSigns, tells);
+  static bool ReportsAStop(const std::string& said) {
+    const auto contains = [&](const char* sign) { return said.find(sign) != std::string::npos; };
+    return contains("Now STOPPING") || contains("Now UNPOWERED") ||
+           std::ranges::any_of(kLateSigns, contains);
   }
   // A terminal repeats a key after half a second, then every 33 ms.
   void Live() {
@@ -277,7 +277,7 @@ class Terminal {
         if (n <= 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
         const std::lock_guard<std::mutex> lock(mutex_);
         if (n > 0) said_.append(bytes.data(), static_cast<std::size_t>(n));
-        if (stop_seen_ == 0 && TellsOfAStop(said_)) stop_seen_ = Now();
+        if (stop_seen_ == 0 && ReportsAStop(said_)) stop_seen_ = Now();
       }
       const char key = held_;
       if (key == 0 || (key == last && std::chrono::steady_clock::now() < next)) {

@@ -88,7 +88,7 @@ TEST(ArmChain, EndsWhereAHandBeginsWhateverItsNames) {
   EXPECT_EQ(ArmOf(Chain(6) + arm).remove_links, Names{"x"});
 }
 
-TEST(ArmChain, EndsAtCoupledJointsUnlessTheArmGoesOn) {
+TEST(ArmChain, EndsAtCoupledJointsUnlessTheArmContinues) {
   const std::string follows = "<mimic joint='a5'/>";
   EXPECT_EQ(ArmOf(Chain(6) + Link("x") + Joint("x", "a4", follows)).end_effector, "a4");
   EXPECT_EQ(ArmOf(Chain(6) + Link("x") + Joint("x", "a5", "<mimic joint='a2'/>")).end_effector,

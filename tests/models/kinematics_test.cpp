@@ -127,7 +127,7 @@ TEST_P(Kinematics, NothingAllocatesAfterConstruction) {
   EXPECT_TRUE(std::isfinite(sum));
 }
 
-TEST(AllocationGuard, CountsWhatIsAllocated) {
+TEST(AllocationGuard, CountsAllocations) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   const AllocationGuard guard;
   std::vector<double> numbers(10);

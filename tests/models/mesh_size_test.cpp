@@ -71,7 +71,7 @@ TEST_F(MeshSize, OfACloudIsAThirdOfItsPoints) {
             20u);
 }
 
-TEST_F(MeshSize, OfWhatIsCutOffOrUnknownIsNothing) {
+TEST_F(MeshSize, OfATruncatedOrUnknownFileIsZero) {
   for (const char* name : {"cut.stl", "cut.msh", "cut.obj", "other.dae"})
     EXPECT_EQ(CountTriangles(Write(name, "x")), 0u) << name;
   const std::string text = "solid text\n" + std::string(200, ' ');
@@ -80,7 +80,7 @@ TEST_F(MeshSize, OfWhatIsCutOffOrUnknownIsNothing) {
 }
 
 TEST_F(MeshSize, TooLargeIsRefusedWhereItIsNamed) {
-  WriteStl("large.stl", kMostCollisionTriangles + 1);
+  WriteStl("large.stl", kMaxCollisionTriangles + 1);
   const std::string error = ErrorOf(Collision("large.stl"));
   EXPECT_EQ(error.rfind((folder_ / "object.urdf").string() + ":3: ", 0), 0u) << error;
   EXPECT_NE(error.find((folder_ / "large.stl").string()), std::string::npos) << error;
@@ -90,7 +90,7 @@ TEST_F(MeshSize, TooLargeIsRefusedWhereItIsNamed) {
 }
 
 TEST_F(MeshSize, IsLimitedForAllOfAnObjectTogether) {
-  WriteStl("half.stl", kMostCollisionTriangles / 2);
+  WriteStl("half.stl", kMaxCollisionTriangles / 2);
   EXPECT_EQ(ErrorOf(Collision("half.stl") + Collision("half.stl")), "");
   WriteStl("one.stl", 1);
   const std::string error =
@@ -98,8 +98,8 @@ TEST_F(MeshSize, IsLimitedForAllOfAnObjectTogether) {
   EXPECT_NE(error.find("object.urdf:7: "), std::string::npos) << error;
 }
 
-TEST_F(MeshSize, OfWhatIsOnlySeenIsFree) {
-  WriteStl("large.stl", kMostCollisionTriangles + 1);
+TEST_F(MeshSize, OfVisualMeshesIsUnlimited) {
+  WriteStl("large.stl", kMaxCollisionTriangles + 1);
   EXPECT_EQ(ErrorOf("<visual><geometry><mesh filename=\"large.stl\"/></geometry></visual>"), "");
 }
 

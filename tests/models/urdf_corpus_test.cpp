@@ -20,8 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // Processor time, so that the load of the computer does not matter.
-constexpr double kMostSeconds = 1;
-constexpr long kMostKilobytes = 256 << 10;
+constexpr double kMaxSeconds = 1;
+constexpr long kMaxKilobytes = 256 << 10;
 
 struct Refusal {
   std::string message;  // "" if it was not refused
@@ -72,8 +72,8 @@ void ExpectRefused(const fs::path& file, const std::string& expected) {
   EXPECT_NE(std::string(".?").find(refusal.message.back()), std::string::npos)
       << "a full sentence: " << refusal.message;
   if (!AllocationGuard::kIsActive) return;  // sanitizers need more of both
-  EXPECT_LT(refusal.seconds, kMostSeconds);
-  EXPECT_LT(refusal.kilobytes, kMostKilobytes);
+  EXPECT_LT(refusal.seconds, kMaxSeconds);
+  EXPECT_LT(refusal.kilobytes, kMaxKilobytes);
 }
 
 std::vector<std::string> Corpus() {

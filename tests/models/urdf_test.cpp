@@ -123,7 +123,7 @@ TEST(Robot, NamesTheNearestLink) {
       Contains(MessageOf([&] { robot->Frame("panda_lnk8"); }), "Did you mean panda_link8?"));
 }
 
-TEST(Robot, RefusesWhatIsNoArm) {
+TEST(Robot, RefusesModelsThatAreNotArms) {
   EXPECT_TRUE(Contains(MessageOf([] {
                          RobotModel::Load({"assets/bar.urdf", PREDICTOR_SOURCE_DIR, {}, {}});
                        }),

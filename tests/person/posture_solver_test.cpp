@@ -11,7 +11,7 @@ namespace {
 constexpr int kPostures = 200;
 
 // Handles where some posture has its hands. `share` of the joints' ranges.
-TEST(PostureSolver, BringsTheHandsBackToWhereTheyWere) {
+TEST(PostureSolver, ReproducesThePositionsOfTheHands) {
   RandomStream random(1, "round trip");
   const BodyModel model{Man()};
   for (const bool turns : {false, true}) {
@@ -157,7 +157,7 @@ TEST(PostureSolver, FollowsMeasuredElbowsAndHead) {
   for (int i = 0; i < 3; ++i) EXPECT_LT(with[i], without[i] / 3) << i;
 }
 
-TEST(PostureSolver, DoesNotReachWhatIsNotFinite) {
+TEST(PostureSolver, RejectsNonFiniteTargets) {
   const PostureSolver solver(BodyModel{Man()}, SomeStance(), Grips(true));
   for (const double bad : {std::nan(""), HUGE_VAL, 1e300}) {
     BodySample sample = BeforeThePerson(SomeStance(), 0);
@@ -179,7 +179,7 @@ TEST(PostureSolver, LeavesAnAbsentHandAtItsComfort) {
   EXPECT_EQ(posture.position_error[1], 0);
 }
 
-TEST(Stance, RefusesWhatIsNoDirectionOrWidth) {
+TEST(Stance, RefusesInvalidDirectionsAndWidths) {
   EXPECT_THROW(StanceAt({}, {0, 0, 1}), InputError);
   EXPECT_THROW(StanceAt({}, {0, 0, 0}), InputError);
   EXPECT_THROW(StanceAt({}, {1, 0, 0}, -0.1), InputError);

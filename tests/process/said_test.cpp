@@ -9,14 +9,14 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-TEST(Said, IsShownAsItIsWhereItIsLittle) {
+TEST(Said, IsShownUnchangedIfShort) {
   SaidFilter filter("The viewer");
   SaidFilter::Time now(seconds(100));
   for (int k = 0; k < 1000; ++k, now += milliseconds(250))
     ASSERT_EQ(filter.Take("A pin: 123456.", now), std::vector<std::string>{"A pin: 123456."});
 }
 
-TEST(Said, IsLeftOutAndCountedWhereItIsAFlood) {
+TEST(Said, IsOmittedAndCountedInAFlood) {
   SaidFilter filter("The viewer");
   SaidFilter::Time now(seconds(100));
   int shown = 0;
@@ -32,7 +32,7 @@ TEST(Said, IsLeftOutAndCountedWhereItIsAFlood) {
   EXPECT_EQ(later[1], "y");
 }
 
-TEST(Said, IsCutWhereItIsLong) {
+TEST(Said, IsTruncatedIfLong) {
   SaidFilter filter("The viewer");
   const auto shown = filter.Take(std::string(1 << 20, 'a'), SaidFilter::Time(seconds(1)));
   ASSERT_EQ(shown.size(), 1U);

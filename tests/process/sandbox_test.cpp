@@ -195,7 +195,7 @@ TEST_F(SandboxTest, ReadsWhatItMayWhileItPrepares) {
                        text += " makes";
                      if (unlink(file.c_str()) == 0) text += " removes";
                      if (socket(AF_INET, SOCK_STREAM, 0) >= 0) text += " connects";
-                     if (!EnterSandbox().empty()) text += " cannot go on";
+                     if (!EnterSandbox().empty()) text += " cannot continue";
                      if (open(file.c_str(), O_RDONLY) >= 0) text += " reads later";
                      return text;
                    }),

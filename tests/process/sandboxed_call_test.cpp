@@ -72,7 +72,7 @@ TEST(SandboxedCall, ACrashAHangAndTooMuchAreFailures) {
   EXPECT_EQ(TextOfCall([]() -> std::string { _exit(7); }), "failed: its reader failed");
 }
 
-TEST(SandboxedCall, NothingElseIsInReach) {
+TEST(SandboxedCall, CanAccessNothingElse) {
   if (kSanitized) GTEST_SKIP() << "Sanitizers need what the sandbox refuses.";
   const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "secret") << "secret";

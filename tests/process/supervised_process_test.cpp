@@ -42,41 +42,41 @@ class SupervisedProcessTest : public testing::Test {
     setup.start = Json::object();
     setup.board = board_.descriptor();
     setup.mailbox = mailbox_.descriptor();
-    setup.tell = [this](const std::string& text) { Tell(text); };
+    setup.notify = [this](const std::string& text) { Notify(text); };
     setup.hear = [](const Json&) {};
     setup.longest_pause = std::chrono::milliseconds(50);
     if (beats) setup.beats = &mailbox_->beats;
-    setup.without = "nothing goes on";
+    setup.without = "nothing continues";
     process_ = std::make_unique<SupervisedProcess>(std::move(setup));
   }
-  bool Tells(const std::string& text) {
+  bool Reports(const std::string& text) {
     return Becomes([&] {
       const std::lock_guard lock(mutex_);
-      return told_.find(text) != std::string::npos;
+      return reported_.find(text) != std::string::npos;
     });
   }
   bool IsThereAgain(int before) {
     return Becomes([&] { return process_->pid() != 0 && process_->pid() != before; });
   }
 
-  // Tell throws once when it receives a text that contains `text`.
+  // Notify throws once when it receives a text that contains `text`.
   void ThrowAt(const std::string& text) {
     const std::lock_guard lock(mutex_);
     throws_at_ = text;
   }
 
  private:
-  void Tell(const std::string& text) {
+  void Notify(const std::string& text) {
     const std::lock_guard lock(mutex_);
     if (!throws_at_.empty() && text.find(throws_at_) != std::string::npos) {
       throws_at_.clear();
       throw std::runtime_error("no more paper");
     }
-    told_ += text + "\n";
+    reported_ += text + "\n";
   }
 
   std::mutex mutex_;
-  std::string told_, throws_at_;
+  std::string reported_, throws_at_;
 
  protected:
   Shared<RunBoard> board_;
@@ -84,13 +84,13 @@ class SupervisedProcessTest : public testing::Test {
   std::unique_ptr<SupervisedProcess> process_;
 };
 
-TEST_F(SupervisedProcessTest, OneThatIsStoppedIsToldEndedAndStartedAgain) {
+TEST_F(SupervisedProcessTest, OneThatIsStoppedIsReportedEndedAndRestarted) {
   Start();
   const int pid = process_->pid();
   ASSERT_EQ(kill(pid, SIGSTOP), 0);
-  EXPECT_TRUE(Tells("The child does not respond: nothing goes on."));
-  EXPECT_TRUE(
-      Tells("The child did not respond and was ended; nothing goes on. It is being restarted."));
+  EXPECT_TRUE(Reports("The child does not respond: nothing continues."));
+  EXPECT_TRUE(Reports(
+      "The child did not respond and was ended; nothing continues. It is being restarted."));
   ASSERT_TRUE(IsThereAgain(pid));
   const std::uint32_t beats = mailbox_->beats;
   EXPECT_TRUE(Becomes([&] { return mailbox_->beats - beats > 10; }));
@@ -100,7 +100,7 @@ TEST_F(SupervisedProcessTest, OneThatEndsIsStartedAgain) {
   Start(false);
   const int pid = process_->pid();
   ASSERT_EQ(kill(pid, SIGKILL), 0);
-  EXPECT_TRUE(Tells("The child has ended (signal 9); nothing goes on. It is being restarted."));
+  EXPECT_TRUE(Reports("The child has ended (signal 9); nothing continues. It is being restarted."));
   EXPECT_TRUE(IsThereAgain(pid));
 }
 
@@ -113,18 +113,18 @@ TEST_F(SupervisedProcessTest, AStartThatFailsIsTriedAgain) {
   const rlimit none = {3, files.rlim_max};  // no other descriptor can be opened
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
   ASSERT_EQ(kill(pid, SIGKILL), 0);
-  const bool told = Tells("The child's process could not be started");
+  const bool reported = Reports("The child's process could not be started");
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &files), 0);
-  EXPECT_TRUE(told);
+  EXPECT_TRUE(reported);
   EXPECT_TRUE(IsThereAgain(pid));
 }
 
 // The supervising thread continues to supervise the process, whatever error it meets.
-TEST_F(SupervisedProcessTest, AnExceptionOfTheSupervisorIsToldAndItGoesOn) {
+TEST_F(SupervisedProcessTest, AnExceptionInTheSupervisorIsReportedAndItContinues) {
   Start(false);
   ThrowAt("It is there.");
   process_->Ask({{"are", "you there?"}});
-  EXPECT_TRUE(Tells("The child: no more paper. Supervision continues."));
+  EXPECT_TRUE(Reports("The child: no more paper. Supervision continues."));
   const int pid = process_->pid();
   ThrowAt("has ended");
   ASSERT_EQ(kill(pid, SIGKILL), 0);

@@ -120,7 +120,7 @@ class Damage : public ::testing::Test {
   // The same, but ticks may be missing if events report them.
   void ExpectPart(const Content& content, const std::string& what) const {
     EXPECT_TRUE(SameHeader(content.header, original_.header)) << what;
-    std::uint64_t last = 0, told = 0, missing = 0;
+    std::uint64_t last = 0, reported = 0, missing = 0;
     for (const TickRecord& record : content.ticks) {
       ASSERT_GT(record.tick, last) << what;
       ASSERT_LE(record.tick, kDamagedTicks) << what;
@@ -128,8 +128,8 @@ class Damage : public ::testing::Test {
       if (last != 0) missing += record.tick - last - 1;
       last = record.tick;
     }
-    for (const RecordingEvent& event : content.events) told += event.lost;
-    EXPECT_EQ(told, missing) << what;
+    for (const RecordingEvent& event : content.events) reported += event.lost;
+    EXPECT_EQ(reported, missing) << what;
     ExpectOthers(content, what);
   }
   void ExpectOthers(const Content& content, const std::string& what) const {

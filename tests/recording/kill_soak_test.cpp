@@ -49,7 +49,7 @@ TEST(RecordingSoak, KilledAtRandomMoments) {
       mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(memory, MAP_FAILED);
   std::mt19937 random(5);
-  std::uint64_t most_lost = 0;
+  std::uint64_t max_lost = 0;
   const long kills = Count(10, 300);
   for (long k = 0; k < kills; ++k) {
     const Folder folder;
@@ -79,13 +79,13 @@ TEST(RecordingSoak, KilledAtRandomMoments) {
       ASSERT_TRUE(Same(record, expected)) << "kill " << k << ", tick " << tick;
     }
     ASSERT_GE(published, report.ticks);
-    most_lost = std::max(most_lost, published - report.ticks);
+    max_lost = std::max(max_lost, published - report.ticks);
     // In milliseconds of the child's own clock, which stops whenever the machine stalls.
     EXPECT_LE(published - report.ticks, 1000u) << "kill " << k << " at tick " << published;
   }
-  RecordProperty("most_lost_ms", static_cast<int>(most_lost));
+  RecordProperty("max_lost_ms", static_cast<int>(max_lost));
   std::printf("%ld kills, at most %llu ms lost\n", kills,
-              static_cast<unsigned long long>(most_lost));
+              static_cast<unsigned long long>(max_lost));
   munmap(memory, sizeof(Progress));
 }
 

@@ -104,15 +104,15 @@ class Live : public ::testing::Test {
  protected:
   RecorderOptions Options() {
     RecorderOptions options;
-    options.tell = [this](const std::string& sentence) {
+    options.notify = [this](const std::string& sentence) {
       const std::scoped_lock lock(mutex_);
-      told_.push_back(sentence);
+      messages_.push_back(sentence);
     };
     return options;
   }
-  std::vector<std::string> told() {
+  std::vector<std::string> messages() {
     const std::scoped_lock lock(mutex_);
-    return told_;
+    return messages_;
   }
   void Publish(std::uint64_t ticks) {
     for (std::uint64_t k = 0; k < ticks; ++k) ring_->Publish(LiveTick(++tick_));
@@ -133,7 +133,7 @@ class Live : public ::testing::Test {
 
  private:
   std::mutex mutex_;
-  std::vector<std::string> told_;
+  std::vector<std::string> messages_;
 };
 
 // An exception in the recorder's own threads ends the recording with a message, and nothing else.
@@ -160,12 +160,12 @@ TEST_F(Live, EndsWithASentenceWhenAThreadOfItsThrows) {
     PublishUntil([&] { return recorder.status().ticks > 0; });
     (in_write ? disk.throws_in_write : disk.throws_in_sync) = true;
     PublishUntil(
-        [&] { return !recorder.status().recording && told().size() == (in_write ? 1 : 2); });
+        [&] { return !recorder.status().recording && messages().size() == (in_write ? 1 : 2); });
     const std::string why = in_write ? "no more paper" : "writing to the disk failed: no more ink";
-    EXPECT_NE(told().back().find(": The recording ended: " + why), std::string::npos)
-        << told().back();
+    EXPECT_NE(messages().back().find(": The recording ended: " + why), std::string::npos)
+        << messages().back();
     recorder.Close();
-    EXPECT_EQ(recorder.status().ended_why, told().back());
+    EXPECT_EQ(recorder.status().ended_why, messages().back());
     RecordingReader reader(path);
     EXPECT_TRUE(reader.complete()) << reader.problem();
     EXPECT_EQ(reader.count(), recorder.status().ticks);
@@ -173,9 +173,9 @@ TEST_F(Live, EndsWithASentenceWhenAThreadOfItsThrows) {
 }
 
 // If the callback that receives the message throws too, the recording still ends.
-TEST_F(Live, EndsWhereNobodyCanBeTold) {
+TEST_F(Live, EndsEvenIfTheMessageCannotBeDelivered) {
   RecorderOptions options;
-  options.tell = [](const std::string&) { throw std::runtime_error("nobody listens"); };
+  options.notify = [](const std::string&) { throw std::runtime_error("no listener"); };
   disk_.capacity = 1U << 20U;
   Recorder recorder(path_, SampleHeader(), *ring_, options, {}, &disk_);
   PublishUntil([&] { return !recorder.status().recording; });
@@ -207,13 +207,13 @@ TEST_F(Live, RecordsEveryTickMarksAndSnapshots) {
   EXPECT_EQ(reader.events()[0].kind, "marker");
   EXPECT_EQ(reader.events()[0].text, "here");
   reader.Check();
-  EXPECT_TRUE(told().empty());
+  EXPECT_TRUE(messages().empty());
 }
 
 // Deliberate overrun: the disk accepts no data until the queue of chunks and the ring are full.
-TEST_F(Live, TellsOfLostTicksAndWantsASnapshotBehindThem) {
+TEST_F(Live, ReportsLostTicksAndRequestsASnapshotAfterThem) {
   RecorderOptions options = Options();
-  options.most_queued = 1;
+  options.max_queued = 1;
   Recorder recorder(path_, SampleHeader(), *ring_, options, {}, &disk_);
   Publish(10);
   Await([&] { return !recorder.SnapshotBuffer().empty(); });
@@ -232,12 +232,12 @@ TEST_F(Live, TellsOfLostTicksAndWantsASnapshotBehindThem) {
   Publish(50);
   recorder.Close();
   RecordingReader reader(path_);
-  std::uint64_t told = 0, missing = 0, last = 0;
-  for (const RecordingEvent& gap : reader.gaps()) told += gap.lost;
+  std::uint64_t reported = 0, missing = 0, last = 0;
+  for (const RecordingEvent& gap : reader.gaps()) reported += gap.lost;
   for (TickRecord record; reader.Next(&record); last = record.tick)
     missing += record.tick - last - 1;
   EXPECT_GT(missing, 0u);
-  EXPECT_EQ(told, missing);
+  EXPECT_EQ(reported, missing);
   EXPECT_EQ(recorder.status().lost, missing);
   EXPECT_EQ(last, tick_);
   EXPECT_EQ(reader.snapshots(), (std::vector<std::uint64_t>{10, after}));
@@ -245,9 +245,9 @@ TEST_F(Live, TellsOfLostTicksAndWantsASnapshotBehindThem) {
 }
 
 // One event reports all gaps within a second, by the records' clock.
-TEST_F(Live, ManyHolesAreToldTogether) {
+TEST_F(Live, ManyGapsAreReportedTogether) {
   RecorderOptions options = Options();
-  options.most_queued = 1;
+  options.max_queued = 1;
   Recorder recorder(path_, SampleHeader(), *ring_, options, {}, &disk_);
   const auto publish = [&](std::uint64_t ticks) {
     for (std::uint64_t k = 0; k < ticks; ++k) {
@@ -271,7 +271,7 @@ TEST_F(Live, ManyHolesAreToldTogether) {
   ASSERT_LT(tick_, 1'000'000'000u);
   recorder.Close();
   RecordingReader reader(path_);
-  std::uint64_t holes = 0, missing = 0, told = 0, last = 0;
+  std::uint64_t holes = 0, missing = 0, reported = 0, last = 0;
   for (TickRecord record; reader.Next(&record); last = record.tick) {
     holes += record.tick > last + 1;
     missing += record.tick - last - 1;
@@ -279,8 +279,8 @@ TEST_F(Live, ManyHolesAreToldTogether) {
   EXPECT_GE(holes, static_cast<std::uint64_t>(kHoles));
   // One event for the first gap, and one at the end for all others.
   EXPECT_LE(reader.gaps().size(), 2u);
-  for (const RecordingEvent& gap : reader.gaps()) told += gap.lost;
-  EXPECT_EQ(told, missing);
+  for (const RecordingEvent& gap : reader.gaps()) reported += gap.lost;
+  EXPECT_EQ(reported, missing);
   EXPECT_NE(reader.gaps().back().text.find(" places"), std::string::npos);
 }
 
@@ -348,10 +348,10 @@ TEST_F(Live, ASlowDiskLosesNothing) {
 TEST_F(Live, AFullDiskEndsItAndTheFileIsWhole) {
   disk_.capacity = 1'500'000;
   RecorderOptions options = Options();
-  std::atomic<int> writes_when_told{-1};
-  options.tell = [&, tell = options.tell](const std::string& sentence) {
-    writes_when_told = disk_.writes_after_refusal.load();
-    tell(sentence);
+  std::atomic<int> writes_when_notified{-1};
+  options.notify = [&, notify = options.notify](const std::string& sentence) {
+    writes_when_notified = disk_.writes_after_refusal.load();
+    notify(sentence);
   };
   Recorder recorder(path_, SampleHeader(), *ring_, options, {}, &disk_);
   PublishUntil([&] { return !recorder.status().recording; });
@@ -360,9 +360,9 @@ TEST_F(Live, AFullDiskEndsItAndTheFileIsWhole) {
       << status.ended_why;
   EXPECT_NE(status.ended_why.find(std::to_string(status.ticks) + " ticks"), std::string::npos);
   recorder.Close();
-  EXPECT_EQ(told(), std::vector<std::string>{status.ended_why});
+  EXPECT_EQ(messages(), std::vector<std::string>{status.ended_why});
   EXPECT_EQ(disk_.refused, 1);
-  EXPECT_EQ(writes_when_told, 1);
+  EXPECT_EQ(writes_when_notified, 1);
   EXPECT_EQ(disk_.writes_after_refusal, 1);
   RecordingReader reader(path_);
   EXPECT_TRUE(reader.complete());
@@ -406,15 +406,15 @@ TEST_F(Live, ADiskThatBreaksHasWhatItConfirmed) {
   EXPECT_LE(confirmed, status.ticks);
 }
 
-TEST_F(Live, LittleSpaceIsSaidAndThenEndsIt) {
+TEST_F(Live, LittleSpaceIsReportedAndThenEndsIt) {
   disk_.free_bytes = 5'000'000'000;
   Recorder recorder(path_, SampleHeader(), *ring_, Options(), {}, &disk_);
-  PublishUntil([&] { return !told().empty(); });
-  EXPECT_NE(told()[0].find("Only 5.0 GB are free"), std::string::npos) << told()[0];
+  PublishUntil([&] { return !messages().empty(); });
+  EXPECT_NE(messages()[0].find("Only 5.0 GB are free"), std::string::npos) << messages()[0];
   EXPECT_TRUE(recorder.status().recording);
   disk_.free_bytes = 900'000'000;
   PublishUntil([&] { return !recorder.status().recording; });
-  EXPECT_EQ(told().size(), 2u);
+  EXPECT_EQ(messages().size(), 2u);
   EXPECT_NE(recorder.status().ended_why.find("only 0.9 GB are free"), std::string::npos);
   recorder.Close();
   RecordingReader reader(path_);
@@ -429,8 +429,8 @@ TEST_F(Live, AWriterWarnsSynchronisesAndEndsAsTheRecorderDoes) {
   rules.sync_period = milliseconds(0);
   RecordingWriter writer(path_, SampleHeader(), {}, &disk_, rules);
   while (writer.ticks() == 0) writer.Add(SampleTick(++tick_));
-  ASSERT_EQ(told().size(), 1u);
-  EXPECT_NE(told()[0].find("Only 5.0 GB are free"), std::string::npos) << told()[0];
+  ASSERT_EQ(messages().size(), 1u);
+  EXPECT_NE(messages()[0].find("Only 5.0 GB are free"), std::string::npos) << messages()[0];
   const auto syncs = std::count_if(disk_.calls.begin(), disk_.calls.end(),
                                    [](const Disk::Call& call) { return call.sync; });
   EXPECT_EQ(syncs, 1);
@@ -443,7 +443,7 @@ TEST_F(Live, AWriterWarnsSynchronisesAndEndsAsTheRecorderDoes) {
   }
   EXPECT_NE(why.find("only 0.9 GB are free"), std::string::npos) << why;
   EXPECT_NE(why.find("were stored and can be read"), std::string::npos) << why;
-  EXPECT_EQ(told().size(), 1u);
+  EXPECT_EQ(messages().size(), 1u);
   RecordingReader reader(path_);
   EXPECT_TRUE(reader.complete());
   EXPECT_EQ(reader.count(), writer.ticks());

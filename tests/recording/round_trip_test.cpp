@@ -119,7 +119,7 @@ TEST(Recording, KeepsEveryBit) {
   reader.Check();
 }
 
-TEST(Recording, KeepsWhatIsNoNumberAndWhatIsThereBehindTheJoints) {
+TEST(Recording, KeepsNanAndTheFieldsAfterTheJoints) {
   Folder folder;
   std::vector<TickRecord> ticks(4, Nothing());
   for (std::size_t k = 0; k < ticks.size(); ++k) ticks[k].tick = k + 1;
@@ -173,7 +173,7 @@ TEST(Recording, KeepsItsHeader) {
 }
 
 // A recording with `mode: direct` or from an older program.
-TEST(Recording, WithoutAPredictedLoopHasNone) {
+TEST(Recording, WithoutAPredictedLoopContainsNoPrediction) {
   Folder folder;
   RecordingHeader header = SampleHeader();
   header.loop.reset();
@@ -240,7 +240,7 @@ TEST(Recording, KeepsSnapshotsAndEvents) {
   reader.Check();
 }
 
-TEST(Recording, OverwritesNothingAndSaysWhatIsWrong) {
+TEST(Recording, OverwritesNothingAndReportsTheError) {
   Folder folder;
   const auto message = [](auto&& act) -> std::string {
     try {
@@ -276,7 +276,7 @@ TEST(Schema, LayoutIsWhatTheBytesAreMadeOf) {
   EXPECT_NE(Layout("uint8 a\n===\nMSG: x/Y\nuint8 b\n"), Layout("uint8 a\nuint8 b\n"));
 }
 
-TEST(Schema, TellsNamesOfStates) {
+TEST(Schema, ContainsTheNamesOfStates) {
   const std::string run = recording::Definition(TickGroup::kRun);
   EXPECT_NE(run.find("uint8 STATE_RUN=5\n"), std::string::npos);
   EXPECT_NE(run.find("uint8 CAUSE_FORCE=1\n"), std::string::npos);

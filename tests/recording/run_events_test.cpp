@@ -87,7 +87,7 @@ TEST(RunEvents, AreInARecordingOfRealTime) {
 // not displace a stop.
 TEST(RunEvents, AreBounded) {
   recording::RunEvents events;
-  std::map<std::uint64_t, int> told;  // by second
+  std::map<std::uint64_t, int> reported;  // by second
   std::uint64_t in_all = 0, left_out = 0;
   bool stopped = false;
   for (std::uint64_t tick = 1; tick <= 5000; ++tick) {
@@ -100,14 +100,14 @@ TEST(RunEvents, AreBounded) {
     if (tick >= 2900) r.cause = StopCause::kOperator;
     if (tick >= 4000) r.state = tick % 2 == 0 ? RunState::kRun : RunState::kIdle;
     for (const RecordingEvent& event : events.Follow(r, tick * 1'000'000)) {
-      ++told[(tick - 1) / 1000];
+      ++reported[(tick - 1) / 1000];
       ++in_all;
       if (event.kind == "omitted") left_out += std::stoull(event.text);
       stopped = stopped || event.kind == "stop";
     }
   }
   EXPECT_TRUE(stopped);
-  for (const auto& [second, count] : told) EXPECT_LE(count, 50) << second;
+  for (const auto& [second, count] : reported) EXPECT_LE(count, 50) << second;
   EXPECT_GT(in_all, 60u);
   EXPECT_GT(left_out, 10'000u);
 }

@@ -20,7 +20,7 @@ TEST(Plot, NumbersHaveSensibleDigits) {
   EXPECT_EQ(Round(20.053), "20.05");
 }
 
-TEST(ShortNames, TellFilesApartByWhatIsNotCommon) {
+TEST(ShortNames, DistinguishFilesByWhatIsNotCommon) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(ShortNames({{"runs/bar_circle_2026-01-31_14-05-09.mcap", ""},
                         {"runs/bar_circle_2026-01-31_14-07-22.mcap", ""}}),
@@ -38,7 +38,7 @@ TEST(ShortNames, TakeTheFolderWhereFilesHaveOneName) {
   EXPECT_EQ(ShortNames({{"run.mcap", ""}, {"run.mcap", ""}}), (Names{"1: run", "2: run"}));
 }
 
-TEST(ShortNames, AreTheConditionsIfThoseTellThemApart) {
+TEST(ShortNames, AreTheConditionsIfThoseDistinguishThem) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(ShortNames({{"a.mcap", "real"}, {"b.mcap", "emulated"}}), (Names{"real", "emulated"}));
   EXPECT_EQ(ShortNames({{"a.mcap", "real"}, {"b.mcap", "real"}}), (Names{"a", "b"}));

@@ -62,7 +62,7 @@ TEST(Report, OfARunHasAllItsChapters) {
   EXPECT_LT(report.html.size(), 8e6);
 }
 
-TEST(Report, TellsAStopAsTheEmulatorMeasuredIt) {
+TEST(Report, ReportsAStopAsTheEmulatorMeasuredIt) {
   const CollectedRun run = Collect("push", 12);
   ASSERT_EQ(run.data.stops.size(), 1u);
   const StopSummary& stop = run.data.stops[0].summary;
@@ -92,7 +92,7 @@ TEST(Report, TellsAStopAsTheEmulatorMeasuredIt) {
 
 // A stop would hold the arms, but another fault removes the power at its end. The report states
 // this fault after the cause of the stop.
-TEST(Report, TellsWhatTookThePowerOffAtAStopsEnd) {
+TEST(Report, ReportsWhySwitchedOffAtAStopsEnd) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/push.yaml");
   Emulator emulator(scenario);
@@ -176,7 +176,7 @@ TEST(Report, ThePowerOffOfADecisionsOwnTickIsOfThatStop) {
 
 // If there are more stops than are kept, the power-off of a later stop is reported, but it is
 // assigned to none of the kept stops.
-TEST(Report, ThePowerOffOfAStopThatIsNotKeptIsOfNone) {
+TEST(Report, ThePowerOffOfAnUnlistedStopBelongsToNoStop) {
   const RunData data = WithMore([&](const auto& add, TickRecord* record) {
     for (std::size_t k = 0; k < StopLog::kMaxStops + 5; ++k) {
       record->cause = k % 2 == 0 ? StopCause::kEnabling : StopCause::kOperator;
@@ -193,7 +193,7 @@ TEST(Report, ThePowerOffOfAStopThatIsNotKeptIsOfNone) {
 }
 
 TEST(Report, OfArmsThatDidNotRestSaysSo) {
-  const auto told = [](bool restless, const std::string& what) {
+  const auto reported = [](bool restless, const std::string& what) {
     const RunData data = WithMore([&](const auto& add, TickRecord* record) {
       if (restless) record->harder = {StopCause::kDevice, 1, Quantity::kSpeed, 1, {}, 0.02, 0.0025};
       add();
@@ -208,10 +208,10 @@ TEST(Report, OfArmsThatDidNotRestSaysSo) {
     return Occurrences(report.html, what);
   };
   // Once for the run and once for its stop.
-  EXPECT_EQ(told(true, "The arms did not come to rest."), 2u);
-  EXPECT_EQ(told(true, "The arms came to rest"), 0u);
-  EXPECT_EQ(told(false, "The arms did not come to rest."), 0u);
-  EXPECT_EQ(told(false, "The arms came to rest"), 2u);
+  EXPECT_EQ(reported(true, "The arms did not come to rest."), 2u);
+  EXPECT_EQ(reported(true, "The arms came to rest"), 0u);
+  EXPECT_EQ(reported(false, "The arms did not come to rest."), 0u);
+  EXPECT_EQ(reported(false, "The arms came to rest"), 2u);
 }
 
 // Seconds of RUN in which the hands exert force(t) along x.
@@ -233,41 +233,42 @@ RunData OfForce(double seconds, const std::function<double(double)>& force) {
 
 // A force of 20 N at 0.75 Hz and 6 N at 5 Hz: the share from 3 to 10 Hz is small, but its rms is
 // still 4 N.
-TEST(Report, ASmallPartOfALargeForceIsToldInNewtons) {
+TEST(Report, ASmallPartOfALargeForceIsGivenInNewtons) {
   const RunData run = OfForce(8, [](double t) {
     return 20 * std::sin(1.5 * std::numbers::pi * t) + 6 * std::sin(10 * std::numbers::pi * t);
   });
   const std::string words = SummaryWords(run);
   EXPECT_EQ(words.find("No hand's force oscillated"), std::string::npos);
-  std::smatch told;
-  ASSERT_TRUE(std::regex_search(words, told, std::regex("an rms of at most ([0-9.]+) N"))) << words;
-  EXPECT_NEAR(std::stod(told[1]), 6 / std::sqrt(2), 0.3);
+  std::smatch reported;
+  ASSERT_TRUE(std::regex_search(words, reported, std::regex("an rms of at most ([0-9.]+) N")))
+      << words;
+  EXPECT_NEAR(std::stod(reported[1]), 6 / std::sqrt(2), 0.3);
 }
 
 // The largest index in the text equals the largest one in the plot.
-TEST(Report, WordsAndPlotTellTheSameIndex) {
+TEST(Report, TextAndPlotShowTheSameIndex) {
   // At rest, with a little noise of 5 Hz; then slow and strong.
   const RunData run = OfForce(20, [](double t) {
     const double slow = t < 10 ? 0 : 20 * std::sin(1.5 * std::numbers::pi * t);
     return slow + 0.2 * std::sin(10 * std::numbers::pi * t);
   });
-  double any = 0, told = 0;
+  double any = 0, reported = 0;
   for (const auto& window : run.oscillation[0]) {
     any = std::max(any, window.index);
-    if (window.Tells()) told = std::max(told, window.index);
+    if (window.IsMeaningful()) reported = std::max(reported, window.index);
   }
   ASSERT_GT(any, 0.9);
-  EXPECT_EQ(run.summary.Get<double>("oscillation.left.index"), told);
+  EXPECT_EQ(run.summary.Get<double>("oscillation.left.index"), reported);
   std::smatch words;
   const std::string summary = SummaryWords(run);
   ASSERT_TRUE(std::regex_search(summary, words, std::regex("index at most ([0-9.]+)"))) << summary;
-  EXPECT_NEAR(std::stod(words[1]), told, 0.006);
+  EXPECT_NEAR(std::stod(words[1]), reported, 0.006);
   double shown = 0;
   for (const Plot& plot : MakeReport({run}, "test").plots)
     if (plot.id == "oscillation")
       for (const double y : *plot.panels[0].series[0].y)
         if (!std::isnan(y)) shown = std::max(shown, y);
-  EXPECT_EQ(shown, told);
+  EXPECT_EQ(shown, reported);
 }
 
 TEST(Report, ComparesRuns) {

@@ -123,7 +123,7 @@ std::vector<double> Decode(const std::string& bytes, double step) {
   return values;
 }
 
-TEST(Encode, ComesBackToWithinHalfAStep) {
+TEST(Encode, DecodesToWithinHalfAStep) {
   std::mt19937 random(1);
   std::normal_distribution<double> walk(0, 3);
   std::vector<double> values;

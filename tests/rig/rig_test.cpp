@@ -102,7 +102,7 @@ TEST(Rig, SensorReadsTheHandsWrenchShiftedToIt) {
   EXPECT_LT((about_H - F_H_W.tail<3>()).norm(), 1e-9);
 }
 
-TEST(Rig, ComputationAddsToTheDelayAndTheTrueLoopReplacesTheBelievedOne) {
+TEST(Rig, ComputationAddsToTheDelayAndTheTrueLoopReplacesTheNominalOne) {
   Scenario scenario = ArmScenario(1);
   MakeExact(&scenario);
   scenario.rig.loop = VelocityLoopSpec{100, 0.9, 0.003};

@@ -200,7 +200,7 @@ TEST(VirtualOperator, AHandThatJoinsDoesNotDisturbTheOther) {
   EXPECT_LT((Pull(person, scenario, 1) - second_by).norm(), 1e-9);
 }
 
-TEST(VirtualOperator, PutsDownAndLetsGo) {
+TEST(VirtualOperator, PutsDownAndReleases) {
   Scenario scenario = SpringScenario(1);
   ActionSpec put_down = MakeActionSpec("put_down", 1, {"duration=2"});
   put_down.Set("by=[0, 0, -0.1]");

@@ -29,13 +29,13 @@ class RosTcpProcessTest : public testing::Test {
         options_, scenario_, std::vector<std::string>{"a", "b"}, Vector3(0.5, 0, 0.3), board_,
         mailbox_, [this](const std::string& text) {
           const std::lock_guard lock(mutex_);
-          told_ += text + "\n";
+          reported_ += text + "\n";
         });
   }
-  bool Tells(const std::string& text) {
+  bool Reports(const std::string& text) {
     return Becomes([&] {
       const std::lock_guard lock(mutex_);
-      return told_.find(text) != std::string::npos;
+      return reported_.find(text) != std::string::npos;
     });
   }
 
@@ -44,7 +44,7 @@ class RosTcpProcessTest : public testing::Test {
   Shared<RunBoard> board_;
   Shared<StopMailbox> mailbox_;
   std::mutex mutex_;
-  std::string told_;
+  std::string reported_;
   std::unique_ptr<RosTcpProcess> server_;
 };
 
@@ -99,7 +99,7 @@ TEST_F(RosTcpProcessTest, HasNoRights) {
   }
 }
 
-TEST_F(RosTcpProcessTest, ItsDeathIsToldAndItStartsAgainOnTheSamePort) {
+TEST_F(RosTcpProcessTest, ItsDeathIsReportedAndItRestartsOnTheSamePort) {
   Start();
   const int pid = server_->pid();
   const std::uint16_t port = server_->port();
@@ -109,7 +109,7 @@ TEST_F(RosTcpProcessTest, ItsDeathIsToldAndItStartsAgainOnTheSamePort) {
     ASSERT_EQ(kill(pid, SIGKILL), 0);
     EXPECT_EQ(unity.Receive().destination, "");
   }
-  EXPECT_TRUE(Tells("The ROS-TCP server has ended (signal 9); the run continues."));
+  EXPECT_TRUE(Reports("The ROS-TCP server has ended (signal 9); the run continues."));
   ASSERT_TRUE(Becomes([&] { return server_->pid() != 0 && server_->pid() != pid; }));
   EXPECT_EQ(server_->port(), port);
   Unity again(port);

@@ -29,7 +29,7 @@ TEST_P(RosTcp, GreetsFirstAndListsTopics) {
   EXPECT_GE(list["topics"].size(), 10u);
 }
 
-TEST_P(RosTcp, SendsWhatIsSubscribedAndNothingElse) {
+TEST_P(RosTcp, SendsOnlySubscribedTopics) {
   Unity unity(server_->port());
   unity.Receive();
   unity.Send("__subscribe",
@@ -55,7 +55,7 @@ TEST_P(RosTcp, SendsWhatIsSubscribedAndNothingElse) {
   for (int k = 0; k < 20; ++k) EXPECT_EQ(unity.Receive().destination, "/predictor/joint_states");
 }
 
-TEST_P(RosTcp, TakesAStopAndNothingElse) {
+TEST_P(RosTcp, AcceptsOnlyAStop) {
   Unity unity(server_->port());
   unity.Receive();
   std::map<std::string, std::string> golden = Golden();
@@ -135,7 +135,7 @@ TEST_P(RosTcp, AStopRightAfterAServiceCallIsTaken) {
 }
 
 // Eight clients that vanished silently must not keep all others out.
-TEST_P(RosTcp, WhoIsSilentMakesRoom) {
+TEST_P(RosTcp, ASilentClientMakesRoom) {
   std::vector<std::unique_ptr<Unity>> silent;
   for (int k = 0; k < 3; ++k) {
     silent.push_back(std::make_unique<Unity>(server_->port()));
@@ -148,7 +148,7 @@ TEST_P(RosTcp, WhoIsSilentMakesRoom) {
 
 // Clients that only keep the connection alive give way to a newcomer; clients that use the
 // connection stay.
-TEST_P(RosTcp, WhoIsIdleGivesWayToANewcomer) {
+TEST_P(RosTcp, AnIdleClientGivesWayToANewOne) {
   Unity used(server_->port());
   used.Receive();
   used.Send("__subscribe", {{"topic", "/predictor/state"}});
@@ -174,7 +174,7 @@ TEST_P(RosTcp, WhoIsIdleGivesWayToANewcomer) {
 
 // The echoed bytes need not be valid text. One client's bytes must neither disturb other clients
 // nor end the server.
-TEST_P(RosTcp, EchoesWhatIsNoText) {
+TEST_P(RosTcp, EchoesInvalidText) {
   Unity unity(server_->port());
   unity.Receive();
   // The 40th byte is the first half of a letter.
@@ -195,7 +195,7 @@ TEST_P(RosTcp, EchoesWhatIsNoText) {
 }
 
 // Frames of random bytes, complete and broken, with and without the name of a command.
-TEST_P(RosTcp, AnyBytesEndNobodyElseSoak) {
+TEST_P(RosTcp, AnyBytesEndNoOtherClientSoak) {
   std::mt19937 random(7);
   const auto bytes = [&random](std::size_t most) {
     std::string text(random() % (most + 1), '\0');
@@ -235,9 +235,9 @@ TEST_P(RosTcp, AnyBytesEndNobodyElseSoak) {
 
 // After a stop, the state lists the cause in a fixed order, followed by the cause that removed the
 // power.
-TEST(RosTcpState, TellsWhyTheArmsStand) {
+TEST(RosTcpState, ReportsWhyTheArmsStand) {
   const RosTopics topics(Scenario{}, {}, Vector3::Zero());
-  const auto told = [&topics](const TickRecord& record) {
+  const auto reported = [&topics](const TickRecord& record) {
     for (const RosPublication& sent : topics.Publish(record, RosDialect::kRos2, 0, 0))
       if (topics.list()[sent.topic].name == "/predictor/state")
         return std::string(sent.payload.begin() + 8,
@@ -246,16 +246,16 @@ TEST(RosTcpState, TellsWhyTheArmsStand) {
   };
   TickRecord record{};
   record.state = RunState::kRun;
-  EXPECT_EQ(told(record), "RUN");
+  EXPECT_EQ(reported(record), "RUN");
   record.state = RunState::kHeld;
   record.cause = StopCause::kDeadline;
   record.cause_hand = -1;
   record.cause_value = 3;
   record.cause_limit = 2;
-  EXPECT_EQ(told(record), "HELD deadline - 3 2");
+  EXPECT_EQ(reported(record), "HELD deadline - 3 2");
   record.state = RunState::kUnpowered;
   record.harder = {StopCause::kStale, 1, Quantity::kArmAge, 1, {}, 0.0214, 0.02};
-  EXPECT_EQ(told(record), "UNPOWERED deadline - 3 2 stale right 0.0214 0.02");
+  EXPECT_EQ(reported(record), "UNPOWERED deadline - 3 2 stale right 0.0214 0.02");
 }
 
 TEST(RosTcpOptions, OfNonsenseAreRefused) {

@@ -143,16 +143,16 @@ double ApartAtRest(const std::array<double, kHands>& coasting, std::size_t late,
   stop.Begin({StopCause::kOperator}, 0, {command, command}, kSpeed, 0, &twists);
   StopGeometry geometry = Straight();
   geometry.V_W = twists;
-  std::vector<double> told(late, kSpeed), first_told(hindered, kSpeed);
+  std::vector<double> reported(late, kSpeed), first_reported(hindered, kSpeed);
   double first = 0, second = 0, wanted = 0;
   for (std::size_t k = 0; k < 1500; ++k) {
     std::array<JointVector, kHands> v;
     stop.Next(geometry, &v);
-    first_told.push_back(v[0][0]);
-    told.push_back(v[1][0]);
+    first_reported.push_back(v[0][0]);
+    reported.push_back(v[1][0]);
     wanted += v[1][0] * kDt;
-    const std::array<double, kHands> to = {first_told[k],
-                                           told[k] + (k > 150 ? kGain * (wanted - second) : 0)};
+    const std::array<double, kHands> to = {first_reported[k],
+                                           reported[k] + (k > 150 ? kGain * (wanted - second) : 0)};
     for (std::size_t i = 0; i < kHands; ++i)
       geometry.V_W[i][0] += (to[i] - geometry.V_W[i][0]) * kDt / lags[i];
     first += geometry.V_W[0][0] * kDt;
@@ -162,7 +162,7 @@ double ApartAtRest(const std::array<double, kHands>& coasting, std::size_t late,
   return std::abs(first - second);
 }
 
-TEST(StopController, WaitsForAnArmsWayAfterItsCommandsAndChasesNoneThatComesBack) {
+TEST(StopController, WaitsForAnArmsLagButDoesNotChaseItsReturn) {
   for (const std::size_t late : {0, 10}) {
     EXPECT_LT(ApartAtRest({0.022, 0.001}, late), 1e-3) << late;
     EXPECT_GT(ApartAtRest({0.022, 0.006}, late), 1.3e-3) << late;
@@ -171,7 +171,7 @@ TEST(StopController, WaitsForAnArmsWayAfterItsCommandsAndChasesNoneThatComesBack
 
 // An arm that is represented by its commands is measured without its lag, so it may follow as hard
 // as a quick arm.
-TEST(StopController, AnArmThatCountsByItsCommandsFollowsWhateverItsLag) {
+TEST(StopController, AnArmJudgedByItsCommandsFollowsWithAnyLag) {
   for (const double lag : {0.006, 0.012, 0.022})
     EXPECT_LT(ApartAtRest({0.022, 0.001}, 0, lag, 10), 1e-3) << lag;
 }

@@ -117,7 +117,7 @@ TEST_F(ConsoleTalk, OfAKeyThatStopsARunSaysSo) {
             Now("STOPPING") + "\n");
 }
 
-TEST_F(ConsoleTalk, OfAStopTellsDangerCauseAdviceAndKeysInThisOrder) {
+TEST_F(ConsoleTalk, OfAStopShowsDangerCauseAdviceAndKeysInThisOrder) {
   Tick(RunState::kStopping);
   Stop(StopCause::kSensor, 1);
   trouble_ = "right: its sensor is too hot.";
@@ -134,10 +134,10 @@ TEST_F(ConsoleTalk, OfAStopTellsDangerCauseAdviceAndKeysInThisOrder) {
 TEST_F(ConsoleTalk, OfAFrozenSensorOffersNoReset) {
   Stop(StopCause::kStale, 1);
   record_.cause_quantity = Quantity::kCount;
-  const std::string told = Tick(RunState::kHeld);
-  EXPECT_NE(told.find(Text("next.restart")), std::string::npos) << told;
-  EXPECT_NE(told.find("hold r"), std::string::npos) << told;
-  EXPECT_EQ(told.find("z resets"), std::string::npos) << told;
+  const std::string reported = Tick(RunState::kHeld);
+  EXPECT_NE(reported.find(Text("next.restart")), std::string::npos) << reported;
+  EXPECT_NE(reported.find("hold r"), std::string::npos) << reported;
+  EXPECT_EQ(reported.find("z resets"), std::string::npos) << reported;
 }
 
 // Neither a reset nor RECOVERY makes an arm usable again after a fault.
@@ -156,7 +156,7 @@ TEST_F(ConsoleTalk, OfAnArmAtFaultOffersNothingThatDoesNotHelp) {
 
 // For example, an arm that holds its position traps a hand and then stops itself: neither the state
 // nor the cause changes.
-TEST_F(ConsoleTalk, OfAnArmsFaultBehindAStopSaysSoOnce) {
+TEST_F(ConsoleTalk, ReportsAnArmsFaultAfterAStopOnce) {
   for (const RunState state : {RunState::kStopping, RunState::kHeld, RunState::kUnpowered}) {
     words_ = ConsoleWords{false, 1000};
     trouble_ = "";
@@ -188,7 +188,7 @@ TEST_F(ConsoleTalk, OfAnArmsFaultBehindAStopSaysSoOnce) {
 }
 
 // If the state changes in the same tick, the fault is reported once, together with the state.
-TEST_F(ConsoleTalk, OfAnArmsFaultWithAChangeOfStateSaysSoThere) {
+TEST_F(ConsoleTalk, ReportsAnArmsFaultWithTheChangeOfState) {
   Stop(StopCause::kForce, 0);
   Tick(RunState::kStopping);
   record_.hands[1].present = record_.hands[1].arm_fault = 1;
@@ -258,17 +258,17 @@ TEST(ConsoleTalkWithADevice, OfARefusalSaysWhatToHold) {
       record.why_refused = static_cast<std::uint8_t>(why);
       const auto lines = words.See(record, [] { return std::string(); });
       ASSERT_EQ(lines.size(), 1U);
-      const std::string& told = lines[0];
-      const auto says = [&told](const std::string& text) {
-        return told.find(text) != std::string::npos;
+      const std::string& reported = lines[0];
+      const auto says = [&reported](const std::string& text) {
+        return reported.find(text) != std::string::npos;
       };
       const bool moves = why == Refusal::kMoves, enables = why == Refusal::kNotEnabled;
-      EXPECT_EQ(says(Text("refusal.device_not_held")), enables && device) << told;
-      EXPECT_EQ(says(Text("refusal.not_enabled")), enables && !device) << told;
-      EXPECT_EQ(says("To recover, hold r."), !enables && !moves && !device) << told;
+      EXPECT_EQ(says(Text("refusal.device_not_held")), enables && device) << reported;
+      EXPECT_EQ(says(Text("refusal.not_enabled")), enables && !device) << reported;
+      EXPECT_EQ(says("To recover, hold r."), !enables && !moves && !device) << reported;
       EXPECT_EQ(says("To recover, hold the enabling device and tap r."),
                 !enables && !moves && device)
-          << told;
+          << reported;
       record.tick += 1100;  // in a state without motion, RECOVERY does not move either
       record.state = RunState::kUnpowered;
       record.why_refused = static_cast<std::uint8_t>(Refusal::kHandLoaded);

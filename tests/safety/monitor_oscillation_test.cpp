@@ -97,7 +97,7 @@ TEST_F(MonitorTest, VibrationOfEitherHand) {
   }
 }
 
-TEST_F(MonitorTest, NeitherOscillationNorVibrationCountsWhereTheyAreSwitchedOff) {
+TEST_F(MonitorTest, OscillationAndVibrationDoNotCountIfSwitchedOff) {
   safety_.oscillation.enabled = false;
   monitor_ = Monitor(safety_, rendering_, {true, true}, 0.001);
   for (int k = 0; k < 20000; ++k) {

@@ -58,7 +58,7 @@ const std::vector<Fault>& Faults() {
   return faults;
 }
 
-TEST_F(MonitorTest, OfSeveralThingsTheFirstIsTold) {
+TEST_F(MonitorTest, OfSeveralFaultsTheFirstIsReported) {
   const auto& faults = Faults();
   for (const bool running : {true, false}) {
     for (std::size_t first = 0; first < faults.size(); ++first) {
@@ -74,7 +74,7 @@ TEST_F(MonitorTest, OfSeveralThingsTheFirstIsTold) {
 }
 
 // The level of a stop also depends on faults of lower precedence than its cause.
-TEST_F(MonitorTest, BehindWhatMayBeHeldTheMostSevereDecides) {
+TEST_F(MonitorTest, AfterAFaultThatAllowsHoldingTheMostSevereDecides) {
   for (JointVector& v : input_.velocity) v = JointVector::Constant(7, 2);
   EXPECT_TRUE(CheckAfterReset().ok());
   input_.device = {StopCause::kDevice};
@@ -96,11 +96,11 @@ TEST_F(MonitorTest, BehindWhatMayBeHeldTheMostSevereDecides) {
 }
 
 // If no stop is to begin any more, a fault that forbids holding the arm is reported first.
-TEST_F(MonitorTest, AtRestWhatTakesThePowerIsTold) {
+TEST_F(MonitorTest, AtRestTheReasonForPowerOffIsReported) {
   input_.running = false;
   input_.wrench[0].F_H_W[0] = 100;
   for (const bool follows : {true, false}) {
-    const auto told = [&](const std::function<void()>& cause_it) {
+    const auto reported = [&](const std::function<void()>& cause_it) {
       sample_.arms[1].arm_age = sample_.arms[1].sensor_age = 0;
       sample_.arms[1].sensor_saturated = false;
       cause_it();
@@ -108,13 +108,13 @@ TEST_F(MonitorTest, AtRestWhatTakesThePowerIsTold) {
       monitor_.Reset();
       return monitor_.Check(input_);
     };
-    const Status load = told([] {});
+    const Status load = reported([] {});
     EXPECT_EQ(load.cause, StopCause::kForce);
     EXPECT_FALSE(load.power_off);
-    const Status silent = told([this] { sample_.arms[1].arm_age = 0.5; });
+    const Status silent = reported([this] { sample_.arms[1].arm_age = 0.5; });
     EXPECT_TRUE(silent.power_off);
     EXPECT_EQ(silent.cause, follows ? StopCause::kForce : StopCause::kStale);
-    const Status deaf = told([this] { sample_.arms[1].sensor_age = 0.5; });
+    const Status deaf = reported([this] { sample_.arms[1].sensor_age = 0.5; });
     EXPECT_TRUE(deaf.power_off);
     EXPECT_EQ(deaf.cause, follows ? StopCause::kForce : StopCause::kStale);
     if (follows) continue;
@@ -122,11 +122,11 @@ TEST_F(MonitorTest, AtRestWhatTakesThePowerIsTold) {
     EXPECT_EQ(silent.quantity, Quantity::kArmAge);
     ExpectStatus(deaf, StopCause::kStale, 1, 0.5, 0.02);
     EXPECT_EQ(deaf.quantity, Quantity::kSensorAge);
-    const Status never = told([this] { sample_.arms[1].arm_age = HUGE_VAL; });
+    const Status never = reported([this] { sample_.arms[1].arm_age = HUGE_VAL; });
     ExpectStatus(never, StopCause::kStale, 1, 0, 0);
     EXPECT_EQ(never.quantity, Quantity::kNone);
     input_.wrench[0].F_H_W[0] = 0;
-    const Status full = told([this] { sample_.arms[1].sensor_saturated = true; });
+    const Status full = reported([this] { sample_.arms[1].sensor_saturated = true; });
     ExpectStatus(full, StopCause::kSensor, 1, 0, 0);
     EXPECT_TRUE(full.power_off);
   }

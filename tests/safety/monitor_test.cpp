@@ -17,7 +17,7 @@ Quaternion QuaternionFromZ(double angle, double sign) {
   return Quaternion(sign * std::cos(angle / 2), 0, 0, sign * std::sin(angle / 2));
 }
 
-TEST_F(MonitorTest, NothingIsWrong) {
+TEST_F(MonitorTest, NormalInputHasNoFault) {
   for (int k = 0; k < 1000; ++k) ASSERT_TRUE(Check().ok());
   input_.running = false;
   for (int k = 0; k < 1000; ++k) ASSERT_TRUE(Check().ok());

@@ -177,19 +177,19 @@ TEST(Oscillation, OutsideTheBandNothingGrows) {
 // Three growing cycles end on a rise, and quiet follows. The alarm comes when the cycles are
 // complete or not at all. The alarm must not come seconds later when a small force happens to
 // change its sign.
-TEST(Oscillation, ThatEndedIsNotToldLater) {
+TEST(Oscillation, ThatEndedIsNotReportedLater) {
   OscillationSpec spec;
   OscillationDetector detector(spec, 0.001);
-  double told = -1;
+  double reported = -1;
   const auto feed = [&](double from, double to, auto force) {
     for (double t = from; t < to; t += 0.001)
-      if (detector.Update({0, 0, force(t)}) > 0 && told < 0) told = t;
+      if (detector.Update({0, 0, force(t)}) > 0 && reported < 0) reported = t;
   };
   // Grows up to the rise of the last cycle, then decays from above without changing its sign.
   feed(0, 6.2, [](double t) { return 0.6 * t * std::sin(2 * M_PI * 0.5 * t) * (t < 5.9); });
   feed(6.2, 20, [](double) { return 0.0; });
   feed(20, 21, [](double t) { return -1.0 * (t - 20); });
-  EXPECT_LT(told, 9);
+  EXPECT_LT(reported, 9);
 }
 
 TEST(Oscillation, TwoGrowingCyclesAreTooFew) {

@@ -79,7 +79,7 @@ TEST(Runaway, OfAMirroredSensorIsSeenSoonAfterTheHandleIsFast) {
 }
 
 // A push during a carry, as sudden as people's pushes are, up to the threshold and the cap.
-TEST(Runaway, IsNoneWhereAPersonPushesSuddenly) {
+TEST(Runaway, IsNotASuddenPush) {
   for (const double push : {8.0, 14.0, 20.0})
     for (const double rise : {0.04, 0.06, 0.08, 0.10, 0.12})
       for (const double mass : {3.0, 6.0, 10.0})
@@ -96,7 +96,7 @@ TEST(Runaway, IsNoneWhereAPersonPushesSuddenly) {
 }
 
 // Carrying and lifting against a spring, as briskly as the cap allows.
-TEST(Runaway, IsNoneWhereAPersonMoves) {
+TEST(Runaway, IsNotAPersonsMotion) {
   for (const double distance : {0.05, 0.1, 0.13, 0.16, 0.25})
     for (const double duration : {0.5, 0.8, 1.0, 1.25, 2.0, 4.0})
       for (const double spring : {5.0, 150.0, 500.0})

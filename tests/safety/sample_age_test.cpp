@@ -50,7 +50,7 @@ TEST(SampleAge, OfArmAndSensorHaveLimitsOfTheirOwn) {
 }
 
 // A scenario that tolerates old samples does not change how silence is treated.
-TEST(SampleAge, SilenceCutsPowerWhateverMaxAgeIs) {
+TEST(SampleAge, SilenceCutsPowerForAnyMaxAge) {
   for (const double max_age : {0.001, 0.005, 0.019, 0.021, 1.0}) {
     SafetySpec safety;
     safety.max_age = max_age;

@@ -93,7 +93,7 @@ TEST(StopController, KeepsItsTimeWhenDeadlinesAreMissed) {
 
 // If the geometry becomes unreliable, the stop keeps the correction made so far, so that the
 // command does not jump.
-TEST(StopController, GoesOnAsItWasOnceTheGeometryIsInDoubt) {
+TEST(StopController, ContinuesUnchangedOnceTheGeometryIsInDoubt) {
   const std::array<JointBounds, kHands> bounds = {Bounds(2, 10), JointBounds{}};
   StopController stop(SafetySpec{}, bounds, kDt);
   Arms v = {JointVector::Constant(2, 0.5), JointVector()};
@@ -250,7 +250,7 @@ TEST(StopController, AtRestOrWithoutArmsItIsDoneAtOnce) {
 
 // An arm whose command contains a NaN gets zero velocity immediately. The other arm still brakes as
 // usual.
-TEST(StopController, OfACommandThatIsNoNumberNothingIsMade) {
+TEST(StopController, ANanCommandHasNoEffect) {
   StopController stop(SafetySpec{}, {Bounds(2, 10), Bounds(2, 10)}, kDt);
   Arms v = {JointVector::Constant(2, 0.3), JointVector::Constant(2, 0.3)};
   v[0][1] = std::numeric_limits<double>::quiet_NaN();
@@ -292,7 +292,7 @@ TEST(StopController, IsNotDoneWhileItsCommandsBrake) {
 
 // A driver brings its arm to rest on a path of its own, in steps that are not visible at the
 // handle.
-TEST(StopController, AnArmThatIsLedToRestDoesNotRestYet) {
+TEST(StopController, AnArmThatIsBroughtToRestDoesNotRestYet) {
   const std::array<Pose, kHands> still;
   StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
   const auto begin = [&] {
@@ -330,7 +330,7 @@ TEST(StopController, AHandleThatTurnsOnDoesNotRest) {
   }
 }
 
-TEST(StopController, EncoderNoiseIsNoMotion) {
+TEST(StopController, EncoderNoiseIsNotMotion) {
   StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
   stop.Begin(kForceStop, 0, {JointVector::Zero(1), JointVector()}, 0, 0);
   RandomStream random(1, "encoder");

@@ -41,7 +41,7 @@ class WarningsTest : public testing::Test {
   long tick_ = 0;
 };
 
-TEST_F(WarningsTest, MoreThanOnePercentLostIsTold) {
+TEST_F(WarningsTest, MoreThanOnePercentLostIsReported) {
   Pass(3, 125);  // 0.8 %
   EXPECT_EQ(warnings_.bits(0), 0);
   Pass(3, 67);  // 1.5 %
@@ -54,14 +54,14 @@ TEST_F(WarningsTest, MoreThanOnePercentLostIsTold) {
   EXPECT_EQ(warnings_.bits(0), 0);
 }
 
-TEST_F(WarningsTest, ASingleLossIsNoneToTellOf) {
+TEST_F(WarningsTest, ASingleLossIsNotReported) {
   Pass(2);
   ++sample_.arms[0].sensor_link.lost;
   Pass(2);
   EXPECT_EQ(warnings_.bits(0), 0);
 }
 
-TEST_F(WarningsTest, WhatIsRefusedIsTold) {
+TEST_F(WarningsTest, RefusalsAreReported) {
   Pass(1);
   ++sample_.arms[1].arm_link.refused;
   warnings_.Update(input_);
@@ -71,7 +71,7 @@ TEST_F(WarningsTest, WhatIsRefusedIsTold) {
   EXPECT_EQ(warnings_.bits(1), 0);
 }
 
-TEST_F(WarningsTest, ADriftAtRestIsTold) {
+TEST_F(WarningsTest, ADriftAtRestIsReported) {
   input_.rests = true;
   Pass(11);
   EXPECT_EQ(warnings_.bits(0), 0);
@@ -100,7 +100,7 @@ TEST_F(WarningsTest, OfPowerAreAsTheArmSays) {
   EXPECT_EQ(warnings_.bits(0) | warnings_.bits(1), 0);
 }
 
-TEST_F(WarningsTest, ADriftInMotionAndAHandAreNone) {
+TEST_F(WarningsTest, MotionAndAHandAreNotDrift) {
   drift_ = Vector3(0.2, 0, 0);
   Pass(12);  // not at rest
   EXPECT_FALSE(Has(Warning::kBiasDrift));

@@ -39,7 +39,7 @@ TEST_F(ApplyMachineTest, PutsTheMachinesArmsInPlace) {
   EXPECT_EQ(scenario.arm(1).end_effector, "panda_link8");
 }
 
-TEST_F(ApplyMachineTest, AFrankaComesToWhereItsVelocitiesLead) {
+TEST_F(ApplyMachineTest, AFrankasPositionIntegratesItsVelocities) {
   Scenario scenario = Load({"safety.force=20", "safety.handle_speed=0.2"});
   ApplyMachine(ParseMachine(kMachine, "lab.yaml"), &scenario);
   EXPECT_FALSE(scenario.arm(0).follows_position);
@@ -171,19 +171,19 @@ TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
     arm->commissioned->loop = "2026-01-02";
     arm->commissioned->loop_of = HashOfLoop(*arm);
   };
-  const auto told = [&] { return UnmeasuredLoops(machine, Load()); };
+  const auto reported = [&] { return UnmeasuredLoops(machine, Load()); };
   EXPECT_EQ(lead("rendering.lead=auto"), 0);
   EXPECT_EQ(lead("rendering.lead=0.05"), 0);
-  ASSERT_EQ(told().size(), 2u);
-  EXPECT_NE(told()[1].find("`predictor calibrate loop --machine lab.yaml --arm right`"),
+  ASSERT_EQ(reported().size(), 2u);
+  EXPECT_NE(reported()[1].find("`predictor calibrate loop --machine lab.yaml --arm right`"),
             std::string::npos)
-      << told()[1];
+      << reported()[1];
   measured(&*machine.left);
   EXPECT_EQ(lead("rendering.lead=auto"), 0);
   measured(&*machine.right);
   EXPECT_EQ(lead("rendering.lead=auto"), -1);
   EXPECT_EQ(lead("rendering.lead=0.05"), 0.05);
-  EXPECT_TRUE(told().empty());
+  EXPECT_TRUE(reported().empty());
   // The machine file is read back as it was written, and it contains no push tests.
   machine = ParseMachine(SaveMachine(machine), "lab.yaml");
   EXPECT_EQ(lead("rendering.lead=auto"), -1);
@@ -195,46 +195,46 @@ TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
   EXPECT_EQ(lead("rendering.lead=auto"), -1);
   machine.left->arm.loop.bandwidth += 1;
   EXPECT_EQ(lead("rendering.lead=auto"), 0);
-  EXPECT_NE(told()[0].find("with its present settings"), std::string::npos) << told()[0];
+  EXPECT_NE(reported()[0].find("with its present settings"), std::string::npos) << reported()[0];
   measured(&*machine.left);
   machine.left->connection.host = "192.0.2.99";
   EXPECT_EQ(lead("rendering.lead=auto"), 0);
 }
 
 // Errors that are detected only after the models are loaded.
-TEST_F(ApplyMachineTest, ErrorsOfItsArmsAreToldInItsFile) {
+TEST_F(ApplyMachineTest, ErrorsOfItsArmsAreReportedInItsFile) {
   Scenario scenario = Load({"safety.force=20", "safety.handle_speed=0.2"});
-  const auto told = [&](const char* key) {
+  const auto reported = [&](const char* key) {
     return std::string(
         Located(InputError::At(key, std::string(key) + " is bad."), scenario).what());
   };
-  EXPECT_NE(told("device.arms.left.elbow").find("box_9kg.yaml:"), std::string::npos);
+  EXPECT_NE(reported("device.arms.left.elbow").find("box_9kg.yaml:"), std::string::npos);
   EXPECT_EQ(ArmKey(scenario, 0), "device.arms.left");
   ApplyMachine(ParseMachine(kMachine, "lab.yaml"), &scenario);
-  EXPECT_EQ(told("device.arms.left.elbow"), "lab.yaml:10:14: arms.left.arm.elbow is bad.");
-  EXPECT_EQ(told("device.arms.right.model"), "lab.yaml:15:14: arms.right.arm.model is bad.");
-  EXPECT_EQ(told("device.arms.right.posture"), "lab.yaml:15:7: arms.right.arm.posture is bad.");
-  EXPECT_NE(told("cobot.model").find("box_9kg.yaml:"), std::string::npos);
+  EXPECT_EQ(reported("device.arms.left.elbow"), "lab.yaml:10:14: arms.left.arm.elbow is bad.");
+  EXPECT_EQ(reported("device.arms.right.model"), "lab.yaml:15:14: arms.right.arm.model is bad.");
+  EXPECT_EQ(reported("device.arms.right.posture"), "lab.yaml:15:7: arms.right.arm.posture is bad.");
+  EXPECT_NE(reported("cobot.model").find("box_9kg.yaml:"), std::string::npos);
   EXPECT_EQ(ArmKey(scenario, 1), "arms.right.arm");
 }
 
-TEST_F(ApplyMachineTest, UntestedPushesAreToldOfEachArm) {
+TEST_F(ApplyMachineTest, UntestedPushesAreReportedForEachArm) {
   Machine machine = ParseMachine(kMachine, "lab.yaml");
-  const auto told = [&] { return UntestedPushes(machine, Load()); };
-  ASSERT_EQ(told().size(), 2u);
-  EXPECT_NE(told()[0].find("arms.left has not passed a push test"), std::string::npos);
-  EXPECT_NE(told()[1].find("`predictor calibrate push --machine lab.yaml --arm right`"),
+  const auto reported = [&] { return UntestedPushes(machine, Load()); };
+  ASSERT_EQ(reported().size(), 2u);
+  EXPECT_NE(reported()[0].find("arms.left has not passed a push test"), std::string::npos);
+  EXPECT_NE(reported()[1].find("`predictor calibrate push --machine lab.yaml --arm right`"),
             std::string::npos);
   machine.left->commissioned.emplace();
   machine.left->commissioned->of = HashOf(*machine.left);
-  ASSERT_EQ(told().size(), 1u);
+  ASSERT_EQ(reported().size(), 1u);
   machine.left->arm.payload.mass += 1;
-  EXPECT_NE(told()[0].find("arms.left was changed after"), std::string::npos) << told()[0];
+  EXPECT_NE(reported()[0].find("arms.left was changed after"), std::string::npos) << reported()[0];
 }
 
 TEST_F(ApplyMachineTest, LoopsComeBeforeThePushesThatTheyWouldVoid) {
   Machine machine = ParseMachine(kMachine, "lab.yaml");
-  const auto told = [&]() -> std::string {
+  const auto reported = [&]() -> std::string {
     try {
       RequirePushTests(machine, Load());
     } catch (const InputError& error) {
@@ -245,14 +245,15 @@ TEST_F(ApplyMachineTest, LoopsComeBeforeThePushesThatTheyWouldVoid) {
   for (const char* part :
        {"arms.left has not passed a push test", "--arm left",
         "arms.right has not passed a push test", "--arm right", "`predictor calibrate loop`"})
-    EXPECT_NE(told().find(part), std::string::npos) << part << "\n" << told();
+    EXPECT_NE(reported().find(part), std::string::npos) << part << "\n" << reported();
   for (std::optional<MachineArm>* arm : {&machine.left, &machine.right}) {
     (*arm)->commissioned.emplace();
     (*arm)->commissioned->loop = "2026-11-23";
     (*arm)->commissioned->loop_of = HashOfLoop(**arm);
   }
-  EXPECT_NE(told().find("arms.right has not passed a push test"), std::string::npos) << told();
-  EXPECT_EQ(told().find("calibrate loop"), std::string::npos) << told();
+  EXPECT_NE(reported().find("arms.right has not passed a push test"), std::string::npos)
+      << reported();
+  EXPECT_EQ(reported().find("calibrate loop"), std::string::npos) << reported();
 }
 
 TEST_F(ApplyMachineTest, ArmsThatAreLeftOutNeedNoMachine) {

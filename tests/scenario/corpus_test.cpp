@@ -20,8 +20,8 @@ constexpr bool kIsMeasured = false;  // sanitizers themselves take time and memo
 #else
 constexpr bool kIsMeasured = true;
 #endif
-constexpr double kMostSeconds = 1;          // of the processor
-constexpr rlim_t kMostMemory = 256u << 20;  // [B]
+constexpr double kMaxSeconds = 1;          // of the processor
+constexpr rlim_t kMaxMemory = 256u << 20;  // [B]
 
 const fs::path kCorpus = fs::path(PREDICTOR_SOURCE_DIR) / "tests/corpus/scenario";
 
@@ -37,7 +37,7 @@ struct Outcome {
 // else happens.
 [[noreturn]] void LoadAndExit(const fs::path& file, int pipe) {
   if (kIsMeasured) {
-    const rlimit memory = {kMostMemory, kMostMemory};
+    const rlimit memory = {kMaxMemory, kMaxMemory};
     setrlimit(RLIMIT_AS, &memory);
   }
   int code = 0;
@@ -84,8 +84,8 @@ void ExpectRefused(const fs::path& file, const std::string& expected) {
   EXPECT_EQ(outcome.error.rfind(file.string(), 0), 0u) << "does not begin with the file's name";
   EXPECT_LT(outcome.error.size(), 4000u);
   if (kIsMeasured) {
-    EXPECT_LT(outcome.seconds, kMostSeconds);
-    EXPECT_LT(outcome.megabytes, static_cast<double>(kMostMemory >> 20));
+    EXPECT_LT(outcome.seconds, kMaxSeconds);
+    EXPECT_LT(outcome.megabytes, static_cast<double>(kMaxMemory >> 20));
   }
 }
 
@@ -211,7 +211,7 @@ TEST_F(Generated, ManyKeysAndAVeryLongOne) {
   ExpectRefusedText("? " + std::string(1000000, 'f') + "\n: 1\n", "...\" is not a key");
 }
 
-TEST_F(Generated, WhatIsNoFile) {
+TEST_F(Generated, SomethingThatIsNotAFile) {
   ExpectRefused(folder_, "this is not a file");
   ExpectRefused(folder_ / "missing.yaml", "file does not exist");
   ExpectRefused("/dev/zero", "this is not a file");

@@ -34,7 +34,7 @@ TEST(Located, TakesTheNearestGroupOfWhatIsNotThere) {
     EXPECT_EQ(PlaceOf(path, root).Text(), list) << path;
 }
 
-TEST(Located, TellsFileOrOverride) {
+TEST(Located, NamesFileOrOverride) {
   const InputError error = InputError::At("cobot.end_effector", "cobot.end_effector is bad.");
   const std::string in_file = Located(error, Fixture()).what();
   EXPECT_EQ(in_file.rfind("box.yaml:", 0), 0u) << in_file;
@@ -43,7 +43,7 @@ TEST(Located, TellsFileOrOverride) {
                "--set cobot.end_effector: cobot.end_effector is bad.");
 }
 
-TEST(Located, TellsAPlaceOnceAndOnlyWhereThereIsOne) {
+TEST(Located, NamesAnExistingPlaceOnce) {
   const InputError error = InputError::At("seed", "seed is bad.");
   const InputError once = Located(error, Fixture());
   EXPECT_STREQ(Located(once, Fixture()).what(), once.what());
@@ -51,7 +51,7 @@ TEST(Located, TellsAPlaceOnceAndOnlyWhereThereIsOne) {
   EXPECT_STREQ(Located(InputError("It is bad."), Fixture()).what(), "It is bad.");
 }
 
-TEST(InputError, OfAPartIsToldWithItsGroup) {
+TEST(InputError, OfAPartIsReportedWithItsGroup) {
   const InputError of_list = InputError::At("posture", "posture has 2 values.");
   EXPECT_STREQ(of_list.Within("device.arms.left").what(), "device.arms.left.posture has 2 values.");
   EXPECT_EQ(of_list.Within("device.arms.left").key(), "device.arms.left.posture");

@@ -30,7 +30,7 @@ TEST(Machine, IsReadAndWritten) {
   EXPECT_EQ(SaveMachine(ParseMachine(text, "again.yaml")), text);
 }
 
-TEST(Machine, SaysWhatIsWrongAndWhere) {
+TEST(Machine, ReportsErrorsAndTheirPlaces) {
   EXPECT_NE(MachineRefusal(With(kMachine, "make: ur", "make: abb"))
                 .find("lab.yaml:5:24: arms.left.connection.make"),
             std::string::npos)
@@ -80,7 +80,7 @@ TEST(Machine, EachArmAndEachSensorHasItsOwnAddress) {
             "");
 }
 
-TEST(Machine, AMisspeltGroupIsToldOnce) {
+TEST(Machine, AMisspeltGroupIsReportedOnce) {
   EXPECT_EQ(MachineRefusal(With(kMachine, "connection:", "conection:")),
             "lab.yaml:5:5: \"conection\" is not a key of arms.left. Did you mean connection?");
   EXPECT_EQ(MachineRefusal(With(kMachine, "arms:", "arm:")),
@@ -127,7 +127,7 @@ TEST(Machine, SaysNothingOfRelativePathsWhereItIsWritten) {
   EXPECT_NE(text.find("# URDF: package://"), std::string::npos) << text;
 }
 
-TEST(Machine, AnEnablingDeviceIsAtAnArmThatTellsItsInputs) {
+TEST(Machine, AnEnablingDeviceIsAtAnArmThatReportsItsInputs) {
   const auto with = [](const std::string& enabling) {
     return std::string(kMachine) + "enabling: " + enabling + "\n";
   };
@@ -149,7 +149,7 @@ TEST(Machine, AnEnablingDeviceIsAtAnArmThatTellsItsInputs) {
 }
 
 // Only a laboratory knows how high its handles are above the ground on which the person stands.
-TEST(Machine, TellsTheGroundOnWhichThePersonStands) {
+TEST(Machine, ContainsTheGroundOnWhichThePersonStands) {
   Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/box_9kg.yaml",
                                    {"safety.force=20", "safety.handle_speed=0.2"});
   ASSERT_TRUE(scenario.operator_.stance);
@@ -186,7 +186,7 @@ TEST(Machine, CannotTurnAProtectionOff) {
   }
 }
 
-TEST(Machine, CannotLeaveOutWhatItIsJudgedBy) {
+TEST(Machine, RequiresTheLimits) {
   const auto refused = [](const std::string& what, const std::string& by, const std::string& key) {
     const std::string said = MachineRefusal(With(kMachine, what, by));
     EXPECT_NE(said.find(key), std::string::npos) << by << ": " << said;

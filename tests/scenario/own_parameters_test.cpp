@@ -78,7 +78,7 @@ TEST(OwnParameters, MayBeAnglesInDegrees) {
 }
 
 // As in a file that extends another one.
-TEST(OwnParameters, OfTheFormerTypeAreLeftBehindByAnOverride) {
+TEST(OwnParameters, OfTheFormerTypeAreDroppedByAnOverride) {
   const std::string type = "cobot.controller.type=joint_impedance";
   EXPECT_EQ(ParameterOf(Fixture({type, "cobot.controller.joint_stiffness=200"}), "joint_stiffness"),
             "200");
@@ -149,7 +149,7 @@ TEST_F(NoControllers, KeepParametersAsTheyAreGiven) {
 // ---- actions of the operator --------------------------------------------------------------------
 
 // Its script grips, moves and pushes.
-TEST(ActionParameters, OfTheFormerActionAreLeftBehindByAnOverride) {
+TEST(ActionParameters, OfTheFormerActionAreDroppedByAnOverride) {
   const std::string action = "operator.script.1.action=rotate";
   const Scenario scenario = Fixture(
       {action, "operator.script.1.rotate_by=[0, 0, 90 deg]", "operator.script.1.duration=3"});
@@ -161,7 +161,7 @@ TEST(ActionParameters, OfTheFormerActionAreLeftBehindByAnOverride) {
             std::string::npos);
 }
 
-TEST(ActionParameters, OfAMisspeltActionAreNotTold) {
+TEST(ActionParameters, OfAMisspeltActionAreNotReported) {
   EXPECT_EQ(
       ErrorOf(FixtureText(), {"operator.script=[{acton: move, by: [0, 0, 1], by_: 2}]"}),
       "--set operator.script:1:3: \"acton\" is not a key of operator.script.0. Did you mean "

@@ -33,7 +33,7 @@ TEST(Scenario, ReadsEveryNotation) {
   EXPECT_EQ(s.file, kData / "box.yaml");
 }
 
-TEST(Scenario, WhatIsNotSaidKeepsItsDefault) {
+TEST(Scenario, OmittedKeysKeepTheirDefaults) {
   const Scenario s = Fixture(), standard;
   EXPECT_EQ(s.rate, standard.rate);
   EXPECT_EQ(s.safety.stop_jerk, standard.safety.stop_jerk);
@@ -83,7 +83,7 @@ TEST(Scenario, OnlyAPersonAtThePageEndsARunWithoutADuration) {
   EXPECT_EQ(Fixture({"duration=0", "operator={type: browser}"}).duration, 0);
   try {
     Fixture({"duration=0"});
-    FAIL() << "nobody could end this run";
+    FAIL() << "no one could end this run";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("duration is 0, which means that only a person"),
               std::string::npos)
@@ -91,7 +91,7 @@ TEST(Scenario, OnlyAPersonAtThePageEndsARunWithoutADuration) {
   }
 }
 
-TEST(Scenario, SeveralErrorsAreToldInTheFilesOrder) {
+TEST(Scenario, SeveralErrorsAreReportedInTheFilesOrder) {
   const std::string error = ErrorOf(
       "predictor: 2\nduration: -1\nseed: x\nsafety: {forse: 1}\ncobot: {end_effector: e}\n");
   const std::vector<std::string> parts = {
@@ -106,7 +106,7 @@ TEST(Scenario, SeveralErrorsAreToldInTheFilesOrder) {
   }
 }
 
-TEST(Scenario, AtMostTenErrorsAreTold) {
+TEST(Scenario, AtMostTenErrorsAreReported) {
   std::string text;
   for (int i = 0; i < 25; ++i) text += "unknown_" + std::to_string(i) + ": 1\n";
   const std::string error = ErrorOf(text);

@@ -70,7 +70,7 @@ TEST(Schema, AcceptsWhatIsLoadedAndSaved) {
 }
 
 // Each scenario refers to this file in its second line, for editors.
-TEST(Schema, IsTheFileBesideTheScenarios) {
+TEST(Schema, EqualsTheFileInTheScenariosFolder) {
   std::ifstream file(PREDICTOR_SOURCE_DIR "/scenarios/scenario.schema.json");
   std::ostringstream text;
   text << file.rdbuf();

@@ -21,7 +21,7 @@ TEST(Task, IsTheSameOnAnotherSystem) {
             Parts{});
 }
 
-TEST(Task, DiffersByWhatIsCarriedAndWhatIsToBeDone) {
+TEST(Task, DiffersByLoadAndScript) {
   const Scenario circle = Load("bar_circle");
   EXPECT_EQ(TaskDifferences(circle, Load("bar_circle", {"guidance.radius=0.2"})),
             Parts{"the guidance"});

@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-TEST(Nearest, FindsWhatWasMeant) {
+TEST(Nearest, FindsTheIntendedName) {
   const std::vector<std::string> keys = {"force", "torque", "tracking", "max_age"};
   EXPECT_EQ(Nearest("forse", keys), "force");
   EXPECT_EQ(Nearest("Torque", keys), "torque");
@@ -83,7 +83,7 @@ TEST(Printable, ShowsWhatATerminalWouldObey) {
 
 // Bytes that are not valid UTF-8: isolated, truncated, overlong, surrogates, beyond the last
 // character.
-TEST(Printable, ShowsWhatIsNotUtf8ByteByByte) {
+TEST(Printable, ShowsInvalidUtf8ByteByByte) {
   EXPECT_EQ(Printable("\x9b"
                       "2J"),
             "\\x9b2J");

@@ -21,7 +21,7 @@ std::string ErrorOfYaml(const std::string& text) {
   return "";
 }
 
-TEST(YamlTree, KnowsWhereEverythingStands) {
+TEST(YamlTree, KnowsThePlaceOfEachNode) {
   const YamlNode root = Parse("a: 1\nb:\n  c: [x, \"5\"]\n");
   const YamlNode* c = root.Find("b")->Find("c");
   EXPECT_EQ(root.Find("a")->place.Text(), "f.yaml:1:4");
@@ -67,8 +67,8 @@ TEST(YamlTree, CountsDepthExactly) {
   const auto nested = [](int depth) {
     return std::string(depth, '[') + "x" + std::string(depth, ']');
   };
-  EXPECT_EQ(ErrorOfYaml(nested(kMostYamlDepth)), "");
-  EXPECT_NE(ErrorOfYaml(nested(kMostYamlDepth + 1)).find("nested deeper than 32"),
+  EXPECT_EQ(ErrorOfYaml(nested(kMaxYamlDepth)), "");
+  EXPECT_NE(ErrorOfYaml(nested(kMaxYamlDepth + 1)).find("nested deeper than 32"),
             std::string::npos);
 }
 

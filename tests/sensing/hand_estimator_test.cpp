@@ -21,9 +21,9 @@ namespace {
 // An arm of the rig, and the emulator's steps to estimate the hand's wrench.
 class Bench {
  public:
-  // `believed`: the sensor and the handle that the estimator assumes; nullptr: the true ones.
+  // assumed: the sensor and handle that the estimator assumes; nullptr: the true ones.
   explicit Bench(const Scenario& scenario, std::unique_ptr<Operator> person = nullptr,
-                 const ArmSpec* believed = nullptr)
+                 const ArmSpec* assumed = nullptr)
       : dt_(1 / scenario.rate),
         spec_(*scenario.device.left),
         rig_(scenario, ArmStart(1), std::move(person)),
@@ -31,7 +31,7 @@ class Bench {
         data_(*model_),
         frame_(model_->Frame(spec_.end_effector)),
         differentiator_(dt_),
-        estimator_((believed ? believed : &spec_)->sensor, (believed ? believed : &spec_)->payload,
+        estimator_((assumed ? assumed : &spec_)->sensor, (assumed ? assumed : &spec_)->payload,
                    spec_.handle.ToPose(), scenario.environment.gravity, dt_) {
     Step(JointVector::Zero(7));
   }
@@ -127,8 +127,8 @@ TEST(HandEstimator, StaticResidualIsSmallInAnyPosture) {
 // The part of the residual force that moves with the arm, divided by the inertial load [1]. The
 // residual is evaluated at the frequency of the motion and at twice this frequency, where the
 // centripetal acceleration and the rotating weight appear.
-double MovingResidual(const Scenario& scenario, const ArmSpec& believed, double frequency) {
-  Bench bench(scenario, nullptr, &believed);
+double MovingResidual(const Scenario& scenario, const ArmSpec& assumed, double frequency) {
+  Bench bench(scenario, nullptr, &assumed);
   EXPECT_TRUE(bench.Tare(500).ok());
   const double amplitude = 0.4 / std::max(1.0, frequency);  // [rad/s]
   const double w = 2 * std::numbers::pi * frequency;
@@ -175,7 +175,7 @@ TEST(HandEstimator, MovingResidualIsSmallForOtherSensorsAndTicks) {
   }
 }
 
-TEST(HandEstimator, MovingResidualShowsAnEstimatorThatIsWrong) {
+TEST(HandEstimator, MovingResidualShowsAWrongEstimator) {
   const Scenario scenario = ArmScenario(1);
   ArmSpec late = *scenario.device.left, light = late;
   late.sensor.delay += 0.010;

@@ -38,7 +38,7 @@ TEST(MotionDifferentiator, HoldsBetweenTheSamplesOfASlowerArm) {
   }
 }
 
-TEST(MotionDifferentiator, StartsAnewAfterAReset) {
+TEST(MotionDifferentiator, StartsAgainAfterAReset) {
   MotionDifferentiator differentiator(0.001);
   differentiator.Update(SampleAt(0, 0));
   differentiator.Update(SampleAt(0.001, 1));

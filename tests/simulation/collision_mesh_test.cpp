@@ -57,7 +57,7 @@ TEST_F(CollisionMeshTest, GivesTheFilesOwnCoordinatesWithoutTheScale) {
   EXPECT_EQ(found.size(), 4u);
 }
 
-TEST_F(CollisionMeshTest, AFileThatIsNoMeshIsAnErrorWithPlaceAndRemedy) {
+TEST_F(CollisionMeshTest, AnInvalidMeshIsAnErrorWithPlaceAndRemedy) {
   const std::string error = ErrorOf(Write("a.stl", "solid nothing"));
   EXPECT_EQ(error.find("object.model: box.urdf:4: The mesh "), 0u) << error;
   EXPECT_NE(error.find("a.stl cannot be used: "), std::string::npos) << error;

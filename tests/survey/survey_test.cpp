@@ -73,7 +73,7 @@ class SurveyServer : public ::testing::Test {
   std::thread thread_;
 };
 
-TEST_F(SurveyServer, GivesOutThePageUnderStrictHeadersAndNothingElse) {
+TEST_F(SurveyServer, ServesOnlyThePageWithStrictHeaders) {
   Start();
   const auto page = Get(server_->port(), "/");
   EXPECT_EQ(page.status, 200);
@@ -166,7 +166,7 @@ TEST_F(SurveyServer, StoresNothingWithoutConsent) {
   EXPECT_EQ(app_->end(), SurveyEnd::kDeclined);
 }
 
-TEST_F(SurveyServer, SaysWhatIsWrongAndTakesItPutRight) {
+TEST_F(SurveyServer, ReportsErrorsAndAcceptsTheCorrection) {
   Start();
   WebSocket socket = Connect();
   Hello(&socket, {{"code", app_->code()}});
@@ -198,7 +198,7 @@ TEST_F(SurveyServer, TakesNoAnswerFromWhoWasNotAdmitted) {
   EXPECT_TRUE(stored_.empty());
 }
 
-TEST_F(SurveyServer, CutsOffWhatIsTooLargeTooMuchOrNotUnderstood) {
+TEST_F(SurveyServer, DisconnectsOnLargeManyOrInvalidMessages) {
   Start();
   std::string token;
   {
@@ -218,7 +218,7 @@ TEST_F(SurveyServer, CutsOffWhatIsTooLargeTooMuchOrNotUnderstood) {
   EXPECT_EQ(binary.CloseCode(), 1003);
   WebSocket many = Connect();
   Hello(&many, {{"token", token}});
-  for (int i = 0; i <= SurveyApp::kMostMessages; ++i) many.SendText(R"({"type": "answer"})");
+  for (int i = 0; i <= SurveyApp::kMaxMessages; ++i) many.SendText(R"({"type": "answer"})");
   EXPECT_EQ(many.CloseCode(), 1008);
 }
 

@@ -36,7 +36,7 @@ TEST(Admission, TheCodeIsGoodOnceWithRealArms) {
   EXPECT_FALSE(admission.ByCode(admission.code()));
 }
 
-TEST(Admission, NothingElseComesIn) {
+TEST(Admission, RefusesEverythingElse) {
   Admission admission(false, NewAdmissionSecret());
   EXPECT_FALSE(admission.ByCode(""));
   EXPECT_FALSE(admission.ByCode(admission.code() + "A"));
@@ -232,7 +232,7 @@ TEST(Admission, CountsAllOfThisMachinesLoopbackAddressesAsOne) {
   EXPECT_NE(SourceOf("2001:db8::1"), SourceOf("2001:db8::2"));
 }
 
-TEST(Admission, TellsOnceWhichAddressHasNoTriesLeft) {
+TEST(Admission, ReportsOnceWhichAddressHasNoTriesLeft) {
   Admission admission(false, NewAdmissionSecret());
   for (int k = 0; k < 9; ++k) admission.ByPin("x", kHere, 1);
   EXPECT_EQ(admission.TakeLockedOut(), "");  // no PIN had been issued
@@ -280,7 +280,7 @@ TEST(Leases, AHeartbeatThatCameTooLateSavesNothing) {
   EXPECT_EQ(leases.Holder(LeaseKind::kControl), 0u);
 }
 
-TEST(Leases, GoBackToWhoeverReturnsWithTheSameTokenInTime) {
+TEST(Leases, AreReturnedToTheSameTokenInTime) {
   Leases leases;
   leases.Take(LeaseKind::kControl, 1, 0);
   EXPECT_FALSE(leases.Return(2, "token", kSecond));  // the holder is still connected

@@ -40,7 +40,7 @@ TEST_F(CertificateTest, IsMadeOnceAndKept) {
   EXPECT_EQ(kept.names, names);
 }
 
-TEST_F(CertificateTest, IsMadeAnewForANewName) {
+TEST_F(CertificateTest, IsRenewedForANewName) {
   const Certificate first = SelfSignedCertificate(folder_, {"localhost"});
   const Certificate second = SelfSignedCertificate(folder_, {"localhost", "192.168.7.9"});
   EXPECT_TRUE(second.made);
@@ -48,7 +48,7 @@ TEST_F(CertificateTest, IsMadeAnewForANewName) {
   EXPECT_FALSE(SelfSignedCertificate(folder_, {"192.168.7.9"}).made);
 }
 
-TEST_F(CertificateTest, IsMadeAnewWhenDamaged) {
+TEST_F(CertificateTest, IsRenewedWhenDamaged) {
   SelfSignedCertificate(folder_, {"localhost"});
   std::ofstream(folder_ / "viewer.key") << "garbage";
   EXPECT_TRUE(SelfSignedCertificate(folder_, {"localhost"}).made);
@@ -81,7 +81,7 @@ TEST_F(CertificateTest, TheUsersOwnIsChecked) {
                InputError);
 }
 
-TEST_F(CertificateTest, NamesThatAreNoneAreRefused) {
+TEST_F(CertificateTest, InvalidNamesAreRefused) {
   for (const char* name : {"", "a,DNS:b", "a b", "DNS:a", "a\nb"})
     EXPECT_THROW(SelfSignedCertificate(folder_, {name}), InputError) << name;
 }

@@ -85,7 +85,7 @@ TEST(FoxgloveLayout, PathsAreFoundAsAdvertised) {
   EXPECT_EQ(plots, 5);
 }
 
-TEST(FoxgloveLayout, OfAStopItTellsWhatTookThePowerOff) {
+TEST(FoxgloveLayout, OfAStopItShowsTheReasonForPowerOff) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
   TickRecord record = {};
@@ -94,12 +94,12 @@ TEST(FoxgloveLayout, OfAStopItTellsWhatTookThePowerOff) {
     if (channel.topic != "/run") continue;
     EXPECT_EQ(channel.message(record, 1)["harder"]["cause"], "none");
     record.harder = {StopCause::kStale, 0, Quantity::kArmAge, 1, {}, 0.021, 0.02};
-    const Json told = channel.message(record, 1);
-    EXPECT_EQ(told["cause"], "force");
-    EXPECT_EQ(told["harder"]["cause"], "stale");
-    EXPECT_EQ(told["harder"]["value"], 0.021);
-    EXPECT_EQ(told["harder"]["limit"], 0.02);
-    for (const auto& [key, value] : told.items())
+    const Json reported = channel.message(record, 1);
+    EXPECT_EQ(reported["cause"], "force");
+    EXPECT_EQ(reported["harder"]["cause"], "stale");
+    EXPECT_EQ(reported["harder"]["value"], 0.021);
+    EXPECT_EQ(reported["harder"]["limit"], 0.02);
+    for (const auto& [key, value] : reported.items())
       EXPECT_TRUE(channel.schema["properties"].contains(key)) << key;
     return;
   }

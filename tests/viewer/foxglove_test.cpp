@@ -60,7 +60,7 @@ Json NextJson(WebSocket* client) {
   }
 }
 
-TEST(Foxglove, AdvertisesAndSendsWhatIsSubscribedTo) {
+TEST(Foxglove, AdvertisesAndSendsSubscribedChannels) {
   TestServer server;
   WebSocket client(server.port(), Path(server.WatchToken()), "foxglove.sdk.v1");
   const Json info = NextJson(&client);
@@ -133,7 +133,7 @@ TEST(Foxglove, CanDoNothing) {
 
 // The address may be stored in bookmarks and logs, so the token in it must neither open a page nor
 // stop a run.
-TEST(Foxglove, ItsTokenIsNoPages) {
+TEST(Foxglove, ItsTokenDoesNotAdmitPages) {
   TestServer server;
   const std::string token = server.WatchToken();
   WebSocket page(server.port());

@@ -153,7 +153,7 @@ TEST(Http, RefusesForeignOrigins) {
     EXPECT_EQ(Get(server.port(), "/", "Origin: " + origin + "\r\n").status, 403) << origin;
 }
 
-TEST(Http, RefusesWhatIsNoRequest) {
+TEST(Http, RefusesInvalidRequests) {
   TestServer server;
   for (const std::string& bytes :
        {std::string("GET\r\n\r\n"), std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", 11),
@@ -222,7 +222,7 @@ TEST(Http, SlowClientsDoNotKeepOthersOut) {
 // If one address opens too many connections, the server closes only connections of this address.
 TEST(Http, OneAddressDoesNotKeepOthersOut) {
   TestServer::Setup setup;
-  setup.server.most_guests_per_address = 4;
+  setup.server.max_guests_per_address = 4;
   TestServer server(setup);  // patient
   Socket quiet(server.port(), 0, "127.0.0.2");
   std::vector<Socket> many;
@@ -277,7 +277,7 @@ std::string Refused(const ServerOptions& options) {
   return "";
 }
 
-TEST(Port, ThatIsTakenIsAnErrorThatSaysWhatToDo) {
+TEST(Port, InUseIsAnErrorWithARemedy) {
   TestServer server;
   ServerOptions options;
   options.port = server.port();

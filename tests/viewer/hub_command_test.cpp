@@ -11,7 +11,7 @@
 namespace predictor::viewer {
 namespace {
 
-TEST_F(HubTest, WhoeverLooksMayStop) {
+TEST_F(HubTest, EveryClientMayStop) {
   auto page = Admit(Role::kLook);
   page->Say({{"type", "stop"}});
   EXPECT_EQ(mailbox_.stops.load(), 1u);

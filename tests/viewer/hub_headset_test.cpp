@@ -8,7 +8,7 @@
 namespace predictor::viewer {
 namespace {
 
-TEST_F(HubTest, TellsTheRunOfHeadsetsAndOfTheirSilence) {
+TEST_F(HubTest, ReportsHeadsetsAndTheirSilenceToTheRun) {
   auto one = Admit();
   auto two = Admit();
   const auto sees_now = [this] {

@@ -43,7 +43,7 @@ TEST_F(HubTest, ALeaseEndsThreeSecondsAfterTheLastHeartbeat) {
 
 // A message arrives after a lease has ended and before the next tick. Whatever the message is, all
 // pages are notified that the lease is free, and any of them may take it.
-TEST_F(HubTest, AnEndedLeaseIsToldWhoeverSpeaksFirst) {
+TEST_F(HubTest, AnEndedLeaseIsReportedWhicheverClientSpeaksFirst) {
   const Json heartbeat = {{"type", "heartbeat"}};
   const Json other_lease = {{"type", "lease"}, {"what", "operator"}, {"take", true}};
   for (const Json& first : {heartbeat, other_lease}) {
@@ -92,7 +92,7 @@ TEST_F(HubTest, TheConsoleMayFreeALease) {
 }
 
 // If a connection drops silently, the server may detect it much later than the page does.
-TEST_F(HubTest, WhoComesBackBeforeTheServerNoticedKeepsItsLease) {
+TEST_F(HubTest, AClientThatReconnectsBeforeTheServerNoticesKeepsItsLease) {
   auto page = Controller();
   const Json token = page->connection.Last("welcome")["token"];
   now_ += 2'800'000'000;

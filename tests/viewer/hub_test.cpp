@@ -53,7 +53,7 @@ TEST_F(HubTest, NothingIsTakenBeforeHello) {
   EXPECT_EQ(page->connection.newest, "");
 }
 
-TEST_F(HubTest, WhoSaysNothingForFiveSecondsIsCutOff) {
+TEST_F(HubTest, AClientThatIsSilentForFiveSecondsIsDisconnected) {
   auto silent = Connect();
   auto admitted = Admit();
   now_ += 5 * kSecond;
@@ -65,7 +65,7 @@ TEST_F(HubTest, WhoSaysNothingForFiveSecondsIsCutOff) {
   EXPECT_FALSE(admitted->connection.closed);
 }
 
-TEST_F(HubTest, WhatIsNotUnderstoodEndsTheConnection) {
+TEST_F(HubTest, AnInvalidMessageEndsTheConnection) {
   auto page = Admit();
   page->session->OnText("{\"type\": \"format disk\"}");
   EXPECT_EQ(page->connection.closed, CloseCode::kNotUnderstood);
@@ -79,7 +79,7 @@ TEST_F(HubTest, WhatIsNotUnderstoodEndsTheConnection) {
 
 TEST_F(HubTest, SixtyFourClientsAndNoMore) {
   std::vector<std::unique_ptr<Page>> pages;
-  for (std::size_t i = 0; i < Hub::kMostClients; ++i) pages.push_back(Admit());
+  for (std::size_t i = 0; i < Hub::kMaxClients; ++i) pages.push_back(Admit());
   auto late = Connect();
   late->Say({{"type", "hello"}, {"code", admission_.code()}});
   EXPECT_EQ(late->connection.closed, CloseCode::kTryLater);
@@ -114,7 +114,7 @@ TEST_F(HubTest, TheConsoleThrowsAClientOutForGood) {
 }
 
 // A client with the code may have obtained more tokens than the one in use.
-TEST_F(HubTest, WhoIsThrownOutHasNoTokenInReserve) {
+TEST_F(HubTest, ARemovedClientHasNoOtherValidToken) {
   auto page = Controller();
   const std::string mine = page->connection.Last("welcome")["token"];
   auto before = Connect();
@@ -166,20 +166,20 @@ TEST_F(HubTest, WrongPinsCountForTheirAddressAlone) {
   EXPECT_TRUE(headset->connection.admitted);
 }
 
-TEST_F(HubTest, OneTokenTakesNotAllSeats) {
+TEST_F(HubTest, OneTokenCannotTakeAllSeats) {
   const std::string token = admission_.IssueToken(Role::kLook);
   std::vector<std::unique_ptr<Page>> pages;
-  for (std::size_t k = 0; k <= Hub::kMostOfOneToken; ++k) {
+  for (std::size_t k = 0; k <= Hub::kMaxClientsPerToken; ++k) {
     pages.push_back(Connect());
     pages.back()->Say({{"type", "hello"}, {"token", token}});
-    EXPECT_EQ(pages.back()->connection.admitted, k < Hub::kMostOfOneToken);
+    EXPECT_EQ(pages.back()->connection.admitted, k < Hub::kMaxClientsPerToken);
   }
   EXPECT_EQ(pages.back()->connection.closed, CloseCode::kTryLater);
 }
 
 TEST_F(HubTest, LookersLeaveSeatsForOthers) {
   std::vector<std::unique_ptr<Page>> pages;
-  for (std::size_t k = 0; k < Hub::kMostClients - Hub::kKeptSeats; ++k)
+  for (std::size_t k = 0; k < Hub::kMaxClients - Hub::kKeptSeats; ++k)
     pages.push_back(Admit(Role::kLook));
   auto late = Connect();
   late->Say({{"type", "hello"}, {"token", admission_.IssueToken(Role::kLook)}});
@@ -187,7 +187,7 @@ TEST_F(HubTest, LookersLeaveSeatsForOthers) {
   Admit(Role::kControl);
 }
 
-TEST_F(HubTest, TheEndIsToldToWhoIsThereAndToWhoComes) {
+TEST_F(HubTest, TheEndIsReportedToPresentAndLaterClients) {
   auto page = Controller();
   auto stranger = Connect();
   hub_->Publish(std::make_shared<const std::string>("last"), RunState::kHeld);
@@ -240,7 +240,7 @@ TEST_F(HubTest, PingsAreAnsweredTenTimesASecond) {
   EXPECT_EQ(page->connection.Last("pong")["page_ms"], 5.0);
 }
 
-TEST_F(HubTest, TellsTheConsoleWhoIsInAndWhatTheySayOfTheirDelays) {
+TEST_F(HubTest, ReportsClientsAndTheirDelaysToTheConsole) {
   auto page = Admit();
   page->Say({{"type", "latency"}, {"offset_ms", 1}, {"received_ms", 2}, {"rendered_ms", 3}});
   page->Say({{"type", "lease"}, {"what", "operator"}, {"take", true}});

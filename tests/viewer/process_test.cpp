@@ -52,21 +52,21 @@ class ProcessTest : public testing::Test {
     viewer_ = std::make_unique<ViewerProcess>(scenario_, options_, board_, mailbox_,
                                               [this](const std::string& text) {
                                                 const std::lock_guard lock(mutex_);
-                                                told_ += text + "\n";
+                                                reported_ += text + "\n";
                                               });
   }
-  std::string told() {
+  std::string reported() {
     const std::lock_guard lock(mutex_);
-    return told_;
+    return reported_;
   }
-  int CountTold(const std::string& text) {
-    const std::string all = told();
+  int CountReported(const std::string& text) {
+    const std::string all = reported();
     int count = 0;
     for (std::size_t at = 0; (at = all.find(text, at)) != std::string::npos; ++at) ++count;
     return count;
   }
-  bool Tells(const std::string& text) {
-    return Becomes([&] { return told().find(text) != std::string::npos; });
+  bool Reports(const std::string& text) {
+    return Becomes([&] { return reported().find(text) != std::string::npos; });
   }
   // True if the token admits a page.
   bool Admits(const std::string& token) const {
@@ -86,13 +86,13 @@ class ProcessTest : public testing::Test {
   Shared<RunBoard> board_;
   Shared<RunMailbox> mailbox_;
   std::mutex mutex_;
-  std::string told_;
+  std::string reported_;
   std::unique_ptr<ViewerProcess> viewer_;
 };
 
 TEST_F(ProcessTest, ServesThisRunsScenarioAndCarriesItsInputs) {
   Start();
-  EXPECT_TRUE(Tells("Viewer: http://localhost:" + std::to_string(viewer_->port()) + "/#code="));
+  EXPECT_TRUE(Reports("Viewer: http://localhost:" + std::to_string(viewer_->port()) + "/#code="));
   WebSocket page(viewer_->port());
   EXPECT_NE(page.Hello(Code()).find("\"name\":\"Overridden\""), std::string::npos);
   EXPECT_TRUE(Becomes([&] { return mailbox_->clients.load() == 1; }));
@@ -128,7 +128,7 @@ TEST_F(ProcessTest, HasNoRights) {
   EXPECT_EQ(StatusOf(pid, "Seccomp"), "2");
   EXPECT_GE(std::stoi(StatusOf(pid, "Seccomp_filters")),
             std::stoi(StatusOf(getpid(), "Seccomp_filters")) + 2);  // one for each stage
-  EXPECT_EQ(told().find("seccomp"), std::string::npos) << told();
+  EXPECT_EQ(reported().find("seccomp"), std::string::npos) << reported();
 #endif
 }
 
@@ -145,7 +145,7 @@ TEST_F(ProcessTest, SharedMemoryIsSealed) {
   EXPECT_EQ((*seen).records.written(), 1u);
 }
 
-TEST_F(ProcessTest, ItsDeathIsToldAndItStartsAgainOnTheSamePort) {
+TEST_F(ProcessTest, ItsDeathIsReportedAndItRestartsOnTheSamePort) {
   Start();
   const int pid = viewer_->pid();
   const std::uint16_t port = viewer_->port();
@@ -154,7 +154,7 @@ TEST_F(ProcessTest, ItsDeathIsToldAndItStartsAgainOnTheSamePort) {
   const std::string welcome = page.Hello(code);
   const std::string token = nlohmann::json::parse(welcome)["token"];
   ASSERT_EQ(kill(pid, SIGKILL), 0);
-  EXPECT_TRUE(Tells("The viewer has ended (signal 9); the run continues."));
+  EXPECT_TRUE(Reports("The viewer has ended (signal 9); the run continues."));
   ASSERT_TRUE(Becomes([&] { return viewer_->pid() != 0 && viewer_->pid() != pid; }));
   EXPECT_EQ(viewer_->port(), port);
   EXPECT_EQ(Code(), code);  // with simulated arms
@@ -174,8 +174,8 @@ TEST_F(ProcessTest, EndsWithTheRun) {
 TEST_F(ProcessTest, AnswersTheConsole) {
   Start();
   viewer_->AskPin("look");
-  ASSERT_TRUE(Tells("Pin "));
-  const std::string text = told();
+  ASSERT_TRUE(Reports("Pin "));
+  const std::string text = reported();
   const std::string pin = text.substr(text.find("Pin ") + 4, 6);
   WebSocket page(viewer_->port());
   page.SendText("{\"type\":\"hello\",\"pin\":\"" + pin + "\"}");
@@ -184,13 +184,13 @@ TEST_F(ProcessTest, AnswersTheConsole) {
   EXPECT_NE(welcome->find("\"role\":\"look\""), std::string::npos);
   page.SendText(R"({"type":"latency","offset_ms":0,"received_ms":4.5,"rendered_ms":9})");
   viewer_->AskStatus();
-  EXPECT_TRUE(Tells("1 connected."));
+  EXPECT_TRUE(Reports("1 connected."));
   viewer_->AskPin("everything");
-  EXPECT_TRUE(Tells("one of: look, operator, control"));
+  EXPECT_TRUE(Reports("one of: look, operator, control"));
   viewer_->Revoke("control");
-  EXPECT_TRUE(Tells("No one holds the lease control"));
+  EXPECT_TRUE(Reports("No one holds the lease control"));
   viewer_->AskFoxglove();
-  EXPECT_TRUE(Tells("Foxglove: ws://localhost:" + std::to_string(viewer_->port()) + "/?token="));
+  EXPECT_TRUE(Reports("Foxglove: ws://localhost:" + std::to_string(viewer_->port()) + "/?token="));
 }
 
 // The disconnection is permanent: the next process knows it too.
@@ -202,11 +202,11 @@ TEST_F(ProcessTest, ThrowsAClientOut) {
   const std::string code = Code();
   for (int i = 1; i <= 25; ++i) {  // the maximum number of answers that are shown without a pause
     viewer_->Kick(4711);
-    ASSERT_TRUE(Becomes([&] { return CountTold("no client 4711") == i; }));
+    ASSERT_TRUE(Becomes([&] { return CountReported("no client 4711") == i; }));
   }
   viewer_->Kick(welcome["client"].get<std::uint32_t>());
   EXPECT_EQ(page.CloseCode(), 1008);
-  EXPECT_TRUE(Tells("Client 1 was disconnected, and its token is no longer valid."));
+  EXPECT_TRUE(Reports("Client 1 was disconnected, and its token is no longer valid."));
   EXPECT_EQ(viewer_->generations(), (Generations{26, 0}));
   EXPECT_FALSE(Admits(token));
   EXPECT_NE(Code(), code);
@@ -226,7 +226,7 @@ TEST_F(ProcessTest, ThrowsAClientOutWhileItStartsAgain) {
   viewer_->Kick(1);  // the stopped process does not receive this
   ASSERT_EQ(kill(pid, SIGKILL), 0);
   ASSERT_TRUE(Becomes([&] { return viewer_->pid() != 0 && viewer_->pid() != pid; }));
-  EXPECT_TRUE(Tells("The viewer restarted before it had answered the last request."));
+  EXPECT_TRUE(Reports("The viewer restarted before it had answered the last request."));
   EXPECT_FALSE(Admits(token));
 }
 
@@ -236,12 +236,12 @@ TEST_F(ProcessTest, ThrowsAClientOutAfterItsDeath) {
   const std::string token = nlohmann::json::parse(page.Hello(Code()))["token"];
   const int pid = viewer_->pid();
   ASSERT_EQ(kill(pid, SIGKILL), 0);
-  ASSERT_TRUE(Tells("The viewer has ended"));  // and the next process has not started yet
+  ASSERT_TRUE(Reports("The viewer has ended"));  // and the next process has not started yet
   viewer_->Kick(1);
   viewer_->Revoke("control");
   ASSERT_TRUE(Becomes([&] { return viewer_->pid() != 0 && viewer_->pid() != pid; }));
   EXPECT_FALSE(Admits(token));
-  EXPECT_TRUE(Tells("Client 1 is disconnected"));
+  EXPECT_TRUE(Reports("Client 1 is disconnected"));
   // The new process uses other client numbers than the first one.
   WebSocket other(viewer_->port());
   EXPECT_GT(nlohmann::json::parse(other.Hello(Code()))["client"].get<std::uint32_t>(), 1u);
@@ -258,7 +258,7 @@ TEST_F(ProcessTest, AViewerThatDoesNotAnswerIsReplaced) {
   std::this_thread::sleep_for(std::chrono::milliseconds(2100));
   viewer_->Kick(1);
   EXPECT_TRUE(
-      Tells("The viewer does not respond and is being restarted. Client 1 is disconnected"));
+      Reports("The viewer does not respond and is being restarted. Client 1 is disconnected"));
   ASSERT_TRUE(Becomes([&] { return viewer_->pid() != 0 && viewer_->pid() != pid; }));
   EXPECT_FALSE(Admits(token));
 }
@@ -300,7 +300,7 @@ TEST_F(ProcessTest, ToOtherMachinesItSpeaksTlsAndShowsItsFingerprint) {
   EXPECT_TRUE(ListensEverywhere(viewer_->port()));
   EXPECT_TRUE(viewer_->url().starts_with("https://")) << viewer_->url();
   EXPECT_EQ(viewer_->fingerprint().size(), 95u);
-  EXPECT_TRUE(Tells(viewer_->fingerprint()));
+  EXPECT_TRUE(Reports(viewer_->fingerprint()));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "viewer.pem"));
   const std::string fingerprint = viewer_->fingerprint();
   viewer_.reset();

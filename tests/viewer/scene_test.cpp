@@ -18,7 +18,7 @@ Scenario Load(const char* name, const std::vector<std::string>& set = {}) {
   return LoadScenario(fs::path(PREDICTOR_SOURCE_DIR) / "scenarios" / name, set);
 }
 
-TEST(Reset, TellsWhichThresholdsItKept) {
+TEST(Reset, ReportsWhichThresholdsItKept) {
   const Scenario scenario = Load("box_9kg.yaml");
   TickRecord record = {};
   record.parameters = {0.5, 1, 1, scenario.safety.force, scenario.safety.torque};
@@ -55,7 +55,7 @@ TEST(Scene, HasTheMembersOfTheProtocol) {
   EXPECT_NE(scene["object"]["urdf"], scene["cobot"]["urdf"]);
 }
 
-TEST(Scene, TellsWhereTheOperatorStands) {
+TEST(Scene, ContainsTheOperatorsPlace) {
   AssetStore assets;
   Scenario scenario = Load("box_9kg.yaml");
   scenario.operator_.body = BodySpec{.height = 2, .mass = 80};
@@ -93,7 +93,7 @@ TEST(Scene, HasTheBasesInTheWorldWhereverItIs) {
 
 // The guidance centre is sent in W, although the scenario specifies it relative to the object's
 // start.
-TEST(Scene, TellsGuidanceInTheWorld) {
+TEST(Scene, GivesGuidanceInTheWorld) {
   AssetStore assets;
   const auto scene = DescribeScene(Load("bar_circle.yaml"), {0.5, 0.1, 0.3}, &assets);
   EXPECT_EQ(scene["guidance"]["type"], "circle");
@@ -120,24 +120,25 @@ TEST(Scene, AnAbsentSideIsNull) {
 }
 
 TEST(Scene, GivesInstructionsInWords) {
-  const auto told = [](const char* action, const std::vector<std::string>& parameters,
-                       double facing = 0) {
+  const auto reported = [](const char* action, const std::vector<std::string>& parameters,
+                           double facing = 0) {
     return Instruction(MakeActionSpec(action, 0, parameters), facing);
   };
   const std::vector<std::string> by = {"by=[-0.2, -0.3, 0]"};
-  EXPECT_EQ(told("move", by), "Move the object 20 cm back and 30 cm to the right.");
-  EXPECT_EQ(told("move", by, std::numbers::pi),
+  EXPECT_EQ(reported("move", by), "Move the object 20 cm back and 30 cm to the right.");
+  EXPECT_EQ(reported("move", by, std::numbers::pi),
             "Move the object 20 cm forward and 30 cm to the left.");
-  EXPECT_EQ(told("move", by, std::numbers::pi / 2),
+  EXPECT_EQ(reported("move", by, std::numbers::pi / 2),
             "Move the object 30 cm back and 20 cm to the left.");
-  EXPECT_EQ(told("move", {"by=[0, 0.05, -0.125]"}),
+  EXPECT_EQ(reported("move", {"by=[0, 0.05, -0.125]"}),
             "Lower the object by 12.5 cm and move it 5 cm to the left.");
-  EXPECT_EQ(told("put_down", {"by=[0, 0, -0.05]"}), "Lower the object by 5 cm and put it down.");
-  EXPECT_EQ(told("rotate", {"rotate_by=[0, 0, -0.349]"}),
+  EXPECT_EQ(reported("put_down", {"by=[0, 0, -0.05]"}),
+            "Lower the object by 5 cm and put it down.");
+  EXPECT_EQ(reported("rotate", {"rotate_by=[0, 0, -0.349]"}),
             "Turn the object by 20° clockwise, as seen from above.");
-  EXPECT_EQ(told("release", {"hand=left"}), "Let go of the left handle.");
-  EXPECT_EQ(told("grip", {}), "Grip the handles.");
-  EXPECT_EQ(told("circle", {}), "Follow the circle of 15 cm radius, 4 turns, 8 s each.");
+  EXPECT_EQ(reported("release", {"hand=left"}), "Let go of the left handle.");
+  EXPECT_EQ(reported("grip", {}), "Grip the handles.");
+  EXPECT_EQ(reported("circle", {}), "Follow the circle of 15 cm radius, 4 turns, 8 s each.");
 }
 
 // ---- served files -------------------------------------------------------------------------------

@@ -423,7 +423,7 @@ double Trend(const std::vector<double>& values) {
   return (s - 1) / std::sqrt(n * (n - 1) * (2 * n + 5) / 18);
 }
 
-TEST(Trend, IsSeenBesideNoiseAndNotInIt) {
+TEST(Trend, IsDistinguishedFromNoise) {
   EXPECT_GT(Trend({1, 2, 1.9, 3, 4, 3.8, 5, 6, 7, 8}), kTrend);
   EXPECT_LT(Trend({1, 3, 2, 1.5, 2.5, 1.2, 2.8, 2, 1.8, 2.2}), kTrend);
   EXPECT_LT(Trend(std::vector<double>(10, 1.0)), 0);

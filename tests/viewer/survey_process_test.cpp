@@ -34,8 +34,8 @@ TEST(SurveyProcess, StoresAnAnswerWithoutFurtherRights) {
   const auto welcome = page.NextText("welcome");
   ASSERT_TRUE(welcome);
   nlohmann::json answers;
-  const nlohmann::json told = nlohmann::json::parse(*welcome);
-  for (const nlohmann::json& statement : told["statements"])
+  const nlohmann::json reported = nlohmann::json::parse(*welcome);
+  for (const nlohmann::json& statement : reported["statements"])
     answers[statement["name"].get<std::string>()] = 2;
   page.SendText(nlohmann::json{
       {"type", "answer"},

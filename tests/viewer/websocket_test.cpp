@@ -173,7 +173,7 @@ TEST(WebSocketServer, AStopOfALookerReachesTheMailbox) {
   EXPECT_TRUE(Becomes([&] { return server.mailbox().stops.load() == 1; }));
 }
 
-TEST(WebSocketServer, AStopComesThroughAFloodOfOtherMessages) {
+TEST(WebSocketServer, AStopArrivesDespiteAFloodOfOtherMessages) {
   TestServer server;
   WebSocket page(server.port());
   page.Hello(server.code());
@@ -233,7 +233,7 @@ TEST(WebSocketServer, AMessageMustEndWithinASecond) {
   EXPECT_EQ(slow.CloseCode(), 1008);
 }
 
-TEST(WebSocketServer, RefusesWhatIsNotUnderstood) {
+TEST(WebSocketServer, RefusesInvalidMessages) {
   TestServer server;
   const auto code_after = [&](auto send) {
     WebSocket page(server.port());
@@ -341,7 +341,7 @@ TEST(WebSocketServer, AClientThatNeverReadsIsCutOffInTheEnd) {
 // A client sends but does not read: the number of waiting answers is bounded.
 TEST(WebSocketServer, AClientThatSpeaksAndNeverReadsIsCutOff) {
   TestServer::Setup setup;
-  setup.server.most_waiting_text = 2000;
+  setup.server.max_waiting_text = 2000;
   TestServer server(setup);
   {
     WebSocket fits(server.port());  // the welcome itself is longer

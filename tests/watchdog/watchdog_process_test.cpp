@@ -97,7 +97,7 @@ class WatchdogProcessTest : public testing::Test {
     watchdog_ = std::make_unique<WatchdogProcess>(machine_, std::array{true, false}, board_,
                                                   [this](const std::string& text) {
                                                     const std::lock_guard lock(mutex_);
-                                                    told_ += text + "\n";
+                                                    reported_ += text + "\n";
                                                   });
   }
   ~WatchdogProcessTest() override {
@@ -105,10 +105,10 @@ class WatchdogProcessTest : public testing::Test {
     done_ = true;
     loop_.join();
   }
-  bool Tells(const std::string& text) {
+  bool Reports(const std::string& text) {
     return Becomes([&] {
       const std::lock_guard lock(mutex_);
-      return told_.find(text) != std::string::npos;
+      return reported_.find(text) != std::string::npos;
     });
   }
   // Waits until the loop has published the state.
@@ -130,7 +130,7 @@ class WatchdogProcessTest : public testing::Test {
   std::atomic<bool> done_{false};
   std::thread loop_;
   std::mutex mutex_;
-  std::string told_;
+  std::string reported_;
   std::unique_ptr<WatchdogProcess> watchdog_;
 };
 
@@ -177,10 +177,10 @@ TEST_F(WatchdogProcessTest, IsStartedAgainWhereItIsStopped) {
   EXPECT_TRUE(Beats());
   const int pid = watchdog_->pid();
   ASSERT_EQ(kill(pid, SIGSTOP), 0);
-  EXPECT_TRUE(Tells("The watchdog does not respond: without it, motion stops after 1 s."));
+  EXPECT_TRUE(Reports("The watchdog does not respond: without it, motion stops after 1 s."));
   const std::uint32_t beats = watchdog_->beats();
-  EXPECT_TRUE(Tells("The watchdog did not respond and was ended"));
-  EXPECT_TRUE(Tells("The watchdog is running again."));
+  EXPECT_TRUE(Reports("The watchdog did not respond and was ended"));
+  EXPECT_TRUE(Reports("The watchdog is running again."));
   EXPECT_NE(watchdog_->pid(), pid);
   EXPECT_TRUE(Becomes([&] { return watchdog_->beats() != beats; }));
 }

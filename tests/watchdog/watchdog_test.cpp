@@ -19,7 +19,7 @@ class WatchdogTest : public testing::Test {
   std::uint64_t ticks_ = 5, now_ = 77 * kMillisecond;
 };
 
-TEST_F(WatchdogTest, LetsALoopThatTicksGoOn) {
+TEST_F(WatchdogTest, DoesNotDisturbALoopThatTicks) {
   for (int i = 0; i < 1000; ++i) EXPECT_FALSE(Look(i % 9 == 0)) << i;  // 9 ms at the longest
 }
 
@@ -40,7 +40,7 @@ TEST_F(WatchdogTest, BarksAgainWhenTheLoopHangsAgain) {
   }
 }
 
-TEST_F(WatchdogTest, CaresOnlyWhereArmsMayMove) {
+TEST_F(WatchdogTest, ActsOnlyWhenArmsMayMove) {
   for (int s = 0; s < kRunStates; ++s) {
     const auto state = static_cast<RunState>(s);
     Look(true, state);

@@ -44,8 +44,8 @@ OperatorDraw DrawOperator(const ArmDistribution& arms, const HandSpec& hand,
   const bool ends = of_intent.Uniform() < intent.chance_of_end;
   const double end = LogUniform(intent.earliest_end, intent.latest_end, &of_intent);
   draw.end = ends ? end : HUGE_VAL;
-  draw.stiffening = intent.most_stiffening * of_intent.Uniform();
-  draw.sight = intent.most_sight * of_intent.Uniform() * hand.visual_stiffness;
+  draw.stiffening = intent.max_stiffening * of_intent.Uniform();
+  draw.sight = intent.max_sight * of_intent.Uniform() * hand.visual_stiffness;
   draw.sight_delay = std::min(
       hand.visual_delay * std::exp(intent.sight_delay_spread * of_intent.Normal()), kMaxSightDelay);
   draw.noise = RandomStream(seed, name + ".noise");

@@ -35,10 +35,10 @@ struct IntentModel {
   double noise = 0.1, noise_time = 0.3;
   // The arm stiffens with its force: K (1 + c |F| / kStiffeningForce), with c uniform from 0 to
   // this value.
-  double most_stiffening = 1;
+  double max_stiffening = 1;
   // Visual correction: uniform up to this multiple of the scenario's stiffness, and the spread of
   // its delay.
-  double most_sight = 1.5, sight_delay_spread = 0.15;
+  double max_sight = 1.5, sight_delay_spread = 0.15;
 };
 inline constexpr double kStiffeningForce = 30;  // [N]
 inline constexpr double kBaselineTime = 0.2;    // [s]

@@ -80,7 +80,7 @@ HazardRun Run(Scenario scenario, std::uint64_t seed) {
   return run;
 }
 
-// Tells the cobot the mass and the centre of mass of its load.
+// Gives the controller the mass and the centre of mass of the load.
 void SetLoad(Scenario* scenario) {
   const ObjectModel object = LoadObject(scenario->object, scenario->folder());
   const AttachmentSpec& at = scenario->object.attachment;

@@ -22,8 +22,8 @@ constexpr int kMinLag = 10;      // minimum lag of the scores' autocovariance; h
                                  // overlapping windows [windows]
 constexpr int kExcessLags = 40;  // lags of the residuals' autocorrelation [windows]
 // Lower bound of the residuals' scale, because the simulated world moves in steps.
-constexpr double kLeastScale = 0.01;  // [N·m]
-constexpr double kTiny = 1e-9;        // [N·m]
+constexpr double kMinScale = 0.01;  // [N·m]
+constexpr double kTiny = 1e-9;      // [N·m]
 
 double Median(std::vector<double> x) {
   if (x.empty()) return 0;
@@ -36,7 +36,7 @@ double RobustScale(const Eigen::VectorXd& r) {
   std::vector<double> sizes(static_cast<std::size_t>(r.size()));
   for (Eigen::Index i = 0; i < r.size(); ++i)  // NaN cannot be sorted
     sizes[static_cast<std::size_t>(i)] = std::isfinite(r[i]) ? std::abs(r[i]) : HUGE_VAL;
-  return std::max(kLeastScale, 1.4826 * Median(std::move(sizes)));
+  return std::max(kMinScale, 1.4826 * Median(std::move(sizes)));
 }
 
 // Sum over windows of a(k) a(k + lag), for the pairs that exist.
@@ -166,7 +166,7 @@ Eigen::MatrixXd Influence(const FitProblem& problem, const FitModel& model, cons
     }
     const double shown = std::sqrt(fit.residual[j].squaredNorm() /
                                    std::max<double>(1, static_cast<double>(rows.y.size())));
-    const double floor = std::max(1.0, kLeastScale / std::max(shown, kTiny));
+    const double floor = std::max(1.0, kMinScale / std::max(shown, kTiny));
     const Eigen::VectorXd score = floor * fit.weight[j].cwiseProduct(fit.residual[j]);
     const Eigen::MatrixXd part = G_j * rows.x.transpose() * score.asDiagonal();
     for (std::size_t i = 0; i < rows.window.size(); ++i)

@@ -75,14 +75,14 @@ InertialPrior LoadPrior(double mass, const Vector3& com, const Matrix3& inertia)
 
 // ---- the equations
 
-constexpr double kLeastDuration = 10;  // minimum duration of a run [s]
-constexpr double kLeastMoving = 2;     // minimum time of motion of a joint in each direction [s]
-constexpr double kLeastSpeeds = 1.5;   // minimum ratio of a joint's fast speeds to its slow ones
-constexpr double kLeastLoad = 0.25;    // largest half-width of the load's mass, as a share of the
-                                       // mass
-constexpr double kStrain = 3;          // threshold, in standard deviations of a sum of squares
-constexpr int kBlocks = 10;            // blocks of the cross-validation
-constexpr int kBody = 10;              // number of inertial parameters of a body
+constexpr double kMinDuration = 10;     // minimum duration of a run [s]
+constexpr double kMinMotionTime = 2;    // minimum time of motion of a joint in each direction [s]
+constexpr double kMinSpeedRatio = 1.5;  // minimum ratio of a joint's fast speeds to its slow ones
+constexpr double kMaxMassUncertainty = 0.25;  // largest half-width of the load's mass, as a share
+                                              // of the mass
+constexpr double kStrain = 3;  // threshold, in standard deviations of a sum of squares
+constexpr int kBlocks = 10;    // blocks of the cross-validation
+constexpr int kBody = 10;      // number of inertial parameters of a body
 
 constexpr const char* kHowToExcite =
     "Record a run in which the controller moves all joints, as in scenarios/excite_cobot.yaml.";
@@ -182,13 +182,13 @@ std::string Seconds(double t) { return FormatNumber(std::round(10 * t) / 10) + "
 // Why a joint's friction cannot be identified; "" if it can be.
 std::string RefusalOf(const JointIdentification& joint) {
   const auto& [back, forth] = joint.moving;
-  if (back < kLeastMoving || forth < kLeastMoving) {
+  if (back < kMinMotionTime || forth < kMinMotionTime) {
     return Quote(joint.name) + " moved backward for " + Seconds(back) + " and forward for " +
            Seconds(forth) + " (faster than " + FormatNumber(kTurning) + " rad/s), but at least " +
-           Seconds(kLeastMoving) + " in each direction are needed to identify its friction. " +
+           Seconds(kMinMotionTime) + " in each direction are needed to identify its friction. " +
            kHowToExcite;
   }
-  if (joint.fast < kLeastSpeeds * joint.slow) {
+  if (joint.fast < kMinSpeedRatio * joint.slow) {
     return Quote(joint.name) +
            " always moved at nearly the same speed, so viscous and Coulomb friction cannot be "
            "distinguished. Move the joint slowly and fast. " +
@@ -198,11 +198,11 @@ std::string RefusalOf(const JointIdentification& joint) {
 }
 
 // Computes mass and centre of gravity from the load's z.
-LoadIdentification LoadOf(const ObjectModel& believed, const InertialPrior& prior, const Fit& fit,
+LoadIdentification LoadOf(const ObjectModel& nominal, const InertialPrior& prior, const Fit& fit,
                           int z_at, int covariance_at) {
   LoadIdentification load;
-  load.believed_mass = believed.mass;
-  load.believed_com = believed.com;
+  load.nominal_mass = nominal.mass;
+  load.nominal_com = nominal.com;
   const InertialParameters pi = prior.nominal + prior.spread * fit.value.segment<kBody>(z_at);
   const Eigen::MatrixXd C = prior.spread *
                             fit.covariance.block<kBody, kBody>(covariance_at, covariance_at) *
@@ -214,7 +214,7 @@ LoadIdentification LoadOf(const ObjectModel& believed, const InertialPrior& prio
     const double variance = (C(1 + i, 1 + i) - 2 * c * C(0, 1 + i) + c * c * C(0, 0)) / (m * m);
     load.com[static_cast<std::size_t>(i)] = {c, fit.quantile * std::sqrt(std::max(0.0, variance))};
   }
-  if (!(m > 0) || load.mass.half_width > kLeastLoad * m) {
+  if (!(m > 0) || load.mass.half_width > kMaxMassUncertainty * m) {
     load.refusal =
         std::string("The mass of the load cannot be distinguished from the masses of the links. ") +
         "Hold the load in more postures, and rotate it. " + kHowToExcite;
@@ -266,8 +266,8 @@ InertiaModel Choose(const std::array<ModelScore, kInertiaModels>& scores) {
 }  // namespace
 
 struct Identifier::Impl {
-  Impl(const Scenario& believed, const IdentifyOptions& o)
-      : options(o), builder(believed, o.window) {}
+  Impl(const Scenario& nominal, const IdentifyOptions& o)
+      : options(o), builder(nominal, o.window) {}
 
   void CheckInput() const {
     const int recorded = builder.recorded_joints();
@@ -277,9 +277,9 @@ struct Identifier::Impl {
                        std::to_string(builder.robot().dof()) +
                        ". Give the scenario that was recorded.");
     }
-    if (builder.duration() < kLeastDuration) {
+    if (builder.duration() < kMinDuration) {
       throw InputError("The recording lasts " + Seconds(builder.duration()) +
-                       ", but identification needs at least " + Seconds(kLeastDuration) +
+                       ", but identification needs at least " + Seconds(kMinDuration) +
                        "; a minute is better. " + kHowToExcite);
     }
   }
@@ -364,8 +364,8 @@ struct Identifier::Impl {
   RowBuilder builder;
 };
 
-Identifier::Identifier(const Scenario& believed, const IdentifyOptions& options)
-    : impl_(std::make_unique<Impl>(believed, options)) {}
+Identifier::Identifier(const Scenario& nominal, const IdentifyOptions& options)
+    : impl_(std::make_unique<Impl>(nominal, options)) {}
 Identifier::~Identifier() = default;
 void Identifier::Add(const TickRecord& record) { impl_->builder.Add(record); }
 Identification Identifier::Finish() const { return impl_->Finish(); }

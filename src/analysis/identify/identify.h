@@ -47,11 +47,11 @@ struct JointIdentification {
 };
 
 struct LoadIdentification {
-  std::string refusal;                     // as for a joint
-  Estimate mass;                           // [kg]
-  std::array<Estimate, 3> com;             // centre of gravity in O [m]
-  double believed_mass = 0;                // [kg]
-  Vector3 believed_com = Vector3::Zero();  // [m]
+  std::string refusal;                    // as for a joint
+  Estimate mass;                          // [kg]
+  std::array<Estimate, 3> com;            // centre of gravity in O [m]
+  double nominal_mass = 0;                // [kg]
+  Vector3 nominal_com = Vector3::Zero();  // [m]
   bool identified() const { return refusal.empty(); }
 };
 
@@ -89,8 +89,8 @@ struct Identification {
 // Collects the ticks of a run one by one. Memory grows by 6 MB per minute for seven joints.
 class Identifier {
  public:
-  // `believed`: scenario with the nominal cobot and load of the recording. Throws InputError.
-  explicit Identifier(const Scenario& believed, const IdentifyOptions& options = {});
+  // nominal: scenario with the recording's nominal cobot and load. Throws InputError.
+  explicit Identifier(const Scenario& nominal, const IdentifyOptions& options = {});
   ~Identifier();
 
   // Adds ticks in order. Ticks that are not in RUN or are next to a gap are skipped.

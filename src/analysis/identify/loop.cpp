@@ -136,7 +136,7 @@ IdentifyLoopResult IdentifyLoop(const Scenario& excitation, const Scenario& task
   IdentifyLoopResult result;
   result.seeds = options.seeds;
   result.first_seed = options.first_seed;
-  result.believed = task.cobot.joint_friction;
+  result.nominal = task.cobot.joint_friction;
   result.real = RealOf(options, static_cast<int>(excitation.cobot.posture.size()));
 
   Identifier identifier(excitation);
@@ -157,15 +157,15 @@ IdentifyLoopResult IdentifyLoop(const Scenario& excitation, const Scenario& task
     return RunsOf(s, options.first_seed + count, options.seeds, &steps);
   };
   const Compared repeat = Compare(real, real, 1);
-  const auto runs_believed = emulated(task), runs_found = emulated(after);
-  const Compared with_believed = Compare(real, runs_believed, 0);
+  const auto runs_nominal = emulated(task), runs_found = emulated(after);
+  const Compared with_nominal = Compare(real, runs_nominal, 0);
   const Compared with_found = Compare(real, runs_found, 0);
-  const auto same_believed = TestSameKinds(real, runs_believed);
+  const auto same_nominal = TestSameKinds(real, runs_nominal);
   const auto same_found = TestSameKinds(real, runs_found);
   for (std::size_t c = 0; c < repeat.first.size(); ++c) {
     result.axes.push_back({repeat.first[c].name, repeat.first[c].unit, repeat.range[c].mean(),
-                           AgreementOf(repeat, c), AgreementOf(with_believed, c),
-                           AgreementOf(with_found, c), same_believed.at(c), same_found.at(c)});
+                           AgreementOf(repeat, c), AgreementOf(with_nominal, c),
+                           AgreementOf(with_found, c), same_nominal.at(c), same_found.at(c)});
   }
   return result;
 }

@@ -41,15 +41,17 @@ struct AxisAgreement {
   SameKindTest same_before, same_after;
   // True if there are enough runs to distinguish the kinds and they do not differ.
   bool indistinguishable_before() const {
-    return same_before.can_tell() && !same_before.told_apart();
+    return same_before.can_distinguish() && !same_before.distinguished();
   }
-  bool indistinguishable_after() const { return same_after.can_tell() && !same_after.told_apart(); }
+  bool indistinguishable_after() const {
+    return same_after.can_distinguish() && !same_after.distinguished();
+  }
 };
 
 struct IdentifyLoopResult {
   RealCobot real;                 // the true cobot
   Identification identification;  // from a real run of the excitation
-  JointFriction believed, found;
+  JointFriction nominal, found;
   int seeds = 0;
   std::vector<AxisAgreement> axes;
   std::uint64_t first_seed = 0;

@@ -91,16 +91,16 @@ RealCobot DrawRealCobot(int joints, std::uint64_t seed) {
   return real;
 }
 
-Scenario MakeReal(const Scenario& believed, const RealCobot& real,
+Scenario MakeReal(const Scenario& nominal, const RealCobot& real,
                   const std::filesystem::path& folder) {
-  Scenario s = believed;
-  UrdfModel cobot = ReadUrdf(ResolveModelPath(believed.cobot.model, believed.folder()),
-                             believed.cobot.remove_links, believed.folder());
+  Scenario s = nominal;
+  UrdfModel cobot = ReadUrdf(ResolveModelPath(nominal.cobot.model, nominal.folder()),
+                             nominal.cobot.remove_links, nominal.folder());
   Perturb(real, &cobot);
   Write(folder / "cobot.urdf", DynamicsText(cobot));
-  if (!believed.object.model.empty()) {
-    const auto object = ResolveModelPath(believed.object.model, believed.folder());
-    Write(folder / "object.urdf", ReadUrdf(object, {}, believed.folder()).text);
+  if (!nominal.object.model.empty()) {
+    const auto object = ResolveModelPath(nominal.object.model, nominal.folder());
+    Write(folder / "object.urdf", ReadUrdf(object, {}, nominal.folder()).text);
     s.object.model = "object.urdf";
   }
   s.name += ", the real cobot";

@@ -26,7 +26,7 @@ RealCobot DrawRealCobot(int joints, std::uint64_t seed);
 
 // The scenario with the real cobot, in `mode: direct`. Its URDF and a copy of the load's URDF are
 // written into `folder`, which must exist. Throws InputError.
-Scenario MakeReal(const Scenario& believed, const RealCobot& real,
+Scenario MakeReal(const Scenario& nominal, const RealCobot& real,
                   const std::filesystem::path& folder);
 
 // Noise of the measured torque, drawn for each tick.

@@ -8,7 +8,7 @@ namespace {
 
 // If the joint may have been at rest for a larger share of the window's weight, the row contains
 // too little information about its friction.
-constexpr double kMostStill = 0.1;
+constexpr double kMaxRestShare = 0.1;
 
 RobotSource Source(const Scenario& s) {
   return {s.cobot.model, s.folder(), s.cobot.remove_links, s.cobot.base.ToPose(), "cobot"};
@@ -82,18 +82,18 @@ Vector6 Six(const std::array<double, 6>& x) { return Eigen::Map<const Vector6>(x
 
 }  // namespace
 
-RowBuilder::RowBuilder(const Scenario& believed, double window)
-    : attachment_(believed.object.attachment),
-      gravity_(believed.environment.gravity),
-      dt_(1 / believed.rate),
+RowBuilder::RowBuilder(const Scenario& nominal, double window)
+    : attachment_(nominal.object.attachment),
+      gravity_(nominal.environment.gravity),
+      dt_(1 / nominal.rate),
       ticks_(TicksOf(window, dt_)),
       hop_(ticks_ / 2),
-      robot_(RobotModel::Load(Source(believed))),
-      load_(LoadObject(believed.object, believed.folder())),
+      robot_(RobotModel::Load(Source(nominal))),
+      load_(LoadObject(nominal.object, nominal.folder())),
       data_(*robot_),
       regressor_(*robot_, gravity_),
-      end_effector_(robot_->Frame(believed.cobot.end_effector)),
-      A_(robot_->Frame(believed.cobot.end_effector, attachment_.on_end_effector.ToPose())),
+      end_effector_(robot_->Frame(nominal.cobot.end_effector)),
+      A_(robot_->Frame(nominal.cobot.end_effector, attachment_.on_end_effector.ToPose())),
       rows_(static_cast<std::size_t>(robot_->dof())) {
   for (int i = 0; i < ticks_; ++i) {
     const double phase = 2 * std::numbers::pi * (i + 0.5) / ticks_;
@@ -219,7 +219,7 @@ void RowBuilder::Accumulate(const JointVector& v, std::uint64_t tick) {
 
 void RowBuilder::Close(Window* w) {
   for (int j = 0; j < robot_->dof(); ++j) {
-    if (w->still[j] > kMostStill) continue;
+    if (w->still[j] > kMaxRestShare) continue;
     if (!w->x.row(j).allFinite() || !std::isfinite(w->y[j])) continue;  // overflow of large numbers
     JointRows& rows = rows_[static_cast<std::size_t>(j)];
     rows.window.push_back(w->index);

@@ -31,7 +31,7 @@ inline constexpr double kTurning = 0.02;
 class RowBuilder {
  public:
   // window: [s].
-  RowBuilder(const Scenario& believed, double window);
+  RowBuilder(const Scenario& nominal, double window);
 
   // Ticks that are not finite or are out of order are skipped.
   void Add(const TickRecord& record);

@@ -26,10 +26,10 @@ void AddJoint(const JointIdentification& j, std::string* text) {
 void AddLoad(const LoadIdentification& load, std::string* text) {
   if (!load.identified()) return AppendLine(text, "Load: not identified. %s", load.refusal.c_str());
   AppendLine(text, "Load: %.3f ± %.3f kg (scenario: %.3f kg), centre of gravity in O",
-             load.mass.value, load.mass.half_width, load.believed_mass);
+             load.mass.value, load.mass.half_width, load.nominal_mass);
   for (std::size_t i = 0; i < 3; ++i) {
     AppendLine(text, "  %c  %7.1f ± %.1f mm (scenario: %.1f mm)", "xyz"[i], 1e3 * load.com[i].value,
-               1e3 * load.com[i].half_width, 1e3 * load.believed_com[static_cast<Eigen::Index>(i)]);
+               1e3 * load.com[i].half_width, 1e3 * load.nominal_com[static_cast<Eigen::Index>(i)]);
   }
 }
 

@@ -19,8 +19,8 @@ std::string Agreed(const Agreement& a, double scale) {
 }
 
 // The probability p of the test that distinguishes emulated from real runs, as text.
-std::string ToldApart(const SameKindTest& test) {
-  if (!test.can_tell()) return "too few runs";
+std::string DistinguishingP(const SameKindTest& test) {
+  if (!test.can_distinguish()) return "too few runs";
   return test.p < 1e-3 ? "< 0.001" : Significant(test.p, 2);
 }
 
@@ -33,7 +33,7 @@ std::string AgreementTable(const IdentifyLoopResult& loop) {
     const std::string unit = a.unit == "m" ? "mm" : a.unit;
     rows.push_back({EscapeMarkup(a.name) + " [" + unit + "]", Significant(scale * a.range, 3),
                     Agreed(a.repeat, scale), Agreed(a.before, scale), Agreed(a.after, scale),
-                    ToldApart(a.same_before), ToldApart(a.same_after)});
+                    DistinguishingP(a.same_before), DistinguishingP(a.same_after)});
   }
   return HtmlTable(rows);
 }
@@ -50,10 +50,9 @@ std::string FrictionTable(const IdentifyLoopResult& loop) {
     const int i = static_cast<int>(j);
     const bool known = joint.identified();
     rows.push_back({EscapeMarkup(joint.name), Significant(loop.real.viscous[j], 3),
-                    Round(OneOrEach(loop.believed.viscous, i)),
+                    Round(OneOrEach(loop.nominal.viscous, i)),
                     known ? estimate(joint.viscous) : "not identified",
-                    Significant(loop.real.coulomb[j], 3),
-                    Round(OneOrEach(loop.believed.coulomb, i)),
+                    Significant(loop.real.coulomb[j], 3), Round(OneOrEach(loop.nominal.coulomb, i)),
                     known ? estimate(joint.coulomb) : "not identified"});
   }
   return HtmlTable(rows);
@@ -103,7 +102,8 @@ Runs Examples(const IdentifyLoopResult& loop, const Scenario& task, ReproduceRun
   return curves;
 }
 
-std::string NotToldApart(const IdentifyLoopResult& loop, bool (AxisAgreement::*is)() const) {
+std::string IndistinguishableAxes(const IdentifyLoopResult& loop,
+                                  bool (AxisAgreement::*is)() const) {
   std::vector<std::string> names;
   for (const AxisAgreement& a : loop.axes)
     if ((a.*is)()) names.push_back(a.name);
@@ -134,8 +134,8 @@ void AddWords(const IdentifyLoopResult& loop, ReproducedExperiment* e) {
       "permutation test). Each axis is tested separately. “Not distinguishable” does not prove "
       "similarity; it only means that these runs show no difference. Not distinguishable before "
       "identification: " +
-      NotToldApart(loop, &AxisAgreement::indistinguishable_before) +
-      "; after: " + NotToldApart(loop, &AxisAgreement::indistinguishable_after) + ".");
+      IndistinguishableAxes(loop, &AxisAgreement::indistinguishable_before) +
+      "; after: " + IndistinguishableAxes(loop, &AxisAgreement::indistinguishable_after) + ".");
 }
 
 }  // namespace
@@ -152,7 +152,7 @@ ReproducedExperiment ReproduceCircle(ReproduceRuns* runs) {
   IdentifyLoopOptions how;
   how.seeds = runs->options().seeds;
   how.folder = folder;
-  how.progress = [&](double share) { runs->Tell(kLoopShare * share); };
+  how.progress = [&](double share) { runs->ReportProgress(kLoopShare * share); };
   const IdentifyLoopResult loop = IdentifyLoop(excitation, task, how);
   AddNumbers(loop, &e.numbers);
   AddWords(loop, &e);

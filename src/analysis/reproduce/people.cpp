@@ -61,7 +61,7 @@ ReproducedExperiment ReproduceQuestionnaire(ReproduceRuns* runs) {
   ReproducedExperiment e;
   Rows rows;
   for (std::size_t i = 0; i < kStatements; ++i) AddStatement(i, &rows);
-  runs->Tell(1);
+  runs->ReportProgress(1);
   e.numbers = rows.numbers;
   e.AddParagraph(
       "No people were asked for this. The table lists every set of 17 integer answers from −2 to 2 "

@@ -94,7 +94,7 @@ ReproduceRuns::ReproduceRuns(const ReproduceOptions& options, const std::string&
                              int runs)
     : options_(options), experiment_(experiment), runs_(runs) {}
 
-void ReproduceRuns::Tell(double share) const {
+void ReproduceRuns::ReportProgress(double share) const {
   if (options_.progress) options_.progress(share, experiment_);
 }
 
@@ -144,7 +144,7 @@ ReproducedRun ReproduceRuns::RunToAnyEnd(const ReproducedSetting& setting,
   run.end = Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
     collector.Add(record);
     if (record.tick % 512 == 0)
-      Tell((done_ + std::min(1.0, record.run_time / scenario.duration)) / runs_);
+      ReportProgress((done_ + std::min(1.0, record.run_time / scenario.duration)) / runs_);
     if (record.ran == 0) return;
     for (std::size_t s = 0; s < kStages; ++s) run.timing[s].Add(record.stage_us[s]);
     if (released.Contains(record.run_time)) AddReleased(record, &run);

@@ -46,7 +46,7 @@ class ReproduceRuns {
   // For a run whose end is itself a result: it runs to the end of the script or to a safety stop.
   ReproducedRun RunToEitherEnd(const ReproducedSetting& setting);
   // Reports progress of the experiment that Run does not report.
-  void Tell(double share) const;
+  void ReportProgress(double share) const;
   const ReproduceOptions& options() const { return options_; }
 
  private:

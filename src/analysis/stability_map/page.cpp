@@ -150,7 +150,7 @@ std::string Assumptions(const StabilityMap& map) {
       "<li>the growth rates scatter so much, relative to their dependence on stiffness, that the "
       "boundary is uncertain by more than %.0f %% (two standard errors), or fewer than three rates "
       "were measured near it.</li></ul>\n",
-      100 * kMostUncertain);
+      100 * kMaxUncertainty);
   if (map.departures.empty())
     return html + "<p>No property of this scenario as a whole invalidates the prediction.</p>\n";
   html += "<p>In this scenario the prediction is not valid, because:</p><ul>";

@@ -76,7 +76,7 @@ class MapDrawing {
   static const Boundary* CriticalOf(const MapPoint& p) {
     return p.impossible.empty() ? p.predicted.critical() : nullptr;
   }
-  static const Boundary* LeastOf(const MapPoint& p) {
+  static const Boundary* LowestOf(const MapPoint& p) {
     return p.impossible.empty() ? p.predicted.least() : nullptr;
   }
 
@@ -97,7 +97,7 @@ class MapDrawing {
         HalfArea(points[k], x1, middle);
         HalfArea(points[k + 1], middle, x2);
       }
-      const Boundary *c = LeastOf(points[k]), *d = LeastOf(points[k + 1]);
+      const Boundary *c = LowestOf(points[k]), *d = LowestOf(points[k + 1]);
       if (c && d) Strip(x1, Bottom(), c->stiffness, x2, Bottom(), d->stiffness, &unstable_);
     }
     HalfArea(points.front(), left_, At(points.front()));
@@ -130,7 +130,7 @@ class MapDrawing {
   void Lines() {
     Curve stiffest, softest;
     for (const MapPoint& point : picture_.points) {
-      const Boundary *critical = CriticalOf(point), *least = LeastOf(point);
+      const Boundary *critical = CriticalOf(point), *least = LowestOf(point);
       stiffest.Add(At(point), critical ? critical->stiffness : kGap);
       softest.Add(At(point), least ? least->stiffness : kGap);
     }

@@ -199,14 +199,14 @@ std::vector<std::string> DeparturesOf(const Scenario& s) {
     departures.emplace_back(
         "The cobot's set-point moves (cobot.controller.trajectory). Prediction and simulation "
         "apply to its start.");
-  if (s.rate < kLeastMapRate)
+  if (s.rate < kMinMapRate)
     departures.push_back(
         Formatted("The loop runs at %.3g Hz (rate). Below %.0f Hz its time steps lower the "
                   "boundary, but the linear loop is continuous.",
-                  s.rate, kLeastMapRate));
+                  s.rate, kMinMapRate));
   for (const int i : s.hands()) {
     const double slowest = std::min(s.arm(i).sample_rate, s.arm(i).sensor.sample_rate);
-    if (slowest >= kLeastMapRate) continue;
+    if (slowest >= kMinMapRate) continue;
     departures.push_back(
         Formatted("The sensor sends readings at only %.3g Hz (sample_rate). Prediction and "
                   "simulation assume newer readings.",
@@ -272,7 +272,7 @@ std::vector<std::string> DeparturesAt(const FoundExtent& found, const Boundary& 
   if (!uncertainty)
     departures.emplace_back(
         "growth was measured too rarely near the boundary to estimate its uncertainty");
-  else if (*uncertainty > kMostUncertain)
+  else if (*uncertainty > kMaxUncertainty)
     departures.push_back(
         Formatted("growth depends so little on stiffness here that noise makes the boundary "
                   "uncertain by %.0f %%",

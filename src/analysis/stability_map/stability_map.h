@@ -24,10 +24,10 @@ inline constexpr double kLimitedShare = 0.01;
 
 // Smallest rate of the loop and of its readings at which the continuous prediction is compared with
 // the simulation [Hz].
-inline constexpr double kLeastMapRate = 500;
+inline constexpr double kMinMapRate = 500;
 
 // Uncertainty of a found boundary beyond which it cannot be judged: half of kAgreement.
-inline constexpr double kMostUncertain = 0.1;
+inline constexpr double kMaxUncertainty = 0.1;
 
 struct MapPoint {
   double value = 0;        // value on the axis, SI

@@ -38,7 +38,7 @@ void SceneMotion::Add(const TickRecord& record) {
     const HandRecord& hand = record.hands[i];
     if (!hand.present || !hand.gripping) continue;
     ++gripping;
-    least_lift_[i] = std::min(least_lift_[i], hand.wrench[2]);
+    min_lift_[i] = std::min(min_lift_[i], hand.wrench[2]);
   }
   if (any_ && gripping < gripping_) {
     released_ = true;
@@ -74,8 +74,8 @@ Drop DropOf(const SceneMotion& motion, const SceneMasses& masses, const PersonSe
   const int hands = (scenario.Has(0) ? 1 : 0) + (scenario.Has(1) ? 1 : 0);
   drop.weight_of_hand = masses.object * kStandardGravity / hands;
   for (int hand = 0; hand < kHands; ++hand)
-    if (std::isfinite(motion.least_lift(hand)))
-      drop.jump = std::max(drop.jump, drop.weight_of_hand - motion.least_lift(hand));
+    if (std::isfinite(motion.min_lift(hand)))
+      drop.jump = std::max(drop.jump, drop.weight_of_hand - motion.min_lift(hand));
   return drop;
 }
 

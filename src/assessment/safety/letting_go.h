@@ -47,13 +47,13 @@ class SceneMotion {
   // hands hold again.
   const std::vector<Sample>& releases() const { return releases_; }
   // The smallest upward force of a hand while it held [N]; infinite if it never held.
-  double least_lift(int hand) const { return least_lift_[static_cast<std::size_t>(hand)]; }
+  double min_lift(int hand) const { return min_lift_[static_cast<std::size_t>(hand)]; }
 
  private:
   bool any_ = false, released_ = false;
   Sample fastest_, highest_;
   std::vector<Sample> releases_;
-  std::array<double, kHands> least_lift_ = {INFINITY, INFINITY};  // [N]
+  std::array<double, kHands> min_lift_ = {INFINITY, INFINITY};  // [N]
   int gripping_ = 0;
 };
 

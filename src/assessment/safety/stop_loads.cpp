@@ -62,7 +62,7 @@ void StopWindows::Add(const TickRecord& record) {
   log_.Add(record);
   const std::size_t before = SamplesIn(kBefore) * ticks_a_sample_;
   const std::size_t longest = SamplesIn(kLongest) * ticks_a_sample_;
-  if (log_.count() > stops_ && cuts_.size() < kMost && cuts_.size() < log_.stops().size()) {
+  if (log_.count() > stops_ && cuts_.size() < kMaxCuts && cuts_.size() < log_.stops().size()) {
     if (!cuts_.empty()) cuts_.back().open = false;
     cuts_.push_back({.ticks = {recent_.begin(), recent_.end()}, .decided = recent_.size()});
   }

@@ -29,7 +29,7 @@ class StopWindows {
  public:
   static constexpr double kBefore = 0.2, kAfter = 0.1;  // [s]
   static constexpr double kLongest = 1.5;               // maximum length of a window [s]
-  static constexpr std::size_t kMost = 20;              // maximum number of stops; later ones are
+  static constexpr std::size_t kMaxCuts = 20;           // maximum number of stops; later ones are
                                                         // ignored
 
   explicit StopWindows(const Scenario& scenario);
@@ -51,7 +51,7 @@ class StopWindows {
   StopLog log_;
   std::uint64_t stops_ = 0;
   std::deque<TickRecord> recent_;  // previous ticks, for at most kBefore
-  std::vector<Cut> cuts_;          // one for each of the first kMost stops
+  std::vector<Cut> cuts_;          // one for each of the first kMaxCuts stops
 };
 
 // The torque of one joint during a stop.

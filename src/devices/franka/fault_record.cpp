@@ -57,7 +57,7 @@ bool EndsWithoutPower(const FaultAndDetail& what) noexcept {
   }
 }
 
-std::string FaultRecord::Tell(const Address& who) const {
+std::string FaultRecord::Describe(const Address& who) const {
   const auto [fault, detail] = latch_.first();
   std::string text = who.ToString() + " " + What(fault, detail);
   if (const Errors errors(errors_.load(std::memory_order_relaxed)); errors.any())

@@ -46,7 +46,7 @@ class FaultRecord {
   }
 
   // Text for the user: the arm, the fault, and the remedy.
-  std::string Tell(const Address& who) const;
+  std::string Describe(const Address& who) const;
 
  private:
   FaultLatch<FaultAndDetail> latch_;

@@ -55,9 +55,9 @@ constexpr std::array<const char*, kErrors> kErrorNames = {
 };
 
 // Far beyond the range of these arms' joints: 5.26 rad/s, 20 rad/s², two turns.
-constexpr double kMostAngle = 7;           // [rad]
-constexpr double kMostSpeed = 30;          // [rad/s]
-constexpr double kMostAcceleration = 300;  // [rad/s²]
+constexpr double kMaxAngle = 7;           // [rad]
+constexpr double kMaxSpeed = 30;          // [rad/s]
+constexpr double kMaxAcceleration = 300;  // [rad/s²]
 // Tolerance for a rotation matrix of floats with the robot's own rounding.
 constexpr double kRotationTolerance = 1e-3;
 
@@ -127,11 +127,11 @@ void TakePayload(const Signals<Real>& packet, RobotState* state) noexcept {
 template <class Real>
 bool TakeSignals(const Signals<Real>& packet, RobotState* state) noexcept {
   state->message_id = packet.message_id;
-  if (!TakeJoints(packet.q, kMostAngle, &state->q) ||
-      !TakeJoints(packet.dq, kMostSpeed, &state->dq) ||
-      !TakeJoints(packet.q_d, kMostAngle, &state->q_d) ||
-      !TakeJoints(packet.dq_d, kMostSpeed, &state->dq_d) ||
-      !TakeJoints(packet.ddq_d, kMostAcceleration, &state->ddq_d))
+  if (!TakeJoints(packet.q, kMaxAngle, &state->q) ||
+      !TakeJoints(packet.dq, kMaxSpeed, &state->dq) ||
+      !TakeJoints(packet.q_d, kMaxAngle, &state->q_d) ||
+      !TakeJoints(packet.dq_d, kMaxSpeed, &state->dq_d) ||
+      !TakeJoints(packet.ddq_d, kMaxAcceleration, &state->ddq_d))
     return false;
   TakeWrench(packet, state);
   TakePayload(packet, state);
@@ -334,7 +334,7 @@ void AnswerReader::Drop(std::size_t bytes) noexcept {
 
 bool AnswerReader::Next(Answer* answer) noexcept {
   // An answer may contain a model and is then long.
-  constexpr std::size_t kMost = 1U << 24;
+  constexpr std::size_t kMaxSize = 1U << 24;
   const std::size_t skipped = std::min(skip_, used_);
   Drop(skipped);
   skip_ -= skipped;
@@ -342,7 +342,7 @@ bool AnswerReader::Next(Answer* answer) noexcept {
   *answer = {};
   std::memcpy(&answer->header, bytes_.data(), sizeof(Header));
   const std::size_t size = answer->header.size;
-  if (size <= sizeof(Header) || size > kMost) {
+  if (size <= sizeof(Header) || size > kMaxSize) {
     broken_ = true;
     return false;
   }

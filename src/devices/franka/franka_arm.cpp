@@ -23,7 +23,7 @@ constexpr double kSilence = fci::RateLimiter::kCoasting;  // [s]
 // Longest time in which the arm starts or ends a motion.
 constexpr double kPatience = 1;  // [s]
 // Maximum number of datagrams that are read in one tick.
-constexpr int kMostDatagrams = 64;
+constexpr int kMaxDatagrams = 64;
 // Longer than any pause: a quarter of an hour. If a state further ahead were accepted, all later
 // states would count as old.
 constexpr std::int64_t kMaxAhead = 1'000'000;
@@ -62,10 +62,10 @@ DeviceFacts Facts(const FrankaOptions& options, const Address& address, const fc
     facts.velocity.push_back(options.limits * limit.velocity);
     facts.acceleration.push_back(options.limits * limit.acceleration);
   }
-  facts.payload = ToldPayload{c.state.compensated_mass, c.state.compensated_center};
+  facts.payload = ReportedPayload{c.state.compensated_mass, c.state.compensated_center};
   facts.payload_taken_off = true;
-  facts.flange = ToldFlange{Eigen::Map<const Eigen::VectorXd>(c.state.q.data(), fci::kJoints),
-                            c.state.X_OF.value_or(kNowhere), "link8"};
+  facts.flange = ReportedFlange{Eigen::Map<const Eigen::VectorXd>(c.state.q.data(), fci::kJoints),
+                                c.state.X_OF.value_or(kNowhere), "link8"};
   facts.remarks.push_back(CollisionRemark(options.collision));
   return facts;
 }
@@ -92,7 +92,7 @@ class Driver final : public FrankaArm {
   const DeviceFacts& facts() const override { return facts_; }
   Status Read(ArmReading* reading) noexcept override;
   Status Write(const JointVector& v, bool motion) noexcept override;
-  std::string Trouble() const override { return trouble_.any() ? trouble_.Tell(address_) : ""; }
+  std::string Trouble() const override { return trouble_.any() ? trouble_.Describe(address_) : ""; }
   FrankaCounts counts() const noexcept override {
     FrankaCounts counts = counts_;
     counts.strangers = datagrams_->strangers();
@@ -123,7 +123,7 @@ class Driver final : public FrankaArm {
   bool Generating() const noexcept {
     return state_.generator == fci::MotionGeneratorMode::kJointVelocity;
   }
-  Status Told() const noexcept {
+  Status PresentStatus() const noexcept {
     Status status;
     if (!trouble_.any()) return status;
     status.cause = StopCause::kDevice;
@@ -172,12 +172,12 @@ Status Driver::Read(ArmReading* reading) noexcept {
   ReadStates();
   Judge();
   Fill(reading);
-  return Told();
+  return PresentStatus();
 }
 
 void Driver::ReadAnswers() noexcept {
   fci::Answer answer;
-  for (int pieces = 0; pieces < kMostDatagrams; ++pieces) {
+  for (int pieces = 0; pieces < kMaxDatagrams; ++pieces) {
     const int n = stream_->Read(answers_.room());
     if (n == Stream::kClosed) trouble_.Set(Fault::kClosed);
     if (n <= 0) return;
@@ -203,7 +203,7 @@ void Driver::TakeAnswer(const fci::Answer& answer) noexcept {
 void Driver::ReadStates() noexcept {
   std::array<std::byte, sizeof(fci::PandaState) + 1> bytes;
   bool fresh = false;
-  for (int i = 0; i < kMostDatagrams; ++i) {
+  for (int i = 0; i < kMaxDatagrams; ++i) {
     const int n = datagrams_->Receive(bytes);
     if (n == 0) break;
     const std::size_t size = std::min(static_cast<std::size_t>(std::max(n, 0)), bytes.size());
@@ -302,7 +302,7 @@ Status Driver::Write(const JointVector& v, bool motion) noexcept {
   if (Since(rests_since_) > kPatience) trouble_.Set(Fault::kNoEnd);
   if (!trouble_.any()) Advance(motion);
   if (!trouble_.any()) AnswerState(v, motion);
-  return Told();
+  return PresentStatus();
 }
 
 void Driver::Enter(Phase phase) noexcept {

@@ -13,22 +13,22 @@
 namespace predictor {
 namespace {
 
-constexpr double kTimeout = 1.0;    // longest wait for the first record [s]
-constexpr double kAgain = 0.1;      // time after which a lost request is repeated [s]
-constexpr double kObey = 0.005;     // time in which an OnRobot sensor executes a request [s]
-constexpr double kRateTime = 2;     // time over which a rate is measured [s]
-constexpr double kMostRate = 7000;  // maximum rate of a Net F/T [Hz]
+constexpr double kTimeout = 1.0;   // longest wait for the first record [s]
+constexpr double kAgain = 0.1;     // time after which a lost request is repeated [s]
+constexpr double kObey = 0.005;    // time in which an OnRobot sensor executes a request [s]
+constexpr double kRateTime = 2;    // time over which a rate is measured [s]
+constexpr double kMaxRate = 7000;  // maximum rate of a Net F/T [Hz]
 // Maximum number of datagrams that are read in one tick: a sensor of 7 kHz sends seven; more are a
 // flood.
-constexpr int kMostAtOnce = 32;
+constexpr int kMaxAtOnce = 32;
 // After this long without reading [s], for example while other devices are being connected, old
 // records are buffered. All of them are read, and records that did not fit into the buffer do not
 // count as lost.
 constexpr double kPause = 0.05;
-constexpr int kMostInLine = 4096;
+constexpr int kMaxBuffered = 4096;
 // If this many records are old or too far ahead, without a new one in between, the cause is not
 // reordering: the sensor has restarted its counter.
-constexpr int kAnew = 16;
+constexpr int kRestarted = 16;
 // A record may be ahead of the last one by the number of records that the sensor can have sent
 // since then, times a margin for a rate that differs from the file's, plus this time [s].
 constexpr double kRateRoom = 2, kMaxClockLead = 0.010;
@@ -44,7 +44,7 @@ std::uint32_t PeriodOf(double rate) {
 
 void CheckRate(const NetFtOptions& options) {
   const bool onrobot = options.make == NetFtMake::kOnRobot;
-  if (onrobot ? PeriodOf(options.rate) > 0 : options.rate > 0 && options.rate <= kMostRate) return;
+  if (onrobot ? PeriodOf(options.rate) > 0 : options.rate > 0 && options.rate <= kMaxRate) return;
   throw DeviceError(
       options.address,
       Formatted("cannot send %g readings per second (arm.sensor.sample_rate): %s.", options.rate,
@@ -173,7 +173,7 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
   if (paused) Resume();
   const std::uint64_t taken = reading_.link.taken;
   std::array<std::byte, rdt::kRecordBytes + 1> bytes;
-  for (int i = 0; i < (paused ? kMostInLine : kMostAtOnce); ++i) {
+  for (int i = 0; i < (paused ? kMaxBuffered : kMaxAtOnce); ++i) {
     const int size = datagrams_->Receive(bytes);
     if (size <= 0) break;
     const auto record = static_cast<std::size_t>(size) == rdt::kRecordBytes
@@ -242,7 +242,7 @@ void NetFt::MeasureRate() noexcept {
 
 std::string NetFt::Trouble() const {
   if (status_ != 0) return facts_.name + ": " + StatusWords(options_.make, status_) + ".";
-  if (behind_ >= kAnew)
+  if (behind_ >= kRestarted)
     return facts_.name +
            ": has restarted its counter, as after a reboot, so its later readings cannot be "
            "trusted. Restart this program.";

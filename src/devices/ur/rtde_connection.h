@@ -27,7 +27,7 @@ class Connection {
   // packet ends the connection. Never blocks, however many bytes arrive.
   template <class Take>
   State Drain(const Take& take) noexcept {
-    for (int reads = 0; state_ == State::kOpen && reads < kMostReads; ++reads) {
+    for (int reads = 0; state_ == State::kOpen && reads < kMaxReads; ++reads) {
       const int bytes = stream_->Read(parser_.Room());
       if (bytes == 0) break;
       if (bytes < 0) {
@@ -43,7 +43,7 @@ class Connection {
   const Address& peer() const { return peer_; }
 
  private:
-  static constexpr int kMostReads = 512;  // sufficient even for a stream that arrives byte by byte
+  static constexpr int kMaxReads = 512;  // sufficient even for a stream that arrives byte by byte
 
   template <class Take>
   void TakePackets(const Take& take) noexcept {

@@ -19,16 +19,17 @@ namespace {
 
 constexpr double kDeaf = 0.1;  // longest time for which our program may miss commands [s]
 constexpr double kStop = 0.5;  // longest duration of a stop [s]
-constexpr int kAnew = 3;  // after this many packages with an earlier time, the clock was set back
+constexpr int kRestarted =
+    3;  // after this many packages with an earlier time, the clock was set back
 constexpr double kFresh = 0.02;  // age up to which a package is recent enough for this [s]
 constexpr double kPowerOff = 1;  // time in which a power-off request is executed, with margin [s]
 // Beyond the range of these arms' sensors; such a value is not a measurement.
-constexpr double kMostForce = 500;   // [N]
-constexpr double kMostTorque = 100;  // [N·m]
+constexpr double kMaxForce = 500;   // [N]
+constexpr double kMaxTorque = 100;  // [N·m]
 
 bool Measurement(const UrVector& wrench) noexcept {
   for (std::size_t i = 0; i < wrench.size(); ++i)
-    if (!(std::abs(wrench[i]) <= (i < 3 ? kMostForce : kMostTorque))) return false;
+    if (!(std::abs(wrench[i]) <= (i < 3 ? kMaxForce : kMaxTorque))) return false;
   return true;
 }
 
@@ -96,7 +97,7 @@ class UrArm final : public Arm {
 
   std::string Trouble() const override {
     const UrFault now = fault_.any() ? fault_.first() : arm_fault_.load();
-    if (now == UrFault::kNone && behind_ >= kAnew)
+    if (now == UrFault::kNone && behind_ >= kRestarted)
       return host_ + " has restarted its clock, as after a reboot. Restart this program.";
     if (now == UrFault::kNone) return "";
     std::string text = host_ + " " + Sentence(now);
@@ -109,7 +110,7 @@ class UrArm final : public Arm {
   // kUnwanted: power-off was requested. The robot then reports that its power is off or, after a
   // long time, that it still is on.
   enum class Power : std::uint8_t { kWanted, kUnwanted, kCut, kKept };
-  static constexpr int kMostReads = 16;
+  static constexpr int kMaxReads = 16;
 
   static std::uint32_t Unsigned(std::int32_t x) noexcept { return static_cast<std::uint32_t>(x); }
 
@@ -173,7 +174,7 @@ class UrArm final : public Arm {
   void ReadDashboard() noexcept {
     std::array<std::byte, 256> unused;
     int size = dashboard_ && !dashboard_lost_ ? 1 : 0;
-    for (int i = 0; i < kMostReads && size > 0; ++i) size = dashboard_->Read(unused);
+    for (int i = 0; i < kMaxReads && size > 0; ++i) size = dashboard_->Read(unused);
     if (size == Stream::kClosed) dashboard_lost_ = true;
   }
 

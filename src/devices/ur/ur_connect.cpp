@@ -100,7 +100,7 @@ class Setup {
     AgreeOnRecipes();
     OpenDashboard();
     Start();
-    TellFacts();
+    TakeFacts();
     if (options_.listen) return std::move(setup_);
     CheckArm();
     ClearRegisters();
@@ -159,8 +159,8 @@ class Setup {
   // check of the payload is omitted, and the pose of the flange is checked without a tool.
   void AgreeOnRecipes() {
     setup_.extras.wrench = setup_.facts.own_wrench;
-    setup_.extras.payload = Tells({{"payload", "DOUBLE"}, {"payload_cog", "VECTOR3D"}});
-    setup_.extras.tool_offset = Tells({{"tcp_offset", "VECTOR6D"}});
+    setup_.extras.payload = Offers({{"payload", "DOUBLE"}, {"payload_cog", "VECTOR3D"}});
+    setup_.extras.tool_offset = Offers({{"tcp_offset", "VECTOR6D"}});
     const auto outputs = UrOutputs(options_.first_register, setup_.extras);
     setup_.outputs =
         Agree(rtde::AskOutputs(setup_.facts.rate, outputs), rtde::PacketType::kOutputs, outputs);
@@ -169,7 +169,7 @@ class Setup {
     setup_.inputs = Agree(rtde::AskInputs(inputs), rtde::PacketType::kInputs, inputs);
   }
 
-  bool Tells(const std::vector<rtde::Field>& fields) {
+  bool Offers(const std::vector<rtde::Field>& fields) {
     rtde::RecipeAnswer answer;
     return rtde::Decode(
                Ask(rtde::AskOutputs(setup_.facts.rate, fields), rtde::PacketType::kOutputs),
@@ -209,15 +209,15 @@ class Setup {
     return true;
   }
 
-  void TellFacts() {
+  void TakeFacts() {
     const UrState& state = setup_.state;
     if (setup_.extras.payload)
-      setup_.facts.payload = ToldPayload{
+      setup_.facts.payload = ReportedPayload{
           state.payload, {state.payload_cog[0], state.payload_cog[1], state.payload_cog[2]}};
     if (ArmFault(state) != UrFault::kUnpowered)  // otherwise its joints are unknown
-      setup_.facts.flange = ToldFlange{Eigen::Map<const Vector6>(state.q.data()),
-                                       PoseOf(state.tool) * PoseOf(state.tool_offset).Inverse(),
-                                       "tool0", setup_.extras.tool_offset};
+      setup_.facts.flange = ReportedFlange{Eigen::Map<const Vector6>(state.q.data()),
+                                           PoseOf(state.tool) * PoseOf(state.tool_offset).Inverse(),
+                                           "tool0", setup_.extras.tool_offset};
     if (SlowedDown(state))
       setup_.facts.remarks.push_back(
           "Its speed slider is at " + std::to_string(std::lround(100 * state.slider)) +

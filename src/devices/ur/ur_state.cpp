@@ -25,9 +25,9 @@ constexpr double kWholeSpeed = 0.995;  // setting of the speed slider
 
 // Time since the controller's start: 30 years. With a larger value, the age of a package could not
 // be computed [s].
-constexpr double kMostTime = 1e9;
-constexpr double kMostAngle = 100;  // limit of an angle, also for an endless joint [rad]
-constexpr double kMostSpeed = 20;   // five times the speed of an arm [rad/s]
+constexpr double kMaxTime = 1e9;
+constexpr double kMaxAngle = 100;  // limit of an angle, also for an endless joint [rad]
+constexpr double kMaxSpeed = 20;   // five times the speed of an arm [rad/s]
 
 bool Within(const UrVector& values, double bound) noexcept {
   return std::all_of(values.begin(), values.end(),
@@ -164,8 +164,8 @@ UrFault RunFault(const UrState& state) noexcept {
 }
 
 bool Plausible(const UrState& state) noexcept {
-  return std::abs(state.timestamp) <= kMostTime && Within(state.q, kMostAngle) &&
-         Within(state.v, kMostSpeed);
+  return std::abs(state.timestamp) <= kMaxTime && Within(state.q, kMaxAngle) &&
+         Within(state.v, kMaxSpeed);
 }
 
 }  // namespace predictor

@@ -87,7 +87,7 @@ class SocketDatagrams final : public Datagrams {
 
   int Receive(std::span<std::byte> to) noexcept override {
     // A flood of foreign datagrams must not delay the tick.
-    for (int tries = 0; tries < kMostStrangers; ++tries) {
+    for (int tries = 0; tries < kMaxStrangers; ++tries) {
       sockaddr_in from{};
       socklen_t size = sizeof from;
       const ssize_t n = recvfrom(socket_.get(), to.data(), to.size(), MSG_DONTWAIT | MSG_TRUNC,
@@ -112,7 +112,7 @@ class SocketDatagrams final : public Datagrams {
   std::uint64_t strangers() const noexcept override { return strangers_; }
 
  private:
-  static constexpr int kMostStrangers = 16;
+  static constexpr int kMaxStrangers = 16;
 
   Socket socket_;
   sockaddr_in peer_;

@@ -61,7 +61,7 @@ class Oscillation final : public Metric {
           force.Add(record.run_time, Vector3(hand.wrench[0], hand.wrench[1], hand.wrench[2]));
       if (!window) return;
       rms = std::fmax(rms, window->rms);
-      if (window->Tells()) index = std::fmax(index, window->index);
+      if (window->IsMeaningful()) index = std::fmax(index, window->index);
       if (window->IsStrong()) strong_index = std::fmax(strong_index, window->index);
     }
     OscillationIndex force;

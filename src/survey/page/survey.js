@@ -4,7 +4,7 @@
 
 const kSections = ['waiting', 'lost', 'consent', 'form', 'stored', 'declined'];
 const kToken = 'predictor.survey.token';
-const kMostTries = 4;
+const kMaxTries = 4;
 const kRetryMs = 1000;
 
 const byId = (id) => document.getElementById(id);
@@ -124,7 +124,7 @@ function onMessage(message) {
 // asleep.
 function onClose() {
   if (over) return;
-  if (++tries < kMostTries) {
+  if (++tries < kMaxTries) {
     setTimeout(connect, kRetryMs);
     return;
   }

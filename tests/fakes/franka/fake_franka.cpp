@@ -297,7 +297,7 @@ bool FakeFranka::Do(const std::string& what) {
   if (what == "guide") return Enter(RobotMode::kGuiding, n.aborted), true;
   if (what == "freeze") return frozen_ = true;
   if (what == "say it moves") return says_it_moves_ = true;
-  if (what == "go on") return frozen_ = false, true;
+  if (what == "continue") return frozen_ = false, true;
   if (what == "patient") return options_.patient = true;
   if (what == "repeat state") return repeat_ = true;
   if (what == "replay state") return replay_ = true;

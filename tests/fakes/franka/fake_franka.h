@@ -55,7 +55,7 @@ class FakeFranka final : public FakeDevice {
 
   // General: "user stop", "emergency stop", "release", "guide", "reflex NAME" (libfranka's name, or
   //   the index in a state's errors), "error NAME" (without a change of mode), "moved" (by another
-  //   program), "freeze" and "go on", "drop link", "patient", "say it moves".
+  //   program), "freeze" and "continue", "drop link", "patient", "say it moves".
   // States: "lose states N", "delay states N" (by N ms, from now on), "repeat state", "replay
   //   state" (the same one permanently), "swap states" (the next two), "cut state", "spoil state"
   //   (NaN), "leap" (a number far ahead).

@@ -108,7 +108,7 @@ std::bitset<41> MotionCheck::Miss() {
   FrankaJoints v;
   for (std::size_t i = 0; i < v.size(); ++i) v[i] = v_[i] + a_[i] * kMillisecond;
   std::bitset<41> wrong = Move(v);
-  if (++lost_ >= kMostLost) wrong.set(kCommunicationConstraints);
+  if (++lost_ >= kMaxLost) wrong.set(kCommunicationConstraints);
   return wrong;
 }
 

@@ -34,7 +34,7 @@ std::string FrankaDescription();
 
 class MotionCheck {
  public:
-  static constexpr int kMostLost = 20;  // commands in a row, after which the motion is aborted
+  static constexpr int kMaxLost = 20;  // commands in a row, after which the motion is aborted
 
   explicit MotionCheck(const FrankaLimits& limits) : limits_(limits) {}
 

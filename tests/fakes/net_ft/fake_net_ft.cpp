@@ -65,7 +65,7 @@ class FakeNetFt final : public FakeDevice {
       repeat_ = true;
     else if (what == "back")
       next_ -= 50;
-    else if (what == "anew")
+    else if (what == "restart")
       next_ = 1;
     else if (what == "skip")
       next_ += 3;

@@ -21,24 +21,24 @@ class UrRtdeProgram final : public UrProgram {
     const int command = c_->input_int[first_];
     if (command == kNone) {
       busy_ = false;
-      Tell(kReady);
+      Send(kReady);
     } else if (command == kSpeedj) {
       UrVector qd;
       for (std::size_t i = 0; i < qd.size(); ++i) qd[i] = Argument(i);
       c_->Speedj(qd, Argument(6));
-      Tell(kReady);
+      Send(kReady);
     } else if (!busy_) {
       busy_ = true;
       return Begin(command);
     } else if (c_->Standing()) {
-      Tell(kDone);
+      Send(kDone);
     }
     return true;
   }
 
  private:
   double Argument(std::size_t i) const { return c_->input_double[first_ + i]; }
-  void Tell(Signal signal) { c_->output_int[first_] = signal; }
+  void Send(Signal signal) { c_->output_int[first_] = signal; }
 
   // Returns false if the program ends.
   bool Begin(int command) {

@@ -7,7 +7,7 @@ namespace predictor::urscript {
 namespace {
 
 // A thread that executes so many instructions without waiting would exceed a controller's cycle.
-constexpr int kMostInstructions = 20000;
+constexpr int kMaxInstructions = 20000;
 
 template <class T>
 T As(const Value& value, const Instruction& i) {
@@ -93,7 +93,7 @@ void Machine::Run(std::size_t t) {
   thread.moving = false;
   for (int n = 0; thread.wait == Wait::kNothing; ++n) {
     const Instruction& i = program_->code[thread.at];
-    if (n == kMostInstructions) throw Error(i.line, "a thread runs on without waiting");
+    if (n == kMaxInstructions) throw Error(i.line, "a thread runs on without waiting");
     ++thread.at;
     Step(&thread, i);
     // When the program ends, its threads end as well.

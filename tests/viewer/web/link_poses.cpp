@@ -19,7 +19,7 @@ std::shared_ptr<const RobotModel> Load(const Scenario& scenario, const std::stri
     return RobotModel::Load({scenario.cobot.model, scenario.folder(), scenario.cobot.remove_links,
                              scenario.cobot.base.ToPose()});
   if (robot != "left" && robot != "right")
-    throw InputError("\"" + robot + "\" is none of cobot, left, right.");
+    throw InputError("\"" + robot + "\" is not one of cobot, left, right.");
   const int hand = robot == "left" ? 0 : 1;
   const ArmSpec& arm = scenario.arm(hand);
   return RobotModel::Load({arm.model, scenario.folder(), arm.remove_links, scenario.X_WB(hand)});

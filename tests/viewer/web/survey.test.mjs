@@ -57,7 +57,7 @@ async function pseudonymOf(page) {
 
 let pseudonym;
 
-test('a person agrees, answers, is told what is wrong, and gets a pseudonym', async () => {
+test('a person agrees, answers, sees the errors, and gets a pseudonym', async () => {
   const survey = await ask('one.mcap', '--condition', 'emulated');
   const page = await open(browser, survey.url, kViewport);
   await page.waitForSelector('#consent', {state: 'visible'});

@@ -66,9 +66,9 @@ class FrankaCases:
             self.last = [0.0] * 7
             return
         self.assertEqual(state.control_command_success_rate, 1.0)
-        for has, told, acceleration, last in zip(state.dq_d, sent, state.ddq_d, self.last, strict=True):
-            self.assertAlmostEqual(has, told, delta=1e-6)
-            self.assertAlmostEqual(acceleration, (told - last) / 1e-3, delta=1e-3)
+        for has, asked, acceleration, last in zip(state.dq_d, sent, state.ddq_d, self.last, strict=True):
+            self.assertAlmostEqual(has, asked, delta=1e-6)
+            self.assertAlmostEqual(acceleration, (asked - last) / 1e-3, delta=1e-3)
         self.last = sent
 
     def setUp(self):
