@@ -34,7 +34,7 @@ set_target_properties(tinyxml2::tinyxml2 PROPERTIES
   IMPORTED_LOCATION ${PREDICTOR_PREFIX}/lib/libtinyxml2.so.11.0.0
   INTERFACE_INCLUDE_DIRECTORIES ${PREDICTOR_PREFIX}/include)
 
-# Pinocchio: only its templates for rigid-body kinematics and dynamics. Because its library is not linked, coal,
+# Pinocchio: only its templates, for the torque regressor. Because its library is not linked, coal,
 # urdfdom and Boost's libraries are not needed, and the wheel's compiler settings do not matter. Its include path
 # contains Boost 1.90 and precedes the system's, so that Debian's Boost is never mixed in.
 add_library(pinocchio::pinocchio INTERFACE IMPORTED)

@@ -1,5 +1,6 @@
 #include "emulator/arm_side.h"
 
+#include "core/motion.h"
 #include "emulator/placement.h"
 #include "haptics/stability.h"
 #include "scenario/operating_rules.h"
@@ -8,13 +9,13 @@ namespace predictor {
 
 ArmSide::ArmSide(const Scenario& s, int i, double dt)
     : model_(LoadArm(s, i)),
+      X_EH_(s.arm(i).handle.ToPose()),
       end_effector_(model_->Frame(s.arm(i).end_effector)),
-      handle_(model_->Frame(s.arm(i).end_effector, s.arm(i).handle.ToPose())),
+      handle_(model_->Frame(s.arm(i).end_effector, X_EH_)),
       data_(*model_),
       ahead_(*model_),
       lag_(HapticLoop::Lag(s.arm(i).loop, dt)),
-      estimator_(s.arm(i).sensor, s.arm(i).payload, s.arm(i).handle.ToPose(),
-                 RulesFor(s).handle_gravity, dt),
+      estimator_(s.arm(i).sensor, s.arm(i).payload, X_EH_, RulesFor(s).handle_gravity, dt),
       differentiator_(dt, model_->dof()),
       q_(JointVector::Zero(model_->dof())),
       q_ahead_(q_) {}
@@ -25,11 +26,8 @@ Status ArmSide::Update(const ArmSample& sample) noexcept {
     return {StopCause::kSensor, -1, 0, 0};
   q_ = sample.q;
   data_.UpdateKinematics(*model_, sample.q, sample.v);
-  data_.FrameJacobian(*model_, end_effector_, &J_);
-  end_effector_motion_ =
-      MeasuredMotion(*model_, data_, end_effector_, J_, differentiator_.Update(sample));
-  handle_motion_.X_W = data_.FramePose(*model_, handle_);
-  handle_motion_.V_W = data_.FrameTwist(*model_, handle_);
+  end_effector_motion_ = data_.MotionOf(*model_, end_effector_, differentiator_.Update(sample));
+  handle_motion_ = MotionOfFixed(end_effector_motion_, X_EH_);
   return estimator_.Update(sample, end_effector_motion_, &wrench_);
 }
 

@@ -40,18 +40,18 @@ class ArmSide {
   const RobotData& ahead() const { return ahead_; }
   FrameId handle_frame() const { return handle_; }
   const JointVector& q() const { return q_; }
-  const FrameMotion& handle() const { return handle_motion_; }  // X_WH, V_WH
+  const FrameMotion& handle() const { return handle_motion_; }
   const HandWrench& wrench() const { return wrench_; }
 
  private:
   std::shared_ptr<const RobotModel> model_;
+  Pose X_EH_;
   FrameId end_effector_, handle_;
   RobotData data_, ahead_;
   double lag_;  // lag of the arm's velocity loop [s]
   HandEstimator estimator_;
   MotionDifferentiator differentiator_;
   JointVector q_, q_ahead_;
-  Jacobian J_;  // Jacobian of E
   FrameMotion end_effector_motion_;
   FrameMotion handle_motion_;
   HandWrench wrench_;

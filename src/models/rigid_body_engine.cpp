@@ -1,128 +1,111 @@
 #include "models/rigid_body_engine.h"
 
-// The regressor's visitor has seven arguments, one more than Boost's default maximum.
-#define BOOST_FUSION_INVOKE_MAX_ARITY 10
-
-#include <pinocchio/algorithm/crba.hpp>
-#include <pinocchio/algorithm/jacobian.hpp>
-#include <pinocchio/algorithm/regressor.hpp>
-#include <pinocchio/multibody.hpp>
+#include <Eigen/Geometry>
+#include <cmath>
 
 namespace predictor {
 namespace {
 
-namespace pin = pinocchio;
-
-// Only the joint types in use: compiling Pinocchio's default collection of 25 takes a minute.
-template <typename S, int O>
-struct ArmJoints {
-  using Scalar = S;
-  static constexpr int Options = O;
-  using JointModelRevoluteUnaligned = pin::JointModelRevoluteUnalignedTpl<S, O>;
-  using JointModelPrismaticUnaligned = pin::JointModelPrismaticUnalignedTpl<S, O>;
-  using JointModelRX = pin::JointModelRevoluteTpl<S, O, 0>;
-  using JointModelRY = pin::JointModelRevoluteTpl<S, O, 1>;
-  using JointModelRZ = pin::JointModelRevoluteTpl<S, O, 2>;
-  using JointModelVariant =
-      boost::variant<JointModelRZ, JointModelRY, JointModelRX, JointModelRevoluteUnaligned,
-                     JointModelPrismaticUnaligned>;
-  using JointDataVariant =
-      boost::variant<pin::JointDataRevoluteTpl<S, O, 2>, pin::JointDataRevoluteTpl<S, O, 1>,
-                     pin::JointDataRevoluteTpl<S, O, 0>, pin::JointDataRevoluteUnalignedTpl<S, O>,
-                     pin::JointDataPrismaticUnalignedTpl<S, O>>;
-};
-
-using Joints = ArmJoints<double, 0>;
-using Model = pin::ModelTpl<double, 0, ArmJoints>;
-using Data = pin::DataTpl<double, 0, ArmJoints>;
-
-pin::SE3 ToSE3(const Pose& X) { return {X.R(), X.p}; }
-
-pin::JointIndex AddJoint(const UrdfJoint& joint, pin::JointIndex parent, const pin::SE3& X,
-                         Model* model) {
-  if (joint.type == UrdfJointType::kPrismatic) {
-    return model->addJoint(parent, Joints::JointModelPrismaticUnaligned(joint.axis), X, joint.name);
-  }
-  if (joint.axis == Vector3::UnitX()) {
-    return model->addJoint(parent, Joints::JointModelRX(), X, joint.name);
-  }
-  if (joint.axis == Vector3::UnitY()) {
-    return model->addJoint(parent, Joints::JointModelRY(), X, joint.name);
-  }
-  if (joint.axis == Vector3::UnitZ()) {
-    return model->addJoint(parent, Joints::JointModelRZ(), X, joint.name);
-  }
-  return model->addJoint(parent, Joints::JointModelRevoluteUnaligned(joint.axis), X, joint.name);
+// Writes the same body in another frame, in which its present frame is at (R, p). Steiner's rule
+// with the first moment h: R I Rᵀ − [p][h] − [h][p] − m [p][p], where −[a][b] = (a·b) 1 − b aᵀ.
+void Transform(const BodyInertia& body, const Matrix3& R, const Vector3& p, BodyInertia* out) {
+  const Vector3 h = R * body.moment;
+  out->mass = body.mass;
+  out->moment = h + body.mass * p;
+  out->inertia.noalias() = R * body.inertia * R.transpose();
+  out->inertia -= h * p.transpose() + p * out->moment.transpose();
+  out->inertia.diagonal().array() += p.dot(h + out->moment);
 }
 
-}  // namespace
+// Momentum of a body with twist V; or the wrench that accelerates it from rest.
+inline Spatial Times(const BodyInertia& body, const Spatial& V) {
+  return {body.mass * V.linear + V.angular.cross(body.moment),
+          body.inertia * V.angular + body.moment.cross(V.linear)};
+}
 
-struct EngineModel {
-  Model model;
-};
+// Rate of change of a momentum that is constant in a body with twist V.
+inline Spatial CrossForce(const Spatial& V, const Spatial& momentum) {
+  return {V.angular.cross(momentum.linear),
+          V.angular.cross(momentum.angular) + V.linear.cross(momentum.linear)};
+}
 
-struct EngineData {
-  explicit EngineData(const Model& model) : data(model) {}
-  Data data;
-  // Motion of each body, in W, about W's origin.
-  std::array<pin::Motion, kMaxJoints + 1> twist, bias_acceleration;
-  std::array<pin::Force, kMaxJoints + 1> force;
-};
+EngineJoint MakeJoint(const UrdfJoint& joint, std::size_t parent, const Pose& X_PJ) {
+  EngineJoint made;
+  made.parent = parent;
+  made.R_PJ = X_PJ.R();
+  made.p_PJ = X_PJ.p;
+  made.axis = joint.axis;
+  made.own_axis = -1;
+  for (int k = 0; k < 3; ++k)
+    if (joint.axis == Vector3::Unit(k)) made.own_axis = k;
+  made.prismatic = joint.type == UrdfJointType::kPrismatic;
+  return made;
+}
 
-namespace {
+// Turns R about the joint's axis by q [rad].
+void Turn(const EngineJoint& joint, double q, Matrix3* R) {
+  if (joint.own_axis < 0) {
+    *R *= Eigen::AngleAxisd(q, joint.axis).toRotationMatrix();
+    return;
+  }
+  const int next = (joint.own_axis + 1) % 3, last = (joint.own_axis + 2) % 3;
+  R->col(next) = (std::cos(q) * R->col(next) + std::sin(q) * R->col(last)).eval();
+  R->col(last) = R->col(joint.own_axis).cross(R->col(next));
+}
 
-void CopyKinematics(const Data& data, EngineState* state) {
-  const auto joints = static_cast<std::size_t>(state->J_W.cols());
+// Torques C v of Coriolis and centrifugal forces: recursive Newton–Euler without joint acceleration
+// and gravity (table 5.1).
+void ComputeCoriolis(const EngineModel& model, EngineState* state) {
+  const JointVector& v = state->v;
+  std::array<Spatial, kMaxJoints + 1> V, A, F;
+  V[0] = A[0] = F[0] = Spatial::Zero();
+  const std::size_t joints = model.joints.size();
   for (std::size_t j = 1; j <= joints; ++j) {
-    state->R_WJ[j] = data.oMi[j].rotation();
-    state->p_WJ[j] = data.oMi[j].translation();
-  }
-  state->J_W = data.J;
-}
-
-pin::Motion Axis(const Data& data, std::size_t joint) {
-  return pin::Motion(data.J.col(static_cast<int>(joint) - 1));
-}
-
-// Torques of gravity for 1 m/s², after crba: the weight carried by each joint, about its axis.
-void ComputeGravity(const Data& data, JointVector* gravity) {
-  const pin::Motion upwards(Vector3::UnitZ(), Vector3::Zero());
-  for (std::size_t j = 1; j <= static_cast<std::size_t>(gravity->size()); ++j) {
-    (*gravity)(static_cast<int>(j) - 1) = Axis(data, j).dot(data.oYcrb[j] * upwards);
-  }
-}
-
-// Torques C v of Coriolis and centrifugal forces, after crba: recursive Newton–Euler without joint
-// acceleration and gravity, in W (Featherstone 2008, table 5.1). It costs half as much as the
-// engine's own algorithm because the axes and poses in W are already available.
-void ComputeCoriolis(const Model& model, const JointVector& v, EngineData* data,
-                     JointVector* torque) {
-  const Data& d = data->data;
-  data->twist[0].setZero();
-  data->bias_acceleration[0].setZero();
-  const auto joints = static_cast<std::size_t>(v.size());
-  for (std::size_t j = 1; j <= joints; ++j) {
-    const std::size_t parent = model.parents[j];
-    const pin::Motion of_joint = Axis(d, j) * v(static_cast<int>(j) - 1);
-    const pin::Motion& V = data->twist[j] = data->twist[parent] + of_joint;
-    const pin::Motion& A = data->bias_acceleration[j] =
-        data->bias_acceleration[parent] + V.cross(of_joint);
-    const pin::Inertia inertia = d.oMi[j].act(model.inertias[j]);
-    data->force[j] = inertia * A + V.cross(inertia * V);
+    const std::size_t parent = model.joints[j - 1].parent;
+    const auto k = static_cast<Eigen::Index>(j) - 1;
+    const Spatial of_joint = Axis(*state, k) * v[k];
+    V[j] = V[parent] + of_joint;
+    A[j] = A[parent] + CrossMotion(V[parent], of_joint);
+    const BodyInertia& body = state->inertia[j];
+    F[j] = Times(body, A[j]) + CrossForce(V[j], Times(body, V[j]));
   }
   for (std::size_t j = joints; j > 0; --j) {
-    (*torque)(static_cast<int>(j) - 1) = Axis(d, j).dot(data->force[j]);
-    data->force[model.parents[j]] += data->force[j];
+    const auto k = static_cast<Eigen::Index>(j) - 1;
+    state->bias[k] = Axis(*state, k).dot(F[j]);
+    Spatial& on_parent = F[model.joints[j - 1].parent];
+    on_parent = on_parent + F[j];
+  }
+}
+
+// Mass matrix by composite rigid bodies (table 6.2): a joint's acceleration moves all that it
+// carries, which loads the joints that carry it. Torques of gravity: the weight that each joint
+// carries.
+void ComputeComposite(const EngineModel& model, double gravity, EngineState* state) {
+  state->composite = state->inertia;
+  for (std::size_t j = model.joints.size(); j > 0; --j) {
+    const BodyInertia& carried = state->composite[j];
+    const auto k = static_cast<Eigen::Index>(j) - 1;
+    const Spatial S = Axis(*state, k);
+    const Spatial weight = {{0, 0, carried.mass}, carried.moment.cross(Vector3::UnitZ())};
+    state->gravity[k] = gravity * S.dot(weight);
+    const Spatial F = Times(carried, S);
+    for (std::size_t i = j; i > 0; i = model.joints[i - 1].parent) {
+      const auto r = static_cast<Eigen::Index>(i) - 1;
+      state->M(r, k) = state->M(k, r) = Axis(*state, r).dot(F);
+    }
+    state->composite[model.joints[j - 1].parent] += carried;
   }
 }
 
 }  // namespace
 
-std::shared_ptr<const EngineModel> MakeEngineModel(const UrdfModel& urdf, const Pose& X_WB,
-                                                   std::vector<int>* body,
-                                                   std::vector<Pose>* X_JL) {
-  auto engine = std::make_shared<EngineModel>();
-  Model& model = engine->model;
+BodyInertia InertiaAboutOrigin(double mass, const Vector3& com, const Matrix3& inertia) {
+  return {mass, mass * com, inertia - mass * Skew(com) * Skew(com)};
+}
+
+EngineModel MakeEngineModel(const UrdfModel& urdf, const Pose& X_WB, std::vector<int>* body,
+                            std::vector<Pose>* X_JL) {
+  EngineModel model;
   body->assign(urdf.links.size(), 0);
   X_JL->assign(urdf.links.size(), X_WB);
   for (const UrdfJoint& joint : urdf.joints) {
@@ -133,66 +116,76 @@ std::shared_ptr<const EngineModel> MakeEngineModel(const UrdfModel& urdf, const 
       (*body)[child] = (*body)[parent];
       (*X_JL)[child] = X;
     } else {
-      const auto carrier = static_cast<pin::JointIndex>((*body)[parent]);
-      (*body)[child] = static_cast<int>(AddJoint(joint, carrier, ToSE3(X), &model));
+      model.joints.push_back(MakeJoint(joint, static_cast<std::size_t>((*body)[parent]), X));
+      (*body)[child] = static_cast<int>(model.joints.size());
       (*X_JL)[child] = Pose::Identity();
     }
   }
   for (std::size_t i = 0; i < urdf.links.size(); ++i) {
+    if ((*body)[i] == 0) continue;
     const UrdfLink& link = urdf.links[i];
-    model.appendBodyToJoint(static_cast<pin::JointIndex>((*body)[i]),
-                            pin::Inertia(link.mass, link.com, link.inertia), ToSE3((*X_JL)[i]));
+    EngineJoint& carrier = model.joints[static_cast<std::size_t>((*body)[i]) - 1];
+    const BodyInertia inertia = InertiaAboutOrigin(link.mass, link.com, link.inertia);
+    BodyInertia carried;
+    Transform(inertia, (*X_JL)[i].R(), (*X_JL)[i].p, &carried);
+    carrier.body += carried;
   }
-  return engine;
+  return model;
 }
 
-std::shared_ptr<EngineData> MakeEngineData(const EngineModel& model) {
-  return std::make_shared<EngineData>(model.model);
+EngineState MakeEngineState(const EngineModel& model) {
+  const auto n = static_cast<Eigen::Index>(model.joints.size());
+  EngineState state;
+  state.R_WJ.fill(Matrix3::Identity());
+  state.p_WJ.fill(Vector3::Zero());
+  state.v.setZero(n);
+  state.J_W.setZero(6, n);
+  state.M.setZero(n, n);
+  state.bias.setZero(n);
+  state.gravity.setZero(n);
+  return state;
 }
 
-void ComputeKinematics(const EngineModel& model, const JointVector& q, EngineData* data,
-                       EngineState* state) {
-  pin::computeJointJacobians(model.model, data->data, q);
-  CopyKinematics(data->data, state);
+void ComputeKinematics(const EngineModel& model, const JointVector& q,
+                       EngineState* state) noexcept {
+  for (std::size_t j = 1; j <= model.joints.size(); ++j) {
+    const EngineJoint& joint = model.joints[j - 1];
+    const auto k = static_cast<Eigen::Index>(j) - 1;
+    Matrix3 R = joint.R_PJ;
+    Vector3 p = joint.p_PJ;
+    if (joint.prismatic)
+      p += q[k] * (R * joint.axis);
+    else
+      Turn(joint, q[k], &R);
+    const Matrix3& R_WP = state->R_WJ[joint.parent];
+    state->R_WJ[j].noalias() = R_WP * R;
+    state->p_WJ[j] = state->p_WJ[joint.parent] + R_WP * p;
+    const Vector3 axis = joint.own_axis < 0 ? Vector3(state->R_WJ[j] * joint.axis)
+                                            : Vector3(state->R_WJ[j].col(joint.own_axis));
+    if (joint.prismatic)
+      state->J_W.col(k) << axis, Vector3::Zero();
+    else
+      state->J_W.col(k) << state->p_WJ[j].cross(axis), axis;
+  }
 }
 
 void ComputeDynamics(const EngineModel& model, const JointVector& q, const JointVector& v,
-                     double gravity, EngineData* data, EngineState* state) {
-  pin::crba(model.model, data->data, q, pin::Convention::WORLD);
-  CopyKinematics(data->data, state);
-  state->M = data->data.M.selfadjointView<Eigen::Upper>();
-  ComputeGravity(data->data, &state->gravity);
-  ComputeCoriolis(model.model, v, data, &state->bias);
-  state->gravity *= gravity;
-  state->bias += state->gravity;
+                     double gravity, EngineState* state) noexcept {
+  ComputeKinematics(model, q, state);
+  for (std::size_t j = 1; j <= model.joints.size(); ++j)
+    Transform(model.joints[j - 1].body, state->R_WJ[j], state->p_WJ[j], &state->inertia[j]);
+  ComputeComposite(model, gravity, state);
+  state->v = v;
+  state->waits_for_bias = &model;
 }
 
-// Has a separate model because gravity is part of a model.
-struct EngineRegressor {
-  EngineRegressor(const Model& of, double gravity) : model(of), data(of) {
-    model.gravity.linear() = Vector3(0, 0, -gravity);
+const JointVector& Bias(EngineState* state) noexcept {
+  if (state->waits_for_bias != nullptr) {
+    ComputeCoriolis(*state->waits_for_bias, state);
+    state->bias += state->gravity;
+    state->waits_for_bias = nullptr;
   }
-  Model model;
-  Data data;
-};
-
-Eigen::VectorXd InertialParametersOf(const EngineModel& model) {
-  const auto joints = static_cast<Eigen::Index>(model.model.njoints) - 1;
-  Eigen::VectorXd parameters(kInertialParameters * joints);
-  for (Eigen::Index j = 0; j < joints; ++j) {
-    parameters.segment<kInertialParameters>(kInertialParameters * j) =
-        model.model.inertias[static_cast<std::size_t>(j) + 1].toDynamicParameters();
-  }
-  return parameters;
-}
-
-std::shared_ptr<EngineRegressor> MakeEngineRegressor(const EngineModel& model, double gravity) {
-  return std::make_shared<EngineRegressor>(model.model, gravity);
-}
-
-const Eigen::MatrixXd& ComputeTorqueRegressor(const JointVector& q, const JointVector& v,
-                                              const JointVector& a, EngineRegressor* regressor) {
-  return pin::computeJointTorqueRegressor(regressor->model, regressor->data, q, v, a);
+  return state->bias;
 }
 
 }  // namespace predictor

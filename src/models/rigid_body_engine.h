@@ -1,8 +1,9 @@
-// Interface to Pinocchio without its headers, which cost 6 s per translation unit.
+// Kinematics and dynamics of a tree of joints. Everything is computed in W, where the results are
+// plain sums along the tree (Featherstone 2008, "Rigid body dynamics algorithms").
 #pragma once
 
 #include <array>
-#include <memory>
+#include <cstddef>
 #include <vector>
 
 #include "core/types.h"
@@ -10,47 +11,95 @@
 
 namespace predictor {
 
-struct EngineModel;
-struct EngineData;
+// Inertia of a body about the origin of a frame, in its axes. Those of several bodies add up.
+struct BodyInertia {
+  double mass = 0;                    // [kg]
+  Vector3 moment = Vector3::Zero();   // mass times centre of mass [kg·m]
+  Matrix3 inertia = Matrix3::Zero();  // [kg·m²]
 
-// Results of the engine's algorithms. Joint frames: 0 is the base, 1 and above are the movable
-// joints.
+  BodyInertia& operator+=(const BodyInertia& other) noexcept {
+    mass += other.mass;
+    moment += other.moment;
+    inertia += other.inertia;
+    return *this;
+  }
+};
+
+// Of a body with its inertia about its centre of mass, in the same axes.
+BodyInertia InertiaAboutOrigin(double mass, const Vector3& com, const Matrix3& inertia);
+
+// A movable joint J with the body that it carries. Joints are counted from 1; 0 is the base.
+struct EngineJoint {
+  std::size_t parent = 0;  // joint that carries it, before it in the list
+  Matrix3 R_PJ = Matrix3::Identity();
+  Vector3 p_PJ = Vector3::Zero();   // at position 0 [m]; in W if the base carries it
+  Vector3 axis = Vector3::UnitX();  // unit, in J
+  int own_axis = 0;                 // 0, 1, 2: `axis` is x, y or z of J; −1: none of them
+  bool prismatic = false;
+  BodyInertia body;  // in J
+};
+
+struct EngineModel {
+  std::vector<EngineJoint> joints;
+};
+
+// Results, and memory for intermediate ones.
 struct EngineState {
   JointVector v;  // [rad/s]
   std::array<Matrix3, kMaxJoints + 1> R_WJ;
   std::array<Vector3, kMaxJoints + 1> p_WJ;  // [m]
-  Jacobian J_W;               // column k: twist of W's origin caused by joint k alone, axes of W
-  JointMatrix M;              // [kg·m²]
-  JointVector bias, gravity;  // [N·m]
+  Jacobian J_W;         // column k: twist of W's origin caused by joint k alone, axes of W
+  JointMatrix M;        // [kg·m²]
+  JointVector gravity;  // [N·m]
+  std::array<BodyInertia, kMaxJoints + 1> inertia;    // of the bodies, in W
+  std::array<BodyInertia, kMaxJoints + 1> composite;  // of what each joint carries, in W
+  JointVector bias;                                   // [N·m]; see Bias
+  const EngineModel* waits_for_bias = nullptr;        // set: `bias` is not computed yet
 };
-
-// Parameters in which a body's inertia is linear: mass m [kg], m c [kg·m], then the inertia about
-// the joint's frame, xx xy yy xz yz zz [kg·m²], all in the axes of that frame.
-inline constexpr int kInertialParameters = 10;
-
-struct EngineRegressor;
 
 // Builds the model. `body` and `X_JL` give, for each link, the joint that carries it and its pose
 // in that joint's frame.
-std::shared_ptr<const EngineModel> MakeEngineModel(const UrdfModel& urdf, const Pose& X_WB,
-                                                   std::vector<int>* body, std::vector<Pose>* X_JL);
-std::shared_ptr<EngineData> MakeEngineData(const EngineModel& model);
+EngineModel MakeEngineModel(const UrdfModel& urdf, const Pose& X_WB, std::vector<int>* body,
+                            std::vector<Pose>* X_JL);
+
+// The state of `model`, with the base in place and all other results zero.
+EngineState MakeEngineState(const EngineModel& model);
 
 // R_WJ, p_WJ, J_W at q. No allocation.
-void ComputeKinematics(const EngineModel& model, const JointVector& q, EngineData* data,
-                       EngineState* state);
-// Computes the above and M, bias and gravity torques at (q, v). gravity [m/s²] acts along −z of W.
-// No allocation.
+void ComputeKinematics(const EngineModel& model, const JointVector& q, EngineState* state) noexcept;
+// Computes the above, and M and gravity torques at q. gravity [m/s²] acts along −z of W. The model
+// must outlive the next call of Bias. No allocation.
 void ComputeDynamics(const EngineModel& model, const JointVector& q, const JointVector& v,
-                     double gravity, EngineData* data, EngineState* state);
+                     double gravity, EngineState* state) noexcept;
+// Bias torques at (q, v) of the last ComputeDynamics [N·m]. Computed when first asked for, because
+// most controllers do without them. No allocation.
+const JointVector& Bias(EngineState* state) noexcept;
 
-// Parameters of the moving bodies, kInertialParameters each, in the order of their joints.
-Eigen::VectorXd InertialParametersOf(const EngineModel& model);
+// A twist [m/s, rad/s] or a wrench [N, N·m] at W's origin. Its halves are apart because operations
+// on them are faster than on a Vector6 that was just composed of them.
+struct Spatial {
+  Vector3 linear, angular;
 
-// Workspace of the regressor with gravity [m/s²] along −z of W.
-std::shared_ptr<EngineRegressor> MakeEngineRegressor(const EngineModel& model, double gravity);
-// Y of τ = Y(q, v, a) π: torques without friction [N·m] as a function of the inertial parameters π.
-const Eigen::MatrixXd& ComputeTorqueRegressor(const JointVector& q, const JointVector& v,
-                                              const JointVector& a, EngineRegressor* regressor);
+  static Spatial Zero() noexcept { return {Vector3::Zero(), Vector3::Zero()}; }
+  explicit operator Vector6() const noexcept { return (Vector6() << linear, angular).finished(); }
+  Spatial operator+(const Spatial& other) const noexcept {
+    return {linear + other.linear, angular + other.angular};
+  }
+  Spatial operator*(double x) const noexcept { return {linear * x, angular * x}; }
+  // Power of a twist and a wrench.
+  double dot(const Spatial& other) const noexcept {
+    return linear.dot(other.linear) + angular.dot(other.angular);
+  }
+};
+
+// V × S: rate of change of the twist S of an axis that moves with the twist V.
+inline Spatial CrossMotion(const Spatial& V, const Spatial& S) noexcept {
+  return {V.angular.cross(S.linear) + V.linear.cross(S.angular), V.angular.cross(S.angular)};
+}
+
+// Twist of W's origin caused by joint k, counted from 0, at a velocity of 1.
+inline Spatial Axis(const EngineState& state, Eigen::Index k) noexcept {
+  return {state.J_W.col(k).head<3>(), state.J_W.col(k).tail<3>()};
+}
 
 }  // namespace predictor

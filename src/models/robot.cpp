@@ -46,23 +46,17 @@ void CheckJointCount(const UrdfModel& urdf) {
   }
 }
 
-// Jacobian about the point p of W, which only the joints in `support` move.
-struct PointJacobian {
-  const EngineState& state;
+// A point of a body, which only the joints in `support` move.
+struct BodyPoint {
   std::uint32_t support;
   Vector3 p;  // p_WF [m]
 
-  bool Moves(int k) const { return (support >> k) & 1u; }
-  Vector6 Column(int k) const {
-    Vector6 c = state.J_W.col(k);
-    c.head<3>() += c.tail<3>().cross(p);
-    return c;
-  }
+  bool IsMovedBy(int k) const { return (support >> k) & 1u; }
 };
 
-PointJacobian At(const RobotModel& model, const EngineState& state, const FrameId& frame) {
+BodyPoint At(const RobotModel& model, const EngineState& state, const FrameId& frame) {
   const auto body = static_cast<std::size_t>(frame.body);
-  return {state, model.impl().support[body], state.R_WJ[body] * frame.X_JF.p + state.p_WJ[body]};
+  return {model.impl().support[body], state.R_WJ[body] * frame.X_JF.p + state.p_WJ[body]};
 }
 
 }  // namespace
@@ -122,32 +116,22 @@ FrameId RobotModel::Frame(const std::string& link, const Pose& X_LF) const {
   return {found->second.body, found->second.X_JF * X_LF};
 }
 
-RobotData::RobotData(const RobotModel& model) : impl_(std::make_unique<Impl>()) {
-  impl_->engine = MakeEngineData(*model.impl().engine);
-  EngineState& state = impl_->state;
-  const int n = model.dof();
-  state.R_WJ.fill(Matrix3::Identity());
-  state.p_WJ.fill(Vector3::Zero());
-  state.v.setZero(n);
-  state.J_W.setZero(6, n);
-  state.M.setZero(n, n);
-  state.bias.setZero(n);
-  state.gravity.setZero(n);
-}
+RobotData::RobotData(const RobotModel& model)
+    : impl_(std::make_unique<Impl>(Impl{MakeEngineState(model.impl().engine)})) {}
 RobotData::~RobotData() = default;
 RobotData::RobotData(RobotData&&) noexcept = default;
 RobotData& RobotData::operator=(RobotData&&) noexcept = default;
 
 void RobotData::UpdateKinematics(const RobotModel& model, const JointVector& q,
                                  const JointVector& v) {
-  ComputeKinematics(*model.impl().engine, q, impl_->engine.get(), &impl_->state);
+  ComputeKinematics(model.impl().engine, q, &impl_->state);
   impl_->state.v = v;
+  impl_->state.waits_for_bias = nullptr;
 }
 
 void RobotData::UpdateDynamics(const RobotModel& model, const JointVector& q, const JointVector& v,
                                double gravity) {
-  ComputeDynamics(*model.impl().engine, q, v, gravity, impl_->engine.get(), &impl_->state);
-  impl_->state.v = v;
+  ComputeDynamics(model.impl().engine, q, v, gravity, &impl_->state);
 }
 
 Pose RobotData::FramePose(const RobotModel&, const FrameId& frame) const {
@@ -157,47 +141,50 @@ Pose RobotData::FramePose(const RobotModel&, const FrameId& frame) const {
 }
 
 Twist RobotData::FrameTwist(const RobotModel& model, const FrameId& frame) const {
-  const PointJacobian J = At(model, impl_->state, frame);
+  const BodyPoint point = At(model, impl_->state, frame);
   Twist V = Twist::Zero();
-  for (int k = 0; k < impl_->state.v.size(); ++k) {
-    if (J.Moves(k)) V += impl_->state.v(k) * J.Column(k);
-  }
-  return V;
+  for (int k = 0; k < impl_->state.v.size(); ++k)
+    if (point.IsMovedBy(k)) V += impl_->state.v(k) * impl_->state.J_W.col(k);
+  return ShiftTwist(V, point.p);
 }
 
-Vector6 RobotData::FrameBiasAcceleration(const RobotModel& model, const FrameId& frame) const {
+FrameMotion RobotData::MotionOf(const RobotModel& model, const FrameId& frame,
+                                const JointVector& a) const {
   // Sums along the chain with the columns S_k of J_W, in W. Each column is moved by the preceding
   // joints, so the spatial acceleration gains V × S_k v_k (Featherstone 2008, (2.47)). The result
   // is then converted to the classical acceleration.
-  const PointJacobian J = At(model, impl_->state, frame);
-  Vector6 V = Vector6::Zero();
-  Vector6 A = Vector6::Zero();
-  for (int k = 0; k < impl_->state.v.size(); ++k) {
-    if (!J.Moves(k)) continue;
-    const Vector6 S = impl_->state.v(k) * impl_->state.J_W.col(k);
-    A.head<3>() += V.tail<3>().cross(S.head<3>()) + V.head<3>().cross(S.tail<3>());
-    A.tail<3>() += V.tail<3>().cross(S.tail<3>());
-    V += S;
+  const BodyPoint point = At(model, impl_->state, frame);
+  const JointVector& v = impl_->state.v;
+  Spatial V = Spatial::Zero(), A = V;
+  for (int k = 0; k < v.size(); ++k) {
+    if (!point.IsMovedBy(k)) continue;
+    const Spatial S = Axis(impl_->state, k);
+    A = A + S * a(k) + CrossMotion(V, S * v(k));
+    V = V + S * v(k);
   }
-  const Vector3 p_dot = V.head<3>() + V.tail<3>().cross(J.p);
-  A.head<3>() += A.tail<3>().cross(J.p) + V.tail<3>().cross(p_dot);
-  return A;
+  FrameMotion motion;
+  motion.X_W = FramePose(model, frame);
+  const Vector3 p_dot = V.linear + V.angular.cross(point.p);
+  motion.V_W << p_dot, V.angular;
+  motion.A_W << A.linear + A.angular.cross(point.p) + V.angular.cross(p_dot), A.angular;
+  return motion;
 }
 
 void RobotData::FrameJacobian(const RobotModel& model, const FrameId& frame, Jacobian* J) const {
-  const PointJacobian at = At(model, impl_->state, frame);
+  const BodyPoint point = At(model, impl_->state, frame);
   J->resize(6, impl_->state.v.size());
   for (int k = 0; k < impl_->state.v.size(); ++k) {
-    if (at.Moves(k)) {
-      J->col(k) = at.Column(k);
-    } else {
+    if (!point.IsMovedBy(k)) {
       J->col(k).setZero();
+      continue;
     }
+    const Spatial S = Axis(impl_->state, k);
+    J->col(k) << S.linear + S.angular.cross(point.p), S.angular;
   }
 }
 
 const JointMatrix& RobotData::M() const { return impl_->state.M; }
-const JointVector& RobotData::bias() const { return impl_->state.bias; }
+const JointVector& RobotData::bias() const { return Bias(&impl_->state); }
 const JointVector& RobotData::gravity() const { return impl_->state.gravity; }
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// Kinematics and dynamics of one arm, from its URDF. Pinocchio is hidden behind this interface.
+// Kinematics and dynamics of one arm, from its URDF.
 //
 // RobotModel is constant after loading; RobotData is the writable workspace. After construction
 // only Load, Build, Frame, link_names and KinematicHessian allocate memory.
@@ -79,8 +79,8 @@ class RobotData {
   void UpdateKinematics(const RobotModel& model, const JointVector& q, const JointVector& v);
   Pose FramePose(const RobotModel& model, const FrameId& frame) const;    // X_WF
   Twist FrameTwist(const RobotModel& model, const FrameId& frame) const;  // V_WF, axes of W
-  // Time derivative of the twist for zero joint acceleration (dJ/dt · v), classical, axes of W.
-  Vector6 FrameBiasAcceleration(const RobotModel& model, const FrameId& frame) const;
+  // Pose, twist, and acceleration J a + dJ/dt v for joint accelerations a [rad/s²], [m/s²].
+  FrameMotion MotionOf(const RobotModel& model, const FrameId& frame, const JointVector& a) const;
   // J such that V_WF = J v, axes of W; 6 × dof.
   void FrameJacobian(const RobotModel& model, const FrameId& frame, Jacobian* J) const;
 

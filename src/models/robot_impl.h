@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -14,7 +13,7 @@
 namespace predictor {
 
 struct RobotModel::Impl {
-  std::shared_ptr<const EngineModel> engine;
+  EngineModel engine;
   Pose X_WB;
   std::string name;
   std::vector<std::string> joint_names, link_names;
@@ -26,7 +25,6 @@ struct RobotModel::Impl {
 };
 
 struct RobotData::Impl {
-  std::shared_ptr<EngineData> engine;
   EngineState state;
 };
 

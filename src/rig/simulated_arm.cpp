@@ -66,7 +66,6 @@ SimulatedArm::SimulatedArm(const Scenario& scenario, int hand, const JointVector
     loops_.emplace_back(loop, delay, dt, model_->velocity_limit()[j], acceleration_[j]);
     loops_.back().Reset(start[j]);
   }
-  J_.setZero(6, dof);
   UpdateKinematics();
   Measure();
   sensor_.Reset(SensorWrench(Wrench::Zero()));
@@ -113,12 +112,7 @@ void SimulatedArm::Measure() noexcept {
 
 void SimulatedArm::UpdateKinematics() noexcept {
   data_.UpdateKinematics(*model_, q_, v_);
-  data_.FrameJacobian(*model_, end_effector_, &J_);
-  FrameMotion E;
-  E.X_W = data_.FramePose(*model_, end_effector_);
-  E.V_W = data_.FrameTwist(*model_, end_effector_);
-  E.A_W = data_.FrameBiasAcceleration(*model_, end_effector_);
-  E.A_W.noalias() += J_ * a_;
+  const FrameMotion E = data_.MotionOf(*model_, end_effector_, a_);
   handle_ = MotionOfFixed(E, X_EH_);
   sensor_frame_ = MotionOfFixed(E, X_ES_);
 }

@@ -50,7 +50,6 @@ class SimulatedArm {
   double since_command_ = 0;  // time since the last command [s]
   bool fault_ = false;
   FrameMotion handle_, sensor_frame_;
-  Jacobian J_;
   ForceSensor sensor_;
   RandomStream velocity_noise_;
   std::uint64_t sequence_ = 0;

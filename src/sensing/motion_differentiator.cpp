@@ -22,14 +22,4 @@ void MotionDifferentiator::Reset() noexcept {
   ticks_ = 0;
 }
 
-FrameMotion MeasuredMotion(const RobotModel& model, const RobotData& data, const FrameId& frame,
-                           const Jacobian& J, const JointVector& a) noexcept {
-  FrameMotion motion;
-  motion.X_W = data.FramePose(model, frame);
-  motion.V_W = data.FrameTwist(model, frame);
-  motion.A_W = data.FrameBiasAcceleration(model, frame);
-  motion.A_W.noalias() += J * a;
-  return motion;
-}
-
 }  // namespace predictor

@@ -1,10 +1,8 @@
-// Computes joint accelerations from measured joint velocities, and an end-effector's motion with
-// them.
+// Computes joint accelerations from measured joint velocities.
 #pragma once
 
 #include "core/archive.h"
 #include "core/messages.h"
-#include "models/robot.h"
 
 namespace predictor {
 
@@ -33,10 +31,5 @@ class MotionDifferentiator {
   int ticks_ = 0;  // ticks since the last new sample
   bool started_ = false;
 };
-
-// Motion of a frame with its acceleration J a + dJ/dt v. `data` must be updated at (q, v); J is the
-// frame's Jacobian there.
-FrameMotion MeasuredMotion(const RobotModel& model, const RobotData& data, const FrameId& frame,
-                           const Jacobian& J, const JointVector& a) noexcept;
 
 }  // namespace predictor

@@ -172,8 +172,8 @@ class ExportedScene : public testing::TestWithParam<std::string> {
     const int id = Body(link);
     const Pose in_mujoco = At(data->xpos + 3 * id, data->xquat + 4 * id);
     EXPECT_LT(PoseError(expected, in_mujoco).norm(), kExact) << link;
-    const Pose in_pinocchio = workspace->FramePose(*robot, robot->Frame(link));
-    EXPECT_LT(PoseError(expected, in_pinocchio).norm(), kExact) << link;
+    const Pose computed = workspace->FramePose(*robot, robot->Frame(link));
+    EXPECT_LT(PoseError(expected, computed).norm(), kExact) << link;
   }
   void ExpectPoses(const Poses& expected) const {
     ExpectPose(scenario.cobot.end_effector, expected.end_effector);

@@ -50,13 +50,18 @@ TEST_P(Kinematics, TwistIsTheDerivativeOfThePose) {
   }
 }
 
-TEST_P(Kinematics, BiasAccelerationIsTheDerivativeOfTheTwist) {
+TEST_P(Kinematics, MotionIsTheDerivativeOfPoseAndTwist) {
   for (int i = 0; i < kStates; ++i, Shake()) {
-    const auto twist_at = [this](double t) -> Vector6 { return JacobianAt(q + t * v) * v; };
+    const JointVector a = RandomVector(5);
+    const auto twist_at = [&](double t) -> Vector6 {
+      return JacobianAt(q + t * v + t * t / 2 * a) * (v + t * a);
+    };
     const Vector6 difference = (twist_at(kStep) - twist_at(-kStep)) / (2 * kStep);
     data.UpdateKinematics(*model, q, v);
-    EXPECT_LT((data.FrameBiasAcceleration(*model, frame) - difference).norm(),
-              1e-7 * (1 + difference.norm()));
+    const FrameMotion motion = data.MotionOf(*model, frame, a);
+    EXPECT_LT((motion.A_W - difference).norm(), 1e-7 * (1 + difference.norm()));
+    EXPECT_LT((motion.V_W - JacobianAt(q) * v).norm(), 1e-12);
+    EXPECT_LT(PoseError(motion.X_W, PoseAt(q)).norm(), 1e-12);
   }
 }
 
@@ -100,7 +105,8 @@ TEST_P(Kinematics, FramesOfTheBaseStandStill) {
   EXPECT_LT(PoseError(PoseAt(q), SlantedBase() * X_LF).norm(), 1e-12);
   EXPECT_EQ(JacobianAt(q).norm(), 0);
   EXPECT_EQ(data.FrameTwist(*model, frame).norm(), 0);
-  EXPECT_EQ(data.FrameBiasAcceleration(*model, frame).norm(), 0);
+  EXPECT_EQ(data.MotionOf(*model, frame, v).V_W.norm(), 0);
+  EXPECT_EQ(data.MotionOf(*model, frame, v).A_W.norm(), 0);
   double m = 1;
   JointVector gradient;
   data.ManipulabilityGradient(*model, frame, &m, &gradient);
@@ -118,7 +124,7 @@ TEST_P(Kinematics, NothingAllocatesAfterConstruction) {
     data.UpdateKinematics(*model, q, v);
     data.FrameJacobian(*model, frame, &J);
     sum += data.FramePose(*model, frame).p.x() + data.FrameTwist(*model, frame)(0) +
-           data.FrameBiasAcceleration(*model, frame)(0);
+           data.MotionOf(*model, frame, v).A_W(0);
     data.ManipulabilityGradient(*model, frame, &m, &gradient);
     data.UpdateDynamics(*model, q, v, 9.81);
     sum += data.M()(0, 0) + data.bias()(0) + data.gravity()(0);

@@ -43,9 +43,7 @@ class Bench {
     rig_.Step(command, dt_);
     rig_.Read(&sample_);
     data_.UpdateKinematics(*model_, sample_.arms[0].q, sample_.arms[0].v);
-    data_.FrameJacobian(*model_, frame_, &J_);
-    const JointVector& a = differentiator_.Update(sample_.arms[0]);
-    motion_ = MeasuredMotion(*model_, data_, frame_, J_, a);
+    motion_ = data_.MotionOf(*model_, frame_, differentiator_.Update(sample_.arms[0]));
     status_ = estimator_.Update(sample_.arms[0], motion_, &hand_);
   }
 
@@ -81,7 +79,6 @@ class Bench {
   FrameId frame_;
   MotionDifferentiator differentiator_;
   HandEstimator estimator_;
-  Jacobian J_;
   DeviceSample sample_;
   FrameMotion motion_;
   HandWrench hand_;

@@ -35,7 +35,7 @@ bool Same(const WorldState& a, const WorldState& b) {
 }
 
 // The inertia of cobot and box in terms of joint rates and the box's angular velocity (axes of W),
-// assembled by hand from Pinocchio's mass matrix: v_com = J_v q̇ + ω × r.
+// assembled by hand from the robot's mass matrix: v_com = J_v q̇ + ω × r.
 TEST(World, ForceOfAHandAcceleratesTheComposedInertia) {
   Scenario s = BoxScene(9);
   s.cobot.joint_friction.viscous = {0};
