@@ -12,6 +12,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/triangular.h"
 #include "scenario/trajectory_file.h"
 #include "simulation/controllers/controllers.h"
 #include "simulation/controllers/modal_damping.h"
@@ -145,12 +146,12 @@ class CartesianImpedance final : public Controller {
     return wrench;
   }
 
-  // M = L Lᵀ and Λ⁻¹ = J M⁻¹ Jᵀ = (L⁻¹Jᵀ)ᵀ (L⁻¹Jᵀ).
+  // M = L Lᵀ and Λ⁻¹ = J M⁻¹ Jᵀ = (J L⁻ᵀ)(J L⁻ᵀ)ᵀ.
   void UpdateInertia(const JointMatrix& M) {
     M_factor_.compute(M);
-    half_.noalias() = J_.transpose();
-    M_factor_.matrixL().solveInPlace(half_);
-    Matrix6 mobility = half_.transpose().lazyProduct(half_);
+    half_ = J_;
+    MultiplyByInverseTranspose(M_factor_.matrixLLT(), &half_);
+    Matrix6 mobility = half_.lazyProduct(half_.transpose());
     mobility.diagonal().array() += kMinMobility;
     mobility_.compute(mobility);
   }
@@ -173,25 +174,22 @@ class CartesianImpedance final : public Controller {
     const auto n = input.q->size();
     const double k = posture_stiffness_;
     if (k <= 0) return;
-    to_joints_.noalias() = half_;  // M⁻¹ Jᵀ
-    M_factor_.matrixU().solveInPlace(to_joints_);
-    Lambda_J_.noalias() = J_;
-    mobility_.solveInPlace(Lambda_J_);
+    from_joints_ = half_;  // J M⁻¹
+    MultiplyByInverse(M_factor_.matrixLLT(), &from_joints_);
+    J_Lambda_ = J_.transpose();  // Jᵀ Λ
+    MultiplyByInverseTranspose(mobility_.matrixLLT(), &J_Lambda_);
+    MultiplyByInverse(mobility_.matrixLLT(), &J_Lambda_);
 
-    P_.setIdentity(n, n);
-    P_.noalias() -= to_joints_.lazyProduct(Lambda_J_);
-    MP_.noalias() = input.data->M().lazyProduct(P_);
-    const double inertia = MP_.trace();
+    P_transposed_.setIdentity(n, n);
+    P_transposed_.noalias() -= J_Lambda_.lazyProduct(from_joints_);
+    const double inertia = input.data->M().cwiseProduct(P_transposed_).sum();  // tr(M P)
     if (inertia <= 0) return;
-    const double c = 2 * posture_ratio_ * std::sqrt(k * P_.squaredNorm() / inertia);
+    const double c = 2 * posture_ratio_ * std::sqrt(k * P_transposed_.squaredNorm() / inertia);
     spring_ = k * (posture_ - *input.q);
-    torque->noalias() += P_.transpose().lazyProduct(spring_);
+    torque->noalias() += P_transposed_.lazyProduct(spring_);
     torque->noalias() -= c * input.data->M().lazyProduct(*input.v);
-    const Vector6 momentum = mobility_.solve(velocity);  // Λ J q̇
-    torque->noalias() += c * J_.transpose().lazyProduct(momentum);
+    torque->noalias() += c * J_Lambda_.lazyProduct(velocity);
   }
-
-  using HalfInertia = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMaxJoints, 6>;
 
   SetPointTrajectory set_point_;
   JointVector posture_;       // [rad]
@@ -203,12 +201,12 @@ class CartesianImpedance final : public Controller {
   Vector6 shift_;  // shift of the set-point by tuning [m], [rad]
   Vector6 jump_;   // by ShiftSetPoint
   // Workspace.
-  Jacobian J_, Lambda_J_;
-  HalfInertia half_, to_joints_;
+  Jacobian J_, half_, from_joints_;
+  Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMaxJoints, 6> J_Lambda_;
   Eigen::LLT<JointMatrix> M_factor_;
   Eigen::LLT<Matrix6> mobility_;
   ModalDamping<Vector6, Matrix6> damping_;
-  JointMatrix P_, MP_;
+  JointMatrix P_transposed_;
   JointVector spring_;
 };
 
