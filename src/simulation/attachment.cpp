@@ -16,15 +16,6 @@ constexpr double kConverged = 1e-12;
 constexpr int kMaxPasses = 8;  // of Newton's method with contacts and friction
 constexpr double kSettled = 1e-9;
 
-Pose BodyPose(const mjData& data, int body) {
-  const double* q = data.xquat + 4 * body;
-  return {Eigen::Map<const Vector3>(data.xpos + 3 * body), Quaternion(q[0], q[1], q[2], q[3])};
-}
-
-void UpdateForces(const mjModel* model, mjData* data) {
-  mj_forwardSkip(model, data, mjSTAGE_VEL, 1);
-}
-
 // The x with |x| ≤ radius that minimises ½ xᵀ A x + bᵀ x, for a positive definite A. With a
 // multiplier μ ≥ 0, (A + μ) x = −b; Newton's method on 1/|x| finds μ (Moré & Sorensen 1983).
 Vector3 MinimumInBall(const Matrix3& A, const Vector3& b, double radius, bool* at_limit) {
@@ -47,13 +38,13 @@ Vector3 MinimumInBall(const Matrix3& A, const Vector3& b, double radius, bool* a
 
 }  // namespace
 
-Attachment::Attachment(const AttachmentSpec& spec, const Scene& scene)
-    : scene_(scene),
+Attachment::Attachment(const AttachmentSpec& spec, Engine* engine)
+    : engine_(*engine),
       p_OA_(spec.on_object.xyz),
       is_fixed_(spec.joint == JointType::kFixed),
       damping_(spec.joint == JointType::kSpherical ? spec.damping : 0),
       first_(spec.on_end_effector.xyz) {
-  const auto nv = static_cast<int>(model()->nv);
+  const int nv = engine_.dof();
   if (nv > kMaxDof) {
     throw InputError::At("cobot.model", "cobot.model has " + std::to_string(nv - 6) +
                                             " movable joints; an event of the attachment needs " +
@@ -66,29 +57,29 @@ Attachment::Attachment(const AttachmentSpec& spec, const Scene& scene)
 }
 
 // X_EA, with the rotation of O instead of A.
-Pose Attachment::PlaceOf(const mjData& data) const noexcept {
-  const Pose X_EO = BodyPose(data, scene_.end_effector).Inverse() * BodyPose(data, scene_.object);
+Pose Attachment::Place() const noexcept {
+  const Pose X_EO = PoseOf(SceneBody::kEndEffector).Inverse() * PoseOf(SceneBody::kObject);
   return {X_EO * p_OA_, X_EO.q};
 }
 
-void Attachment::Grip(const mjData& data) noexcept {
-  grip_ = PlaceOf(data);
+void Attachment::Grip() noexcept {
+  grip_ = Place();
   first_ = grip_.p;
   lost_ = slides_ = turns_ = false;
   wrench_.setZero();
   load_.setZero();
 }
 
-bool Attachment::Hold(mjData* data) noexcept {
+bool Attachment::Hold() noexcept {
   slides_ = turns_ = false;
-  Eigen::Map<DofVector> applied(data->qfrc_applied, model()->nv);
-  applied.segment<6>(scene_.object_dof).setZero();
+  Engine::Values applied = engine_.joint_forces();
+  applied.segment<6>(engine_.layout().object_v).setZero();
   if (is_open()) {
     wrench_.setZero();
     load_.setZero();
     return true;
   }
-  Prepare(*data);
+  Prepare();
   const DofVector others = applied;
   const auto apply = [&] {
     applied = others;
@@ -97,46 +88,36 @@ bool Attachment::Hold(mjData* data) noexcept {
   // Contacts and joint friction react to the attachment, and it reacts to them: Newton's method.
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     apply();
-    if (data->nefc > 0 && !Guarded(UpdateForces, model(), data)) return false;
+    if (engine_.has_reactions() && !engine_.ComputeAccelerations(false)) return false;
     const Wrench before = wrench_;
-    UpdateMobility(*data);
-    wrench_ = Solve(data);
-    if (data->nefc == 0 || (wrench_ - before).norm() <= kSettled * (1 + wrench_.norm())) break;
+    UpdateMobility();
+    wrench_ = Solve();
+    if (!engine_.has_reactions() || (wrench_ - before).norm() <= kSettled * (1 + wrench_.norm()))
+      break;
   }
   apply();
-  load_ = ShiftWrench(wrench_, p_WA_ - BodyPose(*data, scene_.end_effector).p);
+  load_ = ShiftWrench(wrench_, p_WA_ - PoseOf(SceneBody::kEndEffector).p);
   return true;
 }
 
 // Jacobian, its rate and inertia at the present state.
-void Attachment::Prepare(const mjData& data) noexcept {
-  const Eigen::Index nv = model()->nv;
-  const Eigen::Map<const DofVector> v(data.qvel, nv);
-  p_WA_ = BodyPose(data, scene_.object) * p_OA_;
-  const auto difference = [&](auto* jacobian, DofJacobian* J) {
-    jacobian(model(), &data, J->data(), J->data() + 3 * nv, p_WA_.data(), scene_.end_effector);
-    jacobian(model(), &data, other_.data(), other_.data() + 3 * nv, p_WA_.data(), scene_.object);
-    *J -= other_;
-  };
-  difference(mj_jacDot, &J_);
-  bias_ = J_.lazyProduct(v);
-  difference(mj_jac, &J_);
-  mj_fullM(model(), &data, M_.data());  // symmetric: the storage order does not matter
-  // The engine integrates the joints' damping implicitly.
-  for (Eigen::Index i = 0; i < nv; ++i) M_(i, i) += model()->opt.timestep * model()->dof_damping[i];
+void Attachment::Prepare() noexcept {
+  p_WA_ = PoseOf(SceneBody::kObject) * p_OA_;
+  engine_.JacobianRate(SceneBody::kEndEffector, p_WA_, J_);
+  engine_.JacobianRate(SceneBody::kObject, p_WA_, other_);
+  J_ -= other_;
+  bias_ = J_.lazyProduct(engine_.velocities());
+  engine_.Jacobian(SceneBody::kEndEffector, p_WA_, J_);
+  engine_.Jacobian(SceneBody::kObject, p_WA_, other_);
+  J_ -= other_;
+  engine_.StepMatrix(M_);
   factor_.compute(M_);
 }
 
-// G, with contacts and friction that hold at present. They act like inertia: each is a force of
-// −efc_D times the acceleration along its row.
-void Attachment::UpdateMobility(const mjData& data) noexcept {
-  const Eigen::Index nv = model()->nv;
+// G, with contacts and friction that hold at present.
+void Attachment::UpdateMobility() noexcept {
   holding_ = M_;
-  for (int i = 0; i < data.nefc; ++i) {
-    if (data.efc_state[i] != mjCNSTRSTATE_QUADRATIC) continue;
-    const Eigen::Map<const DofVector> row(data.efc_J + i * nv, nv);
-    holding_ += data.efc_D[i] * row.lazyProduct(row.transpose());
-  }
+  engine_.AddReactions(holding_);
   holding_factor_.compute(holding_);
   for (int i = 0; i < 6; ++i) {
     const DofVector column = holding_factor_.solve(DofVector(J_.row(i).transpose()));
@@ -146,19 +127,14 @@ void Attachment::UpdateMobility(const mjData& data) noexcept {
 
 // The wrench on E about A, if the others react to its change from the present one, wrench_, as
 // UpdateMobility determined.
-Wrench Attachment::Solve(mjData* data) noexcept {
-  const Eigen::Index nv = model()->nv;
-  const double dt = model()->opt.timestep;
-  const auto map = [nv](const double* x) { return Eigen::Map<const DofVector>(x, nv); };
-  DofVector force = map(data->qfrc_passive) - map(data->qfrc_bias) + map(data->qfrc_applied);
-  if (data->nefc > 0) force += map(data->qfrc_constraint);
-  const double* hands = data->xfrc_applied + 6 * scene_.object;
-  mj_applyFT(model(), data, hands, hands + 3, data->xipos + 3 * scene_.object, scene_.object,
-             force.data());
-  const DofVector v = map(data->qvel) + dt * DofVector(factor_.solve(force));
-  const Pose E = BodyPose(*data, scene_.end_effector);
+Wrench Attachment::Solve() noexcept {
+  const double dt = engine_.step();
+  DofVector force(engine_.dof());
+  engine_.Forces(force);
+  const DofVector v = engine_.velocities() + dt * DofVector(factor_.solve(force));
+  const Pose E = PoseOf(SceneBody::kEndEffector);
   Vector6 error;  // of the object from the place where the grip holds
-  error << p_WA_ - E * grip_.p, RotationError(BodyPose(*data, scene_.object).q, E.q * grip_.q);
+  error << p_WA_ - E * grip_.p, RotationError(PoseOf(SceneBody::kObject).q, E.q * grip_.q);
   if (!is_fixed_) error.tail<3>().setZero();
   // The relative position changes by dt J v + ½ dt² J̇ v in the step.
   Vector6 b = (J_.lazyProduct(v) + dt / 2 * bias_ - kCorrection * error) / dt - G_ * wrench_;
@@ -194,9 +170,9 @@ Wrench Attachment::WithinLimits(const Vector6& b, Wrench wrench) noexcept {
   return wrench;
 }
 
-void Attachment::Follow(const mjData& data) noexcept {
+void Attachment::Follow() noexcept {
   if (is_open()) return;
-  const Pose now = PlaceOf(data);
+  const Pose now = Place();
   if (slides_) grip_.p = now.p;
   if (turns_) grip_.q = now.q;
   lost_ = (grip_.p - first_).norm() > limits_.reach;

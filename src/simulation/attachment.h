@@ -6,7 +6,7 @@
 #include "core/types.h"
 #include "scenario/scenario.h"
 #include "simulation/disturbance.h"
-#include "simulation/scene.h"
+#include "simulation/engine.h"
 
 namespace predictor {
 
@@ -20,19 +20,19 @@ namespace predictor {
 // A spherical attachment transmits no torque except that of its damping, so only its mount slips.
 class Attachment {
  public:
-  // `scene`: with a free object (Holding::kFree); must outlive this. Throws InputError if its
+  // `engine`: with a free object (Holding::kFree); must outlive this. Throws InputError if its
   // cobot has too many joints.
-  Attachment(const AttachmentSpec& spec, const Scene& scene);
+  Attachment(const AttachmentSpec& spec, Engine* engine);
 
-  // Grips the object where it is in `data`.
-  void Grip(const mjData& data) noexcept;
+  // Grips the object where it is.
+  void Grip() noexcept;
   void SetLimits(const GripLimits& limits) noexcept { limits_ = limits; }
 
-  // Adds the attachment's forces to those in qfrc_applied and xfrc_applied, which must be complete.
-  // Uses the state of the last mj_step1. Returns false on an error of the engine. No heap.
-  bool Hold(mjData* data) noexcept;
+  // Adds the attachment's forces to the engine's joint forces. All other forces must be complete.
+  // Uses the state of the last Prepare. Returns false on an error of the engine. No heap.
+  bool Hold() noexcept;
   // Moves the place of the grip as far as the object slid, at the state after the step.
-  void Follow(const mjData& data) noexcept;
+  void Follow() noexcept;
 
   // Wrench of the object on the end-effector in the last Hold, about E, in axes of W [N, N·m].
   const Wrench& load() const noexcept { return load_; }
@@ -46,14 +46,14 @@ class Attachment {
   using DofJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, kMaxDof>;
 
   bool is_open() const noexcept { return lost_ || (limits_.force <= 0 && limits_.torque <= 0); }
-  const mjModel* model() const noexcept { return scene_.model.get(); }
-  Pose PlaceOf(const mjData& data) const noexcept;
-  void Prepare(const mjData& data) noexcept;
-  void UpdateMobility(const mjData& data) noexcept;
-  Wrench Solve(mjData* data) noexcept;
+  Pose PoseOf(SceneBody body) const noexcept { return engine_.PoseOf(body); }
+  Pose Place() const noexcept;
+  void Prepare() noexcept;
+  void UpdateMobility() noexcept;
+  Wrench Solve() noexcept;
   Wrench WithinLimits(const Vector6& b, Wrench wrench) noexcept;
 
-  const Scene& scene_;
+  Engine& engine_;
   Vector3 p_OA_;
   bool is_fixed_;
   double damping_;  // of a spherical joint [N·m·s/rad]

@@ -83,8 +83,8 @@ std::unique_ptr<Controller> MakeStandby(const ControllerContext& context) {
 }  // namespace
 
 ControlledScene::LooseObject::LooseObject(const Scenario& scenario, const RobotModel& robot)
-    : scene(ComposeScene(scenario, robot, false, Holding::kFree)),
-      attachment(scenario.object.attachment, scene) {}
+    : engine(MakeEngine(scenario, robot, false, Holding::kFree)),
+      attachment(scenario.object.attachment, engine.get()) {}
 
 ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& events)
     : robot_(RobotModel::Load(Source(scenario))),
@@ -98,11 +98,11 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
                                            end_effector_, posture_))
                    : nullptr),
       joint_(scenario.object.attachment.joint),
-      scene_(ComposeScene(scenario, *robot_, has_wrist_sensor())),
+      carried_(MakeEngine(scenario, *robot_, has_wrist_sensor(), Holding::kJoint)),
       loose_(events.loosens_attachment() ? std::make_unique<LooseObject>(scenario, *robot_)
                                          : nullptr),
-      wrist_(scenario.cobot.wrist_sensor, scene_.model->opt.timestep, scenario.seed),
-      timing_(scenario.cobot.control, scene_.model->opt.timestep, events.longest_delay()),
+      wrist_(scenario.cobot.wrist_sensor, carried_->step(), scenario.seed),
+      timing_(scenario.cobot.control, carried_->step(), events.longest_delay()),
       effort_limit_(EffortLimit(scenario.cobot, *robot_)),
       robot_data_(*robot_),
       q_(JointVector::Zero(robot_->dof())),
@@ -110,15 +110,17 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
       torque_(q_),
       computed_(q_),
       safety_(scenario.cobot) {
-  for (int j = 0; j < robot_->dof(); ++j) friction_.push_back(FrictionOf(scene_, j));
+  for (int j = 0; j < robot_->dof(); ++j) friction_.push_back(carried_->JointFriction(j));
   CheckEvents(events);
 }
 
-bool ControlledScene::Update(mjData* data) noexcept {
-  if (!Guarded(mj_step1, model(), data)) return false;
+bool ControlledScene::Update(Engine* engine) noexcept {
+  if (!engine->Prepare()) return false;
+  const Engine::Layout& at = engine->layout();
+  const Engine::Values q = engine->positions(), v = engine->velocities();
   for (int j = 0; j < q_.size(); ++j) {
-    q_[j] = data->qpos[scene().qpos[static_cast<std::size_t>(j)]];
-    v_[j] = data->qvel[scene().dof[static_cast<std::size_t>(j)]];
+    q_[j] = q[at.q[static_cast<std::size_t>(j)]];
+    v_[j] = v[at.v[static_cast<std::size_t>(j)]];
   }
   robot_data_.UpdateDynamics(*robot_, q_, v_, gravity_);
   return true;
@@ -131,9 +133,9 @@ ControllerInput ControlledScene::Input(double t) const {
   return input;
 }
 
-bool ControlledScene::ApplyController(double t, mjData* data) noexcept {
+bool ControlledScene::ApplyController(double t, Engine* engine) noexcept {
   if (!ComputeTorque(t, &torque_)) return false;
-  WriteTorque(data);
+  WriteTorque(engine);
   return true;
 }
 
@@ -158,16 +160,16 @@ void ControlledScene::AddModelErrors(JointVector* torque) const noexcept {
     (*torque)[j] += SmoothFriction(d.coulomb, d.viscous, v_[j]);
 }
 
-void ControlledScene::WriteTorque(mjData* data) const noexcept {
-  for (int j = 0; j < torque_.size(); ++j) {
-    data->qfrc_applied[scene().dof[static_cast<std::size_t>(j)]] = torque_[j];
-  }
+void ControlledScene::WriteTorque(Engine* engine) const noexcept {
+  Engine::Values forces = engine->joint_forces();
+  for (int j = 0; j < torque_.size(); ++j)
+    forces[engine->layout().v[static_cast<std::size_t>(j)]] = torque_[j];
 }
 
-void ControlledScene::StartController(mjData* data) noexcept {
+void ControlledScene::StartController() noexcept {
   if (has_wrist_sensor()) {
-    mj_forwardSkip(model(), data, mjSTAGE_VEL, 0);
-    wrist_at_start_ = WristWrench(*data);
+    engine().ComputeAccelerations(true);
+    wrist_at_start_ = WristWrench(engine());
   }
   ResetController();
 }
@@ -188,10 +190,10 @@ void ControlledScene::ResetController() noexcept {
   if (safety_.is_on()) safety_.Reset(Input(0));
 }
 
-bool ControlledScene::StepController(double t, mjData* data) noexcept {
+bool ControlledScene::StepController(double t) noexcept {
   if (const ControllerAnswer* played = taped() ? taped()->played() : nullptr) {
     torque_ = played->torque;
-    WriteTorque(data);
+    WriteTorque(&engine());
     return played->outcome != ControllerOutcome::kFailed;
   }
   const bool computes = timing_.is_immediate() || timing_.is_due();
@@ -202,7 +204,7 @@ bool ControlledScene::StepController(double t, mjData* data) noexcept {
     torque_ = torque_.cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
   }
   if (disturbance_.brakes || disturbance_.powerless) torque_.setZero();
-  WriteTorque(data);
+  WriteTorque(&engine());
   return true;
 }
 
@@ -241,39 +243,34 @@ void ControlledScene::Resume(const Disturbance& disturbance) noexcept {
   if (loose_) loose_->attachment.SetLimits(disturbance.grip);
 }
 
-void ControlledScene::Loosen(const mjData& carried, mjData* loose) noexcept {
-  const FrameMotion O = Object(carried);
-  const Scene& to = loose_->scene;
-  mj_resetData(to.model.get(), loose);
-  loose->time = carried.time;
+void ControlledScene::Loosen() noexcept {
+  const FrameMotion O = carried_->MotionOf(SceneBody::kObject);
+  Engine& loose = *loose_->engine;
+  loose.Clear();
+  loose.SetTime(carried_->time());
+  const Engine::Layout& from = carried_->layout();
+  const Engine::Layout& to = loose.layout();
+  Engine::Values q = loose.positions(), v = loose.velocities();
   for (std::size_t j = 0; j < static_cast<std::size_t>(q_.size()); ++j) {
-    loose->qpos[to.qpos[j]] = carried.qpos[scene_.qpos[j]];
-    loose->qvel[to.dof[j]] = carried.qvel[scene_.dof[j]];
+    q[to.q[j]] = carried_->positions()[from.q[j]];
+    v[to.v[j]] = carried_->velocities()[from.v[j]];
   }
-  const Quaternion& q = O.X_W.q;
-  double* X = loose->qpos + to.object_qpos;
-  Eigen::Map<Vector3>{X} = O.X_W.p;
-  X[3] = q.w(), X[4] = q.x(), X[5] = q.y(), X[6] = q.z();
-  // The engine's free joint: linear velocity of O in axes of W, angular velocity in axes of O.
-  Eigen::Map<Vector3>{loose->qvel + to.object_dof} = O.V_W.head<3>();
-  Eigen::Map<Vector3>{loose->qvel + to.object_dof + 3} = q.conjugate() * Vector3(O.V_W.tail<3>());
+  loose.MoveObject(O);
   is_loose_ = true;
-  WriteTorque(loose);
-  Update(loose);
-  loose_->attachment.Grip(*loose);
-  loose_->landing = LandingHeight(loose->xipos[3 * to.object + 2]);
+  WriteTorque(&loose);
+  Update(&loose);
+  loose_->attachment.Grip();
+  loose_->landing = LandingHeight(loose.object_com().z());
 }
 
-bool ControlledScene::HoldObject(mjData* data) noexcept {
-  return !is_loose_ || loose_->attachment.Hold(data);
-}
+bool ControlledScene::HoldObject() noexcept { return !is_loose_ || loose_->attachment.Hold(); }
 
-void ControlledScene::FollowObject(const mjData& data) noexcept {
-  if (is_loose_) loose_->attachment.Follow(data);
+void ControlledScene::FollowObject() noexcept {
+  if (is_loose_) loose_->attachment.Follow();
 }
 
 Wrench ControlledScene::LandingOf(const FrameMotion& object) const noexcept {
-  return LandingWrench(scene_.object_model, object, loose_->landing);
+  return LandingWrench(carried_->object_model(), object, loose_->landing);
 }
 
 // A closed brake is friction in the joint that holds as much as the motor can give.
@@ -281,8 +278,8 @@ void ControlledScene::SetBrakes(bool closed) noexcept {
   for (int j = 0; j < q_.size(); ++j) {
     DofFriction friction = friction_[static_cast<std::size_t>(j)];
     if (closed) friction = {friction.torque + effort_limit_[j], kBrakeImpedance};
-    SetFriction(scene_, j, friction);
-    if (loose_) SetFriction(loose_->scene, j, friction);
+    carried_->SetJointFriction(j, friction);
+    if (loose_) loose_->engine->SetJointFriction(j, friction);
   }
 }
 
@@ -335,20 +332,15 @@ std::string ControlledScene::Missing(HazardNeeds needs) const {
   return "";
 }
 
-Wrench ControlledScene::WristWrench(const mjData& data) const noexcept {
+Wrench ControlledScene::WristWrench(const Engine& engine) const noexcept {
   if (is_loose_) return loose_->attachment.load();
-  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data.site_xmat +
-                                                                         9 * scene_.wrist_site);
-  const Eigen::Map<const Vector3> at(data.site_xpos + 3 * scene_.wrist_site);
-  Wrench F_W;
-  // The engine's sensor gives the wrench of the end-effector on the load.
-  F_W << -(R * Eigen::Map<const Vector3>(data.sensordata)),
-      -(R * Eigen::Map<const Vector3>(data.sensordata + 3));
+  Vector3 at;
+  const Wrench F_W = engine.LoadWrench(&at);
   return ShiftWrench(F_W, at - robot_data_.FramePose(*robot_, end_effector_).p);
 }
 
-void ControlledScene::SenseWrist(const mjData& data) noexcept {
-  if (has_wrist_sensor()) wrist_.Step(WristWrench(data));
+void ControlledScene::SenseWrist() noexcept {
+  if (has_wrist_sensor()) wrist_.Step(WristWrench(engine()));
 }
 
 void ControlledScene::AdvanceController(double t) noexcept {
@@ -380,23 +372,10 @@ FrameMotion ControlledScene::EndEffector() const {
   return motion;
 }
 
-FrameMotion ControlledScene::Object(const mjData& data) const {
-  FrameMotion motion;
-  const int object = scene().object;
-  const double* q = data.xquat + 4 * object;
-  motion.X_W = {Eigen::Map<const Vector3>(data.xpos + 3 * object),
-                Quaternion(q[0], q[1], q[2], q[3])};
-  double velocity[6];  // angular, then linear
-  mj_objectVelocity(model(), &data, mjOBJ_XBODY, object, velocity, 0);
-  motion.V_W << Eigen::Map<Vector3>(velocity + 3), Eigen::Map<Vector3>(velocity);
-  return motion;
-}
-
-double ControlledScene::Energy(double t, mjData* data) const noexcept {
+double ControlledScene::Energy(double t) const noexcept {
   if (const ControllerAnswer* played = taped() ? taped()->played() : nullptr) return played->energy;
-  mj_energyVel(model(), data);
-  const double height = data->xipos[3 * scene().object + 2];
-  return data->energy[1] + scene_.object_model.mass * gravity_ * height +
+  const double kinetic = engine().KineticEnergy();
+  return kinetic + carried_->object_model().mass * gravity_ * engine().object_com().z() +
          Acting().StoredEnergy(Input(t));
 }
 

@@ -11,8 +11,8 @@
 #include "simulation/control_timing.h"
 #include "simulation/controller.h"
 #include "simulation/disturbance.h"
+#include "simulation/engine.h"
 #include "simulation/event_sequence.h"
-#include "simulation/scene.h"
 #include "simulation/wrist_sensor.h"
 
 namespace predictor {
@@ -28,31 +28,33 @@ class ControlledScene {
 
   // The scene at present: the one in which the cobot carries the object, or, from the first event
   // of the attachment on, the one with a free object.
-  mjModel* model() const { return scene().model.get(); }
-  const Scene& scene() const { return is_loose_ ? loose_->scene : scene_; }
-  const Scene& start_scene() const { return scene_; }
+  Engine& engine() const { return is_loose_ ? *loose_->engine : *carried_; }
+  Engine& start_engine() const { return *carried_; }
+  // The scene with a free object; null unless an event lets it slip or break loose.
+  Engine* loose_engine() const noexcept { return loose_ ? loose_->engine.get() : nullptr; }
   const RobotModel& robot() const { return *robot_; }
   const JointVector& posture() const { return posture_; }
   const JointVector& effort_limit() const { return effort_limit_; }  // [N·m]
 
-  // Updates the position- and velocity-dependent quantities of `data`, and of the cobot at its qpos
-  // and qvel. The functions below use them. Returns false on an error of the engine.
-  bool Update(mjData* data) noexcept;
+  // Updates what follows from positions and velocities in `engine`, which is at a state of the
+  // present scene, and in the model of the cobot. The functions below use it. Returns false on an
+  // error of the engine.
+  bool Update(Engine* engine) noexcept;
 
   // Writes the controller's torques at time t [s], limited by the joints' effort limits [N·m], to
-  // qfrc_applied, as if the controller had no period and no delay. Returns false if they are not
-  // finite.
-  bool ApplyController(double t, mjData* data) noexcept;
+  // the joint forces, as if the controller had no period and no delay. Returns false if they are
+  // not finite.
+  bool ApplyController(double t, Engine* engine) noexcept;
 
   // The controller's life: StartController once, at the equilibrium at time 0; ResetController at
   // every return to it. In each sub-step, StepController applies the torques that act (as
   // ApplyController, with period and delay); SenseWrist reads the wrist sensor after the engine's
   // forces are known and before Update; AdvanceController advances the controller's memory after
   // Update.
-  void StartController(mjData* data) noexcept;
+  void StartController() noexcept;
   void ResetController() noexcept;
-  bool StepController(double t, mjData* data) noexcept;
-  void SenseWrist(const mjData& data) noexcept;
+  bool StepController(double t) noexcept;
+  void SenseWrist() noexcept;
   void AdvanceController(double t) noexcept;
 
   // For the linearisation: the states of sensor and controller, and their rates.
@@ -65,7 +67,7 @@ class ControlledScene {
   void Advance(double t, double dt) noexcept { controller_->Advance(Input(t), dt); }
   // Wrench of the load on the end-effector, about E, in axes of W, after the engine's forces are
   // known.
-  Wrench WristWrench(const mjData& data) const noexcept;
+  Wrench WristWrench(const Engine& engine) const noexcept;
 
   // Tunes the controller at the state of the last Update; `t` is its time [s].
   void Tune(const ControllerTuning& tuning, double t) noexcept;
@@ -74,21 +76,19 @@ class ControlledScene {
   // The same, before a state is restored in which they already acted.
   void Resume(const Disturbance& disturbance) noexcept;
   CobotStop cobot_stop() const noexcept { return safety_.stop(); }
-  // The scene with a free object; null unless an event lets it slip or break loose.
-  const Scene* loose_scene() const noexcept { return loose_ ? &loose_->scene : nullptr; }
   bool is_loose() const noexcept { return is_loose_; }
   // Whether what hazards do requires the scene with a free object now.
   bool must_loosen() const noexcept { return !is_loose_ && disturbance_.grip != GripLimits(); }
-  // Frees the object: from now on, the scene is the loose one, and `loose` has the state of
-  // `carried`: the same poses, velocities and torques.
-  void Loosen(const mjData& carried, mjData* loose) noexcept;
+  // Frees the object: from now on, the scene is the loose one, with the same poses, velocities and
+  // torques.
+  void Loosen() noexcept;
   // Before a state of that scene is restored.
   void SetLoose(bool loose) noexcept { is_loose_ = loose && loose_; }
   // For a free object, in each sub-step: HoldObject adds the attachment's forces after all others
   // are applied, and returns false on an error of the engine; FollowObject after Update.
   // LandingOf: wrench about its centre of mass that ends a fall.
-  bool HoldObject(mjData* data) noexcept;
-  void FollowObject(const mjData& data) noexcept;
+  bool HoldObject() noexcept;
+  void FollowObject() noexcept;
   Wrench LandingOf(const FrameMotion& object) const noexcept;
   // How the last step of the controller that acts went, and the status of a refused step.
   ControllerOutcome outcome() const noexcept {
@@ -104,18 +104,17 @@ class ControlledScene {
   const JointVector& v() const { return v_; }            // [rad/s]
   const JointVector& torque() const { return torque_; }  // last applied [N·m]
   void SetTorque(const JointVector& torque) noexcept { torque_ = torque; }
-  FrameMotion EndEffector() const;               // X and V; A is zero
-  FrameMotion Object(const mjData& data) const;  // X and V; A is zero
+  FrameMotion EndEffector() const;  // X and V; A is zero
 
   // Kinetic energy, potential energy of the object, and energy stored in the controller's springs
   // [J]. The cobot's own potential energy is excluded, because its controllers compensate its
   // weight.
-  double Energy(double t, mjData* data) const noexcept;
+  double Energy(double t) const noexcept;
 
  private:
   struct LooseObject {
     LooseObject(const Scenario& scenario, const RobotModel& robot);
-    Scene scene;
+    std::unique_ptr<Engine> engine;
     Attachment attachment;
     double landing = 0;  // height at which a fall ends [m]
     void Archive(StateArchive& a) noexcept { a(attachment, landing); }
@@ -131,8 +130,8 @@ class ControlledScene {
   std::string Missing(HazardNeeds needs) const;
   void CheckAttachmentEvent(const EventSequence& events, std::size_t i) const;
   Controller& Acting() const noexcept { return disturbance_.standby ? *standby_ : *controller_; }
-  double step() const noexcept { return scene_.model->opt.timestep; }
-  void WriteTorque(mjData* data) const noexcept;
+  double step() const noexcept { return carried_->step(); }
+  void WriteTorque(Engine* engine) const noexcept;
 
   std::shared_ptr<const RobotModel> robot_;
   FrameId end_effector_;
@@ -140,7 +139,7 @@ class ControlledScene {
   JointVector posture_;
   std::unique_ptr<Controller> controller_, standby_;  // standby_ may be null
   JointType joint_;                                   // of the attachment
-  Scene scene_;
+  std::unique_ptr<Engine> carried_;
   std::unique_ptr<LooseObject> loose_;  // may be null
   bool is_loose_ = false;
   WristSensor wrist_;

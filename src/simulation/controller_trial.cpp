@@ -22,9 +22,7 @@ double CpuTime() {
 }  // namespace
 
 struct ControllerTrial::Impl {
-  explicit Impl(const Scenario& scenario)
-      : scene(scenario, EventSequence(scenario)), data(mj_makeData(scene.model())) {
-    mj_resetData(scene.model(), data.get());
+  explicit Impl(const Scenario& scenario) : scene(scenario, EventSequence(scenario)) {
     if (TapedController* taped = scene.taped()) taped->SetUp(false);
     SetState(scene.posture(), JointVector::Zero(scene.posture().size()));
     scene.ResetController();
@@ -32,15 +30,17 @@ struct ControllerTrial::Impl {
   }
 
   void SetState(const JointVector& q, const JointVector& v) {
+    Engine& engine = scene.engine();
+    const Engine::Layout& at = engine.layout();
+    Engine::Values positions = engine.positions(), velocities = engine.velocities();
     for (int j = 0; j < q.size(); ++j) {
-      data->qpos[scene.scene().qpos[static_cast<std::size_t>(j)]] = q[j];
-      data->qvel[scene.scene().dof[static_cast<std::size_t>(j)]] = v[j];
+      positions[at.q[static_cast<std::size_t>(j)]] = q[j];
+      velocities[at.v[static_cast<std::size_t>(j)]] = v[j];
     }
-    scene.Update(data.get());
+    scene.Update(&engine);
   }
 
   ControlledScene scene;
-  DataPtr data;
   TrialFigures figures;
   std::vector<double> times;  // [s]
 };
@@ -59,9 +59,9 @@ void ControllerTrial::Step(double time, const JointVector& q, const JointVector&
   const std::int64_t calls = AllocationCalls();
   const double cpu = CpuTime();
   const Clock::time_point start = Clock::now();
-  const bool usable = impl.scene.ApplyController(time, impl.data.get());
+  const bool usable = impl.scene.ApplyController(time, &impl.scene.engine());
   impl.scene.Advance(time, impl.scene.timing().period_time());
-  impl.scene.Energy(time, impl.data.get());
+  impl.scene.Energy(time);
   const std::chrono::duration<double> wall = Clock::now() - start;
   figures.longest_cpu = std::max(figures.longest_cpu, CpuTime() - cpu);
   if (AllocationCalls() != calls && figures.allocating++ == 0) figures.first_allocation = time;

@@ -1,35 +1,170 @@
-// Owning pointers to MuJoCo's objects, and handling of its errors.
+// A physics engine, as the rest of this module sees it: a scene at one state.
 #pragma once
 
-#include <mujoco/mujoco.h>
-
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
+
+#include "core/archive.h"
+#include "core/messages.h"
+#include "models/object_model.h"
+#include "models/robot.h"
+#include "scenario/scenario.h"
 
 namespace predictor {
 
-struct MujocoDeleter {
-  void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
-  void operator()(mjData* data) const { mj_deleteData(data); }
+// How the object is part of the scene: a body that the attachment's joint connects to the
+// end-effector, or a free body.
+enum class Holding { kJoint, kFree };
+
+enum class SceneBody { kEndEffector, kObject };  // their frames are E and O
+
+// Coulomb friction of a joint of the cobot, and how little it creeps (1: not at all).
+struct DofFriction {
+  double torque, impedance;  // [N·m] or [N], [1]
 };
-using SpecPtr = std::unique_ptr<mjSpec, MujocoDeleter>;
-using ModelPtr = std::unique_ptr<mjModel, MujocoDeleter>;
-using DataPtr = std::unique_ptr<mjData, MujocoDeleter>;
+inline constexpr double kBrakeImpedance = 0.9999;  // of a closed brake
 
-// After this call, MuJoCo prints nothing, writes no log file and does not end the process. Its
-// warnings are only counted in mjData, and its errors return to Guarded. Takes effect once; any
-// thread may call it.
-void SilenceMujoco();
+// A point where the object or the cobot touches the surroundings.
+struct Contact {
+  Vector3 p_W = Vector3::Zero();       // [m]
+  Vector3 normal_W = Vector3::Zero();  // unit vector, out of the surroundings
+  Vector3 force_W = Vector3::Zero();   // on the object or the cobot [N]
+  double depth = 0;                    // of the penetration; negative: a gap [m]
+};
 
-// Why the engine could not compile `spec`: the first line of its message. The other lines refer to
-// places in the engine's own model.
-std::string FirstLine(mjSpec* spec);
+// Its positions and velocities are those of the cobot's joints and of the attachment's joint or the
+// free object, in the engine's order (Layout). A rotation may have more positions than velocities;
+// a change of the positions is a vector as long as the velocities (tangent space).
+//
+// A step has two stages. Prepare computes what follows from positions and velocities; then forces
+// are set; Advance computes the accelerations and integrates. The functions that say so use the
+// state of the last Prepare.
+//
+// Functions that are noexcept use neither heap nor lock.
+class Engine {
+ public:
+  using Values = Eigen::Map<Eigen::VectorXd>;
+  using ConstValues = Eigen::Map<const Eigen::VectorXd>;
+  using Jacobian6 = Eigen::Ref<Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>>;
 
-// Calls function(model, data) and returns true, or false if MuJoCo raised an error (for instance,
-// because an arena is too small). By default, such an error would end the process. After an error,
-// `data` is unusable until mj_resetData. Uses no heap or lock; does not throw.
-bool Guarded(void (*function)(const mjModel*, mjData*), const mjModel* model,
-             mjData* data) noexcept;
+  struct Layout {
+    int positions = 0, dof = 0;               // their numbers
+    std::array<int, kMaxCobotJoints> q = {};  // index of a joint of RobotModel in positions
+    std::array<int, kMaxCobotJoints> v = {};  // and in velocities
+    int object_q = -1, object_v = -1;         // of a free object's first; −1: it is carried
+    double step = 0;                          // [s]
+  };
+
+  Engine() = default;
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+  virtual ~Engine() = default;
+
+  const Layout& layout() const noexcept { return layout_; }
+  virtual const ObjectModel& object_model() const noexcept = 0;
+  int dof() const noexcept { return layout_.dof; }
+  double step() const noexcept { return layout_.step; }
+
+  // Another state of the same scene. Masses of hands, friction and options are common to both.
+  virtual std::unique_ptr<Engine> Copy() const = 0;
+
+  // ---- the state -------------------------------------------------------------------------------
+
+  virtual double time() const noexcept = 0;  // [s]
+  virtual void SetTime(double time) noexcept = 0;
+  virtual Values positions() noexcept = 0;
+  virtual Values velocities() noexcept = 0;
+  virtual Values joint_forces() noexcept = 0;  // applied, one for each velocity [N·m, N]
+  // Applied to the object, about its centre of mass, in axes of W [N, N·m].
+  virtual void SetObjectWrench(const Wrench& wrench) noexcept = 0;
+  virtual ConstValues accelerations() const noexcept = 0;  // of the last step
+  // Where an iterative solver of contacts begins; the results depend on it in the last digits.
+  virtual void ForgetSolution() noexcept = 0;
+
+  // All of the above as numbers; a restored state continues bit for bit.
+  virtual std::size_t state_size() const noexcept = 0;
+  virtual void Save(std::span<double> to) const noexcept = 0;
+  virtual void Restore(std::span<const double> from) noexcept = 0;  // to be followed by Prepare
+  // With Holding::kFree: gives the object this pose and twist (not the acceleration).
+  virtual void MoveObject(const FrameMotion& O) noexcept = 0;
+  // Everything at rest at the model's zero. Also repairs the state after an error.
+  virtual void Clear() noexcept = 0;
+
+  // ---- a step ----------------------------------------------------------------------------------
+
+  // These return false on an error of the engine, and when there were more contacts than it can
+  // treat. The state is then unusable until Clear or Restore.
+  virtual bool Prepare() noexcept = 0;
+  virtual bool Advance() noexcept = 0;  // by layout().step
+  // Only the accelerations, at the present forces; also the load's wrench, if `load`.
+  virtual bool ComputeAccelerations(bool load) noexcept = 0;
+
+  // ---- kinematics and forces, at the last Prepare ----------------------------------------------
+
+  virtual Pose PoseOf(SceneBody body) const noexcept = 0;           // in W
+  virtual FrameMotion MotionOf(SceneBody body) const noexcept = 0;  // A_W is zero
+  virtual Vector3 object_com() const noexcept = 0;                  // in W [m]
+  virtual double KineticEnergy() noexcept = 0;                      // [J]
+  // Of the point p_W of a body: its velocity, then the body's angular velocity, by the velocities.
+  virtual void Jacobian(SceneBody body, const Vector3& p_W, Jacobian6 J) noexcept = 0;
+  virtual void JacobianRate(SceneBody body, const Vector3& p_W, Jacobian6 J) noexcept = 0;
+  virtual void MassMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept = 0;
+  virtual void TimesMass(const double* a, double* force) const noexcept = 0;  // M a
+  // The matrix of a step: the change of the velocities is its inverse times step · forces. It is
+  // the mass matrix, with whatever the integrator treats implicitly.
+  virtual void StepMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept = 0;
+  // All forces of the last ComputeAccelerations, but those that StepMatrix contains [N·m, N].
+  virtual void Forces(Eigen::Ref<Eigen::VectorXd> forces) noexcept = 0;
+  // Whether contacts, limits or friction react to applied forces, and what those that hold add to
+  // the StepMatrix in response.
+  virtual bool has_reactions() const noexcept = 0;
+  virtual void AddReactions(Eigen::Ref<Eigen::MatrixXd> M) const noexcept = 0;
+  // positions ⊕ scale · change.
+  virtual void Displace(const double* change, double scale) noexcept = 0;
+
+  // With Holding::kJoint and a wrist sensor, after ComputeAccelerations(true) or Advance: wrench of
+  // the load on the end-effector, about the attachment, in axes of W; sets the attachment's place.
+  virtual Wrench LoadWrench(Vector3* p_WA) const noexcept = 0;
+
+  // Contacts of the last Prepare; their forces are those of the last accelerations.
+  virtual int contact_count() const noexcept = 0;
+  virtual Contact contact(int i) const noexcept = 0;
+
+  // ---- the scene -------------------------------------------------------------------------------
+
+  // Friction of joint j of the cobot.
+  virtual DofFriction JointFriction(int j) const noexcept = 0;
+  virtual void SetJointFriction(int j, const DofFriction& friction) noexcept = 0;
+
+  // Direct mode: mass of a hand, a body without weight on its handle [kg]. SetHandMass returns
+  // whether the mass changed; if so, Prepare must follow. Other modes: 0.
+  virtual double HandMass(int hand) const noexcept = 0;
+  virtual bool SetHandMass(int hand, double mass) noexcept = 0;
+  // Sums of masses, with the rounding errors that changes of the hands' masses left.
+  virtual void ArchiveMasses(StateArchive& a) noexcept = 0;
+
+  // Options for searches outside the tick: whether the joints have Coulomb friction, and how
+  // precisely contacts are solved (relative).
+  struct Options {
+    bool coulomb_friction = true;
+    double tolerance = 0;
+  };
+  virtual Options options() const noexcept = 0;
+  virtual void SetOptions(const Options& options) noexcept = 0;
+
+  virtual std::string SceneText() const = 0;  // for inspection, in the engine's language
+
+ protected:
+  Layout layout_;
+};
+
+// Composes the scene of a scenario: cobot, object, handles, floor and table. The object collides
+// with floor and table. `wrist_sensor`: whether LoadWrench will be used. Throws InputError.
+std::unique_ptr<Engine> MakeEngine(const Scenario& scenario, const RobotModel& cobot,
+                                   bool wrist_sensor, Holding holding);
 
 }  // namespace predictor

@@ -14,6 +14,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kTolerance = 1e-8;  // tolerance of accelerations [rad/s², m/s²]
+// Contacts must be solved more accurately than that.
+constexpr double kContactTolerance = 1e-14;
 constexpr int kIterations = 1000;
 constexpr double kMaxStep = 0.1;      // maximum change of a coordinate in an iteration [rad, m]
 constexpr double kPseudoTime = 0.01;  // first step of the flow, squared [s²]
@@ -26,13 +28,11 @@ constexpr double kNudge = 0.01;      // away from an unstable equilibrium [rad, 
 // method.
 class EquilibriumSearch {
  public:
-  EquilibriumSearch(ControlledScene* scene, mjData* data) : scene_(*scene), data_(data) {
-    options_ = scene_.model()->opt;
-    scene_.model()->opt.disableflags |= mjDSBL_FRICTIONLOSS;
-    // Contacts must be solved more accurately than kTolerance.
-    scene_.model()->opt.tolerance = 1e-14;
+  explicit EquilibriumSearch(ControlledScene* scene)
+      : scene_(*scene), engine_(scene->engine()), options_(engine_.options()) {
+    engine_.SetOptions({.coulomb_friction = false, .tolerance = kContactTolerance});
   }
-  ~EquilibriumSearch() { scene_.model()->opt = options_; }
+  ~EquilibriumSearch() { engine_.SetOptions(options_); }
 
   // Returns the largest remaining acceleration; the search succeeded if it is below kTolerance.
   double Run() {
@@ -66,28 +66,26 @@ class EquilibriumSearch {
   }
 
  private:
-  int nv() const { return static_cast<int>(scene_.model()->nv); }
+  int nv() const { return engine_.dof(); }
 
   // Generalised force M·qacc at rest in the present posture [N·m, N].
   VectorXd Force() {
-    std::fill_n(data_->qvel, nv(), 0.0);
-    std::fill_n(data_->qacc_warmstart, nv(), 0.0);
-    if (!scene_.Update(data_) || !scene_.ApplyController(0, data_)) {
+    engine_.velocities().setZero();
+    engine_.ForgetSolution();
+    if (!scene_.Update(&engine_) || !scene_.ApplyController(0, &engine_)) {
       return VectorXd::Constant(nv(), std::nan(""));
     }
-    mj_forwardSkip(scene_.model(), data_, mjSTAGE_VEL, 1);
+    engine_.ComputeAccelerations(false);
     VectorXd r(nv());
-    mj_mulM(scene_.model(), data_, r.data(), data_->qacc);
+    engine_.TimesMass(engine_.accelerations().data(), r.data());
     return r;
   }
 
-  double Residual() const {
-    return Eigen::Map<const VectorXd>(data_->qacc, nv()).lpNorm<Eigen::Infinity>();
-  }
+  double Residual() const { return engine_.accelerations().lpNorm<Eigen::Infinity>(); }
 
   MatrixXd Inertia() const {
     MatrixXd M(nv(), nv());
-    mj_fullM(scene_.model(), data_, M.data());  // symmetric: the storage order does not matter
+    engine_.MassMatrix(M);
     return M;
   }
 
@@ -95,20 +93,20 @@ class EquilibriumSearch {
   void Move(VectorXd dq) {
     const double largest = dq.lpNorm<Eigen::Infinity>();
     if (largest > kMaxStep) dq *= kMaxStep / largest;
-    mj_integratePos(scene_.model(), data_->qpos, dq.data(), 1);
+    engine_.Displace(dq.data(), 1);
   }
 
   // H = −∂r/∂q by central differences.
   MatrixXd Stiffness() {
-    const VectorXd start = Eigen::Map<VectorXd>(data_->qpos, scene_.model()->nq);
+    Engine::Values q = engine_.positions();
+    const VectorXd start = q;
     MatrixXd H(nv(), nv());
     for (int i = 0; i < nv(); ++i) {
       const VectorXd step = kDifference * VectorXd::Unit(nv(), i);
-      Eigen::Map<VectorXd> q(data_->qpos, start.size());
-      mj_integratePos(scene_.model(), data_->qpos, step.data(), 1);
+      engine_.Displace(step.data(), 1);
       const VectorXd ahead = Force();
       q = start;
-      mj_integratePos(scene_.model(), data_->qpos, step.data(), -1);
+      engine_.Displace(step.data(), -1);
       H.col(i) = (Force() - ahead) / (2 * kDifference);
       q = start;
     }
@@ -117,8 +115,8 @@ class EquilibriumSearch {
   }
 
   ControlledScene& scene_;
-  mjData* data_;
-  mjOption options_;
+  Engine& engine_;
+  Engine::Options options_;
 };
 
 // The reason why the cobot cannot hold the object in the posture where the search ended, and the
@@ -149,12 +147,13 @@ Obstacle ObstacleIn(const ControlledScene& scene) {
 
 }  // namespace
 
-void FindEquilibrium(ControlledScene* scene, mjData* data) {
-  mj_resetData(scene->model(), data);
-  for (int j = 0; j < scene->posture().size(); ++j) {
-    data->qpos[scene->scene().qpos[static_cast<std::size_t>(j)]] = scene->posture()[j];
-  }
-  const double residual = EquilibriumSearch(scene, data).Run();
+void FindEquilibrium(ControlledScene* scene) {
+  Engine& engine = scene->engine();
+  engine.Clear();
+  Engine::Values q = engine.positions();
+  for (int j = 0; j < scene->posture().size(); ++j)
+    q[engine.layout().q[static_cast<std::size_t>(j)]] = scene->posture()[j];
+  const double residual = EquilibriumSearch(scene).Run();
   Obstacle obstacle = ObstacleIn(*scene);
   if (residual < kTolerance && obstacle.text.empty()) return;
   if (obstacle.text.empty()) obstacle = {"cobot.posture", "no static equilibrium was found"};

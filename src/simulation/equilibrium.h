@@ -5,10 +5,11 @@
 
 namespace predictor {
 
-// Moves `data` from the cobot's posture, with the attachment at its zero, to a stable static
-// equilibrium of gravity, contacts, and the controller at time 0. Joint friction is ignored, since
-// it would make many postures equilibria. At the end, velocities are zero and all |accelerations|
-// are below 1e-8 rad/s² (m/s²). Throws InputError if no equilibrium is found. Allocates memory.
-void FindEquilibrium(ControlledScene* scene, mjData* data);
+// Moves the carried object's engine from the cobot's posture, with the attachment at its zero, to a
+// stable static equilibrium of gravity, contacts, and the controller at time 0. Joint friction is
+// ignored, since it would make many postures equilibria. At the end, velocities are zero and all
+// |accelerations| are below 1e-8 rad/s² (m/s²). Throws InputError if no equilibrium is found.
+// Allocates memory.
+void FindEquilibrium(ControlledScene* scene);
 
 }  // namespace predictor

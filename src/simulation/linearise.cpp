@@ -17,20 +17,20 @@ constexpr double kMemoryStep = 1e-6;  // of a controller
 
 class Linearisation {
  public:
-  Linearisation(ControlledScene* scene, mjData* data, double t)
+  Linearisation(ControlledScene* scene, Engine* engine, double t)
       : scene_(*scene),
-        data_(data),
+        engine_(*engine),
         time_(t),
-        n_(static_cast<int>(scene->model()->nv)),
+        n_(engine->dof()),
         sensed_(scene->has_wrist_sensor() ? 6 : 0),
-        qpos_(Eigen::Map<VectorXd>(data->qpos, scene->model()->nq)),
+        positions_(engine->positions()),
         filtered_(scene->wrist().filtered()),
         memory_(scene->memory().begin(), scene->memory().end()),
-        disable_flags_(scene->model()->opt.disableflags) {
-    scene_.model()->opt.disableflags |= mjDSBL_FRICTIONLOSS;
+        options_(engine->options()) {
+    engine_.SetOptions({.coulomb_friction = false, .tolerance = options_.tolerance});
   }
   ~Linearisation() {
-    scene_.model()->opt.disableflags = disable_flags_;
+    engine_.SetOptions(options_);
     SetInner(VectorXd::Zero(inner()));
   }
 
@@ -95,7 +95,7 @@ class Linearisation {
     MatrixXd by_torque(n_ + inner(), joints);  // effect of a joint's torque
     const VectorXd zero = VectorXd::Zero(n_), same = VectorXd::Zero(inner());
     for (int j = 0; j < joints; ++j) {
-      const VectorXd e = VectorXd::Unit(n_, scene_.scene().dof[static_cast<std::size_t>(j)]);
+      const VectorXd e = VectorXd::Unit(n_, engine_.layout().v[static_cast<std::size_t>(j)]);
       by_torque.col(j) = Slope(kWrenchStep, zero, zero, e, same).head(n_ + inner());
     }
     MatrixXd A = MatrixXd::Zero(states + 2 * joints, states + 2 * joints);
@@ -131,34 +131,33 @@ class Linearisation {
   // Accelerations; rates of the sensor's and the controller's states; the controller's torques.
   VectorXd Rates(const VectorXd& dq, const VectorXd& v, const VectorXd& force, const VectorXd& in,
                  double step) {
-    Eigen::Map<VectorXd>(data_->qpos, qpos_.size()) = qpos_;
-    mj_integratePos(scene_.model(), data_->qpos, dq.data(), 1);
-    Eigen::Map<VectorXd>(data_->qvel, n_) = v;
-    std::fill_n(data_->qacc_warmstart, n_, 0.0);
-    std::fill_n(data_->qfrc_applied, n_, 0.0);
-    std::fill_n(data_->xfrc_applied, 6 * scene_.model()->nbody, 0.0);
-    Eigen::Map<Vector6>(data_->xfrc_applied + 6 * scene_.scene().object) = step * on_object_;
+    engine_.positions() = positions_;
+    engine_.Displace(dq.data(), 1);
+    engine_.velocities() = v;
+    engine_.ForgetSolution();
+    engine_.joint_forces().setZero();
+    engine_.SetObjectWrench(step * on_object_);
     SetInner(in);
-    scene_.Update(data_);
-    scene_.ApplyController(time_, data_);
-    Eigen::Map<VectorXd>(data_->qfrc_applied, n_) += force;
-    mj_forwardSkip(scene_.model(), data_, mjSTAGE_VEL, sensed_ > 0 ? 0 : 1);
+    scene_.Update(&engine_);
+    scene_.ApplyController(time_, &engine_);
+    engine_.joint_forces() += force;
+    engine_.ComputeAccelerations(sensed_ > 0);
     VectorXd rates(n_ + inner() + dof());
-    rates << Eigen::Map<VectorXd>(data_->qacc, n_), InnerRates(), scene_.torque();
+    rates << engine_.accelerations(), InnerRates(), scene_.torque();
     return rates;
   }
 
   // Cutoff of the wrist sensor [rad/s], with the lag of sampling: a reading is half a sub-step old
   // on average, and the memory is advanced explicitly, half a period late.
   double WristRate() {
-    const double lag = 0.5 * (scene_.model()->opt.timestep + scene_.timing().period_time());
+    const double lag = 0.5 * (engine_.step() + scene_.timing().period_time());
     return 1 / (1 / scene_.wrist().cutoff() + lag);
   }
 
   VectorXd InnerRates() {
     VectorXd rates(inner());
     if (sensed_ > 0)
-      rates.head(sensed_) = WristRate() * (scene_.WristWrench(*data_) - scene_.wrist().filtered());
+      rates.head(sensed_) = WristRate() * (scene_.WristWrench(engine_) - scene_.wrist().filtered());
     const std::span<double> memory = scene_.memory();
     const auto size = static_cast<Eigen::Index>(memory.size());
     const VectorXd before = Eigen::Map<VectorXd>(memory.data(), size);
@@ -172,40 +171,36 @@ class Linearisation {
   Wrench AtCenterOfMass(const Pose& X_OD, const Wrench& F_D) {
     const VectorXd zero = VectorXd::Zero(n_);
     Rates(zero, zero, zero, VectorXd::Zero(inner()), 0);
-    const Eigen::Map<const Vector3> com(data_->xipos + 3 * scene_.scene().object);
-    return ShiftWrench(F_D, (scene_.Object(*data_).X_W * X_OD).p - com);
+    const Vector3 p_WD = engine_.PoseOf(SceneBody::kObject) * X_OD.p;
+    return ShiftWrench(F_D, p_WD - engine_.object_com());
   }
 
   // V_WD = J v.
   MatrixXd HandleJacobian(const Pose& X_OD) {
     const VectorXd zero = VectorXd::Zero(n_);
     Rates(zero, zero, zero, VectorXd::Zero(inner()), 0);
-    const Pose X_WD = scene_.Object(*data_).X_W * X_OD;
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    RowMajor linear(3, n_), angular(3, n_);
-    mj_jac(scene_.model(), data_, linear.data(), angular.data(), X_WD.p.data(),
-           scene_.scene().object);
-    MatrixXd J(6, n_);
-    J << linear, angular;
+    const Vector3 p_WD = engine_.PoseOf(SceneBody::kObject) * X_OD.p;
+    Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> J(6, n_);
+    engine_.Jacobian(SceneBody::kObject, p_WD, J);
     return J;
   }
 
   ControlledScene& scene_;
-  mjData* data_;
+  Engine& engine_;
   double time_;
   int n_, sensed_;
-  VectorXd qpos_;  // the posture about which the scene is linearised
+  VectorXd positions_;  // the posture about which the scene is linearised
   Wrench on_object_ = Wrench::Zero();
   Wrench filtered_;  // states of sensor and controller there
   std::vector<double> memory_;
-  int disable_flags_;
+  Engine::Options options_;
 };
 
 }  // namespace
 
-LinearModel Linearise(ControlledScene* scene, mjData* data, double t, const Hands& hands,
+LinearModel Linearise(ControlledScene* scene, Engine* engine, double t, const Hands& hands,
                       const std::array<Pose, kHands>& X_OD) {
-  return Linearisation(scene, data, t).Compute(hands, X_OD);
+  return Linearisation(scene, engine, t).Compute(hands, X_OD);
 }
 
 }  // namespace predictor

@@ -7,12 +7,12 @@
 
 namespace predictor {
 
-// Linearises about the posture of `data`, at rest, with the set-point of time t [s]. The state
-// contains changes of the coordinates (nv, tangent space) and their rates (nv), then the states of
-// the wrist sensor and the controller. LinearModel defines
+// Linearises about the posture of `engine`, which is at a state of the present scene, at rest, with
+// the set-point of time t [s]. The state contains changes of the coordinates (nv, tangent space)
+// and their rates (nv), then the states of the wrist sensor and the controller. LinearModel defines
 // inputs and outputs, for the handles D at X_OD; sides that are not `present` are zero. Coulomb
-// friction is ignored. Changes the state of `data` and `scene`. Allocates memory.
-LinearModel Linearise(ControlledScene* scene, mjData* data, double t, const Hands& hands,
+// friction is ignored. Changes the state of `engine` and `scene`. Allocates memory.
+LinearModel Linearise(ControlledScene* scene, Engine* engine, double t, const Hands& hands,
                       const std::array<Pose, kHands>& X_OD);
 
 }  // namespace predictor

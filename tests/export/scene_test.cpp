@@ -1,5 +1,5 @@
 // Compares the exported URDF with the simulation's own scene. MuJoCo and RobotModel load the URDF.
-#include "simulation/scene.h"
+#include "simulation/mujoco/scene.h"
 
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>

@@ -1,4 +1,4 @@
-#include "simulation/collision_mesh.h"
+#include "simulation/mujoco/collision_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -41,22 +41,22 @@ TEST(WristSensor, MeasuresTheWeightOfTheLoad) {
   Scenario s = AdmittanceScene();
   s.object.primitive->center_of_mass = {0.1, 0, 0};
   ControlledScene scene(s, EventSequence(s));
-  const DataPtr data(mj_makeData(scene.model()));
-  mj_resetData(scene.model(), data.get());
+  Engine& engine = scene.engine();
+  Engine::Values q = engine.positions();
   for (int j = 0; j < 7; ++j)
-    data->qpos[scene.scene().qpos[static_cast<std::size_t>(j)]] = scene.posture()[j];
-  ASSERT_TRUE(scene.Update(data.get()));
-  scene.ApplyController(0, data.get());
+    q[engine.layout().q[static_cast<std::size_t>(j)]] = scene.posture()[j];
+  ASSERT_TRUE(scene.Update(&engine));
   // Holds the joints still, so that the load does not accelerate.
-  std::fill_n(data->qfrc_applied, scene.model()->nv, 0.0);
-  mj_forwardSkip(scene.model(), data.get(), mjSTAGE_VEL, 1);
-  mj_inverse(scene.model(), data.get());
-  std::vector<double> hold(data->qfrc_bias, data->qfrc_bias + scene.model()->nv);
-  std::copy(hold.begin(), hold.end(), data->qfrc_applied);
-  mj_forwardSkip(scene.model(), data.get(), mjSTAGE_VEL, 0);
-  const Wrench F = scene.WristWrench(*data);
+  engine.joint_forces().setZero();
+  ASSERT_TRUE(engine.ComputeAccelerations(false));
+  Eigen::VectorXd forces(engine.dof());
+  engine.Forces(forces);
+  engine.joint_forces() = -forces;
+  ASSERT_TRUE(engine.ComputeAccelerations(true));
+  EXPECT_LT(engine.accelerations().lpNorm<Eigen::Infinity>(), 1e-9);
+  const Wrench F = scene.WristWrench(engine);
   const Vector3 weight = {0, 0, -2 * kGravity};
-  const Vector3 com = Eigen::Map<const Vector3>(data->xipos + 3 * scene.scene().object);
+  const Vector3 com = engine.object_com();
   EXPECT_LT((F.head<3>() - weight).norm(), 1e-6);
   EXPECT_LT((F.tail<3>() - (com - scene.EndEffector().X_W.p).cross(weight)).norm(), 1e-6);
 }

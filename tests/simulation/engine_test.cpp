@@ -1,4 +1,4 @@
-#include "simulation/engine.h"
+#include "simulation/mujoco/library.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "simulation/scene.h"
+#include "simulation/mujoco/scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "models/mujoco_urdf.h"
 #include "models/urdf.h"
 #include "scenario/paths.h"
-#include "simulation/collision_mesh.h"
+#include "simulation/mujoco/collision_mesh.h"
 
 namespace predictor {
 namespace {

@@ -1,4 +1,4 @@
-// The scene for the physics engine: cobot, object, handles, floor and table, composed into one
+// The scene for MuJoCo: cobot, object, handles, floor and table, composed into one
 // tree.
 #pragma once
 
@@ -9,6 +9,7 @@
 #include "models/robot.h"
 #include "scenario/scenario.h"
 #include "simulation/engine.h"
+#include "simulation/mujoco/library.h"
 
 namespace predictor {
 
@@ -24,10 +25,6 @@ struct Scene {
   std::array<int, kMaxCobotJoints> dof = {};   // address in qvel of RobotModel's joint j
   int object_qpos = -1, object_dof = -1;       // of a free object; −1: the cobot carries it
 };
-
-// How the object is part of the scene: a body that the attachment's joint connects to the
-// end-effector, or a free body.
-enum class Holding { kJoint, kFree };
 
 // Composes and compiles the scene. The attachment's joint connects the object's body to the
 // end-effector's, so that only contacts need the constraint solver. Object, floor and table collide
@@ -48,12 +45,8 @@ std::string SceneText(const Scene& scene);
 bool SetHandMass(const Scene& scene, int hand, double mass) noexcept;
 
 // Friction of a joint of the cobot in the engine's model.
-struct DofFriction {
-  double torque, impedance;  // [N·m], [1]
-};
 DofFriction FrictionOf(const Scene& scene, int joint) noexcept;
 // Sets it. With closed brakes, the joint also creeps a hundred times less.
 void SetFriction(const Scene& scene, int joint, const DofFriction& friction) noexcept;
-inline constexpr double kBrakeImpedance = 0.9999;
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-#include "simulation/collision_mesh.h"
+#include "simulation/mujoco/collision_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "models/object_model.h"
 #include "process/sandboxed_call.h"
-#include "simulation/engine.h"
+#include "simulation/mujoco/library.h"
 
 namespace predictor {
 namespace {

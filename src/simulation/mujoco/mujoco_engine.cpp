@@ -1,0 +1,218 @@
+// MuJoCo as the engine of the virtual world.
+#include <algorithm>
+
+#include "simulation/engine.h"
+#include "simulation/mujoco/scene.h"
+
+namespace predictor {
+namespace {
+
+constexpr unsigned kState = mjSTATE_INTEGRATION;
+
+Eigen::Map<const Vector3> At(const mjtNum* xyz) { return Eigen::Map<const Vector3>(xyz); }
+
+void ForcesWithoutLoad(const mjModel* model, mjData* data) {
+  mj_forwardSkip(model, data, mjSTAGE_VEL, 1);
+}
+void ForcesAndLoad(const mjModel* model, mjData* data) {
+  mj_forwardSkip(model, data, mjSTAGE_VEL, 0);
+}
+
+class MujocoEngine final : public Engine {
+ public:
+  explicit MujocoEngine(std::shared_ptr<const Scene> scene)
+      : scene_(std::move(scene)), model_(scene_->model.get()), data_(mj_makeData(model_)) {
+    layout_ = {.positions = static_cast<int>(model_->nq),
+               .dof = static_cast<int>(model_->nv),
+               .q = scene_->qpos,
+               .v = scene_->dof,
+               .object_q = scene_->object_qpos,
+               .object_v = scene_->object_dof,
+               .step = model_->opt.timestep};
+    mj_resetData(model_, data());
+  }
+
+  std::unique_ptr<Engine> Copy() const override {
+    auto copy = std::make_unique<MujocoEngine>(scene_);
+    mj_copyData(copy->data(), model_, data());
+    return copy;
+  }
+  const ObjectModel& object_model() const noexcept override { return scene_->object_model; }
+
+  double time() const noexcept override { return data_->time; }
+  void SetTime(double time) noexcept override { data_->time = time; }
+  Values positions() noexcept override { return {data_->qpos, model_->nq}; }
+  Values velocities() noexcept override { return {data_->qvel, model_->nv}; }
+  Values joint_forces() noexcept override { return {data_->qfrc_applied, model_->nv}; }
+  ConstValues accelerations() const noexcept override { return {data_->qacc, model_->nv}; }
+  void SetObjectWrench(const Wrench& wrench) noexcept override {
+    Eigen::Map<Vector6>(data_->xfrc_applied + 6 * scene_->object) = wrench;
+  }
+  void ForgetSolution() noexcept override { std::fill_n(data_->qacc_warmstart, model_->nv, 0.0); }
+
+  std::size_t state_size() const noexcept override {
+    return static_cast<std::size_t>(mj_stateSize(model_, kState));
+  }
+  void Save(std::span<double> to) const noexcept override {
+    mj_getState(model_, data(), to.data(), kState);
+  }
+  void Restore(std::span<const double> from) noexcept override {
+    mj_resetData(model_, data());  // clears warnings, and the stack after an error
+    mj_setState(model_, data(), from.data(), kState);
+  }
+  void MoveObject(const FrameMotion& O) noexcept override {
+    const Quaternion& q = O.X_W.q;
+    double* X = data_->qpos + scene_->object_qpos;
+    Eigen::Map<Vector3>{X} = O.X_W.p;
+    X[3] = q.w(), X[4] = q.x(), X[5] = q.y(), X[6] = q.z();
+    // The engine's free joint: linear velocity of O in axes of W, angular velocity in axes of O.
+    double* V = data_->qvel + scene_->object_dof;
+    Eigen::Map<Vector3>{V} = O.V_W.head<3>();
+    Eigen::Map<Vector3>{V + 3} = q.conjugate() * Vector3(O.V_W.tail<3>());
+  }
+  void Clear() noexcept override { mj_resetData(model_, data()); }
+
+  bool Prepare() noexcept override { return Guarded(mj_step1, model_, data()) && IsComplete(); }
+  bool Advance() noexcept override { return Guarded(mj_step2, model_, data()) && IsComplete(); }
+  bool ComputeAccelerations(bool load) noexcept override {
+    return Guarded(load ? ForcesAndLoad : ForcesWithoutLoad, model_, data()) && IsComplete();
+  }
+
+  Pose PoseOf(SceneBody body) const noexcept override {
+    const double* q = data_->xquat + 4 * Index(body);
+    return {At(data_->xpos + 3 * Index(body)), Quaternion(q[0], q[1], q[2], q[3])};
+  }
+  FrameMotion MotionOf(SceneBody body) const noexcept override {
+    FrameMotion motion;
+    motion.X_W = PoseOf(body);
+    double velocity[6];  // angular, then linear
+    mj_objectVelocity(model_, data(), mjOBJ_XBODY, Index(body), velocity, 0);
+    motion.V_W << At(velocity + 3), At(velocity);
+    return motion;
+  }
+  Vector3 object_com() const noexcept override { return At(data_->xipos + 3 * scene_->object); }
+  double KineticEnergy() noexcept override {
+    mj_energyVel(model_, data());
+    return data_->energy[1];
+  }
+
+  void Jacobian(SceneBody body, const Vector3& p_W, Jacobian6 J) noexcept override {
+    mj_jac(model_, data(), J.data(), J.data() + 3 * J.outerStride(), p_W.data(), Index(body));
+  }
+  void JacobianRate(SceneBody body, const Vector3& p_W, Jacobian6 J) noexcept override {
+    mj_jacDot(model_, data(), J.data(), J.data() + 3 * J.outerStride(), p_W.data(), Index(body));
+  }
+  void MassMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept override {
+    mj_fullM(model_, data(), M.data());  // symmetric: the storage order does not matter
+  }
+  void TimesMass(const double* a, double* force) const noexcept override {
+    mj_mulM(model_, data(), force, a);
+  }
+  void StepMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept override {
+    MassMatrix(M);
+    // The engine integrates the joints' damping implicitly.
+    for (int i = 0; i < model_->nv; ++i) M(i, i) += model_->opt.timestep * model_->dof_damping[i];
+  }
+  void Forces(Eigen::Ref<Eigen::VectorXd> forces) noexcept override {
+    const auto map = [this](const double* x) { return ConstValues(x, model_->nv); };
+    forces = map(data_->qfrc_passive) - map(data_->qfrc_bias) + map(data_->qfrc_applied);
+    if (data_->nefc > 0) forces += map(data_->qfrc_constraint);
+    const double* wrench = data_->xfrc_applied + 6 * scene_->object;
+    mj_applyFT(model_, data(), wrench, wrench + 3, data_->xipos + 3 * scene_->object,
+               scene_->object, forces.data());
+  }
+  bool has_reactions() const noexcept override { return data_->nefc > 0; }
+  // Those that hold act like inertia: each is a force of −efc_D times the acceleration along its
+  // row.
+  void AddReactions(Eigen::Ref<Eigen::MatrixXd> M) const noexcept override {
+    for (int i = 0; i < data_->nefc; ++i) {
+      if (data_->efc_state[i] != mjCNSTRSTATE_QUADRATIC) continue;
+      const ConstValues row(data_->efc_J + i * model_->nv, model_->nv);
+      M += data_->efc_D[i] * row.lazyProduct(row.transpose());
+    }
+  }
+  void Displace(const double* change, double scale) noexcept override {
+    mj_integratePos(model_, data_->qpos, change, scale);
+  }
+
+  Wrench LoadWrench(Vector3* p_WA) const noexcept override {
+    const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R(data_->site_xmat +
+                                                                           9 * scene_->wrist_site);
+    *p_WA = At(data_->site_xpos + 3 * scene_->wrist_site);
+    Wrench F_W;
+    // The engine's sensor gives the wrench of the end-effector on the load.
+    F_W << -(R * At(data_->sensordata)), -(R * At(data_->sensordata + 3));
+    return F_W;
+  }
+
+  int contact_count() const noexcept override { return static_cast<int>(data_->ncon); }
+  Contact contact(int i) const noexcept override;
+
+  DofFriction JointFriction(int j) const noexcept override { return FrictionOf(*scene_, j); }
+  void SetJointFriction(int j, const DofFriction& friction) noexcept override {
+    SetFriction(*scene_, j, friction);
+  }
+  double HandMass(int hand) const noexcept override {
+    const int body = scene_->hand[static_cast<std::size_t>(hand)];
+    return body < 0 ? 0 : model_->body_mass[body];
+  }
+  bool SetHandMass(int hand, double mass) noexcept override {
+    return predictor::SetHandMass(*scene_, hand, mass);
+  }
+  void ArchiveMasses(StateArchive& a) noexcept override {
+    for (int body = 0; body < model_->nbody; ++body) a(model_->body_subtreemass[body]);
+  }
+
+  Options options() const noexcept override {
+    return {(model_->opt.disableflags & mjDSBL_FRICTIONLOSS) == 0, model_->opt.tolerance};
+  }
+  void SetOptions(const Options& options) noexcept override {
+    if (options.coulomb_friction)
+      model_->opt.disableflags &= ~mjDSBL_FRICTIONLOSS;
+    else
+      model_->opt.disableflags |= mjDSBL_FRICTIONLOSS;
+    model_->opt.tolerance = options.tolerance;
+  }
+  std::string SceneText() const override { return predictor::SceneText(*scene_); }
+
+ private:
+  mjData* data() const noexcept { return data_.get(); }
+  int Index(SceneBody body) const noexcept {
+    return body == SceneBody::kObject ? scene_->object : scene_->end_effector;
+  }
+  // The engine omits what does not fit into its memory, with a warning.
+  bool IsComplete() const noexcept {
+    return data_->warning[mjWARN_CONTACTFULL].number == 0 &&
+           data_->warning[mjWARN_CNSTRFULL].number == 0;
+  }
+
+  std::shared_ptr<const Scene> scene_;
+  mjModel* model_;
+  DataPtr data_;
+};
+
+Contact MujocoEngine::contact(int i) const noexcept {
+  const mjContact& from = data_->contact[i];
+  // The engine's normal points from the first shape to the second.
+  const int moving = model_->geom_bodyid[from.geom[1]] > 0 ? 1 : 0;
+  const double sign = moving == 1 ? 1 : -1;
+  Contact contact;
+  contact.p_W = At(from.pos);
+  contact.normal_W = sign * At(from.frame);
+  contact.depth = -from.dist;
+  double force[6];  // in axes of the contact's frame
+  mj_contactForce(model_, data(), i, force);
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R_CW(from.frame);
+  contact.force_W = sign * (R_CW.transpose() * At(force));
+  return contact;
+}
+
+}  // namespace
+
+std::unique_ptr<Engine> MakeEngine(const Scenario& scenario, const RobotModel& cobot,
+                                   bool wrist_sensor, Holding holding) {
+  return std::make_unique<MujocoEngine>(
+      std::make_shared<const Scene>(ComposeScene(scenario, cobot, wrist_sensor, holding)));
+}
+
+}  // namespace predictor
