@@ -26,6 +26,7 @@ struct Request {
   ContinueCommandOptions continue_run;
   ExportPersonOptions person;
   ImportOptions imported;
+  ForgetOptions forget;
   HazardsCommandOptions hazards;
   PopulationCommandOptions population;
   SurveyOptions survey;

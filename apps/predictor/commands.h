@@ -169,6 +169,13 @@ struct ImportOptions : OutputOptions {
   std::string output;  // empty: NAME.person.csv
 };
 
+// Input of `forget`.
+struct ForgetOptions : OutputOptions {
+  std::string pseudonym;
+  std::string folder;
+  bool yes = false;  // delete without asking
+};
+
 // Input and output of `hazards`.
 struct HazardsCommandOptions : OutputOptions {
   std::vector<std::string> scenarios;
@@ -232,6 +239,8 @@ int ListChannelsCommand(const RecordingOptions& options);
 int RepairCommand(const RecordingOptions& options);
 // Writes to `output`, or to NAME.shared.mcap next to the recording.
 int ShareCommand(const RecordingOptions& options);
+// Returns the exit code kUnfit unless nothing of the person is left and all could be searched.
+int ForgetCommand(const ForgetOptions& options);
 // Shows a recording in the viewer until asked to end.
 int ReplayCommand(const std::string& recording, const ServeOptions& options);
 // Returns the exit code kDeparted if the recomputed run differs.

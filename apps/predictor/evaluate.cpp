@@ -46,6 +46,7 @@ assessment::Assessment Evaluate(const EvaluateOptions& options, const std::strin
   AddSafety(run, options, &result);
   progress.Finish();
   result.recording = run.file;
+  result.participant = run.participant;
   return result;
 }
 

@@ -47,6 +47,7 @@ EvaluatedRun OpenTicks(const std::string& file, const PersonOptions& options) {
   EvaluatedRun run;
   run.scenario = ParseScenario(header.scenario_yaml, file, ".", options.set);
   RefuseUnknown(run.scenario, file);
+  run.participant = ParticipantIn(header.labels);
   assessment::SampleCollector samples(run.scenario);
   run.safety.emplace(run.scenario);
   ReadTicks(&reader, "Reading", options.quiet, [&](const TickRecord& record) {
@@ -69,6 +70,7 @@ EvaluatedRun OpenImported(const std::string& file, const PersonOptions& options)
   run.run = assessment::RunOf(person);
   run.object_mass = person.header.object_mass;
   run.notes = person.header.notes;
+  run.participant = person.header.participant;
   if (person.track.head || person.track.elbows[0] || person.track.elbows[1] ||
       !person.track.signals.empty())
     run.tracks.push_back(person.track);

@@ -13,6 +13,7 @@ namespace predictor {
 struct EvaluatedRun {
   std::string file;
   Scenario scenario;
+  std::optional<ParticipantSpec> participant;         // empty: not known
   std::optional<double> object_mass;                  // [kg]; empty: not known
   std::optional<assessment::SceneMasses> masses;      // empty: not known
   std::optional<assessment::SafetyCollector> safety;  // empty: of another system

@@ -14,6 +14,7 @@
 #include "recording/provenance.h"
 #include "recording/scene.h"
 #include "report.h"
+#include "scenario/participant.h"
 #include "screen.h"
 
 namespace predictor {
@@ -39,11 +40,17 @@ std::vector<JsonChannel> ChannelsOf(const Emulator& emulator, const EvaluationBo
 
 std::map<std::string, std::string> RecordOptions::Labels() const {
   std::map<std::string, std::string> result;
+  if (!participant.empty()) result = LabelsOf(LoadParticipant(participant));
   for (const std::string& label : labels) {
     const std::size_t equals = label.find('=');
     if (equals == 0 || equals == std::string::npos)
       throw InputError("--label: " + Quote(label) + " is not a label. Write key=value.");
-    result[label.substr(0, equals)] = label.substr(equals + 1);
+    const std::string key = label.substr(0, equals);
+    if (IsParticipantLabel(key))
+      throw InputError("--label: " + Quote(key) +
+                       " is checked before it is stored. Write it into a file, and give the file "
+                       "with --participant.");
+    result[key] = label.substr(equals + 1);
   }
   return result;
 }

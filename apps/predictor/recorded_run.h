@@ -24,9 +24,10 @@ struct RecordOptions {
   std::string file;                 // empty: the command's default
   bool off = false;                 // no recording, even if it is the default
   std::vector<std::string> labels;  // "key=value"
+  std::string participant;          // file of the person in a study; empty: none
   std::string machine;              // machine file of real arms, as YAML
 
-  // Throws InputError.
+  // Of the participant, too. Throws InputError.
   std::map<std::string, std::string> Labels() const;
 };
 

@@ -1,5 +1,6 @@
 // The commands that run a scenario or show a recorded run.
 #include "command_line.h"
+#include "scenario/participant.h"
 
 namespace predictor {
 namespace {
@@ -20,6 +21,16 @@ void AddRecordOptions(CLI::App* app, RecordOptions* o, const char* what) {
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
+  AddOption(app, "Person", "--participant", &o->participant, "FILE",
+            "The person in a study: pseudonym, consent, handedness, body");
+}
+
+// The body of the participant, unless --set gives another one.
+void TakeBody(const RecordOptions& record, ScenarioOptions* scenario) {
+  if (record.participant.empty()) return;
+  const ParticipantFile participant = LoadParticipant(record.participant);
+  if (participant.body)
+    scenario->set.insert(scenario->set.begin(), BodyOverride(*participant.body));
 }
 
 void AddRosOptions(CLI::App* app, ServeOptions* o) {
@@ -51,8 +62,10 @@ void AddEvaluation(CLI::App* app, ServeOptions* o) {
 }
 
 void AddRun(CLI::App* app, Request* r) {
-  CLI::App* run = AddCommand(app, kRunGroup, "run", "Run a scenario in real time", r,
-                             [r] { return RunCommand(r->scenario, r->serve, r->record); });
+  CLI::App* run = AddCommand(app, kRunGroup, "run", "Run a scenario in real time", r, [r] {
+    TakeBody(r->record, &r->scenario);
+    return RunCommand(r->scenario, r->serve, r->record);
+  });
   AddScenario(run, &r->scenario);
   AddRunTime(run, &r->scenario);
   AddOption(run, "Scenario", "--machine", &r->scenario.machine, "FILE",
@@ -84,9 +97,11 @@ void AddRun(CLI::App* app, Request* r) {
 }
 
 void AddSimulate(CLI::App* app, Request* r) {
-  CLI::App* simulate =
-      AddCommand(app, kRunGroup, "simulate", "Run a scenario in virtual time and print its summary",
-                 r, [r] { return SimulateCommand(r->scenario, r->record); });
+  CLI::App* simulate = AddCommand(app, kRunGroup, "simulate",
+                                  "Run a scenario in virtual time and print its summary", r, [r] {
+                                    TakeBody(r->record, &r->scenario);
+                                    return SimulateCommand(r->scenario, r->record);
+                                  });
   AddScenario(simulate, &r->scenario);
   AddRunTime(simulate, &r->scenario);
   AddRecordOptions(simulate, &r->record, "Record to this file [default: no recording]");

@@ -7,6 +7,7 @@
 #include "command_line.h"
 #include "evaluation/summary.h"
 #include "scenario/machine.h"
+#include "scenario/pseudonym.h"
 #include "scenario/scenario_io.h"
 #include "screen.h"
 
@@ -117,6 +118,22 @@ void AddShare(CLI::App* app, Request* r) {
   share->footer("Example:\n  predictor share runs/p07_real.mcap -o shared/07.mcap\n");
 }
 
+void AddForget(CLI::App* app, Request* r) {
+  ForgetOptions* o = &r->forget;
+  CLI::App* forget =
+      AddCommand(app, kToolGroup, "forget", "Delete everything of one person below a folder", r,
+                 [o] { return ForgetCommand(*o); });
+  forget->add_option("pseudonym", o->pseudonym, "Pseudonym of the person")->required();
+  forget->add_option("folder", o->folder, "Folder to search, with all folders in it")->required();
+  forget->add_flag("--yes", o->yes, "Delete without asking")->group("Output");
+  AddJson(forget, o);
+  AddQuiet(forget, o);
+  forget->footer(
+      "Lists the files before it deletes them, and searches the folder again afterwards.\n\n"
+      "Exit code 1: something is left, or a place could not be searched.\n\n"
+      "Example:\n  predictor forget K7QM2XPX runs\n");
+}
+
 // Adds a command that prints a text.
 CLI::App* AddPrint(CLI::App* app, const char* group, const char* name, const char* what, Request* r,
                    std::function<std::string()> text) {
@@ -165,6 +182,10 @@ void AddToolCommands(CLI::App* app, Request* r) {
   AddImport(app, r);
   AddRepair(app, r);
   AddShare(app, r);
+  AddForget(app, r);
+  AddPrint(app, kToolGroup, "pseudonym", "Draw a new pseudonym for a person in a study", r, [] {
+    return DrawPseudonym() + "\n";
+  })->footer("Example:\n  predictor pseudonym\n");
   AddSchema(app, r);
   CLI::App* help = AddCommand(app, kToolGroup, "help", "Show the help of a command", r,
                               [app, r] { return ShowHelp(app, r->help); });

@@ -48,7 +48,8 @@ struct WorksheetResult {
 
 struct Assessment {
   std::string recording, scenario;
-  std::string operator_type;  // as in the scenario
+  std::string operator_type;                   // as in the scenario
+  std::optional<ParticipantSpec> participant;  // filled by the caller
   PersonSetup setup;
   std::array<bool, kHands> hands = {};  // which handles the scenario has
   double duration = 0;                  // simulated [s]

@@ -26,6 +26,7 @@ std::string HeadOf(const Assessment& a) {
   for (const MeasuredSignal& signal : a.measured.signals)
     text += "," + CsvCell("measured." + signal.name +
                           (signal.unit.empty() ? "" : " [" + signal.unit + "]"));
+  if (a.participant) text += ",pseudonym";
   return text + '\n';
 }
 
@@ -49,6 +50,7 @@ std::string AssessmentCsv(const Assessment& a) {
     for (const WorksheetResult& w : a.worksheets) Append(&text, ",%d", w.values[i]);
     for (const MeasuredSignal& signal : a.measured.signals)
       text += std::isfinite(signal.values[i]) ? Formatted(",%.9g", signal.values[i]) : ",";
+    if (a.participant) text += "," + CsvCell(a.participant->pseudonym);
     text += '\n';
     k += sampled ? 1 : 0;
   }

@@ -121,6 +121,15 @@ Json ToJson(const Comparison& comparison) {
   return json;
 }
 
+Json ParticipantOf(const Assessment& a) {
+  if (!a.participant) return nullptr;
+  const ParticipantSpec& p = *a.participant;
+  return {{"pseudonym", p.pseudonym},
+          {"consent_version", p.consent.version},
+          {"consent_date", p.consent.date},
+          {"handedness", p.handedness}};
+}
+
 Json PersonOf(const Assessment& a) {
   const BodySpec& body = a.setup.body;
   return {{"simulated", a.operator_type == "virtual"},
@@ -128,6 +137,7 @@ Json PersonOf(const Assessment& a) {
           {"height_m", body.height},
           {"mass_kg", body.mass},
           {"sex", body.sex == Sex::kMale ? "male" : "female"},
+          {"participant", ParticipantOf(a)},
           {"reached", a.reached},
           {"reached_by_possible_postures",
            a.sampled_times.empty() ? Json(nullptr) : Json(a.sampled_reached)},
@@ -223,6 +233,7 @@ std::string AssessmentSchema() {
              {"height_m", schema::Value("number", "height of the body [m]")},
              {"mass_kg", schema::Value("number", "mass of the body [kg]")},
              {"sex", schema::Value("string", "female or male")},
+             {"participant", schema::ValueOrNull("object", "pseudonym, consent and handedness")},
              {"reached", schema::Value("number",
                                        "share of time in which the body reaches the "
                                        "handles, 0 … 1")},

@@ -75,9 +75,11 @@ std::string NumberText(const Unit& unit, double x) {
 std::string ValueText(const QuantityKind& kind, double x) { return NumberText(kind.unit, x); }
 
 std::string OperatorSentence(const Assessment& a) {
-  if (a.operator_type == "virtual") return "The operator was simulated.";
-  if (a.operator_type == "browser") return "A mouse or a headset's hands moved the handles.";
-  return "A person held the handles.";
+  const std::string who =
+      a.participant ? " (" + Printable(ParticipantWords(*a.participant)) + ")." : ".";
+  if (a.operator_type == "virtual") return "The operator was simulated" + who;
+  if (a.operator_type == "browser") return "A mouse or a headset's hands moved the handles" + who;
+  return "A person held the handles" + who;
 }
 
 std::string ReachSentence(const Assessment& a) {

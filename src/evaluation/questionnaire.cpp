@@ -1,7 +1,5 @@
 #include "evaluation/questionnaire.h"
 
-#include <sys/random.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -9,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "scenario/pseudonym.h"
 
 namespace predictor {
 namespace {
@@ -16,8 +15,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFormat = 1;  // format version of a stored answer
-constexpr std::string_view kPseudonymDigits = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ";
-static_assert(kPseudonymDigits.size() == 32);
 
 const std::set<std::string> kSexes = {"female", "male", "other"};
 
@@ -107,20 +104,6 @@ std::string ReadComment(const Json& object) {
   return comment;
 }
 
-// The check character that makes the weighted sum of all values a multiple of 32. The weights are
-// 1, 3, 5, ..., and 1 for the check character itself. Because they are odd, a change of any single
-// value is detected. Empty for invalid characters.
-std::optional<char> CheckCharacter(std::string_view others) {
-  std::size_t sum = 0, factor = 1;
-  for (const char c : others) {
-    const std::size_t value = kPseudonymDigits.find(c);
-    if (value == std::string_view::npos) return {};
-    sum += factor * value;
-    factor += 2;
-  }
-  return kPseudonymDigits[(32 - sum % 32) % 32];
-}
-
 // Fields that a form and a stored answer have in common.
 SurveyAnswer ReadFields(const Json& object) {
   SurveyAnswer answer;
@@ -200,20 +183,6 @@ const char* ConsentText() {
          "or recorded. The pseudonym is shown to you once, at the end. Give it to the "
          "experimenter if you want your answers removed. Please write nothing in the comment "
          "that could identify you.";
-}
-
-bool IsPseudonym(std::string_view text) {
-  return text.size() == kPseudonymLength &&
-         text.back() == CheckCharacter(text.substr(0, text.size() - 1));
-}
-
-std::string DrawPseudonym() {
-  std::array<std::uint8_t, kPseudonymLength - 1> random{};
-  if (getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size()))
-    throw std::runtime_error("The system provides no random numbers.");
-  std::string text;
-  for (const std::uint8_t byte : random) text += kPseudonymDigits[byte % kPseudonymDigits.size()];
-  return text + CheckCharacter(text).value();
 }
 
 SurveyAnswer ParseSurveyForm(std::string_view text) {

@@ -40,7 +40,6 @@ inline constexpr int kConsentVersion = 1;
 inline constexpr int kOldest = 120;                      // [years]
 inline constexpr std::size_t kLongestComment = 2000;     // [characters]
 inline constexpr std::size_t kLongestAnswer = 32 << 10;  // as JSON [bytes]
-inline constexpr std::size_t kPseudonymLength = 8;
 
 struct SurveyAnswer {
   std::string pseudonym;  // IsPseudonym; if it is empty in a form, one is drawn
@@ -51,13 +50,6 @@ struct SurveyAnswer {
   std::string sex;      // "female", "male", "other"; empty: not given
   std::string comment;  // UTF-8
 };
-
-// Eight characters from the digits 2 to 9 and the capitals without I and O, so it can be written
-// down. The last character is a check character, so a single mistyped character never yields
-// another valid pseudonym.
-bool IsPseudonym(std::string_view text);
-// Made from 35 random bits of the system's generator. Throws std::runtime_error.
-std::string DrawPseudonym();
 
 // Parses the text that the page sends: {"consent": true, "condition", "answers": {"S1": 2, ...},
 // "age", "sex", "comment", "pseudonym"}. A statement, age and sex may be null. Throws InputError

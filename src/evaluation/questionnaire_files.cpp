@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "scenario/pseudonym.h"
 
 namespace predictor {
 namespace {

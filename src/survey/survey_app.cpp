@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "scenario/pseudonym.h"
 #include "viewer/protocol.h"
 #include "viewer/rate_limit.h"
 #include "viewer/viewer_app.h"

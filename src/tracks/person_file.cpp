@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "scenario/field_reader.h"
 #include "scenario/field_writer.h"
+#include "scenario/participant_fields.h"
 #include "tracks/track_map_fields.h"
 
 namespace predictor::tracks {
@@ -30,6 +31,7 @@ void PersonFields(V& v, PersonHeader& s) {
     inner("body", s.body, Part("height, mass and sex"));
     inner("stance", s.stance, Part("where the person stands, in W"));
   });
+  v("participant", s.participant, Part("the person in a study; null: none"));
   v.Group("grips", "how the hands hold their handles", [&](auto& inner) {
     inner("left", s.left, Part("the left hand"));
     inner("right", s.right, Part("the right hand"));
@@ -56,8 +58,13 @@ void Require(bool given, const std::string& key, const std::string& why, const P
   if (!given) problems->Add(place, key + " is missing: " + why);
 }
 
+void CheckHeader(const PersonHeader& header, const YamlNode& root, Problems* problems) {
+  if (header.participant) CheckParticipant(*header.participant, "participant.", root, problems);
+}
+
 void CheckImport(const ImportMap& map, const YamlNode& root, Problems* problems) {
   CheckTrackMap(map.channels, root, problems);
+  CheckHeader(map.person, root, problems);
   const auto check = [&](const std::optional<HandMap>& hand, const std::string& name) {
     if (!hand) return;
     const Place place = PlaceOf(name, root);
@@ -262,6 +269,8 @@ PersonFile ReadPersonFile(const std::filesystem::path& file,
   Problems problems;
   PersonFile person;
   person.header = ReadStruct<PersonHeader>(root, &problems);
+  problems.ThrowIfAny();
+  CheckHeader(person.header, root, &problems);
   problems.ThrowIfAny();
   person.track = ApplyMap(MapOfColumns(table), table);
   const auto& hands = person.track.hands;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "scenario/participant.h"
 #include "scenario/scenario.h"
 #include "tracks/body_track.h"
 #include "tracks/track_map.h"
@@ -22,6 +23,7 @@ struct PersonHeader {
   std::optional<double> object_mass;  // that the hands move together with a robot [kg]
   std::optional<BodySpec> body;
   std::optional<StanceSpec> stance;
+  std::optional<ParticipantSpec> participant;
   GripSpec left, right;            // how the hands hold their handles
   std::vector<std::string> notes;  // what was missing, as sentences
 };

@@ -99,6 +99,8 @@ TEST(Help, OfEachCommandHasExamplesAndDefaultsAndFitsTheTerminal) {
                                                   {"export", "person"},
                                                   {"import"},
                                                   {"share"},
+                                                  {"forget"},
+                                                  {"pseudonym"},
                                                   {"repair"}}) {
     std::vector<std::string> by_option = command, by_command = command;
     by_option.emplace_back("--help");

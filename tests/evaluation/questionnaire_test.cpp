@@ -20,6 +20,7 @@
 #include "evaluation/questionnaire_files.h"
 #include "evaluation/questionnaire_report.h"
 #include "evaluation/questionnaire_table.h"
+#include "scenario/pseudonym.h"
 #include "support/questionnaire.h"
 #include "support/temporary_folder.h"
 

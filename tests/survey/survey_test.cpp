@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "scenario/pseudonym.h"
 #include "survey/survey_app.h"
 #include "viewer/client.h"
 #include "viewer/protocol.h"

@@ -1,0 +1,91 @@
+// predictor forget: delete everything of one person.
+#include "recording/forget.h"
+
+#include <unistd.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "core/error.h"
+#include "core/format.h"
+#include "core/text.h"
+#include "screen.h"
+
+namespace predictor {
+namespace {
+
+constexpr const char* kNotReached =
+    "Not reached: backups and snapshots of the file system, copies in other folders and on other "
+    "computers, exports under names of your own that do not contain the pseudonym, and the blocks "
+    "of a disk that are not yet overwritten (an SSD keeps some that no program reaches).";
+
+void TellList(const std::string& title, const std::vector<PersonalFile>& list) {
+  if (list.empty()) return;
+  TheScreen().Tell(title);
+  for (const PersonalFile& entry : list)
+    TheScreen().Tell("  " + entry.path.string() + ": " + entry.why);
+}
+
+bool Confirmed(const ForgetOptions& options, std::size_t count) {
+  if (options.yes) return true;
+  if (isatty(STDIN_FILENO) != 1)
+    throw InputError("Nothing was deleted. To delete what is listed, add --yes.");
+  TheScreen().Tell(Formatted("Delete %zu of them for ever? Type yes.", count));
+  std::string answer;
+  std::getline(std::cin, answer);
+  return answer == "yes";
+}
+
+PersonSearch Search(const ForgetOptions& options) {
+  const PersonSearch result =
+      FindPerson(options.folder, options.pseudonym, [&](std::uint64_t files) {
+        if (!options.quiet && files % 64 == 0)
+          TheScreen().Bar(Formatted("Searching: %zu files", std::size_t{files}));
+      });
+  TheScreen().Bar("");
+  return result;
+}
+
+// Neither the names of the files nor the pseudonym: the result must not keep it.
+void WriteResult(const ForgetOptions& options, std::size_t deleted, const PersonSearch& after) {
+  const std::size_t left = after.found.size();
+  std::string text = Formatted("Deleted %zu. ", deleted);
+  text += left == 0
+              ? Formatted("None of the %zu files that were searched then contains the pseudonym.\n",
+                          std::size_t{after.files})
+              : Formatted("%zu are left.\n", left);
+  if (!after.not_searched.empty())
+    Append(&text, "Not searched: %zu places, listed above. Look into them yourself.\n",
+           after.not_searched.size());
+  const nlohmann::ordered_json json = {{"deleted", deleted},
+                                       {"left", left},
+                                       {"searched_files", after.files},
+                                       {"not_searched", after.not_searched.size()},
+                                       {"not_reached", kNotReached}};
+  options.Write(text + kNotReached + "\n", json.dump(2) + "\n");
+}
+
+}  // namespace
+
+int ForgetCommand(const ForgetOptions& options) {
+  options.CheckWritable();
+  const PersonSearch before = Search(options);
+  TellList("Of this person:", before.found);
+  TellList("Their content is also under another name outside of the folder (hard links):",
+           before.linked);
+  if (!before.found.empty() && !Confirmed(options, before.found.size())) {
+    TheScreen().Tell("Nothing was deleted.");
+    return kUnfit;
+  }
+  const std::vector<PersonalFile> failed = Delete(before.found);
+  TellList("Could not be deleted:", failed);
+  const PersonSearch after = Search(options);
+  TellList("Not searched:", after.not_searched);
+  TellList("Left:", after.found);
+  WriteResult(options, before.found.size() - failed.size(), after);
+  const bool all = after.found.empty() && after.not_searched.empty() && before.linked.empty();
+  return all ? kFinished : kUnfit;
+}
+
+}  // namespace predictor

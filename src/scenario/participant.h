@@ -1,0 +1,52 @@
+// The person in a study who holds the handles: no name, only what a study may store. A recording
+// has it as labels.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "scenario/problems.h"
+#include "scenario/scenario.h"
+#include "scenario/yaml_tree.h"
+
+namespace predictor {
+
+// What the person agreed to.
+struct ConsentSpec {
+  std::string version;  // of the text of the consent
+  std::string date;     // on which the person signed it: YYYY-MM-DD
+};
+
+struct ParticipantSpec {
+  std::string pseudonym;  // IsPseudonym
+  ConsentSpec consent;
+  std::string handedness = "unknown";  // unknown | left | right | ambidextrous
+};
+
+// The file that --participant names.
+struct ParticipantFile : ParticipantSpec {
+  std::optional<BodySpec> body;  // absent: as the scenario says
+};
+
+// Throws InputError with file:line:column.
+ParticipantFile LoadParticipant(const std::filesystem::path& file);
+// "operator.body=...", for LoadScenario.
+std::string BodyOverride(const BodySpec& body);
+
+// Reports a pseudonym that IsPseudonym refuses, such as a name, a consent without a version, and a
+// day that does not exist. `path`: of the participant in the tree `root`, with its dot, or empty.
+void CheckParticipant(const ParticipantSpec& participant, const std::string& path,
+                      const YamlNode& root, Problems* problems);
+
+// The labels of a recording that are reserved for the participant, and their values.
+std::map<std::string, std::string> LabelsOf(const ParticipantSpec& participant);
+bool IsParticipantLabel(const std::string& key);
+// Back from all labels of a recording; empty without a pseudonym.
+std::optional<ParticipantSpec> ParticipantIn(const std::map<std::string, std::string>& labels);
+
+// "participant K7QM2XPX, consent study-2 of 2026-11-20, left-handed".
+std::string ParticipantWords(const ParticipantSpec& participant);
+
+}  // namespace predictor
