@@ -65,12 +65,27 @@ Pose Attachment::Place() const noexcept {
 void Attachment::Grip() noexcept {
   grip_ = Place();
   first_ = grip_.p;
+  limits_ = wanted_;
   lost_ = slides_ = turns_ = false;
   wrench_.setZero();
   load_.setZero();
 }
 
+// Lower limits apply at once; what slid in the last step is held at most a step's share tighter.
+void Attachment::Tighten() noexcept {
+  const double dt = engine_.step();
+  const bool open = is_open();
+  const auto next = [dt](bool loose, double now, double rate, double wanted) {
+    return loose ? std::min(wanted, now + rate * dt) : wanted;
+  };
+  const bool slides = slides_ || open, turns = turns_ || open;
+  limits_ = {next(slides, limits_.force, kForceRate, wanted_.force),
+             next(turns, limits_.torque, kTorqueRate, wanted_.torque),
+             next(slides, limits_.reach, 0, wanted_.reach)};
+}
+
 bool Attachment::Hold() noexcept {
+  Tighten();
   slides_ = turns_ = false;
   Engine::Values applied = engine_.joint_forces();
   applied.segment<6>(engine_.layout().object_v).setZero();
@@ -171,10 +186,11 @@ Wrench Attachment::WithinLimits(const Vector6& b, Wrench wrench) noexcept {
 }
 
 void Attachment::Follow() noexcept {
-  if (is_open()) return;
+  if (lost_) return;
   const Pose now = Place();
-  if (slides_) grip_.p = now.p;
-  if (turns_) grip_.q = now.q;
+  const bool open = is_open();
+  if (slides_ || open) grip_.p = now.p;
+  if (turns_ || open) grip_.q = now.q;
   lost_ = (grip_.p - first_).norm() > limits_.reach;
 }
 

@@ -17,16 +17,23 @@ namespace predictor {
 // balls, where G = J M⁻¹ Jᵀ, and V is the relative velocity that would result without λ (maximum
 // dissipation, Moreau 1977; Stewart & Trinkle 1996). Where it slid, it holds again.
 //
+// If the limits rise while the object slides, the grip tightens at kForceRate and kTorqueRate until
+// it no longer slides: a grip that held at once would stop it within one step.
+//
 // A spherical attachment transmits no torque except that of its damping, so only its mount slips.
 class Attachment {
  public:
+  // How fast a grip tightens [N/s], [N·m/s]. A design choice: about 100 N within 0.1 s.
+  static constexpr double kForceRate = 1000, kTorqueRate = 100;
+
   // `engine`: with a free object (Holding::kFree); must outlive this. Throws InputError if its
   // cobot has too many joints.
   Attachment(const AttachmentSpec& spec, Engine* engine);
 
   // Grips the object where it is.
   void Grip() noexcept;
-  void SetLimits(const GripLimits& limits) noexcept { limits_ = limits; }
+  // What the grip shall hold.
+  void SetLimits(const GripLimits& limits) noexcept { wanted_ = limits; }
 
   // Adds the attachment's forces to the engine's joint forces. All other forces must be complete.
   // Uses the state of the last Prepare. Returns false on an error of the engine. No heap.
@@ -37,7 +44,9 @@ class Attachment {
   // Wrench of the object on the end-effector in the last Hold, about E, in axes of W [N, N·m].
   const Wrench& load() const noexcept { return load_; }
 
-  void Archive(StateArchive& a) noexcept { a(grip_, first_, lost_, wrench_); }
+  void Archive(StateArchive& a) noexcept {
+    a(grip_, first_, lost_, wrench_, limits_.force, limits_.torque, limits_.reach, slides_, turns_);
+  }
 
  private:
   static constexpr int kMaxDof = kMaxCobotJoints + 6;
@@ -48,6 +57,7 @@ class Attachment {
   bool is_open() const noexcept { return lost_ || (limits_.force <= 0 && limits_.torque <= 0); }
   Pose PoseOf(SceneBody body) const noexcept { return engine_.PoseOf(body); }
   Pose Place() const noexcept;
+  void Tighten() noexcept;
   void Prepare() noexcept;
   void UpdateMobility() noexcept;
   Wrench Solve() noexcept;
@@ -56,10 +66,10 @@ class Attachment {
   Engine& engine_;
   Vector3 p_OA_;
   bool is_fixed_;
-  double damping_;  // of a spherical joint [N·m·s/rad]
-  GripLimits limits_;
-  Pose grip_;      // X_EA where the grip holds; its rotation is that of O
-  Vector3 first_;  // p_EA where it held first [m]
+  double damping_;              // of a spherical joint [N·m·s/rad]
+  GripLimits wanted_, limits_;  // that it shall hold, and that it holds
+  Pose grip_;                   // X_EA where the grip holds; its rotation is that of O
+  Vector3 first_;               // p_EA where it held first [m]
   bool lost_ = false;
   bool slides_ = false, turns_ = false;  // in the last Hold
   Wrench load_ = Wrench::Zero();

@@ -118,7 +118,7 @@ TEST(Check, AStartOutOfReachIsUnfitAndNoError) {
 TEST(Check, ScenariosAreInReachWithRoom) {
   for (const char* name :
        {"bar_circle.yaml", "box_18kg.yaml", "box_9kg.yaml", "dual_ur5.yaml", "linear_axis.yaml",
-        "push.yaml", "single_arm.yaml", "underdamped.yaml"}) {
+        "mobile_base.yaml", "push.yaml", "single_arm.yaml", "underdamped.yaml"}) {
     const Scenario s = Load(name);
     const Reach reach = DeviceReach(s).Over(TaskPaths(s, StartOfObject(s), kPathStep));
     for (const auto& arm : reach.arms) {
@@ -151,6 +151,17 @@ TEST(Check, AFastScriptWarns) {
   const Scenario s = Load("single_arm.yaml", {"operator.script.2.duration=0.9"});
   const CheckReport report = Check(s, NoSearch());
   EXPECT_TRUE(Mentions(report.warnings, "safety.handle_speed"));
+}
+
+TEST(Check, SaysThatItDescribesTheObjectOnTheCobot) {
+  for (const char* event : {"object_slips", "object_breaks_loose"}) {
+    const CheckReport report =
+        Check(Load("single_arm.yaml",
+                   {"events=[{event: brakes_close}, {event: " + std::string(event) + "}]"}),
+              NoSearch());
+    EXPECT_TRUE(Mentions(report.warnings, std::string("events.1 (") + event + ")"));
+    EXPECT_FALSE(Mentions(report.warnings, "events.0"));
+  }
 }
 
 TEST(Check, AScriptWithoutEffectOrCutShortWarns) {

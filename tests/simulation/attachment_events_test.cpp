@@ -10,6 +10,7 @@
 #include "core/archive.h"
 #include "core/error.h"
 #include "event_fixtures.h"
+#include "simulation/attachment.h"
 #include "support/allocation_guard.h"
 
 namespace predictor {
@@ -270,7 +271,7 @@ TEST(Slips, TheGripHoldsAgainAfterTheEvent) {
     World world(s);
     const Vector3 top(0, 0, 0.1);  // the attachment, in O
     const Vector3 first = ObjectInFlange(world.state()) * top;
-    RunWith(&world, HandsOff(s), 0.205);
+    RunWith(&world, HandsOff(s), 0.3);
     const Vector3 place = ObjectInFlange(world.state()) * top;
     EXPECT_GT((place - first).norm(), 0.008);
     for (int k = 0; k < 500; ++k) {
@@ -278,6 +279,53 @@ TEST(Slips, TheGripHoldsAgainAfterTheEvent) {
       ASSERT_LT((ObjectInFlange(world.state()) * top - place).norm(), 1e-6) << k;
     }
   }
+}
+
+// With closed brakes, the speed after the event is v₀ + (g − F₀/m) t − r t² / 2m, because the
+// grip's force F₀ grows at the rate r, until the object rests.
+TEST(Slips, TheGripTightensWithoutAJolt) {
+  constexpr double kLimit = 15;  // [N]
+  Scenario s = WithEvent(RigidBox(), Slips(0.1, kLimit, 100));
+  s.events[0].duration = 0.1;
+  s.events.push_back(Event("brakes_close"));
+  World world(s);
+  RunWith(&world, HandsOff(s), 0.2);
+  const double v0 = -world.state().object.V_W.z(), rate = Attachment::kForceRate / kMass;
+  const double a = kGravity - kLimit / kMass;
+  ASSERT_NEAR(v0, 0.1 * a, 0.003);
+  const double rest = (a + std::sqrt(a * a + 2 * rate * v0)) / rate;
+  for (int n = 1; n * kTick < rest - 0.001; ++n) {
+    ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
+    const double t = n * kTick;
+    // Within a step, the force may already be that of its end.
+    EXPECT_NEAR(-world.state().object.V_W.z(), v0 + a * t - rate * t * t / 2, rate * kTick * t)
+        << n;
+  }
+  RunWith(&world, HandsOff(s), 0.003);
+  EXPECT_LT(std::abs(world.state().object.V_W.z()), 2e-3);  // the brakes creep
+}
+
+// A grip without any force or torque is open. It grips again where the object then is.
+TEST(Slips, AnOpenGripClosesWhereTheObjectIs) {
+  Scenario s = WithEvent(RigidBox(), Slips(0.1, 0, 0, 1));
+  s.events[0].duration = 0.1;
+  s.events.push_back(Event("brakes_close"));
+  World world(s);
+  RunWith(&world, Push(s, {0, 3, 0}), 0.2);
+  Vector3 v = world.state().object.V_W.head<3>(), w = world.state().object.V_W.tail<3>();
+  EXPECT_NEAR(v.z(), -kGravity * 0.1, 0.003);
+  const double longest = 0.3;  // for the grip to stop the object [s]
+  for (int k = 0; k < longest / kTick; ++k) {
+    ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
+    const WorldState& now = world.state();
+    const double force = std::min(Attachment::kForceRate * (k + 1) * kTick, 200.0);
+    EXPECT_LT((now.object.V_W.head<3>() - v).norm(), (force / kMass + kGravity) * kTick) << k;
+    v = now.object.V_W.head<3>(), w = now.object.V_W.tail<3>();
+  }
+  EXPECT_LT(v.norm() + w.norm(), 1e-2);
+  const Pose place = ObjectInFlange(world.state());
+  RunWith(&world, HandsOff(s), 0.2);
+  EXPECT_LT((ObjectInFlange(world.state()).p - place.p).norm(), 1e-6);
 }
 
 // Gravity accelerates the object alone after it slid out of its grip.

@@ -10,6 +10,7 @@
 #include "emulator/stop_reach.h"
 #include "scenario/action_time.h"
 #include "scenario/located.h"
+#include "simulation/event_sequence.h"
 #include "simulation/world.h"
 
 namespace predictor {
@@ -75,6 +76,7 @@ class Judge {
   void All() {
     Commissioned();
     Torques();
+    LooseObject();
     Script();
     if (!report_->reach) return;
     for (std::size_t h = 0; h < kHands; ++h)
@@ -104,6 +106,19 @@ class Judge {
                   "is %.1f %s. Little torque is left for motion. Use a lighter object, start in a "
                   "posture closer to the base, or raise cobot.effort_limit.",
                   m.torque, unit, m.torque_joint.c_str(), m.torque_limit, unit));
+  }
+
+  void LooseObject() {
+    const EventSequence events(s_);
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      const HazardKind& kind = events.kind(i);
+      if (kind.needs != HazardNeeds::kSlipping && kind.needs != HazardNeeds::kNoEnd) continue;
+      Warn(
+          Formatted("After events.%zu (%s), the object may be loose. Reach, stability and torques "
+                    "here are those of the object on the cobot. Simulate the scenario to see what "
+                    "follows the event.",
+                    i, kind.name));
+    }
   }
 
   void Script() {
