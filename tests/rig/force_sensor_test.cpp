@@ -10,6 +10,8 @@
 namespace predictor {
 namespace {
 
+constexpr double kSample = 0.001;  // [s]
+
 SensorSpec Exact() {
   SensorSpec spec;
   spec.noise_force = spec.noise_torque = spec.force_resolution = spec.torque_resolution = 0;
@@ -158,6 +160,42 @@ TEST(ForceSensor, FlagsAndClipsWhatIsBeyondItsRange) {
   F.setZero();
   sensor.Step(F);
   EXPECT_FALSE(sensor.saturated());
+}
+
+// The number of samples from the first one at which a force that rises by `rate` [N/s] exceeds the
+// threshold, by the share `beyond` of a sample's rise, to the first reading that does.
+int SamplesUntilSeen(const SensorSpec& spec, double rate, double beyond, std::uint64_t seed) {
+  constexpr double kThreshold = 30;  // [N]
+  constexpr int kBefore = 50;        // samples
+  const auto force = [&](int k) -> Wrench {
+    return (kThreshold + rate * kSample * (k + beyond)) * Wrench::Unit(2);
+  };
+  ForceSensor sensor(spec, Wrench::Zero(), kSample, RandomStream(seed, "sensor"));
+  sensor.Reset(force(-kBefore));
+  for (int k = 1 - kBefore; k < kBefore; ++k) {
+    sensor.Step(force(k));
+    if (sensor.reading()[2] > kThreshold) return k;
+  }
+  return kBefore;
+}
+
+// The monitor stops in the tick in which the reading exceeds its threshold. The reading of a rising
+// force lags by the delay and the filter's time constant, whatever the rate.
+TEST(ForceSensor, ARisingForceIsSeenWithinThreeMilliseconds) {
+  SensorSpec spec;
+  const double lag = spec.delay + 1 / (2 * std::numbers::pi * spec.cutoff_frequency);
+  SensorSpec exact = spec;
+  exact.noise_force = exact.noise_torque = exact.force_resolution = exact.torque_resolution = 0;
+  for (const double rate : {10.0, 100.0, 1000.0, 10'000.0})
+    for (const double beyond : {0.01, 0.05, 0.25, 0.5, 0.75, 1.0}) {
+      const int expected = static_cast<int>(std::ceil(lag / kSample - beyond));
+      EXPECT_EQ(SamplesUntilSeen(exact, rate, beyond, 1), expected) << rate << " " << beyond;
+      EXPECT_LE(expected, 3);
+    }
+  // Noise and resolution can hide less than 0.3 N, which this force rises in 1 ms, the time left of
+  // three.
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed)
+    EXPECT_LE(SamplesUntilSeen(spec, 300, 0.01, seed), 3) << seed;
 }
 
 }  // namespace

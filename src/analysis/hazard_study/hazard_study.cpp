@@ -49,6 +49,12 @@ struct Piece {
   std::string key;
 };
 
+// By how much the true force of the hand that caused the stop exceeds `threshold` [N].
+double ExcessOf(const TickRecord& record, double threshold) {
+  const HandRecord& hand = record.hands[static_cast<std::size_t>(record.cause_hand)];
+  return std::max(0.0, Norm(hand.true_wrench.data()) - threshold);
+}
+
 HazardRun Run(Scenario scenario, std::uint64_t seed) {
   scenario.seed = seed;
   HazardRun run;
@@ -57,6 +63,8 @@ HazardRun Run(Scenario scenario, std::uint64_t seed) {
   Emulator emulator(scenario);
   Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
     builder.Add(record);
+    if (run.excess < 0 && record.cause == StopCause::kForce && record.cause_hand >= 0)
+      run.excess = ExcessOf(record, scenario.safety.force);
     if (record.ran == 0 || record.latest_event != 0) return;
     for (const HandRecord& hand : record.hands)
       if (hand.present != 0) run.before = std::max(run.before, Norm(hand.wrench.data()));

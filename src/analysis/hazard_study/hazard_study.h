@@ -33,6 +33,7 @@ struct HazardRun {
   StopCause cause = StopCause::kNone;
   double detection = -1;  // from the time at which the true force crosses its threshold to the stop
                           // [s]
+  double excess = -1;     // of the true force over its threshold at that stop [N]
   double travel = -1;     // travel of the faster handle during the stop [m]
   CobotStop cobot_stop = CobotStop::kNone;
 };

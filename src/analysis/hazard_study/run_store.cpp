@@ -12,8 +12,8 @@ namespace {
 
 constexpr const char* kHeader =
     "key,scenario,controller,hazard,seed,begin_s,force_before_N,force_after_N,torque_Nm,speed_m_s,"
-    "until_stop_s,cause,detection_s,travel_m,cobot_stop";
-constexpr std::size_t kColumns = 15;
+    "until_stop_s,cause,detection_s,travel_m,cobot_stop,excess_N";
+constexpr std::size_t kColumns = 16;
 
 std::vector<std::string> Split(const std::string& line) {
   std::vector<std::string> cells;
@@ -52,7 +52,7 @@ bool ReadRun(const std::vector<std::string>& cells, HazardRun* run) {
   run->seed = static_cast<std::uint64_t>(seed);
   return read && ReadName(cells[11], kStopCauses, &run->cause) &&
          ReadNumber(cells[12], &run->detection) && ReadNumber(cells[13], &run->travel) &&
-         ReadName(cells[14], kCobotStops, &run->cobot_stop);
+         ReadName(cells[14], kCobotStops, &run->cobot_stop) && ReadNumber(cells[15], &run->excess);
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ bool ReadRun(const std::vector<std::string>& cells, HazardRun* run) {
 std::string TextOf(const HazardRun& run) {
   return Join({std::to_string(run.seed), Short(run.begin), Short(run.before), Short(run.after),
                Short(run.torque), Short(run.speed), Short(run.until_stop), Name(run.cause),
-               Short(run.detection), Short(run.travel), Name(run.cobot_stop)},
+               Short(run.detection), Short(run.travel), Name(run.cobot_stop), Short(run.excess)},
               ",");
 }
 

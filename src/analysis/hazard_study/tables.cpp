@@ -106,7 +106,7 @@ std::string HazardStudyCsv(const HazardStudy& study) {
       "scenario,controller,hazard,impossible,runs,begun,stopped,causes,cobot_stops,"
       "until_stop_median_s,force_before_p95_N,force_after_median_N,force_after_p95_N,"
       "force_after_max_N,torque_after_max_Nm,speed_after_max_m_s,detection_max_s,travel_max_m,"
-      "force_after_median_is_bound,force_after_p95_is_bound\n";
+      "force_after_median_is_bound,force_after_p95_is_bound,true_force_excess_max_N\n";
   for (const HazardCell& cell : study.cells) {
     const std::vector<CensoredValue> after = ForcesOf(cell);
     const CensoredValue median = CensoredQuantile(after, 0.5), tail = CensoredQuantile(after, 0.95);
@@ -134,7 +134,8 @@ std::string HazardStudyCsv(const HazardStudy& study) {
                  largest(&HazardRun::detection),
                  largest(&HazardRun::travel),
                  std::to_string(median.at_least),
-                 std::to_string(tail.at_least)},
+                 std::to_string(tail.at_least),
+                 largest(&HazardRun::excess)},
                 ",") +
            "\n";
   }
@@ -155,6 +156,7 @@ std::string HazardStudyJson(const HazardStudy& study) {
                       {"until_stop_s", run.until_stop},
                       {"cause", Name(run.cause)},
                       {"detection_s", run.detection},
+                      {"true_force_excess_N", run.excess},
                       {"travel_m", run.travel},
                       {"cobot_stop", Name(run.cobot_stop)}});
     json.push_back({{"scenario", cell.scenario},
@@ -168,7 +170,7 @@ std::string HazardStudyJson(const HazardStudy& study) {
 
 std::string HazardStudyWords(const HazardStudy& study) {
   std::size_t runs = 0, begun = 0, stopped = 0, by_force = 0, in_time = 0;
-  double detection = 0, force = 0, travel = 0, speed = 0;
+  double detection = 0, force = 0, excess = 0, late_excess = 0, travel = 0, speed = 0;
   for (const HazardCell& cell : study.cells) {
     runs += cell.runs.size();
     for (const HazardRun& run : cell.runs) {
@@ -177,6 +179,8 @@ std::string HazardStudyWords(const HazardStudy& study) {
       by_force += run.detection >= 0;
       in_time += run.detection >= 0 && run.detection <= kInTime;
       detection = std::max(detection, run.detection);
+      excess = std::max(excess, run.excess);
+      if (run.detection > kInTime) late_excess = std::max(late_excess, run.excess);
       force = std::max(force, run.after);
       travel = std::max(travel, run.travel / cell.travel_budget);
       speed = std::max(speed, run.speed / cell.speed_cap);
@@ -189,8 +193,14 @@ std::string HazardStudyWords(const HazardStudy& study) {
              "%zu of %zu force stops were decided within 3 ms after the true force crossed its "
              "threshold, all within %.0f ms; the largest measured force was %.2f N.",
              in_time, by_force, 1e3 * detection, force);
+  AppendLine(&text,
+             "At these stops, the true force exceeded its threshold by at most %.2f N, at those "
+             "after more than 3 ms by at most %.2f N.",
+             excess, late_excess);
   AppendLine(&text, "The longest stop used %.0f %% of its travel budget.", 100 * travel);
-  AppendLine(&text, "The fastest handle reached %.0f %% of its speed cap.", 100 * speed);
+  // Until an arm obeys a command, its posture changes.
+  AppendLine(&text, "The fastest handle reached %.1f %% of the cap on its commanded speed.",
+             100 * speed);
   return text;
 }
 
