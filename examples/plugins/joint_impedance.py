@@ -13,11 +13,11 @@ import struct
 import time
 
 CREATE, START, COMPUTE, ADVANCE, END = 1, 2, 3, 4, 5
-VERSION = 1
+VERSION = 2
 
 # Offsets in PredictorControllerMemory (predictor/controller.h).
 REQUEST, ANSWER, KIND, REFUSED = 8, 12, 16, 20
-TORQUE, ENERGY, INPUT, POSTURE, TEXT = 32, 160, 1192, 4824, 5016
+TORQUE, ENERGY, INPUT, POSTURE, TEXT = 32, 160, 1192, 4880, 5072
 DOF, Q, V, G = INPUT + 16, INPUT + 24, INPUT + 152, INPUT + 280
 
 BUSY_TIME = 0.01  # after a request, the next one is awaited without sleeping [s]

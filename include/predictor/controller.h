@@ -19,7 +19,7 @@ extern "C" {
 #endif
 
 /* Version of this interface. PREDICTOR refuses a controller of another version. */
-#define PREDICTOR_CONTROLLER_VERSION 1u
+#define PREDICTOR_CONTROLLER_VERSION 2u
 
 enum {
   PREDICTOR_MAX_JOINTS = 16,
@@ -35,7 +35,7 @@ typedef struct PredictorControllerInput {
   int32_t dof;                         /*   16: number of joints */
   int32_t reserved;                    /*   20: 0 */
   double q[PREDICTOR_MAX_JOINTS];      /*   24: joint positions [rad], of a prismatic joint [m] */
-  double v[PREDICTOR_MAX_JOINTS];      /*  152: joint velocities [rad/s] */
+  double v[PREDICTOR_MAX_JOINTS];      /*  152: joint velocities [rad/s], likewise [m/s] */
   double g[PREDICTOR_MAX_JOINTS];      /*  280: torques that carry the cobot's own weight [N·m] */
   double h[PREDICTOR_MAX_JOINTS];      /*  408: Coriolis and centrifugal torques, plus g [N·m] */
   double torque[PREDICTOR_MAX_JOINTS]; /*  536: joint torques that act at present [N·m] */
@@ -46,7 +46,9 @@ typedef struct PredictorControllerInput {
   double J[6 * PREDICTOR_MAX_JOINTS];                    /*  816: Jacobian, V_WE = J v */
   double M[PREDICTOR_MAX_JOINTS * PREDICTOR_MAX_JOINTS]; /* 1584: mass matrix [kg·m²], symmetric.
                                                               Excludes the load. */
-} PredictorControllerInput;                              /* 3632 bytes */
+  double X_WO[7]; /* 3632: pose of the object in W, as X_WE. Exact: a camera that measures it would
+                           add noise and delay, which the controller may model. */
+} PredictorControllerInput; /* 3688 bytes */
 
 /* A word of cobot.controller.parameters, "key=value". */
 typedef struct PredictorParameter {
@@ -146,13 +148,13 @@ typedef struct PredictorControllerMemory {
   double stored_energy;                 /*   160: of the springs, at the input of the torque [J] */
   double memory[PREDICTOR_MAX_MEMORY];  /*   168: with the request and with the answer */
   PredictorControllerInput input;       /*  1192: START, COMPUTE and ADVANCE */
-  double posture[PREDICTOR_MAX_JOINTS]; /*  4824: CREATE: cobot.posture [rad] */
-  double X_WE_start[7];                 /*  4952: CREATE: pose of E at the start */
-  double gravity;                       /*  5008: CREATE [m/s²] */
-  char text[PREDICTOR_TEXT_SIZE];       /*  5016: CREATE: cobot.controller.parameters, a line, then
+  double posture[PREDICTOR_MAX_JOINTS]; /*  4880: CREATE: cobot.posture [rad] */
+  double X_WE_start[7];                 /*  5008: CREATE: pose of E at the start */
+  double gravity;                       /*  5064: CREATE [m/s²] */
+  char text[PREDICTOR_TEXT_SIZE];       /*  5072: CREATE: cobot.controller.parameters, a line, then
                                                    the names of the joints, a line each. UTF-8, ends
                                                    with 0. */
-} PredictorControllerMemory;            /* 9112 bytes */
+} PredictorControllerMemory;            /* 9168 bytes */
 
 #ifdef __cplusplus
 }

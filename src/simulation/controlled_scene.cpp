@@ -122,6 +122,7 @@ bool ControlledScene::Update(Engine* engine) noexcept {
     q_[j] = q[at.q[static_cast<std::size_t>(j)]];
     v_[j] = v[at.v[static_cast<std::size_t>(j)]];
   }
+  X_WO_ = engine->PoseOf(SceneBody::kObject);
   robot_data_.UpdateDynamics(*robot_, q_, v_, gravity_);
   return true;
 }
@@ -130,6 +131,7 @@ ControllerInput ControlledScene::Input(double t) const {
   ControllerInput input{t, &q_, &v_, robot_.get(), &robot_data_, end_effector_};
   if (has_wrist_sensor()) input.F_E_W = wrist_.reading() + disturbance_.sensor;
   input.torque = &torque_;
+  input.X_WO = X_WO_;
   return input;
 }
 

@@ -148,6 +148,7 @@ class ControlledScene {
   JointVector effort_limit_;
   RobotData robot_data_;
   JointVector q_, v_, torque_;
+  Pose X_WO_;                          // at the last Update
   JointVector computed_;               // by the controller, before its delay [N·m]
   std::vector<DofFriction> friction_;  // of each joint, with open brakes
   CobotSafety safety_;

@@ -29,6 +29,7 @@ struct ControllerInput {
   // Zero unless the controller uses the sensor.
   Wrench F_E_W = Wrench::Zero();
   const JointVector* torque = nullptr;  // that acts at present [N·m]
+  Pose X_WO;                            // of the object, without any error
 };
 
 class Controller {

@@ -40,7 +40,8 @@ const PredictorControllerInput& InterfaceInput::Fill(const ControllerInput& inpu
   to_.time = input.time;
   if (input.torque) Copy(*input.torque, to_.torque);
   Copy(input.F_E_W, to_.F_E_W);
-  // The rest follows from the state, which is often that of the last call.
+  FillPose(input.X_WO, to_.X_WO);
+  // The rest follows from the state of the joints, which is often that of the last call.
   if (is_filled_ && Holds(*input.q, to_.q) && Holds(*input.v, to_.v)) return to_;
   is_filled_ = true;
   const RobotData& data = *input.data;

@@ -47,6 +47,7 @@ static void compute(void* self_, const PredictorControllerInput* input, double* 
     torque[j] = input->g[j] + 400 * (self->posture[j] - input->q[j]) - self->damping * input->v[j];
   if (input->time < self->at) return;
   if (strcmp(self->fault, "nan") == 0) torque[1] = torque[3] = NAN;
+  if (strcmp(self->fault, "object") == 0) memcpy(torque, input->X_WO, sizeof input->X_WO);
   if (strcmp(self->fault, "crash") == 0) abort();
   if (strcmp(self->fault, "allocate") == 0) {
     static void* volatile taken;

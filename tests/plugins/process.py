@@ -1,5 +1,5 @@
 """A controller as a process that carries the cobot's weight with springs until a time, then does
-what its argument names: crash, hang, nan, late, shorten; or refuses, or ends at once."""
+what its argument names: crash, hang, nan, late, shorten, object (answers its pose); or refuses, or ends at once."""
 
 import mmap
 import os
@@ -23,12 +23,12 @@ while os.getppid() == parent:
         break
     if kind == 1 and fault == "refuses":
         struct.pack_into("<i", memory, 20, 1)
-        memory[5016:5030] = b"Not for today\0"
+        memory[5072:5086] = b"Not for today\0"
     if kind == 3:
         (now,) = struct.unpack_from("<d", memory, 1192)
         (dof,) = struct.unpack_from("<i", memory, 1208)
         read = struct.Struct(f"<{dof}d").unpack_from
-        q, v, g, posture = (read(memory, at_) for at_ in (1216, 1344, 1472, 4824))
+        q, v, g, posture = (read(memory, at_) for at_ in (1216, 1344, 1472, 4880))
         torque = [gj + 400 * (p - qj) - 10 * vj for gj, qj, vj, p in zip(g, q, v, posture)]
         if now >= at:
             if fault == "crash":
@@ -41,6 +41,8 @@ while os.getppid() == parent:
             if fault == "hang":
                 while os.getppid() == parent:
                     time.sleep(0.01)
+            if fault == "object":
+                torque = read(memory, 4824)  # X_WO
             if fault == "nan":
                 torque[0] = float("nan")
             if fault == "late" and not broken:

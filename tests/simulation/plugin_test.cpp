@@ -38,6 +38,13 @@ ControllerSpec BuiltIn(const std::string& type, const std::vector<std::string>& 
   return spec;
 }
 
+// A process that does what `fault` names from the time `at` [s] on.
+ControllerSpec Faulty(const std::string& fault, double at = 0.05) {
+  return test::ProcessOf("[python3, " + std::string(PREDICTOR_SOURCE_DIR) +
+                         "/tests/plugins/process.py, \"" + fault + "\", \"" + std::to_string(at) +
+                         "\"]");
+}
+
 // The states of two worlds after every step of a push.
 void ExpectSameMotion(const Scenario& a, const Scenario& b, double duration) {
   World first(a), second(b);
@@ -69,6 +76,30 @@ TEST(Plugin, AProcessInPythonIsBitIdenticalToTheOneInC) {
   const std::string parameters = "joint_stiffness=300 joint_damping=4";
   ExpectSameMotion(BallScene(Plugin("joint_impedance", parameters)),
                    BallScene(PythonExample(parameters)), 0.3);
+}
+
+Quaternion ObjectInE(const World& world) {
+  return world.state().end_effector.X_W.q.conjugate() * world.state().object.X_W.q;
+}
+
+// These answer the pose that they see. It is that before the step, also where the object turns in a
+// spherical attachment.
+TEST(Plugin, SeesThePoseOfTheObject) {
+  for (const ControllerSpec& controller :
+       {Plugin("at_time", "fault=object at=0.05"), Faulty("object")}) {
+    Scenario s = BallScene(controller);
+    s.object.attachment.joint = JointType::kSpherical;
+    World world(s);
+    const Quaternion at_start = ObjectInE(world);
+    Simulate(&world, Push(s, {0, 3, 0}), 0.051);
+    const Pose X_WO = world.state().object.X_W;
+    ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
+    const JointVector& seen = world.state().torque;
+    EXPECT_EQ(Vector3(seen.head<3>()), X_WO.p) << controller.type;
+    const Quaternion q(seen[3], seen[4], seen[5], seen[6]);
+    EXPECT_EQ(q.coeffs(), X_WO.q.coeffs()) << controller.type;
+    EXPECT_GT(RotationError(ObjectInE(world), at_start).norm(), 1e-3);
+  }
 }
 
 TEST(Plugin, HasTheEnergyOfTheBuiltInController) {
@@ -147,7 +178,7 @@ TEST(Plugin, WhatDoesNotFitIsRefusedWithPlaceAndRemedy) {
   ExpectError(Plugin("no_symbol"), key, "does not export predictor_controller. Define");
   ExpectError(Plugin("no_table"), key, "returns NULL from predictor_controller");
   ExpectError(Plugin("no_compute"), key, "lacks create, destroy or compute");
-  ExpectError(Plugin("version"), key, "has version 2 of the controller interface");
+  ExpectError(Plugin("version"), key, "has version 3 of the controller interface");
   ExpectError(Plugin("long_memory"), key,
               "has a memory of 129 numbers; it must have from 0 to 128");
   ExpectError(Plugin("joint_impedance", "rigidity=5"), key,
@@ -169,12 +200,6 @@ TEST(Plugin, WithTheWrongNumberOfJointsIsRefused) {
   s.cobot.posture = {0, -1.5, 1.5, 0, 0, 0};
   EXPECT_NE(ErrorOf(s).find("refuses this scenario. It is for 7 joints, not 6."), std::string::npos)
       << ErrorOf(s);
-}
-
-ControllerSpec Faulty(const std::string& fault, double at = 0.05) {
-  return test::ProcessOf("[python3, " + std::string(PREDICTOR_SOURCE_DIR) +
-                         "/tests/plugins/process.py, \"" + fault + "\", \"" + std::to_string(at) +
-                         "\"]");
 }
 
 TEST(Plugin, AProcessThatDoesNotFitIsRefusedWithPlaceAndRemedy) {

@@ -7,6 +7,9 @@
 //
 //   τ = g + M (ω² (q_ref − q) + 2 ω (q̇_ref − q̇))
 //
+// q_ref is the integral of q̇_ref, so this is also the loop of a velocity-controlled cobot, with
+// proportional and integral action on the error of the velocity.
+//
 // The tare at the start includes the load's weight, as on a real cobot. The memory contains V, the
 // displacement x (its integral), q_ref, and numbers of the derived controller.
 #pragma once
