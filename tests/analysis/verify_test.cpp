@@ -20,6 +20,7 @@
 #include "fakes/bench.h"
 #include "recording/provenance.h"
 #include "recording/writer.h"
+#include "scenario/own_parameters.h"
 #include "scenario/scenario_io.h"
 #include "support/plugins.h"
 #include "support/soak.h"
@@ -114,6 +115,48 @@ TEST_F(VerifyTest, ARunWithAControllerOutsideTheProgramIsTheSameWithoutIt) {
         << result.departure->field << " at " << result.departure->tick << ": "
         << result.departure->recorded << ", not " << result.departure->computed;
     EXPECT_GT(result.ticks, c.cause == StopCause::kNone ? 3000U : 2000U);
+    fs::remove(file);
+  }
+}
+
+// Two seconds, whatever happens.
+const std::vector<std::string> kNoStops = {"duration=2",
+                                           "safety.force=900",
+                                           "safety.torque=99",
+                                           "safety.tracking=9",
+                                           "safety.tracking_rotation=3.1",
+                                           "safety.coupling=9000",
+                                           "safety.coupling_torque=9000",
+                                           "safety.relative_slack=9",
+                                           "safety.relative_slack_rotation=99",
+                                           "safety.oscillation.enabled=false"};
+
+// After a gap, each goes on from a state that was saved while the hazard acted.
+TEST_F(VerifyTest, ARunWithAnyHazardIsTheSameAgain) {
+  for (const ParameterKind* kind : Hazards()) {
+    const std::string name = kind->name;
+    SCOPED_TRACE(name);
+    const bool has_end = name != "object_breaks_loose";
+    std::string event = "{event: " + name + ", trigger: {after: 0.3, window: 0.2}";
+    if (has_end) event += ", duration: 0.7";
+    if (name == "object_slips") event += ", slip_force: 60";
+    std::vector<std::string> set = kNoStops;
+    set.insert(set.end(),
+               {"events=[" + event + "}]",
+                "cobot.standby_controller={type: joint_impedance, joint_stiffness: [300]}"});
+    if (name.starts_with("sensor_")) set.emplace_back("cobot.controller={type: admittance}");
+    scenario_ = LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml", set);
+    bool saved_within = false, ended = false;
+    const std::string file = Record([&](TickRecord* record) {
+      if (record->tick == 2000) saved_within = record->events != 0;
+      ended = ended || (record->latest_event != 0 && record->events == 0);
+      return record->tick < 1800 || record->tick > 1990;
+    });
+    const Verification result = VerifyFile(file);
+    EXPECT_FALSE(result.departure);
+    EXPECT_GT(result.ticks, 2000U);
+    EXPECT_TRUE(saved_within);
+    EXPECT_EQ(ended, has_end);
     fs::remove(file);
   }
 }
