@@ -8,6 +8,8 @@
 #include "core/error.h"
 #include "core/format.h"
 #include "evaluate.h"
+#include "models/arm_model.h"
+#include "recorded_run.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
 #include "report/report.h"
@@ -21,6 +23,16 @@ constexpr std::size_t kMaxRecordings = 8;  // the number of available colours
 // MB.
 constexpr double kDetail = 120;
 
+// Which joints of the recorded cobot are prismatic; none if its model is lost.
+std::vector<bool> RecordedPrismaticJoints(const RecordingHeader& header) {
+  const TemporaryFolder folder;
+  try {
+    return PrismaticJoints(RestoreScenario(header, folder.path()));
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 RunInfo Describe(const std::string& file, RecordingReader* reader) {
   const RecordingHeader& header = reader->header();
   RunInfo info;
@@ -29,6 +41,7 @@ RunInfo Describe(const std::string& file, RecordingReader* reader) {
   info.scenario_yaml = header.scenario_yaml;
   info.program_version = header.program_version;
   info.labels = header.labels;
+  info.prismatic = RecordedPrismaticJoints(header);
   info.loop = header.loop;
   if (header.start_unix_ns > 0)
     info.date = LocalTime("%Y-%m-%d %H:%M:%S", header.start_unix_ns / 1'000'000'000);

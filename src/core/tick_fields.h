@@ -118,7 +118,7 @@ constexpr void VisitRun(V& v, R& r) {
       r.latest_event);
   v.Value({"cobot_stop", "", "",
            "protective stop of the virtual cobot itself: 0 none, then: force, speed, momentum, "
-           "joint torque",
+           "joint torque (in a prismatic joint: force)",
            "cobot_stop"},
           r.cobot_stop);
   v.Reserved(r.reserved);
@@ -192,9 +192,10 @@ constexpr void VisitHand(V& v, H& h) {
 template <class V, class R>
 constexpr void VisitCobot(V& v, R& r) {
   v.Value({"dof", "", "", "joints of the cobot"}, r.cobot_dof);
-  v.Joints({"q", "rad", "", "", "cobot_q"}, r.cobot_q, r.cobot_dof);
-  v.Joints({"v", "rad/s"}, r.cobot_v, r.cobot_dof);
-  v.Joints({"torque", "N m", "", "commanded by the controller"}, r.cobot_torque, r.cobot_dof);
+  v.Joints({"q", "rad", "", "of a prismatic joint in m", "cobot_q"}, r.cobot_q, r.cobot_dof);
+  v.Joints({"v", "rad/s", "", "of a prismatic joint in m/s"}, r.cobot_v, r.cobot_dof);
+  v.Joints({"torque", "N m", "", "commanded by the controller, of a prismatic joint in N"},
+           r.cobot_torque, r.cobot_dof);
   v.Message({"end_effector", "", "", "E", "end_effector"}, "predictor_msgs/Motion",
             [&](auto& inner) { VisitMotion(inner, r.end_effector); });
 }

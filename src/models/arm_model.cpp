@@ -46,6 +46,15 @@ JointVector PostureOf(const std::vector<double>& posture, const RobotModel& mode
   return q;
 }
 
+std::vector<bool> PrismaticJoints(const Scenario& scenario) {
+  const CobotSpec& cobot = scenario.cobot;
+  const auto model = RobotModel::Load(
+      {cobot.model, scenario.folder(), cobot.remove_links, cobot.base.ToPose(), "cobot"});
+  std::vector<bool> prismatic;
+  for (int j = 0; j < model->dof(); ++j) prismatic.push_back(model->is_prismatic(j));
+  return prismatic;
+}
+
 void CheckPostureUnits(const YamlNode& tree, const RobotModel& model, const std::string& key) {
   for (int j = 0; j < model.dof(); ++j) {
     const std::string entry = key + "." + std::to_string(j);

@@ -282,7 +282,8 @@ void RunCollector::Impl::AddCobot(const TickRecord& record) {
   if (std::isfinite(record.link_distance)) Set(ChannelOf(C::kLinkDistance), record.link_distance);
   d_.cobot_dof = std::min<int>(record.cobot_dof, kMaxCobotJoints);
   for (int j = 0; j < d_.cobot_dof; ++j)
-    Set(ChannelOf(C::kCobotJoint, j), kDegrees * record.cobot_q[static_cast<std::size_t>(j)]);
+    Set(ChannelOf(C::kCobotJoint, j),
+        (d_.IsPrismatic(j) ? 1e3 : kDegrees) * record.cobot_q[static_cast<std::size_t>(j)]);
   if (!ran_) return;
   const std::array<double, 3>& p = record.object.pose.p;
   for (std::size_t k = 0; k < 3; ++k)

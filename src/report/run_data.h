@@ -28,6 +28,7 @@ struct RunInfo {
   std::string scenario_yaml;  // with all values resolved
   std::string program_version;
   std::map<std::string, std::string> labels;
+  std::vector<bool> prismatic;  // which joints of the cobot are; those beyond its end are not
   std::optional<PredictedLoop> loop;
   std::string date;     // start of the recording as text; empty: unknown
   std::string problem;  // problem with the file as text, for example that it was truncated
@@ -72,7 +73,7 @@ enum class RunChannel : std::size_t {
   kObjectX,        // displacement from the start, in W [mm]
   kObjectY,
   kObjectZ,
-  kCobotJoint,  // kMaxCobotJoints of them [deg]
+  kCobotJoint,  // kMaxCobotJoints of them [deg], prismatic ones [mm]
 };
 inline constexpr std::size_t kRunChannels =
     static_cast<std::size_t>(RunChannel::kCobotJoint) + kMaxCobotJoints;
@@ -127,6 +128,10 @@ struct RunData {
   Hands present;  // hands that exist, once simulated time has passed
   std::array<int, kHands> arm_dof = {};
   int cobot_dof = 0;
+  bool IsPrismatic(int joint) const {
+    const auto j = static_cast<std::size_t>(joint);
+    return j < info.prismatic.size() && info.prismatic[j];
+  }
   std::array<double, 3> object_start = {};        // in W [m]
   std::array<std::vector<float>, 3> object_path;  // every 50 ms of RUN, in W [m]
   std::array<std::array<std::vector<float>, 3>, kHands> handle_paths;

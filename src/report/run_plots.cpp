@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/units.h"
 #include "report/plot_parts.h"
@@ -174,22 +175,29 @@ Plot ForceAxesPlot(const Runs& runs) {
 Plot JointPlot(const RunCurves& curves) {
   const RunData& run = curves.run();
   Plot plot = TimePlot({curves}, "joints", "Joints of the arms and of the virtual cobot");
-  const auto add = [&](const char* title, int dof, const auto& channel) {
-    PlotPanel panel{.title = title, .y = Axis("Angle", "°", 1, false), .height = 1.2};
-    for (int j = 0; j < dof; ++j) {
+  const auto add = [&](const char* title, const PlotAxis& axis, const std::vector<int>& joints,
+                       const auto& channel) {
+    if (joints.empty()) return;
+    PlotPanel panel{.title = title, .y = axis, .height = 1.2};
+    for (const int j : joints) {
       panel.series.push_back(curves.Line(channel(j), "q" + std::to_string(j + 1), j, 0.002));
       if (j >= kPlotColors) panel.series.back().style = LineStyle::kDashed;
     }
     plot.panels.push_back(std::move(panel));
   };
-  for (int i = 0; i < kHands; ++i)
-    if (const int dof = run.arm_dof[static_cast<std::size_t>(i)]; dof > 0)
-      add(i == 0 ? "Left arm" : "Right arm", dof,
-          [i](int j) { return ChannelOf(i, HandChannel::kJoint, j); });
-  add("Virtual cobot", run.cobot_dof, [](int j) { return ChannelOf(RunChannel::kCobotJoint, j); });
-  plot.caption =
-      "Measured values; for a prismatic joint, 57.3 times its position in metres (the paper's Fig. "
-      "9).";
+  const PlotAxis angle = Axis("Angle", "°", 1, false);
+  for (int i = 0; i < kHands; ++i) {
+    std::vector<int> joints(static_cast<std::size_t>(run.arm_dof[static_cast<std::size_t>(i)]));
+    std::iota(joints.begin(), joints.end(), 0);
+    add(i == 0 ? "Left arm" : "Right arm", angle, joints,
+        [i](int j) { return ChannelOf(i, HandChannel::kJoint, j); });
+  }
+  std::vector<int> turning, sliding;
+  for (int j = 0; j < run.cobot_dof; ++j) (run.IsPrismatic(j) ? sliding : turning).push_back(j);
+  const auto of_cobot = [](int j) { return ChannelOf(RunChannel::kCobotJoint, j); };
+  add("Virtual cobot", angle, turning, of_cobot);
+  add("Virtual cobot, prismatic joints", Axis("Position", "mm", 1, false), sliding, of_cobot);
+  plot.caption = "Measured values (the paper's Fig. 9).";
   return plot;
 }
 

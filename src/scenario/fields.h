@@ -99,6 +99,9 @@ void Fields(V& v, CobotSafetySpec& s) {
   v("joint_torque", s.joint_torque,
     Number("N·m", "limit of the external torque estimated in a revolute joint; null: off",
            Above(0, 1e4)));
+  v("joint_force", s.joint_force,
+    Number("N", "limit of the external force estimated in a prismatic joint; null: off",
+           Above(0, 1e4)));
   v("stop_deceleration", s.stop_deceleration,
     Number("rad/s² or m/s²", "deceleration of each joint in a protective stop", Above(0, 1000)));
   v("force_cap", s.force_cap,

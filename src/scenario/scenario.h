@@ -79,6 +79,7 @@ struct CobotSafetySpec {
   std::optional<double> speed;         // limit of the end-effector's speed [m/s]
   std::optional<double> momentum;      // limit of the arm's momentum at the end-effector [kg·m/s]
   std::optional<double> joint_torque;  // limit of the external torque estimated in a joint [N·m]
+  std::optional<double> joint_force;   // the same in a prismatic joint [N]
   double stop_deceleration = 5;        // deceleration of each joint in a protective stop [rad/s²]
   std::optional<double> force_cap;     // limit of the controller's force at the end-effector [N]
   std::optional<double> speed_cap;     // speed above which the cobot brakes [m/s]

@@ -18,7 +18,8 @@ constexpr double kSpeedCapTime = 0.01;  // time constant by which the speed cap 
 CobotSafety::CobotSafety(const CobotSpec& spec)
     : spec_(spec.safety),
       friction_(spec.joint_friction),
-      watches_(spec_.force || spec_.speed || spec_.momentum || spec_.joint_torque) {}
+      watches_(spec_.force || spec_.speed || spec_.momentum || spec_.joint_torque ||
+               spec_.joint_force) {}
 
 JointVector CobotSafety::Friction(const JointVector& v) const noexcept {
   JointVector torque = v;
@@ -70,11 +71,13 @@ CobotStop CobotSafety::Exceeded(const ControllerInput& input) noexcept {
   if (spec_.momentum && v.norm() > 1e-6 &&
       v.norm() / Mobility(input, v.normalized()) > *spec_.momentum)
     return CobotStop::kMomentum;
-  if (!spec_.joint_torque) return CobotStop::kNone;
-  for (int j = 0; j < external_.size(); ++j)
-    if (!input.model->is_prismatic(j) &&
-        std::abs(external_[j] - J_.col(j).dot(payload_)) > *spec_.joint_torque)
+  if (!spec_.joint_torque && !spec_.joint_force) return CobotStop::kNone;
+  for (int j = 0; j < external_.size(); ++j) {
+    const std::optional<double>& limit =
+        input.model->is_prismatic(j) ? spec_.joint_force : spec_.joint_torque;
+    if (limit && std::abs(external_[j] - J_.col(j).dot(payload_)) > *limit)
       return CobotStop::kJointTorque;
+  }
   return CobotStop::kNone;
 }
 

@@ -9,6 +9,7 @@
 
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
+#include "models/arm_model.h"
 #include "report/report.h"
 #include "report/run_data.h"
 #include "scenario/scenario_io.h"
@@ -38,6 +39,7 @@ inline CollectedRun Collect(const std::string& scenario_name, double seconds,
       std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + scenario_name + ".yaml", set);
   Emulator emulator(scenario);
   RunInfo info = TestInfo(scenario, scenario_name);
+  info.prismatic = PrismaticJoints(scenario);
   RunCollector collector(std::move(info), options);
   Simulate(&emulator, seconds, [&](const TickRecord& record) { collector.Add(record); });
   return {collector.Finish(), emulator.stop()};

@@ -62,6 +62,24 @@ TEST(Report, OfARunHasAllItsChapters) {
   EXPECT_LT(report.html.size(), 8e6);
 }
 
+TEST(Report, DrawsPrismaticJointsInMillimetres) {
+  for (const auto& [name, prismatic, first] :
+       {std::tuple("linear_axis", 1u, 200.0), std::tuple("mobile_base", 2u, 0.0)}) {
+    const CollectedRun run = Collect(name, 1);
+    const ReportDocument report = MakeReport({run.data}, "test");
+    const auto plot = std::find_if(report.plots.begin(), report.plots.end(),
+                                   [](const Plot& p) { return p.id == "joints"; });
+    ASSERT_NE(plot, report.plots.end());
+    const PlotPanel& slides = plot->panels.back();
+    ASSERT_EQ(slides.series.size(), prismatic) << name;
+    EXPECT_EQ(AxisTitle(slides.y), "Position [mm]");
+    EXPECT_NEAR(slides.series[0].y->front(), first, 20) << name;  // moved by the weight
+    const PlotPanel& turns = plot->panels[plot->panels.size() - 2];
+    EXPECT_EQ(turns.series.size(), run.data.cobot_dof - prismatic) << name;
+    EXPECT_EQ(AxisTitle(turns.y), "Angle [°]");
+  }
+}
+
 TEST(Report, ReportsAStopAsTheEmulatorMeasuredIt) {
   const CollectedRun run = Collect("push", 12);
   ASSERT_EQ(run.data.stops.size(), 1u);

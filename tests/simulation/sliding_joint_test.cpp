@@ -9,6 +9,7 @@
 #include "scenes.h"
 #include "simulation/world.h"
 #include "support/temporary_folder.h"
+#include "world_fixtures.h"
 
 namespace predictor {
 namespace {
@@ -79,6 +80,23 @@ TEST_F(SlidingCobot, SwingsAsMassAndSpring) {
                                       std::sqrt(400 / mass - 16 / (4 * mass * mass)));
   for (const std::complex<double>& z : poles) nearest = std::min(nearest, std::abs(z - expected));
   EXPECT_LT(nearest, 1e-4) << poles;
+}
+
+// On a horizontal rail, the force of a hand along it is the external force in the joint. It grows
+// slowly, so that carriage and load hardly accelerate.
+TEST_F(SlidingCobot, StopsItselfAtAnExternalForce) {
+  const auto stop_under = [&](double force, const std::string& limit) {
+    const Scenario s = On("0 1 0", {limit, "cobot.joint_friction.viscous=4"});
+    World world(s);
+    for (int k = 0; k < 5000; ++k)
+      EXPECT_TRUE(
+          world.Step(Push(s, Vector3(0, std::min(1.0, k / 4000.0) * force, 0)), kTick).ok());
+    return static_cast<CobotStop>(world.state().cobot_stop);
+  };
+  EXPECT_EQ(stop_under(5.7, "cobot.safety.joint_force=6"), CobotStop::kNone);
+  EXPECT_EQ(stop_under(6.3, "cobot.safety.joint_force=6"), CobotStop::kJointTorque);
+  EXPECT_EQ(stop_under(-6.3, "cobot.safety.joint_force=6"), CobotStop::kJointTorque);
+  EXPECT_EQ(stop_under(6.3, "cobot.safety.joint_torque=6"), CobotStop::kNone);
 }
 
 TEST_F(SlidingCobot, WordsHaveTheUnitsOfItsJoint) {

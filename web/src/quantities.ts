@@ -45,14 +45,14 @@ export interface RunQuantities {
   causeQuantity: Quantity;  // that value and limit measure
   events: number;  // bits: entries of the scenario's events that act
   latestEvent: number;  // 1 + number of the hazard that began last; 0 none
-  cobotStop: number;  // protective stop of the virtual cobot itself: 0 none, then: force, speed, momentum, joint torque
+  cobotStop: number;  // protective stop of the virtual cobot itself: 0 none, then: force, speed, momentum, joint torque (in a prismatic joint: force)
   harderCause: StopCause;
   harderCauseHand: number;  // 0 left, 1 right, -1 neither or both
   harderCauseQuantity: Quantity;  // that value and limit measure
   harderCauseValue: number;  // measured, SI
   harderCauseLimit: number;  // allowed, SI
   parameters: number[];  // factors of translational stiffness, rotational stiffness and damping; thresholds of force [N] and torque [N m]
-  cobotQ: number[];  // [rad]
+  cobotQ: number[];  // [rad] of a prismatic joint in m
   endEffector: Pose;  // [m] in W
   object: Pose;  // [m] in W
   qpRelaxed: boolean;  // a slack is above its tolerance

@@ -8,6 +8,7 @@
 #include "core/format.h"
 #include "core/text.h"
 #include "emulator/emulator.h"
+#include "models/arm_model.h"
 #include "report/page.h"
 #include "scenario/action_time.h"
 #include "scenario/scenario_io.h"
@@ -133,6 +134,7 @@ ReproducedRun ReproduceRuns::RunToAnyEnd(const ReproducedSetting& setting,
   RunInfo info;
   info.name = setting.name;
   info.scenario = scenario;
+  info.prismatic = PrismaticJoints(scenario);
   info.program_version = options_.program_version;
   ReadOptions how;
   how.detail = kDetail;
