@@ -20,18 +20,18 @@ constexpr const char* kNotReached =
     "computers, exports under names of your own that do not contain the pseudonym, and the blocks "
     "of a disk that are not yet overwritten (an SSD keeps some that no program reaches).";
 
-void TellList(const std::string& title, const std::vector<PersonalFile>& list) {
+void PrintList(const std::string& title, const std::vector<PersonalFile>& list) {
   if (list.empty()) return;
-  TheScreen().Tell(title);
+  TheScreen().Print(title);
   for (const PersonalFile& entry : list)
-    TheScreen().Tell("  " + entry.path.string() + ": " + entry.why);
+    TheScreen().Print("  " + entry.path.string() + ": " + entry.why);
 }
 
 bool Confirmed(const ForgetOptions& options, std::size_t count) {
   if (options.yes) return true;
   if (isatty(STDIN_FILENO) != 1)
     throw InputError("Nothing was deleted. To delete what is listed, add --yes.");
-  TheScreen().Tell(Formatted("Delete %zu of them for ever? Type yes.", count));
+  TheScreen().Print(Formatted("Delete %zu of them for ever? Type yes.", count));
   std::string answer;
   std::getline(std::cin, answer);
   return answer == "yes";
@@ -71,18 +71,18 @@ void WriteResult(const ForgetOptions& options, std::size_t deleted, const Person
 int ForgetCommand(const ForgetOptions& options) {
   options.CheckWritable();
   const PersonSearch before = Search(options);
-  TellList("Of this person:", before.found);
-  TellList("Their content is also under another name outside of the folder (hard links):",
+  PrintList("Of this person:", before.found);
+  PrintList("Their content is also under another name outside of the folder (hard links):",
            before.linked);
   if (!before.found.empty() && !Confirmed(options, before.found.size())) {
-    TheScreen().Tell("Nothing was deleted.");
+    TheScreen().Print("Nothing was deleted.");
     return kUnfit;
   }
   const std::vector<PersonalFile> failed = Delete(before.found);
-  TellList("Could not be deleted:", failed);
+  PrintList("Could not be deleted:", failed);
   const PersonSearch after = Search(options);
-  TellList("Not searched:", after.not_searched);
-  TellList("Left:", after.found);
+  PrintList("Not searched:", after.not_searched);
+  PrintList("Left:", after.found);
   WriteResult(options, before.found.size() - failed.size(), after);
   const bool all = after.found.empty() && after.not_searched.empty() && before.linked.empty();
   return all ? kFinished : kUnfit;
