@@ -47,14 +47,14 @@ void CheckJointCount(const UrdfModel& urdf) {
 }
 
 // A point of a body, which only the joints in `support` move.
-struct BodyPoint {
+struct LinkPoint {
   std::uint32_t support;
   Vector3 p;  // p_WF [m]
 
   bool IsMovedBy(int k) const { return (support >> k) & 1u; }
 };
 
-BodyPoint At(const RobotModel& model, const EngineState& state, const FrameId& frame) {
+LinkPoint At(const RobotModel& model, const EngineState& state, const FrameId& frame) {
   const auto body = static_cast<std::size_t>(frame.body);
   return {model.impl().support[body], state.R_WJ[body] * frame.X_JF.p + state.p_WJ[body]};
 }
@@ -141,7 +141,7 @@ Pose RobotData::FramePose(const RobotModel&, const FrameId& frame) const {
 }
 
 Twist RobotData::FrameTwist(const RobotModel& model, const FrameId& frame) const {
-  const BodyPoint point = At(model, impl_->state, frame);
+  const LinkPoint point = At(model, impl_->state, frame);
   Twist V = Twist::Zero();
   for (int k = 0; k < impl_->state.v.size(); ++k)
     if (point.IsMovedBy(k)) V += impl_->state.v(k) * impl_->state.J_W.col(k);
@@ -153,7 +153,7 @@ FrameMotion RobotData::MotionOf(const RobotModel& model, const FrameId& frame,
   // Sums along the chain with the columns S_k of J_W, in W. Each column is moved by the preceding
   // joints, so the spatial acceleration gains V × S_k v_k (Featherstone 2008, (2.47)). The result
   // is then converted to the classical acceleration.
-  const BodyPoint point = At(model, impl_->state, frame);
+  const LinkPoint point = At(model, impl_->state, frame);
   const JointVector& v = impl_->state.v;
   Spatial V = Spatial::Zero(), A = V;
   for (int k = 0; k < v.size(); ++k) {
@@ -171,7 +171,7 @@ FrameMotion RobotData::MotionOf(const RobotModel& model, const FrameId& frame,
 }
 
 void RobotData::FrameJacobian(const RobotModel& model, const FrameId& frame, Jacobian* J) const {
-  const BodyPoint point = At(model, impl_->state, frame);
+  const LinkPoint point = At(model, impl_->state, frame);
   J->resize(6, impl_->state.v.size());
   for (int k = 0; k < impl_->state.v.size(); ++k) {
     if (!point.IsMovedBy(k)) {
