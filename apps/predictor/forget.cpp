@@ -73,7 +73,7 @@ int ForgetCommand(const ForgetOptions& options) {
   const PersonSearch before = Search(options);
   PrintList("Of this person:", before.found);
   PrintList("Their content is also under another name outside of the folder (hard links):",
-           before.linked);
+            before.linked);
   if (!before.found.empty() && !Confirmed(options, before.found.size())) {
     TheScreen().Print("Nothing was deleted.");
     return kUnfit;

@@ -1,6 +1,6 @@
-#include "simulation/mujoco/library.h"
-
 #include <gtest/gtest.h>
+
+#include "simulation/mujoco/library.h"
 
 namespace predictor {
 namespace {
