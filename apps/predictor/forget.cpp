@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kNotReached =
     "Not reached: backups and snapshots of the file system, copies in other folders and on other "
     "computers, exports under names of your own that do not contain the pseudonym, and the blocks "
-    "of a disk that are not yet overwritten (an SSD keeps some that no program reaches).";
+    "of a disk that are not yet overwritten (an SSD keeps some that no program can reach).";
 
 void PrintList(const std::string& title, const std::vector<PersonalFile>& list) {
   if (list.empty()) return;
@@ -31,7 +31,7 @@ bool Confirmed(const ForgetOptions& options, std::size_t count) {
   if (options.yes) return true;
   if (isatty(STDIN_FILENO) != 1)
     throw InputError("Nothing was deleted. To delete what is listed, add --yes.");
-  TheScreen().Print(Formatted("Delete %zu of them for ever? Type yes.", count));
+  TheScreen().Print(Formatted("Files to delete for good: %zu. To delete them, type yes.", count));
   std::string answer;
   std::getline(std::cin, answer);
   return answer == "yes";
@@ -50,13 +50,12 @@ PersonSearch Search(const ForgetOptions& options) {
 // Neither the names of the files nor the pseudonym: the result must not keep it.
 void WriteResult(const ForgetOptions& options, std::size_t deleted, const PersonSearch& after) {
   const std::size_t left = after.found.size();
-  std::string text = Formatted("Deleted %zu. ", deleted);
-  text += left == 0
-              ? Formatted("None of the %zu files that were searched then contains the pseudonym.\n",
-                          std::size_t{after.files})
-              : Formatted("%zu are left.\n", left);
+  std::string text = Formatted("Files deleted: %zu. ", deleted);
+  text += left == 0 ? Formatted("The remaining files (%zu) do not contain the pseudonym.\n",
+                                std::size_t{after.files})
+                    : Formatted("Files that remain: %zu, listed above.\n", left);
   if (!after.not_searched.empty())
-    Append(&text, "Not searched: %zu places, listed above. Look into them yourself.\n",
+    Append(&text, "Places not searched: %zu, listed above. Search them yourself.\n",
            after.not_searched.size());
   const nlohmann::ordered_json json = {{"deleted", deleted},
                                        {"left", left},
@@ -71,7 +70,7 @@ void WriteResult(const ForgetOptions& options, std::size_t deleted, const Person
 int ForgetCommand(const ForgetOptions& options) {
   options.CheckWritable();
   const PersonSearch before = Search(options);
-  PrintList("Of this person:", before.found);
+  PrintList("Files of this person:", before.found);
   PrintList("Their content is also under another name outside of the folder (hard links):",
             before.linked);
   if (!before.found.empty() && !Confirmed(options, before.found.size())) {
@@ -82,7 +81,7 @@ int ForgetCommand(const ForgetOptions& options) {
   PrintList("Could not be deleted:", failed);
   const PersonSearch after = Search(options);
   PrintList("Not searched:", after.not_searched);
-  PrintList("Left:", after.found);
+  PrintList("Remaining:", after.found);
   WriteResult(options, before.found.size() - failed.size(), after);
   const bool all = after.found.empty() && after.not_searched.empty() && before.linked.empty();
   return all ? kFinished : kUnfit;

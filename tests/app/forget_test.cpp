@@ -75,7 +75,7 @@ TEST_F(Forget, APersonIsInAllResultsAndThenInNone) {
     left.push_back(entry.path().filename());
   EXPECT_EQ(left, std::vector<std::string>{"other.txt"});
 
-  EXPECT_NE(Do({"forget", person, folder_.path()}).find("Deleted 0"), std::string::npos);
+  EXPECT_NE(Do({"forget", person, folder_.path()}).find("Files deleted: 0"), std::string::npos);
   Do({"simulate", Scenario("box_9kg"), "--record", run, "--label", "pseudonym=Anna"}, 2);
   EXPECT_NE(errors_.find("--participant"), std::string::npos) << errors_;
   Do({"forget", "AnnaSmith", folder_.path(), "--yes"}, 2);
