@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 
 constexpr const char* kPush =
     "operator.script=[{action: grip, start: 0, duration: 0.5}, {action: push, start: 2, duration: "
-    "0.6, force: [55, 0, 0], rise: 0.12}";
+    "0.6, force: [55, 0, 0], rise_time: 0.12}";
 
 StoppedPerson Pusher(const std::string& more = "") {
   StoppedPerson person;
@@ -82,9 +82,9 @@ TEST(Continuation, DoesNotUseTheOperatorsHiddenIntention) {
   const StoppedPerson one = Pusher();
   const auto stop = RunToStop(one);
   ASSERT_TRUE(stop);
-  const StoppedPerson other = Pusher(
-      Formatted(", {action: push, start: %.3f, duration: 0.5, force: [-90, 40, 0], rise: 0.06}",
-                stop->stop().run_time + 0.02));
+  const StoppedPerson other = Pusher(Formatted(
+      ", {action: push, start: %.3f, duration: 0.5, force: [-90, 40, 0], rise_time: 0.06}",
+      stop->stop().run_time + 0.02));
   const auto again = RunToStop(other);
   ASSERT_TRUE(again);
   ASSERT_EQ(again->stop().tick, stop->stop().tick);

@@ -81,7 +81,7 @@ inline std::vector<std::string> DisturbanceOf(RandomStream* random, std::string*
       return {Formatted(
           "operator.script=[{action: grip, start: 0, duration: 0.5}, {action: move, "
           "start: 1, duration: 4, by: [0, 0.1, 0.1]}, {action: push, start: %.4f, "
-          "duration: 0.6, force: [%.3f, %.3f, 0], rise: %.4f}]",
+          "duration: 0.6, force: [%.3f, %.3f, 0], rise_time: %.4f}]",
           at, force * std::cos(angle), force * std::sin(angle), Between(random, 0.06, 0.3))};
     }
     case 2:

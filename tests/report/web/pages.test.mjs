@@ -49,7 +49,7 @@ test('labels that one row does not hold stand in rows', async () => {
   predictor('report', ...files, '-o', page, '--quiet');
   const printed = await assertPrints(its.browser, page);
   // There are more rows of keys than panels: each panel has all four keys.
-  const keys = await printed.$$eval('#forces text', (all) => all.filter((t) => t.textContent.includes('length'))
+  const keys = await printed.$$eval('#forces text', (all) => all.filter((t) => t.textContent.includes('long name'))
       .map((t) => Math.round(t.getBoundingClientRect().top)));
   assert.ok(new Set(keys).size > keys.length / 4, keys.join());
   await screenshot(printed, 'comparison-labels-print');
