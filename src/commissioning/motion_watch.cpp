@@ -30,7 +30,7 @@ std::array<SamplePeriods, kHands> PeriodsOf(const Station& station) {
   return periods;
 }
 
-// As for every real sensor, repeated identical readings mean that it is frozen.
+// As with every real sensor, repeated identical readings mean that the sensor is frozen.
 std::array<bool, kHands> HasNoise(const Station& station) {
   std::array<bool, kHands> noise = {};
   noise[static_cast<std::size_t>(station.hand())] = true;

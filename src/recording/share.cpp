@@ -23,7 +23,7 @@ std::vector<std::string> RemovePerson(RecordingHeader* header) {
     if (YamlNode* person = root.Find("operator")) {
       if (IsTrue(person->Find("embodied")))
         throw InputError(
-            "The operator was simulated on this body (operator.embodied). The run cannot be "
+            "The operator was simulated with this body (operator.embodied). The run cannot be "
             "repeated without it, and it describes no person: share the recording as it is.");
       std::erase_if(person->items, [&](const YamlNode& item) {
         const bool personal = item.key == "body" || item.key == "stance";

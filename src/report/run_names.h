@@ -13,8 +13,8 @@ struct NamedRun {
 };
 
 // Returns a distinct name for each run. It is the condition if that is short and distinguishes the
-// runs. Otherwise it is the file name without the part common to all, with as many of its folders
-// as needed.
+// runs. Otherwise it is the file name with as many of its folders as are needed to distinguish the
+// runs, without the part that all have in common.
 std::vector<std::string> ShortNames(const std::vector<NamedRun>& runs);
 
 }  // namespace predictor

@@ -30,8 +30,9 @@ class Trace {
   // is kept completely.
   Trace(std::size_t channels, double dt, double detail);
 
-  // Adds the values of all channels, NaN if there is none. Ticks must ascend; missing ticks are
-  // gaps. Throws InputError if the ticks lie in more seconds than memory allows (eight hours).
+  // Returns the sum of the values of all channels, or NaN if there are no channels. Ticks must
+  // ascend; missing ticks are gaps. Throws InputError if the ticks lie in more seconds than memory
+  // allows (eight hours).
   void Add(std::uint64_t tick, const float* values);
   // Keeps every tick near a given point in time, which may be at most kBefore in the past. Returns
   // the interest's number.

@@ -104,7 +104,7 @@ struct CobotSpec {
 
 // ---- what goes wrong --------------------------------------------------------------------------
 
-// The place where an event begins: a ball about an offset from the object's start.
+// The region where an event begins: a sphere whose centre is an offset from the object's start.
 struct EventPlaceSpec {
   Vector3 center = Vector3::Zero();  // offset in W [m]
   double radius = 0.05;              // [m]

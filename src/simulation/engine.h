@@ -140,8 +140,8 @@ class Engine {
   virtual DofFriction JointFriction(int j) const noexcept = 0;
   virtual void SetJointFriction(int j, const DofFriction& friction) noexcept = 0;
 
-  // Direct mode: mass of a hand, a body without weight on its handle [kg]. SetHandMass returns
-  // whether the mass changed; if so, Prepare must follow. Other modes: 0.
+  // Direct mode: mass of a hand [kg], which moves with its handle and has no weight. SetHandMass
+  // returns whether the mass changed; if so, Prepare must follow. Other modes: 0.
   virtual double HandMass(int hand) const noexcept = 0;
   virtual bool SetHandMass(int hand, double mass) noexcept = 0;
   // Sums of masses, with the rounding errors that changes of the hands' masses left.

@@ -158,7 +158,7 @@ TEST(MeasureBases, OfTwoGuidedArmsFindsTheBaseOfOne) {
   EXPECT_LT(found.residual, 0.001);
 }
 
-// Without --tip, the program asks which part touches instead of guessing.
+// Without --tip, the program does not guess which part makes contact, but asks.
 TEST(MeasureBases, WithoutATipAsksWhetherTheEndEffectorTouches) {
   Bench bench;
   const Station other(1, MachineArmOf(bench.scenario), std::make_unique<RigDriver>(&bench.hand),

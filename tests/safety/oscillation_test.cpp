@@ -175,7 +175,7 @@ TEST(Oscillation, OutsideTheBandNothingGrows) {
 }
 
 // Three growing cycles end on a rise, and quiet follows. The alarm comes when the cycles are
-// complete or not at all. The alarm must not come seconds later when a small force happens to
+// complete or not at all. The alarm must not be delayed for seconds until a small force happens to
 // change its sign.
 TEST(Oscillation, ThatEndedIsNotReportedLater) {
   OscillationSpec spec;

@@ -328,7 +328,7 @@ TEST(Slips, AnOpenGripClosesWhereTheObjectIs) {
   EXPECT_LT((ObjectInFlange(world.state()).p - place.p).norm(), 1e-6);
 }
 
-// Gravity accelerates the object alone after it slid out of its grip.
+// After the object has slid out of the grip, only gravity accelerates it.
 TEST(Slips, TheObjectLeavesTheGripBeyondItsReach) {
   Scenario s = WithEvent(RigidBox(), Slips(0, 15, 100, 0.02));
   s.events.push_back(Event("brakes_close"));

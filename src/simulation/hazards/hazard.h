@@ -1,4 +1,4 @@
-// Hazards on purpose. docs/how-to/hazards.md explains how scenarios use them. To add one, give it a
+// Deliberate hazards. docs/how-to/hazards.md explains how scenarios use them. To add one, give it a
 // struct of parameters and a function that writes a Disturbance, and a line in hazards.h.
 #pragma once
 

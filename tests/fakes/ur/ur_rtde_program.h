@@ -10,7 +10,7 @@
 
 namespace predictor {
 
-// Returns nullptr if the text is another program.
+// Returns nullptr if the text is that of a different program.
 std::unique_ptr<UrProgram> RecogniseUrRtde(const std::string& text, UrController* controller);
 
 }  // namespace predictor
