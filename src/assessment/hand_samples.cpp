@@ -65,7 +65,8 @@ std::optional<PersonSample> SampleBuilder::Add(const TickRecord& record) {
 
 PersonSample SampleBuilder::Close() {
   PersonSample sample = SampleOf(pending_);
-  sample.recorded = dt_ * static_cast<double>(pending_[pending_.size() / 2].tick - *start_);
+  const std::size_t middle = pending_.size() / 2;
+  sample.recorded = dt_ * static_cast<double>(pending_[middle].tick - *start_);
   const std::array<bool, kHands> present = {sample.body.hands[0].present,
                                             sample.body.hands[1].present};
   sample.continues = !interrupted_ && (!present_ || *present_ == present);

@@ -1,5 +1,7 @@
 #include "assessment/opensim_files.h"
 
+#include <utility>
+
 #include "assessment/person_chain.h"
 #include "core/error.h"
 #include "core/format.h"
@@ -53,12 +55,16 @@ std::vector<std::string> LoadColumns() {
 std::string LoadsXml() {
   std::string forces;
   for (const std::string hand : kHandNames)
-    forces += "<ExternalForce name=\"" + hand + "_handle\">\n<applied_to_body>" + hand +
-              "_hand</applied_to_body>\n<force_expressed_in_body>ground</force_expressed_in_body>\n"
-              "<point_expressed_in_body>ground</point_expressed_in_body>\n<force_identifier>" +
-              hand + "_force_v</force_identifier>\n<point_identifier>" + hand +
-              "_force_p</point_identifier>\n<torque_identifier>" + hand +
-              "_torque_</torque_identifier>\n</ExternalForce>\n";
+    for (const auto& [before, after] :
+         {std::pair("<ExternalForce name=\"", "_handle\">\n"),
+          std::pair("<applied_to_body>", "_hand</applied_to_body>\n"),
+          std::pair("<force_expressed_in_body>ground</force_expressed_in_body>\n"
+                    "<point_expressed_in_body>ground</point_expressed_in_body>\n"
+                    "<force_identifier>",
+                    "_force_v</force_identifier>\n"),
+          std::pair("<point_identifier>", "_force_p</point_identifier>\n"),
+          std::pair("<torque_identifier>", "_torque_</torque_identifier>\n</ExternalForce>\n")})
+      forces.append(before).append(hand).append(after);
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<OpenSimDocument Version=\"40500\">\n"
          "<ExternalLoads name=\"hand_loads\">\n<objects>\n" +
          forces +

@@ -127,8 +127,9 @@ double OffsetOf(const Speeds& a, const Speeds& b, double lag) {
 // Searches all offsets on coarse grids. Throws InputError if none fits, or several.
 double SearchAll(const Speeds& fine_a, const Speeds& fine_b, const std::string& what) {
   const auto work = [&](std::size_t n) {
-    return static_cast<double>(fine_a.values.size() / n) *
-           static_cast<double>((fine_a.values.size() + fine_b.values.size()) / n);
+    const std::size_t a = fine_a.values.size() / n;
+    const std::size_t both = (fine_a.values.size() + fine_b.values.size()) / n;
+    return static_cast<double>(a) * static_cast<double>(both);
   };
   std::size_t n = 5;
   while (work(n) > kMaxWork) ++n;

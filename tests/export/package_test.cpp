@@ -102,7 +102,7 @@ TEST_F(Package, BringsTexturesAlongAndSaysWhichAreMissing) {
   EXPECT_TRUE(Contains(package.notes[0], "box.dae")) << package.notes[0];
   EXPECT_TRUE(Contains(package.notes[0], "lost.png")) << package.notes[0];
   const std::string& readme = files.at("README.txt");
-  EXPECT_TRUE(Contains(readme, "left out: lost.png of box.dae.")) << readme;
+  EXPECT_TRUE(Contains(readme, "Not found and therefore omitted: lost.png of box.dae.")) << readme;
   EXPECT_FALSE(Contains(readme, "jane")) << readme;
   EXPECT_FALSE(Contains(readme, folder.path().string())) << readme;
 }

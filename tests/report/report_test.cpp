@@ -73,7 +73,8 @@ TEST(Report, DrawsPrismaticJointsInMillimetres) {
     const PlotPanel& slides = plot->panels.back();
     ASSERT_EQ(slides.series.size(), prismatic) << name;
     EXPECT_EQ(AxisTitle(slides.y), "Position [mm]");
-    EXPECT_NEAR(slides.series[0].y->front(), first, 20) << name;  // moved by the weight
+    // The weight of the box moves both by up to a few centimetres before the run starts.
+    EXPECT_NEAR(slides.series[0].y->front(), first, 40) << name;
     const PlotPanel& turns = plot->panels[plot->panels.size() - 2];
     EXPECT_EQ(turns.series.size(), run.data.cobot_dof - prismatic) << name;
     EXPECT_EQ(AxisTitle(turns.y), "Angle [°]");

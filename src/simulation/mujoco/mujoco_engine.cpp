@@ -145,7 +145,7 @@ class MujocoEngine final : public Engine {
     return F_W;
   }
 
-  int contact_count() const noexcept override { return static_cast<int>(data_->ncon); }
+  int contact_count() const noexcept override { return data_->ncon; }
   Contact contact(int i) const noexcept override;
 
   DofFriction JointFriction(int j) const noexcept override { return FrictionOf(*scene_, j); }
