@@ -338,7 +338,7 @@ TEST(Report, OfOneArmAndOfDirectHoldingIsMadeToo) {
 
 TEST(Report, SaysWhetherTheHapticLoopWasPredictedUnstable) {
   CollectedRun run = Collect("box_9kg", 0.5);
-  EXPECT_EQ(MakeReport({run.data}, "test").html.find("stability margin"), std::string::npos);
+  EXPECT_EQ(MakeReport({run.data}, "test").html.find(", stability margin"), std::string::npos);
   for (const double margin : {0.84, 2.1}) {
     run.data.summary.loop = PredictedLoop{0.0181, margin};
     const std::string html = MakeReport({run.data}, "test").html;
