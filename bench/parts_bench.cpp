@@ -6,6 +6,7 @@
 #include "samples.h"
 #include "sections.h"
 #include "simulation/equilibrium.h"
+#include "simulation/mujoco/scene.h"
 #include "simulation/world.h"
 
 namespace predictor::bench {
@@ -63,41 +64,50 @@ struct Inputs {
 
 // The scene at its equilibrium, with the torques that keep it there.
 struct Still {
-  explicit Still(const Scenario& scenario)
-      : scene(scenario, EventSequence(scenario)), data(mj_makeData(scene.model())) {
-    FindEquilibrium(&scene, data.get());
-    start.resize(static_cast<std::size_t>(mj_stateSize(scene.model(), kState)));
-    scene.Update(data.get());
-    scene.ApplyController(0, data.get());
-    mj_getState(scene.model(), data.get(), start.data(), kState);
+  explicit Still(const Scenario& scenario) : scene(scenario, EventSequence(scenario)) {
+    FindEquilibrium(&scene);
+    scene.Update(&scene.engine());
+    scene.ApplyController(0, &scene.engine());
+    start.resize(scene.engine().state_size());
+    scene.engine().Save(start);
+  }
+  ControlledScene scene;
+  std::vector<double> start;
+};
+
+// MuJoCo alone, with a model and a state of its own.
+struct Bare {
+  explicit Bare(const Scenario& scenario)
+      : still(scenario),
+        scene(ComposeScene(scenario, still.scene.robot(), still.scene.has_wrist_sensor())),
+        data(mj_makeData(scene.model.get())) {
+    mj_setState(scene.model.get(), data.get(), still.start.data(), mjSTATE_INTEGRATION);
   }
   // Constant torques do not hold an arm for long, so the scene is reset every 100 steps.
-  void Hold() {
-    if (++steps % 100 == 0) mj_setState(scene.model(), data.get(), start.data(), kState);
+  void Step() {
+    if (++steps % 100 == 0)
+      mj_setState(scene.model.get(), data.get(), still.start.data(), mjSTATE_INTEGRATION);
+    mj_step(scene.model.get(), data.get());
   }
-  static constexpr unsigned kState = mjSTATE_INTEGRATION;
-  ControlledScene scene;
+  Still still;
+  Scene scene;
   DataPtr data;
-  std::vector<double> start;
   int steps = 0;
 };
 
 void RegisterEngine(const Recording& recording) {
-  auto bare = std::make_shared<Still>(recording.scenario);
+  auto bare = std::make_shared<Bare>(recording.scenario);
   Register("mj_step", [bare](benchmark::State& state) {
-    for (auto _ : state) {
-      bare->Hold();
-      mj_step(bare->scene.model(), bare->data.get());
-    }
+    for (auto _ : state) bare->Step();
   });
   auto first = std::make_shared<Still>(recording.scenario);
   Register("mj_step1 and the cobot's dynamics", [first](benchmark::State& state) {
-    for (auto _ : state) benchmark::DoNotOptimize(first->scene.Update(first->data.get()));
+    for (auto _ : state) benchmark::DoNotOptimize(first->scene.Update(&first->scene.engine()));
   });
   auto controlled = std::make_shared<Still>(recording.scenario);
   Register("the cobot's controller", [controlled](benchmark::State& state) {
-    for (auto _ : state)
-      benchmark::DoNotOptimize(controlled->scene.ApplyController(0, controlled->data.get()));
+    ControlledScene& scene = controlled->scene;
+    for (auto _ : state) benchmark::DoNotOptimize(scene.ApplyController(0, &scene.engine()));
   });
 }
 
