@@ -94,28 +94,27 @@ void AddImport(CLI::App* app, Request* r) {
   command->footer("Example:\n  predictor import lift.mcap --map lift.yaml -o lift.person.csv\n");
 }
 
-void AddRepair(CLI::App* app, Request* r) {
+// Adds a command that writes a changed copy of a recording to a new file.
+CLI::App* AddCopy(CLI::App* app, const char* name, const char* what, const char* output, Request* r,
+                  int (*command)(const RecordingOptions&)) {
   RecordingOptions* o = &r->recording;
-  CLI::App* repair =
-      AddCommand(app, kToolGroup, "repair", "Repair a truncated or damaged recording", r,
-                 [o] { return RepairCommand(*o); });
-  AddRecording(repair, &o->recording);
-  AddOption(repair, "Output", "-o,--output", &o->output, "FILE.mcap",
-            "File to write [default: NAME.repaired.mcap]");
-  AddOutput(repair, o);
-  repair->footer("Example:\n  predictor repair runs/cut.mcap\n");
+  CLI::App* copy = AddCommand(app, kToolGroup, name, what, r, [o, command] { return command(*o); });
+  AddRecording(copy, &o->recording);
+  AddOption(copy, "Output", "-o,--output", &o->output, "FILE.mcap", output);
+  AddOutput(copy, o);
+  return copy;
+}
+
+void AddRepair(CLI::App* app, Request* r) {
+  AddCopy(app, "repair", "Repair a truncated or damaged recording",
+          "File to write [default: NAME.repaired.mcap]", r, RepairCommand)
+      ->footer("Example:\n  predictor repair runs/cut.mcap\n");
 }
 
 void AddShare(CLI::App* app, Request* r) {
-  RecordingOptions* o = &r->recording;
-  CLI::App* share = AddCommand(app, kToolGroup, "share",
-                               "Copy a recording without body, place and labels of the person", r,
-                               [o] { return ShareCommand(*o); });
-  AddRecording(share, &o->recording);
-  AddOption(share, "Output", "-o,--output", &o->output, "FILE.mcap",
-            "File to write [default: NAME.shared.mcap]");
-  AddOutput(share, o);
-  share->footer("Example:\n  predictor share runs/p07_real.mcap -o shared/07.mcap\n");
+  AddCopy(app, "share", "Copy a recording without body, place and labels of the person",
+          "File to write [default: NAME.shared.mcap]", r, ShareCommand)
+      ->footer("Example:\n  predictor share runs/p07_real.mcap -o shared/07.mcap\n");
 }
 
 void AddForget(CLI::App* app, Request* r) {

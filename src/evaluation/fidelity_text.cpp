@@ -1,10 +1,10 @@
 // The comparison of two runs as text and numbers.
-#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/format.h"
+#include "core/json_schema.h"
 #include "evaluation/fidelity.h"
 
 namespace predictor {
@@ -59,39 +59,37 @@ void AppendPerceived(const PerceivedQuantity& q, std::string* text) {
 
 using Json = nlohmann::ordered_json;
 
-Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
 Json ChannelJson(const ChannelFidelity& f) {
   return {{"name", f.name},
           {"unit", f.unit},
-          {"range", Number(f.range)},
-          {"mean_a", Number(f.mean_a)},
-          {"mean_b", Number(f.mean_b)},
-          {"std_a", Number(f.std_a)},
-          {"std_b", Number(f.std_b)},
-          {"rmse", Number(f.rmse)},
-          {"relative_rmse", Number(f.relative_rmse)},
-          {"correlation", Number(f.correlation)},
-          {"lag", Number(f.lag)},
-          {"warped", Number(f.warped)},
-          {"peak_a", Number(f.peak_a)},
-          {"peak_b", Number(f.peak_b)},
-          {"coherence", Number(f.coherence.mean)},
-          {"coherence_by_chance", Number(f.coherence.chance)},
-          {"within_repeats", Number(f.repeats.within)},
-          {"between_repeats", Number(f.repeats.between)},
-          {"repeat_ratio", Number(f.repeats.ratio)}};
+          {"range", NumberOrNull(f.range)},
+          {"mean_a", NumberOrNull(f.mean_a)},
+          {"mean_b", NumberOrNull(f.mean_b)},
+          {"std_a", NumberOrNull(f.std_a)},
+          {"std_b", NumberOrNull(f.std_b)},
+          {"rmse", NumberOrNull(f.rmse)},
+          {"relative_rmse", NumberOrNull(f.relative_rmse)},
+          {"correlation", NumberOrNull(f.correlation)},
+          {"lag", NumberOrNull(f.lag)},
+          {"warped", NumberOrNull(f.warped)},
+          {"peak_a", NumberOrNull(f.peak_a)},
+          {"peak_b", NumberOrNull(f.peak_b)},
+          {"coherence", NumberOrNull(f.coherence.mean)},
+          {"coherence_by_chance", NumberOrNull(f.coherence.chance)},
+          {"within_repeats", NumberOrNull(f.repeats.within)},
+          {"between_repeats", NumberOrNull(f.repeats.between)},
+          {"repeat_ratio", NumberOrNull(f.repeats.ratio)}};
 }
 
 Json PerceivedJson(const PerceivedQuantity& q) {
   return {{"name", q.name},
           {"unit", q.unit},
-          {"a", Number(q.a)},
-          {"b", Number(q.b)},
-          {"error_a", Number(q.error_a)},
-          {"error_b", Number(q.error_b)},
-          {"difference", Number(q.difference)},
-          {"error", Number(q.error)},
+          {"a", NumberOrNull(q.a)},
+          {"b", NumberOrNull(q.b)},
+          {"error_a", NumberOrNull(q.error_a)},
+          {"error_b", NumberOrNull(q.error_b)},
+          {"difference", NumberOrNull(q.difference)},
+          {"error", NumberOrNull(q.error)},
           {"jnd", {q.jnd.low, q.jnd.high}},
           {"noticed", Name(q.noticed)}};
 }
@@ -104,9 +102,9 @@ std::string FidelityJson(const FidelityReport& report, const std::string& name_a
                {"b", name_b},
                {"by_phase", report.by_phase},
                {"cycles", report.cycles},
-               {"period_a", Number(report.period_a)},
-               {"period_b", Number(report.period_b)},
-               {"duration", Number(report.duration)},
+               {"period_a", NumberOrNull(report.period_a)},
+               {"period_b", NumberOrNull(report.period_b)},
+               {"duration", NumberOrNull(report.duration)},
                {"repeats_a", report.repeats_a},
                {"repeats_b", report.repeats_b},
                {"channels", Json::array()},

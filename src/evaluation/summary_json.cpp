@@ -1,9 +1,9 @@
 // The summary as JSON, and its schema. Both are made from lists of results.
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/json_schema.h"
 #include "core/words.h"
 #include "evaluation/summary.h"
 
@@ -106,7 +106,7 @@ std::vector<Result> TailOf(const Summary& s) {
 
 struct ToJson {
   Json operator()(std::monostate) const { return nullptr; }
-  Json operator()(double x) const { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+  Json operator()(double x) const { return NumberOrNull(x); }
   Json operator()(std::uint64_t n) const { return n; }
   Json operator()(bool b) const { return b; }
   Json operator()(const std::string& text) const { return text; }

@@ -4,6 +4,7 @@
 
 #include "analysis/check/check.h"
 #include "core/format.h"
+#include "core/json_schema.h"
 #include "core/text.h"
 #include "core/units.h"
 
@@ -155,9 +156,8 @@ void AddStability(const StabilityReport& r, std::string* text) {
 // ---- JSON
 // ----------------------------------------------------------------------------------------
 
-Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 Json ToJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-Json ToJson(const Extreme& e) { return {{"value", Number(e.value)}, {"time_s", e.time}}; }
+Json ToJson(const Extreme& e) { return {{"value", NumberOrNull(e.value)}, {"time_s", e.time}}; }
 Json ToJson(const StabilityMargin& m) { return {{"gain", m.gain}, {"frequency_hz", m.frequency}}; }
 
 Json ToJson(const ModelsReport& m) {
@@ -168,7 +168,7 @@ Json ToJson(const ModelsReport& m) {
       {"static_torque",
        {{"joint", m.torque_joint},
         {m.torque_is_force ? "value_n" : "value_nm", m.torque},
-        {m.torque_is_force ? "limit_n" : "limit_nm", Number(m.torque_limit)}}}};
+        {m.torque_is_force ? "limit_n" : "limit_nm", NumberOrNull(m.torque_limit)}}}};
   for (std::size_t h = 0; h < kHands; ++h) {
     json["arms"][kHandNames[h]] = nullptr;
     if (m.arms[h])
@@ -180,7 +180,7 @@ Json ToJson(const ModelsReport& m) {
 }
 
 Json ToJson(const CheckReport& report, const Reach& reach, double comfort) {
-  Json json = {{"comfort", Number(comfort)}};
+  Json json = {{"comfort", NumberOrNull(comfort)}};
   for (std::size_t h = 0; h < kHands; ++h) {
     json[kHandNames[h]] = nullptr;
     if (!reach.arms[h]) continue;

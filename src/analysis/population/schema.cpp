@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/population/population.h"
+#include "core/json_schema.h"
 
 namespace predictor::population {
 namespace {
@@ -96,7 +97,7 @@ std::string PopulationSchema() {
     quantities["properties"][kind.path]["description"] =
         WithUnit(kind.label, {kind.unit.si, kind.unit.si});
   schema["description"] = "A population study of PREDICTOR";
-  schema["$schema"] = "http://json-schema.org/draft-07/schema#";
+  schema["$schema"] = schema::kDraft;
   return schema.dump(2) + "\n";
 }
 

@@ -4,6 +4,7 @@
 
 #include "analysis/population/population.h"
 #include "core/format.h"
+#include "core/json_schema.h"
 #include "core/text.h"
 #include "report/plot.h"
 
@@ -32,7 +33,6 @@ int StopsOf(const PopulationDesign& design) {
   return stops;
 }
 
-Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 Json ToJson(const Share& share) {
   return {{"count", share.count}, {"of", share.of}, {"interval_95", {share.low, share.high}}};
 }
@@ -41,9 +41,9 @@ Json SummaryJson(const StudyQuantity& kind, const DesignSummary& s) {
   return {{"unit", kind.unit.si},
           {"origin", assessment::Name(kind.origin)},
           {"people", s.people},
-          {"median", Number(s.median)},
-          {"p5", Number(s.p5)},
-          {"p95", Number(s.p95)},
+          {"median", NumberOrNull(s.median)},
+          {"p5", NumberOrNull(s.p5)},
+          {"p95", NumberOrNull(s.p95)},
           {"limit", kind.has_limit() ? Json(kind.limit) : Json(nullptr)},
           {"beyond_limit", kind.has_limit() ? ToJson(s.beyond) : Json(nullptr)}};
 }
@@ -53,10 +53,10 @@ Json DifferenceJson(const PopulationStudy& study, const PairedDifference& d) {
           {"against", study.designs[d.b].name},
           {"quantity", StudyQuantities()[d.quantity].path},
           {"people", d.better.of},
-          {"shift", Number(d.shift.estimate)},
-          {"interval_95", {Number(d.shift.lower), Number(d.shift.upper)}},
-          {"p", Number(d.p)},
-          {"p_holm", Number(d.p_holm)},
+          {"shift", NumberOrNull(d.shift.estimate)},
+          {"interval_95", {NumberOrNull(d.shift.lower), NumberOrNull(d.shift.upper)}},
+          {"p", NumberOrNull(d.p)},
+          {"p_holm", NumberOrNull(d.p_holm)},
           {"better", ToJson(d.better)}};
 }
 
