@@ -1,5 +1,5 @@
-// What is evaluated of a run: the samples of the hands, from a recording of the emulator or of
-// another system.
+// The part of a run that the evaluation uses: the samples of the hands, from a recording of the
+// emulator or of another system.
 #pragma once
 
 #include <array>

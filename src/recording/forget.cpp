@@ -214,7 +214,7 @@ class Search {
             !IsFound(other))
           result_.found.push_back({other, "made from " + run.path.filename().string()});
     }
-    // What is deleted need not be searched.
+    // A file that will be deleted needs no search.
     std::erase_if(result_.not_searched, [&](const PersonalFile& f) { return IsFound(f.path); });
   }
 

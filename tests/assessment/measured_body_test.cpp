@@ -78,7 +78,7 @@ double WidthOf(const Assessment& a, const std::string& path) {
   throw std::out_of_range(path);
 }
 
-// What is measured need not be assumed.
+// Measurements of the body replace assumptions about it.
 TEST(MeasuredBody, NarrowsTheIntervals) {
   const Truth truth = TruthOf(MadeRun());
   const Assessment hands = JudgeWith({}, true);

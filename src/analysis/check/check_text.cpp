@@ -153,8 +153,7 @@ void AddStability(const StabilityReport& r, std::string* text) {
   }
 }
 
-// ---- JSON
-// ----------------------------------------------------------------------------------------
+// ---- JSON --------------------------------------------------------------------------------------
 
 Json ToJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 Json ToJson(const Extreme& e) { return {{"value", NumberOrNull(e.value)}, {"time_s", e.time}}; }
