@@ -151,7 +151,7 @@ struct Recorder::Impl {
   void FollowLoss(const TickRecord& record);
   void NoteLoss(std::uint64_t tick);
   void TakeMarks();
-  void TakePersons();
+  void TakePersons(bool all);
   bool Pass(bool all);
 
   // ---- writing ----------------------------------------------------------------------------------
@@ -180,6 +180,7 @@ struct Recorder::Impl {
 
   // Used only by the thread that encodes.
   std::uint64_t newest = 0;               // tick
+  std::optional<PersonState> waiting;     // the person's next state
   std::uint64_t seen = 0;                 // number of lost ticks noticed so far
   std::uint64_t noted = 0;                // number of them that an event in the file reports
   std::uint64_t holes = 0;                // gaps covered by one event
@@ -213,7 +214,7 @@ void Recorder::Impl::Encode() {
     Drain();
     if (last && holes > 0) NoteLoss(newest);
     TakeMarks();
-    TakePersons();
+    TakePersons(last);
     snapshot.MoveTo(&encoder);
     if (wants_snapshot && snapshot.Want()) wants_snapshot = false;
     if (!Pass(last)) break;
@@ -282,11 +283,16 @@ void Recorder::Impl::TakeMarks() {
   }
 }
 
-// States that were overwritten are missing without a notice: nothing depends on them.
-void Recorder::Impl::TakePersons() {
-  PersonState state;
-  for (std::size_t k = 0; persons && k < kPersonRing && persons->Next(&state); ++k)
-    encoder.AddPerson(state);
+// A state that was read before its tick waits for it: its time is that of its tick. States that were
+// overwritten are missing without a notice: nothing depends on them.
+void Recorder::Impl::TakePersons(bool all) {
+  for (std::size_t k = 0; persons && k < kPersonRing; ++k) {
+    PersonState state;
+    if (!waiting && persons->Next(&state)) waiting = state;
+    if (!waiting || (!all && waiting->tick > newest)) return;
+    encoder.AddPerson(*waiting);
+    waiting.reset();
+  }
 }
 
 // Passes on the data that are due, or all data. Returns false if the queue has ended.
