@@ -122,10 +122,15 @@ TEST_F(Forget, SaysThatAHardLinkKeepsTheContent) {
 }
 
 TEST_F(Forget, SaysWhatCouldNotBeDeleted) {
-  if (geteuid() == 0) GTEST_SKIP() << "root may delete everything";
   Write("fixed/a.csv", kPerson);
-  fs::permissions(Path("fixed"), fs::perms::owner_read | fs::perms::owner_exec);
-  const auto failed = Delete(FindPerson(folder_.path(), kPerson).found);
+  fs::permissions(folder_.path(), fs::perms::others_exec, fs::perm_options::add);
+  fs::permissions(Path("fixed"), fs::perms(0555));
+  const auto found = FindPerson(folder_.path(), kPerson).found;
+  // Root may delete everything, so another user tries.
+  const uid_t user = geteuid();
+  ASSERT_EQ(seteuid(user == 0 ? 65534 : user), 0);
+  const auto failed = Delete(found);
+  ASSERT_EQ(seteuid(user), 0);
   fs::permissions(Path("fixed"), fs::perms::owner_all);
   ASSERT_EQ(failed.size(), 1u);
   EXPECT_EQ(failed[0].path, Path("fixed/a.csv"));
