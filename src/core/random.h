@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "core/sincos.h"
+
 namespace predictor {
 
 // One stream of random numbers (xoshiro256++, Blackman & Vigna 2019). Each stream is named after
@@ -39,10 +41,12 @@ class RandomStream {
       return spare_;
     }
     const double r = std::sqrt(-2 * std::log(1 - Uniform()));
-    const double a = 2 * 3.14159265358979323846 * Uniform();
-    spare_ = r * std::sin(a);
+    const double angle = 2 * 3.14159265358979323846 * Uniform();
+    double sine = 0, cosine = 0;
+    SinesAndCosines(&angle, 1, &sine, &cosine);
+    spare_ = r * sine;
     has_spare_ = true;
-    return r * std::cos(a);
+    return r * cosine;
   }
 
   template <class A>

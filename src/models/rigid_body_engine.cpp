@@ -1,7 +1,8 @@
 #include "models/rigid_body_engine.h"
 
 #include <Eigen/Geometry>
-#include <cmath>
+
+#include "core/sincos.h"
 
 namespace predictor {
 namespace {
@@ -42,14 +43,15 @@ EngineJoint MakeJoint(const UrdfJoint& joint, std::size_t parent, const Pose& X_
   return made;
 }
 
-// Turns R about the joint's axis by q [rad].
-void Turn(const EngineJoint& joint, double q, Matrix3* R) {
-  if (joint.own_axis < 0) {
-    *R *= Eigen::AngleAxisd(q, joint.axis).toRotationMatrix();
+// Turns R about the joint's axis by an angle with this sine and cosine.
+void Turn(const EngineJoint& joint, double sine, double cosine, Matrix3* R) {
+  if (joint.own_axis < 0) {  // Rodrigues' formula
+    const Matrix3 K = Skew(joint.axis);
+    *R *= Matrix3::Identity() + sine * K + (1 - cosine) * K * K;
     return;
   }
   const int next = (joint.own_axis + 1) % 3, last = (joint.own_axis + 2) % 3;
-  R->col(next) = (std::cos(q) * R->col(next) + std::sin(q) * R->col(last)).eval();
+  R->col(next) = (cosine * R->col(next) + sine * R->col(last)).eval();
   R->col(last) = R->col(joint.own_axis).cross(R->col(next));
 }
 
@@ -148,6 +150,8 @@ EngineState MakeEngineState(const EngineModel& model) {
 
 void ComputeKinematics(const EngineModel& model, const JointVector& q,
                        EngineState* state) noexcept {
+  std::array<double, kMaxJoints> sine, cosine;
+  SinesAndCosines(q.data(), static_cast<int>(model.joints.size()), sine.data(), cosine.data());
   for (std::size_t j = 1; j <= model.joints.size(); ++j) {
     const EngineJoint& joint = model.joints[j - 1];
     const auto k = static_cast<Eigen::Index>(j) - 1;
@@ -156,7 +160,7 @@ void ComputeKinematics(const EngineModel& model, const JointVector& q,
     if (joint.prismatic)
       p += q[k] * (R * joint.axis);
     else
-      Turn(joint, q[k], &R);
+      Turn(joint, sine[j - 1], cosine[j - 1], &R);
     const Matrix3& R_WP = state->R_WJ[joint.parent];
     state->R_WJ[j].noalias() = R_WP * R;
     state->p_WJ[j] = state->p_WJ[joint.parent] + R_WP * p;

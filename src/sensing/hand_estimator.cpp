@@ -25,6 +25,8 @@ HandEstimator::HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& 
       payload_(payload),
       X_ES_(sensor.pose.ToPose()),
       X_EH_(X_EH),
+      inertia_S_(Matrix3(payload.inertia.asDiagonal()) -
+                 payload.mass * Skew(payload.center_of_mass) * Skew(payload.center_of_mass)),
       gravity_(gravity),
       hold_back_(std::max(0.0, acceleration_lag - sensor.delay) / dt),
       weight_delay_(hold_back_ + sensor.delay / dt),
@@ -48,16 +50,14 @@ Wrench HandEstimator::Weight(const Quaternion& q_WS) const noexcept {
 }
 
 Wrench HandEstimator::Inertia(const FrameMotion& S) const noexcept {
-  // Rate of change of momentum about S, in axes of S; the inertia is moved from the centre of mass
-  // to S.
-  const Quaternion to_S = S.X_W.q.conjugate();
-  const Vector3 a = to_S * Vector3(S.A_W.head<3>());
-  const Vector3 w = to_S * Vector3(S.V_W.tail<3>());
-  const Vector3 alpha = to_S * Vector3(S.A_W.tail<3>());
+  // Rate of change of momentum about S, in axes of S.
+  const Matrix3 R_SW = S.X_W.R().transpose();
+  const Vector3 a = R_SW * S.A_W.head<3>();
+  const Vector3 w = R_SW * S.V_W.tail<3>();
+  const Vector3 alpha = R_SW * S.A_W.tail<3>();
   const Vector3& c = payload_.center_of_mass;
   const double m = payload_.mass;
-  const Matrix3 C = Skew(c);
-  const Matrix3 I_S = Matrix3(payload_.inertia.asDiagonal()) - m * C * C;
+  const Matrix3& I_S = inertia_S_;
   Wrench F;
   F << -m * (a + alpha.cross(c) + w.cross(w.cross(c))),
       -(m * c.cross(a) + I_S * alpha + w.cross(I_S * w));

@@ -66,6 +66,7 @@ class HandEstimator {
   SensorSpec sensor_;
   HandlePayloadSpec payload_;
   Pose X_ES_, X_EH_;
+  Matrix3 inertia_S_;  // of the handle about the origin of S, in its axes [kg·m²]
   double gravity_;
   double hold_back_, weight_delay_, inertia_delay_;  // [ticks]
   FractionalDelay<Wrench, 64> reading_, weight_, inertia_;
