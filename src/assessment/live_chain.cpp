@@ -32,6 +32,7 @@ bool LiveChain::Next(bool all, JudgedSample* judged) {
   judged->motion = MotionsOfPart(q)[next_ - begin];
   judged->frame = person_.Judge({judged->sample.body, judged->force_rate}, judged->motion,
                                 postures_[next_].reached);
+  muscles_.Add(judged->sample.body, judged->motion, &judged->frame);
   ++next_;
   return true;
 }

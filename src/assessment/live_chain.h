@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "assessment/muscle_use.h"
 #include "assessment/person_chain.h"
 
 namespace predictor::assessment {
@@ -27,7 +28,8 @@ struct JudgedSample {
 // approximately equal.
 class LiveChain {
  public:
-  LiveChain(const PersonSetup& setup, const WorkPattern& work) : person_(setup, work) {}
+  LiveChain(const PersonSetup& setup, const WorkPattern& work)
+      : person_(setup, work), muscles_(setup) {}
 
   // Takes the next sample in which a hand holds a handle.
   void Add(const PersonSample& sample);
@@ -44,6 +46,7 @@ class LiveChain {
   void Forget();
 
   NominalPerson person_;
+  ArmMuscles muscles_;
   std::vector<PersonSample> samples_;  // with the same indices in both
   std::vector<person::Posture> postures_;
   std::size_t next_ = 0;  // the next sample to be judged

@@ -24,6 +24,10 @@ constexpr std::array<GaugeValue, kPersonGauges> kGaugeValues = {
     [](const Moment& m) { return m.frame.elbow_use[1]; },
     [](const Moment& m) { return m.sample.body.hands[0].F_D_W.head<3>().norm(); },
     [](const Moment& m) { return m.sample.body.hands[1].F_D_W.head<3>().norm(); },
+    [](const Moment& m) { return m.frame.muscles[0].values[kLargestActivation]; },
+    [](const Moment& m) { return m.frame.muscles[1].values[kLargestActivation]; },
+    [](const Moment& m) { return m.frame.muscles[0].values[kSoftest]; },
+    [](const Moment& m) { return m.frame.muscles[1].values[kSoftest]; },
 };
 constexpr std::array<double (*)(const Frame&), kPersonWarnings> kWarningValues = {
     [](const Frame& f) { return f.loads.l5s1.compression; },
@@ -82,7 +86,8 @@ void WriteIntervals(std::span<const Frame> frames, const PersonSample& sample, P
   for (std::size_t i = 0; i < kPersonGauges; ++i) {
     GaugeState& gauge = state->gauges[i];
     gauge.low = gauge.high = kUnknown;
-    if (kPersonGaugeRows[i].measured || !IsPresent(HandOf(i), sample)) continue;
+    if (kPersonGaugeRows[i].source != GaugeSource::kModelled || !IsPresent(HandOf(i), sample))
+      continue;
     std::vector<double> values;
     for (const Frame& frame : frames) values.push_back(kGaugeValues[i]({frame, sample}));
     const person::Interval interval = person::IntervalOf(values);

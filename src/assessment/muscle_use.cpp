@@ -137,20 +137,23 @@ void AddRows(std::integer_sequence<int, Values...>, std::vector<QuantityKind>* k
 
 }  // namespace
 
+ArmMuscles::ArmMuscles(const PersonSetup& setup)
+    : stance_(setup.stance), arms_{{{setup.body, 0}, {setup.body, 1}}} {}
+
+void ArmMuscles::Add(const person::BodySample& sample, const person::BodyMotion& motion,
+                     Frame* frame) const {
+  const auto wrenches = person::WrenchesOn(sample, stance_);
+  for (std::size_t h = 0; h < kHands; ++h)
+    if (sample.hands[h].present)
+      frame->muscles[h] = MusclesOf(arms_[h], motion, frame->loads.torque, wrenches[h],
+                                    frame->angles.arms[h].upper_arm_elevation);
+}
+
 void AddMuscles(const PersonSetup& setup, std::span<const PersonSample> samples,
                 NominalChain* chain) {
-  for (int hand = 0; hand < kHands; ++hand) {
-    const auto h = static_cast<std::size_t>(hand);
-    const muscles::ArmModel arm(setup.body, hand);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const person::BodySample& sample = samples[i].body;
-      if (!sample.hands[h].present) continue;
-      Frame& frame = chain->frames[i];
-      frame.muscles[h] = MusclesOf(arm, chain->motions[i], frame.loads.torque,
-                                   person::WrenchesOn(sample, setup.stance)[h],
-                                   frame.angles.arms[h].upper_arm_elevation);
-    }
-  }
+  const ArmMuscles muscles(setup);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    muscles.Add(samples[i].body, chain->motions[i], &chain->frames[i]);
 }
 
 std::vector<QuantityKind> MuscleQuantities() {

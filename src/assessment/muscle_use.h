@@ -9,10 +9,14 @@
 #include <vector>
 
 #include "core/types.h"
+#include "muscles/arm_model.h"
 #include "muscles/muscle_table.h"
+#include "person/body_loads.h"
+#include "person/body_sample.h"
 
 namespace predictor::assessment {
 
+struct Frame;
 struct NominalChain;
 struct NotEvaluable;
 struct PersonSample;
@@ -43,6 +47,18 @@ struct ArmMuscleUse {
   bool raised = false;
 
   ArmMuscleUse() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
+};
+
+// The muscles of both arms of the nominal person.
+class ArmMuscles {
+ public:
+  explicit ArmMuscles(const PersonSetup& setup);
+  // Fills in `muscles` of a frame whose angles and loads belong to this sample and motion.
+  void Add(const person::BodySample& sample, const person::BodyMotion& motion, Frame* frame) const;
+
+ private:
+  person::Stance stance_;
+  std::array<muscles::ArmModel, kHands> arms_;
 };
 
 // Fills in `muscles` of the chain's frames.

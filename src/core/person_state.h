@@ -80,34 +80,55 @@ enum class PersonGauge : std::uint8_t {
   kRightElbowUse,
   kLeftHandForce,
   kRightHandForce,
+  kLeftActivation,
+  kRightActivation,
+  kLeftStiffness,
+  kRightStiffness,
 };
+enum class GaugeSource : std::uint8_t {
+  kMeasured,  // by the sensors of the arms
+  kModelled,  // with an interval
+  kMuscles,   // modelled by the muscles of the nominal posture alone, so without an interval
+};
+inline constexpr std::array kGaugeSourceNames = {"measured", "modelled", "muscles"};
 struct PersonGaugeRow {
   const char *name, *unit, *meaning;
   double limit;  // 0: none, except for balance
   bool low_is_bad;
-  bool measured;  // by the sensors of the arms; otherwise modelled, with an interval
+  GaugeSource source;
 };
 inline constexpr std::array kPersonGaugeRows = {
     PersonGaugeRow{"lower_back_compression", "N", "compression of the disc L5/S1",
-                   kCompressionLimit, false, false},
-    PersonGaugeRow{"lower_back_shear", "N", "forward shear of L5/S1", kShearLimit, false, false},
+                   kCompressionLimit, false, GaugeSource::kModelled},
+    PersonGaugeRow{"lower_back_shear", "N", "forward shear of L5/S1", kShearLimit, false,
+                   GaugeSource::kModelled},
     PersonGaugeRow{"lower_back_moment", "N m", "moment of the extensors of the back about L5/S1", 0,
-                   false, false},
+                   false, GaugeSource::kModelled},
     PersonGaugeRow{"balance_margin", "m",
                    "from the centre of pressure to the edge of the feet; negative: outside", 0,
-                   true, false},
+                   true, GaugeSource::kModelled},
     PersonGaugeRow{"trunk_flexion", "rad", "of the torso against the vertical, forward", 0, false,
-                   false},
+                   GaugeSource::kModelled},
     PersonGaugeRow{"left_shoulder_use", "", "torque over the mean strength of the sex, flexion", 1,
-                   false, false},
+                   false, GaugeSource::kModelled},
     PersonGaugeRow{"right_shoulder_use", "", "torque over the mean strength of the sex, flexion", 1,
-                   false, false},
+                   false, GaugeSource::kModelled},
     PersonGaugeRow{"left_elbow_use", "", "torque over the mean strength of the sex", 1, false,
-                   false},
+                   GaugeSource::kModelled},
     PersonGaugeRow{"right_elbow_use", "", "torque over the mean strength of the sex", 1, false,
-                   false},
-    PersonGaugeRow{"left_hand_force", "N", "magnitude of the force on the handle", 0, false, true},
-    PersonGaugeRow{"right_hand_force", "N", "magnitude of the force on the handle", 0, false, true},
+                   GaugeSource::kModelled},
+    PersonGaugeRow{"left_hand_force", "N", "magnitude of the force on the handle", 0, false,
+                   GaugeSource::kMeasured},
+    PersonGaugeRow{"right_hand_force", "N", "magnitude of the force on the handle", 0, false,
+                   GaugeSource::kMeasured},
+    PersonGaugeRow{"left_arm_activation", "", "largest activation of a muscle", 0, false,
+                   GaugeSource::kMuscles},
+    PersonGaugeRow{"right_arm_activation", "", "largest activation of a muscle", 0, false,
+                   GaugeSource::kMuscles},
+    PersonGaugeRow{"left_hand_stiffness", "N/m", "smallest principal stiffness; a lower bound", 0,
+                   false, GaugeSource::kMuscles},
+    PersonGaugeRow{"right_hand_stiffness", "N/m", "smallest principal stiffness; a lower bound", 0,
+                   false, GaugeSource::kMuscles},
 };
 inline constexpr std::size_t kPersonGauges = kPersonGaugeRows.size();
 

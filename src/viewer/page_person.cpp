@@ -100,8 +100,9 @@ std::string PagePerson() {
          Table("kPersonGauges", kPersonGaugeRows,
                [&](const PersonGaugeRow& row) {
                  return std::string("unit: '") + row.unit + "', limit: " + FormatNumber(row.limit) +
-                        ", lowIsBad: " + flag(row.low_is_bad) +
-                        ", measured: " + flag(row.measured) + ", meaning: '" + row.meaning + "'";
+                        ", lowIsBad: " + flag(row.low_is_bad) + ", source: '" +
+                        kGaugeSourceNames[static_cast<std::size_t>(row.source)] + "', meaning: '" +
+                        row.meaning + "'";
                }) +
          Table("kPersonScores", kPersonScoreRows,
                [](const PersonScoreRow& row) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "assessment/assessment.h"
 #include "assessment/samples.h"
@@ -48,11 +49,17 @@ const GaugeState& Gauge(const PersonState& state, PersonGauge gauge) {
 // With the whole part known, the live chain and the recorded one are the same computation.
 TEST(LiveChain, IsExactOverAShortPart) {
   const Recorded recorded(0.4);
+  NominalChain nominal = recorded.nominal;
+  AddMuscles(recorded.setup, recorded.run.samples(), &nominal);
   LiveChain live(recorded.setup, {});
   for (const PersonSample& sample : recorded.run.samples()) live.Add(sample);
   std::size_t i = 0;
   for (JudgedSample judged; live.Next(true, &judged); ++i) {
-    const Frame& frame = recorded.nominal.frames[i];
+    const Frame& frame = nominal.frames[i];
+    for (std::size_t h = 0; h < kHands; ++h) {
+      EXPECT_GT(frame.muscles[h].values[kLargestActivation], 0.05);
+      EXPECT_EQ(judged.frame.muscles[h].values, frame.muscles[h].values);
+    }
     EXPECT_EQ(judged.frame.loads.torque, frame.loads.torque);
     EXPECT_EQ(judged.frame.loads.l5s1.compression, frame.loads.l5s1.compression);
     EXPECT_EQ(judged.frame.rula.grand, frame.rula.grand);
@@ -103,6 +110,31 @@ TEST(LivePerson, EndsWithTheDamageAndFatigueOfTheRecordedRun) {
 }
 
 // In a still posture no motion has to be estimated.
+TEST(LivePerson, HasTheMusclesOfTheRecordedRun) {
+  const Scenario scenario = PersonScenario();
+  const auto still = [](std::uint64_t tick) { return RecordOf(tick, 1, 20); };
+  const Assessment a = Assess(scenario, 9, Collect(scenario, 0.5, still), {.intervals = false});
+  LivePerson live(scenario, {});
+  for (std::uint64_t tick = 1; tick <= 500; ++tick) live.Add(still(tick));
+  const std::map<std::string, PersonGauge> gauges = {
+      {"muscles.left.largest", PersonGauge::kLeftActivation},
+      {"muscles.right.largest", PersonGauge::kRightActivation},
+      {"muscles.left.softest_n_per_m", PersonGauge::kLeftStiffness},
+      {"muscles.right.softest_n_per_m", PersonGauge::kRightStiffness}};
+  std::size_t found = 0;
+  for (const QuantityResult& q : a.quantities) {
+    const auto named = gauges.find(q.kind->path);
+    if (named == gauges.end()) continue;
+    const GaugeState& gauge = Gauge(live.state(), named->second);
+    EXPECT_GT(gauge.value, 0) << named->first;
+    EXPECT_NEAR(gauge.value / q.values.back(), 1, 1e-3) << named->first;
+    EXPECT_FALSE(std::isfinite(gauge.low)) << "of one posture alone";
+    ++found;
+  }
+  EXPECT_EQ(found, gauges.size());
+}
+
+// The same holds for the intervals.
 TEST(LivePerson, HasTheIntervalsOfTheRecordedRun) {
   const Scenario scenario = PersonScenario();
   const auto still = [](std::uint64_t tick) { return RecordOf(tick, 1, 20); };

@@ -14,22 +14,26 @@ export interface PersonState {
   warnings: ('lower_back_compression' | 'lower_back_shear' | 'balance' | 'left_shoulder' | 'right_shoulder' | 'left_elbow' | 'right_elbow' | 'rula' | 'reba' | 'owas' | 'reach')[];  // that are on
   points: Record<'pelvis' | 'l5s1' | 'neck' | 'head' | 'eyes' | 'left_shoulder' | 'left_elbow' | 'left_wrist' | 'left_hand' | 'right_shoulder' | 'right_elbow' | 'right_wrist' | 'right_hand' | 'left_hip' | 'left_knee' | 'left_ankle' | 'left_toes' | 'right_hip' | 'right_knee' | 'right_ankle' | 'right_toes', [number, number, number] | null>;  // in W [m]
   parts: Record<'lower_back' | 'left_shoulder' | 'right_shoulder' | 'left_elbow' | 'right_elbow', Record<'load' | 'capacity' | 'damage' | 'day_share', number | null>>;
-  gauges: Record<'lower_back_compression' | 'lower_back_shear' | 'lower_back_moment' | 'balance_margin' | 'trunk_flexion' | 'left_shoulder_use' | 'right_shoulder_use' | 'left_elbow_use' | 'right_elbow_use' | 'left_hand_force' | 'right_hand_force', Record<'value' | 'low' | 'high', number | null>>;
+  gauges: Record<'lower_back_compression' | 'lower_back_shear' | 'lower_back_moment' | 'balance_margin' | 'trunk_flexion' | 'left_shoulder_use' | 'right_shoulder_use' | 'left_elbow_use' | 'right_elbow_use' | 'left_hand_force' | 'right_hand_force' | 'left_arm_activation' | 'right_arm_activation' | 'left_hand_stiffness' | 'right_hand_stiffness', Record<'value' | 'low' | 'high', number | null>>;
   scores: Record<'rula' | 'reba' | 'owas', {score: number; level: number; probability: number[] | null}>;
 }
 
 export const kPersonGauges = {
-  lower_back_compression: {unit: 'N', limit: 3400, lowIsBad: false, measured: false, meaning: 'compression of the disc L5/S1'},
-  lower_back_shear: {unit: 'N', limit: 700, lowIsBad: false, measured: false, meaning: 'forward shear of L5/S1'},
-  lower_back_moment: {unit: 'N m', limit: 0, lowIsBad: false, measured: false, meaning: 'moment of the extensors of the back about L5/S1'},
-  balance_margin: {unit: 'm', limit: 0, lowIsBad: true, measured: false, meaning: 'from the centre of pressure to the edge of the feet; negative: outside'},
-  trunk_flexion: {unit: 'rad', limit: 0, lowIsBad: false, measured: false, meaning: 'of the torso against the vertical, forward'},
-  left_shoulder_use: {unit: '', limit: 1, lowIsBad: false, measured: false, meaning: 'torque over the mean strength of the sex, flexion'},
-  right_shoulder_use: {unit: '', limit: 1, lowIsBad: false, measured: false, meaning: 'torque over the mean strength of the sex, flexion'},
-  left_elbow_use: {unit: '', limit: 1, lowIsBad: false, measured: false, meaning: 'torque over the mean strength of the sex'},
-  right_elbow_use: {unit: '', limit: 1, lowIsBad: false, measured: false, meaning: 'torque over the mean strength of the sex'},
-  left_hand_force: {unit: 'N', limit: 0, lowIsBad: false, measured: true, meaning: 'magnitude of the force on the handle'},
-  right_hand_force: {unit: 'N', limit: 0, lowIsBad: false, measured: true, meaning: 'magnitude of the force on the handle'},
+  lower_back_compression: {unit: 'N', limit: 3400, lowIsBad: false, source: 'modelled', meaning: 'compression of the disc L5/S1'},
+  lower_back_shear: {unit: 'N', limit: 700, lowIsBad: false, source: 'modelled', meaning: 'forward shear of L5/S1'},
+  lower_back_moment: {unit: 'N m', limit: 0, lowIsBad: false, source: 'modelled', meaning: 'moment of the extensors of the back about L5/S1'},
+  balance_margin: {unit: 'm', limit: 0, lowIsBad: true, source: 'modelled', meaning: 'from the centre of pressure to the edge of the feet; negative: outside'},
+  trunk_flexion: {unit: 'rad', limit: 0, lowIsBad: false, source: 'modelled', meaning: 'of the torso against the vertical, forward'},
+  left_shoulder_use: {unit: '', limit: 1, lowIsBad: false, source: 'modelled', meaning: 'torque over the mean strength of the sex, flexion'},
+  right_shoulder_use: {unit: '', limit: 1, lowIsBad: false, source: 'modelled', meaning: 'torque over the mean strength of the sex, flexion'},
+  left_elbow_use: {unit: '', limit: 1, lowIsBad: false, source: 'modelled', meaning: 'torque over the mean strength of the sex'},
+  right_elbow_use: {unit: '', limit: 1, lowIsBad: false, source: 'modelled', meaning: 'torque over the mean strength of the sex'},
+  left_hand_force: {unit: 'N', limit: 0, lowIsBad: false, source: 'measured', meaning: 'magnitude of the force on the handle'},
+  right_hand_force: {unit: 'N', limit: 0, lowIsBad: false, source: 'measured', meaning: 'magnitude of the force on the handle'},
+  left_arm_activation: {unit: '', limit: 0, lowIsBad: false, source: 'muscles', meaning: 'largest activation of a muscle'},
+  right_arm_activation: {unit: '', limit: 0, lowIsBad: false, source: 'muscles', meaning: 'largest activation of a muscle'},
+  left_hand_stiffness: {unit: 'N/m', limit: 0, lowIsBad: false, source: 'muscles', meaning: 'smallest principal stiffness; a lower bound'},
+  right_hand_stiffness: {unit: 'N/m', limit: 0, lowIsBad: false, source: 'muscles', meaning: 'smallest principal stiffness; a lower bound'},
 } as const;
 
 export const kPersonScores = {

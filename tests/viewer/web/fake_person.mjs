@@ -53,7 +53,8 @@ export function pointsOf({ground, forward, feet}, handles) {
 function gauges(t, lean, wrenches) {
   const range = (value, spread) => ({value, low: value * (1 - spread), high: value * (1 + 1.3 * spread)});
   const use = (k) => range(0.3 + 0.25 * Math.sin(0.5 * t + k), 0.3);
-  const measured = (side) => ({value: Math.hypot(...wrenches[side].slice(0, 3)), low: null, high: null});
+  const alone = (value) => ({value, low: null, high: null});
+  const measured = (side) => alone(Math.hypot(...wrenches[side].slice(0, 3)));
   return {
     lower_back_compression: range(900 + 1500 * lean + 500 * Math.sin(0.5 * t), 0.35),
     lower_back_shear: range(180 + 260 * lean, 0.25), lower_back_moment: range(30 + 80 * lean, 0.4),
@@ -61,6 +62,8 @@ function gauges(t, lean, wrenches) {
     trunk_flexion: {value: lean, low: lean - 0.2, high: lean + 0.25},
     left_shoulder_use: use(0), right_shoulder_use: use(0.4), left_elbow_use: use(0.8), right_elbow_use: use(1.2),
     left_hand_force: measured('left'), right_hand_force: measured('right'),
+    left_arm_activation: alone(0.3 + 0.2 * Math.sin(0.5 * t)), right_arm_activation: alone(0.25),
+    left_hand_stiffness: alone(60), right_hand_stiffness: alone(75),
   };
 }
 

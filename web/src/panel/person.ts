@@ -23,6 +23,8 @@ interface GaugeLook {
 }
 const kDegrees = 180 / Math.PI;
 const share = (words: string): GaugeLook => ({words, unit: '%', factor: 100, decimals: 0, low: 0, high: 1.2});
+const activation = (words: string): GaugeLook => ({words, unit: '%', factor: 100, decimals: 0, low: 0, high: 1});
+const stiffness = (words: string): GaugeLook => ({words, unit: 'N/m', factor: 1, decimals: 0, low: 0, high: 200});
 const force = (words: string): GaugeLook => ({words, unit: 'N', factor: 1, decimals: 0, low: 0, high: 50});
 export const kGaugeLooks: Record<GaugeName, GaugeLook> = {
   left_hand_force: force('Left hand'),
@@ -36,9 +38,13 @@ export const kGaugeLooks: Record<GaugeName, GaugeLook> = {
   right_elbow_use: share('Right elbow'),
   trunk_flexion: {words: 'Trunk, forward', unit: '°', factor: kDegrees, decimals: 0, low: -0.35, high: 1.6},
   balance_margin: {words: 'Balance margin', unit: 'cm', factor: 100, decimals: 1, low: -0.05, high: 0.15},
+  left_arm_activation: activation('Left arm, largest'),
+  right_arm_activation: activation('Right arm, largest'),
+  left_hand_stiffness: stiffness('Left hand, stiffness'),
+  right_hand_stiffness: stiffness('Right hand, stiffness'),
 };
-const kMeasured = (Object.keys(kGaugeLooks) as GaugeName[]).filter((name) => kPersonGauges[name].measured);
-const kModelled = (Object.keys(kGaugeLooks) as GaugeName[]).filter((name) => !kPersonGauges[name].measured);
+const from = (source: string) =>
+    (Object.keys(kGaugeLooks) as GaugeName[]).filter((name) => kPersonGauges[name].source === source);
 const kOperator: Record<SceneSpec['operator'], string> = {
   virtual: 'The operator is simulated.',
   browser: 'A mouse or a headset moves the handles: the values are those of a person who would hold them.',
@@ -132,7 +138,7 @@ export class PersonCard {
   private readonly why = h('p', {class: 'hint', id: 'person-why', role: 'status'});
   private readonly operator = h('p', {class: 'hint', id: 'person-operator'});
   private readonly warnings = h('div', {id: 'person-warnings', role: 'alert'});
-  private readonly gauges = new Map([...kMeasured, ...kModelled].map((name) => [name, new Gauge(name)]));
+  private readonly gauges = new Map((Object.keys(kGaugeLooks) as GaugeName[]).map((name) => [name, new Gauge(name)]));
   private readonly scores = new Map(
       (Object.keys(kPersonScores) as ScoreName[]).map((name) => [name, new ScoreRow(name)]));
   private readonly damage = h('p', {id: 'person-damage'});
@@ -151,8 +157,9 @@ export class PersonCard {
     this.body = h(
         'div', {class: 'person-body'},
         h('p', {class: 'hint legend'}, 'Load 0', scale, '100 % of limit or strength'),
-        title('Hands', 'measured'), ...rows(kMeasured),
-        title('Body', 'modelled, 90 % band'), ...rows(kModelled),
+        title('Hands', 'measured'), ...rows(from('measured')),
+        title('Body', 'modelled, 90 % band'), ...rows(from('modelled')),
+        title('Muscles', 'modelled, lower bounds'), ...rows(from('muscles')),
         title('Scores', 'standard, probability'), ...[...this.scores.values()].map(({element}) => element),
         title('This run so far', 'standard'), this.damage, this.fatigue);
     // Open where there is room beside the scene's objects.
