@@ -38,10 +38,10 @@ export const kGaugeLooks: Record<GaugeName, GaugeLook> = {
   right_elbow_use: share('Right elbow'),
   trunk_flexion: {words: 'Trunk, forward', unit: '°', factor: kDegrees, decimals: 0, low: -0.35, high: 1.6},
   balance_margin: {words: 'Balance margin', unit: 'cm', factor: 100, decimals: 1, low: -0.05, high: 0.15},
-  left_arm_activation: activation('Left arm, largest'),
-  right_arm_activation: activation('Right arm, largest'),
-  left_hand_stiffness: stiffness('Left hand, stiffness'),
-  right_hand_stiffness: stiffness('Right hand, stiffness'),
+  left_arm_activation: activation('Left arm activation'),
+  right_arm_activation: activation('Right arm activation'),
+  left_hand_stiffness: stiffness('Left hand stiffness'),
+  right_hand_stiffness: stiffness('Right hand stiffness'),
 };
 const from = (source: string) =>
     (Object.keys(kGaugeLooks) as GaugeName[]).filter((name) => kPersonGauges[name].source === source);
@@ -159,8 +159,8 @@ export class PersonCard {
         h('p', {class: 'hint legend'}, 'Load 0', scale, '100 % of limit or strength'),
         title('Hands', 'measured'), ...rows(from('measured')),
         title('Body', 'modelled, 90 % band'), ...rows(from('modelled')),
-        title('Muscles', 'modelled, lower bounds'), ...rows(from('muscles')),
         title('Scores', 'standard, probability'), ...[...this.scores.values()].map(({element}) => element),
+        title('Muscles', 'modelled, lower bounds'), ...rows(from('muscles')),
         title('This run so far', 'standard'), this.damage, this.fatigue);
     // Open where there is room beside the scene's objects.
     const open = innerWidth >= kRoom[0] && innerHeight >= kRoom[1];
