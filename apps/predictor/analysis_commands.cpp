@@ -184,6 +184,24 @@ void AddIdentify(CLI::App* app, Request* r) {
       "Exit code 1: a joint could not be identified.\n");
 }
 
+void AddIdentifyArm(CLI::App* app, Request* r) {
+  IdentifyArmOptions* o = &r->identify_arm;
+  CLI::App* identify = AddCommand(app, kGroup, "identify-arm",
+                                  "Identify mass, damping, stiffness and reflex of the operator's "
+                                  "arms from a run with perturbation",
+                                  r, [o] { return IdentifyArmCommand(*o); });
+  identify->add_option("recordings", o->recordings, "Recordings of one person (MCAP)")->required();
+  AddOption(identify, "Output", "--left", &o->left, "FILE.json",
+            "Write mean and covariance of the left arm");
+  AddOption(identify, "Output", "--right", &o->right, "FILE.json",
+            "Write mean and covariance of the right arm");
+  AddOutput(identify, o);
+  identify->footer(
+      "Example:\n  predictor simulate scenarios/identify_arm.yaml --record arm.mcap\n"
+      "  predictor identify-arm arm.mcap --left left.json\n"
+      "Exit code 1: an arm could not be identified.\n");
+}
+
 void AddHazards(CLI::App* app, Request* r) {
   HazardsCommandOptions* o = &r->hazards;
   CLI::App* hazards =
@@ -301,6 +319,7 @@ void AddAnalysisCommands(CLI::App* app, Request* r) {
   AddVerify(app, r);
   AddTrial(app, r);
   AddIdentify(app, r);
+  AddIdentifyArm(app, r);
   AddHazards(app, r);
   AddPopulation(app, r);
   AddReproduce(app, r);

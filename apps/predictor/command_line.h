@@ -19,6 +19,7 @@ struct Request {
   RecordingOptions recording;
   ExportOptions scene;
   IdentifyCommandOptions identify;
+  IdentifyArmOptions identify_arm;
   ReportOptions report;
   CompareOptions compare;
   ReproduceCommandOptions reproduce;

@@ -94,6 +94,12 @@ struct IdentifyCommandOptions : OutputOptions {
   double com_uncertainty = 0.005;  // [m]
 };
 
+// Input and output of `identify-arm`.
+struct IdentifyArmOptions : OutputOptions {
+  std::vector<std::string> recordings;  // of one person
+  std::string left, right;              // files with the distribution of a hand; empty: none
+};
+
 // Output of `export scene`.
 struct ExportOptions {
   std::string folder;  // empty: named after the scenario, in the current folder
@@ -249,6 +255,8 @@ int VerifyCommand(const RecordingOptions& options);
 int TrialCommand(const ScenarioOptions& options, const std::string& recording);
 // Returns the exit code kUnfit if a joint was rejected.
 int IdentifyCommand(const IdentifyCommandOptions& options);
+// Returns the exit code kUnfit if a hand was refused.
+int IdentifyArmCommand(const IdentifyArmOptions& options);
 int EvaluateCommand(const EvaluateOptions& options);
 int ContinueCommand(const ContinueCommandOptions& options);
 int ExportPersonCommand(const ExportPersonOptions& options);

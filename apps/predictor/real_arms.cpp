@@ -1,6 +1,7 @@
 #include "real_arms.h"
 
 #include <arpa/inet.h>
+#include <unistd.h>
 
 #include <cstdio>
 
@@ -81,6 +82,26 @@ void RequireStability(const Machine& machine, const Scenario& scenario) try {
           way);
 } catch (const InputError& error) {
   throw Located(error, scenario);
+}
+
+void ConfirmPerturbation(const Scenario& scenario) {
+  if (!scenario.perturbation) return;
+  const PerturbationSpec& p = *scenario.perturbation;
+  const std::string question = Formatted(
+      "During the run, the handles will move by themselves by up to %.0f mm, again and again, to "
+      "identify the operator's arms. A hand that resists with more than %.0f N ends such a motion. "
+      "Does the person who will hold the handles know this and agree? Type yes to go on: ",
+      1e3 * p.amplitude, p.force);
+  std::fputs(question.c_str(), stderr);
+  std::string answer;
+  // Single characters, so that keys for the run are not swallowed.
+  for (char c = 0; answer.size() < 16 && read(STDIN_FILENO, &c, 1) == 1 && c != '\n';) answer += c;
+  if (answer == "yes") return;
+  throw Located(InputError::At("perturbation.consent",
+                               "The person's consent to displacements of the handles was not "
+                               "confirmed, so the arms were not moved. Type yes, or set "
+                               "perturbation: null."),
+                scenario);
 }
 
 }  // namespace predictor

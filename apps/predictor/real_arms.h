@@ -24,4 +24,8 @@ void RequireRealTime(const Machine& machine);
 // real arms: throws InputError. `scenario`: with the machine's arms.
 void RequireStability(const Machine& machine, const Scenario& scenario);
 
+// Before real arms displace a person's handles (`perturbation`), the person at the console must
+// type "yes". Throws InputError otherwise.
+void ConfirmPerturbation(const Scenario& scenario);
+
 }  // namespace predictor

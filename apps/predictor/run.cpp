@@ -408,6 +408,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
   RequireRealTime(machine);
   for (const std::string& line : UnmeasuredLoops(machine, scenario)) TheScreen().Print(line);
   RequireStability(machine, scenario);
+  ConfirmPerturbation(scenario);
   std::fputs(
       "Connecting to the arms. We have never run these drivers on hardware: keep the emergency "
       "stop within reach. Keep your hands off the handles until IDLE, because the sensors are "

@@ -7,20 +7,13 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "scenario/perturbation_force.h"
+#include "scenario/perturbation.h"
 
 namespace predictor {
 namespace {
 
 constexpr double kHolding = 0.5;  // least force of a holding hand, both present and smoothed [N]
 constexpr double kSmoothing = 2;  // cutoff of that smoothing [Hz]
-
-std::array<Vector3, 2> PlaneOf(const Vector3& normal) {
-  const Vector3 n = normal.normalized();
-  const Vector3 first = std::abs(n.x()) < 0.9 ? Vector3::UnitX() : Vector3::UnitY();
-  const Vector3 u = (first - n * n.dot(first)).normalized();
-  return {u, n.cross(u)};
-}
 
 }  // namespace
 
@@ -56,7 +49,7 @@ Perturbation::Perturbation(const Scenario& scenario, double margin, double dt)
                          "vibrate. Set rendering.lead: auto, make the cobot softer or the object "
                          "heavier (see predictor check), or set perturbation: null.");
   expected_force_ = PerturbationForce(*spec_, scenario.operator_.hand);
-  plane_ = PlaneOf(spec_->normal);
+  plane_ = PerturbationPlane(*spec_);
   Reset();
 }
 

@@ -11,7 +11,7 @@
 #include "scenario/formulation.h"
 #include "scenario/located.h"
 #include "scenario/operating_rules.h"
-#include "scenario/perturbation_force.h"
+#include "scenario/perturbation.h"
 
 namespace predictor {
 namespace {

@@ -1,10 +1,11 @@
 // What a scenario may ask of `perturbation`, which moves the handles of a person.
+#include "scenario/perturbation.h"
+
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "fixture.h"
-#include "scenario/perturbation_force.h"
 
 namespace predictor {
 namespace {
@@ -32,40 +33,33 @@ TEST(Perturbation, HasBoundsThatAScenarioCannotWiden) {
         << beyond;
 }
 
-// The bound against the largest force of the exact motion, sampled finely: never below it, and at
-// most twice it for the hands that occur.
-TEST(Perturbation, ForceIsBoundedByThatOfTheExactMotion) {
+// Peak speed 1.875 L/T and peak acceleration 10/√3 L/T² of a minimum-jerk motion (Flash & Hogan
+// 1985).
+TEST(Perturbation, ForceIsThatOfAMassAndOfASpringWithReflex) {
   PerturbationSpec p;
   p.amplitude = 0.008;
-  p.ramp = 0.12;
-  for (const double mass : {0.5, 1.5, 3.0}) {
-    HandSpec hand;
-    hand.mass = mass;
-    hand.stiffness = {400, 100, 100};
-    const double damping = 2 * hand.damping_ratio * std::sqrt(mass * 400);
-    const auto at = [&](double t, int derivative) {
-      const double s = std::clamp(t / p.ramp, 0.0, 1.0);
-      if (derivative == 0) return p.amplitude * s * s * s * (10 - 15 * s + 6 * s * s);
-      if (derivative == 1) return p.amplitude / p.ramp * 30 * s * s * (1 - s) * (1 - s);
-      return p.amplitude / (p.ramp * p.ramp) * 60 * s * (1 - s) * (1 - 2 * s);
-    };
-    double largest = 0;
-    for (double t = 0; t < 0.4; t += 1e-4) {
-      const double late = t - hand.reflex_delay;
-      const double force = mass * at(t, 2) + damping * at(t, 1) + 400 * at(t, 0) +
-                           hand.reflex_gain * (damping * at(late, 1) + 400 * at(late, 0));
-      largest = std::max(largest, std::abs(force));
-    }
-    const double bound = PerturbationForce(p, hand);
-    EXPECT_GE(bound, largest);
-    EXPECT_LE(bound, 2 * largest);
-  }
+  p.ramp = 0.1;
+  HandSpec mass;
+  mass.mass = 2;
+  mass.stiffness.setZero();
+  EXPECT_NEAR(PerturbationForce(p, mass), 2 * 10 / std::sqrt(3.0) * 0.008 / 0.01, 2e-3);
+  HandSpec spring;
+  spring.mass = 1e-9;
+  spring.damping_ratio = 0;
+  spring.stiffness = {50, 400, 100};
+  spring.reflex_gain = 0.5;
+  EXPECT_NEAR(PerturbationForce(p, spring), 400 * 1.5 * 0.008, 1e-6);
+  spring.damping_ratio = 1e4;  // 2 ζ √(m K) = 12.6 N·s/m
+  spring.reflex_delay = 0.3;   // after the motion
+  spring.reflex_gain = 0;
+  spring.stiffness = {1e-3, 0, 0};
+  EXPECT_NEAR(PerturbationForce(p, spring), 2e4 * 1e-6 * 1.875 * 0.08, 1e-4);
 }
 
 TEST(Perturbation, IsRefusedIfTheScenariosHandWouldResistTooMuch) {
   const std::string error =
       ErrorOf(FixtureText(), {"operator.hand.mass=3", "operator.hand.stiffness=[600, 600, 600]",
-                              "perturbation={consent: true, amplitude: 0.008, ramp: 0.12}"});
+                              "perturbation={consent: true, amplitude: 0.008, ramp: 0.1}"});
   EXPECT_NE(error.find("would resist with up to"), std::string::npos) << error;
 }
 
