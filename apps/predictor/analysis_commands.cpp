@@ -186,7 +186,7 @@ void AddIdentify(CLI::App* app, Request* r) {
 
 void AddIdentifyArm(CLI::App* app, Request* r) {
   IdentifyArmOptions* o = &r->identify_arm;
-  CLI::App* identify = AddCommand(app, kGroup, "identify-arm",
+  CLI::App* identify = AddCommand(app, kAnalysisGroup, "identify-arm",
                                   "Identify mass, damping, stiffness and reflex of the operator's "
                                   "arms from a run with perturbation",
                                   r, [o] { return IdentifyArmCommand(*o); });

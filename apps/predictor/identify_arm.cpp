@@ -17,7 +17,7 @@ namespace {
 
 void AddRecordingOf(const std::string& file, bool quiet, ArmIdentifier* identifier) {
   RecordingReader reader(file);
-  TellProblem(reader.problem());
+  ShowProblem(reader.problem());
   const TemporaryFolder folder;
   try {
     identifier->Begin(RestoreScenario(reader.header(), folder.path()), reader.header().dt);

@@ -30,16 +30,16 @@ inline Eigen::Matrix2d PlaneMatrixOf(const PlaneVector& p, int first) {
 // too.
 inline ArmResponses SimulatedResponses(const PlaneVector& arm, int count, double noise,
                                        std::uint64_t seed) {
-  constexpr double kDt = 0.001, kAmplitude = 0.007, kRamp = 0.12;
+  constexpr double kArmTick = 0.001, kAmplitude = 0.007, kRamp = 0.12;
   constexpr double kMass = 3, kStiffness = 200, kDamping = 15;  // of the object
   constexpr int kLead = 400, kBefore = 180, kAfter = 200;       // ticks
   const Eigen::Matrix2d M = PlaneMatrixOf(arm, plane::kMass),
                         D = PlaneMatrixOf(arm, plane::kDamping),
                         K = PlaneMatrixOf(arm, plane::kStiffness);
-  const int late = static_cast<int>(std::lround(arm[plane::kDelay] / kDt));
+  const int late = static_cast<int>(std::lround(arm[plane::kDelay] / kArmTick));
   const Eigen::Matrix2d inverse = (M + kMass * Eigen::Matrix2d::Identity()).inverse();
   ArmResponses r;
-  r.dt = kDt;
+  r.dt = kArmTick;
   r.before = kBefore;
   r.direction.resize(count, 2);
   for (std::size_t axis = 0; axis < 2; ++axis)
@@ -53,7 +53,7 @@ inline ArmResponses SimulatedResponses(const PlaneVector& arm, int count, double
     Eigen::Vector2d object = Eigen::Vector2d::Zero(), speed = object, e = object;
     std::vector<Eigen::Vector2d> x, v;
     for (int k = 0; k < kLead + kAfter; ++k) {
-      const double s = std::clamp((k - kLead) * kDt / kRamp, 0.0, 1.0);
+      const double s = std::clamp((k - kLead) * kArmTick / kRamp, 0.0, 1.0);
       const double u = s * s * s * (10 - 15 * s + 6 * s * s);
       const double du = 30 * s * s * (1 - s) * (1 - s) / kRamp;
       const double ddu = 60 * s * (1 - s) * (1 - 2 * s) / (kRamp * kRamp);
@@ -78,8 +78,8 @@ inline ArmResponses SimulatedResponses(const PlaneVector& arm, int count, double
         r.acceleration[a](row, i) = (acceleration + push)[axis];
         r.force[a](row, i) = force[axis];
       }
-      object += kDt * speed;
-      speed += kDt * acceleration;
+      object += kArmTick * speed;
+      speed += kArmTick * acceleration;
     }
   }
   return r;

@@ -133,9 +133,8 @@ TEST(Perturbation, IsTakenBackWhenAHandPushes) {
   const TestRun run =
       RunScenario("identify_arm",
                   {"duration=20", "safety.force=60",
-                   "operator.script.1={action: push, start: 6, duration: 8, rise: 0.4, force: [20, "
-                   "0, 0], hand: "
-                   "left}"},
+                   "operator.script.1={action: push, start: 6, duration: 8, rise_time: 0.4, "
+                   "force: [45, 0, 0], hand: left}"},
                   [&](const TickRecord& r) {
                     const Vector3 u = Displacement(r);
                     jump = std::max(jump, (u - before).norm());
@@ -147,7 +146,7 @@ TEST(Perturbation, IsTakenBackWhenAHandPushes) {
   EXPECT_EQ(run.end, RunEnd::kFinished);
   EXPECT_EQ(began_while_pushing, 0);
   EXPECT_EQ(during, 0);
-  EXPECT_LT(jump, 1.2 * 1.876 * 0.007 / 0.1 * 0.001);
+  EXPECT_LT(jump, 1.2 * 1.876 * 0.007 / 0.12 * 0.001);
 }
 
 // A state saved in a displacement continues bit for bit.

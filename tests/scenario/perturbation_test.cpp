@@ -26,7 +26,7 @@ TEST(Perturbation, IsOnlyForHapticArms) {
 }
 
 TEST(Perturbation, HasBoundsThatAScenarioCannotWiden) {
-  for (const char* beyond : {"amplitude: 0.0081", "ramp: 0.09", "force: 15.1", "margin: 1.4",
+  for (const char* beyond : {"amplitude: 0.0081", "ramp: 0.11", "force: 15.1", "margin: 1.4",
                              "pause: 0.1", "speed: 0.11", "directions: 2", "normal: [0, 0, 0]"})
     EXPECT_NE(ErrorOf(FixtureText(), {std::string("perturbation={consent: true, ") + beyond + "}"}),
               "")
@@ -58,8 +58,8 @@ TEST(Perturbation, ForceIsThatOfAMassAndOfASpringWithReflex) {
 
 TEST(Perturbation, IsRefusedIfTheScenariosHandWouldResistTooMuch) {
   const std::string error =
-      ErrorOf(FixtureText(), {"operator.hand.mass=3", "operator.hand.stiffness=[600, 600, 600]",
-                              "perturbation={consent: true, amplitude: 0.008, ramp: 0.1}"});
+      ErrorOf(FixtureText(), {"operator.hand.mass=3", "operator.hand.stiffness=[1500, 600, 600]",
+                              "perturbation={consent: true, amplitude: 0.008}"});
   EXPECT_NE(error.find("would resist with up to"), std::string::npos) << error;
 }
 

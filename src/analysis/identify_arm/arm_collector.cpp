@@ -21,7 +21,7 @@ ArmCollector::ArmCollector(const Scenario& scenario, int hand, const std::array<
       amplitude_(scenario.perturbation ? scenario.perturbation->amplitude : 0),
       before_(static_cast<std::size_t>(std::lround(kBefore / dt))),
       after_(static_cast<std::size_t>(std::lround(kAfter / dt))),
-      low_pass_(scenario.arm(hand).sensor.low_pass, dt, Eigen::Vector4d::Zero()),
+      low_pass_(scenario.arm(hand).sensor.cutoff_frequency, dt, Eigen::Vector4d::Zero()),
       delay_ticks_(scenario.arm(hand).sensor.delay / dt) {}
 
 void ArmCollector::Abandon() {

@@ -254,6 +254,17 @@ Eigen::MatrixXd NoiseRoot(const Equations& all, const PlaneVector& p) {
   return C.llt().matrixL();
 }
 
+// The equations are weighted by the inverse of a noise covariance of `times` dimensions that is
+// estimated from the 2 N response curves of N displacements. With n curves, p times and q
+// parameters per curve, the estimate's variance exceeds that with the true covariance by (n − 1)/(n
+// − 1 − (p − q)), and the variance that is computed with the estimated covariance is too small by
+// (n − (p − q))/n (Rao 1967, "Least squares theory using an estimated dispersion matrix"; Williams
+// 1967). The result is the product of both corrections. The parameters belong to four mean curves.
+double NoiseIsEstimated(int count, int times) {
+  const double n = 2.0 * count, surplus = times - kPlaneParameters / 4.0;
+  return n / (n - surplus) * (n - 1) / (n - 1 - surplus);
+}
+
 }  // namespace
 
 // Student's quantile by the first term of its expansion (Abramowitz & Stegun 26.7.5).
@@ -297,7 +308,8 @@ ArmFit FitArm(const ArmResponses& r, const ArmFitOptions& options) {
     drawn.col(k) = LevenbergMarquardt(again, root, options).From(uncorrected).value;
   }
   const Eigen::MatrixXd deviation = drawn.colwise() - PlaneVector(drawn.rowwise().mean());
-  fit.covariance = deviation * deviation.transpose() / (options.resamples - 1.0);
+  fit.covariance = NoiseIsEstimated(count, equations.bins()) * deviation * deviation.transpose() /
+                   (options.resamples - 1.0);
   return fit;
 }
 
