@@ -57,26 +57,25 @@ void Set(ReferencePosture* posture, const std::string& input, double value) {
 
 }  // namespace
 
-std::vector<ReferencePosture> ReadReferencePostures() {
-  std::ifstream file(std::string(PREDICTOR_SOURCE_DIR) +
-                     "/tests/ergonomics/reference_postures.txt");
+std::vector<ReferencePosture> ReadPostures(const std::string& name) {
+  std::ifstream file(std::string(PREDICTOR_SOURCE_DIR) + "/tests/ergonomics/" + name);
   std::vector<ReferencePosture> postures;
   for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);
-    std::string kind, name;
-    if (!(words >> kind >> name) || kind == "#") continue;
+    std::string kind, key;
+    if (!(words >> kind >> key) || kind == "#") continue;
     if (kind == "posture") {
-      postures.push_back({name, {}, {}, {}, {}, {}});
+      postures.push_back({key, {}, {}, {}, {}, {}});
       continue;
     }
     double value = 0;
     if (postures.empty() || !(words >> value)) throw std::runtime_error("bad line: " + line);
     if (kind == "set")
-      Set(&postures.back(), name, value);
+      Set(&postures.back(), key, value);
     else if (kind == "rula")
-      postures.back().rula[name] = static_cast<int>(value);
+      postures.back().rula[key] = static_cast<int>(value);
     else if (kind == "reba")
-      postures.back().reba[name] = static_cast<int>(value);
+      postures.back().reba[key] = static_cast<int>(value);
     else
       throw std::runtime_error("bad line: " + line);
   }

@@ -1,4 +1,4 @@
-// Reads reference_postures.txt.
+// Reads the files of scored postures.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ struct ReferencePosture {
   std::map<std::string, int> rula, reba;  // score -> value
 };
 
-// Throws std::runtime_error on a line that it does not know.
-std::vector<ReferencePosture> ReadReferencePostures();
+// Reads a file of this folder. Throws std::runtime_error on a line that it does not know.
+std::vector<ReferencePosture> ReadPostures(const std::string& name);
 
 }  // namespace predictor::ergonomics
