@@ -13,13 +13,13 @@
 namespace predictor::assessment {
 namespace {
 
-// The p-quantile of the values: the value below which a share p of them lies.
-template <class T>
-T QuantileOf(std::vector<T> values, double p) {
-  const auto n = static_cast<double>(values.size());
-  const auto k = std::min(static_cast<std::size_t>(p * n), values.size() - 1);
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
-  return values[k];
+// The smallest score that is exceeded during at most 5 % of the time. share[score]: share of time.
+int ScoreExceededRarely(const std::vector<double>& share) {
+  constexpr double kRounding = 1e-9;
+  std::size_t score = 0;
+  for (double above = 1 - share[0]; above > 0.05 + kRounding && score + 1 < share.size();)
+    above -= share[++score];
+  return static_cast<int>(score);
 }
 
 // Values of one quantity: values[time][person].
@@ -54,8 +54,8 @@ void AddIntervals(const SampledChain& sampled, std::span<const PersonSample> sam
   result->mean_interval = person::IntervalOf(means);
   result->person_tail =
       result->kind->bad == Bad::kHigh
-          ? OfEachPerson(table, [](const std::vector<double>& x) { return QuantileOf(x, 0.95); })
-          : OfEachPerson(table, [](const std::vector<double>& x) { return QuantileOf(x, 0.05); });
+          ? OfEachPerson(table, [](const std::vector<double>& x) { return Quantile(x, 0.95); })
+          : OfEachPerson(table, [](const std::vector<double>& x) { return Quantile(x, 0.05); });
   std::vector<double> sorted = result->person_tail;
   result->tail_interval = person::IntervalOf(sorted);
 }
@@ -67,8 +67,8 @@ void SummariseOverTime(QuantityResult* result) {
     if (std::isfinite(x)) values.push_back(x);
   if (values.empty()) values.push_back(std::numeric_limits<double>::quiet_NaN());
   result->mean = Mean(values);
-  result->p5 = QuantileOf(values, 0.05);
-  result->p95 = QuantileOf(values, 0.95);
+  result->p5 = Quantile(values, 0.05);
+  result->p95 = Quantile(values, 0.95);
   const auto [min, max] = std::ranges::minmax(values);
   result->min = min;
   result->max = max;
@@ -116,7 +116,7 @@ WorksheetResult WorksheetOf(const WorksheetKind& kind, const NominalChain& nomin
         1.0 / static_cast<double>(nominal.frames.size());
   }
   result.worst = *std::max_element(result.values.begin(), result.values.end());
-  result.p95 = QuantileOf(result.values, 0.95);
+  result.p95 = ScoreExceededRarely(result.share);
   if (!sampled.at.empty()) AddProbabilities(sampled, &result);
   return result;
 }

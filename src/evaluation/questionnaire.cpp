@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/text_table.h"
 #include "scenario/pseudonym.h"
 
 namespace predictor {
@@ -83,12 +84,6 @@ std::optional<int> ReadAge(const Json& object) {
     throw InputError::At("age", "The age must be a whole number of years from 1 to " +
                                     std::to_string(kOldest) + ", or omitted.");
   return value->get<int>();
-}
-
-std::size_t CharactersIn(const std::string& utf8) {
-  return static_cast<std::size_t>(std::count_if(utf8.begin(), utf8.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-  }));
 }
 
 std::string ReadComment(const Json& object) {

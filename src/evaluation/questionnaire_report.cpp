@@ -1,6 +1,5 @@
 #include "evaluation/questionnaire_report.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <limits>
 #include <map>
@@ -9,6 +8,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/text_table.h"
 #include "evaluation/questionnaire_table.h"
 #include "evaluation/statistics.h"
 #include "evaluation/statistics_samples.h"
@@ -103,14 +103,6 @@ std::string Figure(const char* format, double value) {
   return text;
 }
 
-// Right-aligned by visible characters, not by bytes.
-std::string Cell(const std::string& text, std::size_t width) {
-  const auto seen = static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
-  }));
-  return std::string(width > seen ? width - seen : 0, ' ') + text;
-}
-
 std::string PeopleText(const ConditionSummary& c) {
   std::string text = std::to_string(c.people) + (c.people == 1 ? " person" : " people");
   if (c.ages > 0)
@@ -127,11 +119,12 @@ std::string ConditionTable(const ConditionSummary& c, Condition condition) {
                      "\n         n    mean ±  std   median   agree    −2  −1   0   1   2\n";
   for (std::size_t i = 0; i < kStatements; ++i) {
     const StatementSummary& s = c.statements[i];
-    text += std::string("  ") + Statements()[i].name + Cell(std::to_string(s.answers), 6) +
-            Cell(Figure("%.2f", s.mean), 8) + " ± " + Cell(Figure("%.2f", s.deviation), 4) +
-            Cell(Figure("%.1f", s.median), 9) +
-            Cell(s.answers > 0 ? Figure("%.0f %%", 100 * s.agreeing) : "–", 8) + "  ";
-    for (const int count : s.counts) text += Cell(std::to_string(count), 4);
+    text += std::string("  ") + Statements()[i].name + RightAligned(std::to_string(s.answers), 6) +
+            RightAligned(Figure("%.2f", s.mean), 8) + " ± " +
+            RightAligned(Figure("%.2f", s.deviation), 4) +
+            RightAligned(Figure("%.1f", s.median), 9) +
+            RightAligned(s.answers > 0 ? Figure("%.0f %%", 100 * s.agreeing) : "–", 8) + "  ";
+    for (const int count : s.counts) text += RightAligned(std::to_string(count), 4);
     text += '\n';
   }
   return text;
@@ -139,16 +132,19 @@ std::string ConditionTable(const ConditionSummary& c, Condition condition) {
 
 // `counted`: name of the counted items.
 std::string ShiftTable(const char* counted, const ShiftSummaries& summaries) {
-  std::string text =
-      "   " + Cell(counted, 7) + "  zeros   shift     interval  confidence        p     Holm\n";
+  std::string text = "   " + RightAligned(counted, 7) +
+                     "  zeros   shift     interval  confidence        p     Holm\n";
   for (std::size_t i = 0; i < kStatements; ++i) {
     const ShiftSummary& s = summaries[i];
-    text += std::string("  ") + Statements()[i].name + Cell(std::to_string(s.count), 6);
+    text += std::string("  ") + Statements()[i].name + RightAligned(std::to_string(s.count), 6);
     if (s.count > 0)
-      text += Cell(std::to_string(s.test.zeros), 7) + Cell(Figure("%+.2f", s.shift.estimate), 8) +
-              Cell(Figure("%+.1f", s.shift.lower) + " to " + Figure("%+.1f", s.shift.upper), 13) +
-              Cell(Figure("%.1f %%", 100 * s.shift.confidence), 12) +
-              Cell(ProbabilityText(s.test.p), 9) + Cell(ProbabilityText(s.adjusted), 9);
+      text += RightAligned(std::to_string(s.test.zeros), 7) +
+              RightAligned(Figure("%+.2f", s.shift.estimate), 8) +
+              RightAligned(Figure("%+.1f", s.shift.lower) + " to " + Figure("%+.1f", s.shift.upper),
+                           13) +
+              RightAligned(Figure("%.1f %%", 100 * s.shift.confidence), 12) +
+              RightAligned(ProbabilityText(s.test.p), 9) +
+              RightAligned(ProbabilityText(s.adjusted), 9);
     text += '\n';
   }
   return text;

@@ -4,6 +4,7 @@
 
 #include "core/format.h"
 #include "core/text.h"
+#include "core/text_table.h"
 #include "core/words.h"
 #include "evaluation/summary.h"
 
@@ -12,10 +13,8 @@ namespace {
 
 // Appends `text` (UTF-8) in a column of this width, left- or right-aligned.
 void AppendPadded(const std::string& text, int width, bool right, std::string* out) {
-  const auto letters = std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned>(c) & 0xC0U) != 0x80U; });
-  const std::string space(static_cast<std::size_t>(std::max<long>(0, width - letters)), ' ');
-  *out += right ? space + text : text + space;
+  const auto characters = static_cast<std::size_t>(width);
+  *out += right ? RightAligned(text, characters) : LeftAligned(text, characters);
 }
 
 void EndLine(std::string* text) {

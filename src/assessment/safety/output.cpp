@@ -6,31 +6,27 @@
 #include "core/format.h"
 #include "core/json_schema.h"
 #include "core/text.h"
+#include "core/text_table.h"
 
 namespace predictor::assessment {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-long Letters(const std::string& text) {
-  return std::ranges::count_if(text, [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // not a continuation of UTF-8
-  });
-}
-
 // Aligns numbers to the right, and names and sentences to the left.
 void AppendTable(const std::vector<std::vector<std::string>>& rows, std::string* text) {
-  std::vector<long> widths;
+  std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], Letters(row[c]));
+    for (std::size_t c = 0; c < row.size(); ++c)
+      widths[c] = std::max(widths[c], CharactersIn(row[c]));
   }
   for (const auto& row : rows) {
     std::string line = "  ";
     for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string space(static_cast<std::size_t>(widths[c] - Letters(row[c])), ' ');
       const bool left = c == 0 || row[c].find(' ') != std::string::npos;
-      line += (c == 0 ? "" : "  ") + (left ? row[c] + space : space + row[c]);
+      if (c > 0) line += "  ";
+      line += left ? LeftAligned(row[c], widths[c]) : RightAligned(row[c], widths[c]);
     }
     line.erase(line.find_last_not_of(' ') + 1);
     *text += line + "\n";

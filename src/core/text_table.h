@@ -1,0 +1,18 @@
+// Columns of text in a terminal, whose width is counted in characters and not in bytes.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace predictor {
+
+// The number of characters of a UTF-8 text: its bytes that do not continue a character.
+std::size_t CharactersIn(std::string_view utf8);
+
+// The text with spaces after or before it, up to `width` characters. A longer text is returned
+// unchanged.
+std::string LeftAligned(std::string_view utf8, std::size_t width);
+std::string RightAligned(std::string_view utf8, std::size_t width);
+
+}  // namespace predictor
