@@ -79,8 +79,13 @@ struct Standing {
 struct HandForce {
   Vector3 p = Vector3::Zero(), F = Vector3::Zero();
 };
-// The share of the forces' horizontal parts that keeps the centre of pressure within the footprint.
-// Static: N = W + Σ Fz carries c = (x W + Σ (px Fz - share pz Fx)) / N, and y likewise.
-double BalanceShare(const Standing& person, std::span<const HandForce> forces);
+// The shares of the forces' parts along x and y that keep the centre of pressure within the
+// footprint. Static: N = W + Σ Fz carries c = (x W + Σ (px Fz - pz Fx)) / N along x, and likewise
+// along y. A force along y does not move the centre of pressure along x, so a person who stands at
+// the front edge of the feet can still push sideways.
+struct BalanceShares {
+  double x = 1, y = 1;
+};
+BalanceShares BalanceSharesOf(const Standing& person, std::span<const HandForce> forces);
 
 }  // namespace predictor

@@ -209,11 +209,14 @@ void OperatorBody::LimitForces(const std::array<FrameMotion, kHands>& handle,
     F *= StrengthShare(arms_[hand], F);
     in_S[hand] = {X_SW * handle[hand].X_W.p, X_SW.q * F};
   }
-  const double share = BalanceShare(standing_, in_S);
-  for (Vector3& F : *forces) F.head<2>() *= share;
+  const BalanceShares share = BalanceSharesOf(standing_, in_S);
+  for (std::size_t hand = 0; hand < kHands; ++hand) {
+    const Vector3& F = in_S[hand].F;
+    (*forces)[hand] = X_SW.q.conjugate() * Vector3(share.x * F.x(), share.y * F.y(), F.z());
+  }
 }
 
-double BalanceShare(const Standing& person, std::span<const HandForce> forces) {
+BalanceShares BalanceSharesOf(const Standing& person, std::span<const HandForce> forces) {
   double N = person.weight, x = person.weight * person.x, y = person.weight * person.y;
   double tips_x = 0, tips_y = 0;
   for (const HandForce& hand : forces) {
@@ -223,9 +226,9 @@ double BalanceShare(const Standing& person, std::span<const HandForce> forces) {
     tips_x -= hand.p.z() * hand.F.x();
     tips_y -= hand.p.z() * hand.F.y();
   }
-  if (!(N > 0)) return 0;
-  return std::min(LargestShare(x / N, tips_x / N, person.back, person.front),
-                  LargestShare(y / N, tips_y / N, -person.half_width, person.half_width));
+  if (!(N > 0)) return {0, 0};
+  return {LargestShare(x / N, tips_x / N, person.back, person.front),
+          LargestShare(y / N, tips_y / N, -person.half_width, person.half_width)};
 }
 
 }  // namespace predictor

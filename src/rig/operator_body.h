@@ -37,7 +37,8 @@ class OperatorBody {
   // The point nearest to p that the hand can reach from the present position of the shoulder.
   Vector3 Reachable(int hand, const Vector3& p) const noexcept;
   // Reduces each hand's force on its handle at p, in W, to what the joints can exert, then the
-  // horizontal parts of all forces to what the person can exert without falling.
+  // parts ahead and sideways of all forces to what the person can exert without falling in that
+  // direction.
   void LimitForces(const std::array<FrameMotion, kHands>& handle,
                    std::array<Vector3, kHands>* forces) const noexcept;
   // The wrenches that the hands exert, by which muscles stiffen and tire.

@@ -59,13 +59,26 @@ TEST(ArmAbility, BalanceEndsWhereTheTippingMomentDoes) {
   // Pushing ahead at the height h tips backwards from F = W (x - back) / h.
   const double h = 1.1, most = 700 * (0.05 + 0.06) / h;
   HandForce push = {{0.5, 0, h}, {most / 0.4, 0, 0}};
-  EXPECT_NEAR(BalanceShare(person, {&push, 1}), 0.4, 1e-12);
+  EXPECT_NEAR(BalanceSharesOf(person, {&push, 1}).x, 0.4, 1e-12);
   // A vertical force moves the centre of pressure, but is not reduced.
   HandForce both = {{0.5, 0.1, h}, {most / 0.4, 20, 60}};
-  both.F.head<2>() *= BalanceShare(person, {&both, 1});
+  both.F.x() *= BalanceSharesOf(person, {&both, 1}).x;
   const double N = 700 + both.F.z();
   const double x = (700 * 0.05 + 0.5 * 60 - h * both.F.x()) / N;
   EXPECT_NEAR(x, -0.06, 1e-12);
+}
+
+// Lifting moves this person's centre of pressure beyond the toes, so the hand cannot pull.
+// Sideways, the force reaches W (half_width) / h plus what the lifted weight allows.
+TEST(ArmAbility, WhoStandsOnTheToesCanStillPushSideways) {
+  const Standing person = {700, 0.19, 0, -0.06, 0.2, 0.15};
+  const double h = 0.8, lift = 40;
+  const HandForce pull = {{0.55, 0, h}, {-10, 0, lift}};
+  EXPECT_EQ(BalanceSharesOf(person, {&pull, 1}).x, 0);
+  const HandForce towards_heels = {{0.55, 0, h}, {10, 0, lift}};
+  EXPECT_EQ(BalanceSharesOf(person, {&towards_heels, 1}).x, 1);
+  const HandForce sideways = {{0.55, 0, h}, {-10, 500, lift}};
+  EXPECT_NEAR(500 * BalanceSharesOf(person, {&sideways, 1}).y, (700 + lift) * 0.15 / h, 1e-9);
 }
 
 TEST(ArmAbility, ReachIsAShell) {
@@ -91,7 +104,8 @@ TEST(OperatorBody, ForcesStayWithinStrengthAndBalance) {
       limited += forces[hand] != wanted[hand];
       EXPECT_LE(forces[hand].norm(), wanted[hand].norm() + 1e-12);
     }
-    EXPECT_GT(BalanceShare(person.body.standing(), acting), 1 - 1e-9);
+    const BalanceShares left = BalanceSharesOf(person.body.standing(), acting);
+    EXPECT_GT(std::min(left.x, left.y), 1 - 1e-9);
   }
   EXPECT_GT(limited, 50);
   EXPECT_LT(limited, 400);
