@@ -1,5 +1,5 @@
-// The stability of the haptic loop with a cobot under admittance control: the linear model with the
-// states of sensor, controller and delay against the simulation.
+// Checks the stability of the haptic loop with a cobot under admittance control. It compares the
+// linear model, which has states for the sensor, the controller and the delay, with the simulation.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,8 +24,8 @@ double RateOf(const HapticLoop& loop, HandSpec hand, double mass) {
   return loop.GrowthRate(hand, 0, 1);
 }
 
-// The mass of the hand at which the loop becomes unstable [kg]; empty if no mass in the
-// range is critical.
+// Returns the mass of the hand at which the loop becomes unstable [kg], or no value if no mass in
+// the range is critical.
 std::optional<double> CriticalMass(const Scenario& s) {
   const HapticLoop loop(World(s).Linearise(), s, 1 / s.rate, LoopModel::kExact);
   const HandSpec& hand = s.operator_.hand;
@@ -40,7 +40,7 @@ std::optional<double> CriticalMass(const Scenario& s) {
 }
 
 Scenario LoopWith(double stiffness, double delay) {
-  // With a weak virtual spring, because the effect of a tap on a free cobot would never decay.
+  // The virtual spring is weak, because the effect of a tap on a free cobot would never decay.
   Scenario s =
       Load("admittance.yaml", {"cobot.controller.virtual_stiffness.translation=[80, 80, 80]",
                                "cobot.controller.virtual_stiffness.rotation=[5, 5, 5]"});
@@ -53,12 +53,12 @@ Scenario LoopWith(double stiffness, double delay) {
 bool Grows(Scenario s, double mass) {
   s.operator_.hand.mass = mass;
   const Growth growth = MeasureGrowth(s, 0);
-  // Once a disturbance has decayed, its rate is that of rounding errors, about 0. Without a rate,
-  // limits act from the start.
+  // Once a disturbance has decayed, the measured rate is that of rounding errors, which is about 0.
+  // If there is no rate, a limit acted from the start.
   return growth.grows && growth.rate.value_or(1) > 0.2;
 }
 
-// 24 points; four of them in the short test.
+// The full test covers 24 points, the short test four of them.
 TEST(Admittance, CriticalHandMassIsAsPredictedSoak) {
   int point = 0, compared = 0;
   for (const double stiffness : {60.0, 100.0, 170.0, 280.0, 400.0, 600.0})

@@ -1,4 +1,4 @@
-// `check` accepts scenarios that fit and explains the problems of those that do not.
+// `check` must accept consistent scenarios and explain the problems of all others.
 #include "analysis/check/check.h"
 
 #include <gtest/gtest.h>
@@ -91,7 +91,7 @@ TEST(Reach, WithShiftedBasesIsThatOfAScenarioWithThoseBases) {
   EXPECT_NEAR(a.pairs[0].distance.value, b.pairs[0].distance.value, 1e-3);
 }
 
-// A handle on a circle has the circle's speed, independently of the arms.
+// A handle on a circle moves at the circle's speed, whatever the arms can do.
 TEST(Reach, HandleOnACircleHasItsSpeed) {
   const Scenario s = Load("bar_circle.yaml");
   const Reach reach = DeviceReach(s).Over(TaskPaths(s, StartOfObject(s), 0.1));
@@ -192,14 +192,14 @@ TEST(Check, ReportsTheDurationOfAStopIncludingTheArmsLag) {
         Formatted("within %4.0f ms, after at most %.1f mm", 1e3 * stop.time, 1e3 * stop.way);
     EXPECT_NE(CheckText(report).find(reported), std::string::npos) << CheckText(report);
   }
-  // A joint with a low limit on its deceleration lengthens the stop further.
+  // A joint with a low deceleration limit lengthens the stop further.
   const CheckReport gentle =
       Check(Load("box_9kg.yaml", {"device.arms.left.acceleration_limit=[1]"}), NoSearch());
   EXPECT_GT(gentle.longest_stop->time, 5 * report.longest_stop->time);
   EXPECT_FALSE(Check(Load("box_9kg.yaml", {"mode=direct"}), {}).stop);
 }
 
-// A machine with the arms of `dual_ur5` that has not been commissioned.
+// A machine file for the arms of `dual_ur5`, which have not been commissioned.
 std::string MachineText() {
   std::string text = "predictor_machine: 1\narms:\n";
   for (const bool left : {true, false})
@@ -275,7 +275,7 @@ TEST(BaseSearch, FindsBetterBasesAndTheSameAgain) {
   EXPECT_EQ(proposal.xyz[1], again.xyz[1]);
 }
 
-// The scene is 0.5 m away from arms that cannot move, and turned.
+// The scene is rotated and lies 0.5 m away from arms that cannot move.
 TEST(ShiftSearch, BringsTheSceneToFixedArms) {
   const Scenario s =
       Load("box_9kg.yaml", {"environment.shift={xyz: [0.3, -0.4, 0.1], rpy: [0, 0, 50 deg]}"});
@@ -290,7 +290,7 @@ TEST(ShiftSearch, BringsTheSceneToFixedArms) {
   const std::string text = CheckText(report);
   const std::size_t at = text.find("  environment.shift: {");
   ASSERT_NE(at, std::string::npos) << text;
-  // What it prints can be copied, and has the comfort that it promises.
+  // The printed value can be copied into a scenario, which then has the promised comfort.
   const std::string copied = text.substr(at + 21, text.find('}', at) - at - 20);
   const Scenario moved = Load("box_9kg.yaml", {"environment.shift=" + copied});
   const DeviceReach device(moved);
@@ -309,7 +309,7 @@ TEST(ShiftSearch, OfTheSameScenarioFindsTheSame) {
   EXPECT_EQ(a.shift.rpy, b.shift.rpy);
 }
 
-// Exit code and output of `check --quiet`, which prints only problems.
+// Returns the exit code and the output of `check --quiet`, which prints only problems.
 std::pair<int, std::string> RunCheck(const std::string& arguments) {
   const std::string command =
       std::string(PREDICTOR_BINARY) + " check --no-search --quiet " + arguments + " 2>&1";

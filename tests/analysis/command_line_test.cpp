@@ -1,4 +1,5 @@
-// Command-line options that set keys of the scenario, and the files that the program writes.
+// Tests the command-line options that set keys of the scenario, and the files that the program
+// writes.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -80,8 +81,8 @@ TEST_F(SummaryFile, IsWrittenAfterARun) {
 }
 
 TEST_F(SummaryFile, IsNotLeftEmptyByABadScenario) {
-  // The first value is refused because of its key alone; the second only once the models are
-  // loaded.
+  // The program can refuse the first value by its key alone, but the second one only after it has
+  // loaded the models.
   for (const char* bad : {"--set seed=-1", "--set cobot.end_effector=nope"}) {
     EXPECT_EQ(Run(bad).code, 2) << bad;
     EXPECT_FALSE(fs::exists(file_)) << bad;

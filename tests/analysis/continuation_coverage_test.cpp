@@ -1,7 +1,7 @@
-// Whether the intervals of a continued run contain what simulated people would have done.
+// Do the intervals of a continued run contain what simulated people would have done?
 //
-// The numbers of IntentModel were chosen on the seeds 1000 to 1400. The seeds below were fixed
-// before, and were not used for it.
+// The numbers of IntentModel were chosen with the seeds 1000 to 1400. The seeds below were chosen
+// before that and played no part in it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,8 +21,10 @@ namespace {
 constexpr std::uint64_t kInsideSeed = 20000, kOutsideSeed = 30000;
 
 struct Coverage {
-  std::map<std::string, std::array<int, 3>> counts;  // below, within, above; by kind, and "all"
-  std::vector<double> widths, shares;                // of the intervals [N], and over the truth
+  // counts of values below, within and above their interval, by kind and for "all"
+  std::map<std::string, std::array<int, 3>> counts;
+  // of the intervals [N], and relative to the true value
+  std::vector<double> widths, shares;
   int runs = 0, others = 0, unknown = 0;  // without a stop by a limit; whose truth ends by a fault
 
   double share() const {
@@ -39,7 +41,7 @@ struct Coverage {
   }
 };
 
-// Counts until `stops` truths are known.
+// Simulates people until the true outcome of `stops` stops is known.
 Coverage Study(std::uint64_t seed, long stops, bool outside, int draws) {
   Coverage result;
   const ArmDistribution arms = ArmDistribution::Prior(HandSpec());
@@ -73,21 +75,21 @@ Coverage Study(std::uint64_t seed, long stops, bool outside, int draws) {
   return result;
 }
 
-// The second smallest and the second largest of 39 draws: another draw lies between them with 90 %
-// probability.
+// The interval extends from the second smallest to the second largest of 39 draws. Another draw
+// lies in it with a probability of 90 %.
 constexpr int kDraws = 39;
 
 TEST(ContinuationCoverage, ContainsWhatSimulatedPeopleWouldHaveDoneSoak) {
   const Coverage inside = Study(kInsideSeed, Count(8, 200), false, kDraws);
   inside.Print("Inside the prior");
-  // Of eight independent intervals of 90 %, fewer than five contain the truth with p = 0.005.
+  // If the intervals are right, fewer than five of eight contain the true value with p = 0.005.
   EXPECT_GE(inside.share(), InFull() ? 0.84 : 0.6);
   EXPECT_LE(inside.share(), InFull() ? 0.96 : 1);
   EXPECT_LE(Median(inside.shares), 1);
 }
 
-// Arms and reflexes that the prior hardly contains. There is no requirement, except that the
-// intervals are more often right than wrong.
+// The prior hardly contains these arms and reflexes. The only requirement is that the intervals are
+// more often right than wrong.
 TEST(ContinuationCoverage, OfPeopleOutsideThePriorIsReportedSoak) {
   const Coverage outside = Study(kOutsideSeed, Count(4, 200), true, kDraws);
   outside.Print("Outside the prior");

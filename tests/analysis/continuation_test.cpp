@@ -1,4 +1,4 @@
-// The continuation of a stopped run: what it takes from the run, and what it must not.
+// Tests the continuation of a stopped run, including which data it must not use.
 #include "analysis/continuation/continuation.h"
 
 #include <gtest/gtest.h>
@@ -48,9 +48,9 @@ double LargestForce(const TickRecord& record) {
   return force;
 }
 
-// Without a limit from the start, the simulated operator makes the same run.
+// If no limit acts from the start, the continuation repeats the simulated operator's run.
 TEST(Continuation, OfTheSimulatedOperatorIsTheRunWithoutLimits) {
-  StoppedPerson person;  // slow, so that the speed cap does not act before the stop
+  StoppedPerson person;  // moves slowly, so that the speed cap does not act before the stop
   person.scenario =
       Load("box_9kg.yaml", {"events=[{event: brakes_close, trigger: {after: 3}}]", "duration=8"});
   const auto stopped = RunToStop(person);
@@ -76,8 +76,8 @@ TEST(Continuation, OfTheSimulatedOperatorIsTheRunWithoutLimits) {
   EXPECT_GT(c.reference->peak_force, 31);
 }
 
-// Two operators who do the same until the stop, and different things after it: the prediction is
-// the same, bit for bit.
+// Two operators act alike until the stop and differently after it. Their predictions must be
+// identical bit for bit.
 TEST(Continuation, DoesNotUseTheOperatorsHiddenIntention) {
   const StoppedPerson one = Pusher();
   const auto stop = RunToStop(one);
@@ -128,7 +128,7 @@ TEST(Continuation, JudgesTheJointsOfABody) {
   EXPECT_TRUE(std::isnan(unknown.runs.front().joint_use));
 }
 
-// Each required key exists, and each key is described.
+// Checks that each required key exists and that each key is described.
 void ExpectMatches(const Json& value, const Json& schema) {
   for (const Json& key : schema.value("required", Json::array()))
     EXPECT_TRUE(value.contains(key.get<std::string>())) << key;
@@ -141,7 +141,7 @@ void ExpectMatches(const Json& value, const Json& schema) {
     for (const Json& entry : value) ExpectMatches(entry, schema["items"]);
 }
 
-// A run that another fault ends is a lower bound.
+// If another fault ends a run, its value is a lower bound.
 TEST(Continuation, CountsRunsThatEndedByAFaultAsBounds) {
   Continuation c;
   for (int k = 1; k <= 19; ++k) {
@@ -221,7 +221,7 @@ TEST(ArmDistribution, DrawsHaveTheGivenMoments) {
     product += (x[0] - 400) * (x[1] - 180) / kSamples;
     with_gain += (x[0] - 400) * (x[5] - 0.4) / kSamples;
   }
-  // Five standard errors of the means; the covariances to 10 %.
+  // The tolerance of the means is five standard errors, that of the covariances 10 %.
   EXPECT_TRUE(
       ((sum - mean).cwiseAbs().array() < 5 * (c.diagonal() / kSamples).cwiseSqrt().array()).all())
       << sum.transpose();
@@ -237,7 +237,7 @@ TEST(ArmDistribution, PriorIsAroundTheHand) {
   std::vector<double> stiffness;
   for (int i = 0; i < 4001; ++i) stiffness.push_back(arms.Draw(&random).stiffness[0]);
   EXPECT_NEAR(Median(stiffness), hand.stiffness[0], 15);
-  // The documented spread: the root of 0.35² + 0.2².
+  // The documented standard deviation is the square root of 0.35² + 0.2².
   EXPECT_NEAR(std::log(Quantile(stiffness, 0.95) / hand.stiffness[0]), 1.645 * 0.4031, 0.05);
 }
 
@@ -267,7 +267,7 @@ TEST(ArmDistribution, RefusesInvalidFiles) {
   EXPECT_NEAR(ArmDistribution::Read(file, HandSpec()).Draw(&random).mass, 3, 0.01);
 }
 
-// A hand that follows the law with a known drive: the estimate finds the drive and its trend.
+// A hand follows the law with a known drive. The estimate must find this drive and its trend.
 TEST(EstimatedHand, FindsTheDriveOfAHandThatFollowsItsLaw) {
   constexpr double kStep = 0.001, kAmplitude = 0.02, kRate = 12;
   OperatorDraw person;
@@ -298,7 +298,7 @@ TEST(EstimatedHand, FindsTheDriveOfAHandThatFollowsItsLaw) {
   EstimatedHand hand;
   hand.Begin(past, 0, kStep, kStep, {}, person);
   ASSERT_TRUE(hand.holds());
-  // The displacement counts from the first record, and so does its force.
+  // The displacement is measured from the first record, and the force as well.
   const Vector3 offset = (1 + person.arm.reflex_gain) * K.cwiseProduct(at(-0.5));
   EXPECT_LT((hand.drive().head<3>() + offset - u0).norm(), 0.6) << hand.drive().transpose();
   EXPECT_LT((hand.trend().head<3>() - slope).norm(), 8) << hand.trend().transpose();

@@ -1,4 +1,4 @@
-// The linear loop that predicts the stability map, compared with closed forms.
+// Compares the linear loop that predicts the stability map with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ HandSpec SpringWithReflex(double stiffness, double reflex_gain, double reflex_de
   return hand;
 }
 
-// One arm without dynamics, except for a delay [s] from the virtual to the real handle and back.
+// One arm whose only dynamics are a delay [s] from the virtual to the real handle and back.
 Scenario PureDelay(double delay) {
   Scenario s;
   s.left_handle.emplace();
@@ -51,7 +51,8 @@ TEST(ExactLoop, KnowsTheReflexAfterWholeTurnsOfItsPhase) {
   }
 }
 
-// M s² + B s + K e^−sT: M ω² = K cos ωT, B ω = K sin ωT. The model adds no tick to the delay.
+// For M s² + B s + K e^−sT, the boundary is at M ω² = K cos ωT and B ω = K sin ωT. The model must
+// not add a tick to the delay.
 TEST(ExactLoop, HasNoDelayButItsOwn) {
   const double T = 0.040, mass = 9, omega = 20;
   const double stiffness = mass * omega * omega / std::cos(omega * T);
@@ -62,12 +63,13 @@ TEST(ExactLoop, HasNoDelayButItsOwn) {
     const HapticLoop loop(Mass(mass, share * critical), s, kDt, LoopModel::kExact);
     EXPECT_EQ(loop.GrowthRate(hand, 0, 1) > kRounding, share < 1) << share;
   }
-  // The loop model that selects the leads has another tick and a half of delay: 2 or 3 % here.
+  // The loop model that selects the leads has 1.5 ticks more delay, which amounts to 2 or 3 % here.
   const HapticLoop reserved(Mass(mass, 1.01 * critical), s, kDt);
   EXPECT_GT(reserved.GrowthRate(hand, 0, 1), kRounding);
 }
 
-// M s² + B s + K (1 + τ s) e^−sT: a lead with unfiltered acceleration differs from a lead of zero.
+// For M s² + B s + K (1 + τ s) e^−sT, a lead with unfiltered acceleration must differ from a lead
+// of zero.
 TEST(ExactLoop, AnUnfilteredLeadLeads) {
   const double T = 0.040, lead = 0.020, mass = 9, omega = 15;
   const double c = std::cos(omega * T), si = std::sin(omega * T);

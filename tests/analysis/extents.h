@@ -1,4 +1,4 @@
-// Invented results of the search for the stable stiffnesses.
+// Made-up results of the search for the stable stiffnesses.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,8 @@
 
 namespace predictor {
 
-// Samples around a boundary at 1000 N/m. Their growth rates lie on a line, apart from `scatter`.
+// Returns samples around a boundary at 1000 N/m. Their growth rates lie on a line, apart from
+// `scatter`.
 inline FoundExtent AboutAThousand(double scatter) {
   FoundExtent found;
   int sign = 1;

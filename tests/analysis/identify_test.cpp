@@ -53,7 +53,7 @@ class IdentifyTest : public testing::Test {
 // Counts how often 95 % intervals contain the true value, and how accurate the estimates are.
 struct Tally {
   int intervals = 0, held = 0;
-  int off = 0;       // error above 5 % that the interval does not reveal
+  int off = 0;       // number of errors above 5 % that the interval does not reveal
   double worst = 0;  // error divided by the half-width
   void Add(const Estimate& estimate, double truth) {
     ++intervals;
@@ -104,8 +104,8 @@ TEST_F(IdentifyTest, FrictionAndItsIntervalsSoak) {
   RecordProperty("held", tally.held);
 }
 
-// Correlated residuals, such as those caused by a gear's temperature: correlation time 0.5 s,
-// standard deviation 0.1 N·m.
+// The residuals are correlated, as if by the temperature of a gear. The correlation time is 0.5 s,
+// the standard deviation 0.1 N·m.
 TEST_F(IdentifyTest, IntervalsCountWhatNeighbouringResidualsHaveInCommonSoak) {
   Tally tally;
   double widening = 0;
@@ -130,7 +130,8 @@ TEST_F(IdentifyTest, IntervalsCountWhatNeighbouringResidualsHaveInCommonSoak) {
                 static_cast<double>(seeds);
   }
   tally.Expect(0.05 * tally.intervals);
-  // The correlation makes the window means 4 times as large; the interval must grow by more.
+  // The correlation makes the window means 4 times as large, and the interval must grow by more
+  // than that.
   EXPECT_GT(widening, 6);
 }
 
@@ -225,7 +226,7 @@ TEST_F(IdentifyTest, LinksFarFromTheirModelAreNoticed) {
   tally.Expect();
 }
 
-// Needs no simulation, because the identifier uses only the positions here.
+// This test needs no simulation, because the identifier uses only the positions here.
 TEST_F(IdentifyTest, OneSpeedIsNotEnough) {
   Identifier identifier(nominal_);
   TickRecord record{};

@@ -13,7 +13,7 @@ namespace {
 
 using Row = std::map<std::string, std::string>;
 
-// Cells of a line of CSV. Quoted cells may contain commas and doubled quotes.
+// Splits a line of CSV into its cells. A quoted cell may contain commas and doubled quotes.
 std::vector<std::string> CellsOf(const std::string& line) {
   std::vector<std::string> cells(1);
   bool quoted = false;
@@ -47,7 +47,8 @@ std::map<std::string, Row> RowsOf(const std::string& experiment) {
   return rows;
 }
 
-// The paper's loop, and everything that is added to it at 100 Hz.
+// Returns whether the number comes from an unstable loop: the paper's, or the paper's at 100 Hz
+// with some of our changes.
 bool IsUnstable(const std::string& experiment, const ReproducedNumber& n) {
   const auto starts = [](const std::string& text, const char* with) {
     return text.rfind(with, 0) == 0;

@@ -5,15 +5,15 @@
 
 namespace predictor {
 
-// Fails unless the file has exactly this experiment's numbers: mean and deviation within 2 %, the
-// largest value within 20 %. Under the paper's conditions the loop is unstable, so rounding errors
-// grow with it, and the mathematical libraries of different processors round differently; there the
-// tolerances are 15 % and 40 %. The time to rest ends with the last step that counts as motion, on
-// a slow tail; its tolerance is 10 %.
+// Fails unless the file has exactly this experiment's numbers. The mean and the deviation must
+// agree within 2 %, the largest value within 20 %. Under the paper's conditions the loop is
+// unstable: rounding errors grow with it, and the mathematical libraries of different processors
+// round differently. The tolerances are therefore 15 % and 40 % there. The tolerance of the time to
+// rest is 10 %, because it ends with the last step that counts as motion, in a slow decay.
 void ExpectAsInNumbersFile(const ReproducedExperiment& experiment);
 
-// The file's mean for a number of the experiment with this condition, quantity and unit; NaN if it
-// has none.
+// Returns the file's mean for a number of the experiment with this condition, quantity and unit, or
+// NaN if the file has no such number.
 double MeanInNumbersFile(const std::string& experiment, const ReproducedNumber& n);
 
 }  // namespace predictor

@@ -63,7 +63,7 @@ TEST(People, FitIntoAScenario) {
   }
 }
 
-// Newcombe, Statistics in Medicine 17 (1998) 857, method 3, table I.
+// The values are from Newcombe, Statistics in Medicine 17 (1998) 857, method 3, table I.
 TEST(Share, HasThePublishedIntervals) {
   const auto check = [](int count, int of, double low, double high) {
     EXPECT_NEAR(ShareOf(count, of).low, low, 5e-5);
@@ -76,7 +76,7 @@ TEST(Share, HasThePublishedIntervals) {
   EXPECT_EQ(ShareOf(0, 0).high, 1);
 }
 
-// Two designs: in the second one, each person's values are larger by `shift`.
+// Makes up two designs. In the second one, each person's values are larger by `shift`.
 PopulationStudy MadeUp(int people, double shift) {
   PopulationStudy study;
   study.people = SamplePopulation(people, 1);
@@ -137,7 +137,7 @@ TEST(Comparison, CountsPeopleBeyondALimit) {
   }
 }
 
-// Each key that a schema describes is there, and no other one.
+// Checks that the output has each key of the schema and no other one.
 void ExpectDescribed(const nlohmann::json& schema, const nlohmann::json& json) {
   if (json.is_null()) {
     EXPECT_NE(schema["type"].dump().find("null"), std::string::npos) << schema;
@@ -204,7 +204,7 @@ TEST(Study, RunsAndContinuesWhereItEnded) {
   ASSERT_EQ(study.designs.size(), 2U);
   EXPECT_EQ(study.kept, 0);
   EXPECT_NEAR(*study.designs[0].height, 0.9, 1e-9);
-  // The handles are at another height of the body, but move alike.
+  // The handles are at a different height relative to the body, but move alike.
   EXPECT_NE(study.designs[0].runs[0].values, study.designs[1].runs[0].values);
   for (const PopulationDesign& design : study.designs)
     for (const PopulationRun& run : design.runs) EXPECT_GT(run.held, 1);
@@ -224,7 +224,7 @@ TEST(Study, RefusesAScenarioWithoutAPlaceOfTheOperator) {
   EXPECT_THROW(MakePopulationStudy(options), InputError);
 }
 
-// What a person of one side does with one hand, a mirrored person does with the other.
+// A mirrored person must do with one hand what the person does with the other.
 assessment::Assessment AssessLift(double side) {
   Scenario scenario = QuietScenario(2);
   scenario.operator_.embodied = true;

@@ -49,7 +49,7 @@ class ReproduceTest : public testing::Test {
   ReproduceOptions options_;
 };
 
-// The number for a quantity under a condition. The test fails if it does not exist.
+// Returns the number for a quantity under a condition. The test fails if it does not exist.
 const ReproducedNumber& Find(const ReproducedExperiment& e, const std::string& quantity,
                              const std::string& condition) {
   static const ReproducedNumber kNone;
@@ -59,7 +59,7 @@ const ReproducedNumber& Find(const ReproducedExperiment& e, const std::string& q
   return kNone;
 }
 
-// Scenario 1 of the paper: the printed numbers appear in their places, next to ours from a run.
+// For scenario 1 of the paper, each printed number appears in its place, next to ours from a run.
 TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
   options_.only = "box_9kg";
   const Reproduction r = Reproduce(options_);
@@ -84,7 +84,8 @@ TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
   // constant.
   EXPECT_GT(Find(e, "left handle", kPapers).mean, 3 * Find(e, "left handle", kOurs).mean);
   EXPECT_NE(Find(e, "left handle", kPapers).command.find("--set rate=100"), std::string::npos);
-  // Without our coupling the run stops. The stop is shown and has no ratio to the paper's number.
+  // Without our coupling, the run stops. The page shows the time of the stop, without a ratio to
+  // the paper's number.
   const ReproducedNumber& stop = Find(e, "time of the safety stop", kPapersUncoupled);
   EXPECT_GT(stop.mean, 0);
   EXPECT_LT(stop.mean, 30);
@@ -92,7 +93,7 @@ TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
        {"stiffness", "damping", "rotation_stiffness", "rotation_damping", "speed_damping"})
     EXPECT_NE(stop.command.find(std::string("--set coupling.") + part + "=0"), std::string::npos);
   EXPECT_FALSE(Find(e, "left handle", kPapersUncoupled).ratio());
-  // The whole run includes the release; the error while both hands grip does not.
+  // The values for the whole run include the release; the error while both hands grip does not.
   EXPECT_GT(Find(e, "left handle, whole run", kOurs).largest,
             Find(e, "left handle", kOurs).largest);
   EXPECT_EQ(Find(e, "left handle, whole run", kOurs).paper->mean, 4.1);
@@ -109,7 +110,7 @@ TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
   EXPECT_TRUE(std::any_of(e.blocks.begin(), e.blocks.end(), [](const ReproducedBlock& block) {
     return block.html.find("assumed to be 100 Hz (1/10 ms") != std::string::npos;
   }));
-  // Three plots like Fig. 7, one like Fig. 8, and three pictures.
+  // The page has three plots like Fig. 7, one like Fig. 8, and three pictures.
   int plots = 0;
   for (const ReproducedBlock& block : e.blocks) plots += block.plot ? 1 : 0;
   EXPECT_EQ(plots, 4);
@@ -129,8 +130,8 @@ TEST_F(ReproduceTest, ShowsTheStops) {
   ExpectAsInNumbersFile(e);
 }
 
-// box_18kg needs its increased effort limit. With the Panda's own limits, the error names the
-// overloaded joint.
+// box_18kg needs a higher effort limit than the Panda's. With the Panda's own limits, the error
+// must name the overloaded joint.
 TEST_F(ReproduceTest, RefusesEighteenKilogramsOnThePandasOwnJoints) {
   try {
     const Emulator emulator(
@@ -182,7 +183,7 @@ TEST_F(ReproduceTest, NumbersFileIsWhatTheProgramComputesSoak) {
   }
 }
 
-// The relative pose is kept even if the absolute pose is not.
+// The loop keeps the relative pose even where it does not keep the absolute pose.
 TEST_F(ReproduceTest, ShowsTheRelativePoseKept) {
   options_.only = "relative_pose";
   const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
@@ -217,7 +218,7 @@ TEST_F(ReproduceTest, HoldsTheCircleAgainstTheRealOne) {
   }));
 }
 
-// Each reconstructed set of answers reproduces the printed numbers (ten numbers for 8 statements).
+// Each reconstructed set of answers reproduces the printed numbers: ten numbers for 8 statements.
 TEST_F(ReproduceTest, ListsTheAnswersOfTableOne) {
   options_.only = "questionnaire";
   const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
@@ -266,7 +267,7 @@ TEST_F(ReproduceTest, ReportsTheError) {
   options_.only = "box_9kg";
   options_.scenarios = folder_ / "nowhere";
   EXPECT_NE(message().find("--scenarios"), std::string::npos);
-  // The folder's parent is a file.
+  // The parent of the folder is a file, so the folder cannot be created.
   options_.folder = folder_ / "file" / "below";
   std::ofstream(folder_ / "file") << "x";
   EXPECT_NE(message().find("cannot be written"), std::string::npos);
@@ -339,7 +340,7 @@ Picture Decode(const std::string& png) {
 }
 
 constexpr int kWidth = 80, kHeight = 60;
-// Looks along +x from a point 2 m behind the origin.
+// The camera looks along +x from a point 2 m behind the origin.
 const RasterCamera kAhead = {{-2, 0, 0}, {0, 0, 0}, 0.6};
 
 void AddWall(double x, double y0, double y1, const Vector3& color, Raster* raster) {
@@ -353,7 +354,7 @@ TEST(Raster, ProjectsCorrectly) {
   const Picture picture = Decode(raster.Png());
   ASSERT_EQ(picture.width, kWidth);
   ASSERT_EQ(picture.height, kHeight);
-  // Size in pixels of 1 m at a distance of 2 m.
+  // The size of 1 m at a distance of 2 m, in pixels.
   const double scale = 0.5 * kHeight / std::tan(0.3) / 2;
   const int left = static_cast<int>(kWidth / 2 - 0.4 * scale);
   const int right = static_cast<int>(kWidth / 2 - 0.1 * scale);

@@ -1,4 +1,4 @@
-// The simplest hand and world: the stability of their loop has a closed form.
+// The simplest hand and the simplest world. The stability of their loop has a closed form.
 #pragma once
 
 #include "core/messages.h"
@@ -6,7 +6,7 @@
 
 namespace predictor {
 
-// One handle on a mass [kg] with a damper [N·s/m], free along x only.
+// One handle on a mass [kg] with a damper [N·s/m] that can move along x only.
 inline LinearModel Mass(double mass, double damper) {
   LinearModel world;
   world.dof = 1;

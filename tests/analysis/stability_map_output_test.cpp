@@ -1,4 +1,4 @@
-// The stored results of the stability map, and its page.
+// Tests the stored results of the stability map and its page.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -45,7 +45,7 @@ TEST(MapStore, KeepsFinishedPointsAfterTruncation) {
     store.Add("a", SomePoint());
     store.Add("b", SomePoint());
   }
-  // As if the program was killed while it wrote the second line.
+  // This is the state of the file if the program was killed while it wrote the second line.
   fs::resize_file(file, fs::file_size(file) - 40);
   {
     MapStore store(file);
@@ -105,8 +105,8 @@ TEST(HashOf, IsFowlerNollVo) {
 
 // ---- plots -------------------------------------------------------------------------------------
 
-// Every plot has the same point at each value, but nothing is stable at the second value, and the
-// cobot cannot carry the object at the last value.
+// Returns a map in which every plot has the same point at each value, with two exceptions. Nothing
+// is stable at the second value, and the cobot cannot carry the object at the last one.
 StabilityMap SomeMap() {
   StabilityMap map;
   map.base.scenario.name = "A <box> & more";
@@ -127,7 +127,7 @@ StabilityMap SomeMap() {
   return map;
 }
 
-// Every element that is opened is closed, in the right order.
+// Checks that each opened element is closed, and in the right order.
 void ExpectWellFormed(const std::string& xml) {
   std::vector<std::string> open;
   const std::regex tag(R"re(<(/?)([a-zA-Z][a-zA-Z0-9]*)((?:[^<>"]|"[^"]*")*?)(/?)>)re");
@@ -143,7 +143,7 @@ void ExpectWellFormed(const std::string& xml) {
   EXPECT_TRUE(open.empty()) << open.back();
 }
 
-// The page without its script, which is not markup.
+// Returns the page without its script, which is not markup.
 std::string WithoutScript(const std::string& page) {
   const std::size_t end = page.rfind("</script>");
   return page.substr(0, page.rfind("<script>")) + page.substr(end + sizeof "</script>" - 1);

@@ -1,5 +1,5 @@
-// The stability map: its search, its variations, its comparison with simulation, and where its
-// assumptions are valid.
+// Tests the stability map: its search, its variations, its agreement with simulation, and the range
+// in which its assumptions are valid.
 #include "analysis/stability_map/stability_map.h"
 
 #include <gtest/gtest.h>
@@ -83,8 +83,8 @@ TEST(HoldScenario, IsAnOrdinaryScenarioThatNothingStops) {
   }
 }
 
-// The simulated growth, its rate and its frequency match the linear loop on both sides of its
-// boundary.
+// Checks that the simulated growth has the rate and the frequency of the linear loop on both sides
+// of its boundary.
 void ExpectGrowthAsPredicted(const Variant& variant, double stiffness) {
   Scenario s = variant.scenario;
   s.operator_.hand = Varied(s.operator_.hand, s.operator_.hand.mass, stiffness);
@@ -172,8 +172,8 @@ TEST(StabilityMap, RefusesAFolderThatCannotBe) {
   EXPECT_EQ(WEXITSTATUS(status), 2);
 }
 
-// Takes minutes: computes the maps of the paper's two scenarios and checks that a second call
-// computes nothing again.
+// This test takes minutes. It computes the maps of the paper's two scenarios and checks that a
+// second call reuses all results.
 TEST(StabilityMap, SoakSimulatedBoundaryIsThePredictedOne) {
   if (Count(0, 1) == 0) GTEST_SKIP() << "set PREDICTOR_SOAK";
   for (const char* name : {"box_9kg.yaml", "bar_circle.yaml"}) {
@@ -211,7 +211,7 @@ TEST(DeparturesAt, ALimitOnTheStableSide) {
   const auto departures = DeparturesAt(found, found.extent.boundaries[0]);
   ASSERT_EQ(departures.size(), 1u);
   EXPECT_NE(departures[0].find("acceleration"), std::string::npos);
-  // Limiting far from the boundary or on its other side does not affect the boundary.
+  // A limit that acts far from the boundary or on its other side does not affect the boundary.
   FoundExtent elsewhere = AboutAThousand(0);
   for (const std::size_t k : {0u, 1u, 3u, 4u, 5u}) elsewhere.samples[k].growth.limited.fill(1);
   EXPECT_TRUE(DeparturesAt(elsewhere, elsewhere.extent.boundaries[0]).empty());
@@ -234,7 +234,7 @@ TEST(DeparturesAt, GrowthThatWasMeasuredTooSeldomToJudge) {
   for (const std::size_t k : {0u, 1u, 4u}) found.samples[k].growth.rate.reset();
   EXPECT_TRUE(UncertaintyOf(found, boundary));
   EXPECT_TRUE(DeparturesAt(found, boundary).empty());
-  found.samples[5].growth.rate.reset();  // two samples remain, and a line through two always fits
+  found.samples[5].growth.rate.reset();  // two samples remain, and any line fits two samples
   EXPECT_FALSE(UncertaintyOf(found, boundary));
   EXPECT_EQ(DeparturesAt(found, boundary).size(), 1u);
 }
@@ -250,7 +250,8 @@ TEST(DeparturesOf, SlowLoopsAndReadingsAreNamed) {
   }
 }
 
-// This is why a slow loop is a departure: between its boundary and the predicted one, it grows.
+// A slow loop counts as a departure because it grows between its own boundary and the predicted
+// one.
 TEST(DeparturesOf, ASlowLoopGrowsWhereItIsPredictedToDecay) {
   for (const auto& [rate, grows] : {std::pair{"rate=1000", false}, {"rate=100", true}}) {
     const Variant v = VariantOf(BaseOf(Load("box_9kg.yaml", {rate})), MapAxis::kLead, 0);

@@ -14,7 +14,7 @@
 namespace predictor {
 namespace {
 
-// One arm without dynamics, except for a delay [s] from the virtual to the real handle and back.
+// One arm whose only dynamics are a delay [s] from the virtual to the real handle and back.
 Scenario PureLoopDelay(double delay) {
   Scenario s;
   s.left_handle.emplace();
@@ -30,8 +30,8 @@ struct Case {
   double mass, stiffness, delay, damper;
 };
 
-// M s² + B s + g K e^{−sT}: at the stability limit g K cos ωT = M ω² and g K sin ωT = B ω, so tan
-// ωT = B / (M ω).
+// For M s² + B s + g K e^{−sT}, the stability limit is at g K cos ωT = M ω² and g K sin ωT = B ω,
+// so tan ωT = B / (M ω).
 StabilityMargin ClosedForm(const Case& c) {
   double low = 0;
   double high = kPi / 2 / c.delay;
@@ -56,7 +56,7 @@ TEST(StabilityMargin, OfADelayedSpringIsItsClosedForm) {
   }
 }
 
-// The smallest sufficient damper: B = K sin(ωT)/ω with M ω² = K cos ωT.
+// The smallest sufficient damper is B = K sin(ωT)/ω with M ω² = K cos ωT.
 TEST(StabilityMargin, CriticalDampingOfADelayedSpringIsItsClosedForm) {
   const double mass = 9, stiffness = 400, delay = 0.03;
   double low = 0, high = kPi / 2 / delay;
@@ -74,10 +74,10 @@ TEST(StabilityMargin, CriticalDampingOfADelayedSpringIsItsClosedForm) {
   EXPECT_GT(critical, 0.9 * stiffness * delay * std::cos(low * delay));  // near the rule B ≈ K T
 }
 
-// Simulates one axis of the whole chain in small steps with a true delay line: reference with lead,
-// delay, second-order arm, hand with mass, spring and damper, sensor filter, and mass. Returns the
-// largest deflection in the last quarter divided by that in the second quarter; the loop grows if
-// this ratio is above 1.
+// Simulates one axis of the whole chain in small steps with a true delay line. The chain consists
+// of the reference with lead, the delay, the second-order arm, the hand with its mass, spring and
+// damper, the sensor filter, and the mass. Returns the largest deflection in the last quarter
+// divided by that in the second quarter. The loop grows if this ratio is above 1.
 double Growth(const Scenario& s, const HandSpec& hand, double mass, double damper, double lead,
               double gain) {
   constexpr double kStep = 2e-5;

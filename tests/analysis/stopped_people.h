@@ -1,4 +1,4 @@
-// Runs of simulated people that the emulator stops, for the tests of their continuation.
+// Runs of simulated people that the emulator stops. The tests of the continuation use them.
 #pragma once
 
 #include <cmath>
@@ -18,8 +18,8 @@
 
 namespace predictor {
 
-// A person whose arm stiffens with its force, which the continuation does not assume: the force of
-// the simulated operator times 1 + |F| / F0. F0 infinite: no difference.
+// A person whose arm stiffens with its force, which the continuation does not assume. The force is
+// that of the simulated operator times 1 + |F| / F0, so an infinite F0 makes no difference.
 class StiffeningOperator final : public Operator {
  public:
   StiffeningOperator(std::unique_ptr<Operator> person, double force)
@@ -36,7 +36,7 @@ class StiffeningOperator final : public Operator {
   double force_;  // F0 [N]
 };
 
-// One simulated person and what happens to the person.
+// A simulated person and the disturbance that acts on the person.
 struct StoppedPerson {
   Scenario scenario;
   std::string what;
@@ -53,7 +53,7 @@ inline double Between(RandomStream* random, double low, double high) {
   return low + (high - low) * random->Uniform();
 }
 
-// Perturbs the hand: beyond the ranges of the prior if `outside`.
+// Perturbs the parameters of the hand, beyond the ranges of the prior if `outside` is true.
 inline void PerturbHand(RandomStream* random, bool outside, HandSpec* hand) {
   const double spread = outside ? 2 : 1;
   const double common = std::exp(0.3 * spread * random->Normal());
@@ -65,7 +65,7 @@ inline void PerturbHand(RandomStream* random, bool outside, HandSpec* hand) {
   hand->max_force = 150;
 }
 
-// What disturbs the person: a push of the person, or a hazard of the cobot.
+// Draws a disturbance: the person pushes, or a hazard of the cobot occurs.
 inline std::vector<std::string> DisturbanceOf(RandomStream* random, std::string* what) {
   const double at = Between(random, 2, 4);
   const auto event = [&](const std::string& name, const std::string& parameters) {
@@ -110,15 +110,15 @@ inline StoppedPerson DrawPerson(std::uint64_t seed, bool outside) {
   return person;
 }
 
-// The emulator with this person, whose arms start in place. `scenario`: the person's, perhaps with
-// other limits.
+// Returns an emulator of this person whose arms begin at their places. `scenario` is the person's
+// scenario, perhaps with other limits.
 inline std::unique_ptr<Emulator> EmulatorOf(const StoppedPerson& person, const Scenario& scenario) {
   return std::make_unique<Emulator>(
       scenario, std::make_unique<SimulatedDevice>(scenario, Emulator(scenario).setup().start,
                                                   person.Maker()(scenario)));
 }
 
-// Simulates until the first stop by a limit; empty without one.
+// Simulates until a limit stops the run for the first time. Returns no value if none does.
 inline std::optional<StoppedRun> RunToStop(const StoppedPerson& person) {
   const Scenario& scenario = person.scenario;
   const std::unique_ptr<Emulator> emulator = EmulatorOf(person, scenario);

@@ -41,7 +41,7 @@ class VerifyTest : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  // Records the scenario, with a saved state every second. `look` may change a record, or drop it
+  // Records the scenario with a saved state in every second. `look` may change a record, or drop it
   // by returning false.
   std::string Record(const std::function<bool(TickRecord*)>& look) {
     const std::string file = folder_ / "run.mcap";
@@ -77,7 +77,7 @@ TEST_F(VerifyTest, ARunIsTheSameAgain) {
   EXPECT_EQ(result.missing + result.skipped, 0U);
 }
 
-// The arms' joints are recorded, and their handles are computed again in the shifted world.
+// The recording contains the arms' joints. The handles are computed again in the shifted world.
 TEST_F(VerifyTest, ARunInAShiftedWorldIsTheSameAgain) {
   scenario_ =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml",
@@ -87,7 +87,8 @@ TEST_F(VerifyTest, ARunInAShiftedWorldIsTheSameAgain) {
   EXPECT_FALSE(result.departure);
 }
 
-// Neither the library nor the program is used again: their recorded answers stand for them.
+// Verification uses neither the library nor the program. It takes the controller's answers from the
+// recording.
 TEST_F(VerifyTest, ARunWithAControllerOutsideTheProgramIsTheSameWithoutIt) {
   struct OutsideCase {
     ControllerSpec controller;
@@ -119,7 +120,7 @@ TEST_F(VerifyTest, ARunWithAControllerOutsideTheProgramIsTheSameWithoutIt) {
   }
 }
 
-// Two seconds, whatever happens.
+// The run must last two seconds, even if a limit is exceeded.
 const std::vector<std::string> kNoStops = {"duration=2",
                                            "safety.force=900",
                                            "safety.torque=99",
@@ -131,7 +132,7 @@ const std::vector<std::string> kNoStops = {"duration=2",
                                            "safety.relative_slack_rotation=99",
                                            "safety.oscillation.enabled=false"};
 
-// After a gap, each goes on from a state that was saved while the hazard acted.
+// After a gap, the computation continues from a state that was saved while the hazard acted.
 TEST_F(VerifyTest, ARunWithAnyHazardIsTheSameAgain) {
   for (const ParameterKind* kind : Hazards()) {
     const std::string name = kind->name;
@@ -175,7 +176,8 @@ TEST_F(VerifyTest, ARecordingWithoutTheAnswersOfItsControllerIsRefused) {
   }
 }
 
-// The soak test runs each scenario to its end. Scenarios that stop always run to their stop.
+// The soak test runs each scenario to its end. Scenarios that stop run to their stop in either
+// test.
 TEST_F(VerifyTest, EveryScenarioIsTheSameAgainSoak) {
   int scenarios = 0;
   for (const auto& entry :
@@ -236,7 +238,7 @@ TEST_F(VerifyTest, AfterAGapItContinuesFromTheNextState) {
   EXPECT_GT(result.ticks, 3000U);
 }
 
-// ---- real arms: fakes at the far end of a wire, in virtual time --------------------------------
+// ---- real arms: simulated by fakes on a network in virtual time --------------------------------
 
 class VerifyRealArms : public VerifyTest {
  protected:
@@ -245,8 +247,8 @@ class VerifyRealArms : public VerifyTest {
     std::array<std::string, kHands> arms, sensors;
   };
 
-  // A person starts the run. `fault` is applied after 1.5 s; 2 s later the run is reset if it is in
-  // HELD. `look` works as in Record.
+  // Records a run that a person starts. `fault` is applied after 1.5 s. If the run is in HELD 2 s
+  // later, it is reset. `look` works as in Record.
   std::string RecordBench(const Case& what, const std::function<void(Bench&)>& fault,
                           const std::function<bool(TickRecord*)>& look) {
     BenchOptions options;
@@ -299,7 +301,7 @@ TEST_F(VerifyRealArms, TheRunIsTheSameAgainWithoutThem) {
   }
 }
 
-// The recording also contains the answers of the arms: faults, stops without power, a released key,
+// The recording also contains what the arms reported: faults, stops without power, a released key,
 // late samples, and NaN.
 TEST_F(VerifyRealArms, SoAreItsStops) {
   const std::vector<std::pair<const char*, std::function<void(Bench&)>>> faults = {
@@ -335,8 +337,8 @@ TEST_F(VerifyRealArms, ChangesInTheRecordingAreFound) {
     EXPECT_TRUE(result.departure);
     return result.departure.value_or(Departure{});
   };
-  // The departure is found if a computed value or a reading of an arm or a sensor changed in its
-  // last digit.
+  // Verification must find the departure if the last digit of a computed value, or of an arm's or
+  // sensor's reading, has changed.
   const Departure command = run(
       [](TickRecord* r) { r->hands[1].command[3] = std::nextafter(r->hands[1].command[3], 9.0); });
   EXPECT_EQ(command.tick, 5000U);
@@ -363,8 +365,8 @@ TEST_F(VerifyRealArms, AfterAGapItContinuesFromTheNextState) {
   EXPECT_EQ(result.skipped, 401U);
 }
 
-// The saved state includes the cause that removed the power at the end of a stop, even if the
-// recording lost the stop itself.
+// The saved state must include the cause that removed the power at the end of a stop, even if the
+// stop itself is missing from the recording.
 TEST_F(VerifyRealArms, AfterAGapWithPowerOffItContinues) {
   const auto fault = [](Bench& b) {
     b.Hold(false);

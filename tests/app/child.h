@@ -1,4 +1,4 @@
-// Runs the program as a separate process, with scenarios for it.
+// Runs the program as a separate process and provides scenarios for it.
 #pragma once
 
 #include "app/child_process.h"

@@ -1,4 +1,4 @@
-// The program as seen by a script or a shell: exit codes, streams, signals.
+// Tests the program as a script or a shell uses it: exit codes, streams and signals.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -60,7 +60,8 @@ TEST(ExitCode, OfARefusedStartGivesReasonPlaceAndRemedy) {
     EXPECT_NE(child.errors().find(text), std::string::npos) << child.errors();
 }
 
-// The name of a foreign scenario may contain control characters; none may reach the terminal.
+// The name of a scenario from elsewhere may contain control characters. They must not reach the
+// terminal.
 TEST(Terminal, ObeysNoNameOfAScenario) {
   const test::TemporaryFolder folder;
   const std::string file = Scenario("box_9kg"), recording = folder.path() / "e.mcap";
@@ -128,7 +129,7 @@ TEST(ExitCode, OfOptionsWithoutEffectGivesTheReason) {
   }
 }
 
-// In real time a person may hold the handles.
+// In real time, a person may hold the handles, so the detectors must be on.
 TEST(ExitCode, OfARunWithoutOscillationDetectorsGivesTheReason) {
   const std::vector<std::string> off = {"--set", "safety.oscillation.enabled=false"};
   Child run({"run", Scenario("box_9kg"), "--no-viewer", "--no-record", off[0], off[1]});
@@ -198,7 +199,7 @@ TEST(Summary, ThatCannotBeWrittenIsReportedBeforeTheRunOrFails) {
   EXPECT_EQ(full.Wait(), 3);
 }
 
-// After any request to end, the run first brings the arms to rest and then prints its summary.
+// After any request to end, the run brings the arms to rest before it prints its summary.
 class Signals : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(All, Signals, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT),
                          [](const auto& sent) {
@@ -223,7 +224,7 @@ TEST(Signals, BeforeTheStartAreNotAFailure) {
   EXPECT_EQ(child.Wait(), 0) << child.errors();
 }
 
-// The viewer process, a child of the run; 0 if it does not exist.
+// Returns the viewer process, which is a child of the run, or 0 if there is none.
 int ViewerOf(int run) {
   std::ifstream children("/proc/" + std::to_string(run) + "/task/" + std::to_string(run) +
                          "/children");

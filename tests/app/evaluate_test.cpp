@@ -45,7 +45,7 @@ TEST_F(Evaluate, WritesTextPageJsonAndCsv) {
   EXPECT_NE(again.errors().find("--force"), std::string::npos) << again.errors();
 }
 
-// The text of a page that `report` makes of these recordings.
+// Returns the text of the page that `report` makes of these recordings.
 std::string ReportOf(std::vector<std::string> arguments, const fs::path& page) {
   arguments.insert(arguments.begin(), "report");
   for (const std::string& more :
@@ -141,7 +141,7 @@ TEST_F(Evaluate, JudgesAnImportedLogAndExportsIt) {
   EXPECT_TRUE(fs::exists(folder_.path() / "opensim" / "person.osim"));
 }
 
-// A head that rests above the place where the operator stands.
+// The table contains a head that rests above the place where the operator stands.
 TEST_F(Evaluate, TakesAMeasuredHeadFromATable) {
   const std::string recording = Record("box_9kg"), table = folder_.path() / "head.csv";
   const auto write = [&](double height, const std::string& unit) {

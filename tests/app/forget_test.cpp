@@ -1,4 +1,4 @@
-// A person in a study, from the recording to the deletion.
+// Follows a person in a study from the recording to the deletion.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 class Forget : public testing::Test {
  protected:
   std::string Path(const std::string& name) const { return folder_.path() / name; }
-  // Runs the program. Returns its standard output.
+  // Runs the program and returns its standard output.
   std::string Do(const std::vector<std::string>& arguments, int code = 0) {
     Child child(arguments);
     EXPECT_EQ(child.Wait(), code) << child.errors();
@@ -59,7 +59,7 @@ TEST_F(Forget, APersonIsInAllResultsAndThenInNone) {
   EXPECT_EQ(Text("shared.mcap").find(person), std::string::npos);
   std::ofstream(Path("other.txt")) << "of another person";
 
-  // Without a terminal it only lists.
+  // Without a terminal, the command only lists the files.
   Do({"forget", person, folder_.path()}, 2);
   EXPECT_NE(errors_.find("run.mcap"), std::string::npos) << errors_;
   EXPECT_NE(errors_.find("--yes"), std::string::npos) << errors_;

@@ -1,4 +1,4 @@
-// The person is judged during a run, and the run is not affected.
+// The program judges the person during a run, without an effect on the run.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ class LiveEvaluationOfARun : public testing::Test {
     said_ = child.output() + child.errors();
     return code;
   }
-  // The preamble is not compressed, so the topic can be found by its name.
+  // The file's preamble is not compressed, so this function finds the topic by its name.
   static bool HasTopic(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(in), {}};
@@ -59,7 +59,7 @@ TEST_F(LiveEvaluationOfARun, IsLeftOutIfThePlaceIsNotKnown) {
   EXPECT_FALSE(HasTopic(file_));
 }
 
-// Duration of the tick [us], exceeded by one tick in a thousand.
+// Returns the duration that one tick in a thousand exceeds [us].
 double TickOf(bool evaluated) {
   Child child({"run", Scenario("box_9kg"), "--no-viewer", "--duration", "10", "--quiet", "--json",
                "-", evaluated ? "--evaluation" : "--no-evaluation"});
@@ -68,7 +68,7 @@ double TickOf(bool evaluated) {
   return json.is_object() ? json["timing_us"]["tick"]["p999"].get<double>() : NAN;
 }
 
-// Upper bound of a one-sided 95 % interval of the mean by Student's distribution.
+// Returns the upper bound of a one-sided 95 % interval of the mean, from Student's distribution.
 double UpperBound(const std::vector<double>& x) {
   constexpr double kQuantile = 1.729;  // of 19 degrees of freedom
   const auto n = static_cast<double>(x.size());
@@ -78,8 +78,8 @@ double UpperBound(const std::vector<double>& x) {
   return mean + kQuantile * std::sqrt(squares / (n - 1) / n);
 }
 
-// Pairs of runs, alternately one or the other first. Only a computer that does nothing else gives a
-// narrow interval.
+// The runs are made in pairs, and the order in a pair alternates. The interval is narrow only if
+// the computer does nothing else.
 TEST(LiveEvaluation, DoesNotDelayTheTickSoak) {
   const long pairs = Count(0, 20);
   if (pairs == 0) GTEST_SKIP() << "Only ./dev soak takes the time.";

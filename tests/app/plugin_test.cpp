@@ -1,5 +1,6 @@
-// Controllers outside the program that fail: the arms come to rest, a message says why, and the
-// recording is whole or can be repaired. Its replay does without the controller.
+// Tests controllers outside the program that fail. The arms must come to rest, a message must give
+// the reason, and the recording must be complete or repairable. Replays must not need the
+// controller.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -23,7 +24,7 @@ class FailingController : public testing::Test {
     said_ = child.output() + child.errors();
     return code;
   }
-  // Records a run, with the library within reach.
+  // Records a run of a scenario that can find the library.
   int Run(const std::string& controller) {
     test::FindPlugins();
     std::vector<std::string> arguments = {"simulate",   Scenario("box_9kg"),
@@ -68,7 +69,7 @@ TEST_F(FailingController, ThatEndsAsAProcessStopsTheRun) {
   ExpectStop("the cobot's controller no longer answers. Read what its program printed");
 }
 
-// The library takes the program with it. All but the last second can be recovered.
+// The library crashes the program as well. `repair` must recover all but the last second.
 TEST_F(FailingController, ThatCrashesAsALibraryLeavesARecordingThatCanBeRepaired) {
   EXPECT_NE(Run(Library("crash")), 0);
   ASSERT_EQ(Do({"repair", file_}), 0) << said_;
@@ -78,7 +79,7 @@ TEST_F(FailingController, ThatCrashesAsALibraryLeavesARecordingThatCanBeRepaired
   EXPECT_EQ(TicksSaid(), kept);
 }
 
-// The note is for these bytes of the library only.
+// The result of the trial applies only to a library with exactly these bytes.
 TEST_F(FailingController, ThatAllocatesFailsItsTrial) {
   const auto library = [](const char* name) {
     return "cobot.controller={type: plugin, library: package://plugins/" + std::string(name) +

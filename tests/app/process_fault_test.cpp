@@ -1,5 +1,5 @@
-// Faults at the boundary between program and system: files that may not grow, readers that do not
-// read, threads without memory, a computer that was suspended.
+// Tests faults at the boundary between program and system: files that cannot grow, readers that do
+// not read, threads without memory, and a computer that was suspended.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Limits the file size of every program that is started in its lifetime, as `ulimit -f` does.
+// While it exists, this object limits the file size of each program that is started, as `ulimit -f`
+// does.
 class FileSize {
  public:
   explicit FileSize(rlim_t bytes) {
@@ -37,7 +38,7 @@ class FileSize {
 
 constexpr rlim_t kLimit = 3U << 20U;  // [bytes]
 
-// The recording up to the limit must be intact, and verification must reproduce it bit for bit.
+// The recording must be intact up to the limit, and verification must reproduce it bit for bit.
 void ExpectVerified(const std::string& recording) {
   EXPECT_LE(fs::file_size(recording), kLimit);
   EXPECT_GT(fs::file_size(recording), kLimit / 2);
@@ -46,7 +47,8 @@ void ExpectVerified(const std::string& recording) {
   EXPECT_EQ(again.errors().find("cut"), std::string::npos) << again.errors();
 }
 
-// The limit is set during the run, because the run's shared memory is larger than this recording.
+// The test sets the limit during the run, because the run's shared memory is larger than this
+// recording.
 TEST(FileSizeLimit, EndsTheRecordingButNotTheRun) {
   const test::TemporaryFolder folder;
   const std::string recording = folder.path() / "a.mcap";
@@ -65,7 +67,8 @@ TEST(FileSizeLimit, EndsTheRecordingButNotTheRun) {
   ExpectVerified(recording);
 }
 
-// The limit is too low for the run's shared memory, so the run is refused before anything moves.
+// The limit is lower than the run's shared memory, so the program refuses the run before anything
+// moves.
 TEST(FileSizeLimit, ThatLeavesNoRoomForARunIsReportedAtItsStart) {
   const FileSize limit(1U << 20U);
   Child run({"run", Scenario("box_9kg"), "--duration", "1", "--no-viewer"});
@@ -100,7 +103,8 @@ TEST(FileSizeLimit, IsAnErrorOfEveryCommand) {
   }
 }
 
-// Standard error accepts no more data, as with a pager that is not scrolled or a paused terminal.
+// Standard error accepts no more data. This happens if a pager is not scrolled or a terminal is
+// paused.
 TEST(UnreadOutput, DoesNotKeepARunFromEnding) {
   const test::TemporaryFolder folder;
   const std::string recording = folder.path() / "a.mcap";
@@ -140,8 +144,8 @@ TEST(Memory, OfTheFollowerExhaustedEndsTheRun) {
 }
 
 TEST(Memory, OfTheRecorderExhaustedEndsTheRecordingNotTheRun) {
-  // The first size is that of a chunk's buffer. Smaller allocations may belong to nlohmann's JSON,
-  // whose destructor needs memory.
+  // The first size is that of a chunk's buffer. Smaller allocations might be those of nlohmann's
+  // JSON, whose destructor needs memory.
   for (const std::string fault : {"record encode,2,16384", "record write,2,64"}) {
     const test::TemporaryFolder folder;
     const FaultySystem system("FAULTY_MEMORY", fault);
@@ -156,7 +160,7 @@ TEST(Memory, OfTheRecorderExhaustedEndsTheRecordingNotTheRun) {
   }
 }
 
-// The thread that supervises the viewer process has no memory when that process dies.
+// The viewer process dies while the thread that supervises it has no memory.
 TEST(Memory, OfTheSupervisorExhaustedDoesNotEndIt) {
   const FaultySystem system("FAULTY_MEMORY", "supervisor,1,1");
   Child run({"run", Scenario("box_9kg"), "--duration", "3600", "--port", "0", "--no-evaluation"});

@@ -29,7 +29,7 @@ class RecordedProgram : public testing::Test {
     said_ = printed_ + child.errors();
     return code;
   }
-  // The number before " ticks" in the last output.
+  // Returns the number before " ticks" in the last output.
   long TicksSaid() const {
     std::smatch match;
     return std::regex_search(said_, match, std::regex("(\\d+) ticks")) ? std::stol(match[1]) : -1;
@@ -51,8 +51,8 @@ TEST_F(RecordedProgram, InRealTimeIsComputedAgainBitForBit) {
   EXPECT_GT(TicksSaid(), 2000) << said_;
 }
 
-// The run's table, its JSON, its recording, and the report all contain the prediction that check
-// makes.
+// The run's table, its JSON output, its recording and the report must all contain the prediction of
+// `check`.
 TEST_F(RecordedProgram, SaysWhetherItsHapticLoopWasPredictedUnstable) {
   const std::string summary = folder_ / "summary.json", page = folder_ / "page.html";
   for (const bool unstable : {false, true}) {
@@ -99,7 +99,7 @@ TEST_F(RecordedProgram, CutIsRecovered) {
 }
 
 // Damage before the first tick loses no data. Damage in a chunk ends the table there, and a message
-// says so.
+// reports it.
 TEST_F(RecordedProgram, DamagedIsReadAsFarAsItIsWhole) {
   ASSERT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--duration", "2", "--record", file_}),
             0);
@@ -165,8 +165,8 @@ TEST_F(RecordedProgram, EventsAreATable) {
   for (; std::getline(lines, line); ++rows) EXPECT_TRUE(std::regex_match(line, row)) << line;
   EXPECT_GT(rows, 2);
   EXPECT_NE(printed_.find("stop: force, right hand: "), std::string::npos) << printed_;
-  // A report derives the events from the ticks and shows each one once in the stop's description
-  // and once in the table.
+  // A report derives the events from the ticks. It must show each event once in the stop's
+  // description and once in the table.
   const std::string page = folder_ / "run.html";
   ASSERT_EQ(Do({"report", file_, "-o", page, "--quiet"}), 0) << said_;
   std::ifstream in(page);
@@ -182,8 +182,8 @@ TEST_F(RecordedProgram, EventsAreATable) {
   EXPECT_EQ(Do({"export", "data", Scenario("push")}), 2);
 }
 
-// The paper's complaint: the emulated cobot yields too easily, because its joints have less
-// friction.
+// The paper criticises that the emulated cobot yields too easily. The cause is lower friction in
+// its joints.
 TEST_F(RecordedProgram, OfACobotWithLessFrictionDiffersFromTheRealOne) {
   const std::string other = folder_ / "emulated.mcap";
   ASSERT_EQ(
@@ -244,7 +244,7 @@ TEST_F(RecordedProgram, StatesItsCobotsFriction) {
     EXPECT_NEAR(joint["coulomb_nm"]["value"], 0.4, 0.05 * 0.4) << joint;
   }
   EXPECT_EQ(Do({"simulate", found, "--quiet", "--duration", "1"}), 0) << said_;
-  // An existing file is kept, unless --force is given.
+  // The program must keep an existing file unless --force is given.
   const auto written = [&] {
     std::ifstream in(found);
     return std::string(std::istreambuf_iterator<char>(in), {});
@@ -255,7 +255,7 @@ TEST_F(RecordedProgram, StatesItsCobotsFriction) {
   EXPECT_EQ(written(), "mine");
   EXPECT_EQ(Do({"identify", file_, "--quiet", "-o", found, "--force"}), 0) << said_;
   EXPECT_NE(written().find("joint_friction"), std::string::npos);
-  // Two seconds with almost no motion are not enough.
+  // Two seconds with almost no motion do not contain enough data.
   const std::string still = folder_ / "still.mcap";
   ASSERT_EQ(
       Do({"simulate", Scenario("excite_cobot"), "--quiet", "--duration", "2", "--record", still}),
@@ -264,7 +264,8 @@ TEST_F(RecordedProgram, StatesItsCobotsFriction) {
   EXPECT_NE(said_.find("identification needs at least 10 s"), std::string::npos) << said_;
 }
 
-// On a nearly full disk the program reports how much it kept, and its exit code shows the failure.
+// On a nearly full disk, the program reports how much it kept, and its exit code indicates the
+// failure.
 TEST_F(RecordedProgram, OnANearlyFullDiskSaysHowMuchIsKept) {
   if (mount("none", folder_.c_str(), "tmpfs", 0, "size=4m") != 0)
     GTEST_SKIP() << "Nothing may be mounted here.";

@@ -20,7 +20,7 @@ std::string TemporaryFile(const std::string& name) {
   return (fs::temp_directory_path() / (std::to_string(getpid()) + "-" + name)).string();
 }
 
-// Fault 32: a run never uses the wall clock.
+// For fault 32, a run must never depend on the wall clock.
 TEST(SystemFault, AWallClockThatJumpsChangesNothing) {
   for (const std::string jump : {"3600", "-3600"}) {
     const std::string recording = TemporaryFile("clock.mcap");
@@ -39,7 +39,7 @@ TEST(SystemFault, AWallClockThatJumpsChangesNothing) {
   }
 }
 
-// Fault 33, the milder variant: a simulated rig waits, and the program prints a warning.
+// For the milder form of fault 33, a simulated rig waits and the program prints a warning.
 TEST(SystemFault, WithoutRealTimePriorityASimulatedRunContinues) {
   const FaultySystem system("FAULTY_PRIORITY", "1");
   Child run({"run", Scenario("box_9kg"), "--duration", "1", "--no-viewer"});
@@ -47,7 +47,7 @@ TEST(SystemFault, WithoutRealTimePriorityASimulatedRunContinues) {
   EXPECT_NE(run.errors().find("Real-time scheduling: refused"), std::string::npos) << run.errors();
 }
 
-// Fault 50: if another program uses the port, the run does not choose a different one.
+// For fault 50, if another program uses the port, the run must not choose a different one.
 TEST(SystemFault, ABusyPortEndsTheRunBeforeItBegins) {
   const int socket_ = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -66,8 +66,7 @@ TEST(SystemFault, ABusyPortEndsTheRunBeforeItBegins) {
   close(socket_);
 }
 
-// The opposite case: a run that receives SIGTERM brings the arms to rest and completes its
-// recording.
+// In contrast, a run that receives SIGTERM brings the arms to rest and completes its recording.
 TEST(SystemFault, ARunThatIsAskedToEndFinishesItsRecording) {
   const std::string recording = TemporaryFile("end.mcap");
   Child run({"run", Scenario("box_9kg"), "--no-viewer", "--record", recording});

@@ -1,4 +1,4 @@
-// The command line from a person's point of view: help, misspelt words, existing files, a first
+// Tests what a person meets at the command line: help, misspelt words, existing files, and a first
 // scenario.
 #include <gtest/gtest.h>
 
@@ -134,7 +134,7 @@ TEST(Version, NamesTheCommitAndTheFormatOfRecordings) {
   }
 }
 
-// The completions that bash offers after "predictor " and `words`.
+// Returns the completions that bash offers after "predictor " and `words`.
 std::string Completed(const std::string& words) {
   const std::string script =
       "source <('" PREDICTOR_BINARY "' completion bash); COMP_WORDS=(predictor " + words +
@@ -236,8 +236,8 @@ TEST_F(Written, TheResultOfSurveyRemoveKeepsNoPseudonym) {
   EXPECT_NE(said_.find("Removed 2 answers by K7QM2XPX."), std::string::npos) << said_;
 }
 
-// The scenario that `init` writes runs without changes, for arms with grippers and robots with
-// several arms as well.
+// A scenario that `init` writes must run without changes, even for arms with grippers and for
+// robots with several arms.
 TEST_F(Written, FirstScenariosPassTheirCheckAndRun) {
   fs::copy(std::string(PREDICTOR_SOURCE_DIR) + "/docs/tutorials/my_cobot.urdf", Path("mine.urdf"));
   const std::string robots = "package://example-robot-data/robots/";

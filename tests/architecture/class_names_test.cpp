@@ -1,4 +1,4 @@
-// No two classes may have the same full name: the linker would silently merge their members, and
+// No two classes may have the same full name. The linker would silently merge their members, and
 // one class would run the other's code.
 #include <gtest/gtest.h>
 

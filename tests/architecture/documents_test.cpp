@@ -1,4 +1,4 @@
-// Checks that the evidence that documents cite exists: the files in the hazard log, and the rows in
+// Checks that the evidence that documents cite exists: the files in the hazard log and the rows in
 // the record of long runs.
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 const std::filesystem::path kRoot = PREDICTOR_SOURCE_DIR;
 
-// The lines of the list item "Shown by" in each hazard's section.
+// Returns the lines of the list item "Shown by" in each hazard's section.
 TEST(HazardLog, NamesAProofOfEachMeasureThatIsThere) {
   std::ifstream log(kRoot / "docs" / "concepts" / "hazards.md");
   const std::regex heading(R"(## H\d+: .+)"), proof(R"(tests/[\w/.]+|[\w-]+\.md|soak \w+)"),

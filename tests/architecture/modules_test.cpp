@@ -23,8 +23,8 @@ std::string Read(const fs::path& file) {
   return text.str();
 }
 
-// module -> modules that CMakeLists.txt allows it to include, directly or through a PUBLIC
-// dependency.
+// Returns the modules that CMakeLists.txt allows each module to include, directly or through a
+// PUBLIC dependency.
 Graph Declared() {
   Graph direct;
   const std::string text = Read(kSources / "CMakeLists.txt");
@@ -44,7 +44,7 @@ Graph Declared() {
   return all;
 }
 
-// module -> modules whose headers its files include.
+// Returns the modules whose headers the files of each module include.
 Graph Included() {
   Graph graph;
   const std::regex include(R"re(#include "(\w+)/)re");
@@ -105,7 +105,8 @@ TEST(Modules, KeepThirdPartiesInTheirFolders) {
   }
 }
 
-// Only RulesFor decides whether arms are real. All other code asks for the rule that it needs.
+// Only RulesFor may decide whether the arms are real. All other code must ask for the rule that it
+// needs.
 TEST(OperatingRules, AloneDecideWhatRealArmsChange) {
   const std::regex question(
       R"re(HasRealArms|IsSimulated|dynamic_cast<[^>]*(Device|Rig)\b|device\.type\s*[!=]=)re");

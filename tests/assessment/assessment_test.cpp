@@ -27,7 +27,7 @@ const QuantityResult& Find(const Assessment& a, const std::string& path) {
   throw std::out_of_range(path);
 }
 
-// Equilibrium: what both hands carry turns the upper body forward about the disc, with the
+// By equilibrium, the force on both hands turns the upper body forward about the disc, with the
 // horizontal distance as its lever. The posture does not depend on the force.
 TEST(Assessment, TheBackHoldsTheForceTimesItsLever) {
   const Scenario scenario = PersonScenario();
@@ -39,7 +39,8 @@ TEST(Assessment, TheBackHoldsTheForceTimesItsLever) {
   const person::BodyVector& q = chain.postures.back().q;
   ASSERT_TRUE(chain.postures.back().reached);
   const Vector3 disc = person::Place(model, q).p[person::kTorsoFlexion];
-  const double lever = 0.45 - disc.x();  // the hands are 0.45 m before the middle of the ankles
+  // the hands are 0.45 m in front of the middle of the ankles
+  const double lever = 0.45 - disc.x();
   const double moment = Find(Judge(40), "lower_back.flexion_moment_nm").mean -
                         Find(Judge(0), "lower_back.flexion_moment_nm").mean;
   EXPECT_NEAR(moment, 2 * 40 * lever * std::cos(q[person::kPelvisYaw]), 1e-6);
@@ -72,7 +73,7 @@ TEST(Assessment, AHigherForceScoresNoBetter) {
   EXPECT_GT(heavy.worksheets[0].worst, light.worksheets[0].worst);
 }
 
-// The hands push each other together: that is no load for the worksheets.
+// The hands push against each other. The worksheets do not count that as a load.
 TEST(Assessment, ASqueezeIsNotALoad) {
   Scenario scenario = PersonScenario();
   const auto judge = [&](double inward) {
@@ -88,7 +89,7 @@ TEST(Assessment, ASqueezeIsNotALoad) {
   EXPECT_EQ(judge(60).worksheets[2].worst, judge(0).worksheets[2].worst);
 }
 
-// A step of force within 0.1 s is a shock; noise of 3 N is not.
+// A step of force within 0.1 s is a shock, but noise of 3 N is not.
 TEST(Assessment, OnlyARealStepOfForceIsAShock) {
   const Scenario scenario = PersonScenario();
   const auto worst = [&](double step, double noise) {
@@ -117,7 +118,7 @@ TEST(Assessment, WarnsOfAnImpossiblePlace) {
   EXPECT_THROW(judge(), InputError);
 }
 
-// Quantities of a handle that the scenario lacks are left out.
+// The output omits the quantities of a handle that the scenario does not have.
 TEST(Assessment, OneHandHasNoRightSide) {
   Scenario scenario = PersonScenario();
   scenario.right_handle.reset();
@@ -147,7 +148,7 @@ TEST(Assessment, SaysWhatItCouldNotJudge) {
   EXPECT_TRUE(lifting);
 }
 
-// A possible person with more force in the hands has the larger load of the back, in each posture.
+// If a possible person's hands exert more force, the load on the back is larger in every posture.
 TEST(Assessment, DesignsAreComparedForTheSamePossiblePersons) {
   const Comparison comparison = Compare(Judge(5, true), Judge(40, true));
   for (const Difference& d : comparison.differences) {
@@ -155,7 +156,7 @@ TEST(Assessment, DesignsAreComparedForTheSamePossiblePersons) {
     ASSERT_TRUE(d.interval);
     EXPECT_LT(d.interval->high, 0);
     EXPECT_NEAR(*d.share_better, 1, 1e-9);
-    // Narrower than the difference of independent persons would be.
+    // The interval must be narrower than that of the difference between independent persons.
     const person::Interval heavy = *Find(Judge(40, true), d.kind->path).tail_interval;
     EXPECT_LT(d.interval->high - d.interval->low, heavy.high - heavy.low);
   }
@@ -166,7 +167,7 @@ TEST(Assessment, DesignsAreComparedForTheSamePossiblePersons) {
 
 using Json = nlohmann::json;
 
-// Every member of `value` is described, and every required member is present.
+// Checks that each member of `value` is described and that each required member exists.
 void ExpectDescribed(const Json& value, const Json& schema, const std::string& path) {
   if (value.is_object() && schema.contains("properties")) {
     for (const auto& [key, member] : value.items()) {

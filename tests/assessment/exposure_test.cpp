@@ -12,7 +12,8 @@ namespace {
 
 using ergonomics::FatigueJoint;
 
-// Lifts of 2 s with these load moments [N·m], 3 s apart, so that the low-pass reaches them.
+// Lifts of 2 s with these load moments [N·m]. They are 3 s apart, so that the low-pass filter
+// settles.
 std::vector<double> LiftsWith(const std::vector<double>& peaks) {
   std::vector<double> moment(300, 0);
   for (const double peak : peaks) {
@@ -37,7 +38,7 @@ TEST(Exposure, AddsTheDamageOfEachLift) {
   EXPECT_GT(result.probability, 0);
 }
 
-// 3 N rms of noise in each of two hands at 0.4 m, and a tremor of 1 N at 10 Hz.
+// Each of the two hands at 0.4 m has noise of 3 N rms and a tremor of 1 N at 10 Hz.
 TEST(Exposure, NoiseAndTremorHardlyChangeTheDamage) {
   const std::vector<double> clean = LiftsWith({40, 40, 40});
   std::vector<double> noisy = clean;
@@ -53,13 +54,14 @@ TEST(Exposure, ASteadyMomentIsOneLift) {
   EXPECT_NEAR(OfBack(moment).per_run / ergonomics::LiftDamage(50), 1, 0.01);
 }
 
-// The closed form of 3CC-r under a constant load.
+// Compares the computation with the closed form of 3CC-r under a constant load.
 TEST(Exposure, FatigueFollowsTheClosedForm) {
   const auto rates = ergonomics::FatigueRatesOf(FatigueJoint::kShoulder);
   const std::vector<double> load(6000, 0.3);
   const FatigueResult result = FatigueOfLoad("left shoulder", FatigueJoint::kShoulder, load);
   EXPECT_NEAR(result.mean_load, 0.3, 1e-12);
-  // The closed form begins with the load fully developed; that takes less than a second.
+  // The closed form begins with a fully developed load, which the model reaches in less than a
+  // second.
   EXPECT_NEAR(1 - result.capacity, ergonomics::FatiguedShareUnderConstantLoad(0.3, 60, rates),
               0.002);
   EXPECT_NEAR(result.time_to_limit / ergonomics::EnduranceTime(0.3, rates), 1, 0.02);

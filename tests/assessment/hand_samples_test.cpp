@@ -9,9 +9,9 @@ TEST(Samples, AreMeansOfTenTicksWithTheirPeak) {
   const SampleCollector run = Collect(PersonScenario(), 0.025, [](std::uint64_t tick) {
     return RecordOf(tick, 1, static_cast<double>(tick));
   });
-  ASSERT_EQ(run.samples().size(), 2U);  // the last five ticks are no whole sample
+  ASSERT_EQ(run.samples().size(), 2U);  // the last five ticks do not form a whole sample
   const PersonSample& first = run.samples()[0];
-  EXPECT_NEAR(first.body.hands[0].F_D_W[2], 5.5, 1e-12);  // of 1 … 10
+  EXPECT_NEAR(first.body.hands[0].F_D_W[2], 5.5, 1e-12);  // the mean of 1 … 10
   EXPECT_NEAR(first.peak_force[0], 10, 1e-12);
   EXPECT_NEAR(first.body.hands[1].X_WD.p.z(), kGround + 1, 1e-12);
   EXPECT_TRUE(first.body.hands[0].present);
@@ -45,7 +45,8 @@ TEST(Samples, ShowWhichHandHolds) {
   }
 }
 
-// A posture without a hand on a handle is unknown. The posture after it does not continue from it.
+// The posture is unknown while no hand is on a handle. The next known posture must not depend on
+// the last one.
 TEST(Samples, ThatAreHeldLeaveOutTheTimeWithoutHands) {
   const SampleCollector run = Collect(PersonScenario(), 0.05, [](std::uint64_t tick) {
     TickRecord record = RecordOf(tick, 1, 5);

@@ -7,7 +7,7 @@
 namespace predictor::assessment {
 namespace {
 
-// Heights over time; both hands together carry 98.1 N.
+// Finds the lifts in a course of heights. Both hands together carry 98.1 N.
 std::vector<Lift> LiftsIn(
     double duration, const std::function<double(double)>& height,
     const std::function<bool(double)>& holds = [](double) { return true; }) {
@@ -22,7 +22,7 @@ std::vector<Lift> LiftsIn(
   return LiftsOf(run.samples(), setup.stance, 18, Sex::kMale);
 }
 
-// From 0.7 to 1.1 m within two seconds.
+// The height rises from 0.7 to 1.1 m within two seconds.
 double OneLift(double t) {
   const double s = std::clamp((t - 1) / 2, 0.0, 1.0);
   return 0.7 + 0.4 * s * s * s * (10 + s * (6 * s - 15));
@@ -38,7 +38,8 @@ TEST(Lifts, HaveOriginDestinationAndTheCarriedWeight) {
   EXPECT_NEAR(lifts[0].vertical_force, 98.1, 1e-9);
 }
 
-// The recommended weight limit by hand, for ten lifts a minute (one in 6 s), less than an hour:
+// The recommended weight limit was calculated by hand for ten lifts a minute (one in 6 s) during
+// less than an hour:
 // 23 kg · 25/45 · (1 − 0.003·|70 − 75|) · (0.82 + 4.5/40) · 0.45.
 TEST(Lifts, AreJudgedByNioshsEquation) {
   const std::vector<Lift> lifts = LiftsIn(6, OneLift);
@@ -62,7 +63,7 @@ TEST(Lifts, EndWhenTheHandsRelease) {
   EXPECT_EQ(LiftsIn(6, OneLift, holds).size(), 0U);  // it had risen by 0.04 m, and rests later
 }
 
-// The middle of the hands jumps where one lets go; nothing was lifted.
+// The middle of the hands jumps when one hand lets go, but nothing was lifted.
 TEST(Lifts, AreNotMadeByAChangeOfHands) {
   const Scenario scenario = PersonScenario();
   const SampleCollector run = Collect(scenario, 4, [&](std::uint64_t tick) {

@@ -12,7 +12,7 @@
 namespace predictor::assessment {
 namespace {
 
-// A lift by 0.3 m and back in 2 s, with a force that changes.
+// The hands rise by 0.3 m and return within 2 s, with a force that changes.
 TickRecord Lift(std::uint64_t tick) {
   const double t = 1e-3 * static_cast<double>(tick);
   const double up = 0.5 - 0.5 * std::cos(std::numbers::pi * t);
@@ -30,7 +30,7 @@ struct Recorded {
         nominal(RunNominal(setup, run.samples(), {}, [](double) {})) {}
 };
 
-// All states of a run, and the one after it.
+// Returns all states during a run and the state after it.
 std::vector<PersonState> Follow(LivePerson* person, double duration) {
   std::vector<PersonState> states;
   const auto ticks = static_cast<std::uint64_t>(std::lround(1e3 * duration));
@@ -46,7 +46,7 @@ const GaugeState& Gauge(const PersonState& state, PersonGauge gauge) {
   return state.gauges[static_cast<std::size_t>(gauge)];
 }
 
-// With the whole part known, the live chain and the recorded one are the same computation.
+// If the whole part is known, the live chain and the recorded chain perform the same computation.
 TEST(LiveChain, IsExactOverAShortPart) {
   const Recorded recorded(0.4);
   NominalChain nominal = recorded.nominal;
@@ -67,8 +67,8 @@ TEST(LiveChain, IsExactOverAShortPart) {
   EXPECT_EQ(i, recorded.nominal.frames.size());
 }
 
-// Postures and measured forces need no later sample, so they are exact. Loads differ by what the
-// filter learns after kLiveDelay.
+// Postures and measured forces need no later sample, so they are exact. Loads differ by the effect
+// of samples that the filter receives after kLiveDelay.
 TEST(LiveChain, AgreesWithTheRecordedChainInALongRun) {
   const Recorded recorded(4);
   LiveChain live(recorded.setup, {});
@@ -199,7 +199,7 @@ TEST(LivePerson, SaysWhyItDoesNotJudge) {
   add(100, 1, 0);
   EXPECT_EQ(live.state().status, PersonStatus::kNoHand);
   EXPECT_FALSE(std::isfinite(Gauge(live.state(), PersonGauge::kCompression).value));
-  EXPECT_LT(live.state().parts[1].capacity, 1);  // the past is not forgotten
+  EXPECT_LT(live.state().parts[1].capacity, 1);  // the earlier load still counts
   add(100, -0.1, 1);
   EXPECT_EQ(live.state().status, PersonStatus::kBelowGround);
   add(100, 1, 1);
@@ -247,7 +247,7 @@ TEST(Warnings, BeginAndEndWithTimeAndTwoThresholds) {
   EXPECT_FALSE(on_after(3000, 0.02));
 }
 
-// Low values of the balance are bad.
+// For the balance, low values are bad.
 TEST(Warnings, KnowInWhichDirectionAValueIsBad) {
   WarningKeeper keeper;
   Frame frame;

@@ -23,7 +23,7 @@ SampleCollector MadeRun() {
                  [](std::uint64_t tick) { return RecordOf(tick, 1.0, 20); });
 }
 
-// Eyes and elbows of the nominal posture, in W.
+// The true eyes and elbows in the nominal posture, in W.
 struct Truth {
   Pose head;
   std::array<Vector3, kHands> elbows;
@@ -43,7 +43,7 @@ Truth TruthOf(const SampleCollector& run) {
   return truth;
 }
 
-// A point that rests, at 100 Hz over the run, in a clock that shows `shift` more.
+// A point that rests. It is sampled at 100 Hz during the run by a clock that is ahead by `shift`.
 tracks::PartTrack Resting(const Vector3& p, double shift = 0) {
   tracks::PartTrack part;
   for (double t = -0.5; t < kDuration + 0.5; t += 0.01) {
@@ -90,11 +90,11 @@ TEST(MeasuredBody, NarrowsTheIntervals) {
   EXPECT_LT(WidthOf(elbows, "arms.left.abduction_rad"), WidthOf(hands, "arms.left.abduction_rad"));
   ASSERT_EQ(head.measured.parts.size(), 2u);
   EXPECT_EQ(head.measured.parts[0].share, 1);
-  // The measurement is that of the nominal posture itself.
+  // The measurement is the nominal posture itself.
   EXPECT_LT(*head.measured.parts[0].misfit, 0.005);
 }
 
-// Without the rotation, the neck may be bent as it is comfortable.
+// Without a measured rotation, the model bends the neck comfortably.
 TEST(MeasuredBody, UsesAPositionWithoutRotation) {
   Truth truth = TruthOf(MadeRun());
   truth.head.q = truth.head.q * RotationFromVector({0, 0.6, 0});  // looks down
@@ -157,7 +157,7 @@ TEST(MeasuredBody, RefusesWhatNoPersonCanBe) {
   EXPECT_NE(Refusal({track}).find("unit"), std::string::npos);
   tracks::BodyTrack twice = TrackOf(truth, true, false);
   EXPECT_NE(Refusal({twice, twice}).find("also measured in"), std::string::npos);
-  // Elbows of another place: too far from the handles.
+  // These elbows belong to another place and are too far from the handles.
   tracks::BodyTrack far = TrackOf(truth, false, true);
   for (Vector3& p : far.elbows[1]->p) p += Vector3(0.8, 0.8, 0.3);
   EXPECT_NE(Refusal({far}).find("farther than a forearm"), std::string::npos) << Refusal({far});
@@ -196,7 +196,7 @@ TEST(MeasuredBody, CarriesSignalsToTheOutputs) {
   EXPECT_EQ(json["measured"]["signals"][0]["name"], "pulse");
 }
 
-// A marker on the hand relates the clocks.
+// A marker on the hand relates the two clocks.
 TEST(MeasuredBody, FindsAnUnknownClockByTheHand) {
   const auto at = [](double t) {
     return Vector3(0, 0.05 * std::sin(1.3 * t) + 0.03 * std::sin(4.1 * t + 1),
@@ -224,7 +224,7 @@ TEST(MeasuredBody, FindsAnUnknownClockByTheHand) {
   options.tracks = {track};
   const Assessment a = Assess(PersonScenario(), 9, RunOf(run), options);
   ASSERT_TRUE(a.measured.tracks[0].estimate);
-  // The first tick of a recording is at 0, and the samples' times are in the middle of 10 ticks.
+  // The first tick of a recording is at 0, and a sample's time is the middle of its 10 ticks.
   EXPECT_NEAR(a.measured.tracks[0].offset, -3.21, 0.005);
 }
 

@@ -69,7 +69,7 @@ TEST(MuscleUse, BothArmsOfASymmetricTaskDoTheSame) {
         << value;
 }
 
-// What no arm can hold is reported, not hidden.
+// The output must report a torque that no arm can hold.
 TEST(MuscleUse, TorquesBeyondTheMusclesAreReported) {
   const Assessment a = JudgeAt(1.0, 700);
   EXPECT_EQ(Row(a, "muscles.left.too_weak").mean, 1);

@@ -64,7 +64,7 @@ TEST(HandExposure, RateOfAStepFollowsFromTheStatedFilter) {
   EXPECT_NEAR(Value(results, "hands.left.force_rms_n"), std::sqrt(200.0), 1e-9);
 }
 
-// 10 N along 0.1 m/s for 1 s, then against it for 1.5 s.
+// A force of 10 N acts along 0.1 m/s for 1 s, then against it for 1.5 s.
 TEST(HandExposure, EnergyIsCountedPerPort) {
   const Scenario scenario = PersonScenario();
   const auto results = CollectSafety(scenario, 2500,
@@ -86,7 +86,7 @@ TEST(HandExposure, EnergyIsCountedPerPort) {
   EXPECT_NEAR(Value(results, "hands.right.supplied_j"), 0, 1e-12);
 }
 
-// A sine of 2 Hz whose amplitude doubles each second.
+// The amplitude of a sine of 2 Hz doubles in each second.
 TEST(HandExposure, GrowingCyclesAreFound) {
   const Scenario scenario = PersonScenario();
   const auto results =
@@ -99,8 +99,8 @@ TEST(HandExposure, GrowingCyclesAreFound) {
           .exposure()
           .results();
   EXPECT_GE(Value(results, "hands.left.growing_cycles"), 1);
-  // The amplitude of a cycle is √2 times its rms. The last whole cycle goes from peak to peak, from
-  // 3.125 to 3.625 s.
+  // The amplitude of a cycle is √2 times its rms value. The last whole cycle lasts from peak to
+  // peak, from 3.125 to 3.625 s.
   const double squares = (std::exp2(2 * 3.625) - std::exp2(2 * 3.125)) / (2 * std::numbers::ln2);
   EXPECT_NEAR(Value(results, "hands.left.growing_amplitude_n"), std::sqrt(squares / 0.5), 0.5);
 }
@@ -110,7 +110,7 @@ TEST(HandExposure, GrowingCyclesAreFound) {
 
 constexpr std::uint64_t kDecision = 1001;
 
-// The hand presses upward with `before`, and with `after` from the decision of a stop, at rest.
+// At rest, the hand presses upward with `before`, and with `after` from the decision to stop.
 TickRecord StopRecord(std::uint64_t tick, double before, double after) {
   TickRecord record = RecordOf(tick, 1, tick < kDecision ? before : after);
   if (tick < kDecision) return record;
@@ -135,16 +135,17 @@ TEST(StopWindow, HoldsTheTimeAroundTheStopAndItsHands) {
   ASSERT_EQ(windows.size(), 1U);
   const StopWindow& window = windows[0];
   EXPECT_EQ(window.stop.cause, StopCause::kForce);
-  EXPECT_EQ(window.decided, 20U);         // 0.2 s before
-  EXPECT_EQ(window.samples.size(), 40U);  // and 0.1 s of stopping and 0.1 s of rest after
+  // The window begins 0.2 s before the decision. After it come 0.1 s of stopping and 0.1 s of rest.
+  EXPECT_EQ(window.decided, 20U);
+  EXPECT_EQ(window.samples.size(), 40U);
   for (std::size_t i = 0; i < window.samples.size(); ++i) {
     ASSERT_TRUE(window.samples[i].body.hands[0].present) << i;
     EXPECT_NEAR(window.samples[i].body.hands[0].F_D_W[2], i < window.decided ? 10 : 25, 1e-9) << i;
   }
 }
 
-// Equilibrium: torque = weight + Jᵀ F, so the change is linear in the change of the force, and that
-// of the same posture in the run without a stop.
+// In equilibrium, torque = weight + Jᵀ F. The change of the torque is therefore linear in the
+// change of the force, and equal to that of the same posture in the run without a stop.
 TEST(StopLoads, ChangeByTheForceThatTheStopAdds) {
   const Scenario scenario = PersonScenario();
   const PersonSetup setup = MadeUpSetup(scenario);
@@ -167,7 +168,7 @@ TEST(StopLoads, ChangeByTheForceThatTheStopAdds) {
     }
   EXPECT_EQ(judged.loads[0].joint, "left shoulder flexion");
   EXPECT_TRUE(judged.loads[0].use);
-  EXPECT_FALSE(judged.loads[1].use);  // no verified strength of abduction
+  EXPECT_FALSE(judged.loads[1].use);  // there is no verified strength for abduction
 }
 
 TEST(StopLoads, OfHandsThatHoldNothingAreNotJudged) {
@@ -205,11 +206,12 @@ TEST(LettingGo, AFallingObjectConvertsItsHeight) {
   EXPECT_NEAR(drop.speed * drop.speed / 2, kStandardGravity * 1.2, 1e-9);
   EXPECT_NEAR(drop.weight_of_hand, 9 * kStandardGravity / 2, 1e-9);
   EXPECT_NEAR(drop.jump, 9 * kStandardGravity / 2 - 12, 1e-9);
-  // De Leva's foot: 258.1 mm at a height of 1741 mm, three quarters of it before the ankle.
+  // De Leva's foot is 258.1 mm long at a body height of 1741 mm. Three quarters of it are in front
+  // of the ankle.
   EXPECT_NEAR(drop.beside_feet, 0.65 - 0.75 * 0.2581 / 1.741 * 1.75, 1e-9);
 }
 
-// S = 1.6 (0.1 + 0.05) + 0.25 · 0.1 + 0.25 · 0.05 / 2, computed by hand.
+// S = 1.6 (0.1 + 0.05) + 0.25 · 0.1 + 0.25 · 0.05 / 2 was calculated by hand.
 TEST(LettingGo, SeparationFollowsTheFormula) {
   EXPECT_NEAR(NeededSeparation(0.25), 0.27125, 1e-12);
   EXPECT_NEAR(NeededSeparation(0), 0.16, 1e-12);
@@ -219,7 +221,7 @@ TEST(LettingGo, SeparationIsTheWorstOfTheReleases) {
   const Scenario scenario = PersonScenario();
   const auto run = CollectSafety(scenario, 1000, [](std::uint64_t t) {
     TickRecord record = SceneRecord(t, {0.3, 0, 0.15}, t == 600 ? 0.24 : t == 100 ? 0.5 : 0.1);
-    record.hands[0].gripping = t < 500 || t > 700;  // lets go from 0.5 to 0.7 s
+    record.hands[0].gripping = t < 500 || t > 700;  // the hand lets go from 0.5 to 0.7 s
     return record;
   });
   ASSERT_EQ(run.scene().releases().size(), 1U);
@@ -230,7 +232,7 @@ TEST(LettingGo, SeparationIsTheWorstOfTheReleases) {
   EXPECT_EQ(run.scene().fastest().time, 0.1);
 }
 
-// The reference's example: a cobot of 17.8 kg with 9 kg may hit a hand at 1.34 m/s.
+// In the reference's example, a cobot of 17.8 kg that carries 9 kg may hit a hand at 1.34 m/s.
 TEST(LettingGo, ContactLimitsTheSpeedByForceAndMasses) {
   const ContactLimit hand = {.region = "hand/finger",
                              .force = 140,
@@ -258,8 +260,7 @@ TEST(LettingGo, ContactLimitsTheSpeedByForceAndMasses) {
   EXPECT_NEAR(contact.clamped[0].share, 70.0 / 140, 1e-12);
 }
 
-// ---- the whole
-// -----------------------------------------------------------------------------------
+// ---- the whole assessment ----------------------------------------------------------------------
 
 TEST(Safety, StatesWhatTheRigCannotRender) {
   const Scenario scenario = PersonScenario();
@@ -274,7 +275,7 @@ TEST(Safety, StatesWhatTheRigCannotRender) {
   EXPECT_NEAR(safety.rig[0].reached, 31, 1e-9);
   EXPECT_FALSE(safety.rig[1].censored());
   EXPECT_NE(SafetyText(safety).find("at least 31.00"), std::string::npos);
-  // Without masses neither fall nor contact can be judged, and the output says so.
+  // Without masses, neither a fall nor a contact can be judged, and the output says so.
   EXPECT_FALSE(safety.drop);
   const auto gap = [&](const std::string& what) {
     return std::ranges::any_of(safety.not_evaluable,

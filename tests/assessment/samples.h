@@ -1,4 +1,4 @@
-// Records and samples of a person, made up for tests.
+// Made-up records and samples of a person.
 #pragma once
 
 #include <cmath>
@@ -23,8 +23,8 @@ inline Scenario PersonScenario() {
   return scenario;
 }
 
-// Both hands at 0.45 m before the person and `height` [m] above the ground, each with an upward
-// force [N].
+// Both hands are 0.45 m in front of the person and `height` [m] above the ground, each with an
+// upward force [N].
 inline TickRecord RecordOf(std::uint64_t tick, double height, double force) {
   TickRecord record{};
   record.tick = tick;

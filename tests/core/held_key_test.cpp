@@ -1,4 +1,4 @@
-// Detects from letters alone whether a person holds a key.
+// Tests whether the program recognises a held key from letters alone.
 #include "core/held_key.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 constexpr double kStep = 0.001;    // interval between updates [s]
 constexpr double kRepeat = 0.033;  // repeat interval of a terminal [s]
 
-// A terminal in simulated time.
+// A terminal in virtual time.
 class HeldKeyTest : public testing::Test {
  protected:
   // Types a letter after each gap [s].
@@ -30,7 +30,7 @@ class HeldKeyTest : public testing::Test {
       Note(key_.Update(0, now_));
     }
   }
-  // Letters of a key that a person holds: a pause after the first letter, then repeats.
+  // Types the letters of a held key: one letter, a pause, then the repeats.
   void Hold(int repeats = 5) {
     Letters({1, 0.5});
     Letters(std::vector<double>(static_cast<std::size_t>(repeats), kRepeat));
@@ -64,7 +64,7 @@ TEST_F(HeldKeyTest, IsHeldFromTheSecondLetterUntilItIsSilent) {
                                  KeySign::kContinues, KeySign::kContinues}));
 }
 
-// Silence releases the key. Afterwards one letter does not count as held, two do.
+// Silence releases the key. After that, one letter does not count as held, but two do.
 TEST_F(HeldKeyTest, MustBeHeldAgainAfterSilence) {
   Hold();
   Letters({0.15});
@@ -75,7 +75,7 @@ TEST_F(HeldKeyTest, MustBeHeldAgainAfterSilence) {
   EXPECT_TRUE(key_.held());
 }
 
-// Silence also releases the key without updates in between.
+// Silence releases the key even if no update occurs during it.
 TEST_F(HeldKeyTest, IsReleasedByUnobservedSilence) {
   Hold();
   now_ += 0.5;
@@ -111,7 +111,7 @@ TEST_F(HeldKeyTest, TwoTouchesWithoutAnUpdateInBetweenAreNotHoldingEither) {
   EXPECT_EQ(Count(KeySign::kTouched), 2);
 }
 
-// The letters of half a second arrive together, after the key has been released.
+// The letters of half a second arrive together after the person has released the key.
 TEST_F(HeldKeyTest, ABacklogDoesNotCountAsHolding) {
   for (int letters = 2; letters < 20; ++letters) {
     signs_.clear();
@@ -122,7 +122,7 @@ TEST_F(HeldKeyTest, ABacklogDoesNotCountAsHolding) {
   }
 }
 
-// A backlog does not count either if it arrives in pieces or without the pauses of a held key.
+// A backlog must not count as holding if it arrives in pieces or lacks the pauses of a held key.
 TEST_F(HeldKeyTest, ABacklogInPiecesDoesNotCountAsHoldingEither) {
   for (const std::vector<double>& gaps : {std::vector<double>{1, 0.05, 0, 0, 0},
                                           {1, 0, 0, 0.05},
@@ -137,7 +137,7 @@ TEST_F(HeldKeyTest, ABacklogInPiecesDoesNotCountAsHoldingEither) {
   }
 }
 
-// The person still holds the key: letters that arrive in time after a backlog count.
+// The person still holds the key. Letters that arrive in time after a backlog must count.
 TEST_F(HeldKeyTest, AfterABacklogLiveLettersHold) {
   Letters({1, 0, 0, 0});
   Letters({kRepeat, kRepeat, kRepeat});
@@ -160,14 +160,15 @@ TEST_F(HeldKeyTest, PairsOfLettersDoNotRelease) {
   EXPECT_EQ(Count(KeySign::kContinues) - before, 10);  // one sign for each pair
 }
 
-// Letters that arrive together are one sign, so a rapid burst lasts only until the time-out.
+// Letters that arrive together are one sign, so a rapid burst counts as holding only until the
+// time-out.
 TEST_F(HeldKeyTest, ABacklogDoesNotKeepHolding) {
   Hold();
   for (int i = 0; i < 60; ++i) Letters({0.002});
   EXPECT_FALSE(key_.held());
 }
 
-// A jammed key does not count as touched again, even if its letters were queued for a long time.
+// A jammed key must not count as touched again, even if its letters were queued for a long time.
 TEST_F(HeldKeyTest, IsTouchedOncePerPress) {
   Hold(100);
   EXPECT_EQ(Count(KeySign::kTouched), 1);

@@ -16,7 +16,7 @@ TEST(StudentQuantile, AsInTables) {
   EXPECT_NEAR(StudentQuantile95(1e6), 1.95996, 1e-4);
 }
 
-// A line y = a + b x, whose least-squares fit has a well-known closed form.
+// The least-squares fit of a line y = a + b x has a well-known closed form.
 TEST(FitLinear, OfALineIsTheClosedForm) {
   RandomStream random(1, "line");
   const int n = 12;

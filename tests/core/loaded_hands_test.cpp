@@ -12,7 +12,7 @@ namespace {
 
 class LoadedHandsTest : public testing::Test {
  protected:
-  // Simulates this many milliseconds in a state with a force at the left handle [N]; returns the
+  // Simulates this many milliseconds in a state with a force at the left handle [N]. Returns the
   // messages.
   std::vector<std::string> Pass(int milliseconds, RunState state, double force,
                                 bool fault = false) {
@@ -56,7 +56,7 @@ TEST_F(LoadedHandsTest, AreReportedWithTheKeyOfThisRig) {
   EXPECT_NE(reported[0].find(HowToHold('r', true)), std::string::npos) << reported[0];
 }
 
-// One hand is caught later; another one was free and is caught again.
+// One hand is caught later. The other one was free and is caught again.
 TEST_F(LoadedHandsTest, AreWatchedAsLongAsTheArmsStand) {
   EXPECT_TRUE(Pass(10'000, RunState::kHeld, 4.9).empty());
   EXPECT_EQ(Pass(600, RunState::kHeld, 30).size(), 1U);
@@ -66,7 +66,7 @@ TEST_F(LoadedHandsTest, AreWatchedAsLongAsTheArmsStand) {
   EXPECT_TRUE(Pass(400, RunState::kHeld, 30).empty());  // only a touch
   EXPECT_TRUE(Pass(100, RunState::kHeld, 1).empty());
   EXPECT_EQ(Pass(600, RunState::kHeld, 30).size(), 1U);
-  // Recovery moved away from the hand, but not far enough.
+  // Recovery moved the handle away from the hand, but not far enough.
   EXPECT_TRUE(Pass(600, RunState::kRecovery, 30).empty());
   EXPECT_EQ(Pass(600, RunState::kHeld, 30).size(), 1U);
 }
@@ -79,7 +79,7 @@ TEST_F(LoadedHandsTest, OfARobotWithoutPowerHaveOtherAdvice) {
   EXPECT_TRUE(Pass(2000, RunState::kUnpowered, std::numeric_limits<double>::quiet_NaN()).empty());
 }
 
-// RECOVERY would stop immediately, because the arm obeys again only with a new driver.
+// RECOVERY would stop immediately, because the arm accepts commands again only with a new driver.
 TEST_F(LoadedHandsTest, AreNotFreedByRecoveryWhereAnArmIsAtFault) {
   const auto reported = Pass(600, RunState::kHeld, 12, true);
   ASSERT_EQ(reported.size(), 1U);

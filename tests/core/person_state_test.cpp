@@ -48,7 +48,7 @@ TEST(PersonJson, HasNoPointsOfAPersonWhoIsNotJudged) {
   EXPECT_TRUE(Contains(PersonJson(state), R"("points":{"pelvis":null,"l5s1":null,)"));
 }
 
-// The memory is written by another process. `nan`, `inf` and names beyond the table are no JSON.
+// Another process writes this memory. `nan`, `inf` and names beyond the table are not valid JSON.
 TEST(PersonJson, IsValidForAnyBytes) {
   for (const int byte : {0x00, 0x7f, 0xff}) {
     PersonState state;
@@ -69,7 +69,7 @@ TEST(PersonSchema, DescribesEachMember) {
   EXPECT_TRUE(Contains(schema, R"("description":"[m] largest distance)")) << schema;
 }
 
-// A warning that ends where it begins would flicker.
+// A warning whose begin and end have the same threshold would flicker.
 TEST(PersonWarnings, HaveTwoThresholds) {
   for (const auto& row : kPersonWarningRows) EXPECT_NE(row.on, row.off) << row.name;
 }

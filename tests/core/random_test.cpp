@@ -28,7 +28,8 @@ TEST(RandomStream, NormalHasTheMomentsOfANormalDistribution) {
     const double x = random.Normal();
     m1 += x, m2 += x * x, m3 += x * x * x, m4 += x * x * x * x;
   }
-  // Five standard errors of the first four moments: sqrt(1/n), sqrt(2/n), sqrt(15/n), sqrt(96/n).
+  // The tolerances are five standard errors of the first four moments: sqrt(1/n), sqrt(2/n),
+  // sqrt(15/n) and sqrt(96/n).
   const double e = 5 / std::sqrt(static_cast<double>(kN));
   EXPECT_NEAR(m1 / kN, 0, e);
   EXPECT_NEAR(m2 / kN, 1, e * std::sqrt(2.0));

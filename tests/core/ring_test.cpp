@@ -48,8 +48,8 @@ TEST(Ring, CountsWhatASlowReaderLost) {
   EXPECT_EQ(reader.lost(), 12u);
 }
 
-// A writer that never waits runs against a reader on another thread. No item is torn, the order is
-// kept, and every item is either delivered or counted as lost.
+// A writer that never waits runs against a reader in another thread. No item may be torn, the order
+// must be kept, and each item must be either delivered or counted as lost.
 TEST(Ring, NeverTearsAnItem) {
   auto ring = std::make_unique<RingStorage<Item, 16>>();
   RingReader reader(*ring);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
-// Clocks that are read at intervals of `first` and `second`, as if the thread was delayed in
+// Clocks that are read at intervals of `first` and `second`, as if the thread had been delayed in
 // between.
 class Clocks {
  public:
@@ -48,7 +48,7 @@ TEST(SuspendWatch, SeesEachSuspendOnce) {
   }
 }
 
-// The result may be too low by the time between the readings, but never too high.
+// The measured time may be too short by the time between the readings, but never too long.
 TEST(SuspendWatch, SeesASuspendThoughTheThreadIsHeldUp) {
   Clocks clocks;
   EXPECT_EQ(clocks.Look(30, 30), 0);

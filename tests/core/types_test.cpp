@@ -33,7 +33,7 @@ TEST(Pose, ProductsAndInverseAgreeWithHomogeneousMatrices) {
 }
 
 TEST(Pose, RollPitchYawTurnAboutFixedAxes) {
-  // Roll by 90° turns y into z. Yaw by 90° then leaves that z unchanged and turns x into y.
+  // A roll by 90° turns y into z. A yaw by 90° then leaves this z unchanged and turns x into y.
   const Pose X = PoseFromXyzRpy(Vector3::Zero(), Vector3(M_PI / 2, 0, M_PI / 2));
   EXPECT_LT((X * Vector3(0, 1, 0) - Vector3(0, 0, 1)).norm(), 1e-15);
   EXPECT_LT((X * Vector3(1, 0, 0) - Vector3(0, 1, 0)).norm(), 1e-15);

@@ -57,7 +57,7 @@ TEST(StopMessage, NamesCauseAdviceAndNextStepOfEachCause) {
   }
 }
 
-// The measured quantity can be more specific than the cause.
+// The measured quantity can be more specific than the cause of the stop.
 TEST(StopMessage, DependsOnTheMeasuredQuantity) {
   struct Case {
     StopCause cause;
@@ -126,7 +126,7 @@ TEST(StopMessage, NamesTheFaultThatEscalatedItToPowerOff) {
   EXPECT_EQ(StopAdvice(record), Text("stop.arm_stale.advice") + " " + Text("next.reset"));
 }
 
-// An arm may stop itself after the first cause, for example while it clamps a hand.
+// An arm may stop itself after the first cause, for example because it clamps a hand.
 TEST(StopMessage, AdvisesOnAnArmFaultAfterTheCause) {
   TickRecord record{};
   record.state = RunState::kHeld;
@@ -175,7 +175,8 @@ TEST(WarningMessage, FillsInAllValues) {
   }
 }
 
-// Repeated requests produce one message; after a pause or for another reason, there is a new one.
+// Repeated requests produce one message. After a pause or for another reason, a new message
+// appears.
 TEST(RefusalMessage, AppearsOncePerRequest) {
   RefusalWords words(1000);
   TickRecord record{};
