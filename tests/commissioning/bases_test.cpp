@@ -16,7 +16,7 @@ Pose RandomPose(RandomStream* random) {
   return {{random->Normal(), random->Normal(), random->Normal()}, RotationFromVector(2 * w)};
 }
 
-// Points on and above a table that both arms touch, each with an error of `noise` [m].
+// Points on and above a table. Both arms touch each point with an error of `noise` [m].
 std::vector<TouchedPoint> Points(const Pose& X_AB, int count, double noise, RandomStream* random) {
   const std::vector<Vector3> places = {{0.3, -0.2, 0},  {0.3, 0.25, 0},   {0.7, 0, 0.02},
                                        {0.5, 0.1, 0.3}, {0.6, -0.2, 0.1}, {0.4, 0.2, 0.2}};
@@ -31,7 +31,7 @@ std::vector<TouchedPoint> Points(const Pose& X_AB, int count, double noise, Rand
   return points;
 }
 
-// Kabsch's solution with a singular value decomposition (Umeyama 1991).
+// Computes Kabsch's solution by a singular value decomposition (Umeyama 1991).
 Pose BySingularValues(const std::vector<TouchedPoint>& points) {
   Vector3 a = Vector3::Zero(), b = Vector3::Zero();
   for (const TouchedPoint& p : points) {

@@ -1,5 +1,5 @@
-// Measurements at an arm of the rig that a person guides or pushes. The measurements in which the
-// arm moves by itself are in measure_loop_test.cpp.
+// Tests measurements in which a person guides or pushes an arm of the rig. measure_loop_test.cpp
+// covers those in which the arm moves by itself.
 #include "commissioning/calibrate.h"
 
 #include <gtest/gtest.h>
@@ -151,14 +151,14 @@ TEST(MeasureBases, OfTwoGuidedArmsFindsTheBaseOfOne) {
   Session session(&time, &person, {&a, &b});
   const BaseCalibration found = MeasureBases(&session, a, b, tip);
   const Pose truth = first.device.left->base.X_RB().Inverse() * second.device.left->base.X_RB();
-  // The guiding hand stops within 0.2 mrad of the goal, which moves the tip by less than a
-  // millimetre.
+  // The guiding hand stops within 0.2 mrad of the goal, so the tip is less than a millimetre away
+  // from it.
   EXPECT_LT(PoseError(found.X_AB, truth).head<3>().norm(), 0.004) << person.All();
   EXPECT_LT(PoseError(found.X_AB, truth).tail<3>().norm(), 0.006);
   EXPECT_LT(found.residual, 0.001);
 }
 
-// Without --tip, the program does not guess which part makes contact, but asks.
+// Without --tip, the program must ask which part makes contact and must not guess it.
 TEST(MeasureBases, WithoutATipAsksWhetherTheEndEffectorTouches) {
   Bench bench;
   const Station other(1, MachineArmOf(bench.scenario), std::make_unique<RigDriver>(&bench.hand),
@@ -185,7 +185,7 @@ TEST(MeasureBases, WithoutATipAsksWhetherTheEndEffectorTouches) {
 }
 
 // A person pushes as instructed. In the machine file, the sensor is rotated by `turned` [rad] about
-// the axes of the world.
+// the axes of the world. Returns the refusal.
 std::string RefusalOfPushes(const Vector3& turned, std::string* reported = nullptr) {
   const Scenario scenario = ArmScenario(1);
   Bench bench(scenario);

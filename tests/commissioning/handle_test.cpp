@@ -21,8 +21,8 @@ HandlePayloadSpec Handle() {
   return handle;
 }
 
-// Orientations that a person can give a handle on a robot: tilts of 60° to four sides, level, and
-// half turned over. The sensor itself is mounted at an angle.
+// Orientations that a person can give to a handle on a robot: tilts of 60° to four sides, level,
+// and half turned over. The sensor itself is mounted at an angle.
 std::vector<Quaternion> Tilts(int count, RandomStream* random) {
   std::vector<Vector3> turns = {{0, 0, 0},     {1.05, 0, 0},  {-1.05, 0, 0},  {0, 1.05, 0},
                                 {0, -1.05, 0}, {1.9, 0.4, 0}, {0.5, -1.6, 0}, {0.7, 0.7, 1}};
@@ -51,8 +51,8 @@ struct Truth {
   Wrench wander = Wrench::Zero();  // standard deviation of the bias from pose to pose
 };
 
-// Poses of a noisy sensor, ten seconds apart, processed by the recorder. `last` receives the final
-// bias.
+// Returns the poses that the recorder computes from a noisy sensor. They are ten seconds apart.
+// `last` receives the final bias.
 std::vector<RestingPose> Poses(const Truth& truth, const SensorSpec& spec, int count,
                                std::uint64_t seed, Wrench* last = nullptr) {
   RandomStream random(seed, "poses");
@@ -118,12 +118,12 @@ TEST(CalibrateHandle, TakesTheDriftOfAWarmingSensorOff) {
     EXPECT_NEAR(found.bias[i].value, last[static_cast<Eigen::Index>(i)], 0.003);
 }
 
-// Counts how often the interval of each parameter contains the true value, and keeps the worst
+// Counts how often the interval of each parameter contains the true value, and keeps the largest
 // errors.
 struct Tally {
   int runs = 0;
   std::array<int, 10> held{};
-  double mass = 0, center = 0, bias = 0;  // worst errors [1], [m], [N]
+  double mass = 0, center = 0, bias = 0;  // largest errors [1], [m], [N]
 
   void Add(const HandleCalibration& found, const Truth& truth, const Wrench& last) {
     ++runs;
@@ -175,7 +175,7 @@ TEST(CalibrateHandle, RefusesTooFewPoses) {
 TEST(CalibrateHandle, RefusesPosesThatAreAlike) {
   for (const double tilt : {0.0, 0.2, 0.5}) {  // about one axis, by up to 30° in either direction
     std::vector<RestingPose> poses;
-    for (int i = 0; i < 8; ++i) {  // a rotation about the vertical adds no tilt
+    for (int i = 0; i < 8; ++i) {  // a rotation about the vertical does not add tilt
       const Quaternion q =
           RotationFromVector({0, 0, 0.7 * i}) * RotationFromVector({tilt * (i % 3 - 1), 0, 0});
       poses.push_back({10.0 * i, GravityIn(q), WeightIn(q, Handle())});

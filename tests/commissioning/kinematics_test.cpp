@@ -1,4 +1,4 @@
-// Checks that an arm is refused if its kinematics differ from the model's.
+// The program must refuse an arm whose kinematics differ from the model's.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -50,7 +50,7 @@ std::string Refusal(const DeviceFacts& facts, const ArmSpec& spec) {
   return KinematicsRefusal(facts, spec, *LoadArmModel(spec, spec.base.X_RB(), {}, "arm"));
 }
 
-// The data that an arm reports when the program connects at these joint angles.
+// Returns the data that an arm reports when the program connects at these joint angles.
 DeviceFacts Connected(const FakeUrOptions& options, const UrVector& q,
                       const std::string& unknown = "") {
   UrBench bench(options);
@@ -60,7 +60,7 @@ DeviceFacts Connected(const FakeUrOptions& options, const UrVector& q,
   return bench.Connect().arm->facts();
 }
 
-// The fake uses the maker's published parameters; the model does not.
+// The fake uses the manufacturer's published parameters, but the model does not.
 TEST(KinematicsRefusal, DistinguishesAllArmsOfUniversalRobots) {
   for (const auto& [urdf, own] :
        {std::pair{"ur5_robot.urdf", "ur5"}, {"ur10_robot.urdf", "ur10"}}) {
@@ -122,7 +122,7 @@ TEST(KinematicsRefusal, OfAUrGoesByItsToolAndTheToolsOffset) {
   const std::string why = Refusal(Connected(other, q), spec);
   EXPECT_NE(why.find("Give a calibrated model of this arm"), std::string::npos) << why;
   EXPECT_EQ(why.find("tool centre point"), std::string::npos) << why;
-  // An arm that does not report the tool offset must have none.
+  // An arm that does not report its tool offset must not have one.
   const std::string unknown = Refusal(Connected({}, q, "tcp_offset"), spec);
   EXPECT_NE(unknown.find("Set the tool centre point to zero at the pendant"), std::string::npos)
       << unknown;

@@ -29,7 +29,7 @@ struct Arrangement {
   int waver = 0;  // the arm takes each command after a random delay of 0 … waver ticks
 };
 
-// A swing of one joint of the rig, with no hand on the handle.
+// One joint of the rig swings, with no hand on the handle.
 LoopRecord Swing(const Arrangement& a) {
   Scenario scenario = ArmScenario(1);
   scenario.seed = a.seed;
@@ -128,17 +128,17 @@ TEST(LoopRecorder, CountsLateTicksAndLostSamples) {
   double time = 7;
   for (int k = 0; k < 1000; ++k) {
     recorder.AddCommand(time, time, 0);
-    // A sample in every other tick, with a varying age. Of the 500 samples, those of k = 400 … 419
+    // Every other tick has a sample, whose age varies. Of the 500 samples, those of k = 400 … 419
     // are lost.
     if (k % 2 == 0 && (k < 400 || k >= 420)) recorder.AddSample(time - 0.0004 * (k % 3), 0);
     time += k % 100 == 50 ? 0.0042 : k % 100 == 51 ? 0.0014 : k % 100 == 60 ? 0.0019 : 0.001;
   }
   const Gaps gaps = std::move(recorder).Finish().gaps;
   EXPECT_EQ(gaps.ticks, 1000);
-  EXPECT_EQ(gaps.late, 20);  // 1.4 ms is late wake-up jitter, 1.9 ms is a skipped step
+  EXPECT_EQ(gaps.late, 20);  // 1.4 ms is jitter of the wake-up, 1.9 ms is a skipped step
   EXPECT_NEAR(gaps.longest_tick, 0.0042, 1e-9);
   EXPECT_EQ(gaps.samples, 490);
-  // 10 lost samples, plus the samples that are missing in 10 gaps of 4.5 ms.
+  // Ten samples were lost, and others are missing in 10 gaps of 4.5 ms.
   EXPECT_NEAR(static_cast<double>(gaps.lost), 10 + 22.5, 1.5);
   EXPECT_NEAR(gaps.longest_hole, 0.022, 0.002);
   const std::string text = GapsText(gaps);
@@ -179,8 +179,7 @@ TEST(FitLoop, FindsTheLoopOfTheRigAtAnyRateOfSamples) {
   EXPECT_GE(held, 0.85 * intervals);
 }
 
-// In each of its cycles, the controller uses the latest command. Its cycles are independent of our
-// ticks.
+// The controller uses the latest command in each of its cycles, which are independent of our ticks.
 TEST(FitLoop, FindsTheLoopOfAnArmThatTakesCommandsAtItsOwnTime) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     Arrangement a;
@@ -219,7 +218,8 @@ TEST(FitLoop, RefusesAHandOnTheHandle) {
   }
 }
 
-// A refusal because of a hand on the handle also reports gaps in the measurement itself.
+// If a hand on the handle is the reason for the refusal, the message must also report gaps in the
+// measurement.
 TEST(FitLoop, RefusalReportsLateTicksAndLostSamples) {
   LoopRecord record = Swing({});
   const auto refusal = [&] {

@@ -104,8 +104,8 @@ TEST_F(MeasureLoopWithADevice, AnyOtherKeyStopsUntilItIsReleased) {
   EXPECT_TRUE(moved);
 }
 
-// Letters that were typed while a connection was stalled do not count as a touch of the key;
-// neither does a jammed key.
+// Letters typed while the connection was stalled do not count as a touch of the key. A jammed key
+// does not count either.
 TEST_F(MeasureLoopWithADevice, BufferedLettersAreNotATouch) {
   Swing([&](double t) -> char {
     Press(t > 0.2);

@@ -1,5 +1,5 @@
-// How measuring the velocity loop ends: whatever happens, the arm comes to rest, and the person
-// learns the reason.
+// Tests how the measurement of the velocity loop ends. Whatever happens, the arm must come to rest,
+// and the program must give the person the reason.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 namespace predictor::commissioning {
 namespace {
 
-// However a measurement ends: the arm must be at rest, must never have decelerated faster than the
-// limit, and must have left its motion mode, and the person must have been informed of the reason.
+// The end of a measurement. The arm must be at rest, must never have decelerated faster than the
+// limit, and must have left its motion mode. The person must have been informed of the reason.
 struct End {
   const char* way;
   std::string why;  // expected message
@@ -27,7 +27,7 @@ struct End {
 
 class MeasureLoopEnds : public testing::TestWithParam<End> {
  protected:
-  // Causes this end.
+  // Causes an end of the kind `way`.
   void Act(const std::string& way, Bench* bench, RigHand* other) {
     if (way == "touched") bench->hand.touch[1] = 32;
     if (way == "twisted") bench->hand.touch[5] = 4;
@@ -112,8 +112,8 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
-// A late reading or a late tick stops the arm. The joint is measured again, but only after the
-// person has released the key.
+// A late reading or a late tick stops the arm. The program measures the joint again, but only after
+// the person has released the key.
 TEST(MeasureLoop, BeginsAJointAgainThatWasHeldUp) {
   for (const bool tick : {true, false}) {
     Bench bench;
@@ -158,7 +158,7 @@ TEST(MeasureLoop, BeginsAJointAgainThatWasHeldUp) {
   }
 }
 
-// The watchdog, which would notice that this program hangs, is gone.
+// The watchdog, which would notice a hang of this program, is no longer there.
 TEST(MeasureLoop, StopsWithoutItsWatchdog) {
   Bench bench;
   Holder holder(&bench.time);
@@ -194,7 +194,8 @@ TEST(MeasureLoop, StopsWhenTheHandleIsTouched) {
   EXPECT_LT(bench.hand.sample().v.cwiseAbs().maxCoeff(), 1e-3);
 }
 
-// If the machine's limits are lower than the threshold for a touch, the machine's limits apply.
+// If the machine's force limits are lower than the threshold for a touch, the machine's limits
+// apply.
 TEST(MeasureLoop, StopsAtTheMachinesForce) {
   Bench bench;
   Holder holder(&bench.time);
@@ -227,7 +228,8 @@ TEST(MotionWatch, LetsNothingPastTheGuard) {
   EXPECT_EQ(watch.Bounded(JointVector::Constant(7, NAN)).norm(), 0);
 }
 
-// The program cannot guarantee anything for an arm that does not respond, so it warns the person.
+// The program cannot guarantee anything about an arm that does not respond, so it must warn the
+// person.
 TEST(MeasureLoop, SaysWhenItCannotBringTheArmToRest) {
   for (const bool silent : {true, false}) {
     Bench bench;

@@ -1,4 +1,4 @@
-// Measuring the velocity loop of an arm of the rig, which moves while a person holds a key.
+// Measures the velocity loop of an arm of the rig, which moves while a person holds a key.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ TEST(MeasureLoop, MovesOnlyWhileTheKeyIsHeldAndNeverFast) {
             std::string::npos);
 }
 
-// Joints that were measured before an interruption are not measured again.
+// The program must not measure joints again that it measured before an interruption.
 TEST(MeasureLoop, ContinuesWithTheRemainingJoints) {
   Bench bench;
   Swings swings;
@@ -112,7 +112,7 @@ TEST(MeasureLoop, SaysThatATouchIsNotEnough) {
   EXPECT_EQ(all.find("device"), std::string::npos) << all;  // this rig has no device
 }
 
-// The message to a person who starts under this condition. The arm must not have moved.
+// Returns the message to a person who starts under this condition. The arm must not have moved.
 std::string RefusalToBegin(Bench* bench, const std::function<void()>& once_tared) {
   Holder holder(&bench->time);
   holder.holds = true;
@@ -146,7 +146,7 @@ TEST(MeasureLoop, DoesNotMoveAnArmThatIsSetToAnotherPayload) {
   EXPECT_NE(why.find("is set to 3.00 kg"), std::string::npos) << why;
 }
 
-// The external watchdog is notified every millisecond, including whether the arm moves.
+// The program notifies the watchdog every millisecond, and reports whether the arm moves.
 TEST(MeasureLoop, ReportsAtEachStepWhetherTheArmMoves) {
   Bench bench;
   Holder holder(&bench.time);

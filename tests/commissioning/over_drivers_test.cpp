@@ -1,4 +1,5 @@
-// Commissioning with the real drivers, in virtual time: they exchange bytes with fakes on a rig.
+// Tests commissioning with the real drivers, which exchange bytes with fakes on a rig in virtual
+// time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +30,7 @@ struct Make {
 
 std::ostream& operator<<(std::ostream& out, const Make& make) { return out << make.name; }
 
-// The left arm of a scenario: a real driver connected to a fake.
+// The left arm of a scenario: a real driver that is connected to a fake.
 class OverDrivers : public testing::TestWithParam<Make> {
  protected:
   OverDrivers() {
@@ -48,12 +49,12 @@ class OverDrivers : public testing::TestWithParam<Make> {
     station_ =
         std::make_unique<Station>(0, spec_, ConnectArm(spec_, ArmUse::kMove, &network_), nullptr);
   }
-  // Sends a letter every 30 ms, and Enter if the program asks for hands off.
+  // The person sends a letter every 30 ms, and Enter if the program asks for hands off.
   char Held(const std::string& last) {
     if (last.find("then press Enter") != std::string::npos) return kEnter;
     return ++steps_ % 30 == 0 ? kSwingKey : static_cast<char>(0);
   }
-  // Speed of the true handle [m/s].
+  // Returns the speed of the true handle [m/s].
   double Speed() const { return rig_->rig().true_handles()[0].V_W.head<3>().norm(); }
 
   MemoryNetwork network_;
@@ -77,7 +78,7 @@ TEST_P(OverDrivers, WhoGivesUpInMotionLeavesAnArmAtRest) {
   EXPECT_NE(person.All().find("The left arm was brought to rest within"), std::string::npos)
       << person.All();
   rig_->Mark();
-  // Neither the arm's time-out nor a reflex stopped it, so it still accepts commands.
+  // Neither a time-out of the arm nor a reflex has stopped the arm, so it still accepts commands.
   const JointVector rest = JointVector::Zero(station_->model().dof());
   ASSERT_NO_THROW({
     for (int k = 0; k < 300; ++k) {

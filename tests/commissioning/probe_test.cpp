@@ -68,7 +68,7 @@ TEST(ProbeMachine, MeasuresRateAgeAndWrench) {
     EXPECT_TRUE(arm.remarks.empty());
     EXPECT_TRUE(AllAnswer(probed));
     EXPECT_TRUE(AllMatch(probed)) << ProbeText(probed);
-    // The wrench consists of bias and weight; only the rig's noise varies.
+    // The wrench consists of the bias and the weight, and varies only by the rig's noise.
     EXPECT_TRUE(arm.has_wrench);
     EXPECT_LT((arm.F_S - one.hand.sample().F_S_raw).head<3>().norm(), 0.3);
     EXPECT_NEAR(arm.deviation[0], 0.05, 0.01);
@@ -111,7 +111,7 @@ TEST(ProbeMachine, ReportsSilenceFaultAndWrongRate) {
   EXPECT_NE(deaf.Probe()[0].trouble.find("does not measure a wrench"), std::string::npos);
 }
 
-// The nominal rate of the version counts, even if the network delivers fewer samples.
+// The nominal rate of the version applies, even if the network delivers fewer samples.
 TEST(ProbeMachine, KnowsTheRateOfAVersion) {
   OneArm one(500);
   one.rate = 500;
@@ -171,7 +171,7 @@ TEST(ProbeMachine, ContinuesIfOneDoesNotAnswer) {
   EXPECT_NE(ProbeText(probed).find("left arm: DOES NOT ANSWER"), std::string::npos);
 }
 
-// The real driver of a sensor on an in-memory network.
+// Connects the real driver of a sensor through a network in memory.
 TEST(ProbeMachine, MeasuresASensorOfItsOwn) {
   const auto fake = MakeFake("net_ft", {});
   Mechanics mechanics;
@@ -217,7 +217,7 @@ TEST(PayloadRefusal, ComparesMassAndCentreOfGravity) {
   facts.payload = ReportedPayload{0.5, {0, 0.05, 0.08}};
   EXPECT_NE(PayloadRefusal(facts, side).find("centre of gravity at (0, 50, 80) mm"),
             std::string::npos);
-  // A separate sensor also adds its weight and shifts the centre of gravity accordingly.
+  // A separate sensor adds its own weight and shifts the centre of gravity accordingly.
   side.sensor.make = SensorMake::kNetFt;
   EXPECT_NE(PayloadRefusal(facts, side).find("of sensor and handle together at the pendant"),
             std::string::npos);
@@ -242,7 +242,7 @@ TEST(PayloadRefusal, OfAnArmThatTakesItOffItselfOnlyOneMayHaveTheWeight) {
       EXPECT_EQ(PayloadRefusal(facts, side).find("subtracted twice") != std::string::npos,
                 reported > 0 && ours > 0);
     }
-  // With a separate sensor, the arm's own estimate is not used.
+  // With a separate sensor, the program must not use the arm's own estimate.
   side.sensor.make = SensorMake::kNetFt;
   side.arm.payload.center_of_mass = {0, 0, 0.08};
   EXPECT_EQ(PayloadRefusal(facts, side), "");

@@ -13,7 +13,7 @@
 namespace predictor::commissioning {
 namespace {
 
-// A sensor that reads R · force at the pushed handle, with noise and the sway of a hand.
+// A sensor that reads R · force when someone pushes the handle, with noise and the sway of a hand.
 class Pusher {
  public:
   explicit Pusher(const Matrix3& R = Matrix3::Identity(), bool swapped = false)
@@ -144,7 +144,7 @@ TEST(PushTest, CountsOnlyClearPushesThatLast) {
   }
 }
 
-// A push must last in one direction; the time does not continue if the direction changes.
+// A push must last in one direction. Its time does not continue if the direction changes.
 TEST(PushTest, CountsTheTimeOfOneDirectionOnly) {
   Pusher pusher;
   pusher.Push(Vector3::Zero(), 0.2);

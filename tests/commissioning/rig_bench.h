@@ -1,4 +1,4 @@
-// An arm of the rig as the station of a session, in virtual time, and the persons at it.
+// An arm of the rig as the station of a session in virtual time, with the persons at it.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace predictor::commissioning {
 
-// An arm, its station and their time.
+// An arm, its station and the time that they share.
 struct Bench {
   explicit Bench(const Scenario& s = ArmScenario(1), double rate = 1000)
       : scenario(s),
@@ -24,7 +24,7 @@ struct Bench {
   Station station;
 };
 
-// A person who guides the arm to given joint angles. Lead returns true once the arm rests there.
+// A person who guides the arm to given joint angles. Lead returns true once the arm rests at them.
 class Leader {
  public:
   explicit Leader(RigHand* hand) : hand_(hand) {}
@@ -44,7 +44,7 @@ class Leader {
   int steps_ = 0;
 };
 
-// A person who holds the key, as a terminal reports it: after a first pause, 30 letters a second.
+// A person who holds the key, as a terminal reports it: 30 letters a second after an initial pause.
 class Holder {
  public:
   explicit Holder(const VirtualTime* time) : time_(time) {}

@@ -1,4 +1,4 @@
-// Connects an arm of the rig through the interface of a driver, in virtual time. It behaves like a
+// Connects an arm of the rig through a driver's interface in virtual time. It behaves like a
 // perfect driver with an adjustable sampling rate.
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace predictor::commissioning {
 
-// Time passes only during Wait, which then calls the steps.
+// In this network, time passes only during Wait, which then calls the steps.
 class VirtualTime : public Network {
  public:
   std::unique_ptr<Stream> Connect(const Address& peer, double) override {
@@ -66,9 +66,9 @@ class RigHand {
   const JointVector& command() const { return command_; }
   bool motion() const { return motion_; }
   double hardest() const { return hardest_; }
-  // Joint velocity due to a person who guides the arm [rad/s]; empty if no person does.
+  // Sets the joint velocity of an arm that a person guides [rad/s], or ends the guiding if empty.
   void Lead(const JointVector& v) { lead_ = v; }
-  // Disturbances of the measured wrench and joints.
+  // These disturbances are added to the measured wrench and joints.
   Wrench touch = Wrench::Zero();
   std::function<double(int joint, double time)> wobble;
   std::function<void(ArmSample* arm)> spoil;  // corrupts a sample
@@ -142,7 +142,7 @@ class RigDriver final : public Arm {
 };
 
 // Simulates a person. In each step, the reaction receives the latest message until it answers with
-// a key, and then an empty string until the next message.
+// a key. After that it receives an empty string until the next message.
 class ScriptedPerson final : public Person {
  public:
   using Reaction = std::function<char(const std::string& last)>;

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint64_t kPeriod = 1'000'000;  // period of the robot's states and of the session's
                                               // steps [ns]
 
-// Every wait ends late.
+// In this virtual time, every wait ends late.
 class LateTime final : public VirtualTime {
  public:
   LateTime() { Work(300e-6); }
@@ -64,7 +64,7 @@ TEST(SessionPace, StepsThatAreOverAreSkippedNotMadeUpFor) {
   for (int k = 0; k < 10; ++k) session.Step();
   for (std::size_t k = 1; k < periods.size(); ++k)
     EXPECT_EQ(periods[k] - periods[k - 1], k == 5 ? 4u : 1u) << k;
-  // The deadlines must not depend on late wake-ups.
+  // A late wake-up must not shift the deadlines.
   for (std::size_t k = 1; k < due.size(); ++k)
     EXPECT_NEAR(due[k] - due[k - 1], k == 5 ? 0.004 : 0.001, 1e-9) << k;
 }

@@ -1,5 +1,5 @@
-// Writes the commands that a run sent to the arms into a file for audit_commands.py, which is
-// independent of the program's limits and guard.
+// Writes the commands that a run sent to the arms into a file. audit_commands.py checks this file
+// independently of the program's limits and guard.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace predictor {
 
-// Appends a run: data on the arms and the stop, and the bytes that the bench recorded. name: label
-// in messages.
+// Appends a run: data about the arms and the stop, and the bytes that the bench recorded. name: a
+// label for messages.
 void AppendForAudit(const std::string& file, const std::string& name, const FaultRig& rig,
                     const Bench& bench, const BenchStop& stop);
 
-// The same, with the fault and the seed as label.
+// As above, with the fault and the seed as the label.
 void AppendForAudit(const std::string& file, const Fault& fault, std::uint64_t seed,
                     const FaultRig& rig, const Bench& bench, const BenchStop& stop);
 

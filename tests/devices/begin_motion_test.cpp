@@ -1,5 +1,5 @@
-// A controller may take time to begin a motion. Meanwhile the other arm must not move alone, and
-// the emulation waits; nothing is caught up afterwards.
+// A controller may take time to begin a motion. Until then, the other arm must not move alone, and
+// the emulation must wait. It must not catch up afterwards.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ void BeginRun(Bench* bench, int start) {
 
 bool Waits(const Bench& bench) { return bench.record().hands[1].arm_waits != 0; }
 
-// Command of the fastest joint [rad/s].
+// Returns the command of the fastest joint [rad/s].
 double FastestCommand(const Bench& bench) {
   double fastest = 0;
   for (const HandRecord& hand : bench.record().hands)
@@ -49,8 +49,8 @@ Pose Relative(const Bench& bench) {
   return FromRecord(hands[0].real.pose).Inverse() * FromRecord(hands[1].real.pose);
 }
 
-// Largest change of the distance between the handles during 1.5 s [m]. `asked` receives the fastest
-// command.
+// Returns the largest change of the distance between the handles during 1.5 s [m]. `asked` receives
+// the fastest command.
 double Parted(Bench* bench, const Pose& before, double* asked) {
   double apart = 0;
   for (int k = 0; k < 1500; ++k) {

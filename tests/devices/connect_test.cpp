@@ -47,7 +47,7 @@ TEST(ConnectArm, AListenerSendsNoProgram) {
   EXPECT_TRUE(bench.mechanics.command.isZero(0));
 }
 
-// Fake arms of one make for both hands of a scenario, and their machine file.
+// Fake arms of one manufacturer for both hands of a scenario, and their machine file.
 struct TwoArms {
   TwoArms(const char* fake, ArmMake make, const Scenario& scenario, FarRig* rig) {
     network->SetWorld([rig] { rig->Step(); });
@@ -68,7 +68,7 @@ struct TwoArms {
   Machine machine;
 };
 
-// An arm with a lower sample rate than the machine file states would appear to lose samples.
+// An arm with a lower sample rate than in the machine file would appear to lose samples.
 TEST(ConnectMachine, AnArmOfAnotherRateIsRefused) {
   Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/dual_ur5.yaml");
   FarRig rig(scenario);
@@ -85,7 +85,7 @@ TEST(ConnectMachine, AnArmOfAnotherRateIsRefused) {
   }
 }
 
-// If a Franka's driver limited one joint but not the others, the handle would leave its path.
+// If the driver of a Franka limited only one joint, the handle would leave its path.
 TEST(ConnectMachine, AScenarioGetsTheLimitsOfAFrankasDriver) {
   Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/box_9kg.yaml");
   FarRig rig(scenario);

@@ -19,7 +19,7 @@ TEST(DeviceClock, MeasuresTheDelayBeyondTheQuickestPackage) {
   EXPECT_NEAR(clock.Age(now + 5'000'000), 0.015, 1e-5);
 }
 
-// Even with the worst drift of a quartz clock, the delay must not seem to grow.
+// The delay must not seem to grow, even with the worst drift of a quartz clock.
 TEST(DeviceClock, ForgivesDrift) {
   for (const double drift : {-2e-4, 2e-4}) {
     DeviceClock clock;

@@ -1,5 +1,5 @@
-// An enabling device at a digital input of a robot's controller, with the real protocol in virtual
-// time: the arms move only while a person presses it.
+// An enabling device is connected to a digital input of a robot's controller. With the real
+// protocol in virtual time, the arms may move only while a person presses it.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -17,7 +17,8 @@ namespace {
 
 constexpr int kInput = 8;
 
-// Real arms whose enabling device is silent while `*silent`, although the arms still respond.
+// Real arms whose enabling device is silent while `*silent` is true, although the arms still
+// respond.
 class HalfHeard final : public Device {
  public:
   HalfHeard(std::unique_ptr<RealDevice> arms, const bool* silent)
@@ -116,7 +117,7 @@ TEST_F(EnablingDevice, IsNeededToAlignAndToStart) {
   EXPECT_EQ(emulator_->state(), RunState::kRun);  // continues while it is pressed
 }
 
-// The controller's cycle takes 2 ms. One tick reads the input, and the next one acts.
+// The controller's cycle takes 2 ms. One tick reads the input, and the next one responds.
 TEST_F(EnablingDevice, LettingGoStopsAtOnce) {
   ASSERT_TRUE(ToRun());
   Tick(1500);
@@ -159,7 +160,7 @@ TEST_F(EnablingDevice, AfterAStopItMustBeReleasedFirst) {
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNone);
 }
 
-// A release during the silence would not have been noticed.
+// The emulator would not have noticed a release during the silence.
 TEST_F(EnablingDevice, AfterSilenceDuringAStopItMustBeReleasedToo) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -175,7 +176,7 @@ TEST_F(EnablingDevice, AfterSilenceDuringAStopItMustBeReleasedToo) {
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNone);
 }
 
-// A run is repeated from its records, so they must contain the state of the device.
+// A replay repeats a run from its records, so they must contain the state of the device.
 TEST_F(EnablingDevice, IsRecordedAsAnInput) {
   ASSERT_TRUE(Await(RunState::kIdle));
   Press();

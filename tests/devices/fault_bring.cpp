@@ -17,9 +17,9 @@ constexpr double kRest = 2e-3;      // speed below which a handle is at rest [m/
 constexpr double kDegrees = 57.29577951;
 constexpr double kBefore = 0.05;  // audited time before a fault [s]
 
-// Literal limits, so that the judgement does not depend on the prediction: for quick arms (the
-// budget at 0.25 m/s, 30 ms of following, and 10 ms of lag; 120 ms for a Franka's impedance), and
-// with a Franka of 15 Hz.
+// These limits are literals, so that the judgement does not depend on the prediction. The first is
+// for quick arms: the budget at 0.25 m/s, 30 ms of following, and 10 ms of lag, or 120 ms for a
+// Franka's impedance control. The second is for a Franka of 15 Hz.
 constexpr StopBudget kMaxStop{0.240, 0.0134 + 0.25 * 0.040}, kMaxSlowStop{0.260, 0.037};
 constexpr double kMaxDrift = 0.002, kMaxTurn = 0.5 / kDegrees;
 
@@ -170,7 +170,7 @@ FaultOutcome Bring(Bench& bench, const Fault& fault, const FaultRig& rig, std::u
 
 namespace {
 
-// Lets time pass at the far end without the loop.
+// Lets time pass for the devices without running the loop.
 void PassWithoutLoop(Bench& bench, double time, const std::function<void()>& each) {
   for (int n = static_cast<int>(1e3 * time); n > 0; --n) {
     if (each) each();
@@ -187,11 +187,11 @@ void JudgeRestWithoutLoop(Bench& bench, const std::function<void()>& each, Fault
   o->Require(fastest < kRest, Formatted("moves by %.1f mm/s without the loop", 1e3 * fastest));
 }
 
-// Whether a run may end in this state, apart from rest after a stop.
+// Returns whether a run may end in this state, apart from rest after a stop.
 bool MayEnd(RunState end, const Fault& first, const Fault& second) {
   const auto lets_continue = [](const Fault& f) { return f.Begins() || Continues(f); };
   if (end == RunState::kRun) return lets_continue(first) && lets_continue(second);
-  // There is no emulation while the arms recover.
+  // The emulation does not run while the arms recover.
   if (end == RunState::kRecovery)
     return (first.recovers || second.recovers) &&
            (lets_continue(second) || second.carrier == Carrier::kLoop);

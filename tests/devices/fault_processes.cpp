@@ -20,7 +20,7 @@ using enum Expect;
 
 constexpr double kSlow = 5e-6;  // distance in a millisecond at 5 mm/s [m]
 
-// Lets the far end continue without our process.
+// Lets the devices continue without our process.
 void WithoutUs(Bench& bench, FaultOutcome* o, int bound, const std::function<void()>& each) {
   const auto handles = [&](std::size_t i) { return bench.rig().rig().true_handles()[i].X_W; };
   const std::array<Pose, kHands> begin = {handles(0), handles(1)};
@@ -59,14 +59,14 @@ void ProcessDies(Bench& bench, int, FaultOutcome* o) {
   o->SetMessage("(No process is left to report it; see the robot's own panel.)");
 }
 
-// The watchdog has channels to URs. A Franka accepts only one client and relies on its own
+// The watchdog has channels to URs. A Franka accepts only one client, so it relies on its own
 // time-out.
 struct Guarded {
   std::vector<std::unique_ptr<StopChannel>> channels;
   watchdog::Watchdog watchdog;
 };
 
-// Returns the watchdog's work for each later millisecond.
+// Returns the work that the watchdog does in each later millisecond.
 std::function<void()> WatchdogOf(Bench& bench) {
   const auto guarded = std::make_shared<Guarded>();
   for (int hand = 0; hand < kHands; ++hand)
@@ -84,7 +84,8 @@ std::function<void()> WatchdogOf(Bench& bench) {
 void LoopHangs(Bench& bench, int, FaultOutcome* o) {
   bool all = true;
   for (int hand = 0; hand < kHands; ++hand) all = all && bench.arm(hand).tcp_ports().size() > 1;
-  // The watchdog takes 10 ms, looks every millisecond, and the controller needs two cycles.
+  // The watchdog's time-out is 10 ms, it checks every millisecond, and the controller needs two
+  // cycles.
   WithoutUs(bench, o, all ? 14 : 23, WatchdogOf(bench));
   o->SetMessage("The control loop hung, and the watchdog stopped the arms.");
 }

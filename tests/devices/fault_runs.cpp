@@ -95,7 +95,7 @@ void Hash(const std::filesystem::path& file, std::uint64_t* hash) {
   for (const char c : text + '\0') *hash = (*hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
 }
 
-// Hash of a rig's inputs apart from the program: the audit, the scenario, and the robot
+// Hashes the inputs of a rig's runs other than the program: the audit, the scenario, and the robot
 // descriptions.
 std::uint64_t HashOfInputs(const FaultRig& rig) {
   std::uint64_t hash = 14695981039346656037U;
@@ -111,8 +111,8 @@ std::uint64_t HashOfInputs(const FaultRig& rig) {
   return hash;
 }
 
-// The results of earlier calls of this program. It keeps a beginning only if all its runs are
-// complete, so all kept results have been audited.
+// The results of earlier calls of this program. A beginning is kept only if all its runs are
+// complete, so that all kept results have been audited.
 class Kept {
  public:
   Kept(const std::string& file, const FaultRig& rig) {
@@ -165,7 +165,7 @@ struct Due {
   double time = 0;  // time in RUN [s]
 };
 
-// The work of a child process.
+// A child process executes this function.
 FaultOutcome OnARun(Bench& bench, const FaultRig& rig, const FaultRun& run,
                     const std::string& audit) {
   const Fault& fault = Faults()[run.fault];
@@ -188,8 +188,8 @@ FaultRun Audited(std::uint64_t seed, const std::string& file) {
   return run;
 }
 
-// Runs that share a beginning: the same seed and the same faults that are present from the
-// beginning (at most two).
+// Runs with the same beginning share the seed and the faults that are present from the start (at
+// most two).
 struct Beginning {
   std::uint64_t number = 0;
   std::uint64_t seed = 0;
@@ -204,7 +204,7 @@ BenchOptions OptionsOf(const FaultRig& rig, const Beginning& beginning) {
   return options;
 }
 
-// Starts the run up to the point at which faults are injected.
+// Starts the run and continues it to the point at which faults are injected.
 bool Start(Bench& bench, const Beginning& beginning) {
   bool recovers = false;
   for (const Fault* fault : beginning.with) {
@@ -249,7 +249,7 @@ void RunDue(const FaultRig& rig, Beginning beginning,
   report(Audited(seed, audit));
 }
 
-// Distributes the beginnings over one process per processor.
+// Distributes the beginnings to one process per processor.
 void RunLeft(const FaultRig& rig, const std::vector<Beginning>& beginnings, Kept* kept) {
   const std::size_t workers =
       std::min<std::size_t>(beginnings.size(), std::max(1U, std::thread::hardware_concurrency()));
@@ -326,7 +326,7 @@ bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig) {
   if (second.Begins()) return first.Begins() && first.number < second.number;
   // Both faults change the same sequence numbers, so one would hide the other.
   if (first.number == 7 && second.number == 7 && first.Begins()) return false;
-  // A hanging process may still die. A process without its loop cannot have faults of the loop.
+  // A hanging process may still die. A process without its loop can have no faults of the loop.
   if (first.gone)
     return second.gone ? first.number > second.number
                        : second.carrier != Carrier::kLoop && !second.before;
@@ -345,7 +345,7 @@ FaultRuns RunFaultPairs(const FaultRig& rig, double share, const std::string& fi
       const Fault& second = Faults()[j];
       if (!HavePair(first, second, rig)) continue;
       const bool chosen = sample.Uniform() < share;
-      // Arms return from beyond a limit within a short time.
+      // The arms return from beyond a limit within a short time.
       const double time =
           first.recovers || second.recovers ? times.Uniform() : 1.5 + 2 * times.Uniform();
       if (!chosen) continue;

@@ -1,5 +1,5 @@
-// Runs each fault in a child process that is forked from an active run. All faults share the same
-// beginning, and a crash is detected.
+// Runs each fault in a child process that is forked from an active run. All faults therefore share
+// the same beginning, and a crash is detected.
 #pragma once
 
 #include <string>
@@ -9,10 +9,11 @@
 
 namespace predictor {
 
-// Value of FaultRun::fault for the audit of the commands in the runs of that seed.
+// The value of FaultRun::fault for the audit of the commands in all runs with that seed.
 inline constexpr std::size_t kAudit = ~std::size_t{0};
 
-// One fault, or two faults (the second up to 100 ms after the first), on a rig with one seed.
+// One fault, or two faults of which the second occurs up to 100 ms after the first, on a rig with
+// one seed.
 struct FaultRun {
   std::size_t fault = 0;  // index in Faults()
   int second = -1;        // index in Faults(); −1: none
@@ -26,21 +27,23 @@ struct FaultRuns {
   std::size_t due = 0, audits_due = 0;  // numbers of entries that it must contain
 };
 
-// The number of the only fault to test, from the environment (PREDICTOR_FAULT); 0: all faults.
+// Returns the number of the only fault to test, from the environment (PREDICTOR_FAULT), or 0 for
+// all faults.
 int OnlyFault();
 
-// Whether the rig has the device to which this fault applies, and the fault is to be tested.
+// Returns whether the rig has the device to which this fault applies and the fault is to be tested.
 bool Concerns(const Fault& fault, const FaultRig& rig);
 
-// Whether the second fault can occur after the first in a run of the rig. Only faults up to 33 form
-// pairs. Both orders count, unless a run begins with one of the faults or cannot continue after it.
+// Returns whether the second fault can occur after the first in a run of the rig. Only faults up to
+// 33 form pairs. Both orders count, unless a run begins with one of the faults or cannot continue
+// after it.
 bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig);
 
-// Time in RUN at which a fault is injected: during the first motions [s].
+// Returns the time in RUN at which a fault is injected, during the first motions [s].
 double TimeOf(const std::string& fault, std::uint64_t seed);
 
-// Runs every fault that concerns the rig with the seeds from 1 on, or a share of all pairs
-// distributed over seeds, on all processors. If `kept` names a file, results of an earlier,
+// Runs faults on all processors: every fault that concerns the rig with the seeds from 1 on, or a
+// share of all pairs distributed over seeds. If `kept` names a file, results of an earlier,
 // interrupted call are reused, provided that the program, the audit, the scenario and the robot
 // descriptions are unchanged.
 FaultRuns RunFaults(const FaultRig& rig, long seeds, const std::string& kept);

@@ -21,8 +21,8 @@ namespace {
 using enum Carrier;
 using enum Expect;
 
-// The heights of the last half waves of a force [N], as long as each is larger than the one before.
-// The slow part of the force and the tremor are removed.
+// Returns the heights of the last half waves of a force [N], as long as each is larger than its
+// predecessor. The slow part of the force and the tremor are removed first.
 std::vector<double> GrowingCycles(const std::vector<double>& force) {
   constexpr double kSlowPart = 0.0025, kTremor = 0.02;  // coefficients per millisecond: 0.4 Hz, 3
                                                         // Hz
@@ -46,8 +46,8 @@ std::vector<double> GrowingCycles(const std::vector<double>& force) {
           peaks.end()};
 }
 
-// The run may end in any way, as long as the commands are bounded (the audit) and the arms rest at
-// the end.
+// The run may end in any way, provided that the commands are bounded (the audit checks this) and
+// that the arms rest at the end.
 void RunsToSomeEnd(Bench& bench, double time, const Fault& fault, const FaultRig& rig,
                    std::uint64_t seed, const std::string& audit, FaultOutcome* o) {
   bench.Capture();
@@ -86,8 +86,8 @@ void StiffModel(const FaultRig& rig, std::uint64_t seed, const std::string& audi
 void BeginUnderdamped(const FaultRig&, std::uint64_t, BenchOptions* options) {
   options->change = [change = options->change](Scenario* s) {
     change(s);
-    // Only the cobot shall swing. No lead is stable with it, so the automatic choice would be the
-    // full lead, with which the loop of a quick Franka beside a UR vibrates before the cobot
+    // Only the cobot shall swing. No lead is stable with this cobot, so the automatic choice would
+    // be the full lead. With it, the loop of a quick Franka next to a UR vibrates before the cobot
     // swings.
     s->rendering.lead = Emulator(*s).setup().lead.lead;
     s->cobot.controller.Set("damping_ratio=[0.7, 0.7, 0.02, 0.7, 0.7, 0.7]");
@@ -107,7 +107,7 @@ void Underdamped(const FaultRig& rig, std::uint64_t seed, const std::string& aud
   Bench bench(options);
   bench.Capture();
   if (!bench.Start()) return o->Fail("no run: " + Messages(bench));
-  // Counts the peaks of the vertical force independently of the detector.
+  // The test counts the peaks of the vertical force independently of the detector.
   std::vector<double> force;
   for (int k = 0; k < 20'000 && bench.emulator().state() == RunState::kRun; ++k) {
     bench.Tick();
@@ -119,7 +119,7 @@ void Underdamped(const FaultRig& rig, std::uint64_t seed, const std::string& aud
   JudgeMessage(fault, -1, o);
   o->Require(o->cause == StopCause::kOscillation,
              std::string("ends ") + Name(o->end) + ", " + Name(o->cause));
-  // The run must stop at the third growing cycle above the amplitude from which cycles count.
+  // The run must stop at the third growing cycle whose amplitude is large enough to count.
   const std::vector<double> growing = GrowingCycles(force);
   const double least = bench.scenario().safety.oscillation.amplitude;
   o->ticks = static_cast<int>(std::count_if(growing.begin(), growing.end(),
@@ -149,7 +149,7 @@ bool ComesToRun(const BenchOptions& options) {
   }
 }
 
-// Moves the bases as far away as a run still permits.
+// Moves the bases as far away as possible without preventing the run.
 void BeginNearlySingular(const FaultRig&, std::uint64_t seed, BenchOptions* options) {
   RandomStream random(seed, "singular");
   const double aside = 0.1 * random.Normal();
@@ -178,7 +178,7 @@ void NearlySingular(const FaultRig& rig, std::uint64_t seed, const std::string& 
   }
 }
 
-// The mirrored axis of the sensor.
+// Returns the mirrored axis of the sensor.
 int MirroredAxis(std::uint64_t seed) { return static_cast<int>(seed / 2 % 3); }
 
 void BeginMirrored(Bench& bench, std::uint64_t seed) {
@@ -188,7 +188,8 @@ void BeginMirrored(Bench& bench, std::uint64_t seed) {
   for (int hand = 0; hand < kHands; ++hand) bench.rig().Wire(hand, R);
 }
 
-// Force of one kilogram of the handle on the sensor at acceleration a, in the sensor's axes [N].
+// Returns the force that one kilogram of the handle exerts on the sensor at acceleration a, in the
+// sensor's axes [N].
 Vector3 KilogramAt(Bench& bench, std::size_t hand, const Vector3& a) {
   const ArmSpec& arm = bench.scenario().arm(static_cast<int>(hand));
   const Quaternion q_HS = arm.handle.ToPose().q.conjugate() * arm.sensor.pose.ToPose().q;
@@ -199,15 +200,15 @@ Vector3 KilogramAt(Bench& bench, std::size_t hand, const Vector3& a) {
 // A sensor is mounted mirrored, and no push test was made. The time counts from the moment at which
 // a handle drags the hand with more than 6 N at two fifths of its speed limit. The measurement
 // differs from that of a pushing hand only in how it grows, so detection takes time. Until then,
-// and if it does not grow in that way, the thresholds limit the force on the hand, because they
-// depend only on the magnitude.
+// and if the measurement does not grow in this way, the thresholds limit the force on the hand.
+// They depend only on its magnitude.
 void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
                       const Fault& fault, FaultOutcome* o) {
   Bench bench(OptionsOf(rig, seed));
   bench.Capture();
   BeginMirrored(bench, seed);
   if (!bench.Start()) return o->Fail("no run: " + Messages(bench));
-  constexpr double kNoise = 2;  // tolerance for sensor noise and the deciding tick [N]
+  constexpr double kNoise = 2;  // tolerance for sensor noise and for the tick of the decision [N]
   int fast = 0;
   double hardest = 0;
   const Vector3 zero = Vector3::Zero();
@@ -216,7 +217,7 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
   std::array<Vector3, kHands> before = {zero, zero};
   for (int k = 0; k < 5000 && bench.emulator().state() == RunState::kRun; ++k) {
     bench.Tick();
-    // The hand is dragged along at more than two fifths of the speed limit with more than 6 N.
+    // The handle drags the hand with more than 6 N at more than two fifths of the speed limit.
     bool dragged = false;
     for (std::size_t i = 0; i < kHands; ++i) {
       const Vector3 v = bench.rig().rig().true_handles()[i].V_W.head<3>();
@@ -243,7 +244,7 @@ void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string
   o->Require(fast <= fault.bound, Formatted("runs away for %d ms", fast));
   o->Require(hardest <= bench.scenario().safety.force + kNoise,
              Formatted("drags the hand along with %.1f N besides the handle's weight", hardest));
-  // The handles may rotate at their speed limit, so the joints may need longer to decelerate.
+  // The handles may rotate at their speed limit, so the joints may take longer to decelerate.
   if (rests) JudgeReach(StopOfArms(bench.scenario(), MinStopAcceleration(bench.scenario())), o);
   if (rests) JudgeRest(bench, o);
   AppendForAudit(audit, fault, seed, rig, bench, stop);

@@ -1,4 +1,4 @@
-// Faults in the emulation, after which only the arms can be judged.
+// Faults in the emulation. After them, only the arms can be judged.
 #pragma once
 
 #include <vector>

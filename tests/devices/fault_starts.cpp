@@ -24,7 +24,7 @@ constexpr double kMaxRecoverySpeed = 0.050;  // [m/s]
 
 std::size_t Index(int hand) { return static_cast<std::size_t>(hand); }
 
-// The error when the bench connects; "" if it succeeds.
+// Returns the error when the bench connects, or "" if it succeeds.
 std::string WhyNot(const BenchOptions& options) {
   try {
     const Bench bench(options);
@@ -47,7 +47,7 @@ void UnknownVersion(Carrier carrier, const char* option, const char* version, co
   o->Require(why.find(word) != std::string::npos, "the message does not name the error: " + why);
 }
 
-// The sequence numbers begin so that they wrap around during the run.
+// The sequence numbers start so that they wrap around during the run.
 void BeginBeforeWrap(const FaultRig&, std::uint64_t seed, BenchOptions* options) {
   RandomStream random(seed, "wrap");
   const auto before = static_cast<std::uint64_t>(6000 + 2000 * random.Uniform());
@@ -71,7 +71,7 @@ void SequencesWrap(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
     o->Require(bench.record().hands[Index(hand)].sensor_sequence > 0, "no readings");
 }
 
-// A random drift of the force bias by 2 to 12 N per minute.
+// Draws a drift of the force bias of 2 to 12 N per minute.
 Wrench DriftRate(RandomStream* random) {
   const double rate = 2.2 + 10 * random->Uniform();  // [N/min]
   Vector3 direction(random->Normal(), random->Normal(), random->Normal());
@@ -80,7 +80,7 @@ Wrench DriftRate(RandomStream* random) {
   return F;
 }
 
-// First the bias drifts while no hand is near; then a handle reads more than 5 N.
+// The bias drifts while no hand is near until a handle reads more than 5 N.
 void SensorDrifts(const FaultRig& rig, std::uint64_t seed, const std::string&, const Fault& fault,
                   FaultOutcome* o) {
   RandomStream random(seed, "drift");
@@ -110,7 +110,7 @@ void SensorDrifts(const FaultRig& rig, std::uint64_t seed, const std::string&, c
              std::string("not refused to align: ") + Name(o->end));
 }
 
-// An incorrect mounting: axes rotated, swapped or mirrored, depending on the seed.
+// Returns an incorrect mounting: depending on the seed, the axes are rotated, swapped or mirrored.
 Matrix3 Mounting(std::uint64_t seed) {
   std::vector<Matrix3> all;
   std::array<int, 3> order = {0, 1, 2};
@@ -142,8 +142,8 @@ void PushesAreRefused(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) 
     test.Update(wrench(hand), wrench(1 - hand), 0.001);
     if (k % 1500 == 1000) hint = test.hint();
   }
-  // The sensor's axes may be at an angle to those of the world. Then no push counts as one along an
-  // axis, and the test does not advance.
+  // The sensor's axes may be at an angle to those of the world. The test then recognises no push
+  // along an axis and does not advance.
   o->SetMessage(test.done() ? test.Refusal() : commissioning::Sentence(hint));
   o->Require(!test.passed(), "passes");
   o->Require(
@@ -151,13 +151,13 @@ void PushesAreRefused(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) 
       "the message is: " + std::string(o->message.data()));
 }
 
-// Distance of the nearest links at the start of the run [m].
+// Returns the distance of the nearest links at the start of the run [m].
 double ElbowDistance(const BenchOptions& options) {
   Bench bench(options);
   return bench.Start() ? bench.record().link_distance : 0;
 }
 
-// RECOVERY moves the arm back slowly, and only while the key is held.
+// RECOVERY moves the arm back slowly, and only while the person holds the key.
 void Recovers(Bench& bench, FaultOutcome* o, Refusal expected) {
   if (!bench.Await(RunState::kIdle, 2)) return o->Fail("not idle: " + Messages(bench));
   bench.Hold(true);
@@ -224,7 +224,7 @@ void ScenarioLoosens(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
   struct Limit {
     const char* key;
     double SafetySpec::*value;
-    bool least = false;  // a lower value is less strict
+    bool least = false;  // true if a lower value is less strict
   };
   static constexpr std::array<Limit, 7> kLimits = {
       {{"stop_acceleration", &SafetySpec::stop_acceleration, true},

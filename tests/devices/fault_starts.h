@@ -1,4 +1,4 @@
-// Faults that are refused or reported before the run.
+// Faults that the program refuses or reports before the run.
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // Tests every fault of arms, sensors, wires and the loop that a run must survive, with many seeds
-// in virtual time: when it is detected, how and how far the arms stop, and whether the handles keep
-// their relative pose.
+// in virtual time. The tests check when the program detects the fault, how and how far the arms
+// stop, and whether the handles keep their relative pose.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kWatchdog = 0.020;  // time-out of our program on a controller [s]
+constexpr double kWatchdog = 0.020;  // time-out of a controller for our program [s]
 
 const char* Words(Expect expect) {
   switch (expect) {
@@ -42,20 +42,20 @@ const char* Words(Expect expect) {
   return "";
 }
 
-// PREDICTOR_SEEDS: number of seeds; set a smaller number for a quicker result.
+// PREDICTOR_SEEDS is the number of seeds. A smaller number gives a quicker result.
 long Seeds() {
   const char* seeds = std::getenv("PREDICTOR_SEEDS");
   return seeds == nullptr ? Count(1, 200) : std::atol(seeds);
 }
 
-// PREDICTOR_PAIRS: fraction of the pairs that a short test runs.
+// PREDICTOR_PAIRS is the fraction of the pairs that a short test runs.
 double Pairs() {
   const char* share = std::getenv("PREDICTOR_PAIRS");
   if (share != nullptr) return std::atof(share);
   return InFull() ? 1 : 0.01;
 }
 
-// File in which a long test keeps its results; a short test keeps none.
+// Returns the file in which a long test keeps its results. A short test keeps none.
 std::string KeptIn(const std::string& what, const FaultRig& rig) {
   const char* folder = std::getenv("PREDICTOR_FAULTS");
   if (folder == nullptr || OnlyFault() != 0) return "";
@@ -133,8 +133,8 @@ TEST_P(Faults, AreSeenInTimeAndStopTheArmsTogetherSoak) {
   ExpectAudited(runs);
 }
 
-// Two faults at once, or one during the stop that the other caused: the arms must come to rest and
-// stay there.
+// Two faults occur at once, or one occurs during the stop that the other caused. The arms must come
+// to rest and stay at rest.
 TEST_P(Faults, InPairsEndAtRestSoak) {
   const FaultRig& rig = GetParam();
   const FaultRuns runs = RunFaultPairs(rig, Pairs(), KeptIn("pairs", rig));
@@ -155,8 +155,8 @@ TEST_P(Faults, InPairsEndAtRestSoak) {
               numbers.size());
 }
 
-// Every fault that stops the run or warns has expected words, and every entry of expected words
-// belongs to a fault.
+// Each fault that stops the run or causes a warning must have expected words, and all expected
+// words must belong to a fault.
 TEST(FaultWords, AreRequiredAfterEachReportedFault) {
   std::set<const FaultWords*> used;
   for (const Fault& fault : predictor::Faults()) {
@@ -171,7 +171,7 @@ TEST(FaultWords, AreRequiredAfterEachReportedFault) {
     EXPECT_TRUE(used.contains(&words)) << words.number << " " << words.fault;
 }
 
-// The judge must not accept silence, other words, or the name of the other hand.
+// The judge must not accept silence, other words, or the name of the wrong hand.
 TEST(FaultWords, AreThoseOfTheFaultAndOfItsHandFirst) {
   const auto& all = predictor::Faults();
   const auto silent = std::find_if(all.begin(), all.end(), [](const Fault& fault) {
@@ -197,8 +197,8 @@ TEST(FaultWords, AreThoseOfTheFaultAndOfItsHandFirst) {
   EXPECT_FALSE(well("", 0));
 }
 
-// Every pair of the numbers 1 to 33 must occur on some rig, except for faults that are refused
-// before the run or that a run cannot detect.
+// Each pair of the numbers 1 to 33 must occur on some rig. Faults that are refused before the run
+// or that a run cannot detect are excepted.
 TEST(FaultPairs, AreOfAllNumbersThatCanComeTogether) {
   const std::set<int> never = {14, 32, 33};  // versions; the wall clock; real-time priority
   std::set<std::pair<int, int>> together;
@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(faults, Faults, testing::ValuesIn(FaultRigs()),
                            return name;
                          });
 
-// For debugging: PREDICTOR_TRACE="rig/fault/seed" prints every tick of the stop.
+// For debugging, PREDICTOR_TRACE="rig/fault/seed" prints every tick of the stop.
 TEST(Fault, DISABLED_Trace) {
   const char* text = std::getenv("PREDICTOR_TRACE");
   ASSERT_NE(text, nullptr);
@@ -274,7 +274,7 @@ TEST(Fault, DISABLED_Trace) {
     }
 }
 
-// If the loop hangs, the controllers stop the arms on their own.
+// If the loop hangs, the controllers must stop the arms on their own.
 TEST(Loop, ThatHangsStopsTheArms) {
   BenchOptions options;
   options.scenario = PREDICTOR_SOURCE_DIR "/scenarios/dual_ur5.yaml";

@@ -51,7 +51,7 @@ void Push(Bench& bench, int hand, double force) {
   bench.rig().Disturb(hand, JointVector(), F);
 }
 
-// Replaces the numbers at one place in the packages from an arm.
+// Replaces the numbers at one place in an arm's packages.
 using Change = std::function<double(double)>;
 
 // If two faults change the same bytes, both take effect.
@@ -62,8 +62,8 @@ void Corrupt(WireFaults* wire, std::function<void(Bytes*)> change) {
   };
 }
 
-// Each package of a UR arrives separately. place: offset of the number from the beginning of the
-// package or, if negative, from its end.
+// Each package of a UR arrives separately. `place` is the offset of the number from the beginning
+// of the package or, if negative, from its end.
 void ChangeUr(WireFaults* wire, int place, const Change& change) {
   Corrupt(wire, [place, change](Bytes* bytes) {
     if (bytes->size() < 100 || (*bytes)[2] != std::byte{'U'}) return;
@@ -94,8 +94,8 @@ void CutEachTenth(WireFaults* wire) {
   });
 }
 
-// The time or the state numbers restart from zero, as after a restart of the arm, but on the same
-// connection.
+// The time or the state numbers begin again at zero, as after a restart of the arm, but the
+// connection stays the same.
 void RestartUrClock(WireFaults* wire) {
   ChangeUr(wire, kTimeOfUr, [begun = -1.0](double time) mutable {
     if (begun < 0) begun = time;
@@ -116,7 +116,7 @@ double Jump(double q) { return q + 0.2; }
 double NotANumber(double) { return std::numeric_limits<double>::quiet_NaN(); }
 double Huge(double) { return 1e6; }
 
-// New packages contain the same reading again and again.
+// The same reading is repeated in new packages.
 void FreezeWrench(WireFaults* wire, std::size_t before_end, std::size_t bytes_of_it) {
   Corrupt(wire, [=, first = Bytes()](Bytes* bytes) mutable {
     if (bytes->size() < 100) return;
@@ -127,7 +127,7 @@ void FreezeWrench(WireFaults* wire, std::size_t before_end, std::size_t bytes_of
   });
 }
 
-// A controller that follows joint velocities faster than the scenario's.
+// Makes a controller follow joint velocities faster than the scenario's arm does.
 void MakeQuick(std::optional<ArmSpec>* arm) {
   if (*arm) (*arm)->loop = {60, 0.9, 0.001};
 }
@@ -157,7 +157,7 @@ void Hinder(Bench& b, int hand) {
   b.Pass(0.2);
 }
 
-// Power-off is requested in the tick after 20 ms of silence.
+// The program requests power-off in the tick after 20 ms of silence.
 Fault Silent(Fault fault) {
   fault.off = 21;
   return fault;
@@ -168,13 +168,14 @@ Fault Late(Fault fault) {
   return fault;
 }
 
-// The reported bound includes the age limit of 5 ms, two ticks, and a cycle of the controller. A
-// Franka itself ends a motion after 20 ms without commands.
+// Each bound includes the age limit of 5 ms, two ticks, and a cycle of the controller. A Franka
+// itself ends a motion after 20 ms without commands.
 std::vector<Fault> FaultsOfWires() {
   using enum Carrier;
   using enum Expect;
   return {
-      // At a tenth, five in a row would be lost in one of a hundred runs, which would stop it.
+      // If one datagram in ten were lost, five in a row would be lost in one run of a hundred. That
+      // would stop the run.
       {1, "a twentieth of the sensor's datagrams lost", kNetFt, kWarned, 0,
        ToSensorsWire([](WireFaults* w) { w->loss = 0.05; })},
       {1, "a twentieth of the arm's states lost", kFranka, kWarned, 0,
@@ -204,16 +205,16 @@ std::vector<Fault> FaultsOfWires() {
       Silent({6, "the arm's last package for ever", kUr, kPowerOff, 9, ToArm("repeat")}),
       Silent({6, "the arm's last state for ever", kFranka, kPowerOff, 9, ToArm("replay state"),
               false}),
-      // After a restart of its counter, a device looks old until the counter has passed its
-      // previous value, so this is equivalent to silence.
+      // After a device restarts its counter, its readings look old until the counter has passed its
+      // previous value. The fault is therefore equivalent to silence.
       Silent({7, "a sensor restarts its numbering", kNetFt, kPowerOff, 9, ToSensor("restart")}),
       Silent({7, "an arm restarts its clock", kUr, kPowerOff, 9, ToWire(RestartUrClock)}),
       Silent({7, "an arm restarts its numbering", kFranka, kPowerOff, 9,
               ToWire(RestartFrankaNumbering), false}),
       Silent({8, "sensor's datagrams cut", kNetFt, kPowerOff, 9, ToSensor("short")}),
       // The bench's network counts these datagrams; sockets_test.cpp shows that a socket discards
-      // and counts them. Here the operator must see a warning with the count, and the run
-      // continues.
+      // and counts them. Here the operator must see a warning with the count, and the run must
+      // continue.
       {8, "datagrams from another sender", kNetFt, kWarned, 0,
        ToSensorsWire([](WireFaults* w) { w->spoofed = true; })},
       {8, "a tenth of the sensor's datagrams cut", kNetFt, kWarned, 0,
@@ -241,7 +242,7 @@ std::vector<Fault> FaultsOfDevices() {
       {13, "user stop of one arm", kFranka, kPowerOff, 2, ToArm("user stop"), false},
       Late({15, "an arm that lags by another 10 ms, stopped", kArm, kHold, 1, AskToStop, true,
             Hinder<10>}),
-      // The position of the arm is unknown, so it must not be held.
+      // The position of the arm is unknown, so the program must not hold it.
       Silent({17, "joints that are no numbers any more", kUr, kPowerOff, 4, ToArm("not a number")}),
       {17, "arm's own wrench not a number", kUrWrench, kPowerOff, 3,
        ToWire([](WireFaults* w) { ChangeUr(w, kForceOfUr, NotANumber); })},
@@ -256,7 +257,7 @@ std::vector<Fault> FaultsOfDevices() {
       {19, "arm's own wrench frozen", kFrankaWrench, kHold, 53, ToWire([](WireFaults* w) {
          FreezeWrench(w, sizeof(fci::Research3State) - kForceOfFranka, 6 * sizeof(float));
        })},
-      // Two ticks, plus the time until the sensor's next reading.
+      // The bound is two ticks plus the time until the sensor's next reading.
       {21, "60 N on a handle, own sensor", kUrWrench, kHold, 4,
        [](Bench& b, int hand) { Push(b, hand, 60); }},
       {21, "60 N on a handle, own estimate", kFrankaWrench, kHold, 3,
@@ -288,8 +289,8 @@ std::vector<Fault> FaultsOfTheLoop() {
        [](Bench&, int) { BreakQp(QpFault::kIterationLimit); }},
       {30, "one deadline missed", kLoop, kContinues, 0, [](Bench& b, int) { b.Tick(1); }},
       {30, "three deadlines missed", kLoop, kHold, 1, [](Bench& b, int) { b.Tick(3); }},
-      // Single missed deadlines, 2 % of those in a second. The limit of 1 % is reached after half a
-      // second.
+      // Single deadlines are missed, 2 % of all deadlines in a second. The limit of 1 % is reached
+      // after half a second.
       {30, "each fiftieth deadline missed", kLoop, kHold, 1300,
        [](Bench& b, int) {
          for (int k = 0; k < 1300 && b.emulator().state() == RunState::kRun; ++k)
@@ -298,8 +299,8 @@ std::vector<Fault> FaultsOfTheLoop() {
   };
 }
 
-// The text from the catalogue without its first letter, which is a capital at the start of a
-// sentence.
+// Returns the text from the catalogue without its first letter, which is a capital at the start of
+// a sentence.
 std::string Cause(StopCause cause, Quantity quantity = Quantity::kNone) {
   return StopCauseText(cause, quantity).substr(1);
 }

@@ -31,9 +31,9 @@ enum class Expect {
   kAnyEnd,          // any orderly end, with or without a run
 };
 
-// The device to which a fault applies. Rigs without it are skipped.
+// The device to which a fault applies. A rig without the device skips the fault.
 enum class Carrier { kLoop, kArm, kUr, kFranka, kNetFt, kUrWrench, kFrankaWrench };
-// The hands of a rig that have this device.
+// Returns the hands of a rig that have this device.
 std::vector<int> HandsWith(Carrier carrier, const FaultRig& rig);
 
 // The result of a run with a fault. It is trivially copyable, because a child process sends it.
@@ -65,48 +65,51 @@ struct Fault {
   const char* name;
   Carrier carrier;
   Expect expect;
-  int bound;  // most ticks from fault to decision, with the device's cycle
+  // maximum number of ticks from the fault to the decision, including the device's cycle
+  int bound;
   // Injects the fault into a run.
   std::function<void(Bench&, int hand)> inject;
-  // Whether the handles must keep their relative pose. False if an arm no longer receives commands
-  // or stops in its own way.
+  // Whether the handles must keep their relative pose. This is false if an arm no longer receives
+  // commands or stops in its own way.
   bool together = true;
-  // Creates a condition that lasts for a while before the fault.
+  // Creates a condition that lasts for a while before the fault is injected.
   std::function<void(Bench&, int hand)> before = nullptr;
   // Replaces both the injection and the judgement.
   std::function<void(Bench&, int hand, FaultOutcome*)> upon = nullptr;
-  // A fault without a shared run: performs everything. audit: file for the commands.
+  // Performs everything for a fault that shares no run with others. audit: the file for the
+  // commands.
   std::function<void(const FaultRig&, std::uint64_t seed, const std::string& audit, FaultOutcome*)>
       alone = nullptr;
-  // Most ticks from the fault to the power-off request, if that comes later than the decision to
-  // stop.
+  // The maximum number of ticks from the fault to the power-off request, if that comes later than
+  // the decision to stop.
   int off = 0;
   // Additional lag of an arm beyond its loop's model [s].
   double lag = 0;
 
-  // The following members define how the fault takes part in pairs if `inject` is not enough. For a
-  // run that begins with the fault: changes of the options, and of the bench before the start.
+  // The following members define how the fault takes part in pairs if `inject` is not enough.
+  // `options` is for a run that begins with the fault: it changes the options, and the bench before
+  // the start.
   std::function<void(const FaultRig&, std::uint64_t seed, BenchOptions*)> options = nullptr;
   std::function<void(Bench&, std::uint64_t seed)> begin = nullptr;
-  // During the other fault, the arms are still recovering from this one instead of running.
+  // The arms are still recovering from this fault, instead of running, when the other fault occurs.
   bool recovers = false;
-  // The loop no longer exists after this fault. Returns a function that runs every millisecond
-  // instead.
+  // Used if the loop no longer exists after this fault. Returns a function that runs every
+  // millisecond instead of the loop.
   std::function<std::function<void()>(Bench&)> gone = nullptr;
 
   bool Begins() const { return options != nullptr || begin != nullptr; }
-  // Whether this fault can be combined with another.
+  // Returns whether this fault can be combined with another.
   bool Pairs() const { return inject != nullptr || Begins() || gone != nullptr; }
 
   std::string ToString() const { return std::to_string(number) + " " + name; }
 };
 const std::vector<Fault>& Faults();
-// The first fault with this number whose name begins so. Throws std::logic_error if it does not
-// exist.
+// Returns the first fault with this number whose name starts with `beginning`. Throws
+// std::logic_error if there is none.
 Fault* FindFault(std::vector<Fault>* all, int number, const char* beginning);
 
-// Texts of which one must appear after a fault that warns or stops: the words for its cause, and
-// the name of its hand.
+// One of these texts must appear after a fault that causes a warning or a stop. They are the words
+// for its cause, and the name of its hand.
 struct FaultWords {
   int number;
   const char* fault;  // beginning of its name
@@ -117,11 +120,11 @@ const std::vector<FaultWords>& AllFaultWords();
 // Returns nullptr if no text is required.
 const FaultWords* WordsOf(const Fault& fault);
 
-// Whether the Frankas are as slow as in the scenario, which alternates between pairs of seeds;
-// otherwise they are quick.
+// Returns whether the Frankas are as slow as in the scenario. Pairs of seeds alternate between slow
+// and quick Frankas.
 bool HasSlowFranka(const FaultRig& rig, std::uint64_t seed);
 
-// Options for the rig. With even seeds, the handles move almost at their speed limit.
+// Returns the options for the rig. With even seeds, the handles move almost at their speed limit.
 BenchOptions OptionsOf(const FaultRig& rig, std::uint64_t seed);
 
 }  // namespace predictor

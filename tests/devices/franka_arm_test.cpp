@@ -43,8 +43,8 @@ TEST_P(FrankaDriver, FindsTheVersionAndDescribesTheArm) {
   EXPECT_FALSE(rig_.reading.fault);
 }
 
-// After a command to rest, the driver brings the arm to rest within the jerk limit. It reports
-// motion until only rest can follow, whichever commands are lost.
+// After a command to rest, the driver brings the arm to rest within the jerk limit. Whichever
+// commands are lost, it reports motion until nothing but rest can follow.
 TEST_P(FrankaDriver, IsInMotionUntilNothingButRestFollows) {
   rig_.Connect();
   EXPECT_FALSE(rig_.reading.in_motion);
@@ -95,7 +95,7 @@ TEST_P(FrankaDriver, AnArmAtFaultIsNotWaitedFor) {
   EXPECT_FALSE(rig_.reading.in_motion);
 }
 
-// Without this, a caller that waits for rest would wait forever.
+// Without this limit, a caller that waits for rest would wait forever.
 TEST_P(FrankaDriver, AnArmThatReportsMotionThoughCommandedToRestIsGivenUp) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(50));
@@ -129,7 +129,8 @@ TEST_P(FrankaDriver, MovesAsWrittenAndEndsTheMotion) {
   ASSERT_TRUE(rig_.Ticks(1010));
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kMove);
   EXPECT_NEAR((rig_.reading.v - rig_.v).norm(), 0, 1e-6);
-  // One second at that speed, minus the start: a few ms, and the ramp of v/a + a/j.
+  // The arm moves for one second at that speed, less a few milliseconds of start and the ramp of
+  // v/a + a/j.
   for (int i = 0; i < 7; ++i) {
     const double way = rig_.mechanics.sample.q[i] - start[i];
     EXPECT_NEAR(way, rig_.v[i], std::abs(rig_.v[i]) * 0.03) << i;
@@ -141,7 +142,7 @@ TEST_P(FrankaDriver, MovesAsWrittenAndEndsTheMotion) {
   // The driver answers the first state of a motion, so no command is lost.
   EXPECT_EQ(rig_.fake.lost_commands(), 0U);
   EXPECT_EQ(rig_.arm->counts().lost_commands, 0U);
-  // The second motion works in the same way.
+  // The second motion must work in the same way.
   ASSERT_TRUE(rig_.Ticks(100));
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kMove);
   ASSERT_TRUE(rig_.Ticks(200, false));
@@ -153,14 +154,14 @@ TEST_P(FrankaDriver, EndsAMotionThatWasNotYetBegun) {
   ASSERT_TRUE(rig_.Tick(true));
   ASSERT_TRUE(rig_.Ticks(50, false));
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
-  // Motion is switched on and off at random every millisecond.
+  // The test requests motion or rest at random in every millisecond.
   RandomStream random(1, "toggle");
   for (int i = 0; i < 2000; ++i) ASSERT_TRUE(rig_.Tick(random.Next() % 2 == 0)) << i;
   ASSERT_TRUE(rig_.Ticks(300, false));
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
 }
 
-// The arm has not come to rest, so its motion has not ended and need not start again.
+// The arm has not come to rest, so its motion has not ended and need not be started again.
 TEST_P(FrankaDriver, ContinuesWhenCommandedBeforeItIsAtRest) {
   rig_.Connect();
   rig_.v.setConstant(0.2);
@@ -180,7 +181,7 @@ TEST_P(FrankaDriver, StopsWithinTheLimits) {
   int ticks = 0;
   for (; rig_.mechanics.command.cwiseAbs().maxCoeff() > 1e-9 && ticks < 1000; ++ticks)
     ASSERT_TRUE(rig_.Tick());
-  // The slowest joint needs v/a + a/j with 95 % of 7.5 rad/s² or 10 rad/s², plus two ticks of
+  // The slowest joint needs v/a + a/j at 95 % of 7.5 rad/s² or 10 rad/s², plus two ticks of
   // transmission.
   const double a = 0.95 * (GetParam() == 5 ? 7.5 : 10);
   EXPECT_NEAR(1e-3 * ticks, 0.5 / a + 0.002, 0.004);
@@ -197,7 +198,7 @@ TEST_P(FrankaDriver, ANanForOneJointBrakesAllJoints) {
   EXPECT_NEAR(rig_.mechanics.command.cwiseAbs().maxCoeff(), 0, 1e-9);
 }
 
-// The arm's own control must tolerate any sequence of requests and the loss of any message.
+// The arm's own control must accept any sequence of requests and the loss of any message.
 TEST_P(FrankaDriver, IsNeverStoppedByAReflexWhateverIsAskedSoak) {
   for (long seed = 0; seed < Count(6, 400); ++seed) {
     FrankaRig rig(FrankaOfVersion(GetParam()));
@@ -216,7 +217,7 @@ TEST_P(FrankaDriver, IsNeverStoppedByAReflexWhateverIsAskedSoak) {
         rig.v[static_cast<int>(random.Next() % 7)] = kNan;
       if (random.Next() % 900 == 0) rig.v.setZero(random.Next() % 2 == 0 ? 7 : 3);
       if (rig.v.size() != 7 && random.Next() % 20 == 0) rig.v.setZero(7);
-      // Loses one kind of message at a time, for at most 19 milliseconds.
+      // Messages of one kind at a time are lost, for at most 19 milliseconds.
       if (--quiet < 0 && random.Next() % 60 == 0) {
         const auto count = std::to_string(1 + random.Next() % 9);
         const std::string what[] = {"lose states " + count,
@@ -236,7 +237,8 @@ TEST_P(FrankaDriver, IsNeverStoppedByAReflexWhateverIsAskedSoak) {
   }
 }
 
-// An independent check of the differences between commands that arrive at the arm without losses.
+// The test checks the differences between the commands that arrive at the arm without losses,
+// independently of the driver.
 TEST_P(FrankaDriver, SendsDifferencesWithinTheLimits) {
   rig_.Connect();
   const FrankaLimits& limits = FrankaLimitsOf(GetParam());
@@ -280,7 +282,7 @@ TEST_P(FrankaDriver, AfterAMissedStateDoesNotGoFaster) {
   EXPECT_EQ(rig_.arm->counts().missed_states, 1U);
 }
 
-// While some states are lost, the driver does not accelerate. Afterwards it must not jump to the
+// While states are lost, the driver does not accelerate. Afterwards it must not jump to the
 // velocity that was requested meanwhile.
 TEST_P(FrankaDriver, MakesUpWithoutALeapForHavingWaited) {
   constexpr double kRate = 0.5, kStep = kRate * 1e-3;  // [rad/s²], [rad/s]
@@ -382,8 +384,8 @@ TEST_P(FrankaDriver, DropsAndCountsInvalidStates) {
   EXPECT_EQ(rig_.arm->counts().malformed, 2U);
 }
 
-// As if one bit of a state's number were wrong: that state is discarded, and later states still
-// count.
+// A single bit of a state's number is wrong. The driver must discard that state and use the later
+// ones.
 TEST_P(FrankaDriver, DropsAStateWhoseNumberLeaps) {
   FrankaRig rig(FrankaOfVersion(GetParam()));
   rig.Connect();
@@ -410,7 +412,7 @@ TEST_P(FrankaDriver, CountsOnWhereTheArmsNumbersWrap) {
   EXPECT_EQ(rig.arm->counts().missed_states + rig.arm->counts().old_states, 0U);
 }
 
-// The result is the handle's wrench on the sensor, for any pose of the sensor in the flange.
+// The result must be the handle's wrench on the sensor, for any pose of the sensor in the flange.
 TEST_P(FrankaDriver, TurnsTheArmsEstimateIntoTheHandlesWrench) {
   RandomStream random(4, "frames");
   for (int round = 0; round < 20; ++round) {

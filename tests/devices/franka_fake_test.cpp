@@ -24,7 +24,7 @@ class Client {
     while (state_.mode != fci::RobotMode::kMove) Pass();
   }
 
-  // Answers the last state and receives the next one.
+  // Answers the last state and waits for the next one.
   void Command(const fci::Joints& v, bool finished = false) {
     fci::CommandBuffer buffer;
     datagrams_->Send(fci::EncodeVelocity(version_, state_.message_id, v, finished, &buffer));
@@ -113,7 +113,7 @@ TEST_P(FakeFrankaControl, StopsAtAJerkBeyondItsLimit) {
 }
 
 TEST_P(FakeFrankaControl, StopsAtItsVelocityLimit) {
-  // Starts in the middle of the range.
+  // The motion starts in the middle of the range.
   const double a = 0.4 * limit(0).acceleration;
   double v = 0;
   while (v + a * 1e-3 < limit(0).velocity) client_.Command(0, v += a * 1e-3);
@@ -125,7 +125,8 @@ TEST_P(FakeFrankaControl, StopsAtItsVelocityLimit) {
 TEST_P(FakeFrankaControl, StopsAtTheEndOfAJointsRange) {
   double v = 0;
   for (int i = 0; i < 8000 && client_.state().mode == fci::RobotMode::kMove; ++i) {
-    // Moves as fast as the limit near the end of the range permits, until the arm exceeds it.
+    // The arm moves as fast as the limit near the end of the range permits, until it exceeds the
+    // limit.
     const double fastest = 0.9 * std::min(0.3, limit(1).FastestDown(client_.state().q_d[1] - 0.05));
     v = std::max(-std::max(fastest, 0.02), v - 1e-3);
     client_.Command(1, v);

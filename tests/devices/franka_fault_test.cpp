@@ -1,4 +1,4 @@
-// Faults of a Franka arm, and the messages about them.
+// Tests faults of a Franka arm and the messages about them.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -37,8 +37,8 @@ class FrankaFault : public testing::TestWithParam<std::uint16_t> {
     EXPECT_FALSE(rig_.Tick(false));
     ExpectMessage(words);
   }
-  // The fault persists in the results of Read and Write and in the reading, and no more commands
-  // are sent.
+  // The fault must persist in the results of Read and Write and in the reading, and the driver must
+  // send no more commands.
   void ExpectMessage(const std::string& words) {
     EXPECT_TRUE(Contains(rig_.arm->Trouble(), words)) << rig_.arm->Trouble();
     EXPECT_TRUE(Contains(rig_.arm->Trouble(), "192.0.2.10:1337 ")) << rig_.arm->Trouble();
@@ -92,8 +92,8 @@ TEST_P(FrankaFault, GuidingByHand) {
   ExpectMessage("");
 }
 
-// If a person has pressed the stop button or the state of the arm is unknown, it must not be left
-// holding. If the arm reports a fault and stands on its own, it may be.
+// If a person has pressed the stop button or the state of the arm is unknown, the arm must not
+// remain powered. If it reports a fault and stands on its own, it may remain powered.
 TEST_P(FrankaFault, EndsWithoutPowerWhereItMustNotBeLeftHolding) {
   const std::vector<std::pair<const char*, bool>> ends = {
       {"user stop", true}, {"emergency stop", true},       {"drop link", true}, {"freeze", true},
@@ -142,7 +142,7 @@ TEST_P(FrankaFault, MotionThatEndsWithoutAnAnswer) {
   ExpectMessage("aborted the motion");
 }
 
-// This holds even if the arm becomes ready again.
+// The fault remains latched even if the arm becomes ready again.
 TEST_P(FrankaFault, NoMotionBeginsAfterAFault) {
   rig_.Connect();
   ASSERT_TRUE(rig_.fake.Do("reflex joint_reflex"));
@@ -176,7 +176,7 @@ TEST_P(FrankaFault, Silence) {
   EXPECT_NEAR(rig_.reading.age, 0.070, 0.002);
 }
 
-// The arm receives no answers either and stops on its own.
+// The arm receives no answers either, so it stops on its own.
 TEST_P(FrankaFault, LostStatesInMotion) {
   EXPECT_LE(TicksUntilReported("lose states 1000"), 22);
   ExpectMessage("stopped by a reflex");
@@ -223,14 +223,14 @@ TEST_P(FrankaFault, MotionThatEndsUnasked) {
 TEST_P(FrankaFault, RefusalToMove) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(10, false));
-  // The user stop is pressed between the last state and the request.
+  // The person presses the user stop between the last state and the request.
   ASSERT_TRUE(rig_.fake.Do("lose states 3"));
   ASSERT_TRUE(rig_.fake.Do("user stop"));
   EXPECT_FALSE(rig_.Ticks(3));
   ExpectMessage("refuses to move in its current mode");
 }
 
-// The driver must not allocate memory in a tick, either in motion or after a fault.
+// The driver must not allocate memory in a tick, neither in motion nor after a fault.
 TEST_P(FrankaFault, TakesNothingFromTheHeap) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   for (const char* what : {"lose states 3", "repeat state", "cut state", "lose commands 4",
@@ -261,7 +261,7 @@ INSTANTIATE_TEST_SUITE_P(Versions, FrankaFault,
                          testing::Values(fci::kPandaVersion, fci::kResearch3Version),
                          [](const auto& version) { return ControllerName(version.param); });
 
-// The error message if the arm cannot be connected.
+// Returns the error message if the arm cannot be connected.
 std::string Refusal(FrankaRig* rig, const FrankaOptions& options) {
   try {
     ConnectFranka(options, &rig->network);

@@ -16,7 +16,7 @@ struct Field {
   const char* name;
   int count;
 };
-// In the order of research_interface/robot/rbk_types.h, up to the modes.
+// The fields have the order of research_interface/robot/rbk_types.h, up to the modes.
 const std::vector<Field> kSignals = {{"O_T_EE", 16},
                                      {"O_T_EE_d", 16},
                                      {"F_T_EE", 16},
@@ -57,7 +57,7 @@ const std::vector<Field> kSignals = {{"O_T_EE", 16},
                                      {"theta", 7},
                                      {"dtheta", 7}};
 
-// Offset of a field, after the message id and all earlier fields.
+// Returns the offset of a field, after the message id and all earlier fields.
 std::size_t Place(const std::string& name, std::size_t real) {
   std::size_t at = 8;
   for (const Field& field : kSignals) {
@@ -73,7 +73,7 @@ struct Layout {
 };
 constexpr Layout kLayouts[] = {{5, 2373, 8, 0}, {10, 1233, 4, 0}, {10, 1377, 4, 36}};
 
-// A state whose numbers are written individually at their offsets.
+// A state whose numbers are written one by one at their offsets.
 class Written {
  public:
   explicit Written(const Layout& layout) : layout_(layout), bytes_(layout.size) {
@@ -106,7 +106,7 @@ class Written {
 };
 
 TEST(FrankaPackets, EndWhereTheirSizesSay) {
-  // Two modes, two lists of 41 errors, one mode, and the success rate.
+  // The fields end with two modes, two lists of 41 errors, one mode, and the success rate.
   for (const Layout& l : kLayouts) {
     EXPECT_EQ(Place("end", l.real) + 4 * l.accelerometers + 2 + 82 + 1 + l.real, l.size);
     EXPECT_TRUE(IsStateSize(l.version, l.size));
@@ -226,7 +226,7 @@ TEST(FrankaState, HasNoFlangeIfItsFramesAreInvalid) {
     }
 }
 
-// Arbitrary bytes are at worst refused. (The sanitizers check the memory accesses.)
+// Arbitrary bytes must be either read or refused. The sanitizers check the memory accesses.
 TEST(FrankaState, OfAnyBytesIsReadOrRefused) {
   RandomStream random(5, "states");
   for (int round = 0; round < 2000; ++round) {
@@ -255,8 +255,8 @@ TEST(FrankaCommand, HoldsVelocitiesAndTheStateItAnswers) {
   }
 }
 
-// The bytes of pylibfranka 0.21.3 when it connects to an emulator, except for the two bytes of the
-// port: u32 command, u32 id, u32 size, u16 version, u16 port.
+// These are the bytes of pylibfranka 0.21.3 when it connects to an emulator: u32 command, u32 id,
+// u32 size, u16 version, u16 port. The two bytes of the port are not compared.
 TEST(FrankaRequest, ToConnectIsThatOfLibfranka) {
   RequestBuffer buffer;
   const auto bytes = EncodeConnect(10, 0, 0x1234, &buffer);

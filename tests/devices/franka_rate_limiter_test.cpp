@@ -40,8 +40,8 @@ double AnyVelocity(RandomStream* random) {
   }
 }
 
-// Computes the differences between commands independently and compares them with separately defined
-// limits.
+// Computes the differences between commands independently of the limiter and compares them with
+// separately defined limits.
 struct Differences {
   const FrankaLimits& limits;
   Joints q{}, v{}, a{};
@@ -105,7 +105,8 @@ TEST_P(FrankaRateLimiter, SendsNothingBeyondTheLimitsWhateverIsAskedSoak) {
 }
 
 // At any time, the robot may miss up to 19 milliseconds of commands and continue with constant
-// acceleration. It must then still be within its limits, and the next command must be permitted.
+// acceleration. It must then still be within its limits, and the next command must be a permitted
+// one.
 TEST_P(FrankaRateLimiter, LeavesRoomForCoastingSoak) {
   for (long seed = 0; seed < Count(20, 1000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "coasting");
@@ -117,7 +118,7 @@ TEST_P(FrankaRateLimiter, LeavesRoomForCoastingSoak) {
     for (int tick = 0; tick < 3000; ++tick) {
       for (double& v : asked)
         if (random.Next() % 200 == 0) v = AnyVelocity(&random);
-      // At most one gap in ten milliseconds.
+      // There is at most one gap in ten milliseconds.
       if (++since > 10 && coasting == 0 && random.Next() % 50 == 0)
         coasting = static_cast<int>(1 + random.Next() % 19);
       if (coasting > 0) {
@@ -139,8 +140,7 @@ TEST_P(FrankaRateLimiter, LeavesRoomForCoastingSoak) {
   }
 }
 
-// The duration of a velocity ramp within the limits is v/a + a/j, if the acceleration limit is
-// reached.
+// A velocity ramp within the limits takes v/a + a/j if it reaches the acceleration limit.
 TEST_P(FrankaRateLimiter, ReachesAndLeavesAVelocityInTheTimeThatTheLimitsAllow) {
   for (std::size_t i = 0; i < kJoints; ++i) {
     RateLimiter limiter = Limiter();
@@ -155,7 +155,7 @@ TEST_P(FrankaRateLimiter, ReachesAndLeavesAVelocityInTheTimeThatTheLimitsAllow) 
       int ticks = 0;
       for (; limiter.v()[i] != goal && ticks < 1000; ++ticks) {
         limiter.Next(asked, q, false);
-        // The velocity never overshoots the request.
+        // The velocity must never overshoot the request.
         EXPECT_LE(limiter.v()[i], std::max(start, goal) + 1e-12);
         EXPECT_GE(limiter.v()[i], std::min(start, goal) - 1e-12);
       }
@@ -166,7 +166,7 @@ TEST_P(FrankaRateLimiter, ReachesAndLeavesAVelocityInTheTimeThatTheLimitsAllow) 
   }
 }
 
-// Velocities that the guard permits (accelerations up to half the limits) pass unchanged.
+// Velocities that the guard permits (accelerations up to half the limits) must pass unchanged.
 TEST_P(FrankaRateLimiter, FollowsWhatIsSmoothWithoutDelay) {
   RateLimiter limiter = Limiter();
   Joints q{}, asked{};
@@ -193,7 +193,7 @@ TEST_P(FrankaRateLimiter, IsNotMadeFasterWhenSomethingWasMissed) {
   const Joints before = limiter.v();
   for (int tick = 0; tick < 20; ++tick) limiter.Next(asked, q, true);
   for (std::size_t i = 0; i < kJoints; ++i) EXPECT_EQ(limiter.v()[i], before[i]) << i;
-  // A stop is always possible.
+  // The limiter can always stop the joint.
   asked.fill(0);
   for (int tick = 0; tick < 200; ++tick) limiter.Next(asked, q, true);
   EXPECT_TRUE(limiter.AtRest());
@@ -206,7 +206,7 @@ INSTANTIATE_TEST_SUITE_P(Versions, FrankaRateLimiter,
 TEST(FrankaRateLimiterFraction, IsAPartOfTheLimits) {
   for (const double fraction : {0.0, -1.0, 1.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW(RateLimiter(PublishedLimits(5), fraction), std::invalid_argument);
-  // Far from the ends of the range, with requests above the limit.
+  // The joints are far from the ends of their ranges, and the requests exceed the limits.
   for (const std::uint16_t version : {kPandaVersion, kResearch3Version}) {
     const JointLimits& published = PublishedLimits(version);
     for (const double fraction : {0.3, 0.6}) {
@@ -227,8 +227,8 @@ TEST(FrankaRateLimiterFraction, IsAPartOfTheLimits) {
   }
 }
 
-// Leads from the robot's actual motion back to the requested one without a step in velocity or
-// acceleration.
+// The way leads from the robot's actual motion back to the requested one, without a step in
+// velocity or acceleration.
 TEST(FrankaWayBack, BeginsWithTheDifferenceAndEndsWithoutOne) {
   Joints v{}, a{};
   v[0] = 0.02, a[0] = 0.5;
@@ -242,7 +242,7 @@ TEST(FrankaWayBack, BeginsWithTheDifferenceAndEndsWithoutOne) {
     const Joints now = way_back.Next();
     for (std::size_t i = 0; i < 2; ++i) {
       const double now_rate = (now[i] - last[i]) / kDt;
-      // Bound from the initial values of the cubic's second derivative.
+      // The bound follows from the initial values of the cubic's second derivative.
       const double most = 6 * std::abs(v[i]) / (WayBack::kTime * WayBack::kTime) +
                           4 * std::abs(a[i]) / WayBack::kTime;
       EXPECT_LE(std::abs(now_rate - rate[i]), 1.01 * most * kDt) << tick;

@@ -13,7 +13,7 @@
 
 namespace predictor {
 
-// Name of the controller with this protocol version, as a part of test names.
+// Returns the name of the controller with this protocol version, for test names.
 inline std::string ControllerName(std::uint16_t version) {
   return version == fci::kPandaVersion ? "Panda" : "Research3";
 }
@@ -26,7 +26,7 @@ class FrankaRig {
     mechanics.sample.v.setZero(7);
     mechanics.sample.F_S_raw << 1, 2, 3, 0.1, 0.2, 0.3;
     network.Add(kHost, &fake, &mechanics);
-    // The joints follow commands instantly.
+    // The joints follow commands without delay.
     network.SetWorld([this] {
       mechanics.sample.q += 1e-3 * mechanics.command;
       mechanics.sample.v = mechanics.command;
@@ -45,7 +45,7 @@ class FrankaRig {
     Tick(false);
   }
 
-  // Performs one tick: a millisecond, then Read and Write. Returns whether both succeeded.
+  // Performs one tick, which takes a millisecond: Read, then Write. Returns whether both succeeded.
   bool Tick(bool motion = true) {
     network.Pass(1e-3);
     read = arm->Read(&reading);

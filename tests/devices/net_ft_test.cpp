@@ -22,7 +22,7 @@ std::vector<int> Numbers(std::span<const std::byte> bytes) {
   return numbers;
 }
 
-// The request that starts an endless stream, as printed in ATI's manual.
+// The expected request, which starts an endless stream, is printed in ATI's manual.
 TEST(Rdt, RequestIsAsInTheManual) {
   EXPECT_EQ(Numbers(rdt::Encode({rdt::Command::kStream, 0})),
             (std::vector<int>{0x12, 0x34, 0, 2, 0, 0, 0, 0}));
@@ -71,7 +71,7 @@ class NetFtTest : public testing::Test {
     return ConnectNetFt(options, &network_);
   }
 
-  // The error message of a failed connection.
+  // Returns the error message of a failed connection.
   std::string Refusal(const std::string& trouble, const FakeOptions& options = {}) {
     fake_ = MakeFakeNetFt(options);
     EXPECT_TRUE(trouble.empty() || fake_->Do(trouble));
@@ -130,7 +130,7 @@ TEST_F(NetFtTest, AgesWhenNothingComes) {
   }
 }
 
-// Readings that arrive after newer ones are old and must be ignored.
+// Readings that arrive after newer ones are outdated and must be ignored.
 TEST_F(NetFtTest, DoesNotGoBack) {
   const auto sensor = Connect();
   network_.Pass(0.020);
@@ -146,7 +146,7 @@ TEST_F(NetFtTest, DoesNotGoBack) {
   network_.Pass(0.030);
   EXPECT_TRUE(sensor->Read(&after).ok());
   EXPECT_GT(after.sequence, before.sequence);
-  EXPECT_EQ(sensor->Trouble(), "");  // the trouble has passed
+  EXPECT_EQ(sensor->Trouble(), "");  // the fault has passed
 }
 
 TEST_F(NetFtTest, ReportsARestartedCounter) {
@@ -167,8 +167,9 @@ TEST_F(NetFtTest, ReportsARestartedCounter) {
   EXPECT_NE(sensor->Trouble().find("Restart this program"), std::string::npos);
 }
 
-// A record whose number the sensor cannot have reached is discarded, because it would make all
-// later records look old. If the sensor continues to send such numbers, its counter has restarted.
+// The driver must discard a record whose number the sensor cannot have reached, because it would
+// make all later records look old. If the sensor continues with such numbers, its counter has
+// restarted.
 TEST_F(NetFtTest, ANumberFarAheadMakesNoOtherOld) {
   for (const std::uint32_t jump : {100U, 1'000'000U, 0x4000'0000U, 0x7fff'ffffU}) {
     fake_ = MakeFakeNetFt({});
@@ -199,8 +200,8 @@ TEST_F(NetFtTest, ANumberFarAheadMakesNoOtherOld) {
   }
 }
 
-// The largest jump that still counts as a loss delays the readings by some milliseconds, but does
-// not lose the sensor.
+// The largest jump that still counts as a loss delays the readings by some milliseconds. The driver
+// does not give up the sensor.
 TEST_F(NetFtTest, ANumberSomewhatAheadCostsMilliseconds) {
   fake_ = MakeFakeNetFt({});
   network_.Add(kHost, fake_.get(), &mechanics_);
@@ -226,7 +227,7 @@ TEST_F(NetFtTest, ANumberSomewhatAheadCostsMilliseconds) {
   EXPECT_EQ(reading.link.taken, taken + 12);
 }
 
-// After a disconnected cable, the numbers continue at the sensor's current value.
+// After a cable was disconnected, the numbers continue at the sensor's current value.
 TEST_F(NetFtTest, ARecordAheadIsAcceptedAfterSilence) {
   const auto sensor = Connect();
   WrenchReading reading;
@@ -244,7 +245,7 @@ TEST_F(NetFtTest, ARecordAheadIsAcceptedAfterSilence) {
   EXPECT_LE(reading.age, 0.001);
 }
 
-// A repeated reading means a frozen sensor, not a restarted counter.
+// A repeated reading means that the sensor is frozen, not that its counter has restarted.
 TEST_F(NetFtTest, OneThatIsGivenAgainIsNotANew) {
   const auto sensor = Connect();
   WrenchReading reading;
@@ -272,7 +273,7 @@ TEST_F(NetFtTest, CountsWhatIsLostAndWhatItRefuses) {
   EXPECT_EQ(after.link.refused - before.link.refused, 10U);
 }
 
-// While other devices are being connected, nothing reads the socket. Its queue holds about 270
+// No one reads the socket while other devices are being connected. Its queue holds about 270
 // readings, and newer ones are dropped.
 TEST_F(NetFtTest, AfterAPauseReadsTheWholeBuffer) {
   const auto sensor = Connect();
@@ -325,7 +326,7 @@ TEST_F(NetFtTest, AQueueThatGrowsSlowlyIsSeen) {
       wire.Of(kHost)->delay = delay = kGrowth * k;
       network_.Pass(0.001);
       ASSERT_TRUE(sensor->Read(&reading).ok());
-      // The newest reading was sent, and its delay determined, some milliseconds ago.
+      // The newest reading was sent some milliseconds ago, and its delay was determined then.
       EXPECT_GE(reading.age, kGrowth * (k - 10) - kRateError * 1e-3 * k) << k;
       EXPECT_LE(reading.age, delay + 0.002) << k;
       if (reading.age > 0.005) stale_after = k;
@@ -353,7 +354,7 @@ TEST_F(NetFtTest, ADuplicateIsNotANewReading) {
   EXPECT_EQ(after.link.lost, 0u);
 }
 
-// Small differences between clocks are normal; larger ones are reported explicitly.
+// Small differences between clocks are normal. The driver must report larger ones.
 TEST_F(NetFtTest, ARateThatDiffersFromTheFileIsReported) {
   for (const double rate : {1000.5, 999.0, 990.0}) {
     const auto sensor = Connect({{"rate", std::to_string(rate)}});
@@ -429,7 +430,7 @@ TEST_F(NetFtTest, RefusesRatesThatNoSensorSendsAt) {
   EXPECT_EQ(refusal(NetFtMake::kAti, 7000), "");
 }
 
-// A request that is lost is repeated, and the sensor then sends at the requested rate.
+// The driver repeats a lost request, and the sensor then sends at the requested rate.
 TEST_F(NetFtTest, RepeatsALostRequest) {
   fake_ = MakeFakeNetFt({{"onrobot", ""}});
   network_.Add(kHost, fake_.get(), &mechanics_);

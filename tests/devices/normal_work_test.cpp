@@ -1,4 +1,4 @@
-// Normal work of people with the real drivers must cause no warnings and no stops. The detector for
+// Normal work of people with the real drivers must cause no warnings and no stops. The detector of
 // handles that run away monitors real sensors only, so a simulated rig cannot test this.
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@
 namespace predictor {
 namespace {
 
-// Both hands, or one, push suddenly while the box is carried slowly. The pushes are so rare that
-// they are no oscillation.
+// One hand or both push suddenly while the box is carried slowly. The pushes are so rare that they
+// do not count as an oscillation.
 void PushWhileCarrying(Scenario* s) {
   RandomStream random(s->seed, "pushes");
   std::vector<ActionSpec> script = {MakeActionSpec("grip", 0, {"duration=0.5"})};
@@ -75,9 +75,9 @@ struct Work {
   const char* kind;  // of both arms
   const char* scenario;
   void (*change)(Scenario*);
-  double busy;  // smallest value of the largest force that still counts as work [N]
-  // The defaults are a UR of the e-Series or a Research 3, with the arm's own sensor on the left
-  // and a Net F/T on the right.
+  double busy;  // if the largest force is lower [N], the person does not work
+  // By default, an arm is a UR of the e-Series or a Research 3. The left hand uses the arm's own
+  // sensor, the right hand a Net F/T.
   FakeOptions arm = {};
   std::array<const char*, kHands> sensors = {"", "net_ft"};
   FakeOptions sensor = {};
@@ -87,8 +87,8 @@ struct Work {
 
 class NormalWork : public testing::TestWithParam<Work> {};
 
-// The largest measured force of a hand in the whole run. `reported` receives the messages if there
-// is a problem.
+// Returns the largest measured force on a hand in the whole run. `reported` receives the messages
+// if there is a problem.
 double GreatestForce(const Work& work, std::uint64_t seed, std::string* reported) {
   BenchOptions options;
   options.scenario = PREDICTOR_SOURCE_DIR "/scenarios/" + std::string(work.scenario) + ".yaml";

@@ -1,4 +1,4 @@
-// Arms and sensors of different makes and sample rates form one device.
+// Combines arms and sensors of different manufacturers and sample rates into one device.
 #include "devices/real_device.h"
 
 #include <gtest/gtest.h>
@@ -117,8 +117,8 @@ TEST_F(RealDeviceTest, TakesTheWrenchOfTheSensorOrOfTheArm) {
   EXPECT_NE(device_->Describe().find("a sensor"), std::string::npos);
 }
 
-// Between samples, the joints are extrapolated with their command, so there is no step when a
-// sample arrives.
+// Between samples, the device extrapolates the joints with their command, so a new sample causes no
+// step.
 TEST_F(RealDeviceTest, JointsAreExtrapolatedBetweenSamples) {
   ASSERT_TRUE(device_->Write(Command(RunState::kRun, 0.2)).ok());
   DeviceSample sample;
@@ -141,7 +141,7 @@ TEST_F(RealDeviceTest, JointsAreWhereTheyWereBeforeTheFirstCommand) {
   EXPECT_EQ(sample.arms[0].q, said_[0].reading.q);
 }
 
-// The monitor uses these values.
+// The monitor uses the values that this test checks.
 TEST_F(RealDeviceTest, ReportsAgesAndWhatIsBeyondItsRange) {
   said_[0].reading.age = 0.003;
   said_[1].reading.age = 0.004;
@@ -177,7 +177,7 @@ TEST_F(RealDeviceTest, NamesTheHandWhoseSensorHasTrouble) {
   EXPECT_EQ(status.hand, 1);
 }
 
-// The first fault is reported, and the most severe one determines how the stop ends.
+// The device reports the first fault, but the most severe one determines how the stop ends.
 TEST_F(RealDeviceTest, EndsWithoutPowerIfAnyOfThemMustNotBeLeftHolding) {
   const Status holds{StopCause::kDevice};
   Status ends = holds;
@@ -203,7 +203,7 @@ TEST_F(RealDeviceTest, ReportsWhichOfArmAndSensorIsSilent) {
   outside_.age = 0.051;
   EXPECT_TRUE(reported().starts_with("right: the sensor, a sensor, no longer sends new data"))
       << reported();
-  said_[1].reading.age = 0.051;  // both are silent: the arm comes first
+  said_[1].reading.age = 0.051;  // if both are silent, the arm is reported first
   EXPECT_TRUE(reported().starts_with("right: the arm, an arm, no longer sends new data"))
       << reported();
   outside_.age = said_[1].reading.age = 0.049;
@@ -211,7 +211,7 @@ TEST_F(RealDeviceTest, ReportsWhichOfArmAndSensorIsSilent) {
   said_[0].reading.wrench.age = 0.051;
   EXPECT_TRUE(reported().starts_with("left: the arm, an arm, no longer sends a wrench"))
       << reported();
-  // A driver that reports its own fault needs no additional words.
+  // If a driver reports its own fault, the device adds nothing to the message.
   said_[0].status = {StopCause::kDevice};
   said_[0].reading.age = 1;
   EXPECT_FALSE(device_->Read(&sample).ok());

@@ -1,4 +1,4 @@
-// A lasting fault must not hide a worse one that follows: the most severe fault determines how a
+// A lasting fault must not hide a worse one that follows. The most severe fault determines how a
 // stop ends.
 #include <gtest/gtest.h>
 
@@ -62,13 +62,13 @@ TEST_P(Severity, TheLesserHoldsAndTheWorseEndsWithoutPower) {
   const std::string first = bench.device().Trouble();
   GetParam().worse(bench);
   EXPECT_TRUE(bench.Await(RunState::kUnpowered, 0.1));
-  bench.Pass(0.2);  // by now the driver knows it as well
+  bench.Pass(0.2);  // by now the driver knows this as well
   const std::string both = bench.device().Trouble();
   EXPECT_NE(both.find(first.substr(0, first.find('.'))), std::string::npos) << both;
   EXPECT_NE(both.find(GetParam().message), std::string::npos) << both;
 }
 
-// If a robot does not obey a power-off request, the danger continues after the stop.
+// If a robot ignores a power-off request, the danger continues after the stop.
 TEST(PowerOff, ThatIsNotObeyedIsWarnedOfUntilItIsDone) {
   BenchOptions options;
   options.scenario = std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/dual_ur5.yaml";

@@ -1,4 +1,5 @@
-// Behaviour of real sockets only: a datagram from another sender is not accepted as the device's.
+// Tests what only real sockets do. A driver must not accept a datagram from another sender as the
+// device's.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -69,7 +70,8 @@ TEST(Sockets, DropAndCountDatagramsFromAnotherSender) {
   EXPECT_EQ(datagrams->Receive(got), 0);
 }
 
-// If a peer has accepted only a part of a packet, the stream is invalid and must be closed.
+// If a peer has accepted only a part of a packet, the stream is invalid and the socket must close
+// it.
 TEST(Sockets, AStreamThatCouldTakeAPartOnlyIsClosed) {
   const int listener = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in own{};

@@ -7,7 +7,7 @@ namespace predictor {
 enum class QpFault { kNone, kInfeasible, kIterationLimit, kWrong, kNotANumber };
 enum class PhysicsFault { kNone, kNotANumber, kDiverges };
 
-// Applies to this process from now on.
+// From now on, the fault occurs in this process.
 void BreakQp(QpFault fault);
 void BreakPhysics(PhysicsFault fault);
 

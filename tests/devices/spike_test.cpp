@@ -25,7 +25,8 @@ double Norm(const std::array<double, 6>& x) {
   return std::sqrt(sum);
 }
 
-// In RUN, with both hands on the object, one datagram of the left hand's Net F/T is falsified.
+// In RUN, with both hands on the object, the test falsifies one datagram of the left hand's Net
+// F/T.
 TEST(Spike, MovesNeitherTheSimulationNorTheRecordedWrench) {
   for (const Spike& spike : {Spike{"2000 N", 2, 2000}, Spike{"-2000 N", 0, -2000},
                              Spike{"300 N", 1, 300}, Spike{"50 N·m", 4, 50}}) {
@@ -52,7 +53,8 @@ TEST(Spike, MovesNeitherTheSimulationNorTheRecordedWrench) {
     ASSERT_EQ(forged > 0, true);
 
     std::size_t seen = 0, stopped = 0;  // tick with the raw spike; tick of the stop
-    double largest = 0, change = 0;     // of the earlier wrench; of the object's twist per tick
+    // largest earlier wrench; largest change of the object's twist in a tick
+    double largest = 0, change = 0;
     for (std::size_t k = 0; k < records.size(); ++k) {
       const TickRecord& r = records[k];
       const double raw = r.hands[0].wrench_raw[static_cast<std::size_t>(spike.axis)];

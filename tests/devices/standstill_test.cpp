@@ -1,4 +1,4 @@
-// After the death of the program, arms come to rest as documented. The documented values are
+// After the program dies, the arms must come to rest as documented. The documented values are
 // defined in one place.
 #include "devices/standstill.h"
 
@@ -41,7 +41,8 @@ TEST(Standstill, IsWhatTheDocumentsSay) {
   }
 }
 
-// An arm whose joints follow the fake controller with the loop that the documented values assume.
+// An arm whose joints follow the fake controller, with the velocity loop that the documented values
+// assume.
 class Following {
  public:
   Following(MemoryNetwork* network, Mechanics* mechanics)
@@ -55,7 +56,7 @@ class Following {
   Following(const Following&) = delete;
 
   double speed() const { return mechanics_->sample.v.cwiseAbs().maxCoeff(); }  // [rad/s]
-  // Lets time pass without the program until the joints have been at rest for a long time.
+  // Lets time pass without the program until the joints have rested for a long time.
   struct Outcome {
     double fastest = 0, rest_after = 0;  // [rad/s], [s]
   };
@@ -85,7 +86,7 @@ class Following {
   std::vector<VelocityLoop> loops_;
 };
 
-// The program falls silent at a random time after it began to command this speed.
+// The program falls silent at a random time after it started to command this speed.
 constexpr double kSpeeds[] = {0.2, 0.8, 2.5};  // the documented speeds and a slow one [rad/s]
 constexpr int kLatest = 500;                   // [ms]
 
@@ -112,7 +113,7 @@ TEST(Standstill, IsThatOfAUrWhateverItsSpeedSoak) {
   }
 }
 
-// Only the fifth and the seventh joint may move this fast.
+// Only the fifth and the seventh joint are allowed to move this fast.
 TEST(Standstill, IsThatOfAFrankaWhateverItsSpeedSoak) {
   for (const double asked : kSpeeds) {
     RandomStream random(1, "death");

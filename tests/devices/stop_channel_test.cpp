@@ -1,4 +1,4 @@
-// The watchdog's channel to a UR: its loss is detected before it is needed.
+// The watchdog must detect the loss of its channel to a UR before it needs the channel.
 #include "devices/stop_channel.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ using Link = StopChannel::Link;
 
 class StopChannelTest : public testing::Test {
  protected:
-  // The result of Tend during this number of milliseconds; it must be constant.
+  // Returns the result of Tend during this number of milliseconds, in which it must not change.
   Link Tend(int milliseconds) {
     Link link = Link::kTalks;
     for (int i = 0; i < milliseconds; ++i) {
@@ -30,7 +30,7 @@ class StopChannelTest : public testing::Test {
 
 TEST_F(StopChannelTest, HearsTheController) { EXPECT_EQ(Tend(5000), Link::kTalks); }
 
-// The arm brakes although the loop continues to send velocities.
+// The arm must brake although the loop continues to send velocities.
 TEST_F(StopChannelTest, BrakesTheArm) {
   bench_.Connect().Ticks(300, 1.0);
   ASSERT_DOUBLE_EQ(bench_.speed(), 1.0);

@@ -1,5 +1,5 @@
-// Complete ticks with real drivers never allocate memory: in motion, during faults, during a stop,
-// and at rest.
+// A complete tick with real drivers must never allocate memory: in motion, during faults, during a
+// stop, and at rest.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -19,8 +19,8 @@ struct TickFault {
   int missed = 0;  // number of missed ticks before the next one
 };
 
-// Two arms of one make, or one of each ("mixed"), one with its own sensor and one with a separate
-// sensor.
+// Returns two arms of one manufacturer, or one of each ("mixed"). One arm uses its own sensor, the
+// other a separate one.
 HeldSystemOptions Rigging(const std::string& make) {
   const std::string right = make == "mixed" ? "franka" : make, left = make == "mixed" ? "ur" : make;
   const std::map<std::string, std::string> scenarios = {
@@ -33,8 +33,8 @@ HeldSystemOptions Rigging(const std::string& make) {
   return options;
 }
 
-// Counts allocations from a second before the fault to 1.5 s after it. Returns whether the arms
-// stopped.
+// Counts allocations from one second before the fault until 1.5 s after it. Returns whether the
+// arms stopped.
 bool ExpectNoAllocation(const std::string& make, const TickFault& fault) {
   HeldSystem system(Rigging(make));
   EXPECT_TRUE(system.Start()) << make << " " << fault.name;

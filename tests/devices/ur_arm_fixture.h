@@ -1,4 +1,4 @@
-// Tests of the UR driver that run for both generations of controllers.
+// The fixture of the UR driver's tests, which run for both generations of controllers.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What the UR driver reads and sends while nothing fails.
+// Tests what the UR driver reads and sends while there is no fault.
 #include "devices/ur/ur_arm.h"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ TEST_P(UrArmTest, ReadsWhatTheArmIs) {
   bench.mechanics.sample.F_S_raw << 1, -2, 3, -0.4, 0.5, -0.6;
   bench.mechanics.sample.q << 0.1, 0.2, 0.3, -0.4, -0.5, 7;
   bench.Connect().Ticks(100, 0.25);
-  // The last package is at most one cycle old.
+  // The last package can be at most one cycle old.
   const double most = 0.25e-3 * (period() + 1) + 1e-9;
   for (int j = 0; j < kUrJoints; ++j)
     EXPECT_NEAR(bench.reading.q[j], bench.mechanics.sample.q[j], most) << j;
@@ -140,7 +140,7 @@ TEST_P(UrArmTest, LatePackagesAreAsOldAsTheyAre) {
   EXPECT_TRUE(bench.read.ok());
 }
 
-// A sample that old does not show what the arm is receiving now.
+// A sample of this age does not show whether the arm still receives commands.
 TEST_P(UrArmTest, LatePackagesDoNotProveThatItIsDeaf) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(500, 0);
@@ -150,7 +150,7 @@ TEST_P(UrArmTest, LatePackagesDoNotProveThatItIsDeaf) {
   EXPECT_TRUE(bench.read.ok()) << bench.arm->Trouble();
 }
 
-// While the program on the controller brakes, it does not read commands.
+// While the program on the controller brakes the arm, it does not read commands.
 TEST_P(UrArmTest, LongBrakingDoesNotProveThatItIsDeaf) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(300, 3.0);
@@ -185,7 +185,7 @@ TEST_P(UrArmTest, AnEarlierTimeIsNotANewSample) {
   bench.Ticks(100, 0);
   EXPECT_NE(bench.arm->Trouble().find("has restarted its clock, as after a reboot"),
             std::string::npos);
-  bench.Ticks(1000, 0);  // it has passed its previous value
+  bench.Ticks(1000, 0);  // the clock has passed its previous value
   EXPECT_EQ(bench.arm->Trouble(), "");
 }
 
@@ -236,7 +236,7 @@ TEST_P(UrArmTest, CountsPackagesThatWereLeftOut) {
   EXPECT_EQ(bench.reading.link.lost, 5U);
 }
 
-// Each package arrives in two parts, a millisecond apart.
+// Each package arrives in two parts that are a millisecond apart.
 TEST(UrArm, StreamCutAtAnyByteGivesTheSameSamples) {
   const std::size_t package =
       rtde::kHeaderSize + 1 + rtde::SizeOf(UrOutputs(0, {true, false, true}));
@@ -309,7 +309,7 @@ TEST_P(UrArmTest, ListensToAnArmThatAnotherProgramMoves) {
   EXPECT_NE(bench.arm->Trouble().find("is in free-drive"), std::string::npos);
   EXPECT_EQ(bench.reading.inputs, 0U);
   bench.fake.Do("freedrive off");
-  bench.fake.Do("slider 50");  // set by the other client
+  bench.fake.Do("slider 50");  // the other client sets it
   bench.fake.Do("press 9");
   bench.Ticks(20, 0, false);
   EXPECT_EQ(bench.reading.inputs, 1U << 9);

@@ -1,4 +1,4 @@
-// The driver, a fake controller, and an arm that follows instantly, in virtual time.
+// A driver, a fake controller, and an arm that follows without delay, in virtual time.
 #pragma once
 
 #include <memory>
@@ -46,7 +46,7 @@ struct UrBench {
     return *this;
   }
 
-  // Performs a tick, and lets the millisecond until the next one pass.
+  // Performs a tick and then waits for the millisecond until the next one.
   void Tick(const JointVector& v, bool motion) {
     read = arm->Read(&reading);
     written = arm->Write(v, motion);

@@ -1,4 +1,4 @@
-// Every way in which a connection is refused, and the message to the person.
+// Tests every reason to refuse a connection, and the message to the person.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,7 +77,7 @@ TEST(UrConnect, RegistersThatAFieldbusHolds) {
     const std::string sentence = Refusal(&bench);
     EXPECT_TRUE(Says(sentence, std::string(name) + " is in use"));
     EXPECT_TRUE(Says(sentence, "first register 0 or 24"));
-    // The other register range is free.
+    // The other register range is still free.
     UrBench other;
     other.fake.rtde().in_use = {name};
     EXPECT_EQ(Refusal(&other, {.host = kUrHost, .first_register = 0}), "");
@@ -173,7 +173,7 @@ TEST(UrConnect, TheFlangeIsTheToolLessItsOffset) {
   EXPECT_LT(RotationError(reported.q, X_BF.q).norm(), 1e-9);
 }
 
-// The program runs but does not echo the registers, so it is unknown what it would follow.
+// The program runs but does not echo the registers, so the driver cannot know what it would follow.
 TEST(UrConnect, AControllerThatTakesNoRegistersIsRefused) {
   UrBench bench;
   bench.fake.Do("deaf");
@@ -213,14 +213,14 @@ TEST(UrConnect, LocalControlIsNamed) {
   UrBench bench;
   bench.fake.Do("local control");
   EXPECT_TRUE(Says(Refusal(&bench), "is in local control. Choose Remote Control"));
-  // Without the dashboard, the program does not start, and the driver can only guess the reason.
+  // Without the dashboard, the program does not start, and the driver cannot know why.
   UrBench blind;
   blind.fake.Do("local control");
   EXPECT_TRUE(Says(Refusal(&blind, {.host = kUrHost, .dashboard_port = 0}),
                    "192.0.2.10:30002 does not start the program"));
 }
 
-// As with PolyScope X: the operator must know that the program cannot remove the power.
+// PolyScope X has no dashboard. The operator must know that our program cannot remove the power.
 TEST(UrConnect, WithoutADashboardARemarkSaysThatPowerCannotBeSwitchedOff) {
   const std::uint16_t ports[] = {0, 30009, 30003};  // disabled; no listener; no greeting
   for (const bool listen : {true, false})
@@ -235,7 +235,7 @@ TEST(UrConnect, WithoutADashboardARemarkSaysThatPowerCannotBeSwitchedOff) {
   EXPECT_TRUE(bench.arm->facts().remarks.empty());
 }
 
-// The port sent no greeting, so the driver never waits for it again and does not use it.
+// The port sent no greeting. The driver must not wait for one again and must not use the port.
 TEST(UrConnect, AServerWithoutAGreetingIsNotADashboard) {
   constexpr double kGreeting = 2;  // time-out for the greeting [s]
   const auto connect = [](UrBench* bench, std::uint16_t port) {

@@ -1,4 +1,4 @@
-// Faults of a UR, of its connection and of its commands.
+// Tests faults of a UR, of its connection and of its commands.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -36,10 +36,11 @@ TEST_P(UrFaultTest, IsReportedWithinACyclePermanentlyAndTheArmStands) {
   const std::string trouble = bench.arm->Trouble();
   EXPECT_NE(trouble.find(fault.trouble), std::string::npos) << trouble;
   EXPECT_EQ(trouble.find(kUrHost), 0U);
-  // The position of this arm is unknown, but it still obeys, so the stop brings it to rest.
+  // The position of this arm is unknown, but it still follows commands, so the stop brings it to
+  // rest.
   bench.Ticks(200, fault.what == std::string("not a number") ? 0 : 0.3);
   EXPECT_EQ(bench.speed(), 0);
-  // A person clears the fault and resumes the program: the arm must not move.
+  // A person clears the fault and resumes the program. The arm must not move.
   for (const char* cure : {"unlock", "freedrive off", "play"}) bench.fake.Do(cure);
   for (int i = 0; i < 300; ++i) {
     bench.Tick(0.3);
@@ -63,7 +64,7 @@ std::string NameOfCase(const testing::TestParamInfo<std::tuple<FakeUrOptions, Ur
 INSTANTIATE_TEST_SUITE_P(Controllers, UrFaultTest, testing::Combine(UrControllers(), kFaults),
                          NameOfCase);
 
-// The following stop may bring the arm to rest, but must not move it for long or again.
+// The stop that follows may bring the arm to rest, but must not move it for long or a second time.
 TEST(UrArm, WithInvalidNumbersFollowsOneStopOnly) {
   for (const int stop : {100, 1000}) {
     UrBench bench;
@@ -95,7 +96,7 @@ TEST(UrArm, ReportsWhetherItMayBeLeftHolding) {
   }
 }
 
-// The process dies at any phase of both cycles.
+// The process dies at a random phase of both cycles.
 TEST_P(UrArmTest, ArmBrakesByItselfWhenNothingIsWrittenAndStaysStanding) {
   for (int phase = 0; phase < 16; ++phase) {
     UrBench bench(GetParam());
@@ -105,7 +106,7 @@ TEST_P(UrArmTest, ArmBrakesByItselfWhenNothingIsWrittenAndStaysStanding) {
     EXPECT_LE(silent, 20) << phase;
     for (int i = 0; i < 100; ++i) bench.Pass();
     EXPECT_EQ(bench.speed(), 0);
-    // The process continues.
+    // The process resumes.
     bench.Ticks(1, 0.5);
     EXPECT_EQ(bench.read.cause, StopCause::kDevice);
     EXPECT_NE(bench.arm->Trouble().find("received no command"), std::string::npos);
@@ -154,7 +155,7 @@ TEST(UrArm, OnlySixFiniteNumbersAreSent) {
   EXPECT_TRUE(bench.written.ok());
 }
 
-// A peer that accepts no more data, although its own data still arrives.
+// This peer accepts no more data, although its own data still arrives.
 class FullNetwork final : public Network {
  public:
   explicit FullNetwork(Network* inner) : inner_(inner) {}
@@ -209,7 +210,7 @@ TEST(UrArm, AListenerSendsNothing) {
   EXPECT_TRUE(bench.read.ok() && bench.written.ok());
 }
 
-// A listener writes nothing, so only its reads can detect the closed connection.
+// A listener writes nothing, so it can notice a closed connection only when it reads.
 TEST(UrArm, AListenersReadingReportsThatTheConnectionIsClosed) {
   UrBench bench;
   bench.Connect({.host = kUrHost, .listen = true}).Ticks(50, 0, false);
@@ -221,7 +222,7 @@ TEST(UrArm, AListenersReadingReportsThatTheConnectionIsClosed) {
   EXPECT_NE(bench.arm->Trouble().find("closed the connection"), std::string::npos);
 }
 
-// An external watchdog does this through its own connection.
+// An external watchdog takes over in this way, through its own connection.
 TEST_P(UrArmTest, ProgramThatTakesOursPlaceBrakesTheArmAndIsAFault) {
   UrBench bench(GetParam());
   const auto other = bench.network.Connect({kUrHost, 30001}, 1);

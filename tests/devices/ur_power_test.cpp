@@ -1,4 +1,4 @@
-// Power-off of a UR through its dashboard, and what the driver reports about its power.
+// Tests the power-off of a UR through its dashboard, and what the driver reports about the power.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -26,7 +26,7 @@ TEST_P(UrArmTest, CutsThePowerWhenAsked) {
   EXPECT_EQ(bench.fake.controller().robot_mode, UrController::kRunning);
 }
 
-// A stop requests power-off, and something prevents the robot from obeying.
+// A stop requests power-off, but something prevents the robot from following.
 TEST_P(UrArmTest, SaysThatItKeepsItsPower) {
   for (const char* why : {"no dashboard", "local control", "drop dashboard"}) {
     UrBench bench(GetParam());
@@ -66,7 +66,7 @@ TEST_P(UrArmTest, KeepsItsPowerWhereTheStopIsReset) {
   }
 }
 
-// An old state may have changed since.
+// The last known state is old, so the power may have changed.
 TEST_P(UrArmTest, ReportsNoPowerWhileItIsSilent) {
   UrBench bench(GetParam());
   bench.Connect({.host = kUrHost, .dashboard_port = 0}).Ticks(50, 0);

@@ -1,5 +1,5 @@
-// A network between a driver and another network. It cuts the streams, and its Read and Write do
-// not allocate, so that all counted allocations are the driver's own.
+// A network between a driver and another network that cuts the streams. Its Read and Write do not
+// allocate memory, so all counted allocations are the driver's own.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ class ProxyNetwork final : public Network {
  public:
   explicit ProxyNetwork(Network* inner) : inner_(inner) {}
 
-  // From now on, this number of the newest bytes arrives one millisecond later.
+  // From now on, the newest `bytes` bytes arrive one millisecond later.
   void HoldBack(std::size_t bytes) { held_back_ = bytes; }
 
   std::unique_ptr<Stream> Connect(const Address& peer, double timeout) override {
@@ -48,7 +48,7 @@ class ProxyNetwork final : public Network {
       written = 0;
     }
     void Fetch(std::size_t held_back) {
-      // Bytes that were held back before become readable.
+      // The bytes that were held back become readable.
       const std::size_t before = arrived;
       const int bytes = inner ? inner->Read(std::span(in).subspan(arrived)) : 0;
       if (bytes < 0) open = false;

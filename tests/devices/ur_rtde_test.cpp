@@ -35,7 +35,7 @@ struct Seen {
   bool operator==(const Seen&) const = default;
 };
 
-// Feeds these pieces to the parser one after the other.
+// Passes these pieces to the parser one after the other.
 std::vector<Seen> Parse(const std::vector<std::span<const std::byte>>& pieces,
                         bool* broken = nullptr) {
   auto parser = std::make_unique<rtde::PacketParser>();
@@ -56,7 +56,7 @@ std::vector<Seen> Parse(const std::vector<std::span<const std::byte>>& pieces,
   return seen;
 }
 
-// Bytes that ur_rtde 1.6.5 sent and received.
+// The expected bytes are those that ur_rtde 1.6.5 sent and received.
 TEST(Rtde, RequestsAreAsCaptured) {
   EXPECT_EQ(rtde::AskVersion(), Hex("00 05 56 00 02"));
   EXPECT_EQ(rtde::AskControllerVersion(), Hex("00 03 76"));
@@ -66,7 +66,7 @@ TEST(Rtde, RequestsAreAsCaptured) {
 
 TEST(Rtde, RecipesAreARateAndNames) {
   const std::vector<rtde::Field> recipe = {{"timestamp", "DOUBLE"}, {"actual_q", "VECTOR6D"}};
-  // 500.0, followed by the names as text.
+  // The request contains 500.0, followed by the names as text.
   EXPECT_EQ(rtde::AskOutputs(500, recipe),
             Hex("00 1d 4f 40 7f 40 00 00 00 00 00 "
                 "74 69 6d 65 73 74 61 6d 70 2c 61 63 74 75 61 6c 5f 71"));
@@ -286,7 +286,7 @@ TEST(UrState, OfNumbersThatCannotBeIsNotTaken) {
   }
 }
 
-// Numbers from the RTDE guide.
+// The bits have the numbers of the RTDE guide.
 TEST(UrState, EachBitThatKeepsAnArmFromMovingIsAFault) {
   UrState well;
   well.robot_mode = 7;
@@ -320,7 +320,7 @@ TEST(UrState, ANanSpeedSliderIsNotAtItsEnd) {
   }
 }
 
-// The state of the arm is unknown, or a person pressed its stop button.
+// The state of the arm is unknown, or a person has pressed its stop button.
 TEST(UrState, EndsWithoutPowerWhereItMustNotBeLeftHolding) {
   for (int fault = 0; fault <= static_cast<int>(UrFault::kCommand); ++fault) {
     const auto f = static_cast<UrFault>(fault);

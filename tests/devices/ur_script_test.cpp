@@ -1,4 +1,4 @@
-// The driver's program for the controller, executed by the fake's URScript.
+// Tests the driver's program for the controller, which the fake's URScript executes.
 #include "devices/ur/ur_script.h"
 
 #include <gtest/gtest.h>
@@ -16,14 +16,14 @@ namespace {
 
 constexpr int kReady = 1, kFollows = 2, kStopping = 3, kEnded = 4;
 
-// A controller whose cycles begin at multiples of the cycle time. The test writes registers in
-// between.
+// A controller whose cycles begin at multiples of the cycle time. The test writes the registers
+// between the cycles.
 class Bench {
  public:
   explicit Bench(const UrScriptOptions& options)
       : options_(options), program_(urscript::Compile(UrScript(options))) {
     controller.cycle = options.cycle;
-    controller.input_int[Register(0)] = 1000;  // as an earlier program left it
+    controller.input_int[Register(0)] = 1000;  // left by an earlier program
     controller.input_int[Register(1)] = 1;
     controller.input_double[Register(0)] = 0.7;
     machine_ = std::make_unique<urscript::Machine>(&program_, &controller);
@@ -38,7 +38,7 @@ class Bench {
   void Cycles(double time) {
     for (double t = 0; t < time - 1e-9; t += options_.cycle) Cycle();
   }
-  // Writes the registers as a tick does, with the velocity of the first joint.
+  // Writes the registers, as a tick does, with a velocity for the first joint.
   void Command(double v, bool follow) {
     ++controller.input_int[Register(0)];
     controller.input_int[Register(1)] = follow ? 1 : 0;
@@ -114,7 +114,7 @@ TEST_P(UrScriptTest, StandsOnCommandAndFollowsAgain) {
   bench.Follow(0.5, 0.1);
   bool stopping = false;
   for (int i = 0; i < 100; ++i) {
-    bench.Command(0.5, false);  // the velocity without `follow` causes no motion
+    bench.Command(0.5, false);  // without `follow`, the velocity causes no motion
     bench.Cycle();
     stopping = stopping || bench.state() == kStopping;
   }
@@ -125,7 +125,7 @@ TEST_P(UrScriptTest, StandsOnCommandAndFollowsAgain) {
   EXPECT_DOUBLE_EQ(bench.speed(), 0.2);
 }
 
-// Time advances in steps of 0.1 ms, and the last command arrives at any phase of a cycle.
+// Time advances in steps of 0.1 ms, so the last command can arrive at any phase of a cycle.
 TEST_P(UrScriptTest, BrakesWithinTwentyMillisecondsOfSilenceAndForGood) {
   constexpr double kStep = 1e-4;
   const double cycle = GetParam().cycle;
@@ -135,7 +135,7 @@ TEST_P(UrScriptTest, BrakesWithinTwentyMillisecondsOfSilenceAndForGood) {
     bench.Cycle();
     bench.Follow(0.5, 0.2);
     double silence = 0;
-    bench.Command(0.5, true);  // just after the start of a cycle, later in each test
+    bench.Command(0.5, true);  // each test writes later after the start of a cycle
     for (int i = phase; bench.speed() >= 0.5; ++i) {
       silence += kStep;
       if (i % steps == steps - 1) bench.Cycle();
@@ -144,7 +144,7 @@ TEST_P(UrScriptTest, BrakesWithinTwentyMillisecondsOfSilenceAndForGood) {
     EXPECT_LE(silence, 0.020) << phase;
     EXPECT_GE(silence, cycle) << phase;
     EXPECT_LE(silence, UrWatchdog(cycle) + 1e-9) << phase;
-    // The arm brakes to a standstill with the given deceleration, whatever arrives now.
+    // The arm must brake to a standstill with the given deceleration, whatever arrives now.
     double last = bench.speed();
     for (double t = 0; t < 0.2; t += cycle) {
       bench.Command(0.5, true);

@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// Executes a program with this body for some cycles; its output is in the controller.
+// Executes a program with this body for some cycles. The controller holds the output.
 UrController Play(const std::string& body, int cycles = 10) {
   UrController controller;
   controller.input_double[3] = 2.5;
@@ -53,7 +53,7 @@ TEST(UrScriptLanguage, Conditions) {
   EXPECT_FALSE(truth("not (1 <= 1)"));
   EXPECT_TRUE(truth("2 != 3 and 3 >= 3 and 4 > 3"));
   EXPECT_TRUE(truth("[1, 2] == [1, 2]"));
-  // Evaluation stops as soon as the result is known.
+  // The evaluation ends as soon as the result is known.
   EXPECT_FALSE(truth("False and 1 / 0 > 1"));
   EXPECT_TRUE(truth("True or 1 / 0 > 1"));
 }
@@ -153,7 +153,7 @@ TEST(UrScriptLanguage, JoinWaitsForAThread) {
   EXPECT_EQ(Play(text, 8).output_int[1], 6);
 }
 
-// v(t) = min(a t, |qd|) for the leading joint; the other joints move in proportion.
+// The leading joint moves with v(t) = min(a t, |qd|), and the others in proportion.
 TEST(UrScriptLanguage, SpeedjAcceleratesTheLeadingJointAndBlocksForItsTime) {
   const std::string text =
       "speedj([0.1, -0.2, 0, 0, 0, 0], 5, 0.02)\n"
