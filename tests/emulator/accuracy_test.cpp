@@ -1,4 +1,4 @@
-// Checks that the real handles follow the virtual ones as accurately as the documents state.
+// The real handles must follow the virtual ones as accurately as the documents state.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,15 +10,15 @@
 namespace predictor {
 namespace {
 
-// Factor by which a measured value may exceed the printed one.
+// A measured value may exceed the printed one by this factor.
 constexpr double kMargin = 1.5;
 
 struct Figure {
   double mean, largest;
 };
 
-// Values of the worse hand, as in docs/numbers.csv, which README.md and docs/ quote. Those of arms
-// that differ from their nominal model are in docs/concepts/accuracy.md.
+// The values of the worse hand in docs/numbers.csv, which README.md and docs/ quote.
+// docs/concepts/accuracy.md has those of arms that differ from their nominal model.
 struct Printed {
   const char* scenario;
   Figure translation, rotation;                    // error of a handle [mm], [deg]
@@ -27,7 +27,7 @@ struct Printed {
   double slower_arms, faster_arms;                 // mean error with arms of 10 and 25 Hz [mm]
 };
 
-// In mm or degrees.
+// The values are in millimetres or degrees.
 void ExpectWithin(const Summary& summary, const std::string& path, const Figure& printed) {
   const Result& found = summary.At(path);
   const auto& values = std::get<Statistics>(found.value);
@@ -69,8 +69,8 @@ TEST_P(Accuracy, WhileGrippingIsAsPrinted) {
   EXPECT_EQ(run.summary.Get<std::uint64_t>("qp.failed"), 0u);
 }
 
-// The release throws the box down, but the handles keep their distance. The values are printed for
-// 9 kg in docs/getting-started/first-run.md.
+// The release throws the box down, but the handles keep their distance.
+// docs/getting-started/first-run.md prints the values for 9 kg.
 TEST(RelativePose, AndHandlesAfterTheReleaseAreAsPrinted) {
   const TestRun run = RunScenario("box_9kg");
   for (const std::string hand : kHandNames) {
@@ -81,7 +81,8 @@ TEST(RelativePose, AndHandlesAfterTheReleaseAreAsPrinted) {
   ExpectWithin(run.summary, "tracking.released.relative.angle_rad", {0.0009, 0.0026});
 }
 
-// Avoids an inverse crime: the arms are slower or faster than the lead assumes.
+// The arms are slower or faster than the lead assumes, so that the test does not compare the model
+// with itself.
 TEST_P(Accuracy, WithArmsOtherThanNominalIsAsPrinted) {
   const Printed& printed = GetParam();
   const std::pair<const char*, double> arms[] = {{"rig.loop.bandwidth=10", printed.slower_arms},
@@ -128,8 +129,8 @@ TEST(Coupling, HoldsTheObjectWhereTheArmsCannotFollow) {
   EXPECT_LT(largest, 0.05);  // 100 to 600 mm without coupling
 }
 
-// The paper's Fig. 4: near a singularity or with a weight on manipulability, absolute tracking
-// degrades, but the handles keep their relative pose.
+// As in the paper's Fig. 4, the absolute tracking degrades near a singularity or with a weight on
+// manipulability. The handles must keep their relative pose.
 TEST(RelativePose, IsKeptWhereTrackingSuffers) {
   const TestRun plain = RunScenario("box_9kg", {"duration=12"});
   const TestRun weighted =
@@ -146,7 +147,7 @@ TEST(RelativePose, IsKeptWhereTrackingSuffers) {
 }
 
 TEST(RelativePose, IsKeptNearASingularity) {
-  // The bases are farther back, so the arms are nearly stretched out.
+  // The bases are farther back, so that the arms are nearly stretched out.
   const std::vector<std::string> far = {"duration=12",
                                         "device.arms.left.base.xyz=[-0.13, -0.22, -0.35]",
                                         "device.arms.right.base.xyz=[-0.13, 0.22, -0.35]",

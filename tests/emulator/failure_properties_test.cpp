@@ -1,4 +1,4 @@
-// A failed QP and a rejected physics step do not contribute to the sent command.
+// A failed QP and a rejected physics step must not contribute to the command.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,7 +24,7 @@ namespace predictor {
 namespace {
 
 // The commands of an emulator in each tick until HELD, and the index of the tick in which the stop
-// began. If `asked` has a value, a stop is requested in that tick.
+// began. If `asked` has a value, the test requests a stop in that tick.
 struct Stopped {
   std::vector<Arms> sent;
   std::size_t decision = 0;
@@ -46,9 +46,9 @@ Stopped RunUntilHeld(const std::vector<std::string>& set, std::optional<std::siz
   return run;
 }
 
-// The controller is too stiff for the simulation: the emulator discards the step that diverges and
-// stops the run. The commands must then equal, bit for bit, those of a run in which the same tick
-// received a stop request, so the rejected step has no effect.
+// The controller is too stiff for the simulation. The emulator discards the step that diverges and
+// stops the run. From then on, the commands must equal, bit for bit, those of a run in which the
+// same tick received a stop request. The rejected step then has no effect.
 TEST(EmulatorProperties, ARejectedPhysicsStepContributesNothing) {
   for (const char* stiffness : {"2e4", "5e4", "1e5"}) {
     const std::vector<std::string> set = {
@@ -79,7 +79,7 @@ TEST(EmulatorProperties, ARejectedPhysicsStepContributesNothing) {
   }
 }
 
-// Two arms with their renderer and guard.
+// Two arms with a renderer and a guard.
 class RenderedArms {
  public:
   RenderedArms() : scenario_(LoadTestScenario("box_9kg")) {
@@ -99,7 +99,7 @@ class RenderedArms {
   }
 
   // Draws random joint angles well inside their limits and a random last command. The virtual
-  // handles are near the real ones.
+  // handles are close to the real ones.
   void Draw() {
     for (int i = 0; i < kHands; ++i) {
       const ArmLimits& limits = limits_[i];
@@ -121,7 +121,7 @@ class RenderedArms {
     return std::make_unique<Renderer>(scenario_, models_, 0.02, kDt);
   }
 
-  // The command for `target` after the last command.
+  // Returns the command for `target` that follows the last command.
   Arms Send(Renderer* renderer, const RenderTarget& target, RenderResult* result) {
     std::array<RenderArm, kHands> arms;
     for (int i = 0; i < kHands; ++i) {
@@ -132,7 +132,7 @@ class RenderedArms {
     EXPECT_TRUE(status.ok());  // a single failure does not stop
     Guard guard = guard_;
     Arms v = last_;
-    guard.Apply(q_, &v);  // the last command, as far as the guard allows it
+    guard.Apply(q_, &v);  // limits the last command
     for (int k = 0; k < 1000 && v != last_; ++k) guard.Apply(q_, &(v = last_));
     Arms sent = result->v;
     guard.Apply(q_, &sent);
@@ -174,8 +174,8 @@ RenderTarget Spoilt(RenderTarget target) {
   return target;
 }
 
-// If the QP has no solution, its target has no effect: the last command is sent, scaled by one
-// factor for both arms. After a reset, no trace of the failure remains.
+// If the QP has no solution, its target must have no effect. The emulator sends the last command,
+// scaled by one factor for both arms. After a reset, no trace of the failure may remain.
 TEST(EmulatorProperties, AFailedQpContributesNothingSoak) {
   RenderedArms two;
   EXPECT_TRUE(rc::check([&] {

@@ -1,5 +1,5 @@
-// No handle exceeds the speed limit of the current state, even if the arms are far from their goal
-// or a person pushes hard. real_arms_recovery_test.cpp covers RECOVERY.
+// No handle may exceed the speed limit of the current state, even if the arms are far from their
+// goal or a person pushes hard. real_arms_recovery_test.cpp covers RECOVERY.
 #include <gtest/gtest.h>
 
 #include "devices/simulated/simulated_device.h"
@@ -10,12 +10,12 @@ namespace predictor {
 namespace {
 
 constexpr double kOvershoot = 1.05;     // overshoot of the arms' velocity loops above a limit
-constexpr double kPosture = 1.03;       // change of an arm's Jacobian until it obeys
+constexpr double kPosture = 1.03;       // change of an arm's Jacobian until it follows
 constexpr double kAlignRotation = 0.3;  // [rad/s]
 
-// Arms whose relative pose is wrong by half a metre. The relative rotation is right, wrong by half
-// a turn, or wrong by so much on each side that the shortest rotation of one handle to the other
-// leads away.
+// The relative pose of the arms is wrong by half a metre. Their relative rotation is right, wrong
+// by half a turn, or wrong by so much on each side that the shortest rotation from one handle to
+// the other leads away.
 enum class Turned { kNone, kHalf, kFurther };
 std::array<JointVector, kHands> Apart(const Scenario& scenario, Turned turned) {
   const double angle = turned == Turned::kNone ? -0.7 : turned == Turned::kHalf ? 0.85 : 1.4;
@@ -81,8 +81,8 @@ TEST(HandleSpeed, OfAlignIsKeptForAnyErrorOfTheArmsRelativePose) {
       EXPECT_LE(seen.reported.rotation, kPosture * kAlignRotation);
       EXPECT_LE(seen.came.translation, kOvershoot * cap);
       EXPECT_LE(seen.came.rotation, kOvershoot * kAlignRotation);
-      // With too high a gain, the relative pose oscillates because of the arms' lag; that does not
-      // matter here.
+      // If the gain is too high, the relative pose oscillates because of the arms' lag. That does
+      // not matter here.
       EXPECT_TRUE(seen.armed);
     }
 }
@@ -116,7 +116,8 @@ TEST(HandleSpeed, OfARunIsKeptHoweverHardThePush) {
   EXPECT_GT(reported.translation, 0.99 * cap);
   EXPECT_LE(reported.translation, kPosture * cap);
   EXPECT_LE(reported.rotation, kPosture * scenario.safety.handle_rotation_speed);
-  EXPECT_LE(measured.translation, kOvershoot * cap + 0.002);  // for noise of the joint velocities
+  // tolerance for the noise of the joint velocities
+  EXPECT_LE(measured.translation, kOvershoot * cap + 0.002);
 }
 
 }  // namespace

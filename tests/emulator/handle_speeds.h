@@ -36,7 +36,7 @@ class HandleSpeeds {
     }
   }
 
-  // At the measured joint angles.
+  // Returns the commanded speeds at the measured joint angles.
   Speeds Commanded(const TickRecord& record) {
     Speeds speeds;
     for (std::size_t i = 0; i < kHands; ++i) {

@@ -1,4 +1,4 @@
-// The inputs of people and pages during a run (parameters, hands, buttons), and their limits.
+// Tests the inputs of people and pages during a run (parameters, hands, buttons) and their limits.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -38,8 +38,8 @@ RunInput Hold(int hand, const PoseRecord& X, bool grip = true) {
   return input;
 }
 
-// Ticks until `duration` [s] of run time has passed. `before` is called before each tick and may
-// submit inputs.
+// Performs ticks until `duration` [s] of run time has passed. It calls `before` before each tick,
+// which may submit inputs.
 template <class F>
 void Pass(Emulator* emulator, double duration, F before) {
   const double end = emulator->run_time() + duration;
@@ -60,13 +60,13 @@ TEST(Parameters, MoveInASecondAndTheObjectDoesNotJump) {
   double last = 1, speed = 0;
   Pass(&emulator, 1.1, [&] {
     const TickRecord& r = emulator.record();
-    EXPECT_LE(std::abs(r.parameters[0] - last), 0.5e-3 + 1e-12);  // moves half the range in one
-                                                                  // second
+    // The parameter moves by half its range in one second.
+    EXPECT_LE(std::abs(r.parameters[0] - last), 0.5e-3 + 1e-12);
     last = r.parameters[0];
     speed = std::max(speed, std::abs(r.object.twist[2]));
   });
   EXPECT_EQ(emulator.record().parameters[0], 0.5);
-  // For comparison, the same run without the input.
+  // The same run without the input serves for comparison.
   Emulator alone(LoadTestScenario("box_9kg"));
   double usual = 0;
   Pass(&alone, 5, [] {});
@@ -126,7 +126,7 @@ TEST(Hands, OfAPageAreTakenFromABrowserOperatorAlone) {
   EXPECT_FALSE(emulator.Submit(Hold(7, X)));
 }
 
-// Both hands lift the box by 8 cm with inputs at the rate of a page. Then the page stops sending.
+// Inputs at the rate of a page make both hands lift the box by 8 cm. Then the page stops sending.
 TEST(Hands, LiftTheBoxWithinTheirLimitAndReleaseOnSilence) {
   Emulator emulator(
       LoadTestScenario("box_9kg", {"operator.type=browser", "operator.script=[]", "duration=100"}));
@@ -170,7 +170,7 @@ TEST(Buttons, StopResetAlignAndStartAgain) {
   for (int k = 0; k < 2000 && emulator.state() != RunState::kHeld; ++k) emulator.Tick();
   ASSERT_EQ(emulator.state(), RunState::kHeld);
   EXPECT_EQ(emulator.record().cause, StopCause::kOperator);
-  // Only a reset leaves this state.
+  // Only a reset can end this state.
   emulator.Submit(Of(InputKind::kStart));
   for (int k = 0; k < 100; ++k) emulator.Tick();
   EXPECT_EQ(emulator.state(), RunState::kHeld);
@@ -197,7 +197,8 @@ TEST(Inputs, OfALatencyAreRecordedAndMoveNothing) {
   EXPECT_EQ(emulator.state(), RunState::kRun);
 }
 
-// In every state, a suspend stops the run, because all data on the arms and people is outdated.
+// In every state, a suspend must stop the run, because all data about the arms and people is
+// outdated.
 TEST(Inputs, OfASuspendStopTheRun) {
   for (const double seconds : {0.0, 0.1}) {
     Emulator emulator(LoadTestScenario("box_9kg"));
@@ -238,7 +239,7 @@ TEST(Mailbox, IsSharedByItsDescriptorAndSurvivesNonsense) {
   for (std::uint32_t k = 0; k < InputQueue::kCapacity; ++k)
     ASSERT_TRUE(theirs->inputs.Push(Of(InputKind::kAlign)));
   EXPECT_FALSE(theirs->inputs.Push(Of(InputKind::kAlign)));
-  // A faulty writer fills its memory with arbitrary values.
+  // A faulty writer fills the shared memory with arbitrary values.
   std::memset(static_cast<void*>(&theirs->inputs), 0xa5, sizeof(InputQueue));
   int taken = 0;
   while (mine->inputs.Pop(&input)) ASSERT_LE(++taken, static_cast<int>(InputQueue::kCapacity));

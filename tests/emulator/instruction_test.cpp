@@ -1,4 +1,5 @@
-// Instructions to the person at the handles, and the effect of a reset on a person's settings.
+// Tests the instructions to the person at the handles, and what a reset does to a person's
+// settings.
 #include <gtest/gtest.h>
 
 #include "emulator/parameter_ramps.h"
@@ -9,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// A person performs the script, so the clock alone determines the current instruction.
+// A person performs the script, so the current instruction depends on the clock alone.
 TEST(Instructions, OfAPersonFollowTheClock) {
   const Scenario scenario = LoadTestScenario("circle_by_hand", {"duration=7"});
   ASSERT_EQ(scenario.operator_.script[1].action, "circle");
@@ -18,7 +19,7 @@ TEST(Instructions, OfAPersonFollowTheClock) {
   Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
     if (record.state != RunState::kRun) {
       EXPECT_EQ(record.action, -1) << Name(record.state);
-    } else if (record.run_time > 0.002) {  // the rig learns of RUN one tick later
+    } else if (record.run_time > 0.002) {  // the rig receives RUN one tick later
       EXPECT_GE(record.action, 0) << record.run_time;
       if (record.action == 1 && circle < 0) circle = record.run_time;
     }
@@ -33,7 +34,7 @@ TEST(Instructions, AreTheLastBegunOfTheActiveActions) {
   for (const auto& [time, action] : times) EXPECT_EQ(ActionAt(script, time), action) << time;
 }
 
-// With real arms, only a person may relax a safety threshold.
+// Only a person may relax a safety threshold of real arms.
 TEST(Parameters, TightenedThresholdsOutliveAResetOfRealArms) {
   for (const bool real : {false, true}) {
     Scenario scenario = LoadTestScenario("box_9kg");
@@ -42,7 +43,7 @@ TEST(Parameters, TightenedThresholdsOutliveAResetOfRealArms) {
     ASSERT_TRUE(ramps.Set(Parameter::kForceThreshold, 20));
     ASSERT_TRUE(ramps.Set(Parameter::kTorqueThreshold, 3));
     ASSERT_TRUE(ramps.Set(Parameter::kDampingRatio, 1.5));
-    ramps.Step(0.5);  // half the way to the new values
+    ramps.Step(0.5);  // halfway to the new values
     ramps.Reset();
     EXPECT_EQ(ramps[Parameter::kForceThreshold], real ? 20 : scenario.safety.force);
     EXPECT_EQ(ramps[Parameter::kTorqueThreshold], real ? 3 : scenario.safety.torque);

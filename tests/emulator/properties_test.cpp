@@ -1,7 +1,7 @@
-// Properties of the sent command under any sequence of requests and inputs (RapidCheck):
-//   - It never changes by more than a tick's acceleration allows (in a stop: than the acceleration
-//     during the elapsed ticks allows), and it is zero in states without motion.
-//   - Both arms share one stop.
+// Tests properties of the command under any sequence of requests and inputs (RapidCheck):
+// - It never changes by more than the acceleration limit allows in a tick, or in the elapsed ticks
+// of a stop. It is zero in states without motion.
+// - Both arms share one stop.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -66,12 +66,13 @@ void Do(const Act& act, Emulator* emulator) {
   }
 }
 
-// Number of ticks that the loop missed before tick k: usually none, at most 3.
+// Returns the number of ticks that the loop missed before tick k, which is usually zero and at most
+// 3.
 int Missed(const Act& act, int k) {
   return act.kind == Act::Kind::kLate ? (act.what + k * (1 + act.what)) % 4 : 0;
 }
 
-// Presents the simulated rig as real arms, whose time continues while the loop is late.
+// Presents the simulated rig as real arms, for which time continues while the loop is late.
 class LateArms final : public Device {
  public:
   LateArms(const Scenario& scenario, const std::array<JointVector, kHands>& start)
@@ -99,7 +100,7 @@ class Watched {
  public:
   explicit Watched(const Scenario& scenario)
       : Watched(scenario, std::make_unique<Emulator>(scenario)) {}
-  // With arms that continue to move while ticks are late.
+  // The arms continue to move while ticks are late.
   static Watched Real(Scenario scenario) {
     const auto start = Emulator(scenario).setup().start;
     auto device = std::make_unique<LateArms>(scenario, start);
@@ -110,7 +111,7 @@ class Watched {
     return watched;
   }
 
-  // Performs a run and its stop, and keeps saved states from each phase.
+  // Performs a run and its stop, and keeps a saved state of each phase.
   void Collect() {
     Keep();
     for (int k = 0; emulator_->run_time() < 8 && k < 60'000; ++k) {
@@ -138,7 +139,7 @@ class Watched {
     start_.reset();
   }
 
-  // Performs the ticks after `act`; every command must be within its bounds.
+  // Performs the ticks after `act`. Each command must be within its bounds.
   void Go(const Act& act) {
     Do(act, emulator_.get());
     for (int k = 0; k < act.ticks; ++k) {
@@ -163,7 +164,7 @@ class Watched {
     for (int i = 0; i < kHands; ++i) limits_[i] = LimitsOf(scenario.arm(i), *LoadArm(scenario, i));
   }
 
-  // The person at real arms continues to hold the key.
+  // The person continues to hold the key of the real arms.
   void Enable() {
     RunInput key;
     key.kind = InputKind::kEnable;
@@ -209,9 +210,9 @@ class Watched {
     state_ = record.state;
   }
 
-  // The arms share one stop: each command is the last one before the stop times a factor in [0,
-  // kOvershoot]. The factors may differ only because the faster arm follows the slower one, and
-  // only within the promised distance. The change of the arms' geometry has little effect.
+  // The arms share one stop: each command is the last one before the stop, times a factor in [0,
+  // kOvershoot]. The factors may differ only by as much as the faster arm follows the slower one,
+  // and only within the promised distance. The change of the arms' geometry has little effect.
   void LookAtFactors(const Arms& start, const Arms& now, int ticks) {
     std::array<double, kHands> factor;
     for (std::size_t i = 0; i < kHands; ++i) {
@@ -250,7 +251,7 @@ TEST(EmulatorProperties, NothingThatIsAskedForMakesTheCommandStepSoak) {
   ExpectBounded(&watched);
 }
 
-// Ticks are repeatedly late by up to three, and the arms do not wait. A stop must still keep its
+// Ticks are late by up to three again and again, and the arms do not wait. A stop must still end in
 // time.
 TEST(EmulatorProperties, NorWhatIsAskedForOfRealArmsWhileTicksComeLateSoak) {
   Watched watched = Watched::Real(LoadTestScenario("box_9kg"));
@@ -258,7 +259,7 @@ TEST(EmulatorProperties, NorWhatIsAskedForOfRealArmsWhileTicksComeLateSoak) {
   EXPECT_GT(watched.late_in_stops(), 100);
 }
 
-// A run refuses the inputs that only a player of recordings understands.
+// A run must refuse the inputs that only a player of recordings understands.
 TEST(EmulatorProperties, WhatPlaysARecordingIsRefusedByARun) {
   Emulator emulator(LoadTestScenario("box_9kg"));
   EXPECT_TRUE(rc::check([&] {
@@ -269,8 +270,8 @@ TEST(EmulatorProperties, WhatPlaysARecordingIsRefusedByARun) {
   }));
 }
 
-// Whatever the initial pose, one tick can stop the last command of ALIGN, so no command is sent in
-// ARMED.
+// Whatever the initial pose, the last command of ALIGN can be stopped within one tick, so no
+// command is sent in ARMED.
 TEST(EmulatorProperties, NothingIsSentInArmedHoweverAlignEnds) {
   for (const char* offset : {"0", "0.0015", "0.01", "0.05"})
     for (const char* kp : {"0.3", "2", "20"}) {
@@ -291,7 +292,7 @@ TEST(EmulatorProperties, NothingIsSentInArmedHoweverAlignEnds) {
     }
 }
 
-// The tolerance is so wide that the patience ends while the handles still move at full speed.
+// The tolerance is so wide that the waiting time ends while the handles still move at full speed.
 TEST(EmulatorProperties, AlignWaitsUntilTheArmsMayRestHoweverWideItsTolerance) {
   Emulator emulator(LoadTestScenario(
       "box_9kg", {"rig.start_offset=0.2", "rendering.kp=0.5", "safety.align_tolerance=0.0999",

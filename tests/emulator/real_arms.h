@@ -30,7 +30,7 @@ class PassedOff final : public Device {
   std::string Describe() const override { return "arms passed off as real"; }
 
   std::function<void(DeviceSample*)> spoil;
-  Enabling foot = Enabling::kNone;  // state of a foot switch
+  Enabling foot = Enabling::kNone;  // state of the foot switch
 
  private:
   SimulatedDevice device_;
@@ -69,7 +69,7 @@ class RealArms : public testing::Test {
     Tick();
   }
   Refusal Why() const { return static_cast<Refusal>(record().why_refused); }
-  // Waits for IDLE and holds the key.
+  // Waits for IDLE and then holds the key.
   bool ToEnabled() {
     if (!Await(RunState::kIdle)) return false;
     holds_ = true;

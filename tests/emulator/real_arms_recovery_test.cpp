@@ -1,13 +1,13 @@
-// RECOVERY of real arms after a stop and from beyond a limit, and drivers that bring their arm to
-// rest on their own path.
+// Tests RECOVERY of real arms after a stop and from beyond a limit, also with drivers that bring
+// their arm to rest on a path of their own.
 #include "handle_speeds.h"
 #include "real_arms.h"
 
 namespace predictor {
 namespace {
 
-// The handle moves slowly where the hand pushes it and stops when the key is released. A reset is
-// still required afterwards.
+// The handle moves slowly to where the hand pushes it and stops when the key is released. A reset
+// is still required afterwards.
 TEST_F(RealArms, RecoveryFreesAHandAfterAStop) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -40,8 +40,8 @@ TEST_F(RealArms, RecoveryFreesAHandAfterAStop) {
   EXPECT_EQ(record().cause, StopCause::kOperator);
 }
 
-// The hand pulls in changing directions. The command follows without exceeding the speed limit, and
-// all joints come to rest together when the key is released.
+// The hand pulls in changing directions. The handle must follow without exceeding the speed limit,
+// and all joints must come to rest together when the key is released.
 TEST_F(RealArms, RecoveryIsSlowForAnyHand) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -79,7 +79,7 @@ TEST_F(RealArms, RecoveryIsSlowForAnyHand) {
       sent.back().segment<7>(7 * i) =
           Eigen::Map<const Eigen::VectorXd>(record().hands[i].command.data(), 7);
   }
-  // After the key is released, one common factor scales all joints.
+  // After the key is released, one common factor must scale all joints.
   ASSERT_GT(sent.size(), 10U);
   EXPECT_EQ(sent.back().norm(), 0);
   for (std::size_t k = sent.size() - 6; k < sent.size(); ++k) {
@@ -89,8 +89,8 @@ TEST_F(RealArms, RecoveryIsSlowForAnyHand) {
   }
 }
 
-// RECOVERY accepts the load that is present when it begins. An additional load stops it; afterwards
-// it may be requested again.
+// RECOVERY accepts the load that is present when it begins. An additional load stops it, after
+// which a person may request it again.
 TEST_F(RealArms, RecoveryStopsWhenAHandIsLoadedMore) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -113,8 +113,8 @@ TEST_F(RealArms, RecoveryStopsWhenAHandIsLoadedMore) {
   EXPECT_EQ(emulator_->state(), RunState::kRecovery);
 }
 
-// RECOVERY may continue after the duration of the run, because it frees a hand. A request to end
-// the program also ends RECOVERY.
+// RECOVERY may outlast the duration of the run, because it frees a hand. A request to end the
+// program also ends RECOVERY.
 TEST_F(RealArms, RecoveryAfterARunsEndContinuesUntilTheProgramMustEnd) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -164,8 +164,8 @@ TEST_F(RealArms, AStopInRecoveryStops) {
   EXPECT_TRUE(Await(RunState::kUnpowered));
 }
 
-// A driver that brings its arm to rest on its own path. A state without motion begins only once the
-// arm rests.
+// A driver that brings its arm to rest on a path of its own. A state without motion may begin only
+// once the arm rests.
 class LedToRest : public RealArms {
  protected:
   LedToRest() {
@@ -216,7 +216,7 @@ TEST_F(LedToRest, NothingIsArmedBefore) {
   }
 }
 
-// Once the handles have reached their goal, they may drift within the tolerance without a new
+// After the handles have reached their goal, they may drift within the tolerance without a new
 // motion.
 TEST_F(LedToRest, MayDeviateSlightlyMeanwhile) {
   ASSERT_TRUE(ToEnabled());
@@ -271,8 +271,8 @@ TEST_F(LedToRest, NoRecoveryEndsBefore) {
 class BeyondALimit : public RealArms {
  protected:
   BeyondALimit() {
-    // The measured joint is beyond its limit, minus the distance that it has been moved back so
-    // far.
+    // The measured joint is beyond its limit by an amount from which the distance already moved
+    // back is subtracted.
     device_->spoil = [this](DeviceSample* sample) {
       JointVector& q = sample->arms[0].q;
       q[3] -= offset_;
@@ -285,7 +285,7 @@ class BeyondALimit : public RealArms {
 TEST_F(BeyondALimit, AStartIsRefusedAndRecoveryLeadsBack) {
   ASSERT_TRUE(Await(RunState::kIdle));
   const double lower = -3.0718;  // panda_joint4
-  // The offset grows slowly, because a jump would be a fault.
+  // The offset grows slowly, because a jump would count as a fault.
   while (seen_ > lower - 0.03) {
     offset_ += 0.001;
     Tick();

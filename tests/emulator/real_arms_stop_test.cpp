@@ -1,4 +1,4 @@
-// The final state after a stop of real arms, and the conditions for a reset.
+// Tests the final state after a stop of real arms, and the conditions for a reset.
 #include "core/motion.h"
 #include "real_arms.h"
 
@@ -10,7 +10,7 @@ TEST_F(RealArms, AResetWaitsUntilBothArmsStand) {
   Ask(RunEvent::kStopAndPowerOff);
   ASSERT_TRUE(Await(RunState::kUnpowered));
   Tick(600);
-  for (const int joint : {0, 6}) {  // the handle translates, or it rotates
+  for (const int joint : {0, 6}) {  // the handle translates or rotates
     device_->spoil = [joint](DeviceSample* sample) { sample->arms[1].v[joint] += 0.2; };
     Tick(200);  // the force of the push has ended
     Ask(RunEvent::kReset);
@@ -55,8 +55,8 @@ TEST_F(RealArms, AResetWaitsUntilTheHandsAreFree) {
   EXPECT_EQ(emulator_->state(), RunState::kHeld);
 }
 
-// A fault after which the arm cannot be trusted to hold its position ends in power-off. If it
-// follows a milder cause, it also ends the current stop in power-off.
+// If a fault makes it doubtful that the arm can hold its position, the stop ends in power-off. This
+// also applies if the fault occurs during a stop that has a milder cause.
 TEST_F(RealArms, TheMostSevereWins) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -80,8 +80,8 @@ TEST_F(RealArms, TheMostSevereWins) {
   EXPECT_EQ(record().harder.cause, StopCause::kNone);
 }
 
-// The reported reason for the power-off is the fault that required it (a silent arm), not an
-// earlier problem (a hand that still pushes).
+// The reported reason for the power-off must be the fault that required it (a silent arm), not an
+// earlier one (a hand that still pushes).
 TEST_F(RealArms, TheReasonForPowerOffIsNotAnEarlierFault) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -99,14 +99,15 @@ TEST_F(RealArms, TheReasonForPowerOffIsNotAnEarlierFault) {
   EXPECT_EQ(record().harder.hand, 0);
   EXPECT_EQ(record().harder.quantity, Quantity::kArmAge);
   EXPECT_EQ(record().harder.value, 0.030);
-  // A later fault that would also remove the power does not replace the reason.
+  // A later fault that would also remove the power must not replace the reason.
   device_->spoil = [](DeviceSample* sample) { sample->arms[1].sensor_saturated = true; };
   Tick(5);
   EXPECT_EQ(record().harder.cause, StopCause::kStale);
   EXPECT_EQ(record().harder.hand, 0);
 }
 
-// An arm that still moves after a command to rest must lose its power, and the fault is reported.
+// An arm that still moves after a command to rest must lose its power, and the program must report
+// the fault.
 TEST_F(RealArms, AnArmThatMovesOnLosesItsPower) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -128,7 +129,7 @@ TEST_F(RealArms, AnArmThatMovesOnLosesItsPower) {
   EXPECT_NEAR(record().harder.value, HandleSpeed(Eigen::Map<const Twist>(V.data())), 1e-3);
 }
 
-// If the run had ended normally, this fault becomes the cause.
+// If the run had ended normally, this fault becomes the cause of the stop.
 TEST_F(RealArms, AnArmThatMovesOnAfterARunsEndIsACause) {
   for (const std::size_t arm : {0, 1}) {
     ASSERT_TRUE(ToRun());
@@ -151,7 +152,7 @@ TEST_F(RealArms, AnArmThatMovesOnAfterARunsEndIsACause) {
   }
 }
 
-// A request for power-off also changes the end of a stop that has another cause.
+// A request for power-off must also change the end of a stop that has another cause.
 TEST_F(RealArms, ARequestForPowerOffMakesTheEndOfAStopHarder) {
   ASSERT_TRUE(ToRun());
   Tick(200);
@@ -165,7 +166,7 @@ TEST_F(RealArms, ARequestForPowerOffMakesTheEndOfAStopHarder) {
   EXPECT_EQ(record().harder.cause, StopCause::kOperator);
 }
 
-// The virtual world is paused from that tick on.
+// The virtual world must be paused from that tick on.
 TEST_F(RealArms, AWrenchInDoubtNeverEntersThePhysics) {
   ASSERT_TRUE(ToRun());
   for (int k = 0; k < 3000 && std::abs(record().object.twist[2]) < 0.01; ++k) Tick();
@@ -201,8 +202,8 @@ TEST_F(RealArms, DeadlinesMissedHereAndThereStopToo) {
   EXPECT_LT(ticks, 1500);
 }
 
-// A run that ended normally holds the arms without a cause. A fault that forbids holding then
-// becomes the cause; other faults only prevent the reset.
+// A run that ended normally holds the arms without a cause. A fault after which the arms must not
+// be held then becomes the cause. Other faults only prevent the reset.
 TEST_F(RealArms, AfterARunThatEndedWellOnlyWhatMustNotBeHeldCutsThePower) {
   ASSERT_TRUE(ToRun());
   Tick(300);

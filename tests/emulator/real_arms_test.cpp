@@ -1,5 +1,6 @@
-// Differences with real arms: a person must enable every motion, and more requests are refused.
-// Stops are in real_arms_stop_test.cpp, RECOVERY in real_arms_recovery_test.cpp.
+// Tests how real arms differ from simulated ones: a person must enable every motion, and more
+// requests are refused. real_arms_stop_test.cpp covers stops, real_arms_recovery_test.cpp covers
+// RECOVERY.
 #include "real_arms.h"
 
 #include <thread>
@@ -10,8 +11,8 @@
 namespace predictor {
 namespace {
 
-// The gravity of the scenario's world must not affect a real handle: its weight is compensated with
-// the local gravity, and turning the handle must not look like a hand's force.
+// The gravity in the scenario's world must not affect a real handle. Its weight is compensated with
+// the local gravity, and a rotation of the handle must not look like a hand's force.
 TEST(RealHandles, WeighWhatTheyWeighHere) {
   Scenario scenario = LoadTestScenario("box_9kg", {});
   const JointVector start = Emulator(scenario).setup().start[0];
@@ -78,8 +79,8 @@ TEST_F(RealArms, NothingIsAlignedWhileAHandleIsNotFree) {
   EXPECT_EQ(emulator_->state(), RunState::kAlign);
 }
 
-// A page may stop real arms, but it cannot align, start or reset them, even while a person holds
-// the key.
+// A page may stop real arms. It must not align, start or reset them, even while a person holds the
+// key.
 TEST_F(RealArms, NothingBeginsFromAfar) {
   const auto from_afar = [this](InputKind kind) {
     RunInput input;
@@ -99,7 +100,7 @@ TEST_F(RealArms, NothingBeginsFromAfar) {
   EXPECT_EQ(from_afar(InputKind::kReset), RunState::kHeld);
 }
 
-// A saved state includes the poses of the aligned handles.
+// A saved state must include the poses of the aligned handles.
 TEST_F(RealArms, ASavedStateThatIsArmedStarts) {
   ASSERT_TRUE(ToEnabled());
   Ask(RunEvent::kAlignRequested);
@@ -113,7 +114,7 @@ TEST_F(RealArms, ASavedStateThatIsArmedStarts) {
   EXPECT_EQ(emulator_->state(), RunState::kRun);
 }
 
-// The arm was moved after the alignment, so a start would pull the handle back.
+// Someone moved the arm after the alignment, so a start would pull the handle back.
 TEST_F(RealArms, NothingStartsUnaligned) {
   ASSERT_TRUE(ToEnabled());
   Ask(RunEvent::kAlignRequested);
@@ -134,7 +135,7 @@ TEST_F(RealArms, LettingGoStopsWithinATenthOfASecond) {
   Tick(1500);
   ASSERT_EQ(emulator_->state(), RunState::kRun);
   holds_ = false;
-  Tick(102);  // the last sign of the key may be 30 ms old
+  Tick(102);  // the last letter of the key may be 30 ms old
   EXPECT_EQ(emulator_->state(), RunState::kStopping);
   EXPECT_EQ(record().cause, StopCause::kEnabling);
   EXPECT_EQ(record().cause_quantity, Quantity::kTime);
@@ -153,7 +154,7 @@ TEST_F(RealArms, LettingGoStopsTheAligningToo) {
   EXPECT_TRUE(Await(RunState::kHeld));
 }
 
-// The first samples may have been queued while other devices were being connected.
+// The first samples may have been queued while other devices were connected.
 TEST_F(RealArms, BeginWithOldSamplesThatFreshOnesFollow) {
   int reads = 0;
   device_->spoil = [&reads](DeviceSample* sample) {
@@ -170,8 +171,8 @@ TEST_F(RealArms, ThatGiveNoFreshSamplesAreNotWaitedForLong) {
   EXPECT_EQ(record().cause, StopCause::kStale);
 }
 
-// Before the first self-test has passed, a sensor's bias is unknown. A large bias must neither stop
-// the run nor count as a hand.
+// The bias of a sensor is unknown until the first self-test has passed. A large bias must neither
+// stop the run nor count as a hand.
 TEST_F(RealArms, AfterAFailedSelfTestTheBiasIsNotTakenForAHand) {
   int tick = 0;
   device_->spoil = [&tick](DeviceSample* sample) {
@@ -188,7 +189,7 @@ TEST_F(RealArms, AfterAFailedSelfTestTheBiasIsNotTakenForAHand) {
   EXPECT_TRUE(Await(RunState::kIdle));
 }
 
-// Uses a foot switch instead of the key. tests/devices/enabling_test.cpp covers a device at a
+// A foot switch takes the place of the key. tests/devices/enabling_test.cpp covers a device at a
 // robot's input.
 class FootSwitch : public RealArms {
  protected:
@@ -249,7 +250,7 @@ TEST_F(FootSwitch, StillPressedAfterAStopCountsForNothing) {
   EXPECT_EQ(emulator_->state(), RunState::kHeld);
 }
 
-// An arm that is not ready to move yet, in each state with motion.
+// In each state with motion, one arm is not yet ready to move.
 class WaitsForAnArm : public RealArms {
  protected:
   WaitsForAnArm() {
@@ -317,8 +318,8 @@ TEST_F(WaitsForAnArm, ToRecover) {
   ExpectNothingMovesBeforeItCan(RunState::kRecovery);
 }
 
-// Taring causes no visible force: neither while it averages, nor when it ends, nor if the bias has
-// changed while the sensor's power was off.
+// Taring must cause no visible force: not while it averages, not when it ends, and not if the bias
+// has changed while the sensor had no power.
 TEST_F(RealArms, TaringIsBumpless) {
   double bias = 40, felt = 0;
   device_->spoil = [&bias](DeviceSample* sample) { sample->arms[0].F_S_raw[1] += bias; };
@@ -359,7 +360,7 @@ TEST(RealTimeArms, CannotBeEnabledRemotely) {
   key.kind = InputKind::kEnable;
   key.value = 1;
   std::atomic<bool> quit{false}, over{false}, moved{false}, refused{false}, stopped{false};
-  // However often a page claims that the key is held, a request to align at the rig is refused,
+  // However often a page claims that the key is held, the rig must refuse a request to align,
   // because no person holds the key there. (On a busy computer, missed ticks may stop the run
   // instead.)
   std::thread ends([&] {

@@ -1,4 +1,4 @@
-// The real-time loop: its end conditions, inputs and reports.
+// Tests the real-time loop: its end conditions, inputs and reports.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -43,7 +43,8 @@ TEST(RealTime, EndsWhenAskedTo) {
   EXPECT_EQ(run.emulator.state(), RunState::kHeld);
 }
 
-// A stop arrives through the mailbox. The loop then continues to tick until its end is requested.
+// A stop request arrives through the mailbox. The loop must continue to tick until its end is
+// requested.
 TEST(RealTime, TakesAStopAndStaysHeld) {
   Paced run("box_9kg");
   Shared<RunMailbox> mailbox;
@@ -54,7 +55,7 @@ TEST(RealTime, TakesAStopAndStaysHeld) {
       while (!(reader.Next(&record) && record.state == state)) std::this_thread::yield();
     };
     await(RunState::kRun);
-    // A full queue must not delay a stop.
+    // A full queue must not delay a stop request.
     while (mailbox->inputs.Push({})) {
     }
     mailbox->stop_client = 7;
@@ -74,7 +75,7 @@ TEST(RealTime, TakesAStopAndStaysHeld) {
   EXPECT_EQ(run.emulator.record().state, RunState::kHeld);
 }
 
-// Unity's clients have a separate mailbox that only accepts stops.
+// Unity's clients have a separate mailbox that accepts only stop requests.
 TEST(RealTime, TakesAStopOfRosTcp) {
   Paced run("box_9kg");
   Shared<StopMailbox> stops;
@@ -92,8 +93,8 @@ TEST(RealTime, TakesAStopOfRosTcp) {
   EXPECT_EQ(run.emulator.record().cause, StopCause::kOperator);
 }
 
-// If the headset of a wearer falls silent, the run stops, but only during motion and only with real
-// arms. The record shows the cause.
+// If the headset of a wearer falls silent, the run must stop, but only in motion and only with real
+// arms. The record must show the cause.
 TEST(RealTime, StopsForAHeadsetThatFellSilent) {
   Shared<RunMailbox> mailbox;
   mailbox->immersive = 1;
@@ -113,7 +114,7 @@ TEST(RealTime, StopsForAHeadsetThatFellSilent) {
   EXPECT_EQ(without.Run({0.1, false, &*mailbox, true, true}), RunEnd::kFinished);
 }
 
-// A session that ends during a motion no longer counts as a sign of life.
+// After a session has ended, its frames no longer count as a sign of life.
 TEST(RealTime, StopsWhenAWearerTakesTheHeadsetOffInMotion) {
   Paced run("box_9kg");
   Shared<RunMailbox> mailbox;
@@ -131,7 +132,7 @@ TEST(RealTime, StopsWhenAWearerTakesTheHeadsetOffInMotion) {
   EXPECT_GT(run.emulator.run_time(), 0.1);
 }
 
-// Motion requires a running watchdog.
+// The program may move the arms only while the watchdog runs.
 TEST(RealTime, StopsWhereTheWatchdogIsSilent) {
   Paced run("box_9kg");
   std::atomic<std::uint32_t> beats{0};
@@ -156,7 +157,8 @@ TEST(RealTime, StopsWhereTheWatchdogIsSilent) {
   EXPECT_GT(run.emulator.run_time(), 0.2);
 }
 
-// Another process can write the mailbox, so the loop itself checks whether a switch is allowed.
+// Another process can write the mailbox, so the loop must check by itself whether the switch is
+// allowed.
 TEST(RealTime, TakesAnotherScenarioOnlyWhereItMayBeChosen) {
   for (const bool choose : {false, true}) {
     Paced run("box_9kg");

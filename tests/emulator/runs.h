@@ -1,4 +1,4 @@
-// Complete runs of the project's scenarios in virtual time.
+// Runs the project's scenarios from start to end in virtual time.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,7 @@ struct TestRun {
   StopReport stop;
 };
 
-// Runs a scenario to its end and calls `look` for every record.
+// Runs a scenario to its end and calls `look` with every record.
 inline TestRun RunScenario(const std::string& name, const std::vector<std::string>& set = {},
                            const std::function<void(const TickRecord&)>& look = {}) {
   const Scenario scenario = LoadTestScenario(name, set);

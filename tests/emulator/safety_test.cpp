@@ -1,5 +1,5 @@
-// The paper's Fig. 9 and related cases: the causes and times of stops, and how the arms come to
-// rest.
+// Tests the paper's Fig. 9 and related cases: the causes and times of stops, and how the arms come
+// to rest.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ double Force(const HandRecord& hand) {
 
 TEST(Stop, APushEndsByForceInTheTickInWhichItIsSeen) {
   std::optional<TickRecord> decision;
-  double before = 0;  // largest estimated force before the stop
+  double before = 0;  // largest estimated force before the stop [N]
   const TestRun run = RunScenario("push", {}, [&](const TickRecord& record) {
     if (record.cause != StopCause::kNone) {
       if (!decision) decision = record;
@@ -37,7 +37,7 @@ TEST(Stop, APushEndsByForceInTheTickInWhichItIsSeen) {
   EXPECT_GT(Force(decision->hands[static_cast<std::size_t>(decision->cause_hand)]), 30);
   EXPECT_EQ(decision->state, RunState::kStopping);
   ASSERT_TRUE(run.summary.stops.front().detection);
-  // Low-pass filter and delay of the sensor (force_sensor_test.cpp).
+  // The bound includes the sensor's low-pass filter and delay (force_sensor_test.cpp).
   EXPECT_LE(*run.summary.stops.front().detection, 0.003 + 1e-9);
 }
 
@@ -53,7 +53,8 @@ TEST(Stop, TheSameScriptPassesWithDamping) {
   EXPECT_EQ(run.end, RunEnd::kFinished);
 }
 
-// A circle, transports and a release cause no stop, for any noise and pace of the hand.
+// A circle, transports and a release must cause no stop, whatever the noise and the pace of the
+// hand.
 TEST(Stop, NormalWorkRaisesNoAlarmSoak) {
   for (long seed = 1; seed <= Count(3, 50); ++seed)
     for (const char* name : {"box_9kg", "box_18kg", "bar_circle", "dual_ur5"}) {
@@ -64,7 +65,8 @@ TEST(Stop, NormalWorkRaisesNoAlarmSoak) {
     }
 }
 
-// box_9kg with a script that moves back and forth along y, each time 2 cm farther than before.
+// The scenario is box_9kg with a script that moves back and forth along y, each time 2 cm farther
+// than before.
 std::vector<std::string> ToAndFro(double duration) {
   const auto number = [](double x) { return std::to_string(x); };
   std::string script = "[{action: grip, start: 0, duration: 0.5}";
@@ -76,14 +78,14 @@ std::vector<std::string> ToAndFro(double duration) {
 }
 
 // A scripted motion differs from an oscillation in that it is slower (docs/developer/decisions.md).
-// Outside the frequency band nothing counts, however much it grows. Inside the band, the monitor
-// stops a motion at 0.5 Hz whose force grows, whatever its origin.
+// Outside the frequency band, growth does not count. Inside the band, the monitor stops a motion at
+// 0.5 Hz whose force grows, whatever caused it.
 TEST(Stop, AScriptsMotionIsNotAnOscillationUnlessAsFast) {
   EXPECT_EQ(RunScenario("box_9kg", ToAndFro(1.6)).end, RunEnd::kFinished);
   EXPECT_EQ(RunScenario("box_9kg", ToAndFro(2.5)).end, RunEnd::kFinished);
 }
 
-// One common factor brings both arms to rest, and they stay there.
+// One common factor must bring both arms to rest, and they must stay there.
 TEST(Stop, ScalesBothArmsByOneFactor) {
   std::vector<TickRecord> records;
   RunScenario("push", {}, [&](const TickRecord& record) {
@@ -101,7 +103,7 @@ TEST(Stop, ScalesBothArmsByOneFactor) {
     for (std::size_t i = 0; i < kHands; ++i) {
       const Joints start(last.hands[i].command.data()), now(records[k].hands[i].command.data());
       factor[i] = start.dot(now) / start.squaredNorm();
-      // The change of the arms' geometry has little effect, because the distance is only 2 cm.
+      // The change of the arms' geometry has little effect, because they move only 2 cm.
       EXPECT_LE((now - factor[i] * start).norm(), 0.06 * start.norm()) << "tick " << k;
     }
     EXPECT_NEAR(factor[0], factor[1], 0.02) << "tick " << k;
@@ -136,8 +138,8 @@ double Torque(const HandRecord& hand) {
   return Vector3(hand.wrench[3], hand.wrench[4], hand.wrench[5]).norm();
 }
 
-// The same conditions apply as with real arms: free hands, handles at rest, and half a second
-// without the cause. A reset is requested in each tick, and each request except the last is refused
+// The conditions are those of real arms: free hands, handles at rest, and half a second without the
+// cause. The test requests a reset in each tick, and every request but the last must be refused
 // with a reason.
 TEST(Reset, OfASimulatedRigWaitsForItsConditions) {
   for (const bool by_force : {true, false}) {
@@ -153,7 +155,8 @@ TEST(Reset, OfASimulatedRigWaitsForItsConditions) {
       if (at_rest) emulator.Request(RunEvent::kReset);
       emulator.Tick();
       const TickRecord& record = emulator.record();
-      if (at_rest && emulator.state() == RunState::kIdle) break;  // uses the samples before it
+      // the decision uses the samples of the tick before
+      if (at_rest && emulator.state() == RunState::kIdle) break;
       for (const HandRecord& hand : record.hands) {
         if (Force(hand) > 30 || Torque(hand) > 5) wrong = tick;
         if (Force(hand) > 5 || Torque(hand) > 1) loaded = tick;
@@ -170,7 +173,8 @@ TEST(Reset, OfASimulatedRigWaitsForItsConditions) {
     EXPECT_LT(moved, tick - 1);
     EXPECT_EQ(refused[static_cast<std::size_t>(Refusal::kNone)], 0);
     if (by_force) {
-      // The first tick after half a second; the decision uses the samples before it.
+      // This is the first tick after half a second, because the decision uses the samples of the
+      // tick before.
       EXPECT_NEAR(tick - wrong, 501, 1.5);
       EXPECT_GT(refused[static_cast<std::size_t>(Refusal::kCauseRemains)], 0);
     } else {
@@ -181,7 +185,7 @@ TEST(Reset, OfASimulatedRigWaitsForItsConditions) {
   }
 }
 
-// Direct mode has no arms, and the object stops with simulated time.
+// Direct mode has no arms, and the object stops when simulated time stops.
 TEST(Reset, InDirectModeWaitsForTheHandsAlone) {
   Emulator emulator(LoadTestScenario("box_9kg", {"mode=direct"}));
   while (emulator.run_time() < 3) emulator.Tick(), AutoStart(&emulator);
@@ -195,8 +199,8 @@ TEST(Reset, InDirectModeWaitsForTheHandsAlone) {
   EXPECT_GT(ticks, 2);
 }
 
-// A start within a joint's security distance is refused immediately, with the place in the
-// scenario.
+// The program must immediately refuse a start within a joint's security distance and name the place
+// in the scenario.
 TEST(Start, WithAJointWithinItsSecurityDistanceIsRefusedAtOnce) {
   const std::vector<std::string> set = {"rendering.joint_security=1",
                                         "rendering.joint_influence=1.1"};
@@ -230,7 +234,7 @@ TEST(Start, WithLinksTooNearIsRefusedAtOnce) {
   EXPECT_NE(why.find("rendering.security_distance is 0.700 m"), std::string::npos) << why;
 }
 
-// RECOVERY moves the joint away from its limit; then ALIGN is granted.
+// RECOVERY moves the joint away from its limit. After that, ALIGN is granted.
 TEST(Start, WithAJointWithinItsSecurityDistanceIsPossibleAfterRecovery) {
   Emulator emulator(LoadTestScenario(
       "box_9kg", {"rendering.joint_security=0.8", "rendering.joint_influence=0.9"}));
@@ -249,8 +253,7 @@ TEST(Start, WithAJointWithinItsSecurityDistanceIsPossibleAfterRecovery) {
   EXPECT_EQ(emulator.state(), RunState::kAlign);
 }
 
-// A simulated sensor reports that it exceeds its range, and the simulation does not use its
-// reading.
+// A simulated sensor reports that its range is exceeded. The simulation must not use the reading.
 TEST(Stop, ASimulatedSensorBeyondItsRangeMovesNothing) {
   std::vector<TickRecord> records;
   Emulator emulator(LoadTestScenario("push", {"device.arms.left.sensor.range_force=20",
@@ -268,7 +271,7 @@ TEST(Stop, ASimulatedSensorBeyondItsRangeMovesNothing) {
   EXPECT_EQ(emulator.state(), RunState::kUnpowered);
 }
 
-// An untimely request has no effect or causes a bounded stop that comes to rest.
+// A request at the wrong time must have no effect or cause a bounded stop that ends at rest.
 TEST(Stop, UntimelyRequestsEndInABoundedStop) {
   for (const RunEvent event :
        {RunEvent::kAlignRequested, RunEvent::kStartRequested, RunEvent::kReset,
@@ -300,8 +303,8 @@ TEST(Stop, UntimelyRequestsEndInABoundedStop) {
   }
 }
 
-// Requests to the whole emulator, as docs/concepts/states.md describes them: the more severe stop
-// wins regardless of the order, and no request is lost.
+// These requests to the whole emulator follow docs/concepts/states.md. The more severe stop must
+// win whatever the order, and no request may be lost.
 struct Asked {
   const char* name;
   std::vector<RunEvent> at_once;  // all in one tick of RUN
@@ -348,7 +351,7 @@ TEST(Stop, BeforeTheFirstTickIsNotLost) {
   EXPECT_EQ(emulator.record().cause, StopCause::kOperator);
 }
 
-// A stop request during the normal end of a run still becomes the cause.
+// A stop request during the normal end of a run must still become the cause.
 TEST(Stop, DuringTheEndOfARunIsReported) {
   Emulator emulator(LoadTestScenario("box_9kg"));
   Simulate(&emulator, 2, [](const TickRecord&) {});
@@ -362,8 +365,8 @@ TEST(Stop, DuringTheEndOfARunIsReported) {
   EXPECT_EQ(emulator.stop().status.cause, StopCause::kOperator);
 }
 
-// The motion of the handles during a stop, computed from the commands. From the tick after the
-// decision on, acceleration and jerk are within their limits. In the deciding tick, the stop
+// The motion of the handles during a stop, computed from the commands. Acceleration and jerk are
+// within their limits from the tick after the decision on. In the tick of the decision, the stop
 // continues the acceleration along the path, but the acceleration across the path ends immediately
 // (docs/developer/decisions.md). That tick may therefore exceed the jerk limit, but not the
 // acceleration of the run itself.
@@ -411,8 +414,8 @@ TEST(Stop, KeepsToItsBoundsAtTheHandlesAndKeepsThemTogether) {
         relative_before = gap();
       } else if (r.state == RunState::kStopping) {
         EXPECT_LE(acceleration, scenario.safety.stop_acceleration + 0.01) << ending.scenario;
-        // The jerk is computed at the measured joints, but the stop is planned for the predicted
-        // ones.
+        // The test computes the jerk at the measured joints, but the emulator plans the stop for
+        // the predicted ones.
         EXPECT_LE(jerk, 1.15 * scenario.safety.stop_jerk) << ending.scenario << " " << stopping;
         relative = std::max(relative, std::abs(gap() - relative_before));
       }
@@ -420,8 +423,8 @@ TEST(Stop, KeepsToItsBoundsAtTheHandlesAndKeepsThemTogether) {
     }
     ASSERT_GT(stopping, 10);
     RecordProperty(ending.scenario, std::to_string(1e3 * relative) + " mm");
-    // In 24 stops of `underdamped` by force, with different seeds and sides, at most 1.3 % of the
-    // distance.
+    // In 24 stops of `underdamped` by force, with different seeds and sides, the error was at most
+    // 1.3 % of the distance.
     EXPECT_LE(relative, 0.1e-3 + 0.015 * stops.stops().back().distance) << ending.scenario;
   }
 }
@@ -470,7 +473,7 @@ TEST(Stop, AnyClientMayRequestIt) {
   EXPECT_EQ(emulator.record().cause, StopCause::kOperator);
 }
 
-// From a permitted state, no limit is crossed, even if the task requires it.
+// A run that starts in a permitted state must not cross a limit, even if the task requires it.
 TEST(Limits, AreNotCrossedInClosedLoop) {
   const Scenario scenario = LoadTestScenario("box_9kg");
   for (const char* base : {"[-0.2, 0.22, -0.3]", "[0.25, 0.3, -0.1]", "[0.0, 0.05, -0.3]"}) {

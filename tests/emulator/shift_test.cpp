@@ -1,4 +1,5 @@
-// environment.shift moves the virtual world relative to the arms. Nothing else changes.
+// Tests that environment.shift moves the virtual world relative to the arms and changes nothing
+// else.
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -9,7 +10,7 @@ namespace {
 
 const PoseSpec kShift = {{0.4, -0.7, 0.25}, {0, 0, 0.7}};
 
-// The scenario with the arms where they were in W, but W elsewhere in the rig.
+// Returns the scenario with the arms at the same place in W, but with W elsewhere in the rig.
 Scenario Elsewhere(Scenario s, const PoseSpec& shift) {
   for (const int hand : s.hands()) {
     BaseSpec& base = (hand == 0 ? s.device.left : s.device.right)->base;
@@ -32,12 +33,12 @@ void ExpectSame(const Pose& a, const Pose& b, std::uint64_t tick) {
   ASSERT_LT(RotationError(a.q, b.q).norm(), 1e-9) << "tick " << tick;
 }
 
-// A seventh joint adds up what its handle does not determine, so joints may differ more than
-// handles.
+// A seventh joint accumulates motion that its handle does not determine, so joints may differ more
+// than handles.
 constexpr double kSameJoint = 1e-7;  // [rad]
 
-// One arm's base is tilted, so that its gravity direction is not that of its base's z axis.
-// Readings without steps: the last bit may decide to which step a reading is rounded.
+// One arm's base is tilted, so that gravity does not act along the z axis of the base. The readings
+// have no quantisation steps, because the last bit may decide to which step a reading is rounded.
 TEST(Shift, OfSceneAndArmsTogetherChangesNothing) {
   Scenario here = LoadTestScenario("box_9kg", {"duration=6", "rig.encoder_resolution=0"});
   for (auto* arm : {&here.device.left, &here.device.right})
@@ -60,7 +61,7 @@ TEST(Shift, OfSceneAndArmsTogetherChangesNothing) {
   if (HasFatalFailure()) FAIL();
 }
 
-// Without this, the previous test could pass because a shift has no effect.
+// This test shows that a shift has an effect. Without it, the previous test would prove nothing.
 TEST(Shift, OfTheSceneAloneMovesItForTheArms) {
   const Scenario here = LoadTestScenario("box_9kg", {"duration=0.2"});
   Scenario lower = here;
@@ -70,7 +71,7 @@ TEST(Shift, OfTheSceneAloneMovesItForTheArms) {
   for (std::size_t j = 0; j < a[50].hands[0].arm_dof; ++j)
     most = std::max(most, std::abs(a[50].hands[0].q[j] - b[50].hands[0].q[j]));
   EXPECT_GT(most, 0.02);
-  // In W, both arms are at the same handles.
+  // In W, both arms hold the same handles.
   for (std::size_t h = 0; h < kHands; ++h)
     EXPECT_LT(
         (FromRecord(a[50].hands[h].real.pose).p - FromRecord(b[50].hands[h].real.pose).p).norm(),

@@ -1,4 +1,5 @@
-// Saves and restores the complete state between two ticks, and repeats runs from their records.
+// Tests that the complete state can be saved and restored between two ticks, and that runs can be
+// repeated from their records.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -34,7 +35,8 @@ std::vector<std::byte> Save(Emulator* emulator) {
   return bytes;
 }
 
-// Inputs of a page: parameters that change back and forth, a moving hand, latencies.
+// Submits the inputs of a page: parameters that change back and forth, a moving hand, and
+// latencies.
 void PutIn(int k, Emulator* emulator) {
   RunInput input;
   if (k % 700 == 350) {
@@ -123,7 +125,8 @@ TEST_P(StateTest, LoadsIntoOneThatNeverTicked) {
   EXPECT_EQ(Save(&fresh), state);
 }
 
-// Uninitialised bytes would make the states of equal runs differ and could be refused as NaN.
+// Uninitialised bytes would make the states of equal runs differ, and the emulator could refuse
+// them as NaN.
 TEST_P(StateTest, ContainsOnlyWhatWasWritten) {
   const Scenario scenario = LoadTestScenario(GetParam().first, GetParam().second);
   std::vector<std::byte> states[2];
@@ -168,7 +171,7 @@ TEST(State, SavingTakesNoHeapAndFits) {
 }
 
 // A recording may contain a forged state. The emulator must refuse it or continue, at worst with a
-// stop. (The sanitizers check that it reads no memory outside the state.)
+// stop. The sanitizers check that it reads no memory outside the state.
 TEST(State, WithAnyByteChangedIsRefusedOrHarmlessSoak) {
   const Scenario scenario = LoadTestScenario("box_9kg");
   Emulator emulator(scenario);

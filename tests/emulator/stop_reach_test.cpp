@@ -1,4 +1,4 @@
-// The predicted time and distance of a stop, including the arms' lag.
+// Tests the predicted time and distance of a stop, including the arms' lag.
 #include "emulator/stop_reach.h"
 
 #include <gtest/gtest.h>
@@ -31,12 +31,12 @@ void Follows(ArmSpec* arm) {
   arm->follows_position = true;
 }
 
-// Fixes the value that other tests use in formulas: the longest time for which one arm continues
-// because of the other [s].
+// This test fixes the value that other tests use in formulas: the longest time for which one arm
+// continues because of the other [s].
 TEST(StopOfArms, HasNoMoreOfFollowingThanWasPromised) { EXPECT_EQ(kFollowing, 0.030); }
 
-// Without significant lag, the stop consists of the commanded profile and the following of one arm
-// by the other.
+// If the lag is insignificant, the stop consists of the commanded profile and the time for which
+// one arm follows the other.
 TEST(StopOfArms, IsTheBudgetForArmsWithoutLag) {
   const StopBudget commanded = WorstStop(0.25, 5, 250), stop = OfBoth(Quick);
   EXPECT_NEAR(stop.time, commanded.time + kFollowing, 0.006);
@@ -46,7 +46,7 @@ TEST(StopOfArms, IsTheBudgetForArmsWithoutLag) {
 TEST(StopOfArms, HasTheArmsLagInIt) {
   const StopBudget quick = OfBoth(Quick), slow = OfBoth(Slow);
   const double lag = 0.004 + 2 * 0.9 / (2 * 3.14159265 * 15);
-  // The lag of accelerating handles is smaller than at constant speed.
+  // Handles that accelerate lag less than handles at constant speed.
   EXPECT_LT(slow.way, quick.way + 0.25 * lag);
   EXPECT_GT(slow.way, quick.way + 0.4 * 0.25 * lag);
   EXPECT_GT(slow.time, quick.time + lag);
@@ -57,7 +57,7 @@ TEST(StopOfArms, HasTheArmsLagInIt) {
   EXPECT_GT(later.way, slow.way + 0.0003);
 }
 
-// An arm with position control overshoots and is pulled back.
+// An arm under position control overshoots and is pulled back.
 TEST(StopOfArms, TakesAnArmThatFollowsAPositionLonger) {
   const StopBudget slow = OfBoth(Slow), follows = OfBoth(Follows);
   EXPECT_NEAR(follows.time, 0.200 + kFollowing, 0.004);
@@ -65,7 +65,7 @@ TEST(StopOfArms, TakesAnArmThatFollowsAPositionLonger) {
   EXPECT_GT(follows.time, slow.time + 0.05);
 }
 
-// The arm with the smaller overrun waits for the other one.
+// The arm with the smaller overrun must wait for the other one.
 TEST(StopOfArms, IsOfTheSlowerArmAndTheOneThatWaits) {
   const StopBudget mixed = Of(Slow, Follows), swapped = Of(Follows, Slow);
   EXPECT_EQ(mixed.time, swapped.time);
@@ -76,8 +76,8 @@ TEST(StopOfArms, IsOfTheSlowerArmAndTheOneThatWaits) {
   EXPECT_GT(mixed.time, OfBoth(Follows).time);
 }
 
-// Joints that move at 2 rad/s and may decelerate at three quarters of 4 rad/s² take two thirds of a
-// second to stop, and so do the handles.
+// If joints move at 2 rad/s and may decelerate at three quarters of 4 rad/s², they take two thirds
+// of a second to stop. The handles take as long.
 TEST(StopOfArms, IsLongerWhereJointsTurnAsFastAsTheyMay) {
   Scenario s = LoadTestScenario("box_9kg");
   s.safety.handle_speed = 0.25;

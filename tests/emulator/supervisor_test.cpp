@@ -1,5 +1,5 @@
-// The decisions of a tick without models, physics and rendering. The tests write the samples of two
-// artificial arms with two joints each.
+// Tests the decisions of a tick without models, physics and rendering. The tests write the samples
+// of two artificial arms with two joints each.
 #include "emulator/supervisor.h"
 
 #include <gtest/gtest.h>
@@ -91,7 +91,7 @@ class SupervisorTest : public testing::Test {
     return Ask(RunEvent::kStartRequested) == Refusal::kNone && Await(RunState::kRun, 1);
   }
   void Push(double force) { data_.wrench[0].F_H_W[0] = force; }
-  // A fault after which the arm may be held with power on.
+  // After this fault, the arm may be held with power on.
   void TooMuchForce() { Push(100); }
 
   WorldState world_;
@@ -354,7 +354,7 @@ TEST_F(SupervisorTest, ASimulatedRigWaitsForALateTick) {
   EXPECT_EQ(order_.ticks, 1);
 }
 
-// The device may be jammed or taped down.
+// A person may have jammed or taped down the device.
 TEST_F(RealSupervisor, AnEnablingDeviceCountsOnceItHasBeenReleased) {
   holds_key_ = false;
   foot_ = Enabling::kPressed;

@@ -1,4 +1,4 @@
-// The tick is repeatable and does not use the heap.
+// Tests that the tick is repeatable and does not allocate memory.
 #include <gtest/gtest.h>
 
 #include "runs.h"
@@ -15,7 +15,7 @@ TEST(Repeatability, SameSeedSameBytesOtherSeedOtherBytes) {
   EXPECT_NE(once, SummaryJson(RunScenario("box_9kg", {"duration=6", "seed=2"}).summary, false));
 }
 
-// Start, run, stop, hold, reset and repeat: no tick may allocate memory.
+// No tick may allocate memory while the run starts, runs, stops, is held, is reset and is repeated.
 TEST(Tick, TakesNothingFromTheHeapSoak) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   for (const char* name : {"box_9kg", "single_arm", "dual_ur5"}) {

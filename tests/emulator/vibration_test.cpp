@@ -1,4 +1,5 @@
-// Complete runs: an unstable haptic loop is stopped early, and all other loops are not stopped.
+// In complete runs, the emulator must stop an unstable haptic loop early and must not stop a stable
+// one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,8 +20,8 @@ namespace {
 
 using Settings = std::vector<std::string>;
 
-// Fourth-order Butterworth high-pass at 10 Hz: two biquads from the bilinear transform, in direct
-// form II. It starts in the steady state for its first sample.
+// A fourth-order Butterworth high-pass filter at 10 Hz, as two biquads from the bilinear transform
+// in direct form II. It starts in the steady state of its first sample.
 class HighPass {
  public:
   explicit HighPass(double dt) {
@@ -55,7 +56,7 @@ class HighPass {
 struct Outcome {
   bool ran = false;  // false: the predicted margin is too low
   StopCause cause = StopCause::kNone;
-  bool vibrated = false;  // stopped by the vibration detector
+  bool vibrated = false;  // the vibration detector stopped it
   double time = 0;        // of the stop [s]
   double peak = 0;        // largest force component above 10 Hz until the stop [N]
 
@@ -63,7 +64,7 @@ struct Outcome {
   bool by_another() const { return stopped() && !vibrated; }
 };
 
-// margin: smallest predicted margin with which the loop is run.
+// margin: the loop runs only if its predicted margin is at least this.
 Outcome RunLoop(const std::string& scenario_name, const Settings& set, double margin = 0) {
   const Scenario scenario = LoadTestScenario(scenario_name, set);
   Emulator emulator(scenario);
@@ -92,7 +93,7 @@ std::string Loop(double bandwidth, double delay_ms) {
 struct Known {
   const char* scenario;
   Settings set;
-  double peak;  // peak below which it must stop [N]
+  double peak;  // the run must stop before this peak [N]
 };
 
 // Before the detector existed, each of these loops vibrated with up to 20 N at 17 to 28 Hz.
@@ -129,7 +130,8 @@ struct Combination {
                     "operator.hand.rotation_damping=" + text(0.1 * std::sqrt(stiffness)),
                     Loop(bandwidth, delay),
                     "rendering.lead=" + text(lead / 1e3)};
-    // A vibration whose doubling time is 20 s needs a long run and a constant posture.
+    // If the doubling time of a vibration is 20 s, the test needs a long run and a constant
+    // posture.
     if (kind == "slow")
       set.insert(set.end(),
                  {"operator.script=[{action: grip, start: 0, duration: 0.5}]", "duration=150"});
@@ -161,10 +163,10 @@ std::vector<Combination> Combinations(const std::string& kind) {
 
 struct Misses {
   long runs = 0, missed = 0, late = 0;
-  long by_another = 0;  // stopped in time, but for another reason
+  long by_another = 0;  // loops that stop in time, but for another reason
 };
 
-// Counts the loops that do not stop, and those that stop only at 5 N or more.
+// Counts the loops that do not stop and those that stop only at 5 N or more.
 Misses Unstable(const std::string& kind, std::size_t step) {
   const std::vector<Combination> all = Combinations(kind);
   Misses count;
@@ -221,7 +223,8 @@ constexpr const char* kWithAPerson[] = {"bar_circle", "box_18kg",     "box_9kg",
 
 Settings Sensors(const std::string& scenario, double noise) {
   Settings set;
-  if (scenario == "excite_cobot") return set;  // no arms: the hands act on the object
+  // there are no arms, because the hands act on the object
+  if (scenario == "excite_cobot") return set;
   for (const char* arm : {"left", "right"}) {
     if (arm == std::string("right") && scenario == "single_arm") continue;
     const std::string sensor = std::string("device.arms.") + arm + ".sensor.";
@@ -231,16 +234,16 @@ Settings Sensors(const std::string& scenario, double noise) {
   return set;
 }
 
-// The margin that a loop needs for this test, so that hands may differ from the scenario's. The
-// slow oscillation of `underdamped` reduces its margin but is not a vibration; `excite_cobot` has
-// no loop.
+// Returns the margin that a loop needs for this test, so that hands may differ from the scenario's.
+// The slow oscillation of `underdamped` reduces its margin but is not a vibration. `excite_cobot`
+// has no loop.
 double NeededMargin(const std::string& scenario) {
   return scenario == "underdamped" || scenario == "excite_cobot" ? 0 : 1.5;
 }
 
-// Nine scenarios with many seeds, with nominal and threefold sensor noise, at 1000, 500 and 250 Hz
-// if the margin allows it. The short test uses five seeds of each scenario, each with one of the
-// six variants.
+// The test runs nine scenarios with many seeds, with nominal and threefold sensor noise, at 1000,
+// 500 and 250 Hz if the margin allows it. The short test uses five seeds of each scenario, each
+// with one of the six variants.
 TEST(VibrationRun, NoScenarioIsStoppedSoak) {
   long runs = 0;
   std::map<std::string, long> left_out;
@@ -273,13 +276,13 @@ TEST(VibrationRun, NoScenarioIsStoppedSoak) {
   }
   for (const auto& [where, count] : left_out)
     std::printf("%s: %ld runs left out for their margin\n", where.c_str(), count);
-  // Only this loop has too little margin.
+  // Only this loop has a margin that is too low.
   const long without = InFull() ? 100 : 1;
   EXPECT_EQ(left_out, (std::map<std::string, long>{{"bar_circle at 250 Hz", without}}));
   EXPECT_EQ(runs + without, 9 * seeds * (InFull() ? 6 : 1));
 }
 
-// A person pushes as suddenly as muscles can (50 ms) and releases abruptly.
+// A person pushes as suddenly as muscles allow (50 ms) and releases abruptly.
 TEST(VibrationRun, SuddenPushesAndReleasesAreNoVibrationSoak) {
   for (const char* scenario : {"box_9kg", "bar_circle", "box_18kg"}) {
     for (const char* force : {"[14, 0, 0]", "[0, 14, 0]", "[0, 0, 14]", "[-9, 9, -9]"}) {

@@ -1,5 +1,5 @@
-// Errors that are found only once the models are loaded name their key and their place in the
-// scenario.
+// If the program finds an error only after it has loaded the models, the message must name the key
+// and its place in the scenario.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::string TextOf(const fs::path& file) {
 
 std::string Box() { return TextOf(kScenarios / "box_9kg.yaml"); }
 
-// `text` with the `nth` occurrence (from 0) of `from` replaced by `to`.
+// Returns `text` with the `nth` occurrence (from 0) of `from` replaced by `to`.
 std::string Replace(std::string text, const std::string& from, const std::string& to, int nth = 0) {
   std::size_t at = text.find(from);
   for (int i = 0; i < nth && at != std::string::npos; ++i) at = text.find(from, at + 1);
@@ -37,7 +37,7 @@ std::string Replace(std::string text, const std::string& from, const std::string
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// The place "box.yaml:line:column: " of the `nth` occurrence of `word`.
+// Returns the place "box.yaml:line:column: " of the `nth` occurrence of `word`.
 std::string PlaceIn(const std::string& text, const std::string& word, int nth = 0) {
   std::size_t at = text.find(word);
   for (int i = 0; i < nth && at != std::string::npos; ++i) at = text.find(word, at + 1);
@@ -47,7 +47,7 @@ std::string PlaceIn(const std::string& text, const std::string& word, int nth = 
   return "box.yaml:" + std::to_string(line) + ":" + std::to_string(at - before.rfind('\n')) + ": ";
 }
 
-// The error message of an emulator for the scenario; "" if it starts.
+// Returns the error message of an emulator for the scenario, or "" if it starts.
 std::string ErrorOf(const std::string& text, const std::vector<std::string>& set = {},
                     const fs::path& folder = kScenarios) {
   try {
@@ -169,7 +169,7 @@ const Case kCases[] = {
      "--set handles.right.xyz: handles.right.xyz is 1.81 m outside the object's shape"},
     {"device.arms.right.base.xyz=[5, 0, 0]",
      "box.yaml:45:13: device.arms.right.base: the arm cannot move its handle to the start"},
-    // An error in the model's contents is reported at the key that names the model.
+    // The program reports an error in the model's contents at the key that names the model.
     {"device.arms.left={model: ../assets/bar.urdf, end_effector: bar, elbow: bar}",
      "--set device.arms.left:1:9: device.arms.left.model: "}};
 
@@ -184,7 +184,7 @@ class WiringOfModels : public testing::Test {
   void Write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
-  // An object of 9 kg. Its second and third shape, in lines 4 and 5, use a mesh.
+  // Writes an object of 9 kg. Its second and third shape, in lines 4 and 5, use a mesh.
   void WriteBox() const {
     const std::string mesh =
         "<collision><geometry><mesh filename=\"mesh.stl\"/></geometry></collision>\n";
@@ -218,7 +218,7 @@ TEST_F(WiringOfModels, AMeshThatTheEngineRefusesIsNamedWithItsPlace) {
 
 TEST_F(WiringOfModels, TwoShapesMayBeOfOneMesh) {
   WriteBox();
-  // A tetrahedron, as binary STL.
+  // The mesh is a tetrahedron in binary STL.
   const std::array<std::array<float, 3>, 4> p = {
       {{0, 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0}, {0, 0, 0.1F}}};
   const std::array<std::array<std::size_t, 3>, 4> faces = {

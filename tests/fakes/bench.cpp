@@ -18,7 +18,7 @@ ArmMake MakeOf(const std::string& kind) {
   return kind == "franka" ? ArmMake::kFranka : ArmMake::kUr;
 }
 
-// The machine file for the fakes, with the arms of the scenario.
+// Returns the machine file for the fakes, with the arms of the scenario.
 Machine MachineOf(const Scenario& scenario, const BenchOptions& options) {
   Machine machine;
   for (int hand = 0; hand < kHands; ++hand) {
@@ -30,7 +30,7 @@ Machine MachineOf(const Scenario& scenario, const BenchOptions& options) {
     side.arm = scenario.arm(hand);
     side.arm.sample_rate = side.connection.make == ArmMake::kFranka ? 1000 : 500;
     side.arm.sensor.sample_rate = side.arm.sample_rate;
-    // A measurement would include the time that a command waits for the next cycle of a UR's
+    // A measured delay includes the time that a command waits for the next cycle of a UR's
     // controller.
     if (side.connection.make == ArmMake::kUr) side.arm.loop.delay += 1 / side.arm.sample_rate;
     if (!options.sensors[i].empty()) {
@@ -45,7 +45,7 @@ Machine MachineOf(const Scenario& scenario, const BenchOptions& options) {
 
 double Distance(const Pose& a, const Pose& b) { return (a.p - b.p).norm(); }
 
-// Change of the handles' relative pose [m], [rad].
+// Returns the change of the handles' relative pose [m], [rad].
 std::pair<double, double> Parted(const std::array<Pose, kHands>& then,
                                  const std::array<Pose, kHands>& now) {
   const Pose before = then[0].Inverse() * then[1], after = now[0].Inverse() * now[1];
@@ -54,7 +54,7 @@ std::pair<double, double> Parted(const std::array<Pose, kHands>& then,
 
 }  // namespace
 
-// Forwards all calls to a network that has a different owner.
+// Forwards all calls to a network that someone else owns.
 class Bench::Shared final : public Network {
  public:
   explicit Shared(Network* network) : network_(network) {}
@@ -145,8 +145,8 @@ void Bench::Forget(double time) {
   const auto old = [&](std::uint64_t then) {
     return static_cast<double>(now() - then) > 1e9 * time;
   };
-  // Keeps the stage in which the remaining time begins, and the commands that the arms had not
-  // obeyed yet when that stage began.
+  // Keeps the stage in which the kept time begins, and the commands that the arms had not yet
+  // followed when that stage began.
   while (stages_.size() > 1 && old(stages_[1].time)) stages_.erase(stages_.begin());
   const std::uint64_t begin = stages_.empty() ? now() : stages_[0].time;
   std::erase_if(sent_,

@@ -1,5 +1,5 @@
-// A whole system in virtual time: emulator and drivers, fakes on their rig, faults on the wires
-// between them, and a person at the console.
+// A whole system in virtual time: the emulator with its drivers, fakes on their rig, faults on the
+// wires between them, and a person at the console.
 #pragma once
 
 #include <array>
@@ -27,9 +27,10 @@ struct BenchOptions {
   std::array<FakeOptions, kHands> arm_options, sensor_options;
   std::uint64_t seed = 1;
   std::function<void(Scenario*)> change;  // changes the scenario on both sides of the wire
-  std::function<void(Scenario*)> truth;   // changes the far end alone, unknown to the program
+  std::function<void(Scenario*)> truth;   // changes the fakes' side alone, unknown to the program
   std::function<void(Machine*)> machine;  // changes the machine file for the fakes
-  std::function<void(std::array<JointVector, kHands>*)> start;  // changes where the arms are parked
+  // changes the pose in which the arms are parked
+  std::function<void(std::array<JointVector, kHands>*)> start;
 };
 
 // Bytes that were written to an arm's controller: a part of a stream, or a datagram.
@@ -39,7 +40,7 @@ struct Sent {
   Bytes bytes;
 };
 
-// State of the run and joint angles at a point in time. A stage is added at each change of state
+// The state of the run and the joint angles at one time. A stage is added at each change of state
 // and at regular intervals.
 struct RunStage {
   std::uint64_t time;  // [ns]
@@ -47,7 +48,7 @@ struct RunStage {
   std::array<JointVector, kHands> q;  // [rad]
 };
 
-// Result of a stop on the bench.
+// The result of a stop on the bench.
 struct BenchStop {
   StopCause cause = StopCause::kNone;
   RunState end = RunState::kInit;  // HELD or UNPOWERED
@@ -66,23 +67,25 @@ class Bench {
   static std::string HostOf(int hand) { return hand == 0 ? "192.0.2.10" : "192.0.2.11"; }
   static std::string SensorHostOf(int hand) { return hand == 0 ? "192.0.2.20" : "192.0.2.21"; }
 
-  // Throws the exceptions of ConnectMachine.
+  // Throws the same exceptions as ConnectMachine.
   explicit Bench(const BenchOptions& options);
 
   // Performs one tick. `missed`: number of ticks that the loop missed immediately before.
   void Tick(int missed = 0);
   void Pass(double time);
-  // Lets time pass at the far end while the loop hangs [s].
+  // Lets time pass for the devices while the loop hangs [s].
   void Hang(double time) { memory_->Pass(time); }
-  // Registers a function that receives every later record.
+  // Registers a function that receives each later record.
   void Watch(std::function<void(const TickRecord&)> look) { look_ = std::move(look); }
-  // From now on, the person holds the key, or does not.
+  // Sets whether the person holds the key from now on.
   void Hold(bool key) { holds_ = key; }
-  // Ticks until the run is in this state. Returns false if it is not within `patience` [s].
+  // Performs ticks until the run is in this state. Returns false if that takes longer than
+  // `patience` [s].
   bool Await(RunState state, double patience);
-  // Performs ALIGN, ARMED and RUN on a person's request. Returns false if RUN is not reached.
+  // Performs ALIGN, ARMED and RUN as a person requests them. Returns false if RUN is not reached.
   bool Start();
-  // Waits until the arms rest after a stop, at most `patience` [s]. `fault`: tick of the fault.
+  // Waits at most `patience` [s] until the arms rest after a stop. `fault` is the tick of the
+  // fault.
   BenchStop AwaitStop(std::uint64_t fault, double patience);
 
   Emulator& emulator() { return *emulator_; }
@@ -92,10 +95,10 @@ class Bench {
   WireFaults& wire(int hand) { return *faulty_->Of(HostOf(hand)); }
   WireFaults& sensor_wire(int hand) { return *faulty_->Of(SensorHostOf(hand)); }
   FarRig& rig() { return *rig_; }
-  // The network as another process sees it, without the faults of the bench's wires.
+  // Returns the network as another process sees it, without the faults of the bench's wires.
   Network& network() { return *memory_; }
   std::uint64_t now() const { return memory_->Now(); }  // [ns]
-  // From now on, records the bytes that are written to arms, and the stages of the run.
+  // From now on, records the bytes that are written to the arms and the stages of the run.
   void Capture() { captures_ = true; }
   const std::vector<Sent>& sent() const { return sent_; }
   const std::vector<RunStage>& stages() const { return stages_; }
@@ -105,7 +108,7 @@ class Bench {
   const TickRecord& record() const { return emulator_->record(); }
 
  private:
-  class Shared;  // lets the emulator own a network object, while the bench owns the network
+  class Shared;  // lets the emulator own a network although the bench owns it
   std::unique_ptr<RealDevice> Connect(const Scenario& scenario, const BenchOptions& options);
 
   std::unique_ptr<FarRig> rig_;

@@ -1,10 +1,10 @@
-// Runs the far end of the wire as a separate process: one rig (arms, sensors, handles, the
-// scenario's virtual operator), and fakes for its arms that speak real protocols over sockets.
+// Runs the devices as a separate process: one rig (arms, sensors, handles, the scenario's simulated
+// operator), and fakes for its arms that use real protocols over sockets.
 //
 //   fake_rig SCENARIO left=ur:127.0.0.2 right=franka:127.0.0.3 left=net_ft:127.0.0.4
 //
-// Runs in real time with steps of a millisecond. Obeys each line on standard input and answers
-// with one or more lines; kHelp lists the commands.
+// It runs in real time with steps of a millisecond. It executes each line on standard input and
+// answers with one or more lines; kHelp lists the commands.
 #include <poll.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -104,7 +104,7 @@ class FarEnd {
     rig_.Step();
   }
 
-  // Returns an answer of one or more lines. A command with an error anywhere has no effect.
+  // Returns an answer of one or more lines. A command that contains an error has no effect.
   std::string Obey(const std::string& line) {
     std::istringstream words(line);
     std::string what, side;
@@ -136,7 +136,7 @@ class FarEnd {
       return "late takes 2 times of the monotonic clock [ns].";
     const Delay processors = processors_.Within(from, to);
     double silence = silences_.Within(from, to).longest;
-    for (const Fake& fake : fakes_)  // a silence that still lasts
+    for (const Fake& fake : fakes_)  // includes a silence that still lasts
       if (fake.is_arm && fake.heard != 0)
         silence = std::max(silence, Milliseconds(std::max(from, fake.heard), to));
     std::ostringstream text;
@@ -172,7 +172,7 @@ class FarEnd {
     return "ok";
   }
 
-  // An action of a person at the arm.
+  // Performs an action of a person at the arm.
   std::string ByHand(const std::string& what, int hand, std::istream* words) {
     std::vector<double> x;
     for (double number = 0; *words >> number;) x.push_back(number);
@@ -213,7 +213,7 @@ class FarEnd {
     return text + ".";
   }
 
-  // A number must be the last word of a command to a fake.
+  // If a command to a fake has a number, it must be the last word.
   static std::string Do(Fake* fake, const std::string& what) try {
     std::istringstream words(what);
     for (std::string word; words >> word;)
@@ -237,7 +237,7 @@ class FarEnd {
   DelayLog late_, silences_;  // delays of this loop; silences of the arms' clients
 };
 
-// Returns false at the end of the input or on a request to quit.
+// Reads a line. Returns false at the end of the input or on a request to quit.
 bool Listen(FarEnd* far_end, std::string* line) {
   pollfd ready{STDIN_FILENO, POLLIN, 0};
   while (poll(&ready, 1, 0) > 0) {

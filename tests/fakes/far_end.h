@@ -1,5 +1,5 @@
-// The far end of the wire for tests: devices that speak a real protocol with bytes in steps of a
-// millisecond. They depend on no socket and no clock, so the same code runs in memory and virtual
+// The device side of the wire for tests: fakes that use a real protocol, byte by byte, in steps of
+// a millisecond. They depend on no socket and no clock, so the same code runs in memory and virtual
 // time (memory_network.h), and over sockets in a separate process (fake_rig.cpp).
 #pragma once
 
@@ -22,14 +22,14 @@ class Wire {
   virtual ~Wire() = default;
   virtual void Send(int link, std::span<const std::byte> bytes) = 0;
   virtual void Close(int link) = 0;
-  // Sends UDP from the fake's port to the client's port. The client is the last computer that has
+  // Sends UDP from the fake's port to a port of the client, which is the last computer that has
   // sent data.
   virtual void SendDatagram(std::uint16_t from, std::uint16_t to,
                             std::span<const std::byte> bytes) = 0;
 };
 
 // Connects a fake with an arm of a rig and its sensor. The caller that steps the rig must fill in
-// the sample before a fake's Step and then pass the resulting command to the arm.
+// the sample before it calls the fake's Step, and must then pass the resulting command to the arm.
 struct Mechanics {
   ArmSample sample;     // current joints and sensor reading
   JointVector command;  // joint velocities that the controller commands [rad/s]
@@ -42,17 +42,17 @@ class FakeDevice {
   virtual std::vector<std::uint16_t> tcp_ports() const { return {}; }
   virtual std::vector<std::uint16_t> udp_ports() const { return {}; }
   virtual void Opened(int /*link*/, std::uint16_t /*port*/) {}
-  // Receives a part of a stream, which may be cut anywhere.
+  // Receives a piece of a stream, which may be cut anywhere.
   virtual void Received(int /*link*/, std::span<const std::byte> /*bytes*/) {}
   virtual void Closed(int /*link*/) {}
   virtual void ReceivedDatagram(std::uint16_t /*port*/, std::uint16_t /*from*/,
                                 std::span<const std::byte> /*bytes*/) {}
   // Lets one millisecond pass.
   virtual void Step(Mechanics* mechanics) = 0;
-  // Performs an event outside the protocol ("protective stop", "emergency stop", ...), given as
-  // words with parameters. Returns false if it is unknown.
+  // Causes an event outside the protocol ("protective stop", "emergency stop", ...), given as words
+  // with parameters. Returns false if the event is unknown.
   virtual bool Do(const std::string& /*what*/) { return false; }
-  // Events for a test to read, one per line, for example lost commands or refused words.
+  // Returns the events that a test may read, one per line, such as lost commands or refused words.
   const std::vector<std::string>& log() const { return log_; }
 
   void Attach(Wire* wire) { wire_ = wire; }

@@ -9,8 +9,8 @@
 namespace predictor {
 namespace {
 
-// The scenario's start joints, with a small offset. The scenario's device and operator are replaced
-// by the simulated ones.
+// Returns the scenario's start joints with a small offset. The simulated device and operator
+// replace the scenario's.
 std::array<JointVector, kHands> Beside(Scenario scenario, const FarRig::Start& change) {
   constexpr double kBeside = 0.01;  // [rad]
   scenario.device.type = "simulated";
@@ -40,7 +40,7 @@ Mechanics* FarRig::Hang(int hand) {
   return places_.back().mechanics.get();
 }
 
-// Wrench of a person's push, about S and in the axes of S.
+// Returns the wrench of a person's push, about S and in the axes of S.
 Wrench FarRig::Pressed(std::size_t hand) const {
   const ByHand& by = by_hand_[hand];
   const Pose& X_WH = rig_->true_handles()[hand].X_W;
@@ -94,7 +94,7 @@ void FarRig::Step() {
   command.run_time = run_time_;
   for (std::size_t hand = 0; hand < kHands; ++hand)
     command.v[hand].setZero(sample_.arms[hand].q.size());
-  // Sensors command no motion.
+  // Sensors do not command motion.
   for (const Place& place : places_)
     if (place.mechanics->command.size() > 0)
       command.v[static_cast<std::size_t>(place.hand)] = place.mechanics->command;

@@ -1,5 +1,5 @@
-// The rig at the far end: arms, sensors, handles, the scenario's virtual operator, and places for
-// the fakes of its controllers.
+// The rig behind the fakes: arms, sensors, handles, the scenario's simulated operator, and places
+// for the fakes of its controllers.
 #pragma once
 
 #include <array>
@@ -22,38 +22,38 @@ class FarRig {
   using Start = std::function<void(std::array<JointVector, kHands>*)>;
   explicit FarRig(const Scenario& scenario, const Start& start = nullptr);
 
-  // Adds a place for a controller or a sensor on the arm of a hand. It is valid as long as this
-  // object.
+  // Adds a place for a controller or a sensor on the arm of a hand. The place is valid as long as
+  // this object.
   Mechanics* Hang(int hand);
 
-  // Lets one millisecond pass: the arms obey the commands in the places, which then receive new
+  // Lets one millisecond pass. The arms follow the commands in the places, which then receive new
   // samples.
   void Step();
 
-  // From now on, adds errors to the readings of a controller and a sensor: joints [rad] (empty:
-  // none), and a wrench about S [N], [N·m].
+  // From now on, adds errors to the readings of a controller and a sensor: to the joints [rad]
+  // (empty for no error), and a wrench about S [N], [N·m].
   void Disturb(int hand, const JointVector& q, const Wrench& F_S);
   // From now on, adds a drift to the wrench [N/s], [N·m/s].
   void Drift(int hand, const Wrench& rate);
 
-  // From now on, delays the commands of this arm by this number of milliseconds, at most kMaxLate.
+  // From now on, delays the commands to this arm by this number of milliseconds, at most kMaxLate.
   static constexpr std::size_t kMaxLate = 64;
   void Hinder(int hand, std::size_t milliseconds);
-  // A person leads an arm to these joints [rad], regardless of its controller; empty: the person
-  // lets go.
+  // A person guides an arm to these joints [rad], whatever its controller commands. If empty, the
+  // person lets go.
   void Lead(int hand, const JointVector& q);
-  // True if the arm that a person leads has arrived.
+  // Returns whether the arm that a person guides has arrived.
   bool Led(int hand) const;
-  // From now on, a person pushes the handle with this force at H, in the axes of W [N].
+  // From now on, a person pushes the handle with this force at H [N], in the axes of W.
   void Press(int hand, const Vector3& F_W);
-  // Wires the sensor's axes incorrectly: a reading is `axes` times the correct one.
+  // Connects the sensor's axes incorrectly, so that a reading is `axes` times the correct one.
   void Wire(int hand, const Matrix3& axes);
   JointVector joints(int hand) const;  // [rad]
 
-  // Informs the virtual operator whether the run is active.
+  // Reports to the simulated operator whether the run is active.
   void SetRunning(bool running);
 
-  // A multiple of every controller's cycle; the slowest is that of a CB3 [ms].
+  // A multiple of each controller's cycle, of which that of a CB3 is the slowest [ms].
   static constexpr std::size_t kWindow = 8;
   // Motion of the true handles since Mark().
   struct Motion {
@@ -70,11 +70,11 @@ class FarRig {
   const Motion& motion() const { return motion_; }
 
   const Rig& rig() const { return *rig_; }
-  // Last command of a controller to its arm [rad/s].
+  // Returns the last command of a controller to its arm [rad/s].
   const JointVector& commanded(int hand) const {
     return commanded_[static_cast<std::size_t>(hand)].front();
   }
-  // The joints and their velocities as text.
+  // Returns the joints and their velocities as text.
   std::string ToString();
 
  private:
@@ -87,7 +87,7 @@ class FarRig {
     Wrench F_S = Wrench::Zero();
     Wrench drifted = Wrench::Zero(), drift = Wrench::Zero();
   };
-  // The actions of a person on an arm, and the wiring of its sensor.
+  // What a person does to an arm, and the wiring of its sensor.
   struct ByHand {
     JointVector lead;
     Vector3 press = Vector3::Zero();

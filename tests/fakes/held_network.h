@@ -1,5 +1,5 @@
 // A network that transfers bytes only between ticks, so that a test can count the driver's own
-// allocations within a tick.
+// allocations in a tick.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // A whole system in virtual time that transfers bytes only between ticks, so that a tick contains
-// only the program's own work and allocations. It has fakes on a rig, faults on the wires, drivers,
-// an emulator, and a person who holds the key.
+// only the program's own work and allocations. The system consists of fakes on a rig, faults on the
+// wires, drivers, an emulator, and a person who holds the key.
 #pragma once
 
 #include <array>
@@ -24,10 +24,11 @@ struct HeldSystemOptions {
 
 class HeldSystem {
  public:
-  // Throws the exceptions of ConnectMachine.
+  // Throws the same exceptions as ConnectMachine.
   explicit HeldSystem(const HeldSystemOptions& options);
 
-  // Lets the millisecond before a tick pass, and those of the ticks that were missed before it.
+  // Lets the millisecond before a tick pass, and also those of the ticks that were missed before
+  // it.
   void Between(int missed = 0);
   void Tick(int missed = 0) {
     Between(missed);

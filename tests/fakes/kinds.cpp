@@ -27,8 +27,8 @@ std::array<double, 3> VectorOf(const std::string& text) {
   return x;
 }
 
-// "cb3": 125 Hz and no built-in sensor. "payload=0.4", "cog=0/0/0.05": as set at the pendant.
-// "model=ur10e": another arm than a UR5. "protocol=1": an older RTDE.
+// Options of a fake UR: "cb3" for 125 Hz and no built-in sensor; "payload=0.4" and "cog=0/0/0.05"
+// as set at the pendant; "model=ur10e" for an arm other than a UR5; "protocol=1" for an older RTDE.
 std::unique_ptr<FakeDevice> MakeFakeUr(const FakeOptions& options) {
   FakeUrOptions ur;
   if (options.contains("cb3")) ur.version = {3, 15, 8, 0};
@@ -41,8 +41,9 @@ std::unique_ptr<FakeDevice> MakeFakeUr(const FakeOptions& options) {
   return fake;
 }
 
-// "panda": the older arm. "patient": its time waits for its client. "payload" and "cog": as for a
-// UR. "version=9": an unknown interface version. "first=1": number of the first state.
+// Options of a fake Franka: "panda" for the older arm; "patient" if its time waits for its client;
+// "payload" and "cog" as for a UR; "version=9" for an unknown interface version; "first=1" for the
+// number of the first state.
 std::unique_ptr<FakeDevice> MakeFakeFranka(const FakeOptions& options) {
   FakeFrankaOptions franka;
   if (options.contains("panda")) franka.version = fci::kPandaVersion;

@@ -1,4 +1,4 @@
-// Creates fakes by the names of their kinds, for the program that hosts them.
+// Creates fakes by the name of their kind, for the program that hosts them.
 #pragma once
 
 #include <map>
@@ -9,10 +9,11 @@
 
 namespace predictor {
 
-// The options after the address, as in "ur:127.0.0.2,cb3,register=24": words, or keys with values.
+// The options after the address, as in "ur:127.0.0.2,cb3,register=24". Each is a word, or a key
+// with a value.
 using FakeOptions = std::map<std::string, std::string>;
 
-// Throws std::runtime_error with the list of known names if the name is unknown.
+// Throws std::runtime_error with the list of known names if it does not know the name.
 std::unique_ptr<FakeDevice> MakeFake(const std::string& kind, const FakeOptions& options);
 
 }  // namespace predictor

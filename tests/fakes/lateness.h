@@ -1,7 +1,7 @@
-// Measures how late this computer is, from the far end. A thread with the highest priority wakes on
-// each processor every half millisecond; one more thread has ordinary priority; and the far end's
-// loop is measured as well. As long as none of them is late, a silence of the program is caused by
-// the program itself.
+// Measures how late this computer is, in the process of the fakes. On each processor, a thread with
+// the highest priority wakes every half millisecond. One more thread has ordinary priority, and the
+// loop of the fakes is measured as well. As long as none of them is late, the program itself causes
+// any silence of the program.
 #pragma once
 
 #include <atomic>
@@ -22,7 +22,7 @@ struct Delay {
   double longest = 0, sum = 0;
 };
 
-// Records delays with the time at which each one ended. It drops the oldest ones.
+// Records delays with the time at which each one ended. It forgets the oldest ones.
 class DelayLog {
  public:
   // end: time [ns]; length: duration [ms].
@@ -48,9 +48,9 @@ class ProcessorWatch {
   ProcessorWatch(const ProcessorWatch&) = delete;
   ProcessorWatch& operator=(const ProcessorWatch&) = delete;
 
-  // Delays of the worst processor.
+  // Returns the delays of the worst processor.
   Delay Within(std::uint64_t from, std::uint64_t to) const;
-  // Delays of the thread with ordinary priority.
+  // Returns the delays of the thread with ordinary priority.
   Delay OrdinaryWithin(std::uint64_t from, std::uint64_t to) const {
     return ordinary_.Within(from, to);
   }

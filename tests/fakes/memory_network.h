@@ -17,12 +17,13 @@ class MemoryNetwork final : public Network {
   MemoryNetwork();
   ~MemoryNetwork() override;
 
-  // Makes `device` answer at `host`; it must outlive the network. `mechanics` belongs to its arm.
+  // Makes `device` answer at `host`. The device must outlive the network. `mechanics` belongs to
+  // its arm.
   void Add(const std::string& host, FakeDevice* device, Mechanics* mechanics);
-  // Sets a function that is called every millisecond of virtual time, after the steps of the fakes.
-  // It moves the arms that are connected to them.
+  // Sets a function that moves the arms. It is called every millisecond of virtual time, after the
+  // steps of the fakes.
   void SetWorld(std::function<void()> step) { world_ = std::move(step); }
-  // Lets virtual time pass in whole milliseconds [s].
+  // Lets this much virtual time pass, in whole milliseconds [s].
   void Pass(double time);
 
   std::unique_ptr<Stream> Connect(const Address& peer, double timeout) override;

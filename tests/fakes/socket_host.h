@@ -1,4 +1,5 @@
-// Hosts a fake device on the sockets of this computer. Each device has its own loopback address.
+// Connects a fake device to sockets of this computer. Each device has a loopback address of its
+// own.
 #pragma once
 
 #include <netinet/in.h>
@@ -13,14 +14,14 @@ namespace predictor {
 
 class SocketHost final : public Wire {
  public:
-  // `address`: in 127.0.0.0/8. Throws std::runtime_error if a port at that address is not
+  // `address` lies in 127.0.0.0/8. Throws std::runtime_error if a port at that address is not
   // available.
   SocketHost(const std::string& address, FakeDevice* device);
   ~SocketHost() override;
   SocketHost(const SocketHost&) = delete;
   SocketHost& operator=(const SocketHost&) = delete;
 
-  // Passes received data to the device without waiting. Returns true if there was any.
+  // Passes received data to the device without waiting. Returns whether there was any.
   bool Receive();
 
   void Send(int link, std::span<const std::byte> bytes) override;

@@ -1,4 +1,4 @@
-// A device that sends arbitrary data: every connection of a driver receives the next piece of the
+// A device that sends arbitrary data. Each connection of a driver receives the next piece of the
 // input.
 #pragma once
 
@@ -10,10 +10,10 @@
 
 namespace predictor {
 
-// The input consists of pieces: two bytes for the size (little-endian), followed by that number of
-// bytes, which the next read receives. After size 0, one byte gives the number of reads that
-// receive nothing. Size 0xFFFF closes the connection. After the end of the input, the device is
-// silent.
+// The input consists of pieces. A piece is a size of two bytes (little-endian), followed by that
+// number of bytes, which the next read receives. After size 0, one byte gives the number of reads
+// that receive nothing. Size 0xFFFF closes the connection. After the end of the input, the device
+// is silent.
 class AnyPeer final : public Network {
  public:
   explicit AnyPeer(std::span<const std::byte> input) : rest_(input) {}
@@ -63,7 +63,7 @@ class AnyPeer final : public Network {
     rest_ = rest_.subspan(1);
     return byte;
   }
-  // Returns true if the current read receives data.
+  // Returns whether the current read receives data.
   bool Something() noexcept {
     if (silent_ > 0) {
       --silent_;
@@ -84,7 +84,7 @@ class AnyPeer final : public Network {
     }
     return false;
   }
-  // Bytes of a stream that do not fit stay for the next read; the rest of a datagram is lost.
+  // Bytes of a stream that do not fit remain for the next read, but the rest of a datagram is lost.
   int Give(std::span<std::byte> to, bool whole) noexcept {
     if (!Something()) {
       if (left_ == kEnd) left_ = 0;
@@ -100,7 +100,7 @@ class AnyPeer final : public Network {
 
   std::span<const std::byte> rest_;
   std::size_t left_ = 0;               // bytes left of the piece
-  std::size_t silent_ = 0;             // reads that still get nothing
+  std::size_t silent_ = 0;             // reads that will receive nothing
   std::uint64_t now_ = 1'000'000'000;  // [ns]
 };
 

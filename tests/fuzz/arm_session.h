@@ -1,4 +1,4 @@
-// Requirements that a driver must meet for any data from its arm.
+// The requirements that a driver must meet for any data from its arm.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Passes any text, line by line, as the messages of a client of the Foxglove protocol, and then
-// publishes states to that client.
+// Passes any text, line by line, as the messages of a Foxglove client, and then publishes states to
+// that client.
 #include "fuzz/target.h"
 #include "scenario/scenario_io.h"
 #include "viewer/foxglove.h"

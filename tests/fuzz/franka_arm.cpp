@@ -1,4 +1,4 @@
-// Feeds arbitrary bytes to the driver as the answers and states of a Franka controller, from the
+// Passes arbitrary bytes to the driver as the answers and states of a Franka controller, from the
 // first answer on.
 #include "devices/franka/franka_arm.h"
 

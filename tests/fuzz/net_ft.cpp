@@ -1,4 +1,5 @@
-// Feeds arbitrary datagrams to the driver as those of a force/torque sensor of either make.
+// Passes arbitrary datagrams to the driver as those of a force/torque sensor of either
+// manufacturer.
 #include "devices/net_ft/net_ft.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Reads any file as a recording. The reader accepts it or throws InputError, and its memory stays
-// bounded.
+// Reads any file as a recording. The reader must accept it or throw InputError, and its memory must
+// stay bounded.
 #include <unistd.h>
 
 #include <fstream>

@@ -1,5 +1,5 @@
-// Runs a fuzz target on every file of its corpus: NUMBER FOLDER [FOLDER...]. The first folder must
-// contain exactly NUMBER inputs, so that a lost input is noticed.
+// Runs a fuzz target on every file of its corpus. Usage: NUMBER FOLDER [FOLDER...]. The first
+// folder must contain exactly NUMBER inputs, so that a lost input is noticed.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>

@@ -1,5 +1,5 @@
-// Parses any text as a filled-in questionnaire and as a stored answer. The parsers accept it or
-// throw InputError. An accepted answer must be unchanged after it is stored and read again.
+// Parses any text as a filled-in questionnaire and as a stored answer. The parsers must accept it
+// or throw InputError. An accepted answer must be the same after it has been stored and read again.
 #include <cstdlib>
 
 #include "core/error.h"

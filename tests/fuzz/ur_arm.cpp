@@ -1,4 +1,4 @@
-// Feeds arbitrary bytes to the driver as the data of a UR controller, from the first answer on:
+// Passes arbitrary bytes to the driver as the data of a UR controller, from the first answer on:
 // RTDE, the dashboard, and the script port.
 #include "devices/ur/ur_arm.h"
 

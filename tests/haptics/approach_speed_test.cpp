@@ -11,7 +11,8 @@ namespace predictor {
 namespace {
 
 TEST(ApproachSpeed, IsTheVelocityDamperNearTheLimit) {
-  // Equation (15): ξ_q (distance) / (q_i − q_s), as long as the required deceleration is allowed.
+  // By equation (15), the speed is ξ_q (distance) / (q_i − q_s), as long as the required
+  // deceleration is allowed.
   const double gain = 1.0 / 0.28;
   for (const double d : {1e-6, 0.01, 0.1, 0.28})
     EXPECT_DOUBLE_EQ(ApproachSpeed(d, gain, 10), gain * d);
@@ -30,7 +31,7 @@ TEST(ApproachSpeed, IsSmooth) {
   }
 }
 
-// A point that always moves at the allowed speed never exceeds the deceleration and never reaches
+// A point that always moves at the allowed speed must never exceed the deceleration and never reach
 // the limit. The test checks this in discrete time.
 TEST(ApproachSpeed, NeverNeedsMoreThanTheDeceleration) {
   RandomStream random(2, "approach");
@@ -43,7 +44,7 @@ TEST(ApproachSpeed, NeverNeedsMoreThanTheDeceleration) {
       d -= v * kDt;
       ASSERT_GE(d, 0);
       const double next = ApproachSpeed(d, gain, a);
-      // One step along the line is steeper than the line's derivative by gain·dt.
+      // A step along the line is steeper than the line's derivative by gain·dt.
       ASSERT_LE((v - next) / kDt, a * (1 + gain * kDt) + 1e-9);
       v = next;
     }

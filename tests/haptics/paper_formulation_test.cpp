@@ -1,5 +1,5 @@
-// The paper's formulation: the assembled problem equals equations (3) to (15), written out here
-// with matrices as in the paper.
+// The problem that the paper's formulation assembles must equal equations (3) to (15). They are
+// written out here with matrices as in the paper.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,13 +25,14 @@ Scenario PaperOf(Scenario scenario) {
   return scenario;
 }
 
-// η_a ε_b − η_b ε_a − S(ε_b) ε_a of (9), with b: desired.
+// Computes η_a ε_b − η_b ε_a − S(ε_b) ε_a of (9), where b is the desired orientation.
 Vector3 OrientationError(const Quaternion& b, const Quaternion& a) {
   const Vector3 cross = Skew(b.vec()) * a.vec();
   return a.w() * b.vec() - b.w() * a.vec() - cross;
 }
 
-// (14) and (15): the speed at which a joint may approach a limit at this distance [rad/s].
+// Computes the speed at which a joint may approach a limit at this distance by (14) and (15)
+// [rad/s].
 double JointDamper(double distance, double fastest) {
   constexpr double kXi = 1, kInfluence = 0.3, kSecurity = 0.02;
   if (distance > kInfluence) return fastest;
@@ -64,7 +65,8 @@ PaperProblem Write(const TwoArms& two) {
     rate.segment<3>(6 * i + 3) = D[i].V_W.tail<3>() + 0.4 * OrientationError(D[i].X_W.q, H[i].q);
   }
   PaperProblem paper;
-  // ε keeps the problem strictly convex; the paper's P has rank 12 of 14.
+  // The regularisation ε keeps the problem strictly convex, because the paper's P has rank 12 of
+  // 14.
   paper.P = all.transpose() * all + 1e-5 * Matrix::Identity(14, 14);
   paper.c = -all.transpose() * rate;
   const Vector3 p = H[1].p - H[0].p;
@@ -141,12 +143,12 @@ TEST_F(PaperFormulation, EqualsTheEquations) {
     pushed_apart = pushed_apart || paper.h[0] < 0;
     far = far || paper.h[0] > 1e29;
   }
-  // The states include elbows nearer than d_s and beyond d_i.
+  // In some states, the elbows are nearer than d_s, and in others beyond d_i.
   EXPECT_TRUE(pushed_apart);
   EXPECT_TRUE(far);
 }
 
-// Hard rows may contradict each other; with slacks, a solution always exists
+// Hard rows may contradict each other. With slacks, a solution always exists
 // (Renderer.HasAVerifiedSolutionEverywhereSoak draws the same kinds of states).
 TEST_F(PaperFormulation, HasNoSolutionInSomeStates) {
   scenario_.safety.relative_slack = scenario_.safety.relative_slack_rotation = 1e9;
@@ -166,7 +168,7 @@ TEST_F(PaperFormulation, HasNoSolutionInSomeStates) {
   EXPECT_LT(failed, states);
 }
 
-// All repairs, added to the paper's formulation, are ours.
+// The paper's formulation with all repairs must be our formulation.
 TEST_F(PaperFormulation, WithAllRepairsIsOurs) {
   Scenario repaired = two_.scenario_;
   repaired.rendering.formulation = "paper";

@@ -1,5 +1,5 @@
-// Recovery's motion at random states of two arms: it removes the violation, yields to the hand, and
-// is slow.
+// Tests recovery's motion at random states of two arms. It must remove the violation, yield to the
+// hand, and be slow.
 #include "haptics/recovery.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ class RecoveryTest : public testing::Test {
  protected:
   RecoveryTest() : recovery_(two_.scenario_, two_.models_), random_(1, "recovery") {}
 
-  // Moves all joints well inside their limits; the elbows may be anywhere.
+  // Moves all joints well inside their limits. The elbows may be anywhere.
   void Inside() {
     two_.Draw(&random_);
     for (int i = 0; i < kHands; ++i) {
@@ -38,7 +38,7 @@ class RecoveryTest : public testing::Test {
     two_.data_[static_cast<std::size_t>(i)].FrameJacobian(*two_.models_[i], two_.handles_[i], &J);
     return J * v;
   }
-  // Moves the arms at the commanded velocity until no violation is left. Returns the duration [s].
+  // Moves the arms at the commanded velocity until there is no violation. Returns the duration [s].
   double Follow(double patience) {
     constexpr double kStep = 0.01;
     double t = 0;
@@ -85,9 +85,9 @@ TEST_F(RecoveryTest, FindsWhatIsBeyond) {
   EXPECT_GT(nothing, 10);
 }
 
-// A joint within its security distance counts as beyond its limit, as links within
+// A joint within its security distance counts as beyond its limit, and links within
 // rendering.security_distance count as too near. Rendering moves no joint into this zone and could
-// not move one back, so RECOVERY does. The message names the joint and its allowed range.
+// not move one back, so RECOVERY must do it. The message names the joint and its allowed range.
 TEST_F(RecoveryTest, AJointNearerToItsLimitThanRenderingKeepsIsBeyond) {
   const double security = two_.scenario_.rendering.joint_security;
   for (int k = 0; k < 50; ++k) {
@@ -151,7 +151,7 @@ TEST_F(RecoveryTest, LeadsLinksApart) {
   EXPECT_EQ(tried, 10);
 }
 
-// The power that flows from the hand into the handle is never negative, in any posture.
+// The power that flows from the hand into the handle must not be negative in any posture.
 TEST_F(RecoveryTest, YieldsToTheHand) {
   int moved = 0;
   for (int k = 0; k < 500; ++k) {

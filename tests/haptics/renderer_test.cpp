@@ -1,5 +1,5 @@
-// Rendering at random states of two arms: the solution is always verified, the limits always hold,
-// and no level yields to a lower one.
+// Tests rendering at random states of two arms. The solution must be verified, the limits must
+// hold, and no level may yield to a lower one.
 #include "haptics/renderer.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(Renderer, HasAVerifiedSolutionEverywhereSoak) {
       for (int i = 0; i < kHands; ++i)
         for (int j = 0; j < 7; ++j) {
           ASSERT_LE(std::abs(result.v[i][j]), two.limits_[i].velocity[j] + 1e-9);
-          // A joint at or beyond a limit does not move further out.
+          // A joint at or beyond a limit must not move further out.
           ASSERT_TRUE(two.q_[i][j] < two.limits_[i].upper[j] || result.v[i][j] <= 1e-9);
           ASSERT_TRUE(two.q_[i][j] > two.limits_[i].lower[j] || result.v[i][j] >= -1e-9);
         }
@@ -46,8 +46,8 @@ TEST(Renderer, HasAVerifiedSolutionEverywhereSoak) {
   }
 }
 
-// The relative pose yields to limits but never to tracking: its weighted slack is the same without
-// tracking.
+// The relative pose may yield to limits but never to tracking. Its weighted slack must be the same
+// without tracking.
 TEST(Renderer, RelativePoseDoesNotYieldToTrackingSoak) {
   TwoArms two;
   RandomStream random(2, "priorities");
@@ -81,7 +81,7 @@ TEST(Renderer, RelativePoseDoesNotYieldToTrackingSoak) {
   RecordProperty("worst_yield", std::to_string(worst));
 }
 
-// Weights and rows are two forms of the same problem. Equal slacks of the relative pose show that
+// Weights and rows are two forms of the same problem. If the slacks of the relative pose are equal,
 // the rows belong to that task.
 TEST(Renderer, HasTheSameSolutionByWeightsAndByRows) {
   TwoArms two;
@@ -115,7 +115,8 @@ TEST(Renderer, HasTheSameSolutionByWeightsAndByRows) {
   EXPECT_GT(compared, 250);
 }
 
-// One arm has no relative pose, so the problem needs no rows for it and both forms are identical.
+// One arm has no relative pose. The problem then needs no rows for it, and both forms are
+// identical.
 TEST(Renderer, OfOneArmHasNoRowsOfTheRelativePose) {
   TwoArms two;
   two.models_[1] = nullptr;
@@ -127,8 +128,9 @@ TEST(Renderer, OfOneArmHasNoRowsOfTheRelativePose) {
   EXPECT_TRUE(assembler.PrecedenceTerms().empty());
 }
 
-// Each limit's slack is published under that limit's name. The states of this test have slack in
-// the link pairs: the elbows are too near each other and cannot separate fast enough.
+// The renderer must publish each limit's slack under that limit's name. The states of this test
+// have slack in the link pairs, because the elbows are too near each other and cannot separate fast
+// enough.
 TEST(Renderer, PublishesTheSlackOfEachLimit) {
   TwoArms two;
   two.scenario_.rendering.security_distance = 0.69;
@@ -151,8 +153,8 @@ TEST(Renderer, PublishesTheSlackOfEachLimit) {
   EXPECT_GT(yielding, 10);
 }
 
-// With any gain, handles with a wrong relative pose approach each other no faster than a handle's
-// caps allow.
+// Whatever the gain, handles with a wrong relative pose must not approach each other faster than a
+// handle's caps allow.
 TEST(RelativePose, DemandsNoMoreThanTheCaps) {
   RandomStream random(11, "caps");
   double fastest = 0, quickest = 0;
@@ -184,7 +186,7 @@ TEST(RelativePose, DemandsNoMoreThanTheCaps) {
     const Vector3 lever = left.q * X_D1D2.p;
     Twist rate = V[0] - V[1];
     rate.head<3>() += V[0].tail<3>().cross(lever);
-    rate -= result.relative_slack;  // the requested rate
+    rate -= result.relative_slack;  // the rate that was requested
     fastest = std::max(fastest, rate.head<3>().norm());
     quickest = std::max(quickest, rate.tail<3>().norm());
     EXPECT_LE(rate.head<3>().norm(), two.target_.speed_cap * 1.001);
@@ -215,7 +217,7 @@ TEST(Renderer, PublishesTheActiveBounds) {
         const bool at_upper = (result.at_upper[static_cast<std::size_t>(i)] & bit) != 0;
         EXPECT_LT(at_lower ? std::abs(above) : 0, 1e-5);
         EXPECT_LT(at_upper ? std::abs(below) : 0, 1e-5);
-        // A random target never lies on a bound by chance.
+        // A random target never lies exactly on a bound.
         EXPECT_TRUE(at_lower || at_upper || std::min(above, below) > 1e-12)
             << above << " " << below;
         (at_lower || at_upper ? held : free)++;
@@ -262,7 +264,7 @@ TEST(Renderer, DoesNotAllocate) {
   }
 }
 
-// The pairs of one or two arms, and the messages for invalid pairs.
+// Tests the link pairs of one or two arms, and the messages for invalid pairs.
 TEST(LinkPairs, OfRealArmsAlwaysHaveTheElbows) {
   TwoArms two;
   Scenario& s = two.scenario_;
@@ -307,8 +309,8 @@ TEST(LinkPairs, AreOfWhicheverArmTheyName) {
   EXPECT_NE(refusal().find("panda_lonk4"), std::string::npos) << refusal();
 }
 
-// For the links of a single arm, the damper slows the approach: its row is the rate of the
-// distance.
+// If both links belong to the same arm, the damper slows their approach, and its row is the rate of
+// their distance.
 TEST(LinkDistance, OfOneArmIsTheRateOfItsOwnDistance) {
   Scenario s;
   s.device.left = Panda(0.25);

@@ -1,4 +1,4 @@
-// Two arms at random states: anywhere, at or beyond limits, stretched, and near each other.
+// Two arms in random states: anywhere, at or beyond limits, stretched, and near each other.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ inline ArmSpec Panda(double y) {
   return arm;
 }
 
-// Two arms, 0.5 m apart, so that their elbows come near each other.
+// The two arms are 0.5 m apart, so that their elbows come near each other.
 class TwoArms {
  public:
   TwoArms() {
@@ -44,8 +44,8 @@ class TwoArms {
     }
   }
 
-  // Draws joint positions at random; one in four is at a limit, beyond a limit, or straight
-  // (singular). Command and target are random too; the target is sometimes far away.
+  // Draws joint positions at random. One in four is at a limit, beyond a limit, or straight
+  // (singular). Command and target are random too, and the target is sometimes far away.
   void Draw(RandomStream* random) {
     for (int i = 0; i < kHands; ++i) {
       q_[i].resize(7);
@@ -85,7 +85,7 @@ class TwoArms {
     target_.rotation_cap = 1.5;
   }
 
-  // Speed of the faster handle at the last command, as a stop computes it [m/s].
+  // Returns the speed of the faster handle at the last command, as a stop computes it [m/s].
   double Speed() const {
     double speed = 0;
     for (int i = 0; i < kHands; ++i) {

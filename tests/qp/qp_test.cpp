@@ -1,6 +1,5 @@
-// Checks the solver against the optimality conditions and against another solver. The problems
-// resemble those of rendering: rank-deficient least squares, widely differing weights, boxes, and
-// soft rows.
+// Compares the solver with the optimality conditions and with another solver. The problems resemble
+// those of rendering: rank-deficient least squares, widely differing weights, boxes, and soft rows.
 #include "qp/qp.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +16,8 @@ constexpr int kJoints = 14;
 constexpr int kN = kJoints + 7;  // plus a slack for each row
 constexpr int kM = 7;            // the relative pose, and one inequality
 
-// Minimises ½|J x − v|² + ½ρ|A x − r|² + ½ε|x|² within a box. One additional inequality is soft,
-// with a weight of 1e9. Each row has a slack that is scaled to a weight of 1. J may be singular.
+// Minimises ½|J x − v|² + ½ρ|A x − r|² + ½ε|x|² in a box. One additional inequality is soft, with a
+// weight of 1e9. Each row has a slack that is scaled to a weight of 1. J may be singular.
 Qp RandomQp(RandomStream* random, double relative_weight, double epsilon, double box) {
   bool singular = false;
   Qp qp(kN, kM);
@@ -26,7 +25,8 @@ Qp RandomQp(RandomStream* random, double relative_weight, double epsilon, double
   for (int i = 0; i < J.size(); ++i) J.data()[i] = random->Normal();
   if (random->Uniform() < 0.3) J.row(3) = J.row(4) * (1 + 1e-6 * random->Normal()), singular = true;
   if (random->Uniform() < 0.2) J.row(7).setZero(), singular = true;
-  if (singular) epsilon = 1e-2;  // as rendering increases its regularisation near a singularity
+  // rendering increases its regularisation near a singularity as well
+  if (singular) epsilon = 1e-2;
   Eigen::Matrix<double, 12, 1> v;
   for (int i = 0; i < 12; ++i) v[i] = 0.2 * random->Normal();
   qp.H().topLeftCorner(kJoints, kJoints) = J.transpose() * J;
@@ -53,8 +53,8 @@ struct Optimality {
   double stationarity = 0, primal = 0, dual = 0, complementarity = 0;
 };
 
-// The individual optimality conditions, recomputed with dense matrices so that no code is shared
-// with the product's own check. All constraints are rows C x with lo ≤ C x ≤ up.
+// Evaluates each optimality condition with dense matrices, so that it shares no code with the
+// product's own check. All constraints are rows C x with lo ≤ C x ≤ up.
 Optimality Conditions(const Qp& qp, const QpSolution& s) {
   const int n = qp.n(), rows = qp.n() + qp.m();
   Eigen::MatrixXd C(rows, n);
@@ -79,8 +79,8 @@ Optimality Conditions(const Qp& qp, const QpSolution& s) {
   return o;
 }
 
-// With damping, as in rendering's last attempt, a problem is always solved. With little
-// regularisation the solver may give up on such a problem; rendering then makes its last attempt
+// With damping, as in rendering's last attempt, the solver must solve every problem. With little
+// regularisation it may give up, and rendering then makes its last attempt
 // (tests/haptics/renderer_test.cpp).
 TEST(QpSolver, MeetsTheOptimalityConditionsWhenDamped) {
   RandomStream random(1, "qp");
@@ -108,7 +108,7 @@ TEST(QpSolver, AgreesWithAnotherSolver) {
     const Qp qp = RandomQp(&random, 100, 1e-2, 0.3);
     solver.Solve(qp, &solution);
     ASSERT_TRUE(solution.solved);
-    // CE x + ce0 = 0, CI x + ci0 ≥ 0
+    // The other solver's form is CE x + ce0 = 0, CI x + ci0 ≥ 0.
     const Eigen::MatrixXd CE = qp.A().topRows(6);
     const Eigen::VectorXd ce0 = -qp.b().head(6);
     Eigen::MatrixXd CI = Eigen::MatrixXd::Zero(2 * kJoints + 1, kN);
@@ -129,7 +129,7 @@ TEST(QpSolver, AgreesWithAnotherSolver) {
   }
 }
 
-// The checker itself must detect every kind of error.
+// The check itself must detect every kind of error.
 TEST(KktResidual, SeesWrongSolutions) {
   RandomStream random(3, "qp");
   QpSolver solver(kN, kM);

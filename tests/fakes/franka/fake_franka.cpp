@@ -14,13 +14,14 @@ using fci::RobotMode;
 
 // Longest time for which a patient robot waits for a command [ms].
 constexpr int kPatience = 10'000;
-// Gain with which the joint impedance control pulls a joint to its commanded position [1/s].
+// The joint impedance control pulls a joint to its commanded position with this gain [1/s].
 constexpr double kStiffness = 20;
 constexpr double kMillisecond = 1e-3;
-// Deceleration with which it brakes on its own [rad/s²].
+// The arm brakes on its own with this deceleration [rad/s²].
 constexpr double kBraking = kFrankaStandstill.deceleration;
 
-// Numbers of the commands and of Move's answers, as in research_interface/robot/service_types.h.
+// The numbers of the commands and of Move's answers, as in
+// research_interface/robot/service_types.h.
 struct Numbers {
   std::uint32_t set_collision, last_setter, recover, model;
   int not_possible, reflex, emergency, input, aborted;
@@ -33,8 +34,8 @@ const Numbers& NumbersOf(std::uint16_t version) {
   return version == fci::kPandaVersion ? kPandaNumbers : kResearch3Numbers;
 }
 
-// Finds an error by its number or by the driver's name for it. (Third-party clients verify those
-// names.) The default is the reflex to a hard push.
+// Finds an error by its number or by the driver's name for it, which third-party clients verify.
+// The default is the reflex to a hard push.
 int ErrorPlace(const std::string& name) {
   if (name.empty()) return ErrorPlace("cartesian_reflex");
   for (int i = 0; i < fci::kErrors; ++i)
@@ -97,7 +98,7 @@ void FakeFranka::Handle(const fci::Header& header, std::span<const std::byte> bo
     answer.insert(answer.end(), raw.begin(), raw.end());
     return Answer(header, answer);
   }
-  // The model of a Panda is a shared library, which this fake does not have.
+  // The model of a Panda is a shared library, which this fake does not provide.
   if (header.command == n.model) return AnswerStatus(header, 1);
   if (header.command >= n.set_collision && header.command <= n.last_setter) {
     if (header.command == n.set_collision && !SetCollision(body)) return AnswerStatus(header, 2);
@@ -198,7 +199,7 @@ void FakeFranka::ReceivedDatagram(std::uint16_t, std::uint16_t, std::span<const 
   }
   fci::PandaCommand command;
   std::memcpy(&command, bytes.data(), sizeof command);
-  // A command that is too late for its millisecond is ignored.
+  // The robot ignores a command that is too late for its millisecond.
   if (command.message_id != message_id_) return;
   if (has_command_) return Log("two commands for one state");
   command_ = command;
@@ -273,7 +274,7 @@ void FakeFranka::TakeCommand() {
   }
   if (const auto wrong = motion_.Take(v); wrong.any()) return Abort(wrong);
   if (command_.motion_generation_finished == 0 || forget_end_) return;
-  // The arm must be able to stop in one step.
+  // The arm must be able to stop in a single step.
   if (const auto wrong = motion_.Take({}); wrong.any()) return Abort(wrong);
   mode_ = RobotMode::kIdle;
   EndMove(0);

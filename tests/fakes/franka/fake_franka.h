@@ -1,6 +1,6 @@
 // The controller of a Franka arm as its client sees it: Research 3 (interface version 10) or Panda
 // (5). The packets are those of src/devices/franka/packets.h. The behaviour, limits and errors are
-// defined independently of the driver, and tests use them with third-party clients.
+// defined independently of the driver. Tests also use them with third-party clients.
 #pragma once
 
 #include <bitset>
@@ -20,7 +20,7 @@ struct FakeFrankaOptions {
   Pose X_FS;           // pose of the sensor in the flange
   std::uint64_t first_message = 1;
   // For use with sockets: during a motion, the robot's time stops until the next command has
-  // arrived, so that a client on a busy computer loses no command.
+  // arrived. A client on a busy computer then loses no command.
   bool patient = false;
   double payload = 0;                   // mass of the end-effector in Desk [kg]
   std::array<double, 3> payload_cog{};  // in the flange [m]
@@ -70,7 +70,7 @@ class FakeFranka final : public FakeDevice {
   const MotionCheck& motion() const { return motion_; }
   std::uint64_t lost_commands() const { return lost_; }
   double collision_force() const { return collision_force_; }  // latest setting [N]
-  // Called with each joint velocity command that arrived in time.
+  // Receives each joint velocity command that arrived in time.
   std::function<void(const fci::PandaCommand&)> on_command;
 
  private:
@@ -127,7 +127,7 @@ class FakeFranka final : public FakeDevice {
   int lose_states_ = 0, lose_commands_ = 0;
   std::uint64_t delay_ = 0, steps_ = 0;
   Bytes last_state_, held_back_;
-  std::deque<std::pair<std::uint64_t, Bytes>> queue_;  // with the step at which each is due
+  std::deque<std::pair<std::uint64_t, Bytes>> queue_;  // each with the step at which it is due
 };
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// The state that a fake Franka arm sends every millisecond.
+// Writes the state that a fake Franka arm sends every millisecond.
 #include <Eigen/Geometry>
 #include <limits>
 #include <numbers>
@@ -10,7 +10,8 @@
 namespace predictor {
 namespace {
 
-// Flange to end-effector for Franka's hand, with a stiffness frame beyond it.
+// Returns the pose of the end-effector in the flange for Franka's hand. The stiffness frame lies
+// beyond it.
 Eigen::Isometry3d FlangeToEndEffector() {
   return Eigen::Translation3d(0, 0, 0.1034) *
          Eigen::AngleAxisd(-std::numbers::pi / 4, Eigen::Vector3d::UnitZ());
@@ -19,7 +20,8 @@ Eigen::Isometry3d EndEffectorToStiffness() {
   return Eigen::Translation3d(0.01, -0.02, 0.05) * Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX());
 }
 
-// From the parameters that Franka publishes, in Craig's convention [m].
+// Computes the pose of the flange from the parameters that Franka publishes, in Craig's convention
+// [m].
 Eigen::Isometry3d BaseToFlange(const FrankaJoints& q, double flange) {
   constexpr double kQuarter = std::numbers::pi / 2;
   constexpr double a[] = {0, 0, 0, 0.0825, -0.0825, 0, 0.088},
@@ -60,7 +62,7 @@ void FakeFranka::FillWrench(const ArmSample& sample, fci::Signals<Real>* signals
   const Eigen::Isometry3d X_FS =
       Eigen::Translation3d(options_.X_FS.p) * Eigen::Quaterniond(options_.X_FS.q);
   const Eigen::Isometry3d X_KS = (X_FE * X_EK).inverse() * X_FS;
-  // The reaction to the force on the sensor, about K.
+  // These are the reactions to the force on the sensor, about K.
   const Eigen::Vector3d force = -(X_KS.linear() * sample.F_S_raw.head<3>());
   const Eigen::Vector3d torque =
       -(X_KS.linear() * sample.F_S_raw.tail<3>()) + X_KS.translation().cross(force);

@@ -67,7 +67,7 @@ const FrankaLimits& FrankaLimitsOf(std::uint16_t version) {
 }
 
 std::string FrankaDescription() {
-  // Denavit-Hartenberg parameters from the same specifications.
+  // The Denavit-Hartenberg parameters are from the same specifications.
   constexpr const char* origins[] = {"0 0 0.333",       "0 0 0", "0 -0.316 0", "0.0825 0 0",
                                      "-0.0825 0.384 0", "0 0 0", "0.088 0 0"};
   constexpr double turns[] = {0, -1, 1, 1, -1, 1, 1};

@@ -1,5 +1,5 @@
-// Processes joint velocity commands as a Franka arm does: differentiates them, checks them against
-// the published limits, and extrapolates for a while if they are missing.
+// Processes joint velocity commands as a Franka arm does. It differentiates them, checks them
+// against the published limits, and extrapolates for a while if they are missing.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace predictor {
 using FrankaJoints = std::array<double, 7>;
 FrankaJoints FrankaJointsOf(const JointVector& from);  // missing values become zero
 
-// Limits that the arm enforces for one joint. They are independent of the driver's limits and come
-// from Franka's "Robot and interface specifications"; the position-dependent velocities of the
+// The limits that the arm enforces for one joint, independent of the driver's limits. They come
+// from Franka's "Robot and interface specifications". The position-dependent velocities of the
 // Research 3 come from libfranka's test/fr3.urdf.
 struct FrankaJointLimit {
   double lower, upper;              // of the commanded position [rad]
@@ -29,20 +29,20 @@ struct FrankaJointLimit {
 using FrankaLimits = std::array<FrankaJointLimit, 7>;
 const FrankaLimits& FrankaLimitsOf(std::uint16_t version);
 
-// The robot description that the robot provides (version 10).
+// Returns the robot description that the robot provides (version 10).
 std::string FrankaDescription();
 
 class MotionCheck {
  public:
-  static constexpr int kMaxLost = 20;  // commands in a row, after which the motion is aborted
+  static constexpr int kMaxLost = 20;  // number of missing commands in a row that aborts the motion
 
   explicit MotionCheck(const FrankaLimits& limits) : limits_(limits) {}
 
   void Begin(const FrankaJoints& q);
-  // Processes a command. Returns its errors, by their index in a state's list. Without errors, the
-  // motion advances; otherwise it is unchanged.
+  // Processes a command. Returns its errors, by their index in a state's list. The motion advances
+  // only if there is no error.
   std::bitset<41> Take(const FrankaJoints& v);
-  // Processes a millisecond without a command, at constant acceleration.
+  // Processes a millisecond without a command, in which the acceleration stays constant.
   std::bitset<41> Miss();
 
   const FrankaJoints& q() const { return q_; }

@@ -79,7 +79,7 @@ void FakeUr::Received(int link, std::span<const std::byte> bytes) {
   }
 }
 
-// A message of the primary interface without content, because RTDE provides the same data.
+// Sends a message of the primary interface without content, because RTDE provides the same data.
 void FakeUr::SayOnPrimary() {
   static constexpr std::array<std::byte, 5> kRobotState = {std::byte{0}, std::byte{0}, std::byte{0},
                                                            std::byte{5}, std::byte{16}};

@@ -1,5 +1,5 @@
-// A controller of Universal Robots at the far end of the wire: RTDE (30004), programs (30001 …
-// 30003), dashboard (29999). It executes the URScript that it receives.
+// A fake controller of Universal Robots with RTDE (30004), ports for programs (30001 … 30003), and
+// a dashboard (29999). It executes the URScript that it receives.
 #pragma once
 
 #include <deque>

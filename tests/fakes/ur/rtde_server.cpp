@@ -17,7 +17,7 @@ std::vector<std::string> Split(std::span<const std::byte> bytes) {
   return parts;
 }
 
-// The number at the end of "input_int_register_12"; −1 for any other name.
+// Returns the number at the end of "input_int_register_12", or −1 for any other name.
 int RegisterOf(const std::string& name, const std::string& kind) {
   const std::string head = kind + "_register_";
   if (name.compare(0, head.size(), head) != 0) return -1;
@@ -61,7 +61,7 @@ std::vector<int> RtdeServer::links() const {
   return links;
 }
 
-// As stated in the RTDE guide.
+// The numbers are those of the RTDE guide.
 int RtdeServer::registers() const {
   const bool cb3 = version_.major == 3;
   if (cb3 && version_.minor < 4) return 0;

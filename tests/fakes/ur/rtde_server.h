@@ -35,9 +35,9 @@ class RtdeServer {
   bool Has(int link) const { return sessions_.count(link) != 0; }
   std::vector<int> links() const;
 
-  // Performs one cycle: sends the requested outputs to each client.
+  // Performs one cycle, in which it sends the requested outputs to each client.
   void Cycle();
-  // Sends the last package again, or an older one.
+  // Sends the last package again.
   void Repeat();
 
   std::uint16_t newest_protocol = 2;

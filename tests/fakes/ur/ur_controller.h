@@ -1,4 +1,4 @@
-// The state of a fake controller of Universal Robots: registers, modes, motion.
+// The state of a fake controller of Universal Robots: registers, modes and motion.
 #pragma once
 
 #include <array>
@@ -11,7 +11,8 @@
 
 namespace predictor {
 
-// Denavit-Hartenberg parameters that Universal Robots publishes [m]; α is 90, 0, 0, 90, −90, 0°.
+// The Denavit-Hartenberg parameters that Universal Robots publishes [m]; α is 90, 0, 0, 90, −90,
+// 0°.
 struct UrGeometry {
   const char* model;
   double d1, a2, a3, d4, d5, d6;
@@ -26,13 +27,13 @@ inline constexpr std::array<UrGeometry, 7> kUrGeometries = {{
     {"ur10e", 0.1807, -0.6127, -0.57155, 0.17415, 0.11985, 0.11655},
     {"ur16e", 0.1807, -0.4784, -0.36, 0.17415, 0.11985, 0.11655},
 }};
-// Pose of the flange in the base.
+// Returns the pose of the flange in the base.
 Pose FlangeOf(const UrGeometry& arm, const UrVector& q);
 
 struct UrController {
   static constexpr std::size_t kRegisters = 48;
 
-  // Numbers from the RTDE guide.
+  // The numbers are those of the RTDE guide.
   enum RobotMode : std::int32_t { kPowerOff = 3, kIdle = 5, kRunning = 7 };
   enum SafetyBit : std::uint32_t {
     kNormal = 1U << 0,
@@ -54,7 +55,7 @@ struct UrController {
   bool freedrive = false;
   double slider = 1;         // of the speed slider
   std::uint64_t inputs = 0;  // digital inputs, one bit each
-  // As set at the pendant; empty: the controller does not report it [kg], [m].
+  // The payload as set at the pendant [kg], [m]. If empty, the controller does not report it.
   std::optional<double> payload;
   std::array<double, 3> payload_cog{};
   UrVector q{}, v{}, wrench{};  // measured values
@@ -62,7 +63,7 @@ struct UrController {
   UrVector tool_offset{};  // of the tool in the flange: position [m], rotation vector [rad]
   UrVector tool() const;   // pose of the tool in the base at q, in the same form
 
-  // Accelerates towards qd as URScript's manual describes speedj: the leading joint has
+  // Accelerates towards qd as URScript's manual describes speedj. The leading joint has
   // acceleration a, and all joints move in proportion. The motion continues until the next command.
   void Speedj(const UrVector& qd, double a) {
     target_ = qd;
@@ -79,14 +80,14 @@ struct UrController {
   double acceleration_ = 1;
 };
 
-// A program on the controller. Programs that are not interpreted as URScript are recognised and
+// A program on the controller. A program that is not interpreted as URScript is recognised and
 // implemented natively.
 class UrProgram {
  public:
   virtual ~UrProgram() = default;
   virtual const std::string& name() const = 0;
-  // Performs one cycle. Returns false at the end. Throws std::runtime_error for an error that stops
-  // the program.
+  // Performs one cycle. Returns false at the end of the program. Throws std::runtime_error for an
+  // error that stops the program.
   virtual bool Cycle() = 0;
 };
 

@@ -40,7 +40,7 @@ class UrRtdeProgram final : public UrProgram {
   double Argument(std::size_t i) const { return c_->input_double[first_ + i]; }
   void Send(Signal signal) { c_->output_int[first_] = signal; }
 
-  // Returns false if the program ends.
+  // Returns false if the command ends the program.
   bool Begin(int command) {
     if (command == kStopScript) return false;
     if (command != kSpeedStop && command != kStopj)

@@ -10,7 +10,7 @@
 
 namespace predictor {
 
-// Returns nullptr if the text is that of a different program.
+// Returns nullptr if the text is not that of ur_rtde's program.
 std::unique_ptr<UrProgram> RecogniseUrRtde(const std::string& text, UrController* controller);
 
 }  // namespace predictor

@@ -71,8 +71,7 @@ class Compiler {
       throw Error(i.line, "'" + i.name + "' takes another number of arguments");
   }
 
-  // Parses a definition after `def` or `thread`. A jump skips its code at the place of the
-  // definition.
+  // Parses a definition after `def` or `thread`. A jump skips the definition's code at its place.
   std::string Definition(bool thread) {
     const int over = Emit(Op::kJump);
     const std::string name = Name();
@@ -222,7 +221,8 @@ class Compiler {
       Binary(0);
     }
   }
-  // Comparison, sum, product: from the lowest to the highest precedence.
+  // Parses a comparison, a sum or a product. `level` counts from the lowest precedence to the
+  // highest.
   void Binary(std::size_t level) {
     static const std::vector<std::vector<std::string>> kLevels = {
         {"==", "!=", "<=", ">=", "<", ">"}, {"+", "-"}, {"*", "/", "%"}};

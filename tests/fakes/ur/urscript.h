@@ -1,5 +1,5 @@
-// The subset of URScript that the driver's program needs, compiled for a machine that executes it
-// cycle by cycle. Unknown names are errors, as on a controller.
+// The subset of URScript that the driver's program needs. It is compiled for a machine that
+// executes it cycle by cycle. Unknown names are errors, as on a controller.
 #pragma once
 
 #include <map>
@@ -13,8 +13,8 @@ namespace predictor::urscript {
 struct Value;
 using List = std::vector<Value>;
 
-// All numbers are floating-point; they represent every integer of a register exactly. The handle of
-// a thread is a number as well.
+// All numbers are floating-point numbers, which represent every integer of a register exactly. The
+// handle of a thread is a number as well.
 struct Value : std::variant<double, bool, std::string, List> {
   using variant::variant;
 };
@@ -72,7 +72,7 @@ struct Program {
   std::map<std::string, Function> functions;  // including the program itself
 };
 
-// Minimum and maximum number of arguments of a builtin function.
+// The minimum and maximum number of arguments of a built-in function.
 struct Arity {
   int least, most;
 };
@@ -81,7 +81,7 @@ const std::map<std::string, Arity>& Builtins();
 // Compiles one program, `def name(): ... end`. Throws Error.
 Program Compile(const std::string& text);
 
-// Whether the text received so far is a complete program, judged by whether every block is closed.
+// Returns whether the text received so far is a complete program, in which every block is closed.
 bool Complete(const std::string& text);
 
 }  // namespace predictor::urscript

@@ -12,7 +12,7 @@ struct Token {
   int line;
 };
 
-// The result ends with a newline and kEnd. Throws Error.
+// The tokens end with a newline and kEnd. Throws Error.
 std::vector<Token> Tokens(const std::string& text);
 
 }  // namespace predictor::urscript

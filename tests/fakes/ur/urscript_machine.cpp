@@ -6,7 +6,7 @@
 namespace predictor::urscript {
 namespace {
 
-// A thread that executes so many instructions without waiting would exceed a controller's cycle.
+// A thread that executes so many instructions without a wait would exceed a controller's cycle.
 constexpr int kMaxInstructions = 20000;
 
 template <class T>
@@ -96,7 +96,7 @@ void Machine::Run(std::size_t t) {
     if (n == kMaxInstructions) throw Error(i.line, "a thread runs on without waiting");
     ++thread.at;
     Step(&thread, i);
-    // When the program ends, its threads end as well.
+    // When the program ends, its threads end too.
     if (threads_[0].wait == Wait::kForever)
       for (Thread& other : threads_) other.wait = Wait::kForever;
   }

@@ -1,4 +1,4 @@
-// Executes a URScript program as a controller does: in each cycle, every thread runs in turn until
+// Executes a URScript program as a controller does. In each cycle, each thread runs in turn until
 // it waits.
 #pragma once
 
@@ -45,7 +45,7 @@ class Machine {
   void Return(Thread* thread);
   Value Builtin(Thread* thread, const Instruction& i, const List& arguments);
   void Move(Thread* thread, const Instruction& i, Wait wait);
-  long Cycles(double time) const;  // at least one
+  long Cycles(double time) const;  // returns at least one
 
   const Program* program_;
   UrController* controller_;
