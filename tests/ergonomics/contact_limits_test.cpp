@@ -64,7 +64,7 @@ TEST(ContactLimitFile, RefusesWhatItCannotUse) {
   EXPECT_THROW(ReadContactLimits("/nowhere/limits.csv"), InputError);
 }
 
-// The file that is shipped. It must be confirmed by the user, and says so.
+// The file that is shipped states that the user must confirm it.
 TEST(ContactLimitFile, ShippedTemplateIsComplete) {
   const ContactLimits limits =
       ReadContactLimits(std::string(PREDICTOR_SOURCE_DIR) + "/assets/contact_limits_template.csv");
@@ -78,7 +78,7 @@ TEST(ContactLimitFile, ShippedTemplateIsComplete) {
 
 const ContactLimit kHand = {"hand/finger", "palm", 140, 2.6e6, 2, 75e3, 0.6};
 
-// Computed by hand: m_R = 17.8/2 + 9 = 17.9 kg, μ = 0.6·17.9/18.5 = 0.5805 kg, v =
+// The values were computed by hand: m_R = 17.8/2 + 9 = 17.9 kg, μ = 0.6·17.9/18.5 = 0.5805 kg, v =
 // 280/√(0.5805·75000).
 TEST(Contact, SpeedOfAHandIsThatComputedByHand) {
   const double robot = EffectiveRobotMass(17.8, 9);
@@ -90,7 +90,7 @@ TEST(Contact, SpeedOfAHandIsThatComputedByHand) {
               1e-12);
 }
 
-// All of the relative motion's energy goes into the spring.
+// The spring absorbs all of the energy of the relative motion.
 TEST(Contact, EnergyIsThatOfTheReducedMass) {
   for (const double robot : {1.0, 10.0, 1000.0}) {
     const ContactSpeed result = MaxContactSpeed(kHand, {ContactKind::kTransient, robot, 0});

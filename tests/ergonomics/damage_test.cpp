@@ -1,4 +1,4 @@
-// Rainflow counting and cumulative damage, against published examples.
+// Compares rainflow counting and cumulative damage with published examples.
 #include "ergonomics/damage.h"
 
 #include <gtest/gtest.h>
@@ -19,18 +19,18 @@ std::map<double, double> CountsByRange(const std::vector<LoadCycle>& cycles) {
   return counts;
 }
 
-// ASTM E1049-85, figure 6.
+// The example is figure 6 of ASTM E1049-85.
 TEST(Rainflow, CountsTheExampleOfItsStandard) {
   const std::vector<double> signal = {-2, 1, -3, 5, -1, 3, -4, 4, -2};
   const auto cycles = CountRainflow(signal);
   EXPECT_EQ(CountsByRange(cycles),
             (std::map<double, double>{{3, 0.5}, {4, 1.5}, {6, 0.5}, {8, 1}, {9, 0.5}}));
   ASSERT_EQ(cycles.size(), 7u);
-  EXPECT_EQ(cycles[2].mean, 1);  // between -1 and 3, the only whole cycle
+  EXPECT_EQ(cycles[2].mean, 1);  // from -1 to 3, the only whole cycle
   EXPECT_EQ(cycles[2].count, 1);
 }
 
-// Samples between the reversals, and equal ones, change nothing.
+// Samples between the reversals and repeated samples must change nothing.
 TEST(Rainflow, SeesReversalsOnly) {
   const std::vector<double> plain = {0, 10, 0, 10, 0};
   const std::vector<double> sampled = {0, 0, 3, 10, 10, 8, 0, 5, 10, 4, 4, 0, 0};
@@ -39,7 +39,8 @@ TEST(Rainflow, SeesReversalsOnly) {
   EXPECT_TRUE(CountRainflow(std::array{5.0, 5.0, 5.0}).empty());
 }
 
-// Each whole cycle removes its range from the signal's path twice, each half cycle once.
+// Each whole cycle removes its range from the signal's path twice, and each half cycle removes it
+// once.
 TEST(Rainflow, AccountsForTheWholePath) {
   RandomStream random(1, "rainflow");
   for (int run = 0; run < 50; ++run) {
@@ -58,22 +59,23 @@ TEST(Rainflow, IgnoresRangesBelowTheThreshold) {
   EXPECT_EQ(CountsByRange(CountRainflow(signal, 2)), (std::map<double, double>{{10, 1}}));
 }
 
-// 30 lb at 0.5 m, 760 times a day: computed independently from Zelik's equations.
+// A load of 30 lb is lifted at 0.5 m, 760 times a day. The damage was computed independently from
+// Zelik's equations.
 TEST(Lift, HasTheDamageOfItsEquation) {
   const double damage = 760 * LiftDamage(30 * 0.45359237 * 9.81 * 0.5);
   EXPECT_NEAR(damage, 0.00695, 0.00005);
   EXPECT_NEAR(kLiftRisk.Probability(damage), 0.377, 0.001);
 }
 
-// Zelik et al. 2022, abstract: an exoskeleton of 30 N·m "is projected to reduce cumulative back
-// damage by ~70 %".
+// In the abstract of Zelik et al. 2022, an exoskeleton of 30 N·m "is projected to reduce cumulative
+// back damage by ~70 %".
 TEST(Lift, AssistanceReducesDamageAsPublished) {
   const double left = LiftDamage(50 - 30) / LiftDamage(50);
   EXPECT_NEAR(1 - left, 0.70, 0.05);
 }
 
-// DUET, table 1 (Gallagher et al. 2018): cycles to failure by effort. The table rounds the stress
-// to 0.1 %, which changes the cycles by 0.8 % at most.
+// Table 1 of DUET (Gallagher et al. 2018) gives the cycles to failure by effort. It rounds the
+// stress to 0.1 %, which changes the cycles by 0.8 % at most.
 TEST(Hand, HasTheCyclesToFailureOfThePublishedTable) {
   constexpr std::array<double, 11> kCycles = {3842605, 2231607, 729651, 242301, 79223, 26308,
                                               8602,    2856,    949,    310,    103};
@@ -85,21 +87,21 @@ TEST(Hand, HasTheProbabilitiesOfThePublishedExamples) {
   EXPECT_NEAR(5400 * HandDamage(2), 0.0074, 0.00005);
   EXPECT_NEAR(kHandRisk.Probability(5400 * HandDamage(2)), 0.265, 0.0005);
   EXPECT_NEAR(kHandRisk.Probability(1350 * HandDamage(4)), 0.321, 0.0005);
-  // A wrong DUET that agrees with the example above gives 65 % here instead of 41 %.
+  // A wrong DUET that agrees with the example above would give 65 % here instead of 41 %.
   EXPECT_NEAR(kHandRisk.Probability(500 * HandDamage(6)), 0.41, 0.005);
 }
 
-// Bani Hani's published test cases.
+// These are Bani Hani's published test cases.
 TEST(Shoulder, HasTheDamageOfThePublishedExamples) {
   constexpr double kPoundForce = 4.4482216, kInch = 0.0254;
   const double one_hand = 2880 * ShoulderDamage(ShoulderMoment(2 * kPoundForce, 16 * kInch));
   EXPECT_NEAR(one_hand, 0.00428, 0.005 * 0.00428);
   EXPECT_NEAR(kShoulderRisk.Probability(one_hand), 0.208, 0.0005);
-  // The published damage of the second case is 2.6 % larger; why is not known.
+  // The published damage of the second case is 2.6 % larger, for an unknown reason.
   const double two_hands = 4800 * ShoulderDamage(ShoulderMoment(5 * kPoundForce, 18 * kInch));
   EXPECT_NEAR(two_hands, 0.03331, 0.03 * 0.03331);
   EXPECT_NEAR(kShoulderRisk.Probability(two_hands), 0.376, 0.003);
-  // Published pairs of damage and probability.
+  // These are published pairs of damage and probability.
   EXPECT_NEAR(kShoulderRisk.Probability(0.03331), 0.376, 0.0005);
   EXPECT_NEAR(kShoulderRisk.Probability(0.04097), 0.396, 0.0005);
   EXPECT_NEAR(kShoulderRisk.Probability(0.19214), 0.550, 0.0005);
@@ -114,7 +116,7 @@ TEST(Damage, ReferenceDayIsAsLikelyAsNot) {
   }
 }
 
-// Three lifts to 60 N·m in a minute, with noise of 1 N·m, for a shift.
+// A shift contains three lifts a minute to 60 N·m, with noise of 1 N·m.
 TEST(Damage, OfARunIsThatOfItsLifts) {
   std::vector<double> moment;
   for (int lift = 0; lift < 3; ++lift)

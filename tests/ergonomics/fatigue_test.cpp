@@ -1,4 +1,4 @@
-// Fatigue models: closed forms against integration, and against measured endurance.
+// Compares the closed forms of the fatigue models with integration and with measured endurance.
 #include "ergonomics/fatigue.h"
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@ constexpr FatigueJoint kAllJoints[] = {
     FatigueJoint::kAnkle, FatigueJoint::kKnee, FatigueJoint::kTrunk,  FatigueJoint::kShoulder,
     FatigueJoint::kElbow, FatigueJoint::kGrip, FatigueJoint::kGeneral};
 
-// The closed form assumes that the active share equals the load. In the model it is smaller by F /
-// LD (LD = 10 1/s), so results differ by that share.
+// Returns the relative error of the closed form. It assumes that the active share equals the load,
+// but in the model this share is smaller by F / LD (LD = 10 1/s).
 double ActivationError(const FatigueRates& rates) { return 2 * rates.fatigue / 10; }
 
 TEST(ThreeCompartments, FollowTheClosedFormUnderConstantLoad) {
@@ -43,7 +43,7 @@ TEST(ThreeCompartments, FailAtTheEnduranceTime) {
   }
 }
 
-// At full effort the strength falls to R / (F + R), and any load below it can be held for ever.
+// At full effort, the strength falls to R / (F + R). Any load below that can be held indefinitely.
 TEST(ThreeCompartments, EndAtTheStrengthThatRecoveryKeepsUp) {
   for (const FatigueJoint joint : kAllJoints) {
     const FatigueRates rates = FatigueRatesOf(joint);
@@ -86,8 +86,8 @@ TEST(ThreeCompartments, DoNotDependOnTheStep) {
   EXPECT_NEAR(large.fatigued, small.fatigued, 1e-5);
 }
 
-// The validation that the coefficients come with: the model agrees with measured endurance within a
-// factor of two. Above 70 % the model's endurance goes to 0 and the measured one does not.
+// The coefficients were validated in this way: the model agrees with measured endurance within a
+// factor of two. Above 70 %, the model's endurance falls to 0, but the measured one does not.
 TEST(ThreeCompartments, AgreeWithMeasuredEnduranceWithinAFactorOfTwo) {
   for (const FatigueJoint joint : kAllJoints)
     for (const double load : {0.2, 0.3, 0.5, 0.7}) {
@@ -98,7 +98,7 @@ TEST(ThreeCompartments, AgreeWithMeasuredEnduranceWithinAFactorOfTwo) {
     }
 }
 
-// Two points of each curve of Frey-Law & Avin 2010, computed by hand from its coefficients.
+// Two points of each curve of Frey-Law & Avin 2010 were computed by hand from its coefficients.
 TEST(MeasuredEndurance, IsThePublishedPowerLaw) {
   struct Point {
     FatigueJoint joint;
@@ -114,7 +114,7 @@ TEST(MeasuredEndurance, IsThePublishedPowerLaw) {
   }
 }
 
-// The order that the paper states: "the ankle was most fatigue-resistant, followed by the trunk,
+// The paper states this order: "the ankle was most fatigue-resistant, followed by the trunk,
 // hand/grip, elbow, knee and finally the shoulder".
 TEST(MeasuredEndurance, HasThePublishedOrderAtHalfStrength) {
   const auto at = [](FatigueJoint joint) { return MeasuredEnduranceTime(0.5, joint); };
@@ -137,7 +137,7 @@ TEST(Capacity, IsTheLoadAtTheEnduranceTime) {
   EXPECT_NEAR(CapacityEnduranceTime(0.5), 60 * std::log(2) / 0.5, 1e-9);
 }
 
-// The differential equations, by small steps of Euler.
+// The test integrates the differential equations in small Euler steps.
 TEST(Capacity, SolvesItsDifferentialEquation) {
   const CapacityRates rates;
   double worked = 1, rested = 0.5;
@@ -153,7 +153,7 @@ TEST(Capacity, SolvesItsDifferentialEquation) {
 TEST(TrialFatigue, IsCompleteAfterTheTrial) {
   const TrialFatigue trial = {0.4, 90, 0.1, 0.5};
   EXPECT_NEAR(TrialFatigueAfter(0, 0.4, 90, trial), 0.993, 1e-12);
-  EXPECT_NEAR(TrialFatigueAfter(0, 0.8, 45, trial), 0.993, 1e-12);  // effort counts
+  EXPECT_NEAR(TrialFatigueAfter(0, 0.8, 45, trial), 0.993, 1e-12);  // the effort counts
   double v = 0.2;
   constexpr double kStep = 1e-3;
   for (int i = 0; i < 10'000; ++i) v += kStep * (1 - v) * 0.3 / trial.Effort();

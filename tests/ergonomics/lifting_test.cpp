@@ -1,5 +1,5 @@
-// NIOSH's lifting equation and the Liberty Mutual equations, against published examples and an
-// independent transcription.
+// Compares NIOSH's lifting equation and the Liberty Mutual equations with published examples and
+// with an independent transcription.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,8 +23,8 @@ HandPlace Inches(double horizontal, double height, double asymmetry_in_degrees) 
 
 double InPounds(double kilograms) { return kilograms / kManualPound; }
 
-// Verified: inputs, multipliers and limits of figure 14 of the manual, and the unrounded limits.
-// The horizontal distance at the destination follows from its multiplier.
+// The inputs, the multipliers, the limits of figure 14 of the manual and the unrounded limits were
+// verified. The horizontal distance at the destination follows from its multiplier.
 TEST(Niosh, Example4PackageInspection) {
   LiftTask task;
   task.origin = Inches(10, 22, 0);
@@ -46,7 +46,8 @@ TEST(Niosh, Example4PackageInspection) {
   EXPECT_EQ(lift.limit, lift.destination.Limit());
 }
 
-// Verified in a handbook chapter: 14.4 lb and 13.3 lb with rounded multipliers.
+// The result was verified in a handbook chapter, which has 14.4 lb and 13.3 lb with rounded
+// multipliers.
 TEST(Niosh, Example5DishWashingMachineUnloading) {
   LiftTask task;
   task.mean_load = 20 * kManualPound;
@@ -61,7 +62,7 @@ TEST(Niosh, Example5DishWashingMachineUnloading) {
   EXPECT_NEAR(lift.index, 1.5, 0.05);
 }
 
-// Recalled, not re-checked: 16.3 lb and 14.5 lb.
+// The limits of 16.3 lb and 14.5 lb are quoted from memory and were not verified.
 TEST(Niosh, Example1LoadingPunchPressStock) {
   LiftTask task;
   task.origin = Inches(23, 15, 0);
@@ -70,7 +71,7 @@ TEST(Niosh, Example1LoadingPunchPressStock) {
   task.frequency = 0.1;
   task.coupling = Coupling::kFair;
   const LiftAssessment lift = AssessLift(task);
-  // The printed multipliers, which are rounded to two digits (10/23 to 0.44), give these limits.
+  // The printed multipliers give these limits. They are rounded to two digits (10/23 to 0.44).
   EXPECT_NEAR(51 * 0.44 * 0.89 * 0.86 * 0.95, 16.3, 0.05);
   EXPECT_NEAR(51 * 0.44 * 0.75 * 0.86, 14.5, 0.05);
   constexpr double kRounding = 0.0055;
@@ -84,13 +85,13 @@ TEST(Niosh, Example1LoadingPunchPressStock) {
   EXPECT_TRUE(lift.by_destination);
 }
 
-// Section 2.4.5 of the manual (recalled, not re-checked): limits of 20, 20 and 15 lb for a single
-// lift, loads of 30, 20 and 10 lb, frequencies of 1, 2 and 4 lifts per minute: CLI = 1.60 + 0.07 +
-// 0.20.
+// Section 2.4.5 of the manual is quoted from memory and was not verified. The limits are 20, 20 and
+// 15 lb for a single lift, the loads 30, 20 and 10 lb, and the frequencies 1, 2 and 4 lifts per
+// minute. They give CLI = 1.60 + 0.07 + 0.20.
 TEST(Niosh, CompositeIndexOfThreeTasks) {
   const auto task = [](double limit, double load, double frequency) {
     LiftTask t;
-    // At 0.6 m from the ankles and over a short distance, the height sets the limit.
+    // At 0.6 m from the ankles and over a short distance, the height determines the limit.
     const double vertical = limit * kManualPound / kLoadConstant * 0.6 / 0.25;
     t.origin = t.destination = {0.6, 0.75 + (1 - vertical) / 0.3, 0};
     t.mean_load = t.max_load = load * kManualPound;
@@ -107,11 +108,12 @@ TEST(Niosh, CompositeIndexOfThreeTasks) {
   tasks.resize(1);
   EXPECT_NEAR(CompositeLiftingIndex(tasks), AssessLift(tasks[0]).index, 1e-12);
   EXPECT_EQ(CompositeLiftingIndex({}), 0);
-  tasks.push_back(task(20, 20, 20));  // too often
+  tasks.push_back(task(20, 20, 20));  // the frequency is too high
   EXPECT_TRUE(std::isinf(CompositeLiftingIndex(tasks)));
 }
 
-// Cells of the manual's table 5 from each column (verified), and its rules.
+// The test checks cells from each column of the manual's table 5 (verified) and the rules of the
+// table.
 TEST(Niosh, FrequencyMultiplierIsThatOfTheTable) {
   using enum LiftDuration;
   EXPECT_DOUBLE_EQ(FrequencyMultiplier(0.05, kShort, 1), 1.00);
@@ -147,7 +149,8 @@ TEST(Niosh, RecommendsNoLoadOutsideItsRange) {
     changed.destination.height = destination_height;
     return AssessLift(changed).limit;
   };
-  EXPECT_NEAR(limit_with({0.1, 0.75, 0}, 0.75), 23, 1e-12);  // nearer than 0.25 m: no better
+  // a distance below 0.25 m gives no advantage
+  EXPECT_NEAR(limit_with({0.1, 0.75, 0}, 0.75), 23, 1e-12);
   EXPECT_GT(limit_with({0.63, 0.75, 0}, 0.75), 0);
   EXPECT_EQ(limit_with({0.64, 0.75, 0}, 0.75), 0);
   EXPECT_EQ(limit_with({0.25, 1.76, 0}, 1.76), 0);
@@ -172,8 +175,8 @@ TEST(Niosh, AssistedLiftIsLabelledAsAdapted) {
 }
 
 // Each equation is a reference load times factors that are 1 under the reference condition, within
-// the four printed digits. A wrong digit in any constant breaks this. (With 0.6687 instead of
-// 0.6887, the men's sustained push would be 9 % too large here.)
+// the four printed digits. A wrong digit in any constant fails this test. With 0.6687 instead of
+// 0.6887, the men's sustained push would be 9 % too large.
 TEST(LmMmh, EachEquationReturnsItsReferenceLoad) {
   constexpr double kOnceInEightHours = 1.0 / 480, kPrinted = 1e-3;
   const VerticalHandling female = {0.20, 9.221 / (2 * 13.69), 0.25, kOnceInEightHours};
@@ -202,8 +205,8 @@ TEST(LmMmh, EachEquationReturnsItsReferenceLoad) {
   expect(AcceptableCarry(at(0.78), Sex::kMale), 74.9);
 }
 
-// Two points of each equation, computed from the public transcription as written there (one
-// expression each, with the constant 0.6887).
+// Two points of each equation were computed from the public transcription exactly as it is written,
+// with one expression each and the constant 0.6887.
 TEST(LmMmh, AgreesWithAnIndependentTranscription) {
   constexpr double kDigits = 1e-6, kKgf = 9.80665;
   const VerticalHandling a = {0.38, 0.6, 0.5, 1}, b = {0.5, 1.2, 0.76, 6};

@@ -1,4 +1,5 @@
-// RULA, REBA and OWAS: the hand-scored postures, the order within the tables, and symmetry.
+// Tests RULA, REBA and OWAS with postures scored by hand, the order within the tables, and
+// symmetry.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -96,8 +97,8 @@ TEST(Rula, ScoresLoadsAsThePaperDoes) {
   EXPECT_EQ(force(10.1, true), 3);
 }
 
-// Calls `table` for all indices 1 … size of each axis, and expects that one step along an axis
-// never lowers the result.
+// Calls `table` with all indices 1 … size of each axis. A step along an axis must never lower the
+// result.
 template <std::size_t kAxes>
 void ExpectMonotone(const std::array<int, kAxes>& size, const std::array<bool, kAxes>& ordinal,
                     const std::function<int(const std::array<int, kAxes>&)>& table) {
@@ -136,8 +137,8 @@ TEST(Reba, TablesAreMonotone) {
   ExpectMonotone<2>({12, 12}, {true, true}, [](const auto& i) { return RebaTableC(i[0], i[1]); });
 }
 
-// Sub-scores that another public implementation prints for both sides of a person
-// (rs9000/ergonomics).
+// Another public implementation (rs9000/ergonomics) prints these sub-scores for both sides of a
+// person.
 TEST(Reba, AgreesWithAnotherImplementation) {
   EXPECT_EQ(RebaTableA(2, 2, 2), 4);
   EXPECT_EQ(RebaTableB(1, 2, 3), 3);
@@ -164,8 +165,8 @@ TEST(Owas, MarksTheOneCellInWhichItsSourcesDiffer) {
   EXPECT_EQ(contested, 1);
 }
 
-// An upright person needs no action; one who is bent and twisted, on bent knees and with a heavy
-// load, needs it immediately.
+// An upright person needs no action. A person who is bent and twisted, on bent knees and with a
+// heavy load, needs it immediately.
 TEST(Owas, ClassifiesMeasuredPostures) {
   BodyPosture body;
   ArmPosture low, high;
@@ -223,7 +224,7 @@ TEST(PostureScores, OfAMirroredPersonAreTheSame) {
   }
 }
 
-// Every posture, also one that no body could take, has scores within the worksheet.
+// Every posture must have scores within the worksheet, even one that no body could take.
 TEST(PostureScores, StayWithinTheirScales) {
   RandomStream random(2, "scales");
   std::array<int, 8> grands{};

@@ -1,4 +1,4 @@
-// The tables of RULA and REBA, cell by cell, against copies that others transcribed.
+// Compares each cell of the tables of RULA and REBA with copies that others transcribed.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -18,9 +18,10 @@ std::vector<int> NumbersIn(const std::string& text) {
   return numbers;
 }
 
-// From two public programs (in Korean and in Spanish), which agree. Rows: upper arm. Columns: lower
-// arm, wrist; each pair is the twist. Two other programs have 6 instead of 7 for upper arm 5, lower
-// arm 2, wrist 3, twist 2; an older worksheet has 7 there.
+// This table is from two public programs (in Korean and in Spanish), which agree. Its rows are the
+// upper arm, its columns the lower arm and the wrist, and each pair is the twist. Two other
+// programs have 6 instead of 7 for upper arm 5, lower arm 2, wrist 3, twist 2. An older worksheet
+// also has 7 there.
 constexpr const char* kPrintedRulaA =
     "12 22 23 33  22 22 33 33  23 33 33 44\n"
     "23 33 34 44  33 33 34 44  34 44 44 55\n"
@@ -28,7 +29,8 @@ constexpr const char* kPrintedRulaA =
     "44 44 45 55  44 44 45 55  44 45 55 66\n"
     "55 55 56 67  56 66 67 77  66 67 77 78\n"
     "77 77 78 89  88 88 89 99  99 99 99 99\n";
-// From three public programs, which agree. Rows: neck. Columns: trunk, legs.
+// This table is from three public programs, which agree. Its rows are the neck, its columns the
+// trunk and the legs.
 constexpr const char* kPrintedRulaB =
     "1 3 2 3 3 4 5 5 6 6 7 7\n"
     "2 3 2 3 4 5 5 5 6 7 7 7\n"
@@ -36,7 +38,7 @@ constexpr const char* kPrintedRulaB =
     "5 5 5 6 6 7 7 7 7 7 8 8\n"
     "7 7 7 7 7 8 8 8 8 8 8 8\n"
     "8 8 8 8 8 8 8 9 9 9 9 9\n";
-// Rows: wrist and arm. Columns: neck, trunk and legs.
+// The rows are the wrist and arm, the columns the neck, trunk and legs.
 constexpr const char* kPrintedRulaC =
     "1 2 3 3 4 5 5\n"
     "2 2 3 4 4 5 5\n"
@@ -67,14 +69,15 @@ TEST(Rula, TablesAreThoseOfOtherCopies) {
     EXPECT_EQ(RulaTableC(1 + i / 7, 1 + i % 7), c[static_cast<std::size_t>(i)]) << i;
 }
 
-// As the REBA Employee Assessment Worksheet prints them. Rows: trunk. Columns: neck, legs.
+// The REBA Employee Assessment Worksheet prints this table. Its rows are the trunk, its columns the
+// neck and the legs.
 constexpr const char* kPrintedRebaA =
     "1 2 3 4 1 2 3 4 3 3 5 6\n"
     "2 3 4 5 3 4 5 6 4 5 6 7\n"
     "2 4 5 6 4 5 6 7 5 6 7 8\n"
     "3 5 6 7 5 6 7 8 6 7 8 9\n"
     "4 6 7 8 6 7 8 9 7 8 9 9\n";
-// Rows: upper arm. Columns: lower arm, wrist.
+// The rows are the upper arm, the columns the lower arm and the wrist.
 constexpr const char* kPrintedRebaB =
     "1 2 2 1 2 3\n"
     "1 2 3 2 3 4\n"
@@ -82,7 +85,7 @@ constexpr const char* kPrintedRebaB =
     "4 5 5 5 6 7\n"
     "6 7 8 7 8 8\n"
     "7 8 8 8 9 9\n";
-// Rows: score A from 1 to 9 (the copy ends there). Columns: score B.
+// The rows are score A from 1 to 9, where the copy ends. The columns are score B.
 constexpr const char* kPrintedRebaC =
     "1 1 1 2 3 3 4 5 6 7 7 7\n"
     "1 2 2 3 4 4 5 6 6 7 7 8\n"

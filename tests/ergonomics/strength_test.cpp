@@ -11,8 +11,8 @@
 namespace predictor::ergonomics {
 namespace {
 
-// Means of the elbow flexors at 90° with the arm at the side in Chaffin & Andersson's table of
-// Stobbe's data (recalled, not re-checked): 77 and 41 N·m.
+// Chaffin & Andersson's table of Stobbe's data gives means of 77 and 41 N·m for the elbow flexors
+// at 90° with the arm at the side. It is quoted from memory and was not verified.
 TEST(Strength, OfTheElbowIsThatOfThePublishedTable) {
   const auto flexion = [](Sex sex) {
     return MeanStrength(StrengthDirection::kElbowFlexion, sex, Degrees(90), 0);
@@ -21,7 +21,7 @@ TEST(Strength, OfTheElbowIsThatOfThePublishedTable) {
   EXPECT_NEAR(flexion(Sex::kFemale), 41, 1);
 }
 
-// Two angles of each direction, evaluated by hand.
+// The equations were evaluated by hand for two angles of each direction.
 TEST(Strength, FollowsItsEquations) {
   using enum StrengthDirection;
   const auto at = [](StrengthDirection direction, Sex sex, double elbow, double shoulder) {
@@ -63,7 +63,8 @@ TEST(Strength, SamplesHaveThePublishedSpreadAndCorrelation) {
     }
     products += (shares[0] - 1) * (shares[3] - 1);
   }
-  // Five standard errors; the lower bound moves moments by less than that.
+  // The tolerance is five standard errors. The lower bound of the strength shifts the moments by
+  // less than that.
   const double error = 5 / std::sqrt(static_cast<double>(kPeople));
   for (std::size_t i = 0; i < sum.size(); ++i) {
     EXPECT_NEAR(sum[i] / kPeople, 0, 0.3 * error);

@@ -20,8 +20,8 @@ std::vector<CensoredValue> Values(const std::vector<double>& exact,
   return values;
 }
 
-// The example of Kaplan & Meier (1958): deaths after 0.8, 3.1, 5.4 and 9.2 months, losses after
-// 1.0, 2.7, 7.0 and 12.1.
+// In the example of Kaplan & Meier (1958), deaths occur after 0.8, 3.1, 5.4 and 9.2 months, and
+// losses after 1.0, 2.7, 7.0 and 12.1 months.
 TEST(KaplanMeier, GivesItsAuthorsExample) {
   const auto steps = KaplanMeier(Values({0.8, 3.1, 5.4, 9.2}, {1.0, 2.7, 7.0, 12.1}));
   const std::vector<double> shares = {0.875, 0.700, 0.525, 0.2625};
@@ -33,8 +33,8 @@ TEST(KaplanMeier, GivesItsAuthorsExample) {
   }
 }
 
-// Remissions of leukaemia under 6-mercaptopurine (Freireich et al. 1963), with the estimate and
-// Greenwood's standard errors as printed by Klein & Moeschberger, "Survival Analysis", table 4.1.
+// The data are remissions of leukaemia under 6-mercaptopurine (Freireich et al. 1963). Klein &
+// Moeschberger, "Survival Analysis", table 4.1, print the estimate and Greenwood's standard errors.
 TEST(KaplanMeier, GivesTheTableOfTheLeukaemiaTrial) {
   const auto values =
       Values({6, 6, 6, 7, 10, 13, 16, 22, 23}, {6, 9, 10, 11, 17, 19, 20, 25, 32, 32, 34, 35});
@@ -69,8 +69,8 @@ TEST(CensoredQuantile, IsTheUsualOneWithoutCensoring) {
                    Quantile(std::vector<double>{4, 8, 15, 16, 23}, 0.9));
 }
 
-// Values that a limit censors: the estimate finds the quantiles below the limit without bias, and
-// says of those above it that they are not known.
+// A limit censors the values. The estimate must find the quantiles below the limit without bias and
+// report those above it as unknown.
 TEST(CensoredQuantile, FindsTheTrueQuantilesBelowALimit) {
   std::mt19937_64 random(5);
   std::exponential_distribution<double> force(1 / 20.0);
@@ -81,7 +81,7 @@ TEST(CensoredQuantile, FindsTheTrueQuantilesBelowALimit) {
   }
   const CensoredValue known = CensoredQuantile(values, 0.7);
   EXPECT_FALSE(known.at_least);
-  EXPECT_NEAR(known.value, -20 * std::log(0.3), 0.6);  // four standard errors
+  EXPECT_NEAR(known.value, -20 * std::log(0.3), 0.6);  // the tolerance is four standard errors
   const CensoredValue unknown = CensoredQuantile(values, 0.9);
   EXPECT_TRUE(unknown.at_least);
   EXPECT_LE(unknown.value, -20 * std::log(0.1));

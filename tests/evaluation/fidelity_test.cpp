@@ -80,7 +80,7 @@ TEST(CyclePhase, NeverGoesBackAndRefusesInvalidPaths) {
   EXPECT_TRUE(CyclePhase({}, {}).empty());
 }
 
-// A cycle counts even if the person releases shortly before its start point.
+// A cycle must count even if the person lets go shortly before its start point.
 TEST(CyclePhase, CountsACycleThatEndsALittleShort) {
   std::vector<double> phase(100);
   for (std::size_t i = 0; i < phase.size(); ++i) phase[i] = 1.985 * static_cast<double>(i) / 99;
@@ -93,7 +93,7 @@ TEST(CyclePhase, CountsACycleThatEndsALittleShort) {
 }
 
 TEST(CutCycle, TakesASignalByThePhaseNotByTheTime) {
-  // The second cycle is twice as fast. The signal depends on the phase only.
+  // The second cycle is twice as fast as the first. The signal depends only on the phase.
   const auto turns = [](double t) { return t < 4 ? t / 4 : 1 + (t - 4) / 2; };
   const auto phase = Sampled(601, turns);
   const auto signal = Sampled(601, [&](double t) { return std::sin(kTurn * turns(t)); });
@@ -120,7 +120,7 @@ TEST(LagOf, FindsAShiftBetweenSamples) {
   EXPECT_TRUE(std::isnan(LagOf(flat, flat, 10).correlation));
 }
 
-// Computes the distance from its definition, without a table, as the minimum over all paths.
+// Computes the distance by its definition, as the minimum over all paths, without a table.
 double WarpedByAllPaths(const std::vector<double>& a, const std::vector<double>& b, std::size_t i,
                         std::size_t j) {
   const double here = std::abs(a[i] - b[j]);
@@ -146,7 +146,7 @@ TEST(WarpedDistance, IsTheLeastOverAllPaths) {
 }
 
 TEST(WarpedDistance, StaysInItsBandAndForgivesWhatFits) {
-  // A delayed step costs nothing if the delay is within the band, but it does beyond the band.
+  // A delayed step costs nothing while the delay is within the band, but it does beyond the band.
   std::vector<double> a(100, 0.0), late(100, 0.0), later(100, 0.0);
   std::fill(a.begin() + 40, a.end(), 1.0);
   std::fill(late.begin() + 49, late.end(), 1.0);
@@ -159,7 +159,7 @@ TEST(WarpedDistance, StaysInItsBandAndForgivesWhatFits) {
 }
 
 TEST(Coherence, IsThatOfScipyAtEachFrequency) {
-  // `a` is the output of a linear congruential generator; `b` is `a` delayed by two samples, plus
+  // `a` is the output of a linear congruential generator. `b` is `a` delayed by two samples, plus
   // independent noise of the same size.
   std::vector<double> a, b, other;
   std::uint64_t state = 12345;
@@ -191,8 +191,8 @@ TEST(Coherence, IsOneOfAFilteredAndSmallOfUnrelatedSignals) {
 }
 
 TEST(Repeats, AreComparedByTheirMeanSquares) {
-  // Computed by hand for constant series: the squared distances are 4 within a, 0 within b, and 9
-  // and 1 between the sets.
+  // For these constant series, the squared distances were computed by hand: 4 within a, 0 within b,
+  // and 9 and 1 between the sets.
   const std::vector<std::vector<double>> a = {{0, 0}, {2, 2}}, b = {{3, 3}, {3, 3}};
   const RepeatComparison c = CompareRepeats(a, b);
   EXPECT_DOUBLE_EQ(c.within, std::sqrt((4 + 0) / 2.0));
@@ -210,7 +210,7 @@ TEST(Repeats, OfOneKindHaveARatioOfOne) {
       for (double& x : one) x = offset + noise(random);
     return set;
   };
-  // Standard error 0.01. The means of the sets vary by ±0.017, which changes 2² by ±0.07.
+  // The standard error is 0.01. The means of the sets vary by ±0.017, which changes 2² by ±0.07.
   EXPECT_NEAR(CompareRepeats(draw(0), draw(0)).ratio, 1, 0.01);
   EXPECT_NEAR(CompareRepeats(draw(0), draw(2)).ratio, std::sqrt(3.0), 0.04);  // (2 + 2²) / 2
 }
@@ -227,7 +227,7 @@ TEST(Impedance, IsIdentifiedIfTheMotionAllows) {
   const auto force =
       Sampled(1000, [&](double t) { return 2.1 * a(t) + 14.5 * v(t) + 5 * x(t) + 7; });
   const ApparentImpedance found = FitImpedance(position, force);
-  // Replacing integrals by sums over forty samples causes an error of a few parts per million.
+  // The sums over forty samples differ from the integrals by a few parts per million.
   EXPECT_NEAR(found.mass, 2.1, 1e-4);
   EXPECT_NEAR(found.viscosity, 14.5, 1e-4);
   EXPECT_NEAR(found.stiffness, 5, 1e-4);
@@ -249,7 +249,7 @@ TEST(Impedance, OfOneSineCannotSeparateMassFromStiffness) {
   EXPECT_TRUE(std::isnan(FitImpedance({}, {}).viscosity));
 }
 
-// If the person only yields, the force is that of the hand, F = −(mass a + …), so it contains no
+// If the person only yields, the force is that of the hand, F = −(mass a + …). It contains no
 // information about the object.
 TEST(Impedance, IsNotReportedForAnAxisWithoutMotion) {
   const auto position = Sampled(1000, [](double t) { return 1e-3 * std::sin(2 * t); });
@@ -282,14 +282,14 @@ struct Task {
   int hands = 2;
 };
 
-// Calls `visit` for each record at 1 kHz of two hands that lead E round a circle through a viscous
-// medium. The records of a whole run would occupy a hundred megabytes, so they are not stored.
+// Calls `visit` with each record at 1 kHz of two hands that lead E around a circle through a
+// viscous medium. The records are not stored, because a whole run would occupy a hundred megabytes.
 template <class Visit>
 void Record(const Task& task, const Visit& visit) {
   std::mt19937 random(task.seed);
   std::normal_distribution<double> noise;
   const int ticks = static_cast<int>(1e3 * (task.start + task.cycles * task.period));
-  double shake = 0;  // slow, because averaging would remove a fast disturbance
+  double shake = 0;  // a fast disturbance would be removed by averaging, so this one is slow
   for (int i = 0; i < ticks; ++i) {
     TickRecord record{};
     record.ran = 1;
@@ -354,7 +354,7 @@ TEST(FidelityCollector, AveragesStepsAndFillsGaps) {
   for (int i = 70; i < 80; ++i) mean += 0.015 * std::cos(kTurn * 1e-3 * i / 2);
   EXPECT_NEAR(whole.channels[0].samples[7], mean, 1e-12);
   EXPECT_EQ(whole.filled, 0u);
-  records.erase(records.begin() + 500, records.begin() + 530);  // removes three steps
+  records.erase(records.begin() + 500, records.begin() + 530);  // three steps are missing
   records[10].ran = 0;                                          // must be ignored
   const FidelitySignals cut = SignalsOf(records);
   EXPECT_EQ(cut.filled, 3u);
@@ -373,7 +373,7 @@ TEST(FidelityCollector, RefusesTimesThatCannotBe) {
   }
   records.back().run_time = std::nan("");
   EXPECT_EQ(SignalsOf(records).channels[0].samples.size(), 200u);
-  records.back().run_time = 5 * 3600;  // one gap of five hours, filled in time
+  records.back().run_time = 5 * 3600;  // a single gap of five hours
   EXPECT_EQ(SignalsOf(records).channels[0].samples.size(), 5u * 3600 * 100 + 1);
 }
 
@@ -419,11 +419,11 @@ TEST(Fidelity, IsAlignedByThePhaseOfTheCycle) {
   EXPECT_NEAR(force.peak_a, amplitude, 0.01 * amplitude);
   EXPECT_NEAR(force.rmse, 0.2 * amplitude / std::numbers::sqrt2, 0.02 * amplitude);
   EXPECT_NEAR(force.relative_rmse, 0.1 / std::numbers::sqrt2, 0.01);
-  // Aligned by time, the two runs differ considerably.
+  // If the two runs are aligned by time, they differ considerably.
   EXPECT_GT(Channel(CompareFidelity(a, b, false), "position x").rmse, 0.05);
 }
 
-// The paper's finding: the real cobot has more resistance. The comparison quantifies the
+// The paper found that the real cobot has more resistance. The comparison quantifies this
 // difference.
 TEST(Fidelity, NamesTheViscosityThatIsMissing) {
   const std::vector<FidelitySignals> real = {SignalsOf(Task{.viscosity = 29, .noise = 0.05})},
@@ -440,7 +440,8 @@ TEST(Fidelity, NamesTheViscosityThatIsMissing) {
   EXPECT_EQ(PerceivedNamed(same, "viscosity y").noticed, Noticed::kNo);
 }
 
-// Runs of the same kind with different random draws differ as much as the repeats of one kind do.
+// Runs of the same kind with different random draws must differ about as much as the repeats of one
+// kind.
 TEST(Fidelity, OfTheSameKindLiesWithinTheRepeats) {
   std::vector<FidelitySignals> a, b;
   for (unsigned seed = 1; seed <= 6; ++seed) {
@@ -480,7 +481,7 @@ TEST(Fidelity, IsDescribedInWords) {
   EXPECT_EQ(text.find("Warning"), std::string::npos) << text;
 }
 
-// Aligned by time, each run gives a single value, so its standard error is unknown.
+// If the runs are aligned by time, each gives a single value, so its standard error is unknown.
 TEST(Fidelity, WarnsWhereErrorsAreNotKnown) {
   const std::vector<FidelitySignals> a = {SignalsOf(Task{.noise = 0.1})},
                                      b = {SignalsOf(Task{.viscosity = 30, .noise = 0.1})};

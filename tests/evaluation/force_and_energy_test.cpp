@@ -1,4 +1,4 @@
-// The oscillation index of a force, the energy through a port, and the metrics made of them.
+// Tests the oscillation index of a force, the energy through a port, and the metrics based on them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace predictor {
 namespace {
 
-// A force with a slow component and a tremor at f: the tremor's share is known.
+// The force has a slow component and a tremor at f, so the tremor's share is known.
 TEST(OscillationIndex, IsThePartOfThePowerFromThreeToTenHertz) {
   for (const double f : {4.0, 6.25, 9.0}) {
     OscillationIndex index(0.001);
@@ -44,8 +44,8 @@ TEST(PortEnergy, MeasuresTheReturnedEnergyAndTheLowestSum) {
   EXPECT_EQ(port.episodes, 1);
 }
 
-// The records of `seconds` in RUN in which the left hand exerts force(t) along x, moving at 0.5
-// m/s.
+// Summarises `seconds` of records in RUN in which the left hand exerts force(t) along x while it
+// moves at 0.5 m/s.
 Summary OfForce(
     double seconds, const std::function<double(double)>& force,
     const std::function<void(TickRecord*)>& change = [](TickRecord*) {}) {
@@ -74,7 +74,7 @@ TEST(Metrics, ContainTheOscillationOfEachHand) {
   EXPECT_TRUE(IsMissing(summary.At("oscillation.left.strong_index").value));  // 2.5 N
   EXPECT_TRUE(IsMissing(summary.At("oscillation.right.index").value));
   EXPECT_TRUE(IsMissing(OfForce(3, force).At("oscillation.left.rms_n").value));  // no window
-  // A window does not extend over a missing tick or a pause.
+  // A window must not extend over a missing tick or a pause.
   const auto lost = OfForce(6, force, [](TickRecord* r) { r->tick += r->tick > 3000; });
   EXPECT_TRUE(IsMissing(lost.At("oscillation.left.rms_n").value));
   const auto paused = OfForce(6, force, [](TickRecord* r) { r->ran = r->tick != 3000; });
@@ -87,7 +87,7 @@ TEST(Metrics, ContainTheEnergyOfBothHands) {
                                : t < 2 ? -6
                                        : 8; },
       [](TickRecord* r) {
-        if (r->tick > 2000) r->ran = 0;  // paused, then braking
+        if (r->tick > 2000) r->ran = 0;  // a pause, then braking
         if (r->tick > 2500) r->state = RunState::kStopping;
       });
   EXPECT_NEAR(summary.Get<double>("energy.supplied_j"), 2 - 3 + 2, 0.01);

@@ -1,4 +1,4 @@
-// Reading and writing answers, the paper's table, and the report on a study.
+// Tests how answers are read and written, the paper's table, and the report on a study.
 #include "evaluation/questionnaire.h"
 
 #include <gtest/gtest.h>
@@ -87,8 +87,8 @@ TEST(PaperTable, SolutionsHaveThePrintedFigures) {
 }
 
 TEST(PaperTable, RoundsExactlyAndHalvesAwayFromZero) {
-  // One answer of eight differs: the mean 1/8 = 0.125 is rounded to 0.13; the deviation is √(1/8) =
-  // 0.35355.
+  // One answer of eight differs. The mean 1/8 = 0.125 is rounded to 0.13, and the deviation is
+  // √(1/8) = 0.35355.
   EXPECT_EQ(FiguresOf({0, 0, 7, 1, 0}), (RoundedFigures{13, 35}));
   EXPECT_EQ(FiguresOf({0, 1, 7, 0, 0}), (RoundedFigures{-13, 35}));
   EXPECT_EQ(FiguresOf({0, 0, 0, 0, 17}), (RoundedFigures{200, 0}));
@@ -113,7 +113,7 @@ Json Form() {
           {"age", 23},        {"sex", "female"}, {"comment", "Größe <b>"},  {"pseudonym", nullptr}};
 }
 
-// The key and the message of the error that refuses a form.
+// Returns the key and the message of the error with which the form is refused.
 std::pair<std::string, std::string> Refused(const Json& form) {
   try {
     ParseSurveyForm(form.dump());
@@ -339,8 +339,8 @@ TEST(SurveyReport, CountsPeopleAndAnswers) {
 
 TEST(SurveyReport, ComparesPairsByTheSignedRanks) {
   std::vector<StoredAnswer> answers;
-  // S1 has eight differences of +1. S2 has the same, except for one of −1. All other differences
-  // are zero.
+  // S1 has eight differences of +1, and so does S2, except that one of them is −1. All other
+  // differences are zero.
   for (int i = 0; i < 8; ++i) {
     const std::string person = "P" + std::to_string(i);
     answers.push_back(Stored(person, Condition::kReal, 0));
@@ -353,7 +353,7 @@ TEST(SurveyReport, ComparesPairsByTheSignedRanks) {
   EXPECT_DOUBLE_EQ(report.paired[0].test.p, 2.0 / 256);
   EXPECT_DOUBLE_EQ(report.paired[0].shift.estimate, 1);
   EXPECT_DOUBLE_EQ(report.paired[0].adjusted, 8 * 2.0 / 256);
-  EXPECT_DOUBLE_EQ(report.paired[1].test.p, 2 * 9.0 / 256);  // none or one of eight negative
+  EXPECT_DOUBLE_EQ(report.paired[1].test.p, 2 * 9.0 / 256);  // at most one of eight is negative
   EXPECT_EQ(report.paired[2].test.zeros, 8u);
   EXPECT_EQ(report.paired[2].test.p, 1);
 }
@@ -374,9 +374,9 @@ TEST(SurveyReport, ShowsThePapersStudyAsThePaperDoes) {
   EXPECT_NE(table.find("No one answered exactly once for each"), std::string::npos);
 }
 
-// Computed with scipy 1.17.1: wilcoxon(x, zero_method="wilcox",
+// The expected values were computed with scipy 1.17.1: wilcoxon(x, zero_method="wilcox",
 // method=PermutationMethod(n_resamples=inf)), which enumerates all signs. The shift is the median
-// of the 153 Walsh averages; its limits are the 35th and the 119th, as in the published tables for
+// of the 153 Walsh averages. Its limits are the 35th and the 119th, as in the published tables for
 // 17. Holm's correction was computed by hand.
 TEST(SurveyReport, HoldsThePapersAnswersAgainstNeutral) {
   struct Expected {

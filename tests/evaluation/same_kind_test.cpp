@@ -11,7 +11,7 @@ namespace {
 
 using Repeats = std::vector<std::vector<double>>;
 
-// Each series is a wave with random size and phase, plus noise. Neighbouring samples are
+// Each series is a wave with a random size and phase, plus noise. Neighbouring samples are
 // correlated, as they are for people.
 Repeats Waves(std::size_t count, double size, std::mt19937_64* random) {
   std::normal_distribution<double> normal;
@@ -35,17 +35,19 @@ int CountDistinguished(double size, int trials, std::size_t count) {
 }
 
 TEST(SameKind, OneInTwentyOfEqualKindsIsDistinguished) {
-  // Binomial distribution of 400 trials at 5 %: 20 ± 4.4. The limits are three and a half
-  // deviations away, which is exceeded about once in two thousand cases.
+  // The number of distinguished cases has a binomial distribution with 400 trials at 5 %, so it is
+  // 20 ± 4.4. The limits are three and a half deviations away, which is exceeded about once in two
+  // thousand cases.
   const int distinguished = CountDistinguished(1, 400, 17);
   EXPECT_GE(distinguished, 5);
   EXPECT_LE(distinguished, 35);
 }
 
 TEST(SameKind, UnequalKindsAreDistinguished) {
-  // The sizes differ by 1.5 deviations. Student's test would detect 98 of 100 cases.
+  // The sizes differ by 1.5 deviations. Student's test would detect the difference in 98 of 100
+  // cases.
   EXPECT_GE(CountDistinguished(1.3, 100, 17), 90);
-  // Kinds with the same mean but different variances are detected as well.
+  // Kinds with the same mean but different variances must be distinguished as well.
   std::mt19937_64 random(3);
   Repeats narrow(17, {0.0}), wide = narrow;
   for (std::size_t k = 0; k < 17; ++k) {
@@ -55,16 +57,16 @@ TEST(SameKind, UnequalKindsAreDistinguished) {
   EXPECT_TRUE(TestSameKind(narrow, wide).distinguished());
 }
 
-// All 20 ways to divide six numbers into two sets. For series of one sample, |x − y| is their rms
-// difference. The sets are the lowest three and the highest three; only the swapped division puts
-// the sets as far apart.
+// The test goes through all 20 ways to divide six numbers into two sets. For series of one sample,
+// |x − y| is their rms difference. The sets are the lowest three and the highest three. Only the
+// swapped division puts the sets as far apart.
 TEST(SameKind, PIsThatOfGoingThroughAllWays) {
   const Repeats low = {{1}, {2}, {3}}, high = {{11}, {12}, {13}};
   const SameKindTest test = TestSameKind(low, high);
   EXPECT_DOUBLE_EQ(test.distance, 10 - 4.0 / 3);  // distances within each set: 1, 1 and 2
   EXPECT_DOUBLE_EQ(test.min_p, 2.0 / 20);
   EXPECT_FALSE(test.can_distinguish());
-  // The standard error for 9999 draws is 0.003.
+  // The standard error of 9999 draws is 0.003.
   EXPECT_NEAR(test.p, 0.1, 0.012);
   EXPECT_FALSE(TestSameKind(low, low).distinguished());
 }

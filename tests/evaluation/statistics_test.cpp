@@ -19,7 +19,7 @@ TEST(Samples, HaveTheirTextbookFigures) {
   EXPECT_DOUBLE_EQ(Mean(x), 3.875);
   EXPECT_NEAR(SampleDeviation(x), 2.748376143938713, 1e-14);  // numpy.std(ddof=1)
   EXPECT_DOUBLE_EQ(Median(x), 3.5);
-  // numpy.quantile
+  // The expected values are from numpy.quantile.
   EXPECT_DOUBLE_EQ(Quantile(x, 0), 1);
   EXPECT_DOUBLE_EQ(Quantile(x, 0.25), 1.75);
   EXPECT_NEAR(Quantile(x, 0.9), 6.9, 1e-14);
@@ -42,7 +42,7 @@ TEST(Samples, CorrelateAsScipySays) {
 }
 
 TEST(Holm, AdjustsStepByStep) {
-  // Computed by hand: 4·0.005, 3·0.01, then 2·0.03, then max(0.04, 0.06).
+  // The values were computed by hand: 4·0.005, 3·0.01, then 2·0.03, then max(0.04, 0.06).
   const auto p = HolmAdjusted(std::vector<double>{0.01, 0.04, 0.03, 0.005});
   EXPECT_NEAR(p[3], 0.02, 1e-15);
   EXPECT_NEAR(p[0], 0.03, 1e-15);
@@ -51,7 +51,7 @@ TEST(Holm, AdjustsStepByStep) {
   EXPECT_EQ(HolmAdjusted(std::vector<double>{0.7, 0.9}), (std::vector<double>{1, 1}));
 }
 
-// Differences 1, 2, ... n. The ranks of the negative ones have the given sum.
+// Returns the differences 1, 2, ... n, of which some are negative. Their ranks have the given sum.
 std::vector<double> WithNegativeRanks(std::size_t n, std::size_t sum) {
   std::vector<double> d(n);
   std::iota(d.begin(), d.end(), 1.0);
@@ -60,7 +60,7 @@ std::vector<double> WithNegativeRanks(std::size_t n, std::size_t sum) {
   return d;
 }
 
-// The largest rank sums that are significant in a two-sided test, as printed in textbooks (n: sum).
+// Textbooks print the largest rank sums that are significant in a two-sided test (n: sum).
 TEST(SignedRank, HasTheCriticalValuesOfThePublishedTables) {
   const std::map<double, std::map<std::size_t, std::size_t>> tables = {
       {0.05, {{6, 0},   {7, 2},   {8, 3},   {9, 5},   {10, 8},  {11, 10}, {12, 13},
@@ -96,7 +96,7 @@ TEST(SignedRank, HasTheCriticalValuesOfThePublishedTables) {
 const std::vector<double> kHamilton = {1.83 - 0.878, 0.50 - 0.647, 1.62 - 0.598,
                                        2.48 - 2.05,  1.68 - 1.06,  1.88 - 1.29,
                                        1.55 - 1.06,  3.06 - 3.14,  1.30 - 1.29};
-// Darwin's comparison of crossed and self-fertilised maize (in eighths of an inch).
+// Darwin's comparison of crossed and self-fertilised maize, in eighths of an inch.
 const std::vector<double> kMaize = {49, -67, 8, 16, 6, 23, 28, 41, 14, 29, 56, 24, 75, 60, -48};
 
 TEST(SignedRank, AgreesWithPublishedExamples) {
@@ -110,7 +110,7 @@ TEST(SignedRank, AgreesWithPublishedExamples) {
 }
 
 TEST(HodgesLehmannEstimate, AgreesWithPublishedExamples) {
-  // Hollander & Wolfe: −0.46 with (−0.786, −0.010) at 96.1 % for the negated differences.
+  // For the negated differences, Hollander & Wolfe give −0.46 with (−0.786, −0.010) at 96.1 %.
   const auto hamilton = HodgesLehmann(kHamilton);
   EXPECT_NEAR(hamilton.estimate, 0.46, 1e-12);
   EXPECT_NEAR(hamilton.lower, 0.010, 1e-12);
@@ -123,12 +123,12 @@ TEST(HodgesLehmannEstimate, AgreesWithPublishedExamples) {
   EXPECT_NEAR(maize.confidence, 0.95208740234375, 1e-12);
 }
 
-// Differences of answers with ties and zeros.
+// These are differences of answers with ties and zeros.
 const std::vector<double> kLikert = {1, 0, -1, 2, 1, 1, 0, 1, -1, 2, 0, 1, 1, 3, -2, 1, 0};
 
 TEST(SignedRank, TreatsTiesAndZerosByTheNamedRule) {
-  // scipy.stats.wilcoxon(zero_method, method=PermutationMethod(n_resamples=inf)), over all 2^13
-  // signs.
+  // The expected value is from scipy.stats.wilcoxon(zero_method,
+  // method=PermutationMethod(n_resamples=inf)), over all 2^13 signs.
   const auto dropped = TestSignedRank(kLikert, ZeroRule::kDropped);
   EXPECT_EQ(dropped.zeros, 4u);
   EXPECT_EQ(dropped.ranked, 13u);
@@ -142,7 +142,7 @@ TEST(SignedRank, TreatsTiesAndZerosByTheNamedRule) {
 }
 
 TEST(SignedRank, ApproximatesAsScipyDoes) {
-  // scipy.stats.wilcoxon(zero_method, correction=True, method="approx")
+  // The expected value is from scipy.stats.wilcoxon(zero_method, correction=True, method="approx").
   const auto dropped = TestSignedRank(kLikert, ZeroRule::kDropped, 0);
   EXPECT_FALSE(dropped.exact);
   EXPECT_NEAR(dropped.z, 1.7445896740435536, 1e-12);
@@ -207,7 +207,7 @@ TEST(HodgesLehmannEstimate, SaysWhatConfidenceFewDifferencesGive) {
   EXPECT_DOUBLE_EQ(HodgesLehmann(std::vector<double>{4}).confidence, 0);
 }
 
-// The interval contains the true shift at least as often as stated, also for coarse answers.
+// The interval must contain the true shift at least as often as stated, even for coarse answers.
 TEST(HodgesLehmannEstimate, CoversTheShiftAsOftenAsItSays) {
   std::mt19937 random(11);
   std::normal_distribution<double> noise(0.7, 1);
@@ -230,7 +230,7 @@ TEST(HodgesLehmannEstimate, CoversTheShiftAsOftenAsItSays) {
   }
 }
 
-// If both are available, the approximate interval agrees with the enumerated one.
+// Where both are available, the approximate interval must agree with the enumerated one.
 TEST(HodgesLehmannEstimate, ApproximatesBeyondWhatIsEnumerated) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise;

@@ -1,4 +1,4 @@
-// The names in the summary are an interface for scripts. Its values must match the records.
+// Scripts use the names in the summary. Its values must match the records.
 #include "evaluation/summary.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TickRecord Running(double time, double error, double force) {
   return r;
 }
 
-// The hand in a record may be invalid.
+// The hand in a record may be an invalid number.
 TEST(Summary, OfAStopByNoSide) {
   for (const int hand : {-128, -1, 0, 1, 2, 127}) {
     SummaryBuilder builder(Named("hostile", 7));
@@ -60,7 +60,7 @@ TEST(Summary, OfAStopByNoSide) {
   }
 }
 
-// Further names come with further metrics.
+// Further metrics may add further names.
 TEST(Summary, HasTheContractsNames) {
   SummaryBuilder builder(Named("name", 7));
   builder.Add(Running(0.001, 0.002, 10));
@@ -163,7 +163,7 @@ TEST(Summary, SeparatesTheRelativePoseFromTheDistance) {
   EXPECT_NEAR(max("angle_rad"), kAngle, 1e-12);
 }
 
-// The statistics of the whole run combine the means and the sums of squares of its parts.
+// The statistics of the whole run must combine the means and the sums of squares of its parts.
 TEST(Summary, OfTheWholeRunIsThatOfItsParts) {
   SummaryBuilder builder(Named("name", 1));
   for (const double error : {0.001, 0.004, 0.002}) builder.Add(Running(0.001, error, 1));
@@ -206,7 +206,7 @@ TEST(Summary, ReportsTheStopAndWhenTheTruthCrossedTheThreshold) {
   EXPECT_EQ(json["stop"]["hand"], "right");
   EXPECT_EQ(json["stop"]["time_s"], 0.005);
   EXPECT_TRUE(json["stop"]["power_off_by"].is_null());
-  // The statistics of the force include the value that caused the stop.
+  // The statistics of the force must include the value that caused the stop.
   EXPECT_EQ(json["wrench"]["right"]["force_n"]["max"], 30.5);
   EXPECT_EQ(json["ticks"], 6);
   EXPECT_DOUBLE_EQ(json["duration_s"], 0.006);
@@ -234,7 +234,8 @@ TEST(Summary, ReportsWhatMadeTheEndOfAStopHarder) {
             std::string::npos);
 }
 
-// The reason is found even if it comes in the tick of the decision and no record follows.
+// The summary must contain the reason even if it occurs in the tick of the decision and no record
+// follows.
 TEST(Summary, ReportsWhatMadeAStopHarderInItsOwnTick) {
   SummaryBuilder builder(Named("name", 1));
   TickRecord stop = Running(0.001, 0, 1);
@@ -248,8 +249,8 @@ TEST(Summary, ReportsWhatMadeAStopHarderInItsOwnTick) {
   EXPECT_EQ(builder.stops().stops().front().harder.value, 0.0214);
 }
 
-// If the arms did not come to rest, the table must not claim that they did, whether the cause or
-// the end of the stop shows it.
+// If the arms did not come to rest, the table must not claim that they did. The cause or the end of
+// the stop can show this.
 TEST(Summary, OfArmsThatDidNotRestSaysSo) {
   const auto rested = [](StopCause cause, Quantity quantity, const StatusRecord& harder) {
     SummaryBuilder builder(Named("name", 1));
@@ -332,7 +333,8 @@ TEST(Summary, OfWhatNeverRanHasNoFigures) {
   EXPECT_EQ(json["stop"]["cause"], "device");
 }
 
-// Rest is determined as in a stop: a handle that rotates, or whose driver moves it, is not at rest.
+// Rest has the same definition as in a stop: a handle is not at rest while it rotates or its driver
+// moves it.
 TEST(Summary, RestsWhereTheStopRests) {
   const auto duration = [](const auto& at) {
     SummaryBuilder builder(Named("name", 1));
@@ -360,7 +362,7 @@ TEST(Summary, RestsWhereTheStopRests) {
               1e-12);
 }
 
-// One stop after 3 ticks and, after a reset, another one after 2 more ticks.
+// The run has one stop after 3 ticks and, after a reset, another one after 2 more ticks.
 TEST(Summary, ReportsEachStop) {
   SummaryBuilder builder(Named("name", 1));
   const auto stop = [&](StopCause cause, std::int8_t hand, int ran, double way) {
@@ -426,7 +428,7 @@ TEST(Summary, IsBuiltWithoutHeapInEachTick) {
   EXPECT_EQ(guard.count(), 0);
 }
 
-// The paths of all values in a summary, without those within statistics.
+// Returns the paths of all values in a summary, except for those within statistics.
 std::set<std::string> PathsOf(const nlohmann::json& json, const std::string& path = "") {
   if (!json.is_object() || json.contains("mean") || json.contains("p50")) return {path};
   std::set<std::string> paths;

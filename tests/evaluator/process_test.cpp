@@ -1,4 +1,4 @@
-// The evaluator as a process: what it says, its rights, and the consequences of its death.
+// Tests the evaluator's process: its output, its rights, and what happens when it dies.
 #include "support/process.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ using assessment::RecordOf;
 using test::Becomes;
 using test::StatusOf;
 
-// Its operator has a body and stands where RecordOf needs it.
+// Returns a scenario whose operator has a body and stands where RecordOf needs it.
 Scenario Box() {
   return LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
 }
@@ -40,7 +40,7 @@ class EvaluatorProcessTest : public testing::Test {
     for (std::uint64_t tick = first; tick <= last; ++tick)
       board_->records.Publish(RecordOf(tick, height, 20));
   }
-  // The newest state; before the first one, its tick is 0.
+  // Returns the newest state. Before the first state, its tick is 0.
   PersonState Newest() const {
     PersonState state;
     const std::uint64_t written = (*states_).states.written();
@@ -108,7 +108,7 @@ TEST_F(EvaluatorProcessTest, ItsDeathIsReportedAndItRestarts) {
   ASSERT_TRUE(Becomes([&] { return evaluator_->pid() != 0 && evaluator_->pid() != pid; }));
   Run(201, 400);
   ASSERT_TRUE(Becomes([&] { return Newest().tick == 400; }));
-  EXPECT_NEAR(Newest().since, 0.206, 1e-9);  // damage and fatigue begin again
+  EXPECT_NEAR(Newest().since, 0.206, 1e-9);  // damage and fatigue start from zero again
 }
 
 TEST_F(EvaluatorProcessTest, EndsWithTheRun) {
@@ -124,7 +124,7 @@ TEST_F(EvaluatorProcessTest, SaysWhatIsMissingOrImpossible) {
   EXPECT_THROW(Start(scenario), InputError);
 }
 
-// A process with this descriptor can read the states but not forge them.
+// A process with this descriptor must be able to read the states but not to forge them.
 TEST(EvaluationBoard, CanBeGivenAwayReadOnly) {
   const Shared<EvaluationBoard> states;
   const int descriptor = states.read_only_descriptor();

@@ -1,4 +1,4 @@
-// `predictor export scene` as seen by a script or a shell.
+// Tests `predictor export scene` as a script or a shell uses it.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -58,7 +58,7 @@ TEST(ExportCommand, ListsTheFilesAsJson) {
   EXPECT_EQ(result.code, 0) << result.text;
   const auto json = nlohmann::json::parse(result.text);
   EXPECT_EQ(json["folder"], scene);
-  EXPECT_EQ(json["files"].size() + 1, Files(scene).size());  // and the list for a later --force
+  EXPECT_EQ(json["files"].size() + 1, Files(scene).size());  // plus the list of written files
   for (const std::string file : json["files"]) EXPECT_TRUE(fs::exists(scene + "/" + file)) << file;
 }
 

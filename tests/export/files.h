@@ -1,4 +1,4 @@
-// Files in a temporary folder of a test.
+// Files in a test's temporary folder.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// The contents of a package besides the tree (meshes, textures, names), and the inputs that are
-// refused.
+// Tests the other contents of a package (meshes, textures, names), and the inputs that the exporter
+// refuses.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -20,7 +20,7 @@ class Package : public testing::Test {
  protected:
   Package() : scenario(OddScene(folder.path() / "s", JointType::kSpherical)) {}
 
-  // Writes an object that has these elements in its single link.
+  // Writes an object with these elements in its single link.
   void SetObject(const std::string& shapes, const std::string& materials = "") {
     Write(folder.path() / "s/object.urdf", "<robot name=\"o\">" + materials +
                                                R"(<link name="a"><inertial><mass value="2"/>
@@ -107,7 +107,7 @@ TEST_F(Package, BringsTexturesAlongAndSaysWhichAreMissing) {
   EXPECT_FALSE(Contains(readme, folder.path().string())) << readme;
 }
 
-// A mesh without a material keeps the colours of its file. A mesh with a material gets that
+// A mesh without a material must keep the colours of its file. A mesh with a material must get that
 // material under a unique name.
 TEST_F(Package, KeepsMaterials) {
   Put("a.stl", "");

@@ -54,7 +54,7 @@ Scenario ScenarioOf(const std::string& name, const fs::path& folder) {
   return s;
 }
 
-// Angles a, b, c with R = Rx(a) Ry(b) Rz(c).
+// Returns the angles a, b and c with R = Rx(a) Ry(b) Rz(c).
 Vector3 TurnsAboutXyz(const Matrix3& R) {
   return {std::atan2(-R(1, 2), R(2, 2)), std::atan2(R(0, 2), std::hypot(R(1, 2), R(2, 2))),
           std::atan2(-R(0, 1), R(0, 0))};
@@ -105,15 +105,15 @@ class ExportedScene : public testing::TestWithParam<std::string> {
   std::vector<std::string> AttachmentJoints() const {
     if (attachment() == JointType::kFixed) return {};
     if (attachment() == JointType::kSpherical) {
-      // In the odd scenes, the cobot already has a joint with this name.
+      // In the odd scenes, a joint of the cobot already has this name.
       const std::string x = GetParam() == "odd_spherical" ? "attachment_x_" : "attachment_x";
       return {x, "attachment_y", "attachment_z"};
     }
     return {GetParam().rfind("odd_", 0) == 0 ? "attachment_" : "attachment"};
   }
 
-  // Moves the cobot to q and the attachment to `turns` (its first entry if it has one axis), in all
-  // three models.
+  // Moves the cobot to q and the attachment to `turns` in all three models. If the attachment has
+  // one axis, only the first entry is used.
   void MoveTo(const Vector3& turns) {
     for (int j = 0; j < cobot->dof(); ++j) {
       truth->qpos[reference.qpos[static_cast<std::size_t>(j)]] = q[j];
@@ -189,7 +189,7 @@ class ExportedScene : public testing::TestWithParam<std::string> {
     }
   }
 
-  // Mass matrix of a MuJoCo model, restricted to the cobot's joints.
+  // Returns the mass matrix of a MuJoCo model, restricted to the cobot's joints.
   static RowMatrix CobotBlock(const mjModel* model, mjData* state, const std::vector<int>& dof) {
     RowMatrix all(model->nv, model->nv);
     mj_fullM(model, state, all.data());
@@ -216,7 +216,7 @@ std::string NameOf(const testing::TestParamInfo<std::string>& name) { return nam
 INSTANTIATE_TEST_SUITE_P(Shipped, ExportedScene, testing::ValuesIn(Shipped()), NameOf);
 INSTANTIATE_TEST_SUITE_P(Odd, ExportedScene, testing::ValuesIn(kOdd), NameOf);
 
-// The odd cobots cannot run, because no controller holds them.
+// The odd cobots cannot run, because they have no controller that holds them.
 class ExportedRun : public ExportedScene {};
 INSTANTIATE_TEST_SUITE_P(Shipped, ExportedRun, testing::ValuesIn(Shipped()), NameOf);
 
@@ -390,7 +390,7 @@ TEST_P(ExportedScene, NamesFilesOfThePackageOnlyAndAllOfThem) {
   EXPECT_EQ(there, named);  // the shipped models have no textures
 }
 
-// The format allows these omissions, but URDF-Importer fails on them.
+// The format permits these omissions, but URDF-Importer fails on them.
 TEST_P(ExportedScene, HasWhatUrdfImporterNeeds) {
   tinyxml2::XMLDocument doc;
   ASSERT_EQ(doc.LoadFile((to / kSceneUrdf).c_str()), tinyxml2::XML_SUCCESS);
@@ -407,9 +407,9 @@ TEST_P(ExportedScene, HasWhatUrdfImporterNeeds) {
     }
   }
   const std::set<std::string> still = {"world", "floor", "table"};
+  // URDF-Importer gives 1 kg to a link without inertial.
   for (auto* link = scene->FirstChildElement("link"); link != nullptr;
-       link = link->NextSiblingElement("link")) {  // URDF-Importer sets 1 kg for links without
-                                                   // inertial
+       link = link->NextSiblingElement("link")) {
     EXPECT_EQ(link->FirstChildElement("inertial") == nullptr,
               still.count(link->Attribute("name")) > 0)
         << link->Attribute("name");

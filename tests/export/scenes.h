@@ -1,4 +1,4 @@
-// Scenes with other cobots, attachments and names than the shipped scenarios have.
+// Scenes whose cobots, attachments and names differ from those of the shipped scenarios.
 #pragma once
 
 #include <filesystem>
@@ -34,7 +34,7 @@ inline constexpr const char* kOddCobot = R"(<robot name="odd">
     <limit lower="-1" upper="1" velocity="2" effort="20"/></joint>
 </robot>)";
 
-// Two links whose axes are not parallel to any other axis.
+// The object has two links whose axes are not parallel to any other axis.
 inline constexpr const char* kOddObject = R"(<robot name="lopsided">
   <material name="red"><color rgba="1 0 0 0.5"/></material>
   <link name="a"><inertial><origin xyz="0.1 -0.2 0.05" rpy="0.3 0.2 0.1"/><mass value="2"/>

@@ -1,4 +1,4 @@
-// Existing files at the destination of a package are not damaged.
+// Writing a package must not damage existing files at the destination.
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -17,7 +17,7 @@ ScenePackage PackageOf(const Contents& contents) {
   return package;
 }
 
-// The error message; "" if no error occurs.
+// Returns the error message, or "" if no error occurs.
 std::string Refusal(const ScenePackage& package, const fs::path& folder, bool force) {
   try {
     WriteScenePackage(package, folder, force);
@@ -27,7 +27,7 @@ std::string Refusal(const ScenePackage& package, const fs::path& folder, bool fo
   }
 }
 
-// The files without the list of written files.
+// Returns the files in the folder, without the list of written files.
 Contents Shown(const fs::path& folder) {
   Contents files = Files(folder);
   files.erase(".predictor-scene");
@@ -92,7 +92,7 @@ TEST(WriteScenePackage, FollowsNoLink) {
   EXPECT_EQ(Shown(to.path()), kNew);
 }
 
-// A forged list must not remove files outside the folder, nor through a symbolic link.
+// A forged list must not remove files outside the folder, not even through a symbolic link.
 TEST(WriteScenePackage, RejectsAListThatLeadsElsewhere) {
   const test::TemporaryFolder around;
   const fs::path to = around.path() / "to";

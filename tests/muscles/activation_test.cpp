@@ -22,7 +22,7 @@ ActivationProblem TwoMuscles(double torque) {
   return problem;
 }
 
-// Activations in proportion to the torques of the muscles: a_i = b_i τ / Σ b².
+// The activations must be in proportion to the torques of the muscles: a_i = b_i τ / Σ b².
 TEST(Activation, TwoMusclesShareByTheirTorque) {
   const ActivationResult result = Activate(TwoMuscles(20));
   ASSERT_TRUE(result.converged);
@@ -31,7 +31,7 @@ TEST(Activation, TwoMusclesShareByTheirTorque) {
   EXPECT_NEAR(result.cost, 20 * 20 / 1000.0 / 2, 1e-6);
 }
 
-// With p = 3 they share by the square root: a_i = τ √b_i / Σ b^(3/2).
+// With p = 3, the muscles share by the square root: a_i = τ √b_i / Σ b^(3/2).
 TEST(Activation, CubesSpreadTheLoad) {
   ActivationProblem problem = TwoMuscles(20);
   problem.power = 3;
@@ -42,7 +42,7 @@ TEST(Activation, CubesSpreadTheLoad) {
   EXPECT_NEAR(result.activation[1], 20 * std::sqrt(10) / sum, kSquareShare);
 }
 
-// The stronger one reaches its bound, and the other produces the rest.
+// The stronger muscle reaches its bound, and the other one produces the rest.
 TEST(Activation, TheRestOfASaturatedMuscleGoesToTheOther) {
   const ActivationResult result = Activate(TwoMuscles(36));
   ASSERT_TRUE(result.converged);
@@ -58,7 +58,7 @@ TEST(Activation, AnOpponentRests) {
   EXPECT_EQ(result.activation[1], 0);
 }
 
-// A lower bound of the opponent costs the other one just as much torque.
+// A lower bound of the opposing muscle costs the other one just as much torque.
 TEST(Activation, CoContractionIsBalanced) {
   ActivationProblem problem = TwoMuscles(9);
   problem.torque(3, 1) = -10;
@@ -79,14 +79,14 @@ TEST(Activation, WhatTheMusclesCannotProduceIsInTheReserve) {
   EXPECT_NEAR(result.reserve[0], 0, 1e-12);
 }
 
-// min a²/2 + v (a - e)²/2 with one muscle that is not needed: a = v e / (1 + v).
+// For one muscle that is not needed, min a²/2 + v (a - e)²/2 has the solution a = v e / (1 + v).
 TEST(Activation, MeasuredActivationsPull) {
   ActivationProblem problem;
   problem.measured[5] = 0.6;
   problem.trust[5] = 2;
   const ActivationResult result = Activate(problem);
   EXPECT_NEAR(result.activation[5], 2 * 0.6 / 3, 1e-12);
-  // Together with an opponent's measured activation the torque stays what it must be.
+  // With an opposing muscle's measured activation, the torque must remain what is required.
   ActivationProblem pair = TwoMuscles(9);
   pair.torque(3, 1) = -10;
   pair.measured[1] = 0.5;
@@ -96,7 +96,7 @@ TEST(Activation, MeasuredActivationsPull) {
   EXPECT_NEAR(30 * both.activation[0] - 10 * both.activation[1], 9, 1e-6);
 }
 
-// A random problem of an arm; `share` of its strength is asked for.
+// Returns a random problem of an arm that demands a random share of its strength.
 ActivationProblem RandomProblem(const ArmModel& arm, RandomStream* random) {
   const ArmVector q = RandomArm(arm, random);
   ArmVector torque;
@@ -108,7 +108,7 @@ ActivationProblem RandomProblem(const ArmModel& arm, RandomStream* random) {
   return problem;
 }
 
-// Stationarity, complementarity and balance, written down without the solver.
+// Evaluates stationarity, complementarity and balance, without code of the solver.
 double KktViolation(const ActivationProblem& p, const ActivationResult& r) {
   double worst = (p.torque * r.activation + r.reserve - p.target).cwiseAbs().maxCoeff();
   worst = std::max(
@@ -120,8 +120,8 @@ double KktViolation(const ActivationProblem& p, const ActivationResult& r) {
     const double slope = p.weight[i] * (p.power == 2 ? a : a * a + kSquareShare * a) +
                          p.trust[i] * (a - p.measured[i]) - p.torque.col(i).dot(r.multiplier);
     worst = std::max({worst, p.lower[i] - a, a - p.upper[i]});
-    if (a > p.lower[i] + 1e-12) worst = std::max(worst, slope);   // would rather fall
-    if (a < p.upper[i] - 1e-12) worst = std::max(worst, -slope);  // would rather rise
+    if (a > p.lower[i] + 1e-12) worst = std::max(worst, slope);   // a smaller a would be better
+    if (a < p.upper[i] - 1e-12) worst = std::max(worst, -slope);  // a larger a would be better
   }
   return worst;
 }
@@ -147,11 +147,11 @@ TEST(Activation, MeetsTheOptimalityConditions) {
     iterations += result.iterations;
     saturated += result.activation.maxCoeff() >= 1 ? 1 : 0;
   }
-  EXPECT_GT(saturated, 100);  // the hard ones occur
+  EXPECT_GT(saturated, 100);  // proves that hard problems occur
   std::printf("%.1f iterations on average, %d of 2000 saturated\n", iterations / 2000.0, saturated);
 }
 
-// The same problem as a quadratic program in activations and reserves.
+// Returns the same problem as a quadratic program in activations and reserves.
 Qp ProgramOf(const ActivationProblem& p) {
   constexpr int kJoints = person::kArmJoints;
   Qp qp(kMuscles + kJoints, kJoints);

@@ -32,7 +32,7 @@ TEST(ArmModel, TableIsComplete) {
   EXPECT_EQ(groups.size(), static_cast<std::size_t>(kMuscleGroups));
 }
 
-// R = -∂l/∂q, by central differences of the length.
+// R = -∂l/∂q is compared with central differences of the length.
 TEST(ArmModel, MomentArmsAreTheSlopesOfTheLengths) {
   constexpr double kStep = 1e-6;
   RandomStream random(1, "moment arms");
@@ -66,8 +66,8 @@ TEST(ArmModel, BothArmsAreMirrorImages) {
   }
 }
 
-// Lines and moment arms grow with the arm; a body in which all segments are 10 % longer has moment
-// arms that are 10 % longer.
+// Muscle paths and moment arms must grow with the arm. If all segments of a body are 10 % longer,
+// its moment arms are 10 % longer.
 TEST(ArmModel, ScalesWithTheSegments) {
   BodySpec longer;
   const person::Anthropometry a = person::AnthropometryOf(longer);
@@ -81,7 +81,7 @@ TEST(ArmModel, ScalesWithTheSegments) {
   EXPECT_LT((after.length - 1.1 * before.length).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-// Power: what the muscles do to the joints is what their tendons do.
+// The power of the muscles at the joints must equal that of their tendons.
 TEST(ArmModel, TorquesAndTendonsDoTheSamePower) {
   constexpr double kTime = 1e-6;
   const ArmModel arm({}, 1);
@@ -115,7 +115,7 @@ TEST(ArmModel, TheLongestFibresOfTheWorkingRangeAreSet) {
   }
 }
 
-// A muscle acts at the joints that it is named after.
+// A muscle must act at the joints that it is named after.
 TEST(ArmModel, MusclesPullTheRightWay) {
   const ArmModel arm({}, 1);
   const MomentArms R = arm.LinesAt(WorkPosture()).moment_arm;
@@ -145,8 +145,8 @@ TEST(ArmModel, MusclesPullTheRightWay) {
   for (const char* key : {"ecu", "fcu"}) EXPECT_GT(of(key, kWristDeviation), 0.01);
 }
 
-// A little movement changes the moment arms a little: no line jumps to the other side of its
-// obstacle within the working range.
+// A small movement must change the moment arms only a little. No muscle path jumps to the other
+// side of its obstacle within the working range.
 TEST(ArmModel, LinesDoNotJumpInTheWorkingRange) {
   const ArmModel arm({}, 1);
   RandomStream random(9, "jumps");

@@ -1,4 +1,4 @@
-// Arms, postures and problems of the tests.
+// The arms, postures and problems of the tests.
 #pragma once
 
 #include <numbers>
@@ -19,7 +19,7 @@ inline int IndexOf(const std::string& key) {
   throw std::out_of_range(key);
 }
 
-// Within the middle `share` of the joints' ranges, up to 90° of shoulder flexion.
+// Draws a posture within the middle `share` of the joints' ranges, up to 90° of shoulder flexion.
 inline ArmVector RandomArm(const ArmModel& arm, RandomStream* random, double share = 0.8) {
   ArmVector q;
   for (int i = 0; i < person::kArmJoints; ++i) {
@@ -31,7 +31,7 @@ inline ArmVector RandomArm(const ArmModel& arm, RandomStream* random, double sha
   return q;
 }
 
-// Shoulder a little forward and outward, elbow at a right angle.
+// The shoulder is a little forward and outward, and the elbow at a right angle.
 inline ArmVector WorkPosture() {
   ArmVector q = ArmVector::Zero();
   q[0] = Radians(30);
@@ -40,7 +40,7 @@ inline ArmVector WorkPosture() {
   return q;
 }
 
-// The problem of an arm at rest in posture q that is to produce `torque` [N·m].
+// Returns the problem of an arm at rest in posture q that must produce `torque` [N·m].
 inline ActivationProblem ProblemAt(const ArmModel& arm, const ArmVector& q,
                                    const ArmVector& torque) {
   const MuscleLines lines = arm.LinesAt(q);

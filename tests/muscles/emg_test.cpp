@@ -27,7 +27,8 @@ TEST(Emg, TheEnvelopeOfASineIsItsRectifiedMean) {
   EXPECT_NEAR(Middle(envelope), 3 * 2 / kPi, 0.02 * 3);
 }
 
-// Gain of the band-pass, forward and backward: 1/2 at its edges, nothing of motion and offset.
+// Applied forward and backward, the band-pass has a gain of 1/2 at its edges and suppresses motion
+// and offset.
 TEST(Emg, TheBandPassRemovesOffsetAndMotion) {
   const auto gain = [](double frequency) {
     return Middle(EmgEnvelope(Sine(frequency, kPi / 2, 4000, 4), {.rate = 4000}));
@@ -49,7 +50,7 @@ TEST(Emg, TheShapeBendsTheEnvelope) {
   EXPECT_NEAR(ActivationOfEmg(0.5, -1e-6), 0.5, 1e-6);
 }
 
-// A burst of noise begins at 1 s: half of its activation is reached 40 ms later.
+// A burst of noise begins at 1 s. The activation must reach half of its value 40 ms later.
 TEST(Emg, ActivationFollowsABurstWithTheDelay) {
   constexpr double kRate = 2000;
   RandomStream random(1, "emg");

@@ -27,12 +27,12 @@ TEST(Muscle, ForceFallsWithShorteningAndRisesWithLengthening) {
   EXPECT_NEAR(ForceVelocity(0.1), 1.2 - 0.01 / 0.2, 1e-15);
   EXPECT_EQ(ForceVelocity(0.2), 1.2);
   EXPECT_EQ(ForceVelocity(5), 1.2);
-  // No kink at rest.
+  // The curve must have no kink at rest.
   EXPECT_NEAR((ForceVelocity(1e-6) - 1) / 1e-6, 2, 1e-5);
   EXPECT_NEAR((1 - ForceVelocity(-1e-6)) / 1e-6, 2, 1e-5);
 }
 
-// Fibres at 30° keep their thickness of half the optimal length.
+// Fibres at 30° must keep their thickness, which is half the optimal length.
 TEST(Muscle, PennateFibresKeepTheirThickness) {
   const MuscleParameters muscle = {
       .max_force = 100, .fibre_length = 0.1, .pennation = std::asin(0.5), .tendon_slack = 0.2};

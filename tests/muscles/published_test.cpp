@@ -1,5 +1,5 @@
-// The built-in arm beside published measurements. Bounds are wider than the published scatter where
-// the model misses it; docs/concepts/muscles.md lists the misses.
+// Compares the built-in arm with published measurements. Bounds are wider than the published
+// scatter where the model deviates from it. docs/concepts/muscles.md lists these deviations.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,9 @@ double ArmAt(const ArmModel& arm, const char* key, person::ArmJoint joint, doubl
   return 1e3 * arm.LinesAt(q).moment_arm(static_cast<int>(joint), IndexOf(key));
 }
 
-// Moment arms [mm] about the elbow, polynomials of the angle a [rad] (Lemay & Crago 1996 as
-// reproduced by the Institute of Biomechanics, Bulgarian Academy of Sciences; verified there).
+// The moment arms [mm] about the elbow are polynomials of the angle a [rad]. They are from Lemay &
+// Crago 1996 as reproduced by the Institute of Biomechanics, Bulgarian Academy of Sciences, where
+// they were verified.
 struct ElbowArm {
   const char* key;
   double c[6];       // [cm]
@@ -51,17 +52,17 @@ TEST(Published, MomentArmsOfTheElbow) {
     }
 }
 
-// Magnetic resonance images of 18 people (Sugisaki et al. 2010, verified): 23.9 ± 1.4 mm at 30° and
-// 17.4 ± 1.3 mm at 110°.
+// Magnetic resonance images of 18 people gave 23.9 ± 1.4 mm at 30° and 17.4 ± 1.3 mm at 110°
+// (Sugisaki et al. 2010, verified).
 TEST(Published, MomentArmsOfTheTriceps) {
   const ArmModel arm({}, 1);
   EXPECT_NEAR(-ArmAt(arm, "triceps_lateral", kElbowFlexion, 30), 23.9, 1.4);
   EXPECT_NEAR(-ArmAt(arm, "triceps_lateral", kElbowFlexion, 110), 17.4, 1.3);
 }
 
-// Peaks in eight specimens (Ackland & Pandy 2011, verified): inferior subscapularis 24.4 mm inward,
-// inferior infraspinatus 28.3 mm and teres minor 26.5 mm outward. The model has one line for each
-// muscle, and its arms are smaller.
+// In eight specimens, the peaks were 24.4 mm inward for the inferior subscapularis, and 28.3 mm and
+// 26.5 mm outward for the inferior infraspinatus and the teres minor (Ackland & Pandy 2011,
+// verified). The model has one path for each muscle, and its moment arms are smaller.
 TEST(Published, MomentArmsOfTheRotatorCuff) {
   const ArmModel arm({}, 1);
   for (const double degrees : {-45.0, 0.0, 45.0}) {
@@ -71,7 +72,7 @@ TEST(Published, MomentArmsOfTheRotatorCuff) {
   }
 }
 
-// Straight wrist [mm], constant terms of the same source as the elbow's.
+// For a straight wrist [mm], these are the constant terms of the same source as the elbow's.
 TEST(Published, MomentArmsOfTheWrist) {
   const ArmModel arm({}, 1);
   const struct {
@@ -83,8 +84,8 @@ TEST(Published, MomentArmsOfTheWrist) {
     EXPECT_NEAR(ArmAt(arm, one.key, kWristFlexion, 0), one.flexion, 2.5) << one.key;
 }
 
-// The largest torque [N·m] in one direction while the other joints have none and no reserve exceeds
-// 0.5 N·m.
+// Returns the largest torque [N·m] in one direction while the other joints have none and no reserve
+// exceeds 0.5 N·m.
 double Strongest(const ArmModel& arm, const ArmVector& q, person::ArmJoint joint, int sign) {
   double low = 0, high = 400;
   for (int n = 0; n < 40; ++n) {
@@ -103,9 +104,10 @@ struct Moment {
   double measured, low, high;  // [N·m]
 };
 
-// Mean strength of men in the work posture: elbow and shoulder by Chaffin & Andersson (recalled),
-// wrist by Delp et al. 1996 (verified: flexion 12.2 ± 3.7, extension 7.1 ± 2.1, radial 11.0 ± 2.0,
-// ulnar 9.5 ± 2.2). low and high are what the model is known to do.
+// The mean strength of men in the work posture is from Chaffin & Andersson for elbow and shoulder
+// (quoted from memory), and from Delp et al. 1996 for the wrist (verified: flexion 12.2 ± 3.7,
+// extension 7.1 ± 2.1, radial 11.0 ± 2.0, ulnar 9.5 ± 2.2). The model is known to lie between low
+// and high.
 TEST(Published, StrongestMoments) {
   const ArmModel arm({}, 1);
   constexpr Moment kMoments[] = {{"elbow flexion", kElbowFlexion, 1, 77.7, 70, 100},
@@ -124,7 +126,8 @@ TEST(Published, StrongestMoments) {
   }
 }
 
-// Women have a little more than half of men's strength (Chaffin & Andersson: 0.53, recalled).
+// Women have a little more than half of men's strength (Chaffin & Andersson: 0.53, quoted from
+// memory).
 TEST(Published, WomenAreWeaker) {
   BodySpec woman;
   woman.sex = Sex::kFemale;

@@ -10,14 +10,14 @@
 namespace predictor::muscles {
 namespace {
 
-// Torque of springs that have the forces F at posture q0 and the rates k.
+// Returns the torque of springs with the rates k that have the forces F at posture q0.
 ArmVector SpringTorque(const ArmModel& arm, const ArmVector& q, const MuscleVector& force,
                        const MuscleVector& k, const MuscleVector& length0) {
   const MuscleLines lines = arm.LinesAt(q);
   return lines.moment_arm * (force + k.cwiseProduct(lines.length - length0));
 }
 
-// K = -∂τ/∂q of muscles as springs, by differences of their torque.
+// K = -∂τ/∂q of muscles as springs is compared with differences of their torque.
 TEST(Stiffness, OfTheJointsIsTheSlopeOfTheTorque) {
   constexpr double kStep = 1e-5;
   const ArmModel arm({}, 0);
@@ -43,7 +43,7 @@ TEST(Stiffness, OfTheJointsIsTheSlopeOfTheTorque) {
       kinks += error > 1e-4 ? 1 : 0;
     }
   }
-  EXPECT_LE(kinks, 5);  // of 140: a line begins to touch its obstacle within the step
+  EXPECT_LE(kinks, 5);  // of 140, because a path begins to touch its obstacle within the step
 }
 
 person::BodyVector BodyAt(const ArmVector& q, int hand) {
@@ -75,7 +75,8 @@ TEST(Stiffness, TheForceOnTheHandTurnsWithTheJoints) {
   }
 }
 
-// Minimising the joints' energy with the hand held at a displacement gives the same stiffness.
+// If the hand is held at a displacement, minimising the joints' energy must give the same
+// stiffness.
 TEST(Stiffness, OfTheHandIsThatOfTheJointsUnderTheHeldHandle) {
   const ArmModel arm({}, 1);
   const ArmVector q = WorkPosture();
@@ -99,7 +100,7 @@ TEST(Stiffness, IsEmptyIfThePostureIsNotStable) {
   const ArmModel arm({}, 1);
   const ArmVector q = WorkPosture();
   EXPECT_FALSE(EndpointStiffness(-ArmMatrix::Identity(), PointAt(arm, q, Vector3::Zero())));
-  // A push along the arm that buckles it.
+  // A push along the arm buckles it.
   EXPECT_FALSE(
       EndpointStiffness(0.1 * ArmMatrix::Identity(), PointAt(arm, q, Vector3(-500, 0, 0))));
 }

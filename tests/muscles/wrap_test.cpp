@@ -13,7 +13,7 @@ double LengthOf(const Vector3& from, const Vector3& to, const Contact& contact) 
   return (contact.begin - from).norm() + contact.length + (to - contact.end).norm();
 }
 
-// Two tangents of length √(d² - r²) and the arc between them.
+// The line consists of two tangents of length √(d² - r²) and the arc between them.
 TEST(Wrap, AroundABallIsTwoTangentsAndAnArc) {
   const Vector3 center(0.1, -0.2, 0.3), from = center + Vector3(-0.05, 0, 0.01);
   const Vector3 to = center + Vector3(0.05, 0, 0.01);
@@ -29,10 +29,11 @@ TEST(Wrap, AroundABallIsTwoTangentsAndAnArc) {
 TEST(Wrap, AStraightLineThatMissesTheBallStays) {
   EXPECT_FALSE(AroundBall({-1, 0, 0.31}, {1, 0, 0.31}, Vector3::Zero(), 0.3));
   EXPECT_TRUE(AroundBall({-1, 0, 0.29}, {1, 0, 0.29}, Vector3::Zero(), 0.3));
-  EXPECT_FALSE(AroundBall({1, 0, 0.1}, {2, 0, 0.1}, Vector3::Zero(), 0.3));  // beside it
+  // the line passes the ball
+  EXPECT_FALSE(AroundBall({1, 0, 0.1}, {2, 0, 0.1}, Vector3::Zero(), 0.3));
 }
 
-// Unrolled, the way over the cylinder is straight: its parts climb in proportion.
+// On the unrolled cylinder, the line is straight, so its parts climb in proportion.
 TEST(Wrap, AroundACylinderIsTheStraightLineOfTheUnrolledSurface) {
   const double r = 0.02, rho = 0.05, height = 0.08;
   const Vector3 axis = Vector3::UnitZ();
@@ -50,14 +51,14 @@ TEST(Wrap, AroundACylinderIsTheStraightLineOfTheUnrolledSurface) {
 TEST(Wrap, ALineOnTheSideOfTheCylinderStays) {
   const Vector3 from(0.05, 0.03, 0), to(-0.05, 0.03, 0.1);
   EXPECT_FALSE(AroundCylinder(from, to, Vector3::Zero(), Vector3::UnitZ(), 0.02));
-  // On the other side, it must go around.
+  // On the other side, the line must go around the cylinder.
   const auto contact = AroundCylinder(from, to, Vector3::Zero(), -Vector3::UnitZ(), 0.02);
   ASSERT_TRUE(contact);
   EXPECT_LT(contact->begin.y(), 0.02);
   EXPECT_GT(LengthOf(from, to, *contact), (to - from).norm());
 }
 
-// The length does not jump where the line begins to touch.
+// The length must not jump where the line begins to touch.
 TEST(Wrap, BeginsAndEndsWithoutAJump) {
   for (const double offset : {0.0199999, 0.0200001}) {
     const Vector3 from(0.05, offset, 0), to(-0.05, offset, 0);

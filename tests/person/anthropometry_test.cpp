@@ -26,18 +26,20 @@ TEST(Anthropometry, StandsAsTallAsThePerson) {
     const Anthropometry a = AnthropometryOf(spec);
     EXPECT_NEAR(a.hip_height() + a.pelvis.length + a.torso.length + a.head.length, spec.height,
                 1e-12);
-    // Drillis & Contini give 0.530 and 0.818 of the height; the women of de Leva's table have
+    // Drillis & Contini give 0.530 and 0.818 of the height. The women in de Leva's table have
     // longer trunks.
     EXPECT_NEAR(a.hip_height() / spec.height, 0.53, spec.sex == Sex::kMale ? 0.005 : 0.035);
     EXPECT_NEAR((a.hip_height() + a.shoulder_height) / spec.height, 0.818, 0.035);
-    // And 0.186 and 0.146 for upper arm and forearm; de Leva's joint centres are farther apart.
+    // For upper arm and forearm, they give 0.186 and 0.146. De Leva's joint centres are farther
+    // apart.
     EXPECT_NEAR(a.upper_arm.length / spec.height, 0.186, 0.03);
     EXPECT_NEAR(a.forearm.length / spec.height, 0.146, 0.01);
   }
 }
 
-// De Leva gives the whole trunk as well: 0.4346 of the mass, its centre 0.5138 of 603.3 mm from C7,
-// radii of gyration 0.328, 0.306, 0.169 (women 0.4257, 0.4964, 614.8; 0.307, 0.292, 0.147).
+// De Leva also gives the whole trunk: 0.4346 of the mass, its centre 0.5138 of 603.3 mm from C7,
+// and radii of gyration of 0.328, 0.306 and 0.169 (for women 0.4257, 0.4964, 614.8; 0.307, 0.292,
+// 0.147).
 TEST(Anthropometry, PartsOfTheTrunkMakeTheWholeTrunk) {
   struct Whole {
     BodySpec spec;
@@ -118,7 +120,7 @@ TEST(Legs, StandStraightAndBendWithTheLawOfCosines) {
   BodyVector q = BodyVector::Zero();
   q[kPelvisZ] = -0.3;
   const BodyLegs bent = LegsOf(model, q, width);
-  // By bisection of the knee's angle instead.
+  // The test finds the knee's angle by bisection instead.
   double low = 0, high = 3;
   for (int i = 0; i < 60; ++i) {
     const double knee = (low + high) / 2;

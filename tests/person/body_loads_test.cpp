@@ -1,4 +1,4 @@
-// Loads against equilibria computed by hand.
+// Compares loads with equilibria computed by hand.
 #include "person/body_loads.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ class Loads : public testing::Test {
     return dynamics.Evaluate(motion, sample);
   }
 
-  // Hands at posture q that push the handles with `force` [N, in W].
+  // Returns hands at posture q that push the handles with `force` [N, in W].
   BodySample Pushing(const BodyVector& q, const Vector3& force) const {
     BodySample sample = SampleAt(model, stance, q);
     for (HandSample& hand : sample.hands) hand.F_D_W.head<3>() = force;
@@ -33,15 +33,15 @@ class Loads : public testing::Test {
   }
 };
 
-// Forearm level: the elbow carries forearm and hand on their levers; the shoulder, whose upper arm
-// hangs, the same.
+// The forearm is level, so the elbow carries the weights of forearm and hand with their levers. The
+// upper arm hangs, so the shoulder carries the same moment.
 TEST_F(Loads, OfAStaticArmAreWeightTimesLever) {
   BodyVector q = BodyVector::Zero();
   for (int hand = 0; hand < kHands; ++hand) q[Of(hand, ArmJoint::kElbowFlexion)] = kPi / 2;
   const double own =
       kG * (a.forearm.mass * a.forearm.com + a.hand.mass * (a.forearm.length + a.hand.com));
   const double grip = a.forearm.length + 0.9 * a.hand.length;
-  // Each hand carries 20 N: it pushes the handle up, and the handle pushes it down.
+  // Each hand carries 20 N. It pushes the handle up, and the handle pushes it down.
   const BodyLoads loads = Static(q, Pushing(q, {0, 0, 20}));
   for (int hand = 0; hand < kHands; ++hand) {
     const int elbow = Of(hand, ArmJoint::kElbowFlexion);
@@ -56,7 +56,7 @@ TEST_F(Loads, OfTheLowerBackFollowFromTheUpperBody) {
   const double upper =
       a.torso.mass + a.head.mass + 2 * (a.upper_arm.mass + a.forearm.mass + a.hand.mass);
   const BodyLoads standing = Static(BodyVector::Zero());
-  // All centres of mass are on the line from the hips to the head, the arms hang from it.
+  // All centres of mass are on the line from the hips to the head, from which the arms hang.
   const double moment = upper * kG * a.l5s1_behind;
   EXPECT_NEAR(standing.l5s1.flexion_moment, moment, 1e-9);
   EXPECT_NEAR(standing.l5s1.compression,
@@ -65,7 +65,7 @@ TEST_F(Loads, OfTheLowerBackFollowFromTheUpperBody) {
   EXPECT_NEAR(standing.l5s1.lateral_moment, 0, 1e-9);
   EXPECT_NEAR(standing.l5s1.twist_moment, 0, 1e-9);
 
-  // Carrying 100 N in each hand, with the arms level ahead.
+  // The person carries 100 N in each hand, with the arms level and forward.
   BodyVector q = BodyVector::Zero();
   for (int hand = 0; hand < kHands; ++hand) q[Of(hand, ArmJoint::kShoulderFlexion)] = kPi / 2;
   const double lever = a.l5s1_behind + a.upper_arm.length + a.forearm.length + 0.9 * a.hand.length;
@@ -87,25 +87,26 @@ TEST_F(Loads, GroundCarriesTheWholeBodyUnderItsCentre) {
   const BodyLoads standing = Static(BodyVector::Zero());
   EXPECT_NEAR(standing.balance.ground_force, a.mass * kG, 1e-9);
   EXPECT_NEAR(standing.balance.y, 0, 1e-12);
-  // Only the feet have their centres of mass ahead of the ankles.
+  // Only the feet have their centres of mass in front of the ankles.
   const double foot = a.foot.com - 0.25 * a.foot.length;
   EXPECT_NEAR(standing.balance.x, 2 * a.foot.mass * foot / a.mass, 1e-9);
   EXPECT_GT(standing.balance.margin, 0.03);
-  // 60 N forward with both hands at height h tips backward: the pressure moves by F h / W.
+  // If both hands at height h push forward with 60 N, the body tips backward, and the centre of
+  // pressure moves by F h / W.
   BodyVector q = BodyVector::Zero();
   for (int hand = 0; hand < kHands; ++hand) q[Of(hand, ArmJoint::kElbowFlexion)] = kPi / 2;
   const Vector3 ahead = stance.X_WS.q * Vector3::UnitX();
   const BodyLoads pushing = Static(q, Pushing(q, 30 * ahead)), still = Static(q);
   const double height = a.hip_height() + a.shoulder_height - a.upper_arm.length;
   EXPECT_NEAR(pushing.balance.x - still.balance.x, -60 * height / (a.mass * kG), 2e-3);
-  // 300 N cannot be pushed without leaning.
+  // No one can push with 300 N without leaning.
   EXPECT_LT(Static(q, Pushing(q, 150 * ahead)).balance.margin, 0);
 }
 
-// Pressures in a lumbar disc (Wilke et al. 1999, 72 kg, 1.74 m) with 20 kg: lifted with a round
-// back 2.3 MPa, with bent knees 1.7 MPa, held close to the body 1.1 MPa. The postures' angles are
-// ours. The ratios of these loads agree within 25 %. (Those to relaxed standing, 0.5 MPa, do not,
-// because co-contraction is neglected: docs/concepts/person.md.)
+// Wilke et al. 1999 measured the pressure in a lumbar disc of a person (72 kg, 1.74 m) with 20 kg:
+// 2.3 MPa lifted with a round back, 1.7 MPa with bent knees, 1.1 MPa held close to the body. The
+// angles of the postures are ours. The ratios of these loads agree within 25 %. Those to relaxed
+// standing (0.5 MPa) do not, because co-contraction is neglected (docs/concepts/person.md).
 TEST(LowerBack, LoadsHaveTheRatiosOfMeasuredPressures) {
   BodySpec spec;
   spec.height = 1.74;
@@ -124,7 +125,7 @@ TEST(LowerBack, LoadsHaveTheRatiosOfMeasuredPressures) {
     for (HandSample& hand : sample.hands) hand.F_D_W.z() = 10 * kG;
     return BodyDynamics(model, stance).Evaluate(motion, sample).l5s1.compression;
   };
-  // Trunk at 70° and 45° with hanging arms; upright with the forearms level.
+  // The trunk is at 70° and 45° with hanging arms, and upright with level forearms.
   const double round_back = compression(0.50, 0.72, 1.22, 0);
   const double bent_knees = compression(0.30, 0.50, 0.80, 0);
   const double close = compression(0, 0, 0, 1.57);
@@ -133,7 +134,8 @@ TEST(LowerBack, LoadsHaveTheRatiosOfMeasuredPressures) {
   EXPECT_NEAR(bent_knees / close, 1.7 / 1.1, 0.25 * 1.7 / 1.1);
 }
 
-// The work of the joints is the change of the body's energy: τ v = d(kinetic + potential)/dt.
+// The work of the joints must equal the change of the body's energy: τ v = d(kinetic +
+// potential)/dt.
 TEST_F(Loads, TorquesDoTheWorkOfTheMotion) {
   RandomStream random(3, "power");
   const auto energy = [&](const BodyVector& q, const BodyVector& v) {
@@ -160,7 +162,7 @@ TEST_F(Loads, TorquesDoTheWorkOfTheMotion) {
   }
 }
 
-// Gain of the filter at a frequency, from a sine in the middle of a long record.
+// Returns the gain of the filter at a frequency, from a sine in the middle of a long record.
 TEST(SmoothMotion, HasItsGainAndNoPhase) {
   constexpr double kDt = 0.005;
   const auto at = [&](double frequency, std::size_t i) {
@@ -170,7 +172,8 @@ TEST(SmoothMotion, HasItsGainAndNoPhase) {
     std::vector<BodyVector> q;
     for (std::size_t i = 0; i < 2000; ++i) q.push_back(BodyVector::Constant(at(frequency, i)));
     const std::vector<BodyMotion> motion = SmoothMotion(q, kDt, 6);
-    // Two passes of 1/(1 + (f/f_pass)⁴), with the bilinear transform's frequencies.
+    // The filter makes two passes of 1/(1 + (f/f_pass)⁴), with the frequencies of the bilinear
+    // transform.
     const double ratio = std::tan(kPi * frequency * kDt) / std::tan(kPi * 6 / 0.802 * kDt);
     const double gain = 1 / (1 + std::pow(ratio, 4));
     const double w = 2 * kPi * frequency;

@@ -1,4 +1,4 @@
-// Kinematics and inverse dynamics against MuJoCo, which reads the body from its own XML.
+// Compares kinematics and inverse dynamics with MuJoCo, which reads the body from its own XML.
 #include "person/body_model.h"
 
 #include <gtest/gtest.h>
@@ -82,7 +82,7 @@ TEST_P(AgainstMujoco, SamePlacesAndJacobians) {
   }
 }
 
-// With random wrenches on both hands, velocities and accelerations. Torques reach 1e4 N·m.
+// Velocities, accelerations and the wrenches on both hands are random. Torques reach 1e4 N·m.
 TEST_P(AgainstMujoco, SameTorques) {
   double largest = 0;
   for (int s = 0; s < kStates; ++s) {
@@ -109,7 +109,7 @@ TEST_P(AgainstMujoco, SameTorques) {
   EXPECT_GT(largest, 1000);
 }
 
-// The limits that MuJoCo reads are those that inverse kinematics keeps.
+// Inverse kinematics must keep the limits that MuJoCo reads.
 TEST_P(AgainstMujoco, SameLimits) {
   for (int i = 0; i < kBodyJoints; ++i) {
     EXPECT_EQ(mj->jnt_range[2 * i], model.joint(i).lower);

@@ -1,4 +1,4 @@
-// People, stances and postures of the tests.
+// The people, stances and postures of the tests.
 #pragma once
 
 #include <numbers>
@@ -19,17 +19,17 @@ inline BodySpec Woman() {
   return spec;
 }
 
-// Somewhere in W, facing somewhere.
+// Returns an arbitrary place and direction in W.
 inline Stance SomeStance() { return StanceAt({0.4, -1.2, -0.7}, {-1, 0.5, 0}, 0.3); }
 
-// Each hand around a bar along its handle's x, the wrist towards z.
+// Each hand grips a bar along its handle's x axis, with the wrist towards z.
 inline std::array<Grip, kHands> Grips(bool turns) {
   Grip grip;
   grip.turns = turns;
   return {grip, grip};
 }
 
-// Uniform within `share` of the joints' range about its middle.
+// Draws a posture uniformly from the middle `share` of the joints' ranges.
 inline BodyVector RandomPosture(const BodyModel& model, RandomStream* random, double share = 1) {
   const BodyVector lower = model.lower(), upper = model.upper();
   BodyVector q;
@@ -44,7 +44,7 @@ inline BodyVector RandomVector(RandomStream* random, double scale) {
   return v;
 }
 
-// The sample that hands at posture q give, with handles at the grip frames.
+// Returns the sample of hands at posture q, with handles at the grip frames.
 inline BodySample SampleAt(const BodyModel& model, const Stance& stance, const BodyVector& q) {
   const Placement at = Place(model, q);
   BodySample sample;

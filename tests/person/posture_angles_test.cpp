@@ -1,4 +1,4 @@
-// Angles of postures whose angles follow from their description.
+// Tests the angles of postures whose angles follow from their description.
 #include "person/posture_angles.h"
 
 #include <gtest/gtest.h>
@@ -48,16 +48,17 @@ TEST(PostureAngles, OfTheArmsHaveTheSignsOfTheWorksheets) {
     EXPECT_GT(out.hand_beside_shoulder, 0.3);
     EXPECT_NEAR(with(ArmJoint::kElbowFlexion, 1.2).elbow_flexion, 1.2, 1e-12);
     EXPECT_NEAR(with(ArmJoint::kPronation, 0.7).forearm_twist, 0.7, 1e-12);
-    // Rotating the upper arm inward brings the bent forearm across the body.
+    // An inward rotation of the upper arm moves the bent forearm across the body.
     EXPECT_LT(
         with(ArmJoint::kElbowFlexion, kPi / 2, ArmJoint::kShoulderRotation, 1).hand_beside_midline,
         0);
-    // The palm faces the body: flexion brings the knuckles towards it, ulnar deviation backward.
+    // The palm faces the body. Flexion moves the knuckles towards it, ulnar deviation moves them
+    // backward.
     EXPECT_LT(with(ArmJoint::kWristFlexion, 0.5).hand_beside_shoulder, -0.02);
   }
 }
 
-// Fingers, thumb and palm as the docstrings say, by their places in space.
+// Checks by their places in space that fingers, thumb and palm move as the docstrings say.
 TEST(PostureAngles, OfTheHandMoveItAsTheirNamesSay) {
   for (int hand = 0; hand < kHands; ++hand) {
     const double side = hand == 0 ? 1 : -1;
@@ -88,7 +89,7 @@ TEST(PostureAngles, OfTheTrunkCountFromTheVertical) {
   q[kTorsoFlexion] = 0.4;
   EXPECT_NEAR(Angles(q).trunk_flexion, 0.7, 1e-12);
   EXPECT_NEAR(Angles(q).trunk_side_bend, 0, 1e-12);
-  // The upper arms hang along the torso, so they are inclined like it.
+  // The upper arms hang along the torso, so they have its inclination.
   EXPECT_NEAR(Angles(q).arms[0].upper_arm_elevation, 0.7, 1e-12);
   EXPECT_NEAR(Angles(q).arms[0].upper_arm_flexion, 0, 1e-12);
   q.setZero();
@@ -100,10 +101,11 @@ TEST(PostureAngles, OfTheTrunkCountFromTheVertical) {
   q.setZero();
   q[kTorsoTwist] = 0.3;
   EXPECT_EQ(Angles(q).trunk_twist, 0.3);
-  EXPECT_LT((Place(kModel, q).p[Of(0, ArmJoint::kElbowFlexion)]).x(), 0);  // left shoulder back
+  // the left shoulder moves back
+  EXPECT_LT((Place(kModel, q).p[Of(0, ArmJoint::kElbowFlexion)]).x(), 0);
 }
 
-// A mirrored posture has mirrored angles.
+// A mirrored posture must have mirrored angles.
 TEST(PostureAngles, MirrorWithThePosture) {
   RandomStream random(1, "mirror");
   for (int i = 0; i < 100; ++i) {

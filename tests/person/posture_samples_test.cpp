@@ -1,4 +1,4 @@
-// How often the intervals contain the truth, for virtual people whose bodies are known.
+// Counts how often the intervals contain the true values of virtual people whose bodies are known.
 #include "person/posture_samples.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace predictor::person {
 namespace {
 
-// Truth and interval of one value of one person.
+// The true value and the interval of one quantity of one person.
 struct Judged {
   double truth, median, low, high;
 };
@@ -32,7 +32,7 @@ std::vector<double> Normals(RandomStream* random, int count) {
   return z;
 }
 
-// Drawn like the samples: the interval must contain 59/65 of them.
+// Draws a person as the samples are drawn. The interval must contain 59/65 of such persons.
 VirtualPerson Inside(const BodySpec& spec, RandomStream* random) {
   const PostureSpread spread;
   return {VariedBody(spec, Normals(random, kBodyVariations), spread.length, spread.segment_mass),
@@ -40,8 +40,9 @@ VirtualPerson Inside(const BodySpec& spec, RandomStream* random) {
           kBackMuscleArm + spread.back_muscle_arm * random->Normal()};
 }
 
-// Another law: no preference for an elbow's swivel; the joints prefer to be near other angles; this
-// person leans from the hips rather than the spine. Every length is 5 % too long or too short.
+// Draws a person with another posture law: no preference for an elbow's swivel, other preferred
+// angles of the joints, and a lean from the hips rather than the spine. Every length is 5 % too
+// long or too short.
 VirtualPerson Outside(const BodySpec& spec, RandomStream* random) {
   std::vector<double> signs;
   for (int i = 0; i < kBodyVariations; ++i) signs.push_back(random->Uniform() < 0.5 ? -1 : 1);
@@ -66,7 +67,8 @@ VirtualPerson Outside(const BodySpec& spec, RandomStream* random) {
   return person;
 }
 
-// Two handles before the person: upright bars (thumbs up) or level ones (palms down), and a load.
+// Places two handles with a load in front of the person, upright bars (thumbs up) or level ones
+// (palms down).
 BodySample SomeHandles(const Stance& stance, RandomStream* random) {
   const double height = 0.8 + 0.5 * random->Uniform(), ahead = 0.35 + 0.2 * random->Uniform(),
                apart = 0.3 + 0.2 * random->Uniform();
@@ -106,7 +108,7 @@ void Add(const std::string& group, T truth, Range<T> range, ForEach for_each, Ta
   });
 }
 
-// Measurements besides the hands.
+// Which parts are measured besides the hands.
 struct Measured {
   const char* name;
   bool head, elbows;
@@ -155,7 +157,7 @@ double MedianOf(std::vector<double> x) {
 }
 
 struct Coverage {
-  double share = 0;  // of the truths inside their interval
+  double share = 0;  // share of the true values in their interval
   double width = 0;  // median
   double size = 0;   // median |truth|
 };
@@ -189,7 +191,7 @@ Table Judge(bool inside, const Measured& measured, int people) {
   return table;
 }
 
-// Share of all loads, or all angles, inside their intervals.
+// Returns the share of all loads, or of all angles, that lie in their intervals.
 double Pooled(const Table& table, const std::string& group) {
   double inside = 0, count = 0;
   for (const auto& [name, values] : table) {
@@ -209,9 +211,10 @@ void Print(const Table& table) {
 }
 
 // An interval from 64 samples contains a further sample with a probability that depends on the
-// draw: Beta(59, 6), 91 % ± 3.6 %. All people are judged with the same draw. 200 people add ± 2 %.
-// A value's coverage below 91 % - 4 · √(3.6² + 2²) % = 74 % is a defect. Pooled over all values,
-// the target is 84 to 96 % for people inside the prior, and at least 84 % outside.
+// draw: Beta(59, 6), 91 % ± 3.6 %. All people are judged with the same draw. The number of 200
+// people adds ± 2 %. If a value's coverage is below 91 % - 4 · √(3.6² + 2²) % = 74 %, that is a
+// defect. Pooled over all values, the target is 84 to 96 % for people inside the prior, and at
+// least 84 % outside.
 TEST(PostureSampler, CoversVirtualPeopleSoak) {
   const int people = static_cast<int>(Count(15, 200));
   for (const Measured& measured : kMeasured) {
@@ -233,7 +236,8 @@ TEST(PostureSampler, CoversVirtualPeopleSoak) {
   }
 }
 
-// With 64 samples the third value from either end is the interval's; the median is in the middle.
+// With 64 samples, the interval extends between the third values from both ends, and the median is
+// in the middle.
 TEST(Interval, IsTheThirdFromEitherEndOf64) {
   std::vector<double> values;
   for (int i = 0; i < 64; ++i) values.push_back((i * 37) % 64);
@@ -267,7 +271,7 @@ TEST(PostureSampler, DrawsTheSamePersonsEachTime) {
   EXPECT_LT(first.loads.median.torque[elbow], first.loads.high.torque[elbow]);
 }
 
-// A person without any spread is the nominal one, and a length that is measured does not vary.
+// A person without any spread must be the nominal one, and a measured length must not vary.
 TEST(PostureSampler, VariesOnlyWhatIsNotMeasured) {
   const std::vector<double> z(kPriorVariations, 1.0);
   const PosturePrior same = VariedPrior(DefaultPrior(), z, PostureSpread{0, 0, 0, 0, 0, 0, 0});

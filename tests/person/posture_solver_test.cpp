@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kPostures = 200;
 
-// Handles where some posture has its hands. `share` of the joints' ranges.
+// The handles are at places that some posture reaches, within a share of the joints' ranges.
 TEST(PostureSolver, ReproducesThePositionsOfTheHands) {
   RandomStream random(1, "round trip");
   const BodyModel model{Man()};
@@ -24,7 +24,7 @@ TEST(PostureSolver, ReproducesThePositionsOfTheHands) {
       const Posture posture = solver.Solve(sample);
       EXPECT_TRUE((posture.q.array() >= model.lower().array()).all());
       EXPECT_TRUE((posture.q.array() <= model.upper().array()).all());
-      // The errors by the forward kinematics, not by the solver's word.
+      // The errors are computed by the forward kinematics, independently of the solver.
       const BodySample again = SampleAt(model, SomeStance(), posture.q);
       double error = 0;
       for (std::size_t k = 0; k < kHands; ++k)
@@ -42,12 +42,13 @@ TEST(PostureSolver, ReproducesThePositionsOfTheHands) {
     }
     std::printf("turns %d: reached %d of %d, worst %.2g m\n", turns, reached, kPostures, worst);
     EXPECT_LT(worst, 1e-6);
-    // A hand that turns may prefer a posture in which the bar lies too obliquely.
+    // A hand that may turn may prefer a posture in which the bar lies too obliquely.
     EXPECT_GE(reached, kPostures * (turns ? 95 : 98) / 100);
   }
 }
 
-// Handles of a person who stands before them and reaches them; `phase` moves them along a circle.
+// Returns the handles of a person who stands in front of them and reaches them. `phase` moves them
+// along a circle.
 BodySample BeforeThePerson(const Stance& stance, double phase) {
   BodySample sample;
   for (int hand = 0; hand < kHands; ++hand) {
@@ -74,7 +75,7 @@ TEST(PostureSolver, SaysWhatIsMissingToAHandleOutOfReach) {
   for (std::size_t k = 0; k < kHands; ++k)
     EXPECT_NEAR((hands.hands[k].X_WD.p - sample.hands[k].X_WD.p).norm(), posture.position_error[k],
                 1e-12);
-  // No posture nearby has its hands nearer.
+  // No nearby posture may bring its hands nearer to the handles.
   RandomStream random(2, "nearby");
   const auto distance = [&](const BodyVector& q) {
     const BodySample at = SampleAt(model, SomeStance(), q);
@@ -101,9 +102,9 @@ TEST(PostureSolver, DependsOnSampleAndStartAlone) {
   }
 }
 
-// Along a path, starting at the previous posture or at the comfort gives the same posture, and the
-// posture moves as smoothly as the handles: second differences of a circle, times 10 rad/m, and
-// twice that where a joint comes to a limit.
+// Along a path, the solver must find the same posture whether it starts at the previous posture or
+// at the comfortable one. The posture must move as smoothly as the handles. The bounds are the
+// second differences of a circle times 10 rad/m, and twice that where a joint reaches a limit.
 TEST(PostureSolver, FollowsASmoothPathSmoothly) {
   const BodyModel model{Man()};
   const PostureSolver solver(model, SomeStance(), Grips(true));
@@ -120,10 +121,10 @@ TEST(PostureSolver, FollowsASmoothPathSmoothly) {
     last = q;
     q = next;
   }
-  EXPECT_LT((q - first).cwiseAbs().maxCoeff(), 0.05);  // back where it began
+  EXPECT_LT((q - first).cwiseAbs().maxCoeff(), 0.05);  // back at the first posture
 }
 
-// Measured elbows and head bring the model's there, which otherwise are where the prior has them.
+// Measured elbows and a measured head must pull those of the model away from the prior.
 TEST(PostureSolver, FollowsMeasuredElbowsAndHead) {
   RandomStream random(5, "elbows");
   const BodyModel model{Man()};

@@ -16,13 +16,13 @@ TEST(Skeleton, OfAnUprightPersonIsAsTallAsThePerson) {
   EXPECT_NEAR(s.sides[0].ankle.y(), 0.125, 1e-12);
   EXPECT_NEAR(s.sides[1].ankle.y(), -0.125, 1e-12);
   EXPECT_NEAR(s.sides[0].toes.x() - s.sides[0].heel.x(), a.foot.length, 1e-12);
-  // Hanging arms: straight down from the shoulders.
+  // The arms hang straight down from the shoulders.
   EXPECT_NEAR(s.sides[0].shoulder.z() - s.sides[0].knuckles.z(),
               a.upper_arm.length + a.forearm.length + a.hand.length, 1e-9);
 }
 
-// The limbs are rigid, whatever the posture; legs that can reach the ground are as long as they
-// are.
+// The limbs are rigid in every posture. If the legs can reach the ground, they have their true
+// length.
 TEST(Skeleton, LimbsKeepTheirLengths) {
   const BodyModel model(Man());
   const Anthropometry& a = model.anthropometry();

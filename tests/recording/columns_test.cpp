@@ -54,7 +54,7 @@ TEST(Columns, AreReadBackAsTheSameNumber) {
   EXPECT_EQ(std::strtod(text.c_str(), nullptr), 0.1 + 0.2);
 }
 
-// Every byte of a record, except the reserved ones, lies in exactly one column.
+// Every byte of a record, except for the reserved ones, must lie in exactly one column.
 TEST(Columns, CoverTheRecord) {
   std::set<std::string> names;
   std::vector<int> covered(sizeof(TickRecord));

@@ -1,4 +1,4 @@
-// A small recording to be damaged, and comparisons of what is read with what was written.
+// A small recording to be damaged. The fixture compares what is read with what was written.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 
 namespace predictor::recording_test {
 
-// The complete content of a recording.
+// The complete contents of a recording.
 struct Content {
   std::vector<TickRecord> ticks;
   std::vector<RecordingEvent> events;
@@ -46,7 +46,7 @@ inline bool SameEvent(const RecordingEvent& a, const RecordingEvent& b) {
          a.lost == b.lost;
 }
 
-// Reads the ticks up to the first error, and everything else if there was no error. Returns nullopt
+// Reads the ticks up to the first error, and everything else if there is no error. Returns nullopt
 // if the file cannot be opened.
 inline std::optional<Content> ReadAll(const std::string& path, bool* failed) {
   Content content;
@@ -76,7 +76,7 @@ inline std::optional<Content> ReadAll(const std::string& path, bool* failed) {
   return content;
 }
 
-// Enough ticks for three chunks, with a snapshot and an event in them.
+// This number of ticks fills three chunks with a snapshot and an event in them.
 inline constexpr std::uint64_t kDamagedTicks = 15;
 inline TickRecord Tick(std::uint64_t tick) { return SampleTick(tick); }
 
@@ -109,7 +109,8 @@ class Damage : public ::testing::Test {
     index_ = summary;
   }
 
-  // The ticks must be the first ticks of the original, and all other content must come from it too.
+  // The ticks must be the first ticks of the original, and all other content must come from it as
+  // well.
   void ExpectPrefix(const Content& content, const std::string& what) const {
     EXPECT_TRUE(SameHeader(content.header, original_.header)) << what;
     ASSERT_LE(content.ticks.size(), original_.ticks.size()) << what;
@@ -117,7 +118,7 @@ class Damage : public ::testing::Test {
       ASSERT_TRUE(Same(content.ticks[k], original_.ticks[k])) << what << ", tick " << k;
     ExpectOthers(content, what);
   }
-  // The same, but ticks may be missing if events report them.
+  // As above, but ticks may be missing if events report them.
   void ExpectPart(const Content& content, const std::string& what) const {
     EXPECT_TRUE(SameHeader(content.header, original_.header)) << what;
     std::uint64_t last = 0, reported = 0, missing = 0;
@@ -141,8 +142,8 @@ class Damage : public ::testing::Test {
     EXPECT_EQ(content.snapshots[0].bytes, original_.snapshots[0].bytes) << what;
   }
 
-  // The file recovered from `path_` must have the same ticks and header, and still report the lost
-  // data.
+  // The file recovered from `path_` must have the same ticks and header, and must still report the
+  // lost data.
   void ExpectRecoveredAlike(const Content& content, const std::string& what) {
     const std::string out = folder_.File("out.mcap");
     std::filesystem::remove(out);
@@ -158,7 +159,7 @@ class Damage : public ::testing::Test {
     EXPECT_EQ(again->problem.empty(), content.header.lost.empty()) << what;
   }
 
-  // Returns true if the byte at `at` belongs to a chunk's messages or their header.
+  // Returns whether the byte at `at` belongs to a chunk's messages or their header.
   bool InChunk(std::size_t at) const {
     for (std::size_t k = bytes_.find("zstd"); k < index_; k = bytes_.find("zstd", k + 1)) {
       std::uint64_t size = 0;
@@ -194,7 +195,7 @@ class Damage : public ::testing::Test {
     return content->ticks.size();
   }
 
-  // Skips the synchronisation to disk, because the tests write thousands of temporary files.
+  // Does not synchronise to disk, because the tests write thousands of temporary files.
   class Fleeting : public FileCalls {
     int DataSync(int) override { return 0; }
     int SyncFolder(const std::string&) override { return 0; }

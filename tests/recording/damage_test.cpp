@@ -1,5 +1,5 @@
-// Truncated or damaged recordings. The reader reports an error or returns the original data, but
-// never anything else.
+// Tests truncated or damaged recordings. The reader must report an error or return the original
+// data, but never anything else.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,8 +32,8 @@ TEST_F(Damage, OfNothingIsNothingToMend) {
   EXPECT_EQ(ReadFile(path_), bytes_);
 }
 
-// A file that is cut anywhere is readable to its last complete chunk, and recovery yields at least
-// these chunks.
+// A file that is cut anywhere must be readable to its last complete chunk, and recovery must yield
+// at least these chunks.
 TEST_F(Damage, CutAtEachByteSoak) {
   const auto step = static_cast<std::size_t>(Count(13, 1));
   std::size_t most = 0, opened = 0;
@@ -63,7 +63,7 @@ TEST_F(Damage, EachByteFlippedSoak) {
   std::size_t errors = 0, whole = 0;
   std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
   for (std::size_t at = 0; at < bytes_.size(); at += step) {
-    // Flips one bit at a time, each in turn; every ninth byte has all its bits flipped.
+    // Flips one bit at a time, each in turn. Every ninth byte has all its bits flipped.
     const unsigned mask = at % 9 == 8 ? 0xFFU : 1U << (at % 9);
     const auto put = [&](char byte) {
       file.seekp(static_cast<std::streamoff>(at));
@@ -100,13 +100,13 @@ TEST_F(Damage, EachByteFlippedSoak) {
 }
 
 // All content before the first tick is stored twice, piece by piece. A piece is lost only if both
-// copies are damaged, and the reader reports this.
+// copies are damaged, and the reader must report this.
 TEST_F(Damage, InBothPlaces) {
   const std::size_t copy = bytes_.find("predictor.copy") - 4;
   const std::size_t run = bytes_.find("predictor.run") - mcap::kHead - 4;
   const std::size_t run_again = bytes_.find("predictor.run", copy) - mcap::kHead - 4;
   const std::map<std::string, std::string> places = {
-      // piece -> text in it
+      // Each piece is listed with a text that it contains.
       {"predictor.labels", "P07"},    {"predictor.models", "abc123"},
       {"scenario.yaml", "name: Box"}, {"machine.yaml", "device: here"},
       {"robot.urdf", "<robot/>"},     {"topics", "predictor_msgs/msg/Qp"}};
@@ -128,13 +128,13 @@ TEST_F(Damage, InBothPlaces) {
       ExpectRecoveredAlike(*content, what);
     }
   }
-  // If both copies of the run's description are damaged, the reader reports an error.
+  // If both copies of the run's description are damaged, the reader must report an error.
   for (const std::size_t at : {run, run_again}) bytes_[at + 40] ^= 1;
   WriteFile(path_, bytes_);
   EXPECT_THROW(RecordingReader{path_}, InputError);
 }
 
-// Zeros replace a growing region from the start, as a bad sector would leave them, up to the copy.
+// Zeros replace a growing region from the start up to the copy, as after a bad sector.
 TEST_F(Damage, OfARegionAtTheStart) {
   const std::size_t copy = bytes_.find("predictor.copy") - 4 - 16 - mcap::kHead;
   for (std::size_t size = 1; size < copy; size += 1 + size / 8) {
@@ -149,8 +149,8 @@ TEST_F(Damage, OfARegionAtTheStart) {
   }
 }
 
-// A piece that is too large to be stored twice exists once only. If it is damaged, the reader
-// reports this.
+// A piece that is too large to be stored twice exists only once. If it is damaged, the reader must
+// report this.
 TEST_F(Damage, OfALargeFile) {
   RecordingHeader header = SampleHeader();
   header.attachments.push_back({"big.stl", "model/stl", std::string(1U << 20U, 'm')});
@@ -168,7 +168,7 @@ TEST_F(Damage, OfALargeFile) {
   const RecordingReader reader(path_);
   EXPECT_EQ(reader.header().lost, std::vector<std::string>{"big.stl"});
   EXPECT_EQ(reader.header().attachments.size(), 1U);
-  damaged[bytes_.find("P07")] ^= 1;  // the other pieces are still restored from their copies
+  damaged[bytes_.find("P07")] ^= 1;  // the reader restores the other pieces from their copies
   damaged[bytes_.find("mmmm") + 1000] ^= 1;
   WriteFile(path_, damaged);
   EXPECT_TRUE(SameHeader(RecordingReader(path_).header(), header));

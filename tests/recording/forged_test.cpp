@@ -1,5 +1,5 @@
-// Forged recordings. The reader never uses more memory than a recording needs, and reads no byte
-// too often.
+// Tests forged recordings. The reader must never use more memory than a recording needs, and must
+// not read a byte too often.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -45,7 +45,7 @@ void ExpectBounded(const std::string& path) {
 TEST_F(Damage, SizesThatCannotBe) {
   for (const std::uint64_t size :
        {~std::uint64_t{0}, std::uint64_t{1} << 63U, std::uint64_t{1} << 40U, bytes_.size() + 0UL}) {
-    // Every position that may contain a length.
+    // The test goes through every position that may contain a length.
     for (std::size_t at = 8; at + 8 < bytes_.size(); at += 1 + at / 16) {
       std::string hostile = bytes_;
       std::memcpy(hostile.data() + at, &size, 8);
@@ -57,7 +57,7 @@ TEST_F(Damage, SizesThatCannotBe) {
   }
 }
 
-// A CRC does not protect against forgery: an attacker computes the correct CRC.
+// A CRC does not protect against forgery, because an attacker can compute it.
 TEST_F(Damage, SidesThatCannotBeAreRefused) {
   for (const int side : {-128, -2, 2, 127}) {
     for (const int field : {0, 1, 2, 3}) {
@@ -91,7 +91,8 @@ TEST_F(Damage, TicksOfNoLengthAreRefused) {
   }
 }
 
-// Small items take many times more memory than space in the file, so their number is limited.
+// Small items take many times more memory than space in the file, so the reader limits their
+// number.
 TEST_F(Damage, SmallThingsWithoutEndAreRefused) {
   RecordingHeader header = SampleHeader();
   for (int k = 0; k < 20'000; ++k) header.labels[std::to_string(k)] = "";
@@ -112,7 +113,7 @@ TEST_F(Damage, SmallThingsWithoutEndAreRefused) {
   }
 }
 
-// The number of bytes that this process has read so far.
+// Returns the number of bytes that this process has read so far.
 std::uint64_t BytesRead() {
   std::ifstream io("/proc/self/io");
   std::string name;
@@ -121,8 +122,8 @@ std::uint64_t BytesRead() {
   return bytes;
 }
 
-// Each header seems to contain all following data. The number of reads of each byte must
-// nevertheless be bounded.
+// Each header seems to contain all following data. The number of reads of each byte must be bounded
+// nevertheless.
 TEST_F(Damage, AFileFullOfHeadsIsNotReadAgainForEach) {
   const std::size_t first = bytes_.find("zstd") - 4 - mcap::kHead - 28;
   std::string hostile = bytes_.substr(0, first);
@@ -144,14 +145,14 @@ TEST_F(Damage, AFileFullOfHeadsIsNotReadAgainForEach) {
   EXPECT_GT(report.gave_up_at, first);
   EXPECT_NE(report.Text().find("only looks like chunks"), std::string::npos);
 
-  // After fewer such headers, intact chunks are still found.
+  // After fewer such headers, the reader must still find intact chunks.
   WriteFile(path_,
             bytes_.substr(0, first) + hostile.substr(first, 20 * head) + bytes_.substr(first));
   const auto recovered = RecoverAndCheck("behind heads");
   EXPECT_EQ(recovered.value_or(0), kDamagedTicks);
 }
 
-// Chunks that expand a thousandfold, with an unlimited number of events or a size beyond any limit.
+// The chunks expand a thousandfold and contain a huge number of events or exceed every size limit.
 TEST_F(Damage, BombsDoNotFillTheMemory) {
   std::filesystem::remove(path_);
   {
@@ -170,15 +171,15 @@ TEST_F(Damage, BombsDoNotFillTheMemory) {
   EXPECT_EQ(reader.events().size(), 200'000u);  // and no more
   EXPECT_GT(reader.more_events(), 1'000'000u);
 
-  std::string huge = bytes_;  // the first chunk's size, uncompressed
+  std::string huge = bytes_;  // changes the uncompressed size of the first chunk
   const std::uint64_t size = std::uint64_t{1} << 36U;
   std::memcpy(huge.data() + huge.find("zstd") - 4 - 4 - 8, &size, 8);
   WriteFile(path_, huge);
   ExpectBounded(path_);
 }
 
-// A fuzzing seed must be readable up to its ticks. A seed with an outdated tick layout is refused
-// before any tick is decoded, so the decoder would not be tested.
+// A fuzzing seed must be readable up to its ticks. If its tick layout were outdated, the reader
+// would refuse it before it decodes a tick, and the decoder would not be tested.
 TEST(FuzzSeeds, HaveTicks) {
   std::uint64_t read = 0, mended = 0;
   const Folder folder;

@@ -1,4 +1,4 @@
-// Deleting everything of one person.
+// Tests the deletion of all data about one person.
 #include "recording/forget.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class Forget : public testing::Test {
     fs::create_directories(Path(name).parent_path());
     WriteFile(Path(name), text);
   }
-  // With a marker in a compressed chunk.
+  // Records a run with a marker in a compressed chunk.
   void Record(const std::string& name, const std::string& scenario, std::int64_t start,
               const std::string& marker = "") const {
     fs::create_directories(Path(name).parent_path());
@@ -50,7 +50,7 @@ class Forget : public testing::Test {
       names.push_back(f.path.lexically_relative(folder_.path()).string());
     return names;
   }
-  // Every name and every byte below the folder, by another way than the program's.
+  // Searches every name and every byte below the folder in another way than the program does.
   bool Remains() const {
     for (const auto& entry : fs::recursive_directory_iterator(folder_.path())) {
       if (entry.path().string().find(kPerson) != std::string::npos) return true;
@@ -65,7 +65,7 @@ class Forget : public testing::Test {
 
 TEST_F(Forget, LeavesNoByteAndNothingOfOthersIsTouched) {
   Record("a/run.mcap", Own(), 1'700'000'000'000'000'000);
-  WriteShared(Path("a/run.mcap"), Path("for_others.mcap"));  // without the pseudonym
+  WriteShared(Path("a/run.mcap"), Path("for_others.mcap"));  // without the person's pseudonym
   Record("a/other.mcap", "predictor: 1\n", 1'700'000'000'000'000'001);
   Record("marked.mcap", "predictor: 1\n", 1'700'000'000'000'000'002,
          std::string(kPerson) + " felt dizzy");
@@ -78,7 +78,7 @@ TEST_F(Forget, LeavesNoByteAndNothingOfOthersIsTouched) {
   Write(std::string("b/run.") + kPerson + ".real.survey.json", "{}");
   Write(std::string(kPerson) + "/notes.txt", "anything");
   Write("b/table.csv", std::string("pseudonym\n") + kPerson + "\nA2C4E6GZ\n");
-  // On the border of two blocks of the search.
+  // The pseudonym lies on the border of two blocks of the search.
   Write("b/big.bin", std::string((1U << 20U) - 3, 'x') + kPerson + "tail");
   fs::create_symlink(std::string("../") + kPerson, Path("b/link"));
 
@@ -98,7 +98,7 @@ TEST_F(Forget, LeavesNoByteAndNothingOfOthersIsTouched) {
     EXPECT_TRUE(fs::exists(Path(kept))) << kept;
 }
 
-// A silent gap would be a claim that nothing is left.
+// If the command silently skipped a file, it would claim that nothing is left.
 TEST_F(Forget, SaysWhatItCannotSearch) {
   Record("cut.mcap", "predictor: 1\n", 1'700'000'000'000'000'000, "marker");
   const std::string bytes = ReadFile(Path("cut.mcap"));
@@ -118,7 +118,7 @@ TEST_F(Forget, SaysThatAHardLinkKeepsTheContent) {
   Write("here/a.csv", kPerson);
   fs::create_hard_link(Path("here/a.csv"), Path("elsewhere.csv"));
   EXPECT_EQ(FindPerson(Path("here"), kPerson).linked.size(), 1u);
-  EXPECT_TRUE(FindPerson(folder_.path(), kPerson).linked.empty());  // both are found
+  EXPECT_TRUE(FindPerson(folder_.path(), kPerson).linked.empty());  // the search finds both links
 }
 
 TEST_F(Forget, SaysWhatCouldNotBeDeleted) {
@@ -140,7 +140,7 @@ TEST_F(Forget, RefusesATypingErrorAndAMissingFolder) {
   EXPECT_THROW(FindPerson(folder_.path(), "K7QM2XPY"), InputError);
   EXPECT_THROW(FindPerson(folder_.path(), ""), InputError);
   EXPECT_THROW(FindPerson(Path("missing"), kPerson), InputError);
-  // The folder itself is named after the person.
+  // The folder itself has the name of the person.
   Write(std::string(kPerson) + "/a.txt", "");
   EXPECT_THROW(FindPerson(Path(kPerson), kPerson), InputError);
 }

@@ -1,4 +1,5 @@
-// A recording in virtual time on a disk that becomes full: the message, and the readable content.
+// Tests a recording in virtual time on a disk that becomes full: the message and the readable
+// content.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mount.h>
@@ -16,8 +17,8 @@ namespace {
 
 using namespace recording_test;
 
-// Writes until an error occurs. Returns its message and stores the number of ticks; "" if none
-// occurs.
+// Writes until an error occurs and stores the number of ticks. Returns the error message, or "" if
+// no error occurs.
 std::string WriteUntilFull(const std::string& path, std::uint64_t* ticks) {
   RecordingWriter writer(path, SampleHeader());
   try {
@@ -25,7 +26,7 @@ std::string WriteUntilFull(const std::string& path, std::uint64_t* ticks) {
     writer.Close();
   } catch (const RecordingError& error) {
     *ticks = writer.ticks();
-    writer.Add(SampleTick(70'000));  // is ignored
+    writer.Add(SampleTick(70'000));  // the writer ignores this tick
     writer.Close();
     return error.what();
   }

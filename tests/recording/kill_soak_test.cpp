@@ -1,4 +1,4 @@
-// After kill −9 at a random moment, at most the last second is lost.
+// After kill −9 at a random moment, at most the last second may be lost.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -24,7 +24,7 @@ using namespace recording_test;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-// Progress that the child publishes; the parent can read it even after the child's death.
+// The progress that the child publishes. The parent can read it even after the child's death.
 struct Progress {
   std::atomic<std::uint64_t> tick{0};
 };
@@ -60,7 +60,7 @@ TEST(RecordingSoak, KilledAtRandomMoments) {
     if (child == 0) RecordForever(path, progress);
     const std::uint64_t until = 1 + random() % 3000;
     while (progress->tick < until) std::this_thread::sleep_for(milliseconds(1));
-    // The kill may come at any stage of a chunk's writing.
+    // The kill may hit any stage of the writing of a chunk.
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 1000));
     kill(child, SIGKILL);
     int status = 0;
@@ -80,7 +80,7 @@ TEST(RecordingSoak, KilledAtRandomMoments) {
     }
     ASSERT_GE(published, report.ticks);
     max_lost = std::max(max_lost, published - report.ticks);
-    // In milliseconds of the child's own clock, which stops whenever the machine stalls.
+    // The unit is a millisecond of the child's own clock, which stops when the machine stalls.
     EXPECT_LE(published - report.ticks, 1000u) << "kill " << k << " at tick " << published;
   }
   RecordProperty("max_lost_ms", static_cast<int>(max_lost));

@@ -1,4 +1,4 @@
-// The person's states in a recording: a topic beside the ticks, of which no tick depends.
+// Tests the person's states in a recording. They have their own topic, and no tick depends on them.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -31,7 +31,7 @@ PersonState StateAt(std::uint64_t tick) {
   return state;
 }
 
-// Records ticks 1 ... 1000 with a state for each tenth one.
+// Records the ticks 1 ... 1000, with a state at every tenth one.
 void Record(const std::string& file, bool with_person) {
   const auto boards = std::make_unique<Boards>();
   RecorderOptions options;
@@ -99,7 +99,7 @@ TEST(PersonStream, IsRecordedBesideTheTicks) {
     const std::uint64_t tick = 10 * (i + 1);
     EXPECT_EQ(messages[i].sequence, tick);
     EXPECT_EQ(messages[i].text, PersonJson(StateAt(tick)));
-    EXPECT_EQ(messages[i].time, start + (tick - 1) * 1'000'000);  // that of its tick
+    EXPECT_EQ(messages[i].time, start + (tick - 1) * 1'000'000);  // the time of its tick
   }
 }
 
@@ -109,7 +109,7 @@ TEST(PersonStream, IsKeptByRepair) {
                     mended = folder.File("mended.mcap");
   Record(file, true);
   const std::string bytes = ReadFile(file);
-  WriteFile(cut, bytes.substr(0, bytes.size() - 200));  // without its end
+  WriteFile(cut, bytes.substr(0, bytes.size() - 200));  // without the end of the file
   Recover(cut, mended);
   RecordingReader(mended).Check();
   EXPECT_EQ(TicksOf(mended), 1000u);
@@ -118,7 +118,7 @@ TEST(PersonStream, IsKeptByRepair) {
   for (std::size_t i = 0; i < after.size(); ++i) EXPECT_EQ(after[i].text, before[i].text);
 }
 
-// The states follow from the body, so a shared copy has none.
+// The states follow from the person's body, so a shared copy must not contain them.
 TEST(PersonStream, IsNotShared) {
   const Folder folder;
   const std::string file = folder.File("run.mcap"), shared = folder.File("shared.mcap");

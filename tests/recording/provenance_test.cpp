@@ -1,4 +1,4 @@
-// Restores the files that a run was made from in another folder.
+// Restores the files from which a run was made in another folder.
 #include "recording/provenance.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,8 @@ TEST_F(Provenance, AScenarioIsRestoredWithItsModels) {
   EXPECT_EQ(object, fs::canonical(folder_) / "restored/assets/box_9kg.urdf");
 }
 
-// Robots of the user: one below the scenario's folder, with a mesh beside it, and one in a package.
+// The user has two robots: one below the scenario's folder with a mesh next to it, and one in a
+// package.
 TEST_F(Provenance, OwnRobotsComeWithTheirMeshes) {
   const char* kUrdf =
       "<robot name='r'><link name='a'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' "
@@ -71,7 +72,8 @@ TEST_F(Provenance, OwnRobotsComeWithTheirMeshes) {
   Scenario scenario = Load("single_arm");
   scenario.file = here / "single_arm.yaml";
   scenario.object.primitive.reset();
-  scenario.object.model = (here / "object/box.urdf").string();  // absolute: restored elsewhere
+  // an absolute path is restored elsewhere
+  scenario.object.model = (here / "object/box.urdf").string();
   scenario.cobot.model = "package://mine/arm.urdf";
   scenario.cobot.remove_links.clear();
   RecordingHeader header = DescribeRun(scenario, "1", {});

@@ -1,4 +1,5 @@
-// The real-time recorder: it reports lost ticks, tolerates a slow disk, and reports a full one.
+// Tests the real-time recorder, which reports lost ticks, tolerates a slow disk, and reports a full
+// one.
 #include "recording/recorder.h"
 
 #include <fcntl.h>
@@ -35,12 +36,12 @@ TickRecord LiveTick(std::uint64_t tick) {
   return record;
 }
 
-// Waits without a time limit of its own; ctest's limit ends a test that hangs.
+// Waits without a time limit, because ctest's limit ends a test that hangs.
 void Await(const std::function<bool()>& done) {
   while (!done()) std::this_thread::sleep_for(milliseconds(2));
 }
 
-// A disk that can be slow, full or broken, and that logs its calls.
+// A disk that can be slow, full or broken and that logs its calls.
 class Disk : public FileCalls {
  public:
   struct Call {
@@ -82,7 +83,8 @@ class Disk : public FileCalls {
   int Reserve(int, std::uint64_t from, std::uint64_t n) override {
     errno = ENOSPC;
     reserves_refused = from + n <= capacity ? 0 : reserves_refused + 1;
-    if (reserves_refused >= 2) ++refused;  // even without the space that is reserved in advance
+    // fails even without the space that is reserved in advance
+    if (reserves_refused >= 2) ++refused;
     return reserves_refused == 0 ? 0 : -1;
   }
   std::uint64_t FreeBytes(int) override { return free_bytes; }
@@ -136,7 +138,8 @@ class Live : public ::testing::Test {
   std::vector<std::string> messages_;
 };
 
-// An exception in the recorder's own threads ends the recording with a message, and nothing else.
+// An exception in the recorder's own threads must end the recording with a message, and nothing
+// else.
 class Thrower : public Disk {
  public:
   ssize_t Write(int fd, const void* bytes, std::size_t n, std::uint64_t at) override {
@@ -172,7 +175,7 @@ TEST_F(Live, EndsWithASentenceWhenAThreadOfItsThrows) {
   }
 }
 
-// If the callback that receives the message throws too, the recording still ends.
+// If the callback that receives the message throws as well, the recording must still end.
 TEST_F(Live, EndsEvenIfTheMessageCannotBeDelivered) {
   RecorderOptions options;
   options.notify = [](const std::string&) { throw std::runtime_error("no listener"); };
@@ -210,7 +213,8 @@ TEST_F(Live, RecordsEveryTickMarksAndSnapshots) {
   EXPECT_TRUE(messages().empty());
 }
 
-// Deliberate overrun: the disk accepts no data until the queue of chunks and the ring are full.
+// This overrun is intended: the disk accepts no data until the queue of chunks and the ring are
+// full.
 TEST_F(Live, ReportsLostTicksAndRequestsASnapshotAfterThem) {
   RecorderOptions options = Options();
   options.max_queued = 1;
@@ -244,7 +248,7 @@ TEST_F(Live, ReportsLostTicksAndRequestsASnapshotAfterThem) {
   reader.Check();
 }
 
-// One event reports all gaps within a second, by the records' clock.
+// One event must report all gaps within a second of the records' clock.
 TEST_F(Live, ManyGapsAreReportedTogether) {
   RecorderOptions options = Options();
   options.max_queued = 1;
@@ -277,20 +281,20 @@ TEST_F(Live, ManyGapsAreReportedTogether) {
     missing += record.tick - last - 1;
   }
   EXPECT_GE(holes, static_cast<std::uint64_t>(kHoles));
-  // One event for the first gap, and one at the end for all others.
+  // There may be one event for the first gap, and one at the end for all others.
   EXPECT_LE(reader.gaps().size(), 2u);
   for (const RecordingEvent& gap : reader.gaps()) reported += gap.lost;
   EXPECT_EQ(reported, missing);
   EXPECT_NE(reader.gaps().back().text.find(" places"), std::string::npos);
 }
 
-// After a power failure at any moment, all but the last five seconds are preserved, because
-// everything older has been synchronised. Each prefix of the file that could be on the disk is
+// After a power failure at any moment, all but the last five seconds must be preserved, because
+// everything older has been synchronised. Each prefix of the file that could be on the disk must be
 // readable.
 TEST_F(Live, IsMadeToLastEveryFewSecondsSoak) {
   disk_.sync_time = milliseconds(300);
   const std::uint64_t start = Now();
-  std::vector<std::uint64_t> ticked;  // when [ns]
+  std::vector<std::uint64_t> ticked;  // times of the ticks [ns]
   {
     Recorder recorder(path_, SampleHeader(), *ring_, Options(), {}, &disk_);
     const auto end = Clock::now() + std::chrono::seconds(Count(11, 60));
@@ -315,7 +319,7 @@ TEST_F(Live, IsMadeToLastEveryFewSecondsSoak) {
   const std::string bytes = ReadFile(path_);
   const std::uint64_t count = RecordingReader(path_).count();
   const std::scoped_lock lock(disk_.mutex);
-  std::set<std::uint64_t> sizes;  // a call ends later than another that began with more bytes
+  std::set<std::uint64_t> sizes;  // a call may end later than one that began with more bytes
   for (const Disk::Call& call : disk_.calls) sizes.insert(call.bytes);
   std::uint64_t last = 0;
   for (const std::uint64_t size : sizes) {
@@ -329,7 +333,8 @@ TEST_F(Live, IsMadeToLastEveryFewSecondsSoak) {
   EXPECT_EQ(last, count);
 }
 
-// If the disk takes three seconds to synchronise and half a second for each write, nothing is lost.
+// The disk takes three seconds to synchronise and half a second for each write, but nothing may be
+// lost.
 TEST_F(Live, ASlowDiskLosesNothing) {
   disk_.sync_time = milliseconds(3000);
   disk_.write_time = milliseconds(300);
@@ -343,8 +348,8 @@ TEST_F(Live, ASlowDiskLosesNothing) {
   EXPECT_EQ(RecordingReader(path_).count(), tick_);
 }
 
-// Only one write, of the index, occurs between the first refusal and the message, so the message
-// comes immediately.
+// Only one write, that of the index, occurs between the first refusal and the message, so the
+// message comes immediately.
 TEST_F(Live, AFullDiskEndsItAndTheFileIsWhole) {
   disk_.capacity = 1'500'000;
   RecorderOptions options = Options();
@@ -381,7 +386,7 @@ TEST_F(Live, ABrokenDiskEndsIt) {
   EXPECT_EQ(why.find("can be read"), std::string::npos) << why;
 }
 
-// The message promises only the ticks that the disk confirmed before it broke.
+// The message may promise only the ticks that the disk confirmed before it broke.
 TEST_F(Live, ADiskThatBreaksHasWhatItConfirmed) {
   RecorderOptions options = Options();
   options.sync_period = milliseconds(50);
@@ -393,7 +398,7 @@ TEST_F(Live, ADiskThatBreaksHasWhatItConfirmed) {
     return std::count_if(disk_.calls.begin(), disk_.calls.end(),
                          [](const Disk::Call& call) { return call.sync; });
   };
-  // Wait for two synchronisations that begin after `there` was written.
+  // The test waits for two synchronisations that begin after `there` was written.
   const auto before = syncs();
   PublishUntil([&] { return syncs() >= before + 3; });
   disk_.broken = true;
@@ -422,7 +427,7 @@ TEST_F(Live, LittleSpaceIsReportedAndThenEndsIt) {
   EXPECT_EQ(reader.count(), recorder.status().ticks);
 }
 
-// The same rules apply in virtual time.
+// In virtual time, the same rules apply.
 TEST_F(Live, AWriterWarnsSynchronisesAndEndsAsTheRecorderDoes) {
   disk_.free_bytes = 5'000'000'000;
   DiskRules rules = Options();

@@ -1,4 +1,4 @@
-// Written data is read back bit for bit.
+// Data that was written must be read back bit for bit.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -23,7 +23,7 @@ TickRecord Random(std::mt19937_64* random, std::uint64_t tick) {
   TickRecord noise;
   auto* bytes = reinterpret_cast<unsigned char*>(&noise);
   for (std::size_t k = 0; k < sizeof noise; ++k) bytes[k] = static_cast<unsigned char>((*random)());
-  // Visits the fields, so that padding stays zero.
+  // This function visits the fields, so that padding stays zero.
   noise.tick = tick;
   noise.state = static_cast<RunState>((*random)() % kRunStates);
   noise.cause = static_cast<StopCause>((*random)() % kStopCauses);
@@ -128,8 +128,8 @@ TEST(Recording, KeepsNanAndTheFieldsAfterTheJoints) {
   ticks[0].kkt_residual = -std::numeric_limits<double>::infinity();
   ticks[1].cobot_dof = 2;
   ticks[1].cobot_q[15] = -0.0;   // its bits are not all zero
-  ticks[2].inputs[3].value = 5;  // beyond the count
-  ticks[3].hands[1].q[9] = 1;    // of an absent arm
+  ticks[2].inputs[3].value = 5;  // an input beyond the count
+  ticks[3].hands[1].q[9] = 1;    // a joint of an absent arm
   {
     RecordingWriter writer(folder.File("a.mcap"), SampleHeader());
     for (const TickRecord& record : ticks) writer.Add(record);
@@ -172,7 +172,7 @@ TEST(Recording, KeepsItsHeader) {
   reader.Check();
 }
 
-// A recording with `mode: direct` or from an older program.
+// The recording has `mode: direct` or comes from an older program.
 TEST(Recording, WithoutAPredictedLoopContainsNoPrediction) {
   Folder folder;
   RecordingHeader header = SampleHeader();
@@ -268,7 +268,7 @@ TEST(Recording, OverwritesNothingAndReportsTheError) {
             std::string::npos);
 }
 
-// Changed constants or comments must not make old recordings unreadable; changed fields do.
+// Changed constants or comments must not make old recordings unreadable, but changed fields must.
 TEST(Schema, LayoutIsWhatTheBytesAreMadeOf) {
   using recording::Layout;
   EXPECT_EQ(Layout("# all\nuint8 A=1\nuint8 a  # [s]\n\nfloat64 b\n"), "uint8 a\nfloat64 b\n");

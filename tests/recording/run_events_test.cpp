@@ -1,4 +1,4 @@
-// The log contains the events of a run.
+// The log must contain the events of a run.
 #include "recording/run_events.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace recording_test;
 
-// A run that stops and is reset, and whose damping a user changes.
+// Returns a tick of a run that stops and is reset, and in which a user changes the damping.
 TickRecord EventfulTick(std::uint64_t tick) {
   TickRecord r = SampleTick(tick);
   r.state = tick < 10 ? RunState::kArmed : RunState::kRun;
@@ -83,8 +83,8 @@ TEST(RunEvents, AreInARecordingOfRealTime) {
   EXPECT_EQ(EventsOf(path), kExpected);
 }
 
-// However fast values change, at most 50 events a second are logged, and changes made in a page do
-// not displace a stop.
+// However fast values change, the log must contain at most 50 events a second, and changes made in
+// a page must not displace a stop.
 TEST(RunEvents, AreBounded) {
   recording::RunEvents events;
   std::map<std::uint64_t, int> reported;  // by second

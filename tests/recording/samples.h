@@ -1,4 +1,4 @@
-// Records to write: some with random bits, and some that resemble a run.
+// Records to write. Some have random bits, and some resemble a run.
 #pragma once
 
 #include <unistd.h>
@@ -19,8 +19,8 @@
 
 namespace predictor::recording_test {
 
-// A temporary folder that is deleted with the test. The folder is in memory if the test permits it
-// and such a folder exists.
+// A temporary folder that is deleted with the test. It is in memory if the test permits this and
+// such a folder exists.
 class Folder {
  public:
   explicit Folder(bool in_memory = false) : folder_(Where(in_memory)) {}
@@ -61,7 +61,7 @@ inline RecordingHeader SampleHeader() {
   return header;
 }
 
-// A record of zeros, including the padding, with the inputs at their initial values.
+// Returns a record of zeros, including the padding, with the inputs at their initial values.
 inline TickRecord Nothing() {
   TickRecord record;
   std::memset(static_cast<void*>(&record), 0, sizeof record);
@@ -69,7 +69,7 @@ inline TickRecord Nothing() {
   return record;
 }
 
-// A tick that resembles those of a run and depends only on its number.
+// Returns a tick that resembles those of a run and depends only on its number.
 inline TickRecord SampleTick(std::uint64_t tick) {
   TickRecord r = Nothing();
   std::mt19937_64 random(tick);

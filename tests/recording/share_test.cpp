@@ -1,4 +1,4 @@
-// Copies of recordings without the person.
+// Tests copies of recordings that do not contain the person.
 #include "recording/share.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,8 @@ RecordingHeader MadeHeader() {
   return header;
 }
 
-// The header is stored twice, and chunks are compressed: no byte of it may remain in either.
+// The header is stored twice, and chunks are compressed. Neither may contain a byte of the person's
+// data.
 TEST(Share, LeavesNoByteOfThePerson) {
   const test::TemporaryFolder folder;
   const std::string in = folder / "in.mcap", out = folder / "out.mcap";

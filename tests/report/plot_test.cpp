@@ -1,4 +1,4 @@
-// Tests words and numbers in plots, and names of runs.
+// Tests the words and numbers in plots, and the names of runs.
 #include "report/plot.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Reports of real runs.
+// Tests reports of complete runs.
 #include "report/report.h"
 
 #include <gtest/gtest.h>
@@ -73,7 +73,7 @@ TEST(Report, DrawsPrismaticJointsInMillimetres) {
     const PlotPanel& slides = plot->panels.back();
     ASSERT_EQ(slides.series.size(), prismatic) << name;
     EXPECT_EQ(AxisTitle(slides.y), "Position [mm]");
-    // The weight of the box moves both by up to a few centimetres before the run starts.
+    // The weight of the box moves both values by up to a few centimetres before the run starts.
     EXPECT_NEAR(slides.series[0].y->front(), first, 40) << name;
     const PlotPanel& turns = plot->panels[plot->panels.size() - 2];
     EXPECT_EQ(turns.series.size(), run.data.cobot_dof - prismatic) << name;
@@ -95,8 +95,8 @@ TEST(Report, ReportsAStopAsTheEmulatorMeasuredIt) {
   const auto plot = std::find_if(report.plots.begin(), report.plots.end(),
                                  [](const Plot& p) { return p.id == "stop-1"; });
   ASSERT_NE(plot, report.plots.end());
-  // The plot contains the ten seconds before the decision, or all there was, and crosses the
-  // threshold at 0.
+  // The plot must contain the ten seconds before the decision, or all of the run if it was shorter,
+  // and must cross the threshold at 0.
   const PlotSeries& force = plot->panels[0].series[static_cast<std::size_t>(stop.hand)];
   EXPECT_NEAR(
       force.x->front(),
@@ -109,8 +109,8 @@ TEST(Report, ReportsAStopAsTheEmulatorMeasuredIt) {
   }
 }
 
-// A stop would hold the arms, but another fault removes the power at its end. The report states
-// this fault after the cause of the stop.
+// The stop alone would hold the arms, but another fault removes the power at its end. The report
+// must state this fault after the cause of the stop.
 TEST(Report, ReportsWhySwitchedOffAtAStopsEnd) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/push.yaml");
@@ -149,7 +149,7 @@ TEST(Report, ReportsWhySwitchedOffAtAStopsEnd) {
   EXPECT_EQ(other.html.find("power off: "), std::string::npos);
 }
 
-// Runs `push` to its stop, lets `more` add further ticks, and returns the collected data.
+// Runs `push` until it stops, lets `more` add further ticks, and returns the collected data.
 template <typename More>
 RunData WithMore(const More& more) {
   const Scenario scenario =
@@ -167,8 +167,8 @@ RunData WithMore(const More& more) {
   return collector.Finish();
 }
 
-// If one record contains both the decision and the power-off, the power-off belongs to this stop
-// and not to the previous one.
+// If one record contains both the decision and the power-off, the power-off must belong to this
+// stop and not to the previous one.
 TEST(Report, ThePowerOffOfADecisionsOwnTickIsOfThatStop) {
   std::uint64_t second = 0;
   const RunData data = WithMore([&](const auto& add, TickRecord* record) {
@@ -193,8 +193,8 @@ TEST(Report, ThePowerOffOfADecisionsOwnTickIsOfThatStop) {
   EXPECT_GE(noted, 1);
 }
 
-// If there are more stops than are kept, the power-off of a later stop is reported, but it is
-// assigned to none of the kept stops.
+// If there are more stops than are kept, the report must contain the power-off of a later stop but
+// assign it to none of the kept stops.
 TEST(Report, ThePowerOffOfAnUnlistedStopBelongsToNoStop) {
   const RunData data = WithMore([&](const auto& add, TickRecord* record) {
     for (std::size_t k = 0; k < StopLog::kMaxStops + 5; ++k) {
@@ -226,14 +226,14 @@ TEST(Report, OfArmsThatDidNotRestSaysSo) {
     EXPECT_EQ(notes, restless ? 0u : 1u);
     return Occurrences(report.html, what);
   };
-  // Once for the run and once for its stop.
+  // The text appears once for the run and once for its stop.
   EXPECT_EQ(reported(true, "The arms did not come to rest."), 2u);
   EXPECT_EQ(reported(true, "The arms came to rest"), 0u);
   EXPECT_EQ(reported(false, "The arms did not come to rest."), 0u);
   EXPECT_EQ(reported(false, "The arms came to rest"), 2u);
 }
 
-// Seconds of RUN in which the hands exert force(t) along x.
+// Returns seconds of RUN in which the hands exert force(t) along x.
 RunData OfForce(double seconds, const std::function<double(double)>& force) {
   RunCollector collector(TestInfo(Scenario(), "force"));
   TickRecord record{};
@@ -250,7 +250,7 @@ RunData OfForce(double seconds, const std::function<double(double)>& force) {
   return collector.Finish();
 }
 
-// A force of 20 N at 0.75 Hz and 6 N at 5 Hz: the share from 3 to 10 Hz is small, but its rms is
+// The force has 20 N at 0.75 Hz and 6 N at 5 Hz. The share from 3 to 10 Hz is small, but its rms is
 // still 4 N.
 TEST(Report, ASmallPartOfALargeForceIsGivenInNewtons) {
   const RunData run = OfForce(8, [](double t) {
@@ -264,9 +264,9 @@ TEST(Report, ASmallPartOfALargeForceIsGivenInNewtons) {
   EXPECT_NEAR(std::stod(reported[1]), 6 / std::sqrt(2), 0.3);
 }
 
-// The largest index in the text equals the largest one in the plot.
+// The largest index in the text must equal the largest one in the plot.
 TEST(Report, TextAndPlotShowTheSameIndex) {
-  // At rest, with a little noise of 5 Hz; then slow and strong.
+  // The hand is at rest with a little noise of 5 Hz. Then its force is slow and strong.
   const RunData run = OfForce(20, [](double t) {
     const double slow = t < 10 ? 0 : 20 * std::sin(1.5 * std::numbers::pi * t);
     return slow + 0.2 * std::sin(10 * std::numbers::pi * t);
@@ -305,7 +305,7 @@ TEST(Report, ComparesRuns) {
   Keep(MakeReport({Collect("bar_circle", 37).data}, "test"), "bar_circle");
 }
 
-// Each metric appears without further code.
+// Each metric must appear without further code.
 TEST(Report, ShowsAndComparesEveryMetric) {
   const CollectedRun run = Collect("box_9kg", 8);
   const std::string one = MakeReport({run.data}, "test").html;

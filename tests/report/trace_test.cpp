@@ -68,15 +68,15 @@ TEST(Trace, OfALongRunKeepsEveryTickWhereItMattersAndNoMore) {
   EXPECT_EQ(t.size(), 10'001u);
   t.clear();
   y.clear();
-  trace.Part(100'000, 101'000, 0, 0, &t, &y);  // no longer the worst
+  trace.Part(100'000, 101'000, 0, 0, &t, &y);  // this part no longer has the worst value
   EXPECT_TRUE(t.empty());
-  // The coarse line is complete, and the detail has its own times, part by part.
+  // The coarse line is complete, and each part of the detail has its own times.
   EXPECT_EQ(trace.Times(0)->size(), 2u * 20 * 600);
   EXPECT_EQ(trace.DetailTimes(0)->size(), trace.DetailValues(0)->size());
 }
 
-// One tick per second and none between: memory depends on the number of seconds, not on the number
-// of ticks.
+// There is one tick per second and none in between. The memory must depend on the number of
+// seconds, not on the number of ticks.
 TEST(Trace, OfTicksFarApartIsRefusedBeforeItFillsTheMemory) {
   Trace trace(1, 0.001, 60);
   const float value = 1;

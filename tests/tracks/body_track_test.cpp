@@ -1,4 +1,4 @@
-// Mappings from channels to parts of the body.
+// Tests the mappings from channels to parts of the body.
 #include "tracks/body_track.h"
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 class Mapping : public Files {
  protected:
-  // A mapping of a.csv and that table.
+  // Loads a mapping of a.csv, which contains that table.
   BodyTrack Load(const std::string& yaml, const std::string& table) const {
     Write("a.csv", table);
     return LoadBodyTrack(Write("map.yaml", "file: a.csv\n" + yaml));
@@ -22,17 +22,18 @@ class Mapping : public Files {
 const char* const kHalfSecond = "time,A.x [mm],A.y [mm],A.z [mm],B.x [mm],B.y [mm],B.z [mm]\n";
 
 TEST_F(Mapping, PutsTheMeanOfMarkersIntoTheWorld) {
-  // The file's frame stands at (1, 2, 0) in W and is turned by 90° about z.
+  // The file's frame is at (1, 2, 0) in W and is rotated by 90° about z.
   const BodyTrack track =
       Load("frame: {xyz: [1, 2, 0], rpy: [0, 0, 90 deg]}\nhead: {markers: [A, B]}\n",
            std::string(kHalfSecond) + "0,100,0,1500,300,0,1700\n1,200,0,1500,,0,1700\n");
   ASSERT_TRUE(track.head);
   EXPECT_TRUE(track.head->p[0].isApprox(Vector3(1, 2.2, 1.6), 1e-12)) << track.head->p[0];
-  EXPECT_FALSE(track.head->p[1].allFinite());  // B is missing, so the mean is not known
+  EXPECT_FALSE(track.head->p[1].allFinite());  // B is missing, so the mean is unknown
 }
 
 TEST_F(Mapping, FollowsMarkersOnTheSidesOfAHead) {
-  // The head looks along y of the file; the eyes are 0.1 m before and 0.05 m below its markers.
+  // The head looks along y of the file. The eyes are 0.1 m in front of its markers and 0.05 m below
+  // them.
   std::string table = "time";
   for (const char* name : {"F", "B", "L", "R"})
     for (const char* axis : {".x", ".y", ".z"}) table += std::string(",") + name + axis + " [m]";
@@ -58,12 +59,12 @@ TEST_F(Mapping, InterpolatesOverShortGapsOnly) {
   EXPECT_FALSE(track.head->PositionAt(-0.01));
   EXPECT_FALSE(track.head->PositionAt(0.1));
   EXPECT_TRUE(track.head->PositionAt(0.2));
-  EXPECT_FALSE(track.head->PositionAt(0.21));  // the later one is missing
+  EXPECT_FALSE(track.head->PositionAt(0.21));  // the later sample is missing
   EXPECT_FALSE(track.head->PositionAt(0.25));
   EXPECT_FALSE(track.head->RotationAt(0.01));
 }
 
-// The wrench of the hand on a sensor that stands 0.1 m beside the handle's origin.
+// The wrench of the hand acts on a sensor 0.1 m to the side of the handle's origin.
 TEST_F(Mapping, TurnsAndShiftsAWrench) {
   std::string head =
       "time,p.x [m],p.y [m],p.z [m],q.w,q.x,q.y,q.z,f.x [N],f.y [N],f.z [N],"
@@ -78,7 +79,7 @@ TEST_F(Mapping, TurnsAndShiftsAWrench) {
   const HandTrack& hand = *track.hands[0];
   const Wrench F = *hand.WrenchAt(0.01);
   EXPECT_TRUE(F.head<3>().isApprox(Vector3(0, -10, 0), 1e-12)) << F;
-  // -1 of the sensor; (-0.1, 0, 0) × (0, -10, 0) = (0, 0, 1)
+  // The sensor's -1 and (-0.1, 0, 0) × (0, -10, 0) = (0, 0, 1) add up to zero.
   EXPECT_NEAR(F[5], 0, 1e-12);
   EXPECT_FALSE(hand.HoldsAt(0.001));
   EXPECT_TRUE(hand.HoldsAt(0.015));

@@ -17,8 +17,8 @@ struct Recorded {
 
 using Motion = std::function<Vector3(double)>;
 
-// `motion` at `rate` [Hz] from `begin` to `end` [s] of its own time, by a clock that shows `shift`
-// more, in a frame that is turned and moved, with noise [m].
+// Samples `motion` at `rate` [Hz] from `begin` to `end` [s] of its own time. The clock is ahead by
+// `shift`, the frame is rotated and moved, and the samples have noise [m].
 Recorded Record(const Motion& motion, double begin, double end, double rate, double shift,
                 double noise, std::uint64_t seed) {
   RandomStream random(seed, "noise");
@@ -32,7 +32,8 @@ Recorded Record(const Motion& motion, double begin, double end, double rate, dou
   return recorded;
 }
 
-// A motion that does not repeat: a sum of ten vibrations with random frequencies of 0.1 to 0.8 Hz.
+// Returns a motion that does not repeat: a sum of ten vibrations with random frequencies of 0.1 to
+// 0.8 Hz.
 Motion RandomMotion(std::uint64_t seed) {
   RandomStream random(seed, "motion");
   std::vector<std::array<double, 3>> waves;  // frequency, amplitude, phase
@@ -48,7 +49,7 @@ Motion RandomMotion(std::uint64_t seed) {
   };
 }
 
-// The stated 95 % interval contains the true offset; frames, rates and noise differ.
+// The stated 95 % interval must contain the true offset, for different frames, rates and noise.
 TEST(ClockOffset, IsFoundWithinItsUncertainty) {
   int inside = 0, runs = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -62,7 +63,8 @@ TEST(ClockOffset, IsFoundWithinItsUncertainty) {
     inside += std::abs(found.offset + shift) <= found.uncertainty ? 1 : 0;
     ++runs;
   }
-  EXPECT_GE(inside, 0.85 * runs);  // the binomial 0.1 % quantile of 95 % of 40 is 33
+  // the 0.1 % quantile of the binomial distribution is 33 (95 % of 40)
+  EXPECT_GE(inside, 0.85 * runs);
 }
 
 TEST(ClockOffset, OfAPeriodicMotionIsAmbiguous) {

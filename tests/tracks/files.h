@@ -1,4 +1,4 @@
-// Files made up for tests.
+// Files that the tests make up.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ class Files : public testing::Test {
   const test::TemporaryFolder folder_;
 };
 
-// The message of the InputError that `action` throws.
+// Returns the message of the InputError that `action` throws.
 template <class Action>
 std::string ErrorOf(Action action) {
   try {
@@ -32,7 +32,7 @@ std::string ErrorOf(Action action) {
   return "no error";
 }
 
-// Expects each word in the message.
+// Expects each of the words in the message.
 inline void ExpectWords(const std::string& message, std::initializer_list<const char*> words) {
   for (const char* word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
 }

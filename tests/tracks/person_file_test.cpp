@@ -1,4 +1,4 @@
-// Imports from other systems.
+// Tests imports from other systems.
 #include "tracks/person_file.h"
 
 #include <sqlite3.h>
@@ -35,7 +35,7 @@ const char* const kMap =
     "right_hand: {position: [px, py, pz], rotation: [qw, qx, qy, qz], force: [fx, fy, fz], "
     "on: hand}\n";
 
-// A robot's log at 500 Hz; the sensor measures what acts on the hand.
+// Returns a robot's log at 500 Hz. The sensor measures what acts on the hand.
 std::string Log(const std::function<std::string(int)>& force) {
   std::string text = "t,px,py,pz,qw,qx,qy,qz,fx,fy,fz,note\n";
   for (int i = 0; i <= 500; ++i)
@@ -55,7 +55,8 @@ TEST_F(Import, MakesRowsAt100HzInSiUnits) {
   const HandTrack& hand = *person.track.hands[1];
   ASSERT_EQ(hand.pose.times.size(), 101u);
   EXPECT_TRUE(hand.pose.p[50].isApprox(Vector3(0.25, -0.02, 1), 1e-9)) << hand.pose.p[50];
-  // The mean of five readings about i = 250, with the opposite sign: of the hand on the handle.
+  // The mean of five readings around i = 250 has the opposite sign, because it is the force of the
+  // hand on the handle.
   EXPECT_NEAR(hand.F[50][0], -250, 1);
   EXPECT_TRUE(hand.HoldsAt(0.5));
   ASSERT_EQ(person.header.notes.size(), 1u);
@@ -107,7 +108,7 @@ TEST_F(Import, OfAnEditedFileIsRefused) {
 
 // ---- bags -------------------------------------------------------------------------------------
 
-// WrenchStamped in CDR: stamp, frame, six numbers.
+// Returns a WrenchStamped in CDR: stamp, frame, and six numbers.
 std::string WrenchMessage(std::int32_t second, std::uint32_t nanosecond, double force) {
   mcap::Bytes bytes;
   bytes.text.assign("\0\1\0\0", 4);
@@ -158,13 +159,13 @@ TEST_F(Import, RefusesADamagedBag) {
     const std::string file = Write("cut.mcap", whole.substr(0, n));
     ErrorOf([&] { ReadSeries(file); });  // no crash
   }
-  // A message that is no wrench.
+  // The message is not a wrench.
   RosTopic topic("/wrench", "geometry_msgs/msg/WrenchStamped");
   ExpectWords(ErrorOf([&] { topic.Add(std::string("\0\1\0\0\1", 5), 0, MessageTime::kStamp); }),
               {"/wrench", "CDR"});
 }
 
-// Counts and lengths of strings that the message does not contain.
+// The message does not contain as many strings and characters as its counts and lengths say.
 TEST_F(Import, RefusesTransformsThatAreCutOff) {
   std::string transforms("\0\1\0\0\2\0\0\0", 8);
   for (const char frame : {'a', 'b'}) {

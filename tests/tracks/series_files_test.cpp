@@ -1,4 +1,4 @@
-// Tables, TRC and C3D files, good and bad ones.
+// Tests tables, TRC files and C3D files, valid and invalid ones.
 #include <cmath>
 #include <cstring>
 
@@ -19,7 +19,7 @@ TEST_F(Csv, HasNamesUnitsAndMissingNumbers) {
                                         "0;1.5;2;begins\n"
                                         "10;;nan;\n"
                                         "30;-2e3;4;ends\n"));
-  ASSERT_EQ(file.series.size(), 2u);  // without time and words
+  ASSERT_EQ(file.series.size(), 2u);  // without the columns of time and words
   const Series& x = file.At("head.p.x");
   EXPECT_EQ(x.unit, "mm");
   EXPECT_EQ(*x.times, (std::vector<double>{0, 0.01, 0.03}));
@@ -43,7 +43,7 @@ TEST_F(Csv, WithoutTimesHasTheGivenRate) {
   EXPECT_EQ(file.At("y").values, (std::vector<double>{2, 4, 6}));
 }
 
-// As the ground truth of EuRoC has them.
+// The ground truth of EuRoC has its names in a comment.
 TEST_F(Csv, TakesNamesFromAComment) {
   const SeriesFile file = ReadCsv(Write("a.csv",
                                         "# a remark\n#timestamp, p_x [m], q_w []\n"
@@ -105,7 +105,7 @@ TEST_F(Trc, SeesAClockThatJumps) {
   ExpectWords(error(head + "1\t0\t1\t2\t3\t4\t5\t6\n2\t3.01\t1\t2\t3\t4\t5\t6\n"),
               {"bad.trc:8", "jumps by 3.01 s"});
   ExpectWords(error(head + "1\t0\t1\t2\t3\t4\t5\t6\n1\t0\t1\t2\t3\t4\t5\t6\n"), {"goes back"});
-  // Left-out frames are no jump.
+  // Frames that were left out must not count as a jump.
   EXPECT_EQ(error(head + "1\t0\t1\t2\t3\t4\t5\t6\n301\t3.0\t1\t2\t3\t4\t5\t6\n"), "no error");
   ExpectWords(error("time,x\n0,1\n"), {"no TRC"});
   ExpectWords(error(head.substr(0, 60)), {"bad.trc"});
@@ -116,7 +116,7 @@ TEST_F(Trc, SeesAClockThatJumps) {
 
 // ---- C3D --------------------------------------------------------------------------------------
 
-// A parameter or group as it is stored. link: offset to the next one.
+// Returns a parameter or group as it is stored. link: the offset to the next one.
 std::string Entry(int id, const std::string& name, const std::string& content) {
   std::string entry;
   entry += static_cast<char>(name.size());
@@ -124,7 +124,7 @@ std::string Entry(int id, const std::string& name, const std::string& content) {
   entry += name;
   const auto link = static_cast<std::uint16_t>(2 + content.size() + 1);
   entry.append(reinterpret_cast<const char*>(&link), 2);
-  return entry + content + '\0';  // without a description
+  return entry + content + '\0';  // the description is empty
 }
 template <class T>
 std::string Raw(T x) {
@@ -138,7 +138,7 @@ std::string Words(std::initializer_list<const char*> words) {
   return text;
 }
 
-// Two points at 50 Hz and one analog channel at 100 Hz, three frames.
+// Returns three frames with two points at 50 Hz and one analog channel at 100 Hz.
 std::string MadeC3d(bool real_numbers) {
   std::string header(512, '\0');
   header[0] = 2;
@@ -187,7 +187,7 @@ TEST_F(C3d, HasPointsAndAnalogChannels) {
     const Series& emg = file.At("EMG1");
     EXPECT_EQ(emg.times->size(), 6u);
     EXPECT_DOUBLE_EQ((*emg.times)[1], 0.01);
-    // (raw - offset) · scale · general scale
+    // The values are (raw - offset) · scale · general scale.
     EXPECT_EQ(emg.values, (std::vector<double>{0, 2, 0.5, 2, 1, 2}));
     EXPECT_EQ(emg.unit, "mV");
   }
@@ -201,7 +201,8 @@ TEST_F(C3d, OfEveryShorterLengthIsRefused) {
   }
 }
 
-// No damaged byte may crash the reader or make it allocate much: it reads numbers or says why not.
+// No damaged byte may crash the reader or make it allocate much memory. It must read numbers or
+// give the reason why it cannot.
 TEST_F(C3d, WithADamagedByteIsReadOrRefused) {
   const std::string whole = MadeC3d(false);
   int refused = 0;

@@ -1,4 +1,4 @@
-// npm's @mcap/core reads a complete recording with and without its index; rosmsg2 decodes its
+// npm's @mcap/core reads a complete recording with and without its index, and rosmsg2 decodes its
 // values.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -111,7 +111,7 @@ test("a span of time, found by the message indexes", async () => {
   assert.deepEqual(sequences, Array.from({ length: 301 }, (_, k) => 400 + k));
 });
 
-// Fields that a log message has in addition to Foxglove's fields, which are unchanged.
+// A log message has these fields in addition to Foxglove's fields, which are unchanged.
 const kMore = { "foxglove.Log": ["lost", "tick"] };
 
 test("scene and log use Foxglove's own schemas", async () => {

@@ -1,4 +1,4 @@
-// Writes a recording and a JSON file with the values that foreign readers must find in it. The JSON
+// Writes a recording and a JSON file with the values that other readers must find in it. The JSON
 // is made directly from the records, without the encoder's walk over the fields. Usage: FOLDER
 // [TICKS].
 #include <cstdio>
@@ -162,7 +162,7 @@ Json TickJson(const TickRecord& r) {
 TickRecord Special(std::uint64_t tick) {
   TickRecord r = SampleTick(tick);
   if (tick % 100 == 0) r.energy = std::numeric_limits<double>::quiet_NaN();
-  if (tick % 100 == 1) r.hands[1] = {};  // one hand only
+  if (tick % 100 == 1) r.hands[1] = {};  // this tick has one hand only
   if (tick % 100 == 2) {
     r.cause = r.read.cause = StopCause::kTracking;
     r.cause_quantity = Quantity::kLength;

@@ -1,5 +1,5 @@
-// The drawn part of a plot and the positions of its words. Tests the page's own code without a
-// browser.
+// Tests the drawn part of a plot and the positions of its words. It runs the page's own code
+// without a browser.
 import assert from 'node:assert/strict';
 import {createRequire} from 'node:module';
 import {join} from 'node:path';
@@ -33,7 +33,7 @@ const simple = () => ({
 });
 const kPoints = {x: [0, 1, 2, 3], y: [0, 10, NaN, 20]};
 
-// As SVG; `points` holds the points of every line.
+// Returns the plot as SVG. `points` contains the points of every line.
 function svgOf(plot, {x, y, ...more} = kPoints) {
   const others = Object.fromEntries(Object.entries(more).map(([name, values]) => [name, Float32Array.from(values)]));
   const series = plot.panels.map((panel) => panel.series.map(
@@ -43,14 +43,14 @@ function svgOf(plot, {x, y, ...more} = kPoints) {
   return page.draw(layout, (name) => (name === 'c0' ? '#0072b2' : '#333'));
 }
 
-// The words and their positions.
+// Returns the words and their positions.
 const wordsOf = (svg) => [...svg.matchAll(/<text([^>]*)>([^<]*)</g)].map(([, attributes, words]) => {
   const own = (name) => Number((attributes.match(new RegExp(` ${name}="([-0-9.]+)"`)) ?? [0, 0])[1]);
   const [, tx = 0, ty = 0] = attributes.match(/translate\(([-0-9.]+) ([-0-9.]+)\)/) ?? [];
   return {words, x: own('x') + Number(tx), y: own('y') + Number(ty)};
 });
 const placeOf = (svg, words) => wordsOf(svg).filter((one) => one.words === words);
-// The points of the data lines with this stroke colour.
+// Returns the points of the data lines with this stroke colour.
 const pathOf = (svg) => (svg.match(/<path d="([^"]*)"[^>]*stroke="#0072b2"/) ?? ['', ''])[1];
 const pointsOf = (path) => [...path.matchAll(/(-?[0-9.]+)[ ,](-?[0-9.]+)/g)].map((m) => [Number(m[1]), Number(m[2])]);
 

@@ -10,11 +10,11 @@ import {launch} from '../../viewer/web/harness.mjs';
 
 export const root = join(dirname(fileURLToPath(import.meta.url)), '../../..');
 export const binary = process.env.PREDICTOR_BINARY ?? join(root, 'build/release/bin/predictor');
-// Limit of every wait, long enough for a busy machine.
+// The limit of every wait, long enough for a busy machine.
 const kPatienceMs = 240_000;
 
-// A browser and a folder for the calling test file: {browser, folder}, available once its tests
-// begin.
+// Returns a browser and a folder for the calling test file, {browser, folder}. They are available
+// once its tests begin.
 export function own(name) {
   const its = {folder: mkdtempSync(join(tmpdir(), `predictor-${name}-`))};
   before(async () => {
@@ -27,7 +27,7 @@ export function own(name) {
   return its;
 }
 
-// Runs the program to its end; a run that stops early (exit code 1) is accepted too.
+// Runs the program to its end. A run that stops early (exit code 1) is accepted as well.
 export function predictor(...args) {
   const done = spawnSync(binary, args, {encoding: 'utf8'});
   assert.ok(done.status === 0 || done.status === 1, `${args[0]}: ${done.stderr}`);
@@ -54,15 +54,15 @@ export async function bring(page, id) {
   await until(page, (name) => (document.querySelector(`#${name} svg`)?.clientWidth ?? 0) > 300, id);
 }
 
-// The data that a plot shows in one of the page's colours: its lines as paths, and the number of
-// bars. Smaller shapes, such as the points at the cursor, do not count.
+// Returns the data that a plot shows in one of the page's colours: its lines as paths, and the
+// number of bars. Smaller shapes, such as the points at the cursor, do not count.
 export const drawn = (page, id, color) => page.evaluate(([name, variable]) => {
   const wanted = getComputedStyle(document.documentElement).getPropertyValue(variable).trim();
   const paths = [...document.querySelectorAll(`#${name} svg :is(path, polygon)`)];
   const of = (attribute) => paths.filter((path) => path.getAttribute(attribute) === wanted);
   return {
     lines: of('stroke').filter((path) => Math.max(path.getBBox().width, path.getBBox().height) > 6).map((path) => path.getAttribute('d')),
-    // a legend's key is smaller
+    // The key of a legend is lower than a bar.
     bars: of('fill').filter((path) => path.getBBox().height > 3).length,
   };
 }, [id, color]);

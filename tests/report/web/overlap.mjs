@@ -1,4 +1,4 @@
-// Requirements for every page: it is drawn completely and no words overlap, on paper as well.
+// Checks every page: it must be drawn completely, and no words may overlap, not even on paper.
 import assert from 'node:assert/strict';
 import {until} from './files.mjs';
 
@@ -37,7 +37,7 @@ export async function assertPrints(browser, file) {
   await page.goto(`file://${file}`);
   await printed(page);
   assert.deepEqual(await faults(page), []);
-  // No table is wider than A4 paper with its margins.
+  // No table may be wider than A4 paper with its margins.
   await page.setViewportSize({width: 688, height: 900});
   assert.deepEqual(await page.$$eval('table', (all) => all.filter((table) => {
     const {right} = table.getBoundingClientRect();

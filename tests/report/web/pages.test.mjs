@@ -1,5 +1,5 @@
-// A comparison of two runs and a page of the reproduction in Chromium: no words overlap, and there
-// are no errors.
+// Opens a comparison of two runs and a page of the reproduction in Chromium. No words may overlap,
+// and there must be no errors.
 import assert from 'node:assert/strict';
 import {mkdirSync} from 'node:fs';
 import {dirname, join} from 'node:path';
@@ -11,7 +11,8 @@ import {assertPrints, faults} from './overlap.mjs';
 const its = own('pages');
 const {folder} = its;
 
-// Every plot becomes interactive, nothing is loaded, and the page is not wider than the window.
+// Every plot must become interactive, nothing may be loaded, and the page must not be wider than
+// the window.
 async function assertWhole(file) {
   const page = await open(its.browser, file);
   const ids = await page.$$eval('figure.plot', (all) => all.map((figure) => figure.id));
@@ -48,7 +49,7 @@ test('labels that one row does not hold stand in rows', async () => {
   const page = join(folder, 'labelled.html');
   predictor('report', ...files, '-o', page, '--quiet');
   const printed = await assertPrints(its.browser, page);
-  // There are more rows of keys than panels: each panel has all four keys.
+  // There are more rows of keys than panels, because each panel has all four keys.
   const keys = await printed.$$eval('#forces text', (all) => all.filter((t) => t.textContent.includes('long name'))
       .map((t) => Math.round(t.getBoundingClientRect().top)));
   assert.ok(new Set(keys).size > keys.length / 4, keys.join());

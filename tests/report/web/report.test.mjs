@@ -1,5 +1,5 @@
-// A report opened as a file in Chromium: it loads nothing, and its plots become interactive, zoom,
-// and show values.
+// Opens a report as a file in Chromium. It must load nothing, and its plots must become
+// interactive, zoom, and show values.
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {join} from 'node:path';
@@ -40,7 +40,7 @@ for (const scheme of ['light', 'dark']) {
         longest = Math.max(longest, ...lines.map((line) => line.length));
         most = Math.max(most, bars);
       }
-      // How many bars the histogram of the computing time has depends on the computer.
+      // The number of bars in the histogram of the computing time depends on the computer.
       assert.ok(longest > 20 || most > 0, `${id} shows neither a line (${longest}) nor a bar (${most})`);
     }
     await bring(page, 'stop-1');

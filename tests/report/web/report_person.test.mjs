@@ -1,4 +1,5 @@
-// The person in a report: pictures of the body, bars of scores, plots with intervals, and what is missing.
+// Tests the person in a report: pictures of the body, bars of scores, plots with intervals, and
+// what is missing.
 import assert from 'node:assert/strict';
 import {join} from 'node:path';
 import {before, test} from 'node:test';
@@ -21,7 +22,7 @@ test('the body is drawn with its loads, and every plot has its intervals', async
   await page.evaluate(() => document.getElementById('person').scrollIntoView());
   await screenshot(page, 'report-person');
   assert.equal(await page.locator('#person .body svg').count(), 8, 'two views and the course of the run');
-  // Nothing lies outside its picture.
+  // Nothing may lie outside its picture.
   const outside = await page.$$eval('#person .body svg', (all) => all.filter((svg) => {
     const box = svg.getBBox(), {width, height} = svg.viewBox.baseVal;
     return !(box.width > 50 && box.x >= -6 && box.y >= -6 && box.x + box.width <= width + 6 && box.y + box.height <= height + 6);
@@ -29,7 +30,8 @@ test('the body is drawn with its loads, and every plot has its intervals', async
   assert.equal(outside, 0);
   const ids = await page.$$eval('#person figure.plot', (all) => all.map((figure) => figure.id));
   assert.ok(ids.includes('person-scores') && ids.length >= 6, ids.join());
-  // Forces are measured, and muscles are computed for the nominal posture alone. All else has intervals.
+  // Forces are measured, and muscles are computed for the nominal posture alone. All other plots
+  // have intervals.
   let intervals = 0;
   for (const id of ids) {
     await files.bring(page, id);
@@ -40,7 +42,7 @@ test('the body is drawn with its loads, and every plot has its intervals', async
     if (says) ++intervals;
   }
   assert.equal(ids.length - intervals, 3, ids.join());
-  // As wide as the shares: together the whole bar.
+  // The parts are as wide as the shares and must fill the whole bar.
   for (const bar of await page.$$eval('#person .shares', (all) => all.map((b) => [...b.children].map((c) => Number(c.style.flexGrow))))) {
     assert.ok(Math.abs(bar.reduce((a, b) => a + b, 0) - 1) < 2e-3, bar.join());
   }

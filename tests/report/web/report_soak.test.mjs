@@ -1,4 +1,4 @@
-// The report of a half-hour run: checks its size and its memory, and prints the drawing times,
+// Checks the size and the memory of the report of a half-hour run. It prints the drawing times,
 // which depend on the machine.
 import assert from 'node:assert/strict';
 import {spawnSync} from 'node:child_process';
@@ -40,8 +40,8 @@ test('its plots zoom, each step drawn', async () => {
   await bring(page, 'tracking');
   console.log(`shown after ${(performance.now() - start).toFixed(0)} ms`);
   await bring(page, 'forces');
-  // Measures from the turn of the wheel to the second frame after it; by then all visible plots are
-  // drawn.
+  // The time from the turn of the wheel to the second frame after it is measured. By then, all
+  // visible plots are drawn.
   await page.evaluate(() => {
     window.times = [];
     const frame = () => new Promise((done) => requestAnimationFrame(() => setTimeout(done)));

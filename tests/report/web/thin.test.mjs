@@ -1,4 +1,4 @@
-// Selection of the drawn points of a long line, tested without a browser.
+// Tests, without a browser, which points of a long line are drawn.
 import assert from 'node:assert/strict';
 import {createRequire} from 'node:module';
 import {before, test} from 'node:test';
