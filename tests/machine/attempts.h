@@ -1,6 +1,6 @@
-// Repeated attempts for tests that need real time. A run that lateness stopped may be repeated only
-// if the far end measured at that time that the computer was late. Otherwise the program was late,
-// and the test fails.
+// Repeats attempts of tests that need real time. If lateness stopped a run, the run may be repeated
+// only if the process of the fakes measured that the computer was late at that time. Otherwise the
+// program was late, and the test fails.
 #pragma once
 
 #include <array>
@@ -12,20 +12,20 @@
 
 namespace predictor {
 
-// The cause of the lateness, judged from the run's `screen`.
+// The cause of the lateness, which Judge determines from the run's `screen`.
 enum class Late { kNothing, kComputer, kProgram };
 
-// A delay that stops arms is longer than the usual delays of a computer. Three missed deadlines in
-// a row take at least 2 ms (Monitor::kMissedDeadlines). The thread that watches a processor wakes
-// every half millisecond, so it sees all but half a millisecond of this. Ten missed deadlines
+// Delays that stop the arms are longer than a computer's usual delays. Three missed deadlines in a
+// row take at least 2 ms (Monitor::kMissedDeadlines). The thread that watches a processor wakes
+// every half millisecond, so it notices all but half a millisecond of this. Ten missed deadlines
 // within a second also stop the arms (kMissedShare).
 inline constexpr double kLateOnce = 2, kLateInSum = 6;  // [ms]
-// The letters of a key, 33 ms apart, pass through two threads of ordinary priority. After 100 ms
-// without a letter, the key counts as released.
+// The letters of a key arrive every 33 ms and pass through two threads of ordinary priority. After
+// 100 ms without a letter, the key counts as released.
 inline constexpr double kLetterLate = 30;                                            // [ms]
 inline constexpr std::uint64_t kJustBefore = 500'000'000, kASecond = 1'500'000'000;  // [ns]
 
-// once: lateness within kJustBefore of the stop. sum: lateness within kASecond.
+// once: the lateness within kJustBefore of the stop. sum: the lateness within kASecond.
 inline Late Judge(const std::string& screen, bool letter_was_late, const RigLateness& once,
                   double sum) {
   if (screen.find("the stop 'enabling'") != std::string::npos)
@@ -37,7 +37,7 @@ inline Late Judge(const std::string& screen, bool letter_was_late, const RigLate
                                                                                    : Late::kProgram;
 }
 
-// The lines of the screen that report a stop, lateness, or the loop's own delays.
+// Returns the lines of the screen that report a stop, lateness, or the loop's own delays.
 inline std::string StopWords(const std::string& screen) {
   std::istringstream lines(screen);
   std::string words;
@@ -54,8 +54,8 @@ class Attempts {
   static constexpr int kMax = 12;
 
   bool Next() { return count_++ < kMax; }
-  // Waits for at most half a minute until a second has passed without a delay that would stop arms.
-  // Tests that need many seconds without such a delay call it first.
+  // Waits at most half a minute until a second has passed without a delay that would stop the arms.
+  // Tests that need many seconds without such a delay call this first.
   static void AwaitCalm(FakeRig* rig) {
     for (int i = 0; i < 300; ++i) {
       const std::uint64_t now = Terminal::Now();
@@ -64,8 +64,8 @@ class Attempts {
     }
   }
 
-  // Returns true if the computer's lateness spoiled the attempt. The test fails if the program was
-  // late while the computer was not.
+  // Returns whether the computer's lateness spoiled the attempt. The test fails if the program was
+  // late but the computer was not.
   bool WasSpoiled(const Terminal& terminal, FakeRig* rig) {
     const std::uint64_t at = terminal.stop_seen();
     const RigLateness once = rig->Late(at - kJustBefore, at),
@@ -78,8 +78,8 @@ class Attempts {
                     << screen;
     return late == Late::kComputer;
   }
-  // Returns true if the computer was late since `from` [ns]. Tests that kill the program use this
-  // function, because the program cannot report the lateness itself.
+  // Returns whether the computer has been late since `from` [ns]. Tests that kill the program use
+  // this function, because the killed program cannot report its lateness.
   bool ComputerWasLate(FakeRig* rig, std::uint64_t from) {
     const RigLateness late = rig->Late(from, Terminal::Now());
     if (late.processor < kLateOnce && late.rig < kLateOnce) return false;
@@ -87,7 +87,7 @@ class Attempts {
     return true;
   }
   // Ends a run that came to a stop, and judges it. Returns true if the computer's lateness spoiled
-  // the run; otherwise it fails the test and returns false.
+  // the run. Otherwise it fails the test and returns false.
   bool EndedByComputer(Terminal* terminal, FakeRig* rig) {
     terminal->Let();
     terminal->Kill(SIGINT);
@@ -98,7 +98,7 @@ class Attempts {
   }
 
   void Note(const std::string& words) { words_ += "\n  " + words; }
-  // Why each attempt ended. A test that ran out of attempts prints it.
+  // Returns why each attempt ended. A test prints this when it has no attempts left.
   std::string Words() const {
     return std::to_string(kMax) + " attempts, each spoiled by this computer:" + words_;
   }

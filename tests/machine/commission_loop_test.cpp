@@ -1,4 +1,4 @@
-// `predictor calibrate loop` at a terminal, over real sockets: the arm moves.
+// Tests `predictor calibrate loop` at a terminal and over real sockets. The arm moves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ class LoopAtTheTerminal : public Commissioning {
     ASSERT_TRUE(terminal->Says("hold s.")) << terminal->Screen();
     terminal->Hold('s');
   }
-  // The true handles' maximum speed [m/s] and acceleration [m/s²] since the mark.
+  // Returns the true handles' maximum speed [m/s] and acceleration [m/s²] since the mark.
   std::pair<double, double> Motion() {
     std::istringstream text(rig_->Ask("motion"));
     double rest = 0, fastest = 0, hardest = 0;
@@ -78,7 +78,7 @@ TEST_F(LoopAtTheTerminal, CtrlCInMotionBringsTheArmToRestAndSaysSo) {
   GIVE_UP_BUSY(attempts.Words());
 }
 
-// If the machine has an enabling device at either arm, holding a key alone moves nothing.
+// If the machine has an enabling device at either arm, the key alone must not move anything.
 TEST_F(LoopAtTheTerminal, TheMachinesEnablingDeviceIsAskedFor) {
   constexpr int kInput = 8;
   folder_.Change([](Machine* machine) { machine->enabling = EnablingInput{"right", kInput}; });
@@ -99,7 +99,7 @@ TEST_F(LoopAtTheTerminal, TheMachinesEnablingDeviceIsAskedFor) {
     EXPECT_LT(Motion().first, 1e-3);
     terminal.Let();
     EXPECT_EQ(rig_->Ask("do right 0 press " + input), "ok");
-    std::this_thread::sleep_for(std::chrono::seconds(1));  // an earlier press does not count
+    std::this_thread::sleep_for(std::chrono::seconds(1));  // an earlier press must not count
     terminal.Type("s");
     AwaitMotion();
     EXPECT_EQ(rig_->Ask("do right 0 release " + input), "ok");
@@ -117,8 +117,8 @@ TEST_F(LoopAtTheTerminal, TheMachinesEnablingDeviceIsAskedFor) {
   GIVE_UP_BUSY(attempts.Words());
 }
 
-// The watchdog runs as it does in a normal run: if this process hangs, the watchdog process brakes
-// the arm.
+// The watchdog runs as in a normal run. If this process hangs, the watchdog process must brake the
+// arm.
 TEST_F(LoopAtTheTerminal, WhereTheProgramHangsTheWatchdogStopsTheArm) {
   Attempts attempts;
   while (attempts.Next()) {
@@ -146,8 +146,8 @@ TEST_F(LoopAtTheTerminal, WhereTheProgramHangsTheWatchdogStopsTheArm) {
   FAIL() << attempts.Words();
 }
 
-// Every state of this arm counts. A session that slept for a millisecond in each cycle would
-// receive and answer fewer states than the arm sends.
+// The program needs each state of this arm. If a session slept for a millisecond in each cycle, it
+// would receive and answer fewer states than the arm sends.
 class FrankaLoopAtTheTerminal : public LoopAtTheTerminal {
  protected:
   FrankaLoopAtTheTerminal() : LoopAtTheTerminal({"franka", "franka"}, "box_9kg") {}
@@ -186,7 +186,7 @@ TEST_F(FrankaLoopAtTheTerminal, ItsStatesAreSeenAndAnsweredAsItSendsThem) {
       ASSERT_TRUE(attempts.WasSpoiled(terminal, rig_.get())) << terminal.Screen();
       continue;
     }
-    // Whatever the load of the computer, late ticks must account for all missing ticks.
+    // Whatever the load on the computer, late ticks must account for all missing ticks.
     const commissioning::Gaps& gaps = record->gaps;
     const std::string seen = commissioning::GapsText(gaps);
     const double late =
@@ -204,7 +204,7 @@ TEST_F(FrankaLoopAtTheTerminal, ItsStatesAreSeenAndAnsweredAsItSendsThem) {
   GIVE_UP_BUSY(attempts.Words());
 }
 
-// The data that a session leaves if it ends after `measured` of six joints.
+// Returns the data that a session leaves if it ends after `measured` of six joints.
 commissioning::Swings SwingsOf(const VelocityLoopSpec& spec, int measured) {
   constexpr double kRest = 0.4, kQuantum = 1e-5;  // [s], [rad]
   const commissioning::Chirp chirp{commissioning::ChirpOptions()};
@@ -265,7 +265,7 @@ TEST_F(Commissioning, SwingsThatWereMeasuredAreNotMeasuredAgain) {
   EXPECT_FALSE(std::filesystem::exists(file.path()));
 }
 
-// As if another robot's file had replaced the model's file.
+// The model's file looks as if another robot's file had replaced it.
 TEST_F(Commissioning, SwingsOfAnotherNumberOfJointsAreNotUsed) {
   const commissioning::SwingFile file(folder_.file(), "left", HashOf(*folder_.machine().left));
   commissioning::Swings swings = SwingsOf({11, 0.8, 0.006}, 5);
@@ -284,7 +284,7 @@ TEST_F(Commissioning, SwingsOutOfWhichNoLoopCanBeMadeAreNotKept) {
   commissioning::Swings swings = SwingsOf({11, 0.8, 0.006}, 6);
   for (commissioning::LoopRecord& record : swings.records)
     for (commissioning::LoopRecord::Sample& sample : record.samples)
-      sample.q = 0;  // it never moved
+      sample.q = 0;  // the joint never moved
   file.Save(swings, "a-day");
   Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
   ASSERT_TRUE(terminal.Says("Press Enter to use these results")) << terminal.Screen();
@@ -293,7 +293,7 @@ TEST_F(Commissioning, SwingsOutOfWhichNoLoopCanBeMadeAreNotKept) {
   EXPECT_FALSE(std::filesystem::exists(file.path()));
 }
 
-// Takes more than a minute of real time.
+// This test takes more than a minute of real time.
 TEST_F(LoopAtTheTerminal, FindsTheArmsLoopSoak) {
   if (Count(0, 1) == 0) GTEST_SKIP() << "In ./dev soak; in virtual time: commissioning.MeasureLoop";
   Attempts attempts;
@@ -301,7 +301,8 @@ TEST_F(LoopAtTheTerminal, FindsTheArmsLoopSoak) {
     SwitchOn();
     Terminal terminal = Predictor({"calibrate", "loop", "--arm", "left"});
     Begin(&terminal);
-    // If a busy computer interrupts a measurement, it begins again after the key is released.
+    // If a busy computer interrupts a measurement, the measurement begins again after the key is
+    // released.
     while (terminal.Says("his joint will be measured again.", 25)) {
       terminal.Let();
       std::this_thread::sleep_for(std::chrono::milliseconds(300));
@@ -319,7 +320,7 @@ TEST_F(LoopAtTheTerminal, FindsTheArmsLoopSoak) {
     const VelocityLoopSpec& truth = scenario_.arm(0).loop;
     EXPECT_NEAR(found.bandwidth, truth.bandwidth, 0.1 * truth.bandwidth) << screen;
     EXPECT_NEAR(found.damping_ratio, truth.damping_ratio, 0.1) << screen;
-    // The delay of the wire and of the controller's cycles adds to the loop's delay.
+    // The delays of the wire and of the controller's cycles add to the loop's delay.
     EXPECT_GT(found.delay, truth.delay) << screen;
     EXPECT_LT(found.delay, truth.delay + 0.008) << screen;
     return;

@@ -1,5 +1,6 @@
-// `predictor devices` and `predictor calibrate` as a person at a rig uses them: at a terminal, over
-// real sockets. The arms do not move by themselves here; see commission_loop_test.cpp.
+// Tests `predictor devices` and `predictor calibrate` as a person at a rig uses them: at a terminal
+// and over real sockets. The arms do not move by themselves here; commission_loop_test.cpp covers
+// that.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +16,7 @@
 namespace predictor {
 namespace {
 
-// The first number that the parentheses in `pattern` capture.
+// Returns the first number that the parentheses in `pattern` capture.
 double NumberIn(const std::string& text, const std::string& pattern) {
   std::smatch match;
   return std::regex_search(text, match, std::regex(pattern)) ? std::stod(match[1]) : NAN;
@@ -45,7 +46,7 @@ TEST_F(Commissioning, DevicesReportsWhichAnswerAndContinuesIfOneDoesNot) {
   }
   {
     SwitchOn();
-    folder_.Change([](Machine* machine) {  // like a CB3, and like an arm of seven joints
+    folder_.Change([](Machine* machine) {  // resembles a CB3 and an arm of seven joints
       machine->left->arm.sample_rate = 125;
       machine->right->arm = LoadScenario(FileOf("box_9kg")).arm(1);
     });
@@ -67,7 +68,7 @@ TEST_F(Commissioning, DevicesReportsWhichAnswerAndContinuesIfOneDoesNot) {
 
 TEST_F(Commissioning, TheHandleIsFoundInPosesIntoWhichAPersonLeads) {
   SwitchOn();
-  folder_.Change([](Machine* machine) {  // as if the handle had not been measured yet
+  folder_.Change([](Machine* machine) {  // removes the measurement of the handle
     machine->left->arm.payload = {};
     machine->left->arm.payload.mass = 0;
   });
@@ -115,7 +116,7 @@ TEST_F(Commissioning, TheHandleIsFoundInPosesIntoWhichAPersonLeads) {
   EXPECT_EQ(result["written"], true);
   EXPECT_EQ(result["found"]["poses"], 8);
   EXPECT_NEAR(result["found"]["mass_kg"]["value"].get<double>(), found.mass, 1e-9);
-  // After this change the push tests must be repeated.
+  // After this change, the push tests must be repeated.
   EXPECT_FALSE(IsPushTested(*folder_.machine().left));
   EXPECT_TRUE(IsPushTested(*folder_.machine().right));
 }
@@ -127,7 +128,7 @@ TEST_F(Commissioning, PosesThatAreTooAlikeAreRefusedAndNothingIsWritten) {
   JointVector q = Joints("left");
   for (int pose = 1; pose <= 6; ++pose) {
     ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + ": Enter")) << terminal.Screen();
-    q[5] += 0.3;  // about the vertical: down stays down
+    q[5] += 0.3;  // a rotation about the vertical keeps the direction of gravity
     Lead("left", q);
     terminal.Type("\n");
     ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + " taken")) << terminal.Screen();
@@ -238,7 +239,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Wiring{"OppositeSigns", "-1 0 0 0 -1 0 0 0 -1", "All signs are reversed"}),
     [](const testing::TestParamInfo<Wiring>& wiring) { return std::string(wiring.param.name); });
 
-// The file assigns each arm the other arm's address.
+// The file gives each arm the address of the other arm.
 TEST_F(Commissioning, ExchangedSensorsAreRefused) {
   SwitchOn({Left(), Right(), "left=net_ft:" + HostOf(kLeftSensor),
             "right=net_ft:" + HostOf(kRightSensor)});

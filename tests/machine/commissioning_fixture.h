@@ -1,5 +1,5 @@
-// A rig to be commissioned: the far end as a separate process, which simulates the arms, their
-// sensors, and the person who moves or presses them, and the program at a terminal.
+// A rig to be commissioned. One process simulates the arms, their sensors, and the person who moves
+// or presses them. The program runs at a terminal.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ class Commissioning : public testing::Test {
     arguments.insert(arguments.end(), {"--machine", folder_.file()});
     return Terminal(arguments);
   }
-  // File for --json, and the result that a command wrote to it.
+  // Returns the file for --json, and the result that a command wrote to it.
   std::string ResultFile() const { return (folder_ / "result.json").string(); }
   nlohmann::json Result() const {
     std::ifstream in(ResultFile());
@@ -59,25 +59,26 @@ class Commissioning : public testing::Test {
     text << q.transpose();
     return text.str();
   }
-  // A person leads the arm there in free-drive and holds it.
+  // A person guides the arm there in free-drive and holds it.
   void Lead(const std::string& hand, const JointVector& q) {
     ASSERT_EQ(rig_->Ask("lead " + hand + " " + Text(q)), "ok");
     for (int i = 0; i < 3000 && rig_->Ask("led " + hand) != "yes"; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     ASSERT_EQ(rig_->Ask("led " + hand), "yes");
   }
-  // Pushes the handle as the program requests, each time until the program has read the push.
+  // Pushes the handle as the program requests. Each push lasts until the program has read it.
   void ObeyPushes(Terminal* terminal, int pushes) {
     const char* forces[] = {"12 0 0", "0 12 0", "0 0 12"};
     for (int n = 0; n < pushes; ++n) {
-      // "left handle along +x of the world, ..."
+      // The request is "left handle along +x of the world, ...".
       const std::string reported = terminal->Line("Push the ");
       const auto at = reported.find("along +");
       ASSERT_NE(at, std::string::npos) << terminal->Screen();
       const std::string hand = reported.substr(0, reported.find(' '));
       bool read = false;
       for (int attempt = 0; attempt < 5 && !read; ++attempt) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(300));  // hands off in between
+        // the person lets go in between
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
         rig_->Ask("press " + hand + " " + forces[reported[at + 7] - 'x']);
         read = terminal->Says("  reads ", 4);
         rig_->Ask("press " + hand + " 0 0 0");
@@ -85,7 +86,7 @@ class Commissioning : public testing::Test {
       ASSERT_TRUE(read) << terminal->Screen();
     }
   }
-  // Releases both handles while their sensors are tared, then pushes one handle.
+  // Releases both handles while the program tares their sensors, and then pushes one handle.
   void PushOne(Terminal* terminal, int tares = 2) {
     for (int n = 0; n < tares; ++n) {
       ASSERT_TRUE(terminal->Says("hen press Enter.")) << terminal->Screen();

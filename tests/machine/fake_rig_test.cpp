@@ -1,4 +1,4 @@
-// The commands that a person types at the fake rig, as in docs/tutorials/fake-rig.md.
+// Tests the commands that a person types at the fake rig, as in docs/tutorials/fake-rig.md.
 #include "machine/rig_process.h"
 
 namespace predictor {

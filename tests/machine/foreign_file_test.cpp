@@ -1,6 +1,6 @@
-// Files that others wrote are read before the program connects to an arm, so a file that makes a
-// reader fail, hang or crash cannot affect an arm that obeys the program. No device exists in these
-// tests: a program that connected first would report this instead of the file.
+// The program must read files from others before it connects to an arm. A file that makes a reader
+// fail, hang or crash then cannot affect an arm that follows the program. These tests have no
+// device: a program that connected first would report this instead of the file.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -12,14 +12,14 @@
 namespace predictor {
 namespace {
 
-// Nested so deeply that a recursive reader without a limit exhausts its stack.
+// Returns a text so deeply nested that a recursive reader without a limit exhausts its stack.
 std::string Nested(const std::string& open) {
   std::string text;
   for (int depth = 0; depth < 100'000; ++depth) text += open;
   return text;
 }
 
-// A binary STL that announces as many triangles as possible and contains none.
+// Returns a binary STL that announces as many triangles as possible and contains none.
 std::string HollowMesh() { return std::string(80, ' ') + "\xff\xff\xff\xff"; }
 
 constexpr const char* kObjectWithMesh = R"(<robot name="box"><link name="box">
@@ -29,7 +29,8 @@ constexpr const char* kObjectWithMesh = R"(<robot name="box"><link name="box">
 // A file that a stranger wrote.
 struct Foreign {
   const char* name;
-  const char* key;  // the setting that refers to it; "": it is the scenario or the machine file
+  // the setting that refers to the file; "" for the scenario or the machine file itself
+  const char* key;
   const char* file;
   std::string text;
   const char* blamed;  // name of the file in the error
@@ -71,7 +72,7 @@ TEST_P(ForeignFile, IsReadBeforeAnArmIsConnected) {
     folder_.Change([&](Machine* machine) {
       machine->left->arm.model = "package://" + package + "/" + foreign.file;
     });
-    folder_.NotePushTests();  // the earlier ones were of another model
+    folder_.NotePushTests();  // the earlier push tests belong to another model
   } else if (!key.empty()) {
     arguments.insert(arguments.end(), {"--set", key + "=" + file});
   }
@@ -92,8 +93,8 @@ INSTANTIATE_TEST_SUITE_P(
         Foreign{"Arm", "arms.left.arm.model", "arm.urdf", Nested("<robot>"), "arm.urdf"}),
     [](const testing::TestParamInfo<Foreign>& which) { return which.param.name; });
 
-// The tests above would notice a connection: with sound files the program connects, and reports
-// that there is no device.
+// The tests above would notice a connection. If the files are sound, the program connects and
+// reports that there is no device.
 TEST_F(BeforeTheArms, SoundFilesLetTheProgramConnect) {
   Terminal terminal(Arguments(FileOf("dual_ur5")));
   EXPECT_EQ(terminal.Wait(), 3) << terminal.Screen();

@@ -1,6 +1,6 @@
-// Faults of arms, sensors and wires over real sockets while the arms are at rest. The results
-// therefore do not depend on how far an arm moves on a busy computer. devices/faults.cpp tests
-// faults in motion, in virtual time.
+// Tests faults of arms, sensors and wires over real sockets while the arms are at rest. The results
+// do not depend on how far an arm moves on a busy computer. devices/faults.cpp tests faults in
+// motion, in virtual time.
 #include <gtest/gtest.h>
 
 #include "machine/attempts.h"
@@ -11,10 +11,10 @@ namespace {
 struct FaultAtRest {
   const char* name;
   std::array<const char*, 2> makes;    // of left and right
-  std::array<const char*, 2> sensors;  // "net_ft", or "": own
+  std::array<const char*, 2> sensors;  // "net_ft", or "" for the arm's own
   std::vector<const char*> does;       // requests to the rig, sent in quick succession
   std::vector<const char*> expected;   // what the screen must report
-  bool late = false;                   // a silence, for which the arms stop as for lateness
+  bool late = false;                   // a silence stops the arms as lateness does
 };
 
 class IdleFault : public testing::TestWithParam<FaultAtRest> {
@@ -45,8 +45,8 @@ class IdleFault : public testing::TestWithParam<FaultAtRest> {
   MachineFolder folder_;
 };
 
-// The faults may arrive in one tick or in two, in either order: the arms always end without power,
-// and the program reports all faults.
+// The faults may arrive in one tick or in two, in either order. The arms must end without power,
+// and the program must report all faults.
 TEST_P(IdleFault, EndsWithoutPowerAndIsReported) {
   Attempts attempts;
   while (attempts.Next()) {
@@ -63,7 +63,7 @@ TEST_P(IdleFault, EndsWithoutPowerAndIsReported) {
         EXPECT_EQ(rig.Ask(what), "ok") << what;
     }
     const bool unpowered = terminal.Says("Now UNPOWERED", 10);
-    // the lines appear one after the other
+    // The lines appear one after the other.
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     terminal.Kill(SIGINT);
     const int code = terminal.Wait();
@@ -133,8 +133,8 @@ INSTANTIATE_TEST_SUITE_P(
                     true}),
     [](const testing::TestParamInfo<FaultAtRest>& fault) { return std::string(fault.param.name); });
 
-// The minor fault was reported long before the major one occurs. The arms then no longer hold their
-// position.
+// The program reports the minor fault long before the major one occurs. After the major one, the
+// arms must no longer hold their position.
 TEST(IdleFaults, AnEmergencyStopWhileTheArmsAreHeldTakesThePowerAway) {
   const MachineFolder folder({"ur", "ur"});
   folder.NotePushTests();

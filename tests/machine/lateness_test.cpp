@@ -1,4 +1,5 @@
-// Distinguishes lateness of the computer, which is no fault, from lateness of the program.
+// The tests must distinguish lateness of the computer, which is no fault, from lateness of the
+// program.
 #include <sys/socket.h>
 
 #include "machine/attempts.h"
@@ -18,7 +19,7 @@ TEST(LatenessIsJudged, ByTheFarEndAndNotByTheStopAlone) {
   EXPECT_EQ(Judge("HELD after the stop 'deadline'.", false, calm, 9), Late::kComputer);
   EXPECT_EQ(Judge(push, false, stalled, 12), Late::kNothing);
   EXPECT_EQ(Judge("it crashed", false, stalled, 12), Late::kNothing);
-  // The simulated person held the key all the time.
+  // The simulated person held the key the whole time.
   EXPECT_EQ(Judge(key, false, calm, 0), Late::kNothing);
   EXPECT_EQ(Judge(key, true, calm, 0), Late::kComputer);
   EXPECT_EQ(Judge(key, false, busy, 0), Late::kComputer);
@@ -46,7 +47,7 @@ class Lateness : public testing::Test {
   MachineFolder folder_;
 };
 
-// The processors were free, yet the program sent nothing. Such a silence must not justify another
+// The processors were free, but the program sent nothing. Such a silence must not justify another
 // attempt.
 TEST_F(Lateness, OfAProgramThatStopsSendingIsItsOwn) {
   Attempts attempts;
@@ -57,7 +58,8 @@ TEST_F(Lateness, OfAProgramThatStopsSendingIsItsOwn) {
       ASSERT_TRUE(attempts.EndedByComputer(&terminal, &rig));
       continue;
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1600));  // past the load of the start-up
+    // waits until the load of the start-up has ended
+    std::this_thread::sleep_for(std::chrono::milliseconds(1600));
     const std::uint64_t from = Terminal::Now();
     terminal.Kill(SIGSTOP);
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
@@ -80,7 +82,7 @@ TEST_F(Lateness, OfAProgramThatStopsSendingIsItsOwn) {
   GIVE_UP_BUSY(attempts.Words());
 }
 
-// A far end that stalled detects this itself, so the program is not blamed for its stop.
+// The process of the fakes detects its own stall, so the program is not blamed for the stop.
 TEST_F(Lateness, OfTheFarEndIsTheComputers) {
   Attempts attempts;
   while (attempts.Next()) {

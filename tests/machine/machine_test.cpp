@@ -1,5 +1,5 @@
-// The program with real arms: over real sockets, with the fakes and their rig in a separate process
-// and a person at a terminal.
+// Tests the program with real arms over real sockets. The fakes and their rig are a separate
+// process, and a person uses a terminal.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,12 +11,12 @@
 namespace predictor {
 namespace {
 
-// Allowed distance between the paths of one object in two runs of the same task [m]. Tared sensors
-// may differ by 0.2 N between runs, and the scenarios' hands have a stiffness of 100 N/m where
-// nothing else holds the object.
+// The allowed distance between the paths of one object in two runs of the same task [m]. Tared
+// sensors may differ by 0.2 N between runs. Where nothing else holds the object, the scenarios'
+// hands have a stiffness of 100 N/m.
 constexpr double kBeside = 2e-3;
 
-// The object's path in the run of a recording, one point every 20 ms [m].
+// Returns the object's path in the run of a recording, one point every 20 ms [m].
 std::vector<Vector3> PathOf(const std::string& recording) {
   Child table({"export", "data", recording, "object.object.pose.p*", "--every", "20", "--quiet"});
   EXPECT_EQ(table.Wait(), 0) << table.errors();
@@ -34,7 +34,7 @@ std::vector<Vector3> PathOf(const std::string& recording) {
   return path;
 }
 
-// The largest distance of the points of a path from another path [m].
+// Returns the largest distance of a path's points from another path [m].
 double Beside(const std::vector<Vector3>& points, const std::vector<Vector3>& path) {
   double most = 0;
   for (const Vector3& p : points) {
@@ -54,7 +54,8 @@ struct Rigging {
   const char* name;
   const char* scenario;
   std::array<const char*, 2> makes;  // of left and right
-  std::array<double, 2> off;         // as in docs/concepts/accuracy.md, over sockets [mm]
+  // expected tracking error over sockets, as in docs/concepts/accuracy.md [mm]
+  std::array<double, 2> off;
   std::array<const char*, 2> sensors = {"", ""};
 };
 
@@ -67,7 +68,7 @@ class OnMachine : public testing::TestWithParam<Rigging> {
     folder_.NotePushTests();
     SwitchOn();
   }
-  // Resets the rig: after a stop without power, the simulated user switches it on again.
+  // Resets the rig. After a stop without power, the simulated user switches it on again.
   void SwitchOn() {
     std::vector<std::string> fakes = {
         "left=" + std::string(GetParam().makes[0]) + ":" + HostOf(kLeft),
@@ -96,7 +97,7 @@ class OnMachine : public testing::TestWithParam<Rigging> {
   // If a hand's path deviates by the allowed distance, its force changes by this distance times the
   // hand's stiffness. The largest reading also contains some sensor noise.
   static void ExpectSameForces(const nlohmann::json& real, const nlohmann::json& simulated) {
-    // Maximum over the scenarios' hands and sensors.
+    // These are the maximum values of the scenarios' hands and sensors.
     constexpr double kStiffest = 250, kNoise = 0.05;
     for (const char* hand : {"left", "right"}) {
       const double ours = real["wrench"][hand]["force_n"]["max"],
@@ -106,9 +107,9 @@ class OnMachine : public testing::TestWithParam<Rigging> {
       EXPECT_NEAR(ours, theirs, kStiffest * kBeside + 5 * kNoise);
     }
   }
-  // The allowed tracking error is the one in docs/concepts/accuracy.md plus the effect of 3 ms more
-  // lag, at 0.020 mm per millisecond. The lag is one controller cycle that a command misses plus
-  // one tick of the program.
+  // The tracking error may be that of docs/concepts/accuracy.md plus the effect of 3 ms more lag,
+  // at 0.020 mm per millisecond. This lag is one controller cycle that a command misses plus one
+  // tick of the program.
   static void ExpectTracking(const nlohmann::json& real, const nlohmann::json& simulated) {
     constexpr double kByLag = 0.020, kLag = 3, kSimulated = 0.10;  // [mm/ms], [ms], [mm]
     for (std::size_t i = 0; i < 2; ++i) {
@@ -121,7 +122,7 @@ class OnMachine : public testing::TestWithParam<Rigging> {
       EXPECT_LT(ours, theirs + (GetParam().off[i] - kSimulated) + kByLag * kLag);
     }
   }
-  // Compares the positions on the path but not their times, because the simulated person begins
+  // Compares the positions on the path but not their times, because the simulated person starts
   // only after seeing the run begin.
   static void ExpectSamePath(const std::vector<Vector3>& real, std::vector<Vector3> simulated) {
     constexpr std::size_t kLater = 15;  // points of 20 ms
@@ -135,7 +136,8 @@ class OnMachine : public testing::TestWithParam<Rigging> {
     EXPECT_LT(missing, kBeside);
   }
 
-  // Replaying the run without the arms gives the same result, whether or not lateness stopped it.
+  // A replay of the run without the arms must give the same result, whether or not lateness stopped
+  // it.
   static void ExpectSameAgain(const std::string& recording) {
     Child again({"verify", recording});
     EXPECT_EQ(again.Wait(), 0) << again.output() << again.errors();
@@ -147,11 +149,12 @@ class OnMachine : public testing::TestWithParam<Rigging> {
   std::unique_ptr<FakeRig> rig_;
 };
 
-// If the computer stalls for some milliseconds, the arms stop, as on a real rig. If the far end
-// detected the stall, the run is repeated.
+// If the computer stalls for some milliseconds, the arms stop, as on a real rig. If the process of
+// the fakes detected the stall, the run is repeated.
 //
-// The task is the same as with the simulated device: the object takes the same path, the hands
-// press equally hard, and the arms follow as accurately as docs/concepts/accuracy.md states.
+// The task is the same as with the simulated device. The object must take the same path, the hands
+// must press equally hard, and the arms must follow as accurately as docs/concepts/accuracy.md
+// states.
 TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
   const double duration = static_cast<double>(Count(6, 30));
   const std::string recording = (folder_ / "run.mcap").string(),
@@ -192,15 +195,15 @@ TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
   ExpectSamePath(PathOf(recording), PathOf(reference));
 }
 
-// Whenever the program dies, the arms come to rest by themselves within the time advertised for the
-// slower make. The arms brake no harder than advertised for the quicker make. The program dies
-// during one cycle of a motion from side to side. The moments are spread evenly over the cycle, so
-// half of them fall into its faster half.
+// Whenever the program dies, the arms must come to rest by themselves within the time advertised
+// for the slower make, and must brake no harder than advertised for the quicker make. The program
+// dies during one cycle of a motion from side to side. The moments are spread evenly over the
+// cycle, so half of them fall into its faster half.
 TEST_P(OnMachine, OutlivesAKilledProgramSoak) {
   constexpr double kGolden = 0.6180339887498949;
   scenario_ = folder_.Brisk(GetParam().scenario);
   SwitchOn();
-  constexpr double kLivesOn = 0.02;  // after the signal [s]
+  constexpr double kLivesOn = 0.02;  // time for which it lives after the signal [s]
   std::vector<double> speeds;
   const long wanted = Count(1, 50);
   Attempts attempts;  // for each kill
@@ -222,7 +225,7 @@ TEST_P(OnMachine, OutlivesAKilledProgramSoak) {
     std::this_thread::sleep_for(std::chrono::milliseconds(800));
     const RigMotion motion = rig_->Motion();
     SwitchOn();
-    if (lived_on.count() > kLivesOn) {  // the test's own delay would widen the bound
+    if (lived_on.count() > kLivesOn) {  // the delay of the test itself would widen the bound
       attempts.Note("The signal took too long.");
       continue;
     }
@@ -248,7 +251,7 @@ INSTANTIATE_TEST_SUITE_P(
     Of, OnMachine,
     testing::Values(
         Rigging{"two UR", "dual_ur5", {"ur", "ur"}, {0.16, 0.16}},
-        // Must be as accurate as two UR with their own sensors.
+        // This rig must be as accurate as two UR with their own sensors.
         Rigging{"two UR, Net FT", "dual_ur5", {"ur", "ur"}, {0.16, 0.16}, {"net_ft", "net_ft"}},
         Rigging{"two Franka", "box_9kg", {"franka", "franka"}, {0.39, 0.40}},
         Rigging{"UR, Franka", "ur_and_panda", {"ur", "franka"}, {0.25, 0.48}}),
@@ -258,8 +261,8 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
-// Readings queue at a sensor's socket while the program connects to the arms. These old readings
-// must not cause a stop.
+// Readings queue at a sensor's socket while the program connects to the arms. They must not cause a
+// stop although they are old.
 TEST(NetFtOnMachine, IsReadyDespiteBufferedReadings) {
   const MachineFolder folder({"ur", "ur"}, {"net_ft", "net_ft"});
   folder.NotePushTests();
@@ -276,11 +279,11 @@ TEST(NetFtOnMachine, IsReadyDespiteBufferedReadings) {
   GIVE_UP_BUSY(attempts.Words());
 }
 
-// The console's messages to a user who wants to run arms without push tests.
+// Tests the console's messages to a user who wants to run arms without push tests.
 class PushTests : public testing::Test {
  protected:
   PushTests() : folder_({"ur", "ur"}) {}
-  // Connects to nothing: there is no rig. Returns the exit code and the output.
+  // Runs the program without a rig to connect to. Returns the exit code and the output.
   std::pair<int, std::string> Run() const {
     Terminal terminal({"run", FileOf("dual_ur5"), "--machine", folder_.file(), "--set",
                        "operator.type=person", "--no-viewer", "--no-record"});
@@ -328,8 +331,8 @@ TEST_F(PushTests, AreAskedForAgainAfterEveryChangeOfTheArm) {
   }
 }
 
-// Checked over the wire before anything moves: the payload in the arm's controller contradicts the
-// file.
+// The payload in the arm's controller contradicts the file. The program must check this over the
+// wire before anything moves.
 TEST_F(PushTests, ThePayloadThatTheRobotIsSetToIsComparedToo) {
   folder_.NotePushTests();
   for (const bool fits : {false, true}) {
@@ -346,8 +349,8 @@ TEST_F(PushTests, ThePayloadThatTheRobotIsSetToIsComparedToo) {
   }
 }
 
-// Checked over the wire before anything moves: the controller belongs to a different arm than the
-// file's model.
+// The controller belongs to a different arm than the file's model. The program must check this over
+// the wire before anything moves.
 TEST_F(PushTests, TheArmThatAnswersHasToBeThatOfTheModel) {
   folder_.NotePushTests();
   const FakeRig rig(FileOf("dual_ur5"),
@@ -358,7 +361,7 @@ TEST_F(PushTests, TheArmThatAnswersHasToBeThatOfTheModel) {
   EXPECT_EQ(said.find("Now SELFTEST"), std::string::npos) << said;
 }
 
-// Without lag compensation, the loop of the 9 kg box is predicted to oscillate in any hand, so
+// Without lag compensation, the loop of the 9 kg box is predicted to oscillate with any hand, so
 // nothing may move.
 TEST_F(PushTests, DoNotSufficeWhereTheLoopIsPredictedToSwing) {
   folder_.NotePushTests();
@@ -373,12 +376,12 @@ TEST_F(PushTests, DoNotSufficeWhereTheLoopIsPredictedToSwing) {
   EXPECT_EQ(said.find("Now SELFTEST"), std::string::npos) << said;
 }
 
-// A console with arms that are ready: a person's actions and their effects.
+// A person uses a console whose arms are ready.
 class RigsConsole : public testing::Test {
  protected:
   RigsConsole() : folder_({"ur", "ur"}) { folder_.NotePushTests(); }
-  // act: actions from IDLE on; it sets the text that is expected on the screen. The run ends with
-  // Ctrl-C.
+  // act: the person's actions from IDLE on. It sets the text that is expected on the screen. The
+  // run ends with Ctrl-C.
   void InIdle(const std::function<void(Terminal*, bool* expected)>& act) const {
     Attempts attempts;
     while (attempts.Next()) {
@@ -406,8 +409,8 @@ class RigsConsole : public testing::Test {
   MachineFolder folder_;
 };
 
-// The stopping keys include those that pause a terminal's output (Ctrl-S, Ctrl-Q), suspend a
-// program (Ctrl-Z), quote a key (Ctrl-V), or produce no character (Ctrl-Space).
+// These keys must stop the arms although some of them pause a terminal's output (Ctrl-S, Ctrl-Q),
+// suspend a program (Ctrl-Z), quote a key (Ctrl-V), or produce no character (Ctrl-Space).
 TEST_F(RigsConsole, StopsByAnyOtherKey) {
   for (const char key : {'x', '\x13', '\x11', '\x1a', '\x16', '\0'})
     InIdle([key](Terminal* terminal, bool* expected) {
@@ -416,8 +419,7 @@ TEST_F(RigsConsole, StopsByAnyOtherKey) {
     });
 }
 
-// While a command is typed, letters belong to it. Any other key stops the run, as it does
-// otherwise.
+// While a person types a command, letters belong to it. Any other key must stop the run as usual.
 TEST_F(RigsConsole, StopsAlsoWhileACommandIsTyped) {
   for (const std::string key : {"\x1b", "\t", "\x13", "\x1a"})
     InIdle([key](Terminal* terminal, bool* expected) {
@@ -428,8 +430,8 @@ TEST_F(RigsConsole, StopsAlsoWhileACommandIsTyped) {
     });
 }
 
-// A key was held while the connection stalled. The letters then arrive all at once, although the
-// person may have released the key.
+// The person held a key while the connection stalled. The letters then arrive all at once, although
+// the person may have released the key.
 TEST_F(RigsConsole, LettersThatComeAtOnceHoldNothing) {
   InIdle([](Terminal* terminal, bool* expected) {
     for (const std::string letters : {"a", "aaaa", "aaaaaaaaaaaa"}) {
@@ -438,12 +440,12 @@ TEST_F(RigsConsole, LettersThatComeAtOnceHoldNothing) {
     }
     *expected = terminal->Says("the presses of key a arrived late, all at once", 5) &&
                 terminal->Screen().find("Now ALIGN") == std::string::npos;
-    terminal->Hold('a');  // none of them remains
+    terminal->Hold('a');  // none of these letters may remain
     *expected = terminal->Says("Now ALIGN", 5) && *expected;
   });
 }
 
-// A jammed z key must not reset the run at the moment when the cause of the stop disappears.
+// A jammed z key must not reset the run as soon as the cause of the stop disappears.
 TEST_F(RigsConsole, ResetsOncePerTouch) {
   InIdle([](Terminal* terminal, bool* expected) {
     terminal->Hold('z');
@@ -457,8 +459,8 @@ TEST_F(RigsConsole, ResetsOncePerTouch) {
   });
 }
 
-// The progress is redrawn ten times a second, and other threads print lines. Neither interrupts the
-// command that the user is typing.
+// The console redraws the progress ten times a second, and other threads print lines. Neither may
+// interrupt the command that the user is typing.
 TEST(Console, KeepsTheTypedText) {
   Terminal terminal({"run", FileOf("box_9kg"), "--no-viewer", "--no-record", "--duration", "60"});
   ASSERT_TRUE(terminal.Says("Running", 60)) << terminal.Screen();

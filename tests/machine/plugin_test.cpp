@@ -1,4 +1,4 @@
-// Controllers outside the program that fail in real time.
+// Tests controllers outside the program that fail in real time.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The watchdog brings the arms to rest, and all but the last second can be recovered.
+// The watchdog must bring the arms to rest, and `repair` must recover all but the last second.
 TEST(PluginCrash, IsStoppedByTheWatchdogAndLeavesARecording) {
   test::FindPlugins();
   const test::TemporaryFolder own;
@@ -61,8 +61,8 @@ TEST(PluginCrash, IsStoppedByTheWatchdogAndLeavesARecording) {
   FAIL() << attempts.Words();
 }
 
-// A process that hangs in real time is replaced by gravity compensation and damping, until the run
-// stops.
+// If a controller's process hangs in real time, gravity compensation and damping must replace it
+// until the run stops.
 TEST(PluginHang, IsBridgedUntilTheRunStops) {
   const test::TemporaryFolder folder;
   const std::string file = folder / "run.mcap";

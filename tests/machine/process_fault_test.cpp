@@ -1,4 +1,4 @@
-// Faults of the program's own processes with real arms, over real sockets.
+// Tests faults of the program's own processes with real arms, over real sockets.
 #include <gtest/gtest.h>
 
 #include "machine/attempts.h"
@@ -13,8 +13,8 @@ std::vector<std::string> Arguments(const std::string& scenario, const MachineFol
           "--no-viewer", "--no-record"};
 }
 
-// Fault 31: the loop hangs, and the watchdog process brakes the arms that leave it a channel. When
-// the loop continues, it finds the arms stopped and stops too.
+// For fault 31, the loop hangs, and the watchdog process brakes the arms to which it has a channel.
+// When the loop continues, it finds the arms stopped and stops too.
 TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
   const MachineFolder folder({"ur", "franka"});
   folder.NotePushTests();
@@ -24,7 +24,7 @@ TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
     FakeRig rig(scenario, {"left=ur:" + HostOf(kLeft), "right=franka:" + HostOf(kRight)});
     Attempts::AwaitCalm(&rig);
     Terminal terminal(Arguments(scenario, folder));
-    // The moment when the first move is fastest.
+    // The loop hangs when the first move is fastest.
     if (!terminal.Start(&rig) || terminal.Says("Now STOPPING", kBriskBegin + kBriskMove / 2)) {
       ASSERT_TRUE(attempts.EndedByComputer(&terminal, &rig));
       continue;
@@ -61,7 +61,7 @@ TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
   FAIL() << attempts.Words();
 }
 
-// The end of a run is not a hang: the loop itself brings the arms to rest and reports it.
+// The end of a run is not a hang. The loop itself must bring the arms to rest and report it.
 TEST(ProcessFault, CtrlCInARunIsNotAHang) {
   const MachineFolder folder({"ur", "ur"});
   folder.NotePushTests();
@@ -86,9 +86,9 @@ TEST(ProcessFault, CtrlCInARunIsNotAHang) {
   GIVE_UP_BUSY(attempts.Words());
 }
 
-// The watchdog's channel is closed during the run. The program reports this immediately, not only
-// when the channel is needed, and the channel is restored automatically. Lateness may stop the loop
-// meanwhile, but the watchdog keeps watching.
+// The watchdog's channel is closed during the run. The program must report this immediately, not
+// only when it needs the channel, and the channel must be restored automatically. Lateness may stop
+// the loop meanwhile, but the watchdog keeps watching.
 TEST(ProcessFault, ALostStopChannelIsReportedAndRestored) {
   const MachineFolder folder({"ur", "franka"});
   folder.NotePushTests();
@@ -109,7 +109,7 @@ TEST(ProcessFault, ALostStopChannelIsReportedAndRestored) {
   terminal.Wait();
 }
 
-// The process with this name that belongs to the program; 0 if there is none.
+// Returns the process with this name that belongs to the program, or 0 if there is none.
 int ProcessBeside(int program, const std::string& name) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
     const int pid = std::atoi(entry.path().filename().c_str());
@@ -120,7 +120,7 @@ int ProcessBeside(int program, const std::string& name) {
   return 0;
 }
 
-// A watchdog that can no longer detect a hang ends the motion, and is restored.
+// A watchdog that can no longer detect a hang must end the motion and be restored.
 TEST(ProcessFault, AWatchdogThatIsStoppedEndsMotionSoak) {
   const MachineFolder folder({"ur", "franka"});
   folder.NotePushTests();
@@ -153,7 +153,7 @@ TEST(ProcessFault, AWatchdogThatIsStoppedEndsMotionSoak) {
   FAIL() << attempts.Words();
 }
 
-// A console that fails with an exception has the same effect as an operator who left.
+// A console that fails with an exception must have the same effect as an operator who left.
 TEST(ProcessFault, AConsoleThatHearsNoMoreKeysStopsTheRun) {
   const MachineFolder folder({"ur", "ur"});
   folder.NotePushTests();
@@ -173,9 +173,9 @@ TEST(ProcessFault, AConsoleThatHearsNoMoreKeysStopsTheRun) {
   EXPECT_EQ(terminal.Wait(), 1) << terminal.Screen();
 }
 
-// Fault 33: real arms do not move if any other program may delay the loop.
+// For fault 33, the program must not move real arms if another program could delay the loop.
 TEST(ProcessFault, WithoutRealTimePriorityRealArmsAreRefused) {
-  // The refused hosts include names that merely begin like this computer's own addresses.
+  // The refused hosts include names that only look like addresses of this computer.
   for (const char* host : {"192.0.2.10", "127.robot.example"}) {
     const MachineFolder folder({"ur", "ur"});
     folder.Change([&](Machine* machine) { machine->left->connection.host = host; });

@@ -1,5 +1,5 @@
-// The far end of the wire and the program, each in a separate process, and a person at the
-// program's terminal.
+// Runs the fakes and the program in separate processes, and simulates a person at the program's
+// terminal.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@
 
 namespace predictor {
 
-// An address of this machine that no other test process uses. last: 1 … 254.
+// Returns an address of this machine that no other test process uses. last: 1 … 254.
 inline std::string HostOf(int last) {
   constexpr int kNumbers = 250;
   const int pid = getpid();
@@ -41,19 +41,19 @@ inline std::string FileOf(const std::string& scenario) {
   return std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/" + scenario + ".yaml";
 }
 
-// The true arms' motion since the mark; see FarRig::Motion.
+// The true arms' motion since the mark, as in FarRig::Motion.
 struct RigMotion {
   double rest_after = 0, fastest = 0, hardest = 0, distance = 0, joint = 0, braking = 0;
 };
 
-// The longest delays that the far end measured [ms]: of its highest-priority threads on each
-// processor (and their sum), of its own loop, and of a thread with the ordinary priority of the
-// program's console. Also the program's longest silence.
+// The longest delays that the process of the fakes measured [ms]. They are those of its
+// highest-priority threads on each processor (and their sum), of its own loop, and of a thread with
+// the ordinary priority of the program's console. The program's longest silence is included.
 struct RigLateness {
   double processor = 0, processor_sum = 0, rig = 0, silence = 0, ordinary = 0;
 };
 
-// The far end.
+// The process that runs the fakes and their rig.
 class FakeRig {
  public:
   FakeRig(const std::string& scenario, const std::vector<std::string>& fakes) {
@@ -98,7 +98,7 @@ class FakeRig {
     EXPECT_TRUE(answer);
     return m;
   }
-  // The computer's lateness between two times of the monotonic clock [ns].
+  // Returns the computer's lateness between two times of the monotonic clock [ns].
   RigLateness Late(std::uint64_t from, std::uint64_t to) {
     std::istringstream answer(Ask("late " + std::to_string(from) + " " + std::to_string(to)));
     RigLateness late;
@@ -107,7 +107,7 @@ class FakeRig {
     return late;
   }
   void Kill(int signal) const { kill(pid_, signal); }
-  // The log of a fake.
+  // Returns the log of a fake.
   std::vector<std::string> Log(const std::string& side, int place) {
     std::vector<std::string> lines = {Ask("log " + side + " " + std::to_string(place))};
     while (!lines.back().empty() && lines.back() != ".") lines.push_back(Line());
@@ -125,27 +125,26 @@ class FakeRig {
   int to_ = -1, from_ = -1;
 };
 
-// The time to rest and the deceleration advertised for the worse of two makes, if the program dies
-// while the fastest joint moves at `speed` [rad/s]. A thousandth is added to the deceleration for
-// rounding.
+// The time to rest and the deceleration that are advertised for the worse of two makes, if the
+// program dies while the fastest joint moves at `speed` [rad/s]. A thousandth is added to the
+// deceleration for rounding.
 struct Advertised {
-  // Deceleration of a Franka's joints that the program's driver allows [rad/s²].
+  // The program's driver allows this deceleration of a Franka's joints [rad/s²].
   static constexpr double kLetThrough = 0.95 * 10;
   Advertised(const std::array<const char*, 2>& makes, double speed) {
     for (const std::string make : makes) {
       const Standstill& arm = StandstillOf(make == "ur" ? ArmMake::kUr : ArmMake::kFranka);
       rest_after = std::max(rest_after, arm.Within(speed));
       braking = std::max(braking, 1.001 * arm.deceleration);
-      // Until a Franka reacts to the silence, it keeps decelerating as the program's driver
-      // allowed.
+      // Until a Franka reacts to the silence, it decelerates as the program's driver allowed.
       if (make == "franka") braking = std::max(braking, 1.001 * kLetThrough);
     }
   }
   double rest_after = 0, braking = 0;  // [s], [rad/s²]
 };
 
-// Messages that end a run or the measurement of a joint, whether the computer or the program was
-// late.
+// The messages that end a run or the measurement of a joint, whether the computer or the program
+// was late.
 inline constexpr std::array kLateSigns = {"the stop 'stale'",
                                           "the stop 'deadline'",
                                           "received no command from this",
@@ -156,7 +155,7 @@ inline constexpr std::array kLateSigns = {"the stop 'stale'",
                                           "missed its deadline",
                                           "The control loop hung, and the watchdog"};
 
-// The program at a separate terminal, and a person who reads it and holds keys.
+// The program at a separate terminal, with a person who reads it and holds keys.
 class Terminal {
  public:
   explicit Terminal(std::vector<std::string> arguments) {
@@ -183,7 +182,7 @@ class Terminal {
   void Type(const std::string& text) const {
     EXPECT_EQ(write(terminal_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
-  // Returns true if the text appears within `patience` [s] after the text that was awaited before.
+  // Returns whether the text appears within `patience` [s] after the text that was awaited before.
   bool Says(const std::string& text, double patience = 30) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
     for (bool over = false; !over && std::chrono::steady_clock::now() < end;) {
@@ -197,7 +196,7 @@ class Terminal {
     }
     return false;
   }
-  // The rest of the line that begins with `begin`, once it appears; "" if it does not.
+  // Returns the rest of the line that starts with `begin` once it appears, or "" if it does not.
   std::string Line(const std::string& begin, double patience = 30) {
     if (!Says(begin, patience)) return "";
     const std::size_t at = read_;
@@ -212,8 +211,8 @@ class Terminal {
     if (pid_ > 0) kill(pid_, signal);
   }
   int pid() const { return pid_; }
-  // The program's exit code, or −signal if a signal killed it. After two minutes the waiting person
-  // kills it.
+  // Returns the program's exit code, or −signal if a signal killed it. The waiting person kills it
+  // after two minutes.
   int Wait() {
     if (pid_ < 0) return code_;
     int status = 0;
@@ -222,22 +221,23 @@ class Terminal {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     pid_ = -1;
-    // Read all remaining output.
+    // This loop reads all remaining output.
     for (int i = 0; i < 1000 && !silent_; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     return code_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
-  // The simulated person, a thread, repeated a letter too late.
+  // Returns whether the thread that simulates the person repeated a letter too late.
   bool letter_was_late() const { return letter_was_late_; }
-  // The time at which the screen first reported a stop, on the monotonic clock [ns]; the current
-  // time if it has not reported one.
+  // Returns the time at which the screen first reported a stop, on the monotonic clock [ns], or the
+  // current time if it has not reported one.
   std::uint64_t stop_seen() const { return stop_seen_ != 0 ? stop_seen_.load() : Now(); }
   static std::uint64_t Now() {
     return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
   }
-  // Returns true if the arms become ready before any stop.
+  // Returns whether the arms become ready before any stop.
   bool IsIdle() { return Comes("Now IDLE"); }
-  // Goes through ALIGN and ARMED to RUN, then notifies the far end's person. False at a stop.
+  // Goes through ALIGN and ARMED to RUN and then notifies the person of the fakes. Returns false at
+  // a stop.
   bool Start(FakeRig* rig) {
     if (!IsIdle()) return false;
     Hold('a');
@@ -247,12 +247,12 @@ class Terminal {
   }
 
  private:
-  // Returns true if the text appears before a stop.
+  // Returns whether the text appears before a stop.
   bool Comes(const std::string& text) {
     for (int i = 0; i < 1500; ++i) {
       if (Says(text, 0.02)) return true;
       if (Screen().find("Now STOPPING", read_) != std::string::npos) {
-        // The program prints the reason line by line once the arms are at rest.
+        // Once the arms are at rest, the program prints the reason line by line.
         if (Says("after the stop", 2)) std::this_thread::sleep_for(std::chrono::milliseconds(300));
         return false;
       }
@@ -292,7 +292,7 @@ class Terminal {
     }
   }
 
-  // Together with the usual 33 ms, this can reach the 0.1 s after which a key counts as released.
+  // With the usual 33 ms, such a delay can reach the 0.1 s after which a key counts as released.
   static constexpr std::chrono::milliseconds kLateLetter{50};
 
   int terminal_ = -1;
@@ -307,7 +307,7 @@ class Terminal {
   std::thread person_;
 };
 
-// sensor: host of a Net F/T that sends at 1000 Hz; "" for the arm's own sensor.
+// sensor: the host of a Net F/T that sends at 1000 Hz, or "" for the arm's own sensor.
 inline std::string ArmText(const std::string& make, const std::string& host,
                            const std::string& sensor, bool left) {
   const bool ur = make == "ur";
@@ -334,10 +334,11 @@ inline std::string ArmText(const std::string& make, const std::string& host,
   return text.str();
 }
 
-// A temporary folder with a machine file that refers to no other file. The destructor deletes it.
+// A temporary folder with a machine file that refers to no other file. The destructor deletes the
+// folder.
 class MachineFolder {
  public:
-  // sensors: "net_ft", or "" for the arm's own.
+  // sensors: "net_ft", or "" for the arm's own sensor.
   explicit MachineFolder(const std::array<std::string, 2>& makes,
                          const std::array<std::string, 2>& sensors = {})
       : folder_(std::filesystem::temp_directory_path() /
@@ -356,7 +357,7 @@ class MachineFolder {
 
   std::string file() const { return (folder_ / "lab.yaml").string(); }
   std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
-  // A copy of the scenario whose person moves the object briskly from side to side.
+  // Writes a copy of the scenario whose person moves the object briskly from side to side.
   std::string Brisk(const std::string& scenario) const {
     Scenario brisk = LoadScenario(FileOf(scenario));
     brisk.operator_.script = BriskScript();

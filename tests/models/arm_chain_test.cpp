@@ -1,4 +1,4 @@
-// The arms of real robots, without their grippers, wheels, heads and further arms.
+// Tests the chains of real robots' arms, without their grippers, wheels, heads and further arms.
 #include "models/arm_chain.h"
 
 #include <gtest/gtest.h>
@@ -22,12 +22,12 @@ TEST(ArmChain, EndsAtTheGripper) {
     Names removed;
   } cases[] = {{"ur_description/urdf/ur5_robot.urdf", "tool0", 6, {}},
                {"kinova_description/robots/kinova.urdf", "j2s6s200_end_effector", 6, {}},
-               // Two prismatic joints, one of which follows the other.
+               // The hand has two prismatic joints, one of which follows the other.
                {"panda_description/urdf/panda.urdf",
                 "panda_hand_tcp",
                 7,
                 {"panda_leftfinger", "panda_rightfinger"}},
-               // The gripper's only joint is like a further joint of the wrist.
+               // The gripper's only joint looks like a further joint of the wrist.
                {"z1_description/urdf/z1.urdf", "gripperStator", 6, {"gripperMover"}},
                {"so_arm_description/urdf/so100.urdf", "gripper", 5, {"jaw"}},
                {"so_arm_description/urdf/so101.urdf",
@@ -51,7 +51,7 @@ TEST(ArmChain, OfSeveralArmsIsOneOrTheOneOfTheGivenLink) {
             (Names{"left_s0", "left_s1", "left_e0", "left_e1", "left_w0", "left_w1", "left_w2"}));
   EXPECT_NE(std::ranges::find(left.remove_links, "head"), left.remove_links.end());
   EXPECT_NE(std::ranges::find(left.remove_links, "right_upper_shoulder"), left.remove_links.end());
-  // What remains has the joints of the chain, and weighs less by what was removed.
+  // The remaining model must have the joints of the chain and weigh less by what was removed.
   const UrdfModel rest = ReadUrdf(baxter.file, left.remove_links);
   EXPECT_EQ(RobotModel::Build(rest, {})->dof(), 7);
   EXPECT_NEAR(rest.Mass() + left.removed_mass, baxter.Mass(), 1e-9);
@@ -66,7 +66,7 @@ std::string Joint(const std::string& name, const std::string& parent,
   return "<joint name='" + name + "' type='revolute'><parent link='" + parent + "'/><child link='" +
          name + "'/><limit lower='-1' upper='1' velocity='1' effort='1'/>" + more + "</joint>";
 }
-// A chain of joints a0, a1, ..., each the parent of the next.
+// Returns a chain of joints a0, a1, ..., each the parent of the next.
 std::string Chain(int joints) {
   std::string text = Link("base");
   for (int j = 0; j < joints; ++j)

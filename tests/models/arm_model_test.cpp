@@ -44,7 +44,7 @@ TEST(ArmModel, HasTheLinksAndThePostureThatAreNamed) {
   EXPECT_NE(Refusal(arm).find("arm.end_effector: \"tool0\" is not a link"), std::string::npos);
 }
 
-// The Panda's fingers slide.
+// The Panda's fingers are sliding joints.
 TEST(ArmModel, RefusesAHapticArmWithASlidingJoint) {
   ArmSpec arm = Panda();
   arm.remove_links.clear();

@@ -15,7 +15,7 @@ class InverseKinematics : public RobotTest {
     return (x.array() >= model->position_lower().array()).all() &&
            (x.array() <= model->position_upper().array()).all();
   }
-  // The middle of the joints' ranges.
+  // Returns the middle of the joints' ranges.
   JointVector Middle() const {
     JointVector middle = (model->position_lower() + model->position_upper()) / 2;
     return middle.array().isNaN().select(0, middle);
@@ -59,7 +59,7 @@ TEST_P(InverseKinematics, SaysWhenItCannot) {
   JointVector solution;
   EXPECT_FALSE(SolveInverseKinematics(*model, frame, goal, Middle(), 5, &solution));
   EXPECT_TRUE(IsWithinLimits(solution));
-  // The best solution found stretches the arm towards the goal.
+  // The best solution found must stretch the arm towards the goal.
   const double reach = (PoseAt(Middle()).p - goal.p).norm();
   EXPECT_LT((PoseAt(solution).p - goal.p).norm(), reach);
 }

@@ -1,4 +1,4 @@
-// Kinematics against finite differences. Only FramePose is differentiated.
+// Compares the kinematics with finite differences. Only FramePose is differentiated.
 #include <gtest/gtest.h>
 
 #include "models/robots.h"
@@ -89,7 +89,7 @@ TEST_P(Kinematics, ManipulabilityAndItsGradientByDifferences) {
     data.UpdateKinematics(*model, q, v);
     data.ManipulabilityGradient(*model, frame, &m, &gradient);
     EXPECT_NEAR(m, manipulability(q), 1e-10);
-    if (m < 1e-3) continue;  // its square root bends too much for differences
+    if (m < 1e-3) continue;  // the curvature of the square root is too large for differences
     for (int j = 0; j < n; ++j) {
       const double difference =
           (manipulability(q + kStep * Unit(j)) - manipulability(q - kStep * Unit(j))) / (2 * kStep);

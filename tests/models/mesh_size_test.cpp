@@ -1,4 +1,4 @@
-// Collision meshes that would delay the start are refused before the engine reads them.
+// The program must refuse collision meshes that would delay the start before the engine reads them.
 #include "models/mesh_size.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,8 @@ class MeshSize : public testing::Test {
                  std::string(80, ' ') + Binary({triangles}) + std::string(50 * triangles, '\0'));
   }
 
-  // The error on reading an object whose link contains these elements; "" if there is no error.
+  // Returns the error on reading an object whose link contains these elements, or "" if there is
+  // none.
   std::string ErrorOf(const std::string& shapes) const {
     const fs::path file =
         Write("object.urdf",

@@ -1,4 +1,4 @@
-// Dynamics and kinematics against MuJoCo, which reads the URDF with a different parser.
+// Compares dynamics and kinematics with MuJoCo, which reads the URDF with a different parser.
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
@@ -127,7 +127,7 @@ TEST_P(AgainstMujoco, PosesAndJacobiansOfAllLinks) {
   }
 }
 
-// No frame of this object lies in its centre or is parallel to another.
+// No frame of this object lies in its centre or is parallel to another one.
 constexpr const char* kLopsidedUrdf = R"(<robot name="lopsided">
   <link name="a"><inertial><origin xyz="0.1 -0.2 0.05" rpy="0.3 0.2 0.1"/><mass value="2"/>
     <inertia ixx="0.05" iyy="0.04" izz="0.03" ixy="0.004" ixz="-0.002" iyz="0.001"/></inertial>
@@ -137,7 +137,7 @@ constexpr const char* kLopsidedUrdf = R"(<robot name="lopsided">
   <joint name="weld" type="fixed"><parent link="a"/><child link="b"/>
     <origin xyz="0.2 0.1 0" rpy="1 -0.5 0.3"/></joint></robot>)";
 
-// An object as one body: MuJoCo's composite inertia of all links about their common centre of mass.
+// MuJoCo combines the inertias of all links of an object about their common centre of mass.
 class ObjectsAgainstMujoco : public testing::TestWithParam<std::string> {};
 
 INSTANTIATE_TEST_SUITE_P(Assets, ObjectsAgainstMujoco,
@@ -166,8 +166,8 @@ TEST_P(ObjectsAgainstMujoco, MassCentreAndInertia) {
   EXPECT_LT((object.inertia + shift - about_O).norm(), 1e-12);
 }
 
-// MuJoCo does not tolerate rounding errors: a rod without inertia about its axis, a plate whose
-// inertia is rounded up, a point mass.
+// MuJoCo does not tolerate rounding errors in a rod without inertia about its axis, in a plate
+// whose inertia is rounded up, or in a point mass.
 TEST(MujocoUrdf, LoadsRoundedInertia) {
   const UrdfModel urdf = ParseUrdf(R"(<robot name="r"><link name="base"/>
     <link name="plate"><inertial><mass value="1"/>

@@ -14,8 +14,8 @@
 
 namespace predictor::test {
 
-// Features that the arms do not have: continuous, revolute and prismatic joints about slanted axes,
-// a branch, fixed links with and without mass, inertias with products.
+// This tree has features that the arms lack: continuous, revolute and prismatic joints about
+// slanted axes, a branch, fixed links with and without mass, and inertias with products.
 inline constexpr const char* kTreeUrdf = R"(<robot name="tree">
   <link name="base"><inertial><origin xyz="0.1 0 0.2"/><mass value="3"/>
     <inertia ixx="0.1" iyy="0.12" izz="0.09" ixy="0.01" ixz="-0.02" iyz="0.005"/></inertial></link>
@@ -46,7 +46,7 @@ inline constexpr const char* kTreeUrdf = R"(<robot name="tree">
     <limit lower="-1" upper="1" velocity="2" effort="20"/></joint>
 </robot>)";
 
-// A mobile base on a slanted plane that carries a slanted lift and two joints that turn.
+// A mobile base on a slanted plane carries a slanted lift and two rotating joints.
 inline constexpr const char* kMobileUrdf = R"(<robot name="mobile">
   <link name="ground"/>
   <link name="base"><inertial><origin xyz="0.02 0 0.2"/><mass value="40"/>
@@ -100,10 +100,10 @@ inline UrdfModel UrdfOf(const RobotCase& robot) {
   return ReadUrdf(ResolveModelPath(robot.uri, "."), robot.remove_links);
 }
 
-// A base that is neither at the origin nor upright.
+// Returns the pose of a base that is neither at the origin nor upright.
 inline Pose SlantedBase() { return PoseFromXyzRpy({0.3, -0.4, 0.2}, {0.1, -0.2, 0.7}); }
 
-// A robot and a random state of it.
+// A robot in a random state.
 class RobotTest : public testing::TestWithParam<RobotCase> {
  protected:
   RobotTest()
@@ -111,7 +111,7 @@ class RobotTest : public testing::TestWithParam<RobotCase> {
         model(RobotModel::Build(urdf, SlantedBase())),
         data(*model),
         n(model->dof()),
-        // The frame differs from the link's origin, so that lever arms matter.
+        // This frame differs from the link's origin, so that lever arms matter.
         frame(model->Frame(GetParam().end_effector,
                            PoseFromXyzRpy({0.1, -0.05, 0.2}, {0.3, 1, -2}))) {
     Shake();
@@ -123,7 +123,7 @@ class RobotTest : public testing::TestWithParam<RobotCase> {
     return x;
   }
 
-  // Draws a random state: joints within their limits, velocities up to 2.
+  // Draws a random state with joints within their limits and velocities up to 2.
   void Shake() {
     q.resize(n);
     for (int j = 0; j < n; ++j) {

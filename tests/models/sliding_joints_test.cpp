@@ -1,4 +1,5 @@
-// Prismatic and planar joints against closed forms. mujoco_test.cpp compares them with MuJoCo.
+// Compares prismatic and planar joints with closed forms. mujoco_test.cpp compares them with
+// MuJoCo.
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -7,7 +8,7 @@
 namespace predictor::test {
 namespace {
 
-// A mass of 12 kg on one joint; `joint` is its element without parent and child.
+// Returns a mass of 12 kg on one joint. `joint` is the joint's element without parent and child.
 std::string MassOn(const std::string& type, const std::string& parts) {
   return R"(<robot name="slider"><link name="rail"/>
   <link name="mass"><inertial><origin xyz="0.1 0.2 0.3"/><mass value="12"/>
@@ -84,12 +85,12 @@ TEST(Planar, IsTwoSlidesAndATurn) {
   const Twist V = data.FrameTwist(*model, model->Frame("mass"));
   EXPECT_LT((V.head<3>() - X_WP.q * Vector3(0.2, 0.5, 0)).norm(), 1e-12);
   EXPECT_LT((V.tail<3>() - X_WP.q * Vector3(0, 0, -0.9)).norm(), 1e-12);
-  // The carriers weigh 1 mg each.
+  // Each carrier weighs 1 mg.
   EXPECT_NEAR(data.M()(0, 0), 12, 3e-6);
   EXPECT_NEAR(data.M()(1, 1), 12, 3e-6);
 }
 
-// With a normal along x (the default axis of a URDF), y of the joint's frame is the first
+// If the normal is along x (the default axis of a URDF), y of the joint's frame is the first
 // direction.
 TEST(Planar, OfAnUprightPlaneSlidesAlongYAndZ) {
   const auto model =

@@ -1,4 +1,4 @@
-// The regressor agrees with the mass matrix and the bias.
+// The regressor must agree with the mass matrix and the bias.
 #include "models/torque_regressor.h"
 
 #include <gtest/gtest.h>

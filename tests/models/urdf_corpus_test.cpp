@@ -1,4 +1,4 @@
-// Every invalid URDF is refused with a message that states the reason, within a second and 256 MB.
+// The parser must refuse each invalid URDF and state the reason, within a second and 256 MB.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -19,12 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Processor time, so that the load of the computer does not matter.
+// The limit is processor time, so that the load on the computer does not matter.
 constexpr double kMaxSeconds = 1;
 constexpr long kMaxKilobytes = 256 << 10;
 
 struct Refusal {
-  std::string message;  // "" if it was not refused
+  std::string message;  // "" if the file was accepted
   int status = -1;      // of the reading process; 0 if it ended normally
   double seconds = 0;
   long kilobytes = 0;
@@ -71,7 +71,7 @@ void ExpectRefused(const fs::path& file, const std::string& expected) {
   EXPECT_EQ(refusal.message.rfind(file.string() + ":", 0), 0u) << refusal.message;
   EXPECT_NE(std::string(".?").find(refusal.message.back()), std::string::npos)
       << "a full sentence: " << refusal.message;
-  if (!AllocationGuard::kIsActive) return;  // sanitizers need more of both
+  if (!AllocationGuard::kIsActive) return;  // sanitizers need more time and memory
   EXPECT_LT(refusal.seconds, kMaxSeconds);
   EXPECT_LT(refusal.kilobytes, kMaxKilobytes);
 }
@@ -101,7 +101,7 @@ TEST_P(UrdfCorpus, IsRefused) {
   ExpectRefused(file, first.substr(opening.size(), first.size() - opening.size() - closing.size()));
 }
 
-// Files that are too large or too unusual to be stored.
+// Generates files that are too large or too unusual to be stored.
 class GeneratedUrdf : public testing::Test {
  protected:
   void Write(const std::string& text) { std::ofstream(file_, std::ios::binary) << text; }
@@ -198,8 +198,8 @@ TEST_F(GeneratedUrdf, ThatIsAFolder) {
   ExpectRefused(file_, "is not a file");
 }
 
-// A valid file that is cut at any point is refused, or read if only white space is missing. The
-// parser never crashes.
+// A valid file is cut at each point. The parser must refuse it, or read it if only white space is
+// missing, and must never crash.
 TEST_F(GeneratedUrdf, CutAnywhere) {
   std::ifstream stream(PREDICTOR_SOURCE_DIR "/assets/bar.urdf");
   const std::string text{std::istreambuf_iterator<char>(stream), {}};

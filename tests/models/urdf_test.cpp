@@ -91,7 +91,7 @@ TEST(Urdf, DefaultsAreThoseOfTheStandard) {
 }
 
 TEST(Urdf, RoundedInertiaIsRepairedNotRefused) {
-  // A plate whose third moment is rounded up, and a rod without a moment about its axis.
+  // The plate's third moment is rounded up, and the rod has no moment about its axis.
   const std::string text = R"(<robot name="r"><link name="base"/>
     <link name="plate"><inertial><mass value="1"/>
       <inertia ixx="0.333333" iyy="0.333333" izz="0.6666663"/></inertial></link>
@@ -152,7 +152,7 @@ TEST(Objects, HaveTheMassesTheyAreNamedBy) {
   EXPECT_EQ(bar.visuals[1].X_LG.p, -bar.visuals[2].X_LG.p);
 }
 
-// The inertias in the files are those of uniform boxes.
+// The files must give the inertias of uniform boxes.
 TEST(Objects, BoxesAreUniform) {
   for (const auto& [name, size] :
        {std::pair{"box_9kg", Vector3(0.26, 0.38, 0.2)}, {"box_18kg", Vector3(0.26, 0.76, 0.2)}}) {

@@ -1,4 +1,4 @@
-// The rights that remain to a process after it entered the sandbox, examined from inside.
+// Examines from inside which rights remain to a process after it has entered the sandbox.
 #include "process/sandbox.h"
 
 #include <arpa/inet.h>
@@ -39,7 +39,7 @@ namespace {
 
 using Enter = std::function<std::string()>;
 
-// The result of `look` in a separate process inside the sandbox.
+// Returns the result of `look` in a separate process inside the sandbox.
 std::string Inside(const Enter& enter, const std::function<std::string()>& look) {
   std::array<int, 2> pipe_ends{};
   EXPECT_EQ(pipe(pipe_ends.data()), 0);
@@ -63,7 +63,7 @@ std::string Inside(const Enter& enter, const std::function<std::string()>& look)
 }
 std::string Inside(const std::function<std::string()>& look) { return Inside(EnterSandbox, look); }
 
-// Asks the kernel instead of the code under test.
+// Queries the kernel, not the code under test.
 bool KernelHasBoth() {
   constexpr long kCreateRuleset = 444;
   return syscall(kCreateRuleset, nullptr, 0, 1) >= 1 && prctl(PR_GET_SECCOMP) >= 0;
@@ -77,7 +77,7 @@ class SandboxTest : public testing::Test {
   }
 };
 
-// System calls by number. Outside the sandbox each succeeds or fails with an error other than
+// System calls by number. Outside the sandbox, each one succeeds or fails with an error other than
 // EPERM.
 struct Call {
   const char* name;
@@ -126,7 +126,7 @@ std::vector<Call> Dangerous(const std::string& file) {
   };
 }
 
-// The calls that do not fail with EPERM.
+// Returns the calls that do not fail with EPERM.
 std::string NotRefused(const std::vector<Call>& calls) {
   std::string passed;
   for (const Call& call : calls) {
@@ -139,7 +139,7 @@ std::string NotRefused(const std::vector<Call>& calls) {
   return passed;
 }
 
-// Calls that query something; only the second stage of the sandbox refuses them.
+// Returns calls that query something. Only the second stage of the sandbox refuses them.
 std::vector<Call> Looking() {
   static struct stat status {};
   static char buffer[4096];
@@ -161,7 +161,7 @@ TEST_F(SandboxTest, RefusesAllThatIsNotNeeded) {
   EXPECT_EQ(Inside([&] { return NotRefused(Dangerous(file)) + NotRefused(Looking()); }), "");
 }
 
-// While the process prepares, it may read but must not do any of the following.
+// While the process prepares, it may read, but it must not do any of the following.
 TEST_F(SandboxTest, RefusesTheSameWhileItPrepares) {
   const test::TemporaryFolder folder;
   const std::string file = folder.path() / "file";
@@ -171,7 +171,7 @@ TEST_F(SandboxTest, RefusesTheSameWhileItPrepares) {
   may.write = {folder.path()};
   may.listen = may.give_up_more = true;
   std::vector<Call> calls = Dangerous(file);
-  calls.erase(calls.begin());  // open: Landlock refuses it, see below
+  calls.erase(calls.begin());  // Landlock refuses open, see below
   EXPECT_EQ(Inside([&] { return EnterPreparation(may); }, [&] { return NotRefused(calls); }), "");
 }
 

@@ -29,7 +29,7 @@ std::string ReadAll(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-// The result as text, or "failed: " and the reason.
+// Returns the result as text, or "failed: " and the reason.
 std::string TextOfCall(const std::function<std::string()>& produce,
                        const std::vector<std::filesystem::path>& readable = {},
                        const SandboxedLimits& limits = {1000, 20}) {

@@ -1,4 +1,4 @@
-// A helper process ends, becomes silent or is stopped, and the supervisor itself meets errors.
+// Tests helper processes that end, fall silent or are stopped, and errors in the supervisor itself.
 #include "process/supervised_process.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 
 using test::Becomes;
 
-// Sends a heartbeat every millisecond and answers each message that it receives until the run ends.
+// Sends a heartbeat every millisecond and answers each message until the run ends.
 void Serve(const Json&) {
   Shared<WatchdogMailbox> mailbox(kMailboxDescriptor, true);
   SendLine(kControlDescriptor, {{"ready", true}}, false);
@@ -59,7 +59,7 @@ class SupervisedProcessTest : public testing::Test {
     return Becomes([&] { return process_->pid() != 0 && process_->pid() != before; });
   }
 
-  // Notify throws once when it receives a text that contains `text`.
+  // Makes Notify throw once, when it receives a text that contains `text`.
   void ThrowAt(const std::string& text) {
     const std::lock_guard lock(mutex_);
     throws_at_ = text;
@@ -104,7 +104,7 @@ TEST_F(SupervisedProcessTest, OneThatEndsIsStartedAgain) {
   EXPECT_TRUE(IsThereAgain(pid));
 }
 
-// If no process can be started for a while, the supervisor retries until it succeeds.
+// If no process can be started for a while, the supervisor must try again until it succeeds.
 TEST_F(SupervisedProcessTest, AStartThatFailsIsTriedAgain) {
   Start();
   const int pid = process_->pid();
@@ -119,7 +119,7 @@ TEST_F(SupervisedProcessTest, AStartThatFailsIsTriedAgain) {
   EXPECT_TRUE(IsThereAgain(pid));
 }
 
-// The supervising thread continues to supervise the process, whatever error it meets.
+// The supervising thread must continue to supervise the process, whatever error it meets.
 TEST_F(SupervisedProcessTest, AnExceptionInTheSupervisorIsReportedAndItContinues) {
   Start(false);
   ThrowAt("It is there.");

@@ -1,4 +1,4 @@
-// Actions last as long as a script's checks assume.
+// Actions must last as long as a script's checks assume.
 #include "scenario/action_time.h"
 
 #include <gtest/gtest.h>

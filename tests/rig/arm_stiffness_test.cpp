@@ -11,7 +11,8 @@
 namespace predictor {
 namespace {
 
-// An arm whose joints turn by q from the given points, without the functions under test.
+// An arm whose joints are rotated by q from the given points. It does not use the functions under
+// test.
 struct TurnedArm {
   ArmPoints at_zero;
   Vector3 lateral, normal;
@@ -32,8 +33,8 @@ struct TurnedArm {
   }
 };
 
-// The force that holds the hand at q, if the muscles' torques are those that balance F0 at zero
-// less K q.
+// Returns the force that holds the hand at q if the muscles' torques are those that balance F0 at
+// zero, minus K q.
 Vector3 HoldingForce(const TurnedArm& arm, const Matrix3& K, const Vector3& F0, const Vector3& q) {
   const Vector3 torque = -arm.Jacobian(Vector3::Zero()).transpose() * F0 - K * q;
   return -arm.Jacobian(q).transpose().inverse() * torque;
@@ -69,8 +70,8 @@ TEST(ArmStiffness, IsTheDerivativeOfTheForceThatHoldsTheHand) {
   }
 }
 
-// Mussa-Ivaldi, Hogan & Bizzi 1985: the relaxed hand is stiffest roughly towards the shoulder, and
-// less stiff, the farther away it is.
+// Mussa-Ivaldi, Hogan & Bizzi 1985 found that the relaxed hand is stiffest roughly towards the
+// shoulder, and less stiff the farther away it is.
 TEST(ArmStiffness, HasTheShapeThatIsMeasuredInPeople) {
   double softest_before = kMaxHandStiffness;
   for (const double elbow : {1.9, 1.5, 1.1}) {

@@ -25,7 +25,7 @@ inline ArmSpec PandaArm(double y) {
   return arm;
 }
 
-// Two arms (or the left one) with a person who does nothing.
+// Returns two arms (or the left one) with a person who does nothing.
 inline Scenario ArmScenario(int arms) {
   Scenario scenario;
   HandleSpec left, right;

@@ -19,7 +19,7 @@ SensorSpec Exact() {
   return spec;
 }
 
-// A handle whose inertia is neither small nor symmetric.
+// Returns a handle whose inertia is neither small nor symmetric.
 HandlePayloadSpec Handle() {
   HandlePayloadSpec handle;
   handle.mass = 0.7;
@@ -34,7 +34,7 @@ Pose PoseAt(double t) {
   return {{0.3 * std::sin(2 * t), 0.2 * t * t, 0.1 * std::cos(5 * t)}, q};
 }
 
-// Twist by central differences of the pose.
+// Computes the twist by central differences of the pose.
 Twist TwistAt(double t) {
   const double h = 1e-5;
   const Pose before = PoseAt(t - h), after = PoseAt(t + h);
@@ -48,7 +48,7 @@ FrameMotion MotionAt(double t) {
   return {PoseAt(t), TwistAt(t), (TwistAt(t + h) - TwistAt(t - h)) / (2 * h)};
 }
 
-// Linear and angular momentum about the centre of mass, in W.
+// Computes the linear and angular momentum about the centre of mass, in W.
 Vector6 MomentumAt(const HandlePayloadSpec& handle, double t) {
   const Pose X = PoseAt(t);
   const Twist V = ShiftTwist(TwistAt(t), X.q * handle.center_of_mass);
@@ -162,8 +162,9 @@ TEST(ForceSensor, FlagsAndClipsWhatIsBeyondItsRange) {
   EXPECT_FALSE(sensor.saturated());
 }
 
-// The number of samples from the first one at which a force that rises by `rate` [N/s] exceeds the
-// threshold, by the share `beyond` of a sample's rise, to the first reading that does.
+// A force rises by `rate` [N/s]. At the first sample in which it exceeds the threshold, it does so
+// by the share `beyond` of a sample's rise. Returns the number of samples from there to the first
+// reading that exceeds the threshold.
 int SamplesUntilSeen(const SensorSpec& spec, double rate, double beyond, std::uint64_t seed) {
   constexpr double kThreshold = 30;  // [N]
   constexpr int kBefore = 50;        // samples
@@ -180,7 +181,7 @@ int SamplesUntilSeen(const SensorSpec& spec, double rate, double beyond, std::ui
 }
 
 // The monitor stops in the tick in which the reading exceeds its threshold. The reading of a rising
-// force lags by the delay and the filter's time constant, whatever the rate.
+// force lags by the delay plus the filter's time constant, whatever the rate.
 TEST(ForceSensor, ARisingForceIsSeenWithinThreeMilliseconds) {
   SensorSpec spec;
   const double lag = spec.delay + 1 / (2 * std::numbers::pi * spec.cutoff_frequency);
@@ -192,8 +193,8 @@ TEST(ForceSensor, ARisingForceIsSeenWithinThreeMilliseconds) {
       EXPECT_EQ(SamplesUntilSeen(exact, rate, beyond, 1), expected) << rate << " " << beyond;
       EXPECT_LE(expected, 3);
     }
-  // Noise and resolution can hide less than 0.3 N, which this force rises in 1 ms, the time left of
-  // three.
+  // Noise and resolution can hide less than 0.3 N. This force rises by that in 1 ms, which is the
+  // rest of the three milliseconds.
   for (std::uint64_t seed = 1; seed <= 1000; ++seed)
     EXPECT_LE(SamplesUntilSeen(spec, 300, 0.01, seed), 3) << seed;
 }

@@ -20,7 +20,7 @@ TEST(Hand, StaticStiffnessIsImpedancePlusReflexPlusSight) {
   const HandSpec& hand = scenario.operator_.hand;
   Person person(scenario);
   person.Run(1);
-  // There is no force at the pose where the hand grasped the handle.
+  // At the pose where the hand gripped the handle, the force must be zero.
   EXPECT_LT(person.output.F_H_W[0].norm(), 1e-12);
   const Vector3 displacement(0.01, -0.02, 0.015), turn(0.1, -0.05, 0.2);
   person.input.handle[0].X_W.p += displacement;
@@ -71,8 +71,8 @@ TEST(Hand, DampingIsOfTheHandsMassAndStiffness) {
   }
 }
 
-// Displaces the handle of an arm along x by a slow sinus. Its force in phase and in quadrature must
-// be the stiffness and damping of the whole arm, reflexes included.
+// The test displaces the handle of an arm along x in a slow sine. The force in phase and in
+// quadrature must give the stiffness and damping of the whole arm, including reflexes.
 TEST(Hand, SlowMotionsMeetTheMeasuredImpedanceOfAnArm) {
   const double dt = 0.001, amplitude = 0.01, omega = 2 * std::numbers::pi * 0.2;
   HandSpec spec = QuietScenario(1).operator_.hand;

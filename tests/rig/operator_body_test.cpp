@@ -9,7 +9,7 @@
 namespace predictor {
 namespace {
 
-// A person of mean strength before two handles in front of the waist.
+// Returns a person of mean strength in front of two handles at the height of the waist.
 Scenario Embodied() {
   Scenario scenario = QuietScenario(2);
   scenario.operator_.embodied = true;
@@ -50,13 +50,13 @@ TEST(ArmAbility, LargestShareReachesTheLimitAndNoMore) {
   EXPECT_EQ(LargestShare(1, -12, -5, 6), 0.5);
   EXPECT_EQ(LargestShare(1, 2, -5, 6), 1);
   EXPECT_EQ(LargestShare(1, 0, -5, 6), 1);
-  EXPECT_EQ(LargestShare(7, 1, -5, 6), 0);   // already too much
-  EXPECT_EQ(LargestShare(7, -2, -5, 6), 1);  // relief
+  EXPECT_EQ(LargestShare(7, 1, -5, 6), 0);   // the joint is already overloaded
+  EXPECT_EQ(LargestShare(7, -2, -5, 6), 1);  // the force relieves the joint
 }
 
 TEST(ArmAbility, BalanceEndsWhereTheTippingMomentDoes) {
   const Standing person = {700, 0.05, 0, -0.06, 0.2, 0.2};
-  // Pushing ahead at the height h tips backwards from F = W (x - back) / h.
+  // A person who pushes forward at the height h tips backwards above F = W (x - back) / h.
   const double h = 1.1, most = 700 * (0.05 + 0.06) / h;
   HandForce push = {{0.5, 0, h}, {most / 0.4, 0, 0}};
   EXPECT_NEAR(BalanceSharesOf(person, {&push, 1}).x, 0.4, 1e-12);
@@ -144,7 +144,7 @@ TEST(OperatorBody, FatigueLowersStrengthMonotonically) {
   }
 }
 
-// A load that is held tires as the published closed form says.
+// The person must tire from a held load as the published closed form says.
 TEST(OperatorBody, TiresByTheClosedFormOfTheFatigueModel) {
   StandingBody person(Embodied());
   Wrench lift = Wrench::Zero();
@@ -181,7 +181,7 @@ TEST(OperatorBody, ReachesWithTheTrunkBeforeTheArmsAreStraight) {
   EXPECT_LT((near.body.Reachable(0, inside) - inside).norm(), 1e-12);
 }
 
-// The reference of the operator's script, followed by a mirrored person.
+// Returns the reference of the operator's script, followed by a mirrored person.
 Scenario Lifting(double side) {
   Scenario scenario = Embodied();
   ActionSpec move = MakeActionSpec("move", 0.6, {"duration=1"});

@@ -1,4 +1,4 @@
-// A virtual operator whose handles the test moves.
+// A simulated operator whose handles the test moves.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,8 @@
 
 namespace predictor {
 
-// A person without noise, tremor or drift; one handle at O, or two 0.6 m apart along y.
+// Returns a person without noise, tremor or drift, with one handle at O or two handles 0.6 m apart
+// along y.
 inline Scenario QuietScenario(int handles) {
   Scenario scenario;
   HandleSpec left, right;
@@ -24,7 +25,7 @@ inline Scenario QuietScenario(int handles) {
   return scenario;
 }
 
-// A spring to the reference and nothing else.
+// Returns a person who consists only of a spring to the reference.
 inline Scenario SpringScenario(int handles) {
   Scenario scenario = QuietScenario(handles);
   HandSpec& hand = scenario.operator_.hand;

@@ -14,7 +14,7 @@
 namespace predictor {
 namespace {
 
-// A hand that always exerts the force set by the test.
+// An operator that always exerts the force set by the test.
 class Puppet final : public Operator {
  public:
   explicit Puppet(const Wrench& F) : F_(F) {}
@@ -68,7 +68,7 @@ TEST(Rig, SensorAtRestReadsWeightAndBias) {
   DeviceSample sample;
   rig.Read(&sample);
   const ArmSpec& arm = *scenario.device.left;
-  // Computes S from H, which the rig shows: X_WS = X_WH X_HE X_ES.
+  // S follows from H, which the rig provides: X_WS = X_WH X_HE X_ES.
   const Pose X_WS =
       rig.true_handles()[0].X_W * arm.handle.ToPose().Inverse() * arm.sensor.pose.ToPose();
   const Vector3 weight = X_WS.q.conjugate() * Vector3(0, 0, -arm.payload.mass * 9.81);
@@ -97,7 +97,7 @@ TEST(Rig, SensorReadsTheHandsWrenchShiftedToIt) {
   const Vector3 force = X_WS.q * Vector3(difference.head<3>());
   const Vector3 torque = X_WS.q * Vector3(difference.tail<3>());
   EXPECT_LT((force - F_H_W.head<3>()).norm(), 1e-9);
-  // The moment about H must be the same: no moment of a force is lost.
+  // The moment about H must be the same, including that of the force.
   const Vector3 about_H = torque + (X_WS.p - X_WH.p).cross(force);
   EXPECT_LT((about_H - F_H_W.tail<3>()).norm(), 1e-9);
 }
@@ -156,7 +156,8 @@ TEST(Rig, RefusesCommandsThatAreNotANumberAJoint) {
     rig.Read(&sample);
     EXPECT_TRUE(sample.arms[0].fault);
     EXPECT_TRUE(sample.arms[0].q.allFinite());
-    EXPECT_NEAR(sample.arms[0].v.norm(), 0, 1e-5);  // no valid command for 300 ms: at rest
+    // there was no valid command for 300 ms, so the arm rests
+    EXPECT_NEAR(sample.arms[0].v.norm(), 0, 1e-5);
   }
   rig.Step(Command(JointVector()), 0.001);
   rig.Read(&sample);
@@ -179,7 +180,7 @@ TEST(Rig, EncodersAreQuantisedAndVelocitiesNoisy) {
     squares += sample.arms[0].v.squaredNorm();
   }
   EXPECT_NEAR(std::sqrt(squares / (7 * n)), 1e-3, 4e-3 / std::sqrt(2.0 * 7 * n));
-  rig.Read(&again);  // reading twice returns the same sample
+  rig.Read(&again);  // a second reading returns the same sample
   EXPECT_EQ(again.arms[0].v, sample.arms[0].v);
   EXPECT_EQ(again.arms[0].arm_sequence, sample.arms[0].arm_sequence);
 }

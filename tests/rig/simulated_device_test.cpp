@@ -36,7 +36,7 @@ TEST(SimulatedDevice, FollowsASineWithTheLagOfItsLoop) {
     if (k >= 1000)
       phasor += 2.0 / 2000 * sample.arms[1].v[2] * std::exp(std::complex<double>(0, -w * t));
   }
-  // A second-order loop with a pure delay, plus half a tick for the held command.
+  // The loop is of second order with a pure delay, plus half a tick because the command is held.
   const VelocityLoopSpec& loop = scenario.device.right->loop;
   const double ratio = 1.0 / loop.bandwidth;
   const double lag =
@@ -103,7 +103,7 @@ TEST(SimulatedDevice, AllocatesNothingInARunAStopAndANewRun) {
   DeviceCommand broken = command;
   broken.v[0][2] = std::nan("");
   DeviceSample sample;
-  ASSERT_TRUE(device->Read(&sample).ok());  // gives its vectors their sizes
+  ASSERT_TRUE(device->Read(&sample).ok());  // sizes the vectors of the sample
   bool failed = false;
   test::AllocationGuard guard;
   for (int run = 0; run < 2; ++run) {

@@ -20,7 +20,8 @@ VelocityLoop Unlimited(double bandwidth, double damping_ratio, double delay) {
   return {{bandwidth, damping_ratio, delay}, delay, kDt, kNoLimit, kNoLimit};
 }
 
-// Step response of the second-order loop and its integral, at time t after the step.
+// Returns the velocity of the second-order loop at time t after a step. StepPosition is its
+// integral.
 double StepVelocity(double omega, double zeta, double t) {
   if (t <= 0) return 0;
   const double d = omega * std::sqrt(1 - zeta * zeta);
@@ -58,8 +59,8 @@ TEST(VelocityLoop, NothingMovesBeforeTheDelayHasPassed) {
   EXPECT_GT(loop.v(), 0);
 }
 
-// Response at the sampling instants to a sampled and held sinusoid. The hold and its images pass
-// through the loop.
+// Returns the response at the sampling instants to a sampled and held sinusoid. The hold and its
+// images pass through the loop.
 Complex Response(double omega, double zeta, double delay, double w) {
   Complex sum = 0;
   for (int k = -200; k <= 200; ++k) {
@@ -120,7 +121,7 @@ TEST(VelocityLoop, ReachesTheCommandAfterALimit) {
 }
 
 TEST(VelocityLoop, PositionIsTheIntegralOfVelocity) {
-  // For a smooth input the trapezoidal rule is accurate to second order, with or without limits.
+  // For a smooth input, the trapezoidal rule is accurate to second order, with or without limits.
   VelocityLoop loop({15, 0.9, 0.004}, 0.004, kDt, 0.8, 4.0);
   double integral = 0, before = 0;
   for (int k = 0; k < 5000; ++k) {

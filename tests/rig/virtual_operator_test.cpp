@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// The offset from the handle to the position that a spring-only hand aims for.
+// Returns the offset from the handle to the position at which a spring-only hand aims.
 Vector3 Pull(const Person& person, const Scenario& scenario, int hand = 0) {
   return person.Force(hand).cwiseQuotient(scenario.operator_.hand.stiffness);
 }
@@ -47,7 +47,7 @@ TEST(VirtualOperator, MovesTheReferenceWithMinimumJerk) {
     }
     peak = std::max(peak, (Pull(person, scenario) - before).norm() / 0.001);
     before = Pull(person, scenario);
-    if (k != 4000) {  // rounding decides whether the motion ends at this tick
+    if (k != 4000) {  // rounding decides whether the motion ends in this tick
       EXPECT_EQ(person.output.action, k < 4000 ? 1 : -1) << k;
     }
   }
@@ -73,8 +73,7 @@ TEST(VirtualOperator, DampsAgainstTheVelocityOfTheReference) {
   for (int k = 1; k <= 2000; ++k) {
     person.Step();
     springs.Step();
-    // The velocity of the reference, from finite differences of the spring's pull, half a step
-    // early.
+    // Finite differences of the spring's pull give the velocity of the reference half a step early.
     const Vector3 v = (Pull(springs, scenario) - before) / 0.001;
     before = Pull(springs, scenario);
     const Vector3 damping = (2 * hand.damping_ratio * (hand.mass * hand.stiffness).cwiseSqrt());
@@ -223,7 +222,7 @@ TEST(VirtualOperator, HoldsNothingUnlessTheRunIsOn) {
   person.input.running = true;
   person.Run(1);
   EXPECT_EQ(person.output.grip[0], 1);
-  person.input.running = false;  // a stop: the hand lets go
+  person.input.running = false;  // the run stops, so the hand lets go
   person.Run(0.5);
   EXPECT_EQ(person.output.grip[0], 0);
   person.input.running = true;  // a new run: the script starts again
@@ -276,16 +275,16 @@ TEST(VirtualOperator, PaceDriftsButTheWayIsTheSame) {
     mean += taken / n;
     square += taken * taken / n;
   }
-  // Deviation of the mean pace over 4 s of a process with a time constant of 1 s: variance σ² ·
-  // 2τ/T² · (T − τ(1 − e^(−T/τ))).
+  // The mean pace over 4 s of a process with a time constant of 1 s has the variance σ² · 2τ/T² ·
+  // (T − τ(1 − e^(−T/τ))).
   const double deviation = 4 * 0.06 * std::sqrt(2.0 / 16 * (4 - (1 - std::exp(-4.0))));
   EXPECT_NEAR(mean, 4, 4 * deviation / std::sqrt(n));
   EXPECT_NEAR(std::sqrt(square - mean * mean), deviation, 0.25 * deviation);
 }
 
 // A person holds a 9 kg box with both hands and lifts it by 0.1 m, while a cobot (4.3 kg in this
-// direction) holds it with a spring of 500 N/m. Contains the largest force of a hand, and the time
-// when it first exceeds 30 N [s].
+// direction) holds it with a spring of 500 N/m. The result contains the largest force of a hand,
+// and the time when it first exceeds 30 N [s].
 struct Lift {
   double peak = 0, above_limit = -1;
 };
@@ -325,7 +324,7 @@ TEST(VirtualOperator, LiftsADampedBoxAndShakesAnUndampedOne) {
               13);  // at rest: 340/(340 · 2 + 500) of the displacement; 14.4 N without overshoot
     EXPECT_LT(damped.peak, 20);
     const Lift undamped = LiftBox(0.02, seed);
-    EXPECT_GT(undamped.above_limit, 5);  // it grows slowly after the lift
+    EXPECT_GT(undamped.above_limit, 5);  // the force grows slowly after the lift
     EXPECT_LT(undamped.above_limit, 12);
   }
 }

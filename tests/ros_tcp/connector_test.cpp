@@ -1,4 +1,5 @@
-// A client that behaves like ROS-TCP-Connector 0.7.0, for a minute, or for an hour in ./dev soak.
+// Runs a client that behaves like ROS-TCP-Connector 0.7.0 for a minute, or for an hour in ./dev
+// soak.
 #include <gtest/gtest.h>
 #include <poll.h>
 
@@ -16,14 +17,14 @@ namespace {
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kSilence = milliseconds(1000);  // then the client sends a keep-alive
+constexpr auto kSilence = milliseconds(1000);  // after this, the client sends a keep-alive
 constexpr auto kChange = milliseconds(5000);   // between changes of the subscriptions
-// Between messages; so long that the speed of the machine does not matter.
+// The longest gap between messages is so large that the speed of the machine does not matter.
 constexpr auto kLongestGap = milliseconds(10'000);
 
 // Imitates the Connector's two threads and its Update(). Everything uses one connection, and the
 // greeting comes first. An empty frame follows at the start and after each second of silence. In
-// ROS 2 mode each destination and each JSON text ends with a NUL.
+// ROS 2 mode, each destination and each JSON text ends with a NUL.
 class Connector {
  public:
   Connector(std::uint16_t port, RosDialect dialect) : socket_(port), dialect_(dialect) {
@@ -71,7 +72,7 @@ class Connector {
 
 class ConnectorTest : public RosTcp {
  protected:
-  // The next request that a scene sends if its user edits it while it plays.
+  // Sends the next request of a scene whose user edits it while it plays.
   void Change(Connector* unity) {
     const auto& list = topics_->list();
     const RosTopic& topic = list[changes_ % list.size()];
@@ -88,7 +89,7 @@ class ConnectorTest : public RosTcp {
          {"__remove_publisher", "__remove_ros_service", "__remove_unity_service"})
       if (changes_ % 3 == 1) unity->Command(command, {{"topic", "/not_ours"}});
     const std::string header = GetParam() == RosDialect::kRos2 ? std::string("\0\1\0\0", 4) : "";
-    unity->Publish("/predictor/stop", header + std::string(1, '\0'));  // false: no stop
+    unity->Publish("/predictor/stop", header + std::string(1, '\0'));  // false requests no stop
     ++changes_;
   }
 

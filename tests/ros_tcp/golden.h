@@ -1,4 +1,4 @@
-// Messages as bytes that ROS itself wrote (golden.py).
+// Messages as bytes that ROS itself has written (golden.py).
 #pragma once
 
 #include <fstream>
@@ -20,7 +20,7 @@ inline std::string Bytes(const std::string& hex) {
   return bytes;
 }
 
-// The bytes by name and dialect, for example "pose ROS1".
+// Returns the bytes by name and dialect, for example "pose ROS1".
 inline std::map<std::string, std::string> Golden() {
   std::map<std::string, std::string> golden;
   std::ifstream file(std::string(PREDICTOR_SOURCE_DIR) + "/tests/ros_tcp/golden.txt");

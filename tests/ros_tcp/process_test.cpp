@@ -1,4 +1,4 @@
-// The server as a process: its rights, and the consequences of its death.
+// Tests the server's process: its rights, and what happens when it dies.
 #include "support/process.h"
 
 #include <gtest/gtest.h>
@@ -79,7 +79,8 @@ TEST_F(RosTcpProcessTest, HasNoRights) {
     EXPECT_EQ(StatusOf(pid, "Seccomp"), "2");
   }
 #endif
-  // As far as can be observed, it has only its own descriptors, and the records are read-only.
+  // As far as a test can see, the process has only its own descriptors, and the records are
+  // read-only.
   std::ifstream maps("/proc/" + std::to_string(pid) + "/maps");
   int shared = 0;
   for (std::string line; std::getline(maps, line);) {
@@ -88,7 +89,8 @@ TEST_F(RosTcpProcessTest, HasNoRights) {
     const std::string range = line.substr(0, line.find(' '));
     const std::size_t bytes = std::stoull(range.substr(range.find('-') + 1), nullptr, 16) -
                               std::stoull(range, nullptr, 16);
-    // The only memory that it may write to holds the count of stops, but no input, hand or lease.
+    // The only memory that the process may write to holds the count of stops, but no input, hand or
+    // lease.
     if (bytes >= sizeof(RunBoard))
       EXPECT_NE(line.find(" r--s "), std::string::npos) << line;
     else

@@ -29,7 +29,7 @@ TEST(Seats, InUseAreKept) {
       Kind::kRefuse);
 }
 
-// A machine cannot use more than its share of the seats, in any way.
+// A machine must not be able to use more than its share of the seats in any way.
 TEST(Seats, OfOneAddressAreItsShare) {
   EXPECT_EQ(SeatFor(kOne, {{kOne, false}, {kOne, false}}, kSeats).kind, Kind::kRefuse);
   EXPECT_EQ(SeatFor(kOne, {{kOne, false}, {kOne, false}, {kOther, true}}, kSeats).kind,

@@ -1,4 +1,4 @@
-// The server over real sockets, used as by Unity's connector.
+// Tests the server over real sockets, as Unity's connector uses it.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -45,7 +45,7 @@ TEST_P(RosTcp, SendsOnlySubscribedTopics) {
              {{"topic", "/predictor/markers"}, {"message_name", "visualization_msgs/Marker"}});
   std::map<std::string, int> seen;
   for (int k = 0; k < 60; ++k) ++seen[unity.Receive().destination];
-  // The server sends four arrows and one circle for each joint state.
+  // For each joint state, the server sends four arrows and one circle.
   EXPECT_NEAR(seen["/predictor/markers"], 5 * seen["/predictor/joint_states"], 5);
   EXPECT_EQ(seen.size(), 2u);
   unity.Send("__remove_subscriber", {{"topic", "/predictor/markers"}});
@@ -118,7 +118,7 @@ TEST_P(RosTcp, ServesSeveralAndOutlivesThoseThatDoNotReadSoak) {
   }
 }
 
-// A stop is received regardless of its position among the frames.
+// A stop must be received wherever it is among the frames.
 TEST_P(RosTcp, AStopRightAfterAServiceCallIsTaken) {
   Unity unity(server_->port());
   unity.Receive();
@@ -146,7 +146,7 @@ TEST_P(RosTcp, ASilentClientMakesRoom) {
   EXPECT_EQ(late.Receive().destination, "__handshake");
 }
 
-// Clients that only keep the connection alive give way to a newcomer; clients that use the
+// Clients that only keep the connection alive must give way to a newcomer. Clients that use the
 // connection stay.
 TEST_P(RosTcp, AnIdleClientGivesWayToANewOne) {
   Unity used(server_->port());
@@ -162,7 +162,7 @@ TEST_P(RosTcp, AnIdleClientGivesWayToANewOne) {
   }
   for (int k = 0; k < 4; ++k) EXPECT_EQ(idle[k]->Receive().destination, "") << k;
   for (int k = 0; k < 20; ++k) EXPECT_EQ(used.Receive().destination, "/predictor/state");
-  // Two more clients use their seats, so no seat is free.
+  // Two more clients use their seats, so that no seat is free.
   for (int k = 4; k < 6; ++k) {
     idle[k]->Send("__publish", {{"topic", "/predictor/stop"}, {"message_name", "std_msgs/Bool"}});
     idle[k]->Send("__topic_list", Json::object());
@@ -194,7 +194,8 @@ TEST_P(RosTcp, EchoesInvalidText) {
   EXPECT_EQ(unity.Receive().destination, "__topic_list");
 }
 
-// Frames of random bytes, complete and broken, with and without the name of a command.
+// The client sends frames of random bytes, complete and broken, with and without the name of a
+// command.
 TEST_P(RosTcp, AnyBytesEndNoOtherClientSoak) {
   std::mt19937 random(7);
   const auto bytes = [&random](std::size_t most) {
@@ -233,15 +234,15 @@ TEST_P(RosTcp, AnyBytesEndNoOtherClientSoak) {
   }
 }
 
-// After a stop, the state lists the cause in a fixed order, followed by the cause that removed the
-// power.
+// After a stop, the state must list the cause in a fixed order, followed by the cause that removed
+// the power.
 TEST(RosTcpState, ReportsWhyTheArmsStand) {
   const RosTopics topics(Scenario{}, {}, Vector3::Zero());
   const auto reported = [&topics](const TickRecord& record) {
     for (const RosPublication& sent : topics.Publish(record, RosDialect::kRos2, 0, 0))
       if (topics.list()[sent.topic].name == "/predictor/state")
         return std::string(sent.payload.begin() + 8,
-                           sent.payload.end() - 1);  // header, length; NUL
+                           sent.payload.end() - 1);  // skips the header, the length and the NUL
     return std::string();
   };
   TickRecord record{};
@@ -265,7 +266,7 @@ TEST(RosTcpOptions, OfNonsenseAreRefused) {
   Shared<StopMailbox> mailbox;
   for (const char* network : {"", "everywhere", "192.0.2.0/33", "192.0.2/24", "192.0.2.0/x"})
     EXPECT_THROW(RosTcpServer({0, {network}}, &topics, &*board, &*mailbox), InputError) << network;
-  // Wider than any private network: the message suggests a valid setting.
+  // These networks are wider than any private network. The message must suggest a valid setting.
   for (const char* network :
        {"0.0.0.0/0", "0.0.0.0/1", "128.0.0.0/1", "10.0.0.0/7", "0.0.0.0", "::/0", "::"}) {
     try {

@@ -1,4 +1,4 @@
-// A ROS-TCP server with an invented run, and a socket that behaves like Unity's.
+// A ROS-TCP server with a made-up run, and a socket that behaves like Unity's.
 #pragma once
 
 #include <arpa/inet.h>
@@ -42,7 +42,7 @@ class Unity {
   void Send(const std::string& destination, const Json& json) const {
     Raw(Encode(destination, json.dump()));
   }
-  // The next frame; empty if the server has closed the connection.
+  // Returns the next frame, or an empty one if the server has closed the connection.
   RosFrame Receive() {
     for (;;) {
       if (auto frame = reader_.Next()) return *frame;
