@@ -1,5 +1,5 @@
-// One arm's share of a stop: it never moves faster or brakes harder than the profile allows,
-// whatever the other arm does.
+// Tests one arm's share of a stop. It must never move faster or brake harder than the profile
+// allows, whatever the other arm does.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kAcceleration = 5, kJerk = 250;
 
-// Speeds [m/s] of a share that in each tick is asked to move faster by the value of `behind`.
+// Returns the speeds [m/s] of a share that is asked in each tick to move faster by the value of
+// `behind`.
 template <class Behind>
 std::vector<double> Speeds(double speed, double rate, double hold, const Behind& behind) {
   StopProfile profile(kAcceleration, kJerk, kDt, 1);
@@ -83,7 +84,7 @@ std::array<JointBounds, kHands> BoundsOfSix() {
   return bounds;
 }
 
-// Joints that coincide with the handles' coordinates.
+// Returns joints that coincide with the handles' coordinates.
 StopGeometry Straight() {
   StopGeometry geometry;
   for (std::size_t i = 0; i < kHands; ++i) {
@@ -95,7 +96,7 @@ StopGeometry Straight() {
   return geometry;
 }
 
-// If the other arm does not brake at all, this arm follows it only for the allowed time.
+// If the other arm does not brake at all, this arm must follow it only for the allowed time.
 TEST(StopController, FollowsAnArmThatDoesNotStopForAWhileOnly) {
   const std::array<JointBounds, kHands> bounds = BoundsOfSix();
   for (const double lag : {0.006, 0.022}) {
@@ -115,7 +116,7 @@ TEST(StopController, FollowsAnArmThatDoesNotStopForAWhileOnly) {
     for (int k = 0; k < 1000; ++k) {
       std::array<JointVector, kHands> v;
       stop.Next(geometry, &v);
-      // the left one does not brake
+      // The left arm does not brake.
       geometry.V_W[1][0] += (v[1][0] - geometry.V_W[1][0]) * kDt / lag;
       alone += speed * profile.Next() * kDt;
       way += v[1][0] * kDt;
@@ -127,9 +128,9 @@ TEST(StopController, FollowsAnArmThatDoesNotStopForAWhileOnly) {
 }
 
 // Stops two arms and returns their distance at rest [m]. The first arm follows its commands with a
-// lag and coasts for that time. The second arm reaches the position that its commands lead to, but
-// with a lag of `lag` [s] and a delay of `late` [ms] on the way. hindered: additional delay of the
-// first arm that it does not report [ms].
+// lag and coasts for that time. The second arm reaches the position to which its commands lead, but
+// with a lag of `lag` [s] and a delay of `late` [ms]. hindered: an additional delay of the first
+// arm that it does not report [ms].
 double ApartAtRest(const std::array<double, kHands>& coasting, std::size_t late, double lag = 0.006,
                    std::size_t hindered = 0) {
   constexpr double kSpeed = 0.2, kGain = 15;
@@ -169,8 +170,8 @@ TEST(StopController, WaitsForAnArmsLagButDoesNotChaseItsReturn) {
   }
 }
 
-// An arm that is represented by its commands is measured without its lag, so it may follow as hard
-// as a quick arm.
+// If an arm is represented by its commands, its lag is not measured, so it may follow as hard as a
+// quick arm.
 TEST(StopController, AnArmJudgedByItsCommandsFollowsWithAnyLag) {
   for (const double lag : {0.006, 0.012, 0.022})
     EXPECT_LT(ApartAtRest({0.022, 0.001}, 0, lag, 10), 1e-3) << lag;

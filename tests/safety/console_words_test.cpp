@@ -1,4 +1,4 @@
-// Messages that the console prints for the records of a run.
+// Tests the messages that the console prints for the records of a run.
 #include "safety/console_words.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ class ConsoleTalk : public testing::Test {
     record_.cause = cause;
     record_.cause_hand = static_cast<std::int8_t>(hand);
   }
-  // Expects the parts in this order, one after the other.
+  // Expects the parts in this order.
   static void ExpectInOrder(const std::string& text, std::initializer_list<std::string> parts) {
     std::size_t at = 0;
     for (const std::string& part : parts) {
@@ -57,7 +57,7 @@ class ConsoleTalk : public testing::Test {
         "console.key_refused",
         {{"key", std::string(1, key)}, {"name", name}, {"state", state}, {"possible", ""}});
   }
-  // The line that reports the record's stop.
+  // Returns the line that reports the record's stop.
   std::string Stopped(const char* state) const {
     return Message(
         "console.stopped",
@@ -107,7 +107,7 @@ TEST_F(ConsoleTalk, OfAKeyThatStopsARunSaysSo) {
   ExpectInOrder(Tick(RunState::kStopping, {RunEvent::kReset}),
                 {Message("console.key_stops", {{"key", "z"}, {"name", "reset"}, {"state", "RUN"}}),
                  Now("STOPPING")});
-  // A stop for another reason in the same tick is not blamed on the key.
+  // If the arms stop for another reason in the same tick, the message must not blame the key.
   Tick(RunState::kRun);
   Stop(StopCause::kForce, 0);
   EXPECT_EQ(Tick(RunState::kStopping, {RunEvent::kReset}), Now("STOPPING") + "\n");
@@ -129,8 +129,8 @@ TEST_F(ConsoleTalk, OfAStopShowsDangerCauseAdviceAndKeysInThisOrder) {
                                         "z resets", "hold r", "Ctrl-C"});
 }
 
-// A sensor that repeats its readings must be restarted, and only a new start of the program accepts
-// it again.
+// A sensor that repeats its readings must be restarted. The program must be started again to accept
+// it.
 TEST_F(ConsoleTalk, OfAFrozenSensorOffersNoReset) {
   Stop(StopCause::kStale, 1);
   record_.cause_quantity = Quantity::kCount;
@@ -140,7 +140,7 @@ TEST_F(ConsoleTalk, OfAFrozenSensorOffersNoReset) {
   EXPECT_EQ(reported.find("z resets"), std::string::npos) << reported;
 }
 
-// Neither a reset nor RECOVERY makes an arm usable again after a fault.
+// Neither a reset nor RECOVERY can make an arm usable again after a fault.
 TEST_F(ConsoleTalk, OfAnArmAtFaultOffersNothingThatDoesNotHelp) {
   Tick(RunState::kStopping);
   Stop(StopCause::kDevice, 1);
@@ -154,7 +154,7 @@ TEST_F(ConsoleTalk, OfAnArmAtFaultOffersNothingThatDoesNotHelp) {
   EXPECT_EQ(text.find("z resets"), std::string::npos) << text;
 }
 
-// For example, an arm that holds its position traps a hand and then stops itself: neither the state
+// For example, an arm that holds its position traps a hand and then stops itself. Neither the state
 // nor the cause changes.
 TEST_F(ConsoleTalk, ReportsAnArmsFaultAfterAStopOnce) {
   for (const RunState state : {RunState::kStopping, RunState::kHeld, RunState::kUnpowered}) {
@@ -183,11 +183,12 @@ TEST_F(ConsoleTalk, ReportsAnArmsFaultAfterAStopOnce) {
     record_.hands = {};
     Tick(state);
     record_.hands[1].present = record_.hands[1].arm_fault = 1;
-    EXPECT_EQ(Tick(state), "") << Name(state);  // it stops the arms and is reported as the cause
+    // the fault stops the arms and is reported as the cause
+    EXPECT_EQ(Tick(state), "") << Name(state);
   }
 }
 
-// If the state changes in the same tick, the fault is reported once, together with the state.
+// If the state changes in the same tick, the fault must be reported once, together with the state.
 TEST_F(ConsoleTalk, ReportsAnArmsFaultWithTheChangeOfState) {
   Stop(StopCause::kForce, 0);
   Tick(RunState::kStopping);
@@ -231,7 +232,7 @@ TEST_F(ConsoleTalk, OfARefusedResetNamesWhatIsInTheWay) {
   EXPECT_NE(Refused(RunState::kHeld, RunEvent::kReset, Refusal::kHandLoaded)
                 .find("Now: left handle 13.0 N, 2.00 N·m."),
             std::string::npos);
-  // The same key is still held.
+  // The person still holds the same key.
   EXPECT_EQ(Refused(RunState::kHeld, RunEvent::kReset, Refusal::kHandLoaded), "");
 }
 
@@ -244,7 +245,8 @@ TEST(ConsoleTalkWithADevice, NamesItInsteadOfAHeldKey) {
   EXPECT_NE(lines[0].find(HowToHold('a', true) + " to align"), std::string::npos);
 }
 
-// The message names the refusal and explains how to recover, with the enabling method of this rig.
+// The message must name the refusal and explain how to recover with the enabling method of this
+// rig.
 TEST(ConsoleTalkWithADevice, OfARefusalSaysWhatToHold) {
   for (const bool device : {false, true})
     for (const Refusal why : {Refusal::kNotEnabled, Refusal::kBeyondJoint, Refusal::kBeyondLinks,

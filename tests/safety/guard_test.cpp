@@ -30,7 +30,7 @@ JointBounds RandomBounds(RandomStream* random, int joints) {
   return b;
 }
 
-// A value that a broken program might send; most values drive hard into the limits.
+// Returns a value that a broken program might send. Most values drive hard into the limits.
 double AnyNumber(RandomStream* random) {
   switch (random->Next() % 12) {
     case 0:
@@ -103,7 +103,7 @@ struct Plant {
   }
 };
 
-// True if all values are finite, their number is right, and they are within the velocity bounds.
+// Returns whether all values are finite and within the velocity bounds, and their number is right.
 bool Sendable(const Plant& plant, const Arms& v) {
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     if (v[arm].size() != plant.q[arm].size() || !v[arm].allFinite()) return false;
@@ -146,8 +146,8 @@ TEST(Guard, AnyInputGivesASendableCommandThatNeverCrossesALimitSoak) {
   }
 }
 
-// The joints respond late by whole ticks, and their positions are equally old. The reaction time
-// covers both.
+// The joints respond late by whole ticks, and their measured positions are equally old. The
+// reaction time covers both.
 TEST(Guard, NeverCrossesALimitInADelayedLoopSoak) {
   for (long seed = 1; seed <= Count(100, 20000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "delayed");
@@ -171,7 +171,7 @@ TEST(Guard, NeverCrossesALimitInADelayedLoopSoak) {
   }
 }
 
-// Ticks that are early, or late by up to three ticks.
+// Ticks are early, or late by up to three ticks.
 TEST(Guard, NeverCrossesALimitUnderJitterSoak) {
   for (long seed = 1; seed <= Count(100, 20000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "jitter");
@@ -202,8 +202,8 @@ double ApplyOne(Guard* guard, double q, double v, int ticks = 1) {
   return command[0][0];
 }
 
-// Highest position of a joint with a limit at 1 rad. The joint starts at 0, is always commanded to
-// move up as fast as it can, and follows a second-order loop with delay.
+// Returns the highest position of a joint with a limit at 1 rad. The joint starts at 0, is always
+// commanded to move up as fast as it can, and follows a second-order loop with delay.
 double HighestPosition(const VelocityLoopSpec& loop, double speed, double acceleration) {
   const double w = 2 * std::numbers::pi * loop.bandwidth, zeta = loop.damping_ratio;
   const double dt = 0.001;
@@ -248,13 +248,13 @@ TEST(Guard, BeyondALimitOnlyTheWayBackIsOpen) {
   EXPECT_DOUBLE_EQ(ApplyOne(&guard, 1.2, -0.5), -0.01);
   for (int k = 0; k < 100; ++k) ApplyOne(&guard, 1.2, -0.5);
   EXPECT_DOUBLE_EQ(ApplyOne(&guard, 1.2, -0.5), -0.5);
-  // The joint is suddenly beyond the other limit while it moves outwards: the acceleration limit
-  // yields.
+  // The joint is suddenly beyond the other limit while it moves outwards, so the acceleration limit
+  // must yield.
   EXPECT_EQ(ApplyOne(&guard, -1.1, -0.5), 0);
   EXPECT_DOUBLE_EQ(ApplyOne(&guard, -1.1, 0.5), 0.01);
 }
 
-// After missed deadlines, a larger change is allowed only if it brings a joint nearer to rest.
+// After missed deadlines, a larger change must be allowed only if it brings a joint nearer to rest.
 TEST(Guard, AfterMissedTicksAJointMayBrakeByThemAllAndSpeedUpByOne) {
   for (const double sign : {1.0, -1.0}) {
     Guard guard({OneJoint(-9, 9, 2, 10), JointBounds{}}, 0.001);
@@ -292,7 +292,7 @@ TEST(Guard, NormalCommandsPassUnaltered) {
   }
 }
 
-// Two braking joints, one of which needs longer than the other.
+// Two joints brake, and one of them needs longer than the other.
 TEST(Guard, OneBadNumberBrakesBothArmsByOneFactor) {
   for (const double bad : {kNan, kInf, -kInf}) {
     for (const std::size_t slow : {0U, 1U}) {
@@ -322,8 +322,8 @@ TEST(Guard, OneBadNumberBrakesBothArmsByOneFactor) {
   }
 }
 
-// Both arms move by the same fraction of the way from the last command to the slowed command,
-// limited by the joints' accelerations. Any quantity that is linear in the command then stays
+// Both arms move by the same fraction of the way from the last command to the slowed command, as
+// far as the joints' accelerations allow. Any quantity that is linear in the command then stays
 // between its values at both ends.
 TEST(Guard, SlowsBothArmsByOneShareOfTheWay) {
   RandomStream random(7, "slow");
@@ -383,7 +383,7 @@ TEST(Guard, AnUnknownPositionBrakes) {
   EXPECT_EQ(guard.last()[0][0], 0);
 }
 
-// The braking speed is the largest speed from which braking in whole ticks stops before the limit.
+// The braking speed is the largest speed from which braking in whole ticks ends before the limit.
 TEST(Guard, BrakingSpeedIsTheLargestThatStops) {
   for (const double distance : {1e-9, 1e-6, 1e-4, 0.01, 1.0}) {
     for (const double dt : {0.0005, 0.001, 0.008}) {

@@ -33,7 +33,7 @@ int IndexOf(RunCondition c) {
   return -1;
 }
 
-// Writes "self-test passed" as the model does: SELF_TEST_PASSED.
+// Returns a name in the form of the model: "self-test passed" becomes SELF_TEST_PASSED.
 std::string ModelName(std::string name) {
   for (char& c : name) {
     const auto byte = static_cast<unsigned char>(c);
@@ -69,7 +69,7 @@ std::map<std::string, int> Numbers(const std::vector<std::string>& lines) {
   return numbers;
 }
 
-// The first word and its arguments, for each line "  ROW(INIT, SELFTEST, ...)".
+// Returns the first word and its arguments for each line "  ROW(INIT, SELFTEST, ...)".
 std::vector<std::vector<std::string>> Rows(const std::vector<std::string>& lines) {
   std::vector<std::vector<std::string>> rows;
   static const std::regex kWord(R"(\w+)");
@@ -125,9 +125,9 @@ struct Step {
   int from, event, to;
 };
 
-// The steps of the model's state machine in a random run of `steps` steps. The times are longer
-// than in the search. Otherwise a random person would rarely hold the key long enough to change the
-// state.
+// Returns the steps of the model's state machine in a random run of `steps` steps. The times are
+// longer than in the search. Otherwise a random person would rarely hold the key long enough to
+// change the state.
 std::vector<Step> Trace(const test::TemporaryFolder& folder, long seed, long steps) {
   const std::string command = "cd '" + folder.path().string() + "' && spin -T -n" +
                               std::to_string(seed) + " -u" + std::to_string(steps) +

@@ -32,7 +32,7 @@ class MonitorTest : public testing::Test {
     input_.render = &render_;
   }
 
-  // The samples of the next tick: fresh, with noise.
+  // Provides the samples of the next tick, which are fresh and noisy.
   void Refresh() {
     for (ArmSample& arm : sample_.arms) {
       ++arm.arm_sequence;
@@ -44,7 +44,7 @@ class MonitorTest : public testing::Test {
     Refresh();
     return monitor_.Check(input_);
   }
-  // Resets the monitor and passes it one tick whose inputs `change` has changed, in copies.
+  // Resets the monitor and passes it one tick. `change` has changed copies of the tick's inputs.
   template <class Change>
   Status CheckChanged(const Change& change) {
     DeviceSample sample = sample_;

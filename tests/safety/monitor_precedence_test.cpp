@@ -1,4 +1,4 @@
-// Which of several faults the monitor reports, and which faults remove the power.
+// Tests which of several faults the monitor reports, and which faults remove the power.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// One fault each, in the order in which the faults take precedence.
+// The faults are listed in the order in which they take precedence.
 struct Fault {
   StopCause cause;
   bool run_only;
@@ -73,7 +73,7 @@ TEST_F(MonitorTest, OfSeveralFaultsTheFirstIsReported) {
   }
 }
 
-// The level of a stop also depends on faults of lower precedence than its cause.
+// The level of a stop must also depend on faults of lower precedence than its cause.
 TEST_F(MonitorTest, AfterAFaultThatAllowsHoldingTheMostSevereDecides) {
   for (JointVector& v : input_.velocity) v = JointVector::Constant(7, 2);
   EXPECT_TRUE(CheckAfterReset().ok());
@@ -95,7 +95,7 @@ TEST_F(MonitorTest, AfterAFaultThatAllowsHoldingTheMostSevereDecides) {
   EXPECT_TRUE(status.power_off);
 }
 
-// If no stop is to begin any more, a fault that forbids holding the arm is reported first.
+// If no further stop can begin, a fault that forbids holding the arm must be reported first.
 TEST_F(MonitorTest, AtRestTheReasonForPowerOffIsReported) {
   input_.running = false;
   input_.wrench[0].F_H_W[0] = 100;
@@ -132,8 +132,8 @@ TEST_F(MonitorTest, AtRestTheReasonForPowerOffIsReported) {
   }
 }
 
-// A fault that forbids holding the arm removes the power, whichever stage reports it and whatever
-// other fault is present.
+// A fault that forbids holding the arm must remove the power, whichever stage reports it and
+// whatever other faults there are.
 TEST_F(MonitorTest, WhatAStageMustNotHoldIsNotHeld) {
   for (Status MonitorInput::*stage : {&MonitorInput::device, &MonitorInput::sensing,
                                       &MonitorInput::simulation, &MonitorInput::haptics}) {

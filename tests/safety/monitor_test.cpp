@@ -1,4 +1,4 @@
-// The limits of the monitor, one by one.
+// Tests the limits of the monitor one by one.
 #include "safety/monitor.h"
 
 #include <gtest/gtest.h>
@@ -52,14 +52,14 @@ TEST_F(MonitorTest, RecoveryMayNotLoadAHandMore) {
   ExpectStatus(press(70.1, 8), StopCause::kForce, 1, 70.1, 70);
   EXPECT_TRUE(press(60, 8 + 1.6).ok());
   ExpectStatus(press(60, 8 + 1.7), StopCause::kTorque, 1, 9.7, 8 + 5.0 / 3);
-  // The smallest load counts, and loads within the usual limit are always allowed.
+  // The smallest load determines the limit, and loads within the usual limit are always allowed.
   EXPECT_TRUE(press(25, 1).ok());
   ExpectStatus(press(36, 1), StopCause::kForce, 1, 36, 35);
   EXPECT_TRUE(press(2, 1).ok());
   EXPECT_TRUE(press(29.9, 4.9).ok());
   ExpectStatus(press(30.1, 4.9), StopCause::kForce, 1, 30.1, 30);
   ExpectStatus(press(2, 5.1), StopCause::kTorque, 1, 5.1, 5);
-  // Each RECOVERY begins afresh, and a NaN counts as too large.
+  // Each RECOVERY starts without a smallest load, and a NaN counts as too large.
   input_.recovers = false;
   EXPECT_EQ(press(60, 0).cause, StopCause::kForce);
   input_.recovers = true;
@@ -227,7 +227,7 @@ TEST_F(MonitorTest, Tracking) {
   input_.virtual_[1].X_W.p = Vector3(0.03, 0.041, 0);
   ExpectStatus(Check(), StopCause::kTracking, 1, std::hypot(0.03, 0.041), 0.05);
   input_.virtual_[1].X_W.p.setZero();
-  // Takes the short way round, whatever the quaternion's sign.
+  // The monitor must measure the shorter rotation, whatever the quaternion's sign.
   for (const double sign : {1.0, -1.0}) {
     input_.virtual_[0].X_W.q = QuaternionFromZ(0.3, sign);
     EXPECT_TRUE(Check().ok());
@@ -253,7 +253,7 @@ TEST_F(MonitorTest, MissedDeadlines) {
   ExpectStatus(Check(), StopCause::kDeadline, -1, 3, 2);
 }
 
-// Single missed deadlines that recur: more than ten within about a second.
+// Single deadlines are missed repeatedly, more than ten within about a second.
 TEST_F(MonitorTest, DeadlinesThatAreMissedNowAndThen) {
   for (const int period : {50, 200}) {
     Status status = CheckAfterReset();
@@ -266,7 +266,7 @@ TEST_F(MonitorTest, DeadlinesThatAreMissedNowAndThen) {
   }
 }
 
-// An arm that reports its joints every 8 ms shows larger changes from sample to sample.
+// An arm that reports its joints every 8 ms changes more from sample to sample.
 TEST_F(MonitorTest, JointsThatJump) {
   for (JointVector& v : input_.velocity) v = JointVector::Constant(7, 2);
   for (const int period : {1, 8}) {

@@ -16,8 +16,8 @@
 namespace predictor {
 namespace {
 
-// Disturbances by a sensor and a person's hand: white noise of 0.05 N, and tremor about 10 Hz (rms
-// in N).
+// The disturbances by a sensor and a person's hand: white noise of 0.05 N, and tremor at about 10
+// Hz (rms in N).
 class Disturbance {
  public:
   Disturbance(std::uint64_t seed, double tremor) : random_(seed, "disturbance"), tremor_(tremor) {
@@ -34,7 +34,8 @@ class Disturbance {
   double tremor_, wander_ = 0, phase_ = 0;
 };
 
-// First alarm for force(t), t in [0, duration), along `axis`. A seed adds a disturbance.
+// Returns the first alarm for force(t), t in [0, duration), along `axis`. A seed adds a
+// disturbance.
 template <class Force>
 Alarm FirstAlarm(const Force& force, double duration, std::uint64_t seed = 0, int axis = 0,
                  double tremor = 0.1) {
@@ -52,7 +53,7 @@ Alarm FirstAlarm(const Force& force, double duration, std::uint64_t seed = 0, in
   return {};
 }
 
-// A sine with an initial amplitude of 0.3 N that grows by the factor `growth` each cycle.
+// A sine with an initial amplitude of 0.3 N that grows by the factor `growth` in each cycle.
 struct GrowingSine {
   double frequency, growth, phase;
   double Amplitude(double t) const { return 0.3 * std::pow(growth, frequency * t); }
@@ -66,7 +67,7 @@ struct GrowingSine {
 
 constexpr double kFrequencies[] = {0.5, 0.73, 0.92, 1.4, 2.5, 4.0, 6.5, 8.0};
 
-// The cycle that reaches 2 N ends at most one period later. At slow growth it is the third growing
+// The cycle that reaches 2 N ends at most one period later. At slow growth, it is the third growing
 // cycle. The amplitude in its middle differs from the amplitude at its end by less than one cycle's
 // growth.
 TEST(Oscillation, GrowingSineIsFoundInTheCycleThatReachesTheAmplitude) {
@@ -86,8 +87,8 @@ TEST(Oscillation, GrowingSineIsFoundInTheCycleThatReachesTheAmplitude) {
   }
 }
 
-// The alarm must come before the force itself would stop the run at 30 N. A sine that doubles each
-// cycle is excluded, because there are hardly four cycles between tremor and 30 N.
+// The alarm must come before the force itself would stop the run at 30 N. A sine that doubles in
+// each cycle is excluded, because there are hardly four cycles between the tremor and 30 N.
 TEST(Oscillation, GrowingSineIsFoundInNoiseAndTremorSoak) {
   for (const double frequency : kFrequencies) {
     for (const double growth : {1.05, 1.2, 1.5}) {
@@ -108,8 +109,8 @@ TEST(Oscillation, GrowingSineIsFoundInNoiseAndTremorSoak) {
   }
 }
 
-// If the sine is large from the start, the first cycle serves for comparison, and the third cycle
-// that exceeds its predecessor raises the alarm.
+// If the sine is large from the start, the first cycle serves for comparison. The third cycle that
+// exceeds its predecessor must raise the alarm.
 TEST(Oscillation, AlarmIsAtTheThirdGrowingCycle) {
   for (const double frequency : kFrequencies) {
     const auto force = [&](double t) {
@@ -174,9 +175,9 @@ TEST(Oscillation, OutsideTheBandNothingGrows) {
   }
 }
 
-// Three growing cycles end on a rise, and quiet follows. The alarm comes when the cycles are
-// complete or not at all. The alarm must not be delayed for seconds until a small force happens to
-// change its sign.
+// After three growing cycles, the force ends on a rise. The alarm must come when the cycles are
+// complete or not at all. It must not wait for seconds until a small force happens to change its
+// sign.
 TEST(Oscillation, ThatEndedIsNotReportedLater) {
   OscillationSpec spec;
   OscillationDetector detector(spec, 0.001);
@@ -185,7 +186,8 @@ TEST(Oscillation, ThatEndedIsNotReportedLater) {
     for (double t = from; t < to; t += 0.001)
       if (detector.Update({0, 0, force(t)}) > 0 && reported < 0) reported = t;
   };
-  // Grows up to the rise of the last cycle, then decays from above without changing its sign.
+  // The force grows up to the rise of the last cycle and then decays from above without changing
+  // its sign.
   feed(0, 6.2, [](double t) { return 0.6 * t * std::sin(2 * M_PI * 0.5 * t) * (t < 5.9); });
   feed(6.2, 20, [](double) { return 0.0; });
   feed(20, 21, [](double t) { return -1.0 * (t - 20); });
@@ -203,14 +205,14 @@ TEST(Oscillation, TwoGrowingCyclesAreTooFew) {
   }
 }
 
-// Jolts at irregular intervals are no oscillation, even if each is larger than the one before.
+// Jolts at irregular intervals are not an oscillation, even if each is larger than the last one.
 TEST(Oscillation, CyclesOfUnequalPeriodsNeverCount) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     RandomStream random(seed, "periods");
     double cycle = 0, whole = -1, frequency = 1;
     const auto force = [&](double) {
       if (std::floor(cycle) != whole) {
-        // Shorter and longer cycles alternate, so three in a row never agree.
+        // Shorter and longer cycles alternate, so no three in a row agree.
         whole = std::floor(cycle);
         const double shorter = 1 + random.Uniform();
         frequency *= std::fmod(whole, 4) < 2 ? 1.8 * shorter : 1 / (1.8 * shorter);
@@ -223,8 +225,8 @@ TEST(Oscillation, CyclesOfUnequalPeriodsNeverCount) {
   }
 }
 
-// The part of the task's slow motion that remains under an oscillation does not make the
-// oscillation grow.
+// A part of the task's slow motion remains under an oscillation. It must not make the oscillation
+// seem to grow.
 TEST(Oscillation, ConstantOscillationOnASlowMotionNeverCounts) {
   for (const double frequency : {1.5, 2.0, 3.0, 5.0}) {
     for (const double slow : {0.1, 0.15, 0.2}) {
@@ -246,7 +248,7 @@ TEST(Oscillation, QuietHandNeverCountsSoak) {
   }
 }
 
-// A step makes the band-pass filter ring most: the hand releases within 40 ms and grips again
+// A step makes the band-pass filter ring most. The hand releases within 40 ms and grips again
 // within 0.3 s.
 TEST(Oscillation, StepsReleaseAndRegripNeverCountSoak) {
   for (long seed = 1; seed <= Count(40, 4000); ++seed) {
@@ -264,7 +266,7 @@ TEST(Oscillation, StepsReleaseAndRegripNeverCountSoak) {
   }
 }
 
-// Forces of a task: minimum-jerk legs to random levels within ±20 N, with and without pauses.
+// The forces of a task: minimum-jerk legs to random levels within ±20 N, with and without pauses.
 struct Legs {
   Legs(std::uint64_t seed, double leg, double dwell) {
     RandomStream random(seed, "legs");
@@ -305,8 +307,8 @@ TEST(Oscillation, CirclesNeverCount) {
   }
 }
 
-// The loaded cobot responds to each leg with an additional decaying oscillation. There must be no
-// alarm at the damping that tasks have, and always an alarm for an unstable mode.
+// The loaded cobot responds to each leg with an additional decaying oscillation. With the damping
+// that tasks have, there must be no alarm. With an unstable mode, there must be one.
 TEST(Oscillation, DampedModeDrivenByLegsNeverCountsAndAnUnstableOneDoesSoak) {
   for (const double frequency : {0.74, 0.92, 1.5}) {
     for (const double damping : {0.4, 0.2, 0.1, -0.02}) {
@@ -341,7 +343,7 @@ TEST(Oscillation, StartsWhereTheForceIsAndForgetsOnReset) {
   const double middle = undisturbed - 1.5;
   EXPECT_EQ(feed(0, middle), -1);
   detector.Reset();
-  // Four more cycles are needed after the reset: one for comparison and three that grow.
+  // After the reset, four more cycles are needed: one for comparison and three that grow.
   const double later = feed(middle, 60);
   EXPECT_GT(later, middle + 3.5);
   EXPECT_LT(later, middle + 6);
@@ -370,7 +372,7 @@ TEST(Oscillation, DisabledSeesNothing) {
   }
 }
 
-// The same signal sampled at other rates gives the same result.
+// The same signal must give the same result at other sampling rates.
 TEST(Oscillation, SamplingTimeDoesNotMatter) {
   for (const double dt : {0.0005, 0.002, 0.004}) {
     OscillationDetector detector(OscillationSpec{}, dt);

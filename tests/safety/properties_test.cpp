@@ -30,15 +30,15 @@ struct JointInput {
   double q, v;
 };
 
-// The input of all joints. `missing`: an arm that provides too few numbers or none. `passed`: ticks
-// since the last command, more than one after missed deadlines.
+// The input of all joints. `missing` is an arm that provides too few numbers or none. `passed` is
+// the number of ticks since the last command, which exceeds one after missed deadlines.
 struct Tick {
   std::vector<JointInput> joints;
   int missing;
   int passed;
 };
 
-// Ticks between two commands, with arbitrary jitter.
+// Generates the number of ticks between two commands, with arbitrary jitter.
 rc::Gen<int> SomePassed() { return rc::gen::inRange(1, 5); }
 
 std::array<JointBounds, kHands> SomeBounds() {
@@ -57,7 +57,7 @@ std::array<JointBounds, kHands> SomeBounds() {
   return bounds;
 }
 
-// `broken`: the values may also be NaN or infinite.
+// If `broken`, the values may also be NaN or infinite.
 rc::Gen<JointInput> SomeJointInput(bool broken) {
   const auto number = broken
                           ? rc::gen::weightedOneOf<double>(
@@ -88,10 +88,10 @@ void Split(const Tick& tick, Arms* q, Arms* v) {
   }
 }
 
-// Positions jump, are unknown or lie far beyond the limits; commands are arbitrary and may come
-// late. A joint's velocity changes by more than a tick's acceleration only towards zero, but not
-// past zero. After missed ticks the change may be that of all these ticks, and it may be larger
-// only if a joint limit is known to be near.
+// Positions jump, are unknown or lie far beyond the limits. Commands are arbitrary and may come
+// late. A joint's velocity may change by more than a tick's acceleration only towards zero, but not
+// past zero. After missed ticks, the change may be that of all these ticks. It may be larger only
+// if a joint limit is known to be near.
 TEST(GuardProperties, WhateverIsMeasuredAndAskedWhatIsSentIsBoundedSoak) {
   EXPECT_TRUE(rc::check([] {
     const auto bounds = SomeBounds();
@@ -158,8 +158,8 @@ struct Motion {
   double speed = 0, rate = 0;  // speed and rate of the faster handle [m/s], [m/s²]
 };
 
-// The motion after one tick with `jerk` (−1, 0 or 1 times the limit). If this would leave the
-// bounds, the jerk is chosen so that the motion stays inside them: the speed remains under the cap
+// Returns the motion after one tick with `jerk` (−1, 0 or 1 times the limit). If this would leave
+// the bounds, the jerk is chosen so that the motion stays in them: the speed remains under the cap
 // after the acceleration has faded, and does not cross zero.
 Motion Next(const Motion& from, int jerk, const Limits& limits) {
   const double step = limits.jerk * kDt;
@@ -177,7 +177,7 @@ struct Piece {
   int jerk, ticks;
 };
 
-// A motion that can be reached from rest within the limits.
+// Generates a motion that can be reached from rest within the limits.
 Motion SomeMotion(const Limits& limits) {
   const auto pieces = *rc::gen::container<std::vector<Piece>>(
       rc::gen::construct<Piece>(rc::gen::element(-1, 0, 1, 1), rc::gen::inRange(1, 60)));
@@ -188,7 +188,8 @@ Motion SomeMotion(const Limits& limits) {
   return motion;
 }
 
-// The motion under the cap with the longest stop is at full acceleration, about to reach the cap.
+// Of all motions under the cap, the one at full acceleration that is about to reach the cap has the
+// longest stop.
 double LongestTime(const Limits& l) { return l.cap / l.acceleration + 2 * l.acceleration / l.jerk; }
 double LongestWay(const Limits& l) {
   const double a = l.acceleration, j = l.jerk;
@@ -207,8 +208,8 @@ Limits SomeLimits() {
   return {a, j, a * a / j + *test::Between(0.01, 1)};
 }
 
-// Joint bounds that limit a handle's deceleration to `allowed` [m/s²] if a joint moves at one rad/s
-// for each m/s.
+// Returns joint bounds that limit a handle's deceleration to `allowed` [m/s²] if a joint moves at
+// one rad/s for each m/s.
 std::array<JointBounds, kHands> BoundsThatAllow(double allowed) {
   std::array<JointBounds, kHands> bounds;
   for (JointBounds& b : bounds) {
@@ -223,7 +224,8 @@ struct Stop {
   double time = 0, way = 0, fastest = 0;  // [s], [m], [m/s]
 };
 
-// Ticks that pass before each command, repeated cyclically; if empty, always one.
+// The numbers of ticks that pass before each command, repeated cyclically. If empty, it is always
+// one.
 using Passed = std::vector<int>;
 rc::Gen<Passed> SomeJitter() { return rc::gen::container<Passed>(SomePassed()); }
 int At(const Passed& passed, int command) {
@@ -253,7 +255,7 @@ Stop RunStop(const Motion& motion, const Limits& limits, double allowed, const P
       stop.Begin({StopCause::kOperator}, 2, last, limits.cap, limits.acceleration);
     stop.Next(&v, At(passed, command));
     RC_ASSERT(v[0].allFinite() && v[1].allFinite());
-    // both arms have the same phase
+    // Both arms have the same phase.
     RC_ASSERT(std::abs(v[1][0] + 0.3 * v[0][0]) <= 1e-12 * limits.cap);
     result.time += At(passed, command) * kDt;
     result.way += v[0][0] * At(passed, command + 1) * kDt;  // held until the next command
@@ -262,8 +264,8 @@ Stop RunStop(const Motion& motion, const Limits& limits, double allowed, const P
   return result;
 }
 
-// A velocity is sent for a whole tick, so a handle that is still accelerating travels further by
-// this amount. A velocity that is held for several ticks is the one of their first tick.
+// A velocity is sent for a whole tick, so a handle that still accelerates travels further by this
+// amount. A velocity that is held for several ticks is that of the first of them.
 double Held(const Stop& stop, const Motion& motion, const Passed& passed) {
   const double late = (Most(passed) - 1) * stop.fastest * kDt;
   return Most(passed) * std::max(0.0, stop.fastest - motion.speed) * kDt + late;

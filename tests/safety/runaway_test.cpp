@@ -14,14 +14,14 @@ namespace {
 constexpr double kCap = 0.25;
 constexpr double kThreshold = 30;  // force threshold that stops every run that reaches it [N]
 
-// A mass held by a hand that aims for another position. The sensor has a sign: 1 if correct, −1 if
-// mirrored.
+// A mass held by a hand that aims at another position. The sensor has a sign: 1 if it is correct,
+// −1 if it is mirrored.
 class Hand {
  public:
   Hand(double stiffness, double mass, double spring, std::uint64_t seed)
       : stiffness_(stiffness), mass_(mass), spring_(spring), random_(seed, "hand") {}
-  // Delay of the alarm [s] after both thresholds are exceeded, or −1 without an alarm. intent: the
-  // hand's target position [m].
+  // Returns the delay of the alarm [s] after both thresholds are exceeded, or −1 without an alarm.
+  // intent: the hand's target position [m].
   template <class Intent>
   double Run(double sign, double duration, const Intent& intent) {
     RunawayDetector detector(kCap, kDt);
@@ -51,8 +51,8 @@ class Hand {
   double tremor_ = 0, fast_ = -1;
 };
 
-// Growth rate λ [1/s], the solution of m λ² − (10 − 4) λ − (stiffness − 5) = 0 with the values of
-// Hand.
+// Returns the growth rate λ [1/s], which solves m λ² − (10 − 4) λ − (stiffness − 5) = 0 with the
+// values of Hand.
 double Growth(double stiffness, double mass) {
   return (3 + std::sqrt(9 + mass * (stiffness - 5))) / mass;
 }
@@ -78,7 +78,7 @@ TEST(Runaway, OfAMirroredSensorIsSeenSoonAfterTheHandleIsFast) {
   EXPECT_GE(seen, 25);
 }
 
-// A push during a carry, as sudden as people's pushes are, up to the threshold and the cap.
+// During a carry, the person pushes as suddenly as people can, up to the threshold and the cap.
 TEST(Runaway, IsNotASuddenPush) {
   for (const double push : {8.0, 14.0, 20.0})
     for (const double rise : {0.04, 0.06, 0.08, 0.10, 0.12})
@@ -95,7 +95,7 @@ TEST(Runaway, IsNotASuddenPush) {
         }
 }
 
-// Carrying and lifting against a spring, as briskly as the cap allows.
+// The person carries and lifts against a spring as briskly as the cap allows.
 TEST(Runaway, IsNotAPersonsMotion) {
   for (const double distance : {0.05, 0.1, 0.13, 0.16, 0.25})
     for (const double duration : {0.5, 0.8, 1.0, 1.25, 2.0, 4.0})

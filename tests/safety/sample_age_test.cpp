@@ -1,4 +1,4 @@
-// The allowed age of a sample: safety.max_age, or 2.5 periods of a slower device.
+// Tests the allowed age of a sample, which is safety.max_age or 2.5 periods of a slower device.
 #include <gtest/gtest.h>
 
 #include "safety/monitor.h"
@@ -6,7 +6,7 @@
 namespace predictor {
 namespace {
 
-// The monitor's verdict on one arm whose joint sample and wrench have these ages [s].
+// Returns the monitor's verdict on one arm whose joint sample and wrench have these ages [s].
 Status Judge(double arm_age, double sensor_age, const SamplePeriods& periods,
              const SafetySpec& safety = {}) {
   Monitor monitor(safety, RenderingSpec{}, {false, false}, 0.001, {periods, SamplePeriods{}});
@@ -44,12 +44,12 @@ TEST(SampleAge, MayBeTwoAndAHalfPeriodsForASlowOne) {
 TEST(SampleAge, OfArmAndSensorHaveLimitsOfTheirOwn) {
   EXPECT_EQ(Judge(0.001, 0.0199, {0.008, 0.001}).cause, StopCause::kStale);
   EXPECT_TRUE(Judge(0.001, 0.0199, {0.001, 0.008}).ok());
-  // The sample that exceeds its limit by more is reported: the sensor's by 10 ms, the arm's by 5
-  // ms.
+  // The monitor must report the sample that exceeds its limit by more: the sensor's exceeds it by
+  // 10 ms, the arm's by 5 ms.
   EXPECT_DOUBLE_EQ(Judge(0.025, 0.015, {0.008, 0.001}).limit, 0.005);
 }
 
-// A scenario that tolerates old samples does not change how silence is treated.
+// Silence must have the same effect in a scenario that tolerates old samples.
 TEST(SampleAge, SilenceCutsPowerForAnyMaxAge) {
   for (const double max_age : {0.001, 0.005, 0.019, 0.021, 1.0}) {
     SafetySpec safety;

@@ -46,7 +46,8 @@ int IndexOf(RunCondition c) {
 
 constexpr RunCondition kStart{};
 
-// Conditions that are reachable from `from` without the events and the states in the given sets.
+// Returns the conditions that are reachable from `from` without the events and the states in the
+// given sets.
 std::set<int> Reachable(RunCondition from, const std::set<RunEvent>& without_events = {},
                         const std::set<RunState>& without_states = {}) {
   std::set<int> seen;
@@ -129,7 +130,7 @@ TEST(StateMachine, AnEventOutsideTheEnumerationStopsWhatMoves) {
   }
 }
 
-// Non-zero velocities are sent only in ALIGN, RUN, RECOVERY or STOPPING.
+// Non-zero velocities may be sent only in ALIGN, RUN, RECOVERY or STOPPING.
 TEST(StateMachineInvariants, OnlyFourStatesMove) {
   for (const RunCondition c : kRunConditions) {
     const bool moves = c.state == RunState::kAlign || c.state == RunState::kRun ||
@@ -137,8 +138,8 @@ TEST(StateMachineInvariants, OnlyFourStatesMove) {
     EXPECT_EQ(MayMove(c.state), moves) << Name(c);
     EXPECT_EQ(StateMachine::TimePasses(c.state), c.state == RunState::kRun);
   }
-  // The arms come to rest before a state without motion, unless the event itself ends a motion at
-  // rest.
+  // The arms must come to rest before a state without motion, unless the event itself ends a motion
+  // at rest.
   for (const RunCondition from : kRunConditions) {
     for (int e = 0; e < kRunEvents; ++e) {
       const RunCondition to = Next(from, Event(e));
@@ -186,7 +187,7 @@ TEST(StateMachineInvariants, NoWayFromAStopToRunAvoidsResetIdleAndArmed) {
   for (const RunState stop : {RunState::kStopping, RunState::kHeld, RunState::kUnpowered}) {
     for (const RunCondition from : kRunConditions) {
       if (from.state != stop) continue;
-      // Otherwise the other checks would prove nothing.
+      // If RUN were not reachable, the other checks would prove nothing.
       EXPECT_TRUE(Reaches(Reachable(from), RunState::kRun));
       EXPECT_FALSE(Reaches(Reachable(from, {RunEvent::kReset}), RunState::kRun));
       EXPECT_FALSE(Reaches(Reachable(from, {}, {RunState::kIdle}), RunState::kRun));
@@ -207,8 +208,8 @@ TEST(StateMachineInvariants, NothingIsEnabledBeforeTheSelfTest) {
 
 using Edge = std::tuple<std::string, std::string, std::string>;  // from, event, to
 
-// The table that the page should contain: every transition that changes the condition, with the
-// default rule as "any other".
+// Returns the table that the page should contain: every transition that changes the condition, with
+// the default rule as "any other".
 std::set<Edge> EdgesOfCode() {
   std::set<Edge> edges;
   for (const Transition& t : kTransitions) {
@@ -240,7 +241,7 @@ std::vector<std::string> Page() {
   return lines;
 }
 
-// The rows of the table under `## heading`, without its two header lines.
+// Returns the rows of the table under `## heading`, without its two header lines.
 std::vector<std::vector<std::string>> Rows(const std::string& heading) {
   std::vector<std::vector<std::string>> rows;
   bool inside = false;

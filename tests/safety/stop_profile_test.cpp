@@ -16,7 +16,7 @@
 namespace predictor {
 namespace {
 
-// The speeds of a stop [m/s], from the first command to the final zero.
+// Returns the speeds of a stop [m/s], from the first command to the final zero.
 std::vector<double> Speeds(StopProfile profile, double speed, double rate) {
   profile.Begin(speed, rate);
   std::vector<double> v = {speed};
@@ -30,7 +30,8 @@ double Travelled(const std::vector<double>& v, double dt) {
   return sum;
 }
 
-// The budget of the worst stop, over all speeds and accelerations under the cap, v + a²/2j <= cap.
+// The budget of the worst stop, over all speeds v and accelerations a under the cap, v + a²/2j <=
+// cap.
 struct Budget {
   double cap, time, distance, detection_travel;
 };
@@ -53,7 +54,7 @@ TEST(StopProfile, WorstCaseIsTheBudget) {
     EXPECT_NEAR(time, budget.time, 1e-9);
     EXPECT_NEAR(distance, budget.distance, 5e-5);
     EXPECT_NEAR(0.003 * budget.cap, budget.detection_travel, 6e-5);
-    // Each sent value is held for a tick, so the handle travels no further than the curve.
+    // Each sent value is held for a tick, so the handle must travel no further than the curve.
     StopProfile profile(5, 250, kDt, budget.cap);
     const std::vector<double> worst = Speeds(profile, budget.cap - 0.05, 5);
     EXPECT_NEAR(static_cast<double>(worst.size() - 1) * kDt, budget.time, kDt * 1.001);
@@ -61,7 +62,7 @@ TEST(StopProfile, WorstCaseIsTheBudget) {
   }
 }
 
-// Speed, acceleration and jerk of the sent values, from before the stop to after it.
+// Checks speed, acceleration and jerk of the sent values, from before the stop until after it.
 TEST(StopProfile, EveryStopKeepsItsBoundsSoak) {
   for (long seed = 1; seed <= Count(3000, 300000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "stop");
@@ -69,8 +70,8 @@ TEST(StopProfile, EveryStopKeepsItsBoundsSoak) {
     const double dt = Between(&random, 0.0005, 0.004);
     const double cap = Between(&random, 0.05, 1);
     const double speed = cap * std::pow(random.Uniform(), 3);
-    // An acceleration that the motion can have: within the bounds, and such that the speed stays
-    // under the cap while the acceleration fades.
+    // The motion can have this acceleration: it is within the bounds, and the speed stays under the
+    // cap while it fades.
     const double gain = std::min(cap - speed, 0.25 * speed);
     const double highest = std::min(a, std::sqrt(2 * j * gain));
     const double lowest = -std::min(a, std::sqrt(2 * j * speed));
@@ -92,8 +93,8 @@ TEST(StopProfile, EveryStopKeepsItsBoundsSoak) {
   }
 }
 
-// An independent optimum with fine steps: it brakes with full jerk as long as easing off with full
-// jerk still ends above zero speed. Then it eases off.
+// Computes an independent optimum in fine steps. It brakes with full jerk as long as easing off
+// with full jerk still ends above zero speed. Then it eases off.
 double GreedyStopTime(double speed, double rate, double a, double j) {
   const double h = 2e-6;
   double v = speed, r = rate, t = 0;
@@ -147,7 +148,7 @@ TEST(StopProfile, ARateBeyondWhatMayBeIsCut) {
       EXPECT_EQ(v.back(), 0);
       const double highest = rate > 0 ? std::max(speed, std::min(0.25, 1.25 * speed)) : speed;
       EXPECT_LE(*std::max_element(v.begin(), v.end()), highest * (1 + 1e-12));
-      // The cut itself is one step of the acceleration. After it, the jerk is bounded again.
+      // The cut itself is one step of the acceleration. After it, the jerk must be bounded again.
       for (std::size_t k = 1; k < v.size(); ++k) {
         const double before = k >= 2 ? v[k - 1] - v[k - 2] : v[k] - v[k - 1];
         ASSERT_LE(std::abs(v[k] - v[k - 1]), 5 * kDt * (1 + 1e-9));

@@ -1,4 +1,4 @@
-// The common stop of both arms.
+// Tests the common stop of both arms.
 #include "safety/stop.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 using Arms = std::array<JointVector, kHands>;
 
-// Handles with constant orientation.
+// Returns handles with constant orientation.
 std::array<Pose, kHands> At(const Vector3& left, const Vector3& right = Vector3::Zero()) {
   return {Pose{left, Quaternion::Identity()}, Pose{right, Quaternion::Identity()}};
 }
@@ -30,8 +30,7 @@ JointBounds Bounds(int joints, double acceleration, double velocity = 5) {
 
 const Status kForceStop = {StopCause::kForce, 1, 31.5, 30};
 
-// For a stop from any command that the guard itself let through, the guard must find nothing to
-// correct.
+// Whatever command the guard let through, it must find nothing to correct in a stop from there.
 TEST(StopController, ScalesBothArmsByOneFactorWithinEveryJointsBoundsSoak) {
   for (long seed = 1; seed <= Count(500, 50000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "controller");
@@ -68,8 +67,8 @@ TEST(StopController, ScalesBothArmsByOneFactorWithinEveryJointsBoundsSoak) {
   }
 }
 
-// After missed deadlines, the next command is the one that the stop would have reached meanwhile,
-// and the guard permits the larger deceleration.
+// After missed deadlines, the next command must be the one that the stop would have reached
+// meanwhile, and the guard must permit the larger deceleration.
 TEST(StopController, KeepsItsTimeWhenDeadlinesAreMissed) {
   const std::array<JointBounds, kHands> bounds = {Bounds(1, 10), Bounds(1, 10)};
   const Arms q = {JointVector::Zero(1), JointVector::Zero(1)};
@@ -91,7 +90,7 @@ TEST(StopController, KeepsItsTimeWhenDeadlinesAreMissed) {
   }
 }
 
-// If the geometry becomes unreliable, the stop keeps the correction made so far, so that the
+// If the geometry becomes unreliable, the stop must keep the correction made so far, so that the
 // command does not jump.
 TEST(StopController, ContinuesUnchangedOnceTheGeometryIsInDoubt) {
   const std::array<JointBounds, kHands> bounds = {Bounds(2, 10), JointBounds{}};
@@ -112,7 +111,7 @@ TEST(StopController, ContinuesUnchangedOnceTheGeometryIsInDoubt) {
   }
 }
 
-// Two links of 0.4 m in a plane, with kinematics written only for this test.
+// Two links of 0.4 m in a plane, whose kinematics are written only for this test.
 struct PlanarArm {
   double base_x, q1, q2;
   Vector3 Handle() const {
@@ -186,8 +185,8 @@ TEST(StopController, ReportsCauseTimeAndDuration) {
   EXPECT_EQ(stop.report.status.value, 31.5);
   EXPECT_EQ(stop.report.status.limit, 30);
   EXPECT_EQ(stop.report.time, 1.25);
-  // From 0.25 m/s at a constant speed, the command takes 70 ms and 8.75 mm. The lag adds a distance
-  // of v·20 ms, and the time until less than 50 µm is left.
+  // From a constant speed of 0.25 m/s, the commands take 70 ms and 8.75 mm. The lag adds a distance
+  // of v·20 ms and the time until less than 50 µm is left.
   EXPECT_NEAR(stop.travelled, 0.00875 + 0.25 * 0.02, 0.0004);
   EXPECT_GE(stop.report.duration, 0.070);
   EXPECT_LE(stop.report.duration, 0.070 + 6 * 0.02);
@@ -248,8 +247,8 @@ TEST(StopController, AtRestOrWithoutArmsItIsDoneAtOnce) {
   }
 }
 
-// An arm whose command contains a NaN gets zero velocity immediately. The other arm still brakes as
-// usual.
+// An arm whose command contains a NaN must get zero velocity immediately. The other arm must brake
+// as usual.
 TEST(StopController, ANanCommandHasNoEffect) {
   StopController stop(SafetySpec{}, {Bounds(2, 10), Bounds(2, 10)}, kDt);
   Arms v = {JointVector::Constant(2, 0.3), JointVector::Constant(2, 0.3)};
@@ -264,7 +263,7 @@ TEST(StopController, ANanCommandHasNoEffect) {
   }
 }
 
-// The handles keep moving after the arms were commanded to rest. The stop ends anyway.
+// The handles keep moving after the arms were commanded to rest. The stop must end nevertheless.
 TEST(StopController, DoesNotWaitForEver) {
   StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
   stop.Begin(kForceStop, 0, {JointVector::Zero(1), JointVector()}, 0, 0);
@@ -275,7 +274,7 @@ TEST(StopController, DoesNotWaitForEver) {
   EXPECT_NEAR(ticks * kDt, StopController::kPatience, 2 * kDt);
 }
 
-// Patience counts from the end of the commands, however long these take.
+// The waiting time must start at the end of the commands, however long these take.
 TEST(StopController, IsNotDoneWhileItsCommandsBrake) {
   StopController stop(SafetySpec{}, {Bounds(1, 0.5), JointBounds{}}, kDt);
   Arms v = {JointVector::Constant(1, 0.8), JointVector()};

@@ -16,7 +16,7 @@
 namespace predictor {
 namespace {
 
-// First alarm of the detector for force(t), t in [0, duration), sampled every dt.
+// Returns the first alarm of the detector for force(t), t in [0, duration), sampled every dt.
 template <class Force>
 Alarm FirstVibration(const Force& force, double duration, double dt = 0.001) {
   VibrationDetector detector(dt);
@@ -27,8 +27,8 @@ Alarm FirstVibration(const Force& force, double duration, double dt = 0.001) {
   return {};
 }
 
-// A lightly damped mode driven by noise: white noise through x'' + 2 ζ ω x' + ω² x, per axis, with
-// unit standard deviation.
+// A lightly damped mode driven by noise. White noise passes through x'' + 2 ζ ω x' + ω² x on each
+// axis, with unit standard deviation.
 class NoisyMode {
  public:
   NoisyMode(double frequency, double ratio, std::uint64_t seed, int axis, double dt)
@@ -53,8 +53,8 @@ class NoisyMode {
 
 constexpr double kVibrationFrequencies[] = {12, 15, 20, 25, 30, 40, 50, 60};
 
-// A vibration that starts at 0.1 N, with noise of 0.1 N on each axis, and doubles within 50 ms (but
-// not within a cycle) to 20 s. The detector finds the vibration before it reaches 5 N, and reports
+// A vibration starts at 0.1 N, with noise of 0.1 N on each axis. It doubles within 50 ms (but not
+// within a cycle) to 20 s. The detector must find the vibration before it reaches 5 N, and report
 // its true amplitude.
 TEST(Vibration, GrowingOneIsFoundBeforeFiveNewton) {
   for (const double frequency : kVibrationFrequencies) {
@@ -81,7 +81,7 @@ TEST(Vibration, GrowingOneIsFoundBeforeFiveNewton) {
   }
 }
 
-// The second criterion detects a vibration that no longer grows, in any direction, even if the
+// The second criterion must detect a vibration that no longer grows, in any direction, even if the
 // direction rotates.
 TEST(Vibration, ConstantOneIsFoundWithinASecond) {
   for (const double frequency : kVibrationFrequencies) {
@@ -98,7 +98,7 @@ TEST(Vibration, ConstantOneIsFoundWithinASecond) {
   }
 }
 
-// Loops that double within three half cycles: the shortest scale responds soon enough.
+// The loop doubles within three half cycles. The shortest scale must respond soon enough.
 TEST(Vibration, OneThatDoublesWithinThirtyMillisecondsIsFoundBeforeSixNewton) {
   for (const double frequency : {20.0, 25.0, 30.0, 35.0, 40.0}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -115,7 +115,7 @@ TEST(Vibration, OneThatDoublesWithinThirtyMillisecondsIsFoundBeforeSixNewton) {
   }
 }
 
-// A UR of 125 Hz in a loop of 1 kHz: each sample is held for 8 ms.
+// A UR of 125 Hz in a loop of 1 kHz holds each sample for 8 ms.
 TEST(Vibration, OfASensorThatHoldsItsSamplesIsFound) {
   for (const double frequency : {15.0, 20.0, 25.0, 30.0, 35.0, 40.0}) {
     const auto held = [](double t) { return std::floor(t / 0.008 + 1e-9) * 0.008; };
@@ -160,7 +160,8 @@ TEST(Vibration, BeatsAndModulationDoNotHide) {
   EXPECT_GE(FirstVibration(modulated, 3).time, 0);
 }
 
-// Peaks of 2 N, modulated by up to 100 % at 0.5 to 6 Hz, and two tones of 1 N each.
+// The vibrations are peaks of 2 N, modulated by up to 100 % at 0.5 to 6 Hz, and two tones of 1 N
+// each.
 TEST(Vibration, NearlyAllBeatsAndModulationsAreFound) {
   int modulations = 0, found_modulations = 0, beats = 0, found_beats = 0;
   for (const double f : {14.0, 18.0, 22.0, 26.0, 30.0, 40.0, 50.0}) {
@@ -184,7 +185,7 @@ TEST(Vibration, NearlyAllBeatsAndModulationsAreFound) {
   EXPECT_EQ(found_beats, beats);
 }
 
-// The amplitude alone does not decide: broadband noise of 3 N rms on each axis is not a vibration,
+// The amplitude alone must not decide. Broadband noise of 3 N rms on each axis is not a vibration,
 // although it exceeds the amplitude threshold of every scale.
 TEST(Vibration, BroadbandNoiseOfAnyLevelNeverCountsSoak) {
   for (long seed = 1; seed <= Count(10, 500); ++seed) {
@@ -216,7 +217,7 @@ TEST(Vibration, DampedModeDrivenByNoiseNeverCountsSoak) {
   }
 }
 
-// Sudden pushes, releases and the steps of a mouse: jumps of up to 30 N that take 0 to 150 ms.
+// Sudden pushes, releases and the steps of a mouse are jumps of up to 30 N that take 0 to 150 ms.
 TEST(Vibration, PushesReleasesAndStepsNeverCount) {
   for (const double height : {2.0, 10.0, 20.0, 30.0}) {
     for (const double rise : {0.0, 0.004, 0.016, 0.030, 0.060, 0.150}) {
@@ -239,7 +240,7 @@ TEST(Vibration, PushesReleasesAndStepsNeverCount) {
   }
 }
 
-// A person's motion and tremor: 10 N back and forth at up to 6 Hz, and 0.6 N of tremor at 10 Hz.
+// A person moves with 10 N back and forth at up to 6 Hz and has 0.6 N of tremor at 10 Hz.
 TEST(Vibration, MotionAndTremorNeverCount) {
   for (const double frequency : {0.5, 2.0, 4.0, 6.0}) {
     const auto force = [&](double t) {
@@ -269,7 +270,7 @@ TEST(Vibration, StartsWhereTheForceIsAndForgetsOnReset) {
           found, detector.Update(Vector3(20, 2 * std::sin(2 * kPi * 24 * k * 0.001), 0)).amplitude);
     return found;
   };
-  EXPECT_EQ(vibrate(40), 0);  // too short to have any effect
+  EXPECT_EQ(vibrate(40), 0);  // the vibration is too short to have any effect
   detector.Reset();
   EXPECT_EQ(vibrate(40), 0);
   EXPECT_GT(vibrate(700), 0);

@@ -16,7 +16,8 @@ class WarningsTest : public testing::Test {
     input_.present = {true, true};
     input_.sample = &sample_;
   }
-  // For the left hand: a sensor's packets in one second, and the numbers of lost and refused ones.
+  // Passes the packets of the left hand's sensor during `time` [s], some of which are lost or
+  // refused.
   void Pass(double time, int each_lost = 0, int each_refused = 0) {
     for (int k = 0; k < static_cast<int>(time / kDt); ++k) {
       ++tick_;
@@ -87,7 +88,7 @@ TEST_F(WarningsTest, ADriftAtRestIsReported) {
   EXPECT_EQ(warnings_.bits(0), 0);
 }
 
-// Warnings from an arm itself are shown unchanged.
+// Warnings that an arm itself reports must be shown unchanged.
 TEST_F(WarningsTest, OfPowerAreAsTheArmSays) {
   sample_.arms[1].keeps_power = sample_.arms[0].no_power_off = true;
   Pass(kDt);

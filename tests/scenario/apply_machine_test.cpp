@@ -1,4 +1,4 @@
-// Scenarios with a machine: what its file determines, and what it rejects.
+// Tests scenarios on a machine: what the machine file determines, and what it rejects.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,7 +46,8 @@ TEST_F(ApplyMachineTest, AFrankasPositionIntegratesItsVelocities) {
   EXPECT_TRUE(scenario.arm(1).follows_position);
 }
 
-// Each limit separately: a tighter value is accepted, a looser one is refused and named.
+// The test changes each limit separately. A tighter value must be accepted, a looser one must be
+// refused and named.
 TEST_F(ApplyMachineTest, AScenarioMayTightenNeverLoosen) {
   const std::string machine = With(kMachine, "limits: {force: 25, handle_speed: 0.2}",
                                    "limits: {force: 25, torque: 4, handle_speed: 0.2, "
@@ -126,7 +127,7 @@ TEST_F(ApplyMachineTest, ElbowsDoNotDrawTheHandlesAway) {
       "be 0.01 or less, because a larger value moves the handles away from their targets.");
 }
 
-// No machine file can disable the detection of oscillations.
+// A machine file must not be able to disable the detection of oscillations.
 TEST_F(ApplyMachineTest, TheSearchForOscillationsStays) {
   const std::string machine =
       With(kMachine, "limits: {force: 25, handle_speed: 0.2}", "limits: {force: 30}");
@@ -158,7 +159,7 @@ TEST_F(ApplyMachineTest, AStopKeepsItsBudget) {
   EXPECT_NE(blow.find("safety.stop_acceleration and safety.stop_jerk"), std::string::npos) << blow;
 }
 
-// Without a measured loop there is no lag compensation, whatever the scenario requests.
+// Without a measured loop, there must be no lag compensation, whatever the scenario requests.
 TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
   Machine machine = ParseMachine(kMachine, "lab.yaml");
   const auto lead = [&](const char* set) {
@@ -189,8 +190,8 @@ TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
   EXPECT_EQ(lead("rendering.lead=auto"), -1);
   EXPECT_FALSE(IsPushTested(*machine.left));
   EXPECT_THROW(RequirePushTests(machine, Load()), InputError);
-  // Another payload does not invalidate the measured loop. Other loop parameters or another arm at
-  // this place do.
+  // Another payload must not invalidate the measured loop, but other loop parameters or another arm
+  // at this place must.
   machine.left->arm.payload.mass += 1;
   EXPECT_EQ(lead("rendering.lead=auto"), -1);
   machine.left->arm.loop.bandwidth += 1;
@@ -201,7 +202,7 @@ TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
   EXPECT_EQ(lead("rendering.lead=auto"), 0);
 }
 
-// Errors that are detected only after the models are loaded.
+// The program detects these errors only after it has loaded the models.
 TEST_F(ApplyMachineTest, ErrorsOfItsArmsAreReportedInItsFile) {
   Scenario scenario = Load({"safety.force=20", "safety.handle_speed=0.2"});
   const auto reported = [&](const char* key) {

@@ -1,5 +1,5 @@
-// Invalid input is refused within a second and 256 MB, with a message that states what to change.
-// The corpus is in tests/corpus/scenario; its README explains how to add a file.
+// The program must refuse invalid input within a second and 256 MB, with a message that states what
+// to change. The corpus is in tests/corpus/scenario. Its README explains how to add a file.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -25,16 +25,16 @@ constexpr rlim_t kMaxMemory = 256u << 20;  // [B]
 
 const fs::path kCorpus = fs::path(PREDICTOR_SOURCE_DIR) / "tests/corpus/scenario";
 
-// The result of loading a file, and the resources that it took.
+// The result of loading a file, and the resources that this took.
 struct Outcome {
   std::string error;  // of the InputError; "" if it loaded
-  bool is_exit_good;  // no crash, no other exception, and no limit exceeded
+  bool is_exit_good;  // no crash, no other exception, and no exceeded limit
   double seconds;     // of the processor
   double megabytes;   // maximum resident memory
 };
 
-// Runs in the child: loads the file and writes the error to the pipe. Exits with 0 unless something
-// else happens.
+// Runs in the child process: it loads the file and writes the error to the pipe. It exits with 0
+// unless something else happens.
 [[noreturn]] void LoadAndExit(const fs::path& file, int pipe) {
   if (kIsMeasured) {
     const rlimit memory = {kMaxMemory, kMaxMemory};
@@ -115,8 +115,8 @@ TEST_P(Corpus, IsRefused) {
 INSTANTIATE_TEST_SUITE_P(Bad, Corpus, testing::ValuesIn(CorpusNames()),
                          [](const auto& file) { return file.param; });
 
-// ---- too large to keep
-// ---------------------------------------------------------------------------
+// ---- files that are too large to keep
+// ------------------------------------------------------------
 
 class Generated : public testing::Test {
  protected:
@@ -180,7 +180,7 @@ TEST_F(Generated, BlocksOfAnyDepth) {
   ExpectRefusedText(Fill("- "), "nested deeper than 32 levels");
 }
 
-// Structures that are short to write but could be expensive to read.
+// These structures are short to write but could be expensive to read.
 TEST_F(Generated, AMegabyteOfAnything) {
   const std::vector<std::pair<std::string, std::string>> shapes = {
       {Fill("a,", "a: ["), "more than 50000 values"},

@@ -1,4 +1,4 @@
-// Scenarios that extend another one (`extends`), and angles in degrees.
+// Tests scenarios that extend another one (`extends`), and angles in degrees.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -106,8 +106,7 @@ TEST_F(Extend, AChainHasAnEnd) {
   EXPECT_NE(Error(folder_.path() / "f8.yaml").find("more than 8 scenarios"), std::string::npos);
 }
 
-// A recording contains the complete scenario, so loading one must not make the program read other
-// files.
+// A recording contains the complete scenario, so the program must not read other files to load it.
 TEST(ExtendInText, IsRefused) {
   EXPECT_NE(ErrorOf("extends: base.yaml\n").find("extends is supported in files only"),
             std::string::npos);
@@ -135,7 +134,8 @@ TEST(Degrees, AreRefusedElsewhereAndBeyondTheRange) {
         << bad;
 }
 
-// The scene's place relative to the arms: moved and turned about the vertical, nothing else.
+// A shift moves the scene relative to the arms, rotates it about the vertical, and changes nothing
+// else.
 TEST(Shift, PutsTheBasesIntoTheWorld) {
   const Scenario scenario =
       Fixture({"environment.shift={xyz: [1, 2, 3], rpy: [0, 0, 90 deg]}",

@@ -28,7 +28,7 @@ inline Scenario Fixture(const std::vector<std::string>& overrides = {}) {
   return ParseScenario(FixtureText(), "box.yaml", kData, overrides);
 }
 
-// The error that a text causes, or "".
+// Returns the error that a text causes, or "" if it causes none.
 inline std::string ErrorOf(const std::string& text,
                            const std::vector<std::string>& overrides = {}) {
   try {

@@ -1,4 +1,4 @@
-// The locations of errors that are detected only after the models are loaded.
+// Tests the locations of errors that are detected only after the models are loaded.
 #include "scenario/located.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Reading, checking and writing the file of a machine.
+// Tests how the file of a machine is read, checked and written.
 #include "scenario/machine.h"
 
 #include <gtest/gtest.h>
@@ -75,7 +75,7 @@ TEST(Machine, EachArmAndEachSensorHasItsOwnAddress) {
             "lab.yaml:14:34: arms.right.sensor.host is also the address of the left sensor, but "
             "one sensor cannot measure both hands. Give each sensor its own address.");
   EXPECT_EQ(MachineRefusal(sensor("192.0.2.21")), "");
-  // Sensors that belong to an arm have no address of their own.
+  // A sensor that belongs to an arm has no address of its own.
   EXPECT_EQ(MachineRefusal(With(kMachine, "    sensor: {make: net_ft, host: 192.0.2.20}\n", "")),
             "");
 }
@@ -85,7 +85,7 @@ TEST(Machine, AMisspeltGroupIsReportedOnce) {
             "lab.yaml:5:5: \"conection\" is not a key of arms.left. Did you mean connection?");
   EXPECT_EQ(MachineRefusal(With(kMachine, "arms:", "arm:")),
             "lab.yaml:3:1: \"arm\" is not a key. Did you mean arms?");
-  // A word that resembles no key is not taken for another key.
+  // If a word resembles no key, the message must not suggest one.
   EXPECT_NE(
       MachineRefusal(With(kMachine, "connection:", "wire:")).find("connection.make is missing"),
       std::string::npos);
@@ -201,8 +201,8 @@ TEST(Machine, RequiresTheLimits) {
           "arms.left.arm.payload.inertia");
 }
 
-// Compares the closed form with the stop as it is sent, for all possible accelerations of the
-// handle.
+// Compares the closed form with the stop as it is sent, for all accelerations that the handle can
+// have.
 TEST(Machine, TheWorstStopIsTheLongestOfAll) {
   for (const double jerk : {120.0, 250.0, 800.0})
     for (const double acceleration : {0.05, 2.0, 5.0, 10.0}) {
@@ -241,7 +241,7 @@ TEST(Machine, MayNotBeFastWithStopsThatSufficeForTheSlow) {
   EXPECT_EQ(MachineRefusal(With(kMachine, "handle_speed: 0.2", "handle_speed: 0.5")), "");
 }
 
-// 89.6 ms would be short enough, but 13.53 mm is too far.
+// The time of 89.6 ms would be short enough, but the distance of 13.53 mm is too long.
 TEST(Machine, AStopThatIsShortEnoughInTimeMayStillGoTooFar) {
   const auto stop = [](const char* jerk) {
     return With(kMachine, "handle_speed: 0.2",

@@ -1,4 +1,4 @@
-// The operating rules that a run gets from its scenario.
+// Tests the operating rules that a run gets from its scenario.
 #include "scenario/operating_rules.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST(OperatingRules, OfRealArmsProtectThePersonAtTheHandles) {
   EXPECT_EQ(rules.handle_gravity, kStandardGravity);
 }
 
-// A recording has its torque once per tick.
+// A recording contains the torque once per tick.
 TEST(OperatingRules, LetAForeignControllerRunAtTheRateOfTheSteps) {
   Scenario scenario;
   scenario.cobot.controller = {"process", {}};

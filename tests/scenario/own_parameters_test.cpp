@@ -1,4 +1,4 @@
-// Each controller and action has its own parameters, and those of another one are refused.
+// Each controller and action has its own parameters. Those of another one must be refused.
 #include "scenario/own_parameters.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace predictor {
 namespace {
 
-// Also makes the linker keep the module that declares the controllers.
+// This test also makes the linker keep the module that declares the controllers.
 TEST(OwnParameters, AreThoseOfTheSimulationsControllers) {
   EXPECT_EQ(NamesOf(Controllers()), ControllerNames());
 }
@@ -48,7 +48,7 @@ TEST(OwnParameters, OfAnotherKindAreRefused) {
       "box.yaml:7:5: cobot.controller.damping_ratio has no effect in joint_impedance; it is a "
       "parameter of cartesian_impedance. Remove it, or set another type.");
   EXPECT_EQ(
-      ErrorOfController("    joint_stiffness: 100\n"),  // though it is the default
+      ErrorOfController("    joint_stiffness: 100\n"),  // refused although it is the default
       "box.yaml:6:5: cobot.controller.joint_stiffness has no effect in cartesian_impedance; it "
       "is a parameter of joint_impedance. Remove it, or set another type.");
   EXPECT_NE(ErrorOfController("    type: gravity_compensation\n    trajectory: []\n"), "");
@@ -77,7 +77,7 @@ TEST(OwnParameters, MayBeAnglesInDegrees) {
   EXPECT_EQ(std::stod(waypoint.Find("rpy")->items[2].text), std::numbers::pi);
 }
 
-// As in a file that extends another one.
+// The value is set as in a file that extends another one.
 TEST(OwnParameters, OfTheFormerTypeAreDroppedByAnOverride) {
   const std::string type = "cobot.controller.type=joint_impedance";
   EXPECT_EQ(ParameterOf(Fixture({type, "cobot.controller.joint_stiffness=200"}), "joint_stiffness"),
@@ -99,7 +99,7 @@ const ParameterKind kViscous = {"viscous", "resists motion", NewParameters<Visco
 const ParameterKind kPlain = {"plain", "does nothing", NewParameters<NoParameters>};
 const ParameterKind* kKinds[] = {&kPlain, &kViscous};
 
-// The program's own controllers come back at the end.
+// At the end, the program's own controllers are registered again.
 class OtherControllers : public testing::Test {
  protected:
   OtherControllers() { DeclareControllers(kKinds); }
@@ -148,7 +148,7 @@ TEST_F(NoControllers, KeepParametersAsTheyAreGiven) {
 
 // ---- actions of the operator --------------------------------------------------------------------
 
-// Its script grips, moves and pushes.
+// The script of this scenario grips, moves and pushes.
 TEST(ActionParameters, OfTheFormerActionAreDroppedByAnOverride) {
   const std::string action = "operator.script.1.action=rotate";
   const Scenario scenario = Fixture(

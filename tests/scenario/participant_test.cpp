@@ -1,4 +1,4 @@
-// Who took part in a study: pseudonym, consent, handedness, body.
+// Tests the data about a participant in a study: pseudonym, consent, handedness and body.
 #include "scenario/participant.h"
 
 #include <gtest/gtest.h>

@@ -91,7 +91,7 @@ TEST_F(Paths, WithoutAssetsTheFolderItselfIsTheLimit) {
   EXPECT_EQ(Resolve("mine.urdf"), Scenarios() / "mine.urdf");
 }
 
-// A folder named assets further up, for example in a home folder, grants no access.
+// A folder named assets further up, for example in a home folder, must grant no access.
 TEST_F(Paths, OnlyTheAssetsBesideTheScenariosFolderAreRead) {
   fs::create_directories(root_ / "assets");
   for (const char* file : {"assets/far.urdf", "private.urdf", "project/near.urdf"})
@@ -109,8 +109,8 @@ TEST_F(Paths, AssetsThatAreASymlinkOpenNothing) {
   EXPECT_SAYS(ErrorOf("../assets/secret.urdf"), "outside the readable folders");
 }
 
-// A model may refer to files anywhere within the area that its scenario may read, wherever the
-// model itself lies.
+// A model may refer to files anywhere in the area that its scenario may read, wherever the model
+// itself lies.
 TEST_F(Paths, MeshesMayBeWhereverTheScenarioMayRead) {
   const fs::path urdf = root_ / "project/assets/arm/urdf";
   fs::create_directories(urdf);
@@ -170,7 +170,7 @@ TEST_F(Paths, OddTextIsRefused) {
   EXPECT_SAYS(ErrorOf(""), "Write the path of a file");
   EXPECT_SAYS(ErrorOf(std::string("a\0b", 3)), "Write the path of a file");
   EXPECT_SAYS(ErrorOf(std::string(100000, 'a')), "Write the path of a file");
-  // longer than any allowed file name
+  // The name is longer than any allowed file name.
   EXPECT_SAYS(ErrorOf(std::string(3000, 'a')), "does not exist");
 }
 

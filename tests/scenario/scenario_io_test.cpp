@@ -160,7 +160,7 @@ Scenario Reread(const Scenario& s) {
 TEST(SaveScenario, SavedTextLoadsAndSavesTheSame) {
   const std::string saved = SaveScenario(Fixture());
   EXPECT_EQ(SaveScenario(ParseScenario(saved, "saved", kData)), saved);
-  // A default that the file did not contain.
+  // The file did not contain this default.
   EXPECT_NE(saved.find("stop_jerk: 250"), std::string::npos);
   EXPECT_NE(saved.find("[m/s³]"), std::string::npos);  // with its unit
 }
@@ -320,19 +320,21 @@ class Coverage {
   std::vector<Member> members;
 };
 
-// The only bytes between the members are those that alignment requires, so no member was forgotten.
+// The only bytes between the members are those that alignment requires, so the table contains every
+// member.
 template <class S>
 bool VisitsEveryMember() {
   S s;
   Coverage coverage;
   coverage.base = reinterpret_cast<const char*>(&s);
   Fields(coverage, s);
-  if constexpr (std::is_same_v<S, Scenario>) {  // members that are not read from the file
+  if constexpr (std::is_same_v<S, Scenario>) {  // the file does not contain these members
     coverage.Note(s.file);
     coverage.Note(s.tree);
     coverage.Note(s.controller_tape);
   }
-  if constexpr (std::is_same_v<S, RenderingSpec>) coverage.Note(s.parts);  // in groups
+  // the table visits them in groups
+  if constexpr (std::is_same_v<S, RenderingSpec>) coverage.Note(s.parts);
   auto& members = coverage.members;
   std::sort(members.begin(), members.end(),
             [](const auto& a, const auto& b) { return a.offset < b.offset; });

@@ -22,7 +22,7 @@ const Json& Schema() {
   return schema;
 }
 
-// A tree in the form in which an editor's YAML reader sees it.
+// Returns a tree in the form in which an editor's YAML reader sees it.
 Json ToJson(const YamlNode& node) {
   using Kind = YamlNode::Kind;
   Json json;
@@ -43,7 +43,8 @@ Json ToJson(const YamlNode& node) {
   return number;
 }
 
-// Contains everything that a scenario can hold once, so that every leaf has an instance.
+// Returns a tree that contains everything that a scenario can hold once, so that every leaf has an
+// instance.
 YamlNode FullTree() {
   return ScenarioTree(
       Fixture({"rig.loop={}", "rendering.link_pairs=[[a, b]]", "object.attachment.range=[-1, 1]",
@@ -98,7 +99,7 @@ TEST(Schema, IsDraft07AndDescribesEachKey) {
     return keys;
   };
   Json described = Schema();
-  described.erase("anyOf");  // the keys that are required if nothing is extended
+  described.erase("anyOf");  // the keys that are required if the scenario extends no other
   EXPECT_GT(count(described), 200);
 }
 
@@ -121,8 +122,8 @@ void ForEach(YamlNode* node, const std::string& path,
   }
 }
 
-// Values that are valid in some places and invalid in others: ends of ranges and values beyond
-// them, other types, other lengths, words of every choice.
+// These values are valid in some places and invalid in others: ends of ranges and values beyond
+// them, other types, other lengths, and words of every choice.
 constexpr const char* kOthers =
     "0;-1;1;2;1e-9;-1e-9;0.3;0.5;3;3.2;3.3;7;10;11;20;21;30;64;100;101;1000;1001;10001;100001;"
     "86400;"
@@ -134,8 +135,8 @@ constexpr const char* kOthers =
     "3 deg;-3 deg;deg;3 degrees;\"3 deg\";1e-1 deg;[1 deg, 2 deg, -3 deg];[3deg, 1, 2];"
     "{xyz: [0, 0, 0]};{xyz: [0, 0]};{unknown: 1}";
 
-// Replaces each value of a full scenario with each of many others; schema and loader must judge
-// alike. (Neither the schema nor ReadFields detects values that only contradict another value.)
+// Replaces each value of a full scenario with each of many others. Schema and loader must judge
+// alike. Neither the schema nor ReadFields detects values that only contradict another value.
 TEST(Schema, JudgesEveryValueAsTheLoaderDoes) {
   std::vector<std::string> others;
   std::istringstream lines(kOthers);
@@ -183,7 +184,8 @@ TEST(Schema, RefusesUnknownAndMissingKeysWhereTheLoaderDoes) {
       *node = before;
       node->items.erase(node->items.begin() + static_cast<std::ptrdiff_t>(i));
       const std::string& key = before.items[i].key;
-      if (path.empty() && (key == "object" || key == "handles")) continue;  // needed by the checks
+      // the checks need these keys
+      if (path.empty() && (key == "object" || key == "handles")) continue;
       EXPECT_EQ(LoaderAccepts(tree), SchemaAccepts(tree)) << path << " without " << key;
     }
     *node = before;
@@ -277,7 +279,7 @@ TEST(MachineSchema, HasTheDefaultsOfTheStructs) {
   EXPECT_EQ(OfMachines()["required"], (Json{"predictor_machine", "arms"}));
 }
 
-// machine_test.cpp compares each with docs/reference/machine-file.md.
+// machine_test.cpp compares each of these limits with docs/reference/machine-file.md.
 TEST(MachineSchema, HasAsManyLimitsAsTheDocument) {
   EXPECT_EQ(OfMachines()["properties"]["limits"]["properties"].size(), 22u);
 }

@@ -39,7 +39,7 @@ TEST(Suggestion, ListsAllWhenNothingIsNear) {
 
 TEST(DegreesHint, OnlyOfWhatMayHaveBeenMeant) {
   EXPECT_EQ(DegreesHint(-90, -3, 3), " A number alone is in rad. For degrees write -90 deg.");
-  EXPECT_EQ(DegreesHint(90, -3, -0.1), "");  // would be out of range in degrees too
+  EXPECT_EQ(DegreesHint(90, -3, -0.1), "");  // would be out of range in degrees as well
   EXPECT_EQ(DegreesHint(4, -3, 3), "");      // an angle in rad
   EXPECT_EQ(DegreesHint(5000, -3, 3), "");
 }
@@ -62,7 +62,7 @@ TEST(Quote, EscapesAndCuts) {
   EXPECT_EQ(Quote("a b"), "\"a b\"");
   EXPECT_EQ(Quote(std::string("\x1b[2J\0", 5)), "\"\\x1b[2J\\x00\"");
   EXPECT_EQ(Quote(std::string(61, 'a')), "\"" + std::string(60, 'a') + "...\"");
-  // "é" has two bytes, and the cut falls between them.
+  // "é" has two bytes, between which the text is cut.
   std::string accents = "a";
   for (int i = 0; i < 40; ++i) accents += "é";
   EXPECT_EQ(Quote(accents).substr(58), "é...\"");
@@ -81,7 +81,7 @@ TEST(Printable, ShowsWhatATerminalWouldObey) {
   EXPECT_EQ(Printable(""), "");
 }
 
-// Bytes that are not valid UTF-8: isolated, truncated, overlong, surrogates, beyond the last
+// These bytes are not valid UTF-8: isolated, truncated, overlong, surrogates, and beyond the last
 // character.
 TEST(Printable, ShowsInvalidUtf8ByteByByte) {
   EXPECT_EQ(Printable("\x9b"
@@ -96,8 +96,8 @@ TEST(Printable, ShowsInvalidUtf8ByteByByte) {
   EXPECT_EQ(Printable("\xff\xc3\xa9"), "\\xffé");
 }
 
-// For any input, the output contains no byte that controls a terminal, and a second pass changes
-// nothing.
+// For any input, the output must contain no byte that controls a terminal, and a second pass must
+// change nothing.
 TEST(Printable, LeavesNoControlInRandomBytes) {
   RandomStream random(1, "printable");
   for (int k = 0; k < 20'000; ++k) {

@@ -1,4 +1,4 @@
-// Waypoints of a controller from a CSV file.
+// Tests waypoints of a controller from a CSV file.
 #include <gtest/gtest.h>
 
 #include "fixture.h"
@@ -17,7 +17,7 @@ class TrajectoryFile : public testing::Test {
                                          "cobot.controller.trajectory_file=path.csv"});
     return LoadScenario(folder_ / "box.yaml", overrides);
   }
-  // The error without the folder's path.
+  // Returns the error without the folder's path.
   std::string Error(const std::string& csv, const std::vector<std::string>& overrides = {}) const {
     try {
       Load(csv, overrides);
@@ -48,7 +48,7 @@ TEST_F(TrajectoryFile, GivesTheSameWaypointsAsTheScenario) {
             SaveScenario(turned));
 }
 
-// A recording contains the saved scenario.
+// A recording contains the saved scenario, which must not need the CSV file.
 TEST_F(TrajectoryFile, IsNotNeededByTheSavedScenario) {
   const std::string saved = SaveScenario(Load("time,x,y,z\n1,0.1,0,0\n"));
   EXPECT_EQ(SaveScenario(ParseScenario(saved, "saved.yaml", "/")), saved);

@@ -30,14 +30,14 @@ arms:
 limits: {force: 25, handle_speed: 0.2}
 )";
 
-// `text` with `by` in place of the first `what`.
+// Returns `text` with `by` in place of the first `what`.
 inline std::string With(std::string text, const std::string& what, const std::string& by) {
   const auto at = text.find(what);
   EXPECT_NE(at, std::string::npos) << what;
   return text.replace(at, what.size(), by);
 }
 
-// The error when the machine is parsed; "" if it is accepted.
+// Returns the error when the machine is parsed, or "" if it is accepted.
 inline std::string MachineRefusal(const std::string& text) {
   try {
     ParseMachine(text, "lab.yaml");

@@ -18,10 +18,10 @@
 namespace predictor {
 namespace {
 
-// An arm of the rig, and the emulator's steps to estimate the hand's wrench.
+// An arm of the rig, with the emulator's steps that estimate the hand's wrench.
 class Bench {
  public:
-  // assumed: the sensor and handle that the estimator assumes; nullptr: the true ones.
+  // assumed: the sensor and the handle that the estimator assumes, or nullptr for the true ones.
   explicit Bench(const Scenario& scenario, std::unique_ptr<Operator> person = nullptr,
                  const ArmSpec* assumed = nullptr)
       : dt_(1 / scenario.rate),
@@ -62,7 +62,8 @@ class Bench {
   HandEstimator& estimator() { return estimator_; }
   ArmSample& sample() { return sample_.arms[0]; }
   const FrameMotion& motion() const { return motion_; }
-  // Inertial force of the handle in W: its mass times the acceleration of its centre of mass.
+  // Returns the inertial force of the handle in W, which is its mass times the acceleration of its
+  // centre of mass.
   Vector3 InertialForce() const {
     const FrameMotion& H = rig_.true_handles()[0];
     const Pose X_HS = spec_.handle.ToPose().Inverse() * spec_.sensor.pose.ToPose();
@@ -113,16 +114,16 @@ TEST(HandEstimator, StaticResidualIsSmallInAnyPosture) {
       squares += bench.F().cwiseProduct(bench.F()) / n;
       worst = std::max(worst, bench.F().head<3>().norm());
     }
-    EXPECT_LT(worst, 0.3);  // every single sample, including noise
+    EXPECT_LT(worst, 0.3);  // bounds every single sample, including noise
     EXPECT_LT(std::sqrt(squares.tail<3>().sum()), 0.02);
     EXPECT_LT(mean.head<3>().norm(), 0.02);
     EXPECT_LT(mean.tail<3>().norm(), 0.003);
   }
-  EXPECT_GT(turned, 1);  // [rad]: the direction of the weight did change in the sensor
+  EXPECT_GT(turned, 1);  // the direction of the weight did change in the sensor [rad]
 }
 
-// The part of the residual force that moves with the arm, divided by the inertial load [1]. The
-// residual is evaluated at the frequency of the motion and at twice this frequency, where the
+// Returns the part of the residual force that moves with the arm, divided by the inertial load [1].
+// The residual is evaluated at the frequency of the motion and at twice this frequency, where the
 // centripetal acceleration and the rotating weight appear.
 double MovingResidual(const Scenario& scenario, const ArmSpec& assumed, double frequency) {
   Bench bench(scenario, nullptr, &assumed);
@@ -214,7 +215,7 @@ TEST(HandEstimator, GivesTheHandsWrenchAtTheHandleWithTheSensorsLagOnly) {
     const double t = 0.001 * k;
     if (k >= 1000) phasor += 2.0 / n * std::exp(std::complex<double>(0, -w * t)) * shaken.F();
   }
-  phasor /= std::complex<double>(0, -1);  // of a sine
+  phasor /= std::complex<double>(0, -1);  // the phasor of a sine
   Wrench amplitude;
   amplitude << 10, -5, 8, 0.5, -1, 0.7;
   const SensorSpec& sensor = scenario.device.left->sensor;
@@ -247,7 +248,8 @@ TEST(HandEstimator, RefusesReadingsThatCannotBeTrue) {
       EXPECT_EQ(out.F_H_W.norm(), 0);
     }
   }
-  // A reading beyond the sensor's range is refused, whether or not the sensor reports it.
+  // The estimator must refuse a reading beyond the sensor's range, whether or not the sensor
+  // reports it.
   const SensorSpec& sensor = ArmScenario(1).device.left->sensor;
   for (int i = 0; i < 6; ++i) {
     const double range = i < 3 ? sensor.range_force : sensor.range_torque;
@@ -262,7 +264,7 @@ TEST(HandEstimator, RefusesReadingsThatCannotBeTrue) {
       EXPECT_EQ(out.F_H_W.norm(), 0);
     }
   }
-  // A bad reading has no effect on later ones.
+  // A bad reading must have no effect on later ones.
   EXPECT_TRUE(bench.estimator().Update(bench.sample(), bench.motion(), &out).ok());
   EXPECT_TRUE(out.F_H_W.allFinite());
 }

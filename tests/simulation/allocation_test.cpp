@@ -1,4 +1,4 @@
-// The tick allocates no heap memory.
+// The tick must not allocate heap memory.
 #include <gtest/gtest.h>
 
 #include "core/text.h"
@@ -9,7 +9,8 @@
 namespace predictor {
 namespace {
 
-// Steps with contacts, active coupling, discarded steps, hands that grip and release, and a reset.
+// Performs steps with contacts, active coupling, discarded steps, hands that grip and release, and
+// a reset.
 void Exercise(const Scenario& s) {
   World world(s);
   WorldInput input = Push(s, {10, -5, -40});

@@ -1,5 +1,5 @@
-// Events of the attachment: the object breaks loose, or slips in its grip. Expected values are
-// closed forms of the motion, or the scene in which the cobot carries the object.
+// Tests events of the attachment: the object breaks loose, or slips in its grip. Expected values
+// are closed forms of the motion, or come from the scene in which the cobot carries the object.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,8 +39,8 @@ Pose ObjectInFlange(const WorldState& state) {
   return state.end_effector.X_W.Inverse() * state.object.X_W;
 }
 
-// How far a fall with acceleration a has come after n steps, by the semi-implicit Euler method: its
-// difference from a t²/2 is a t dt/2.
+// Returns the distance of a fall with acceleration a after n steps of the semi-implicit Euler
+// method. It differs from a t²/2 by a t dt/2.
 double Fall(double a, int n) { return a * kTick * kTick * n * (n + 1) / 2; }
 
 // ---- the object breaks loose ------------------------------------------------------------------
@@ -60,8 +60,8 @@ TEST(BreaksLoose, TheObjectFallsFreely) {
   EXPECT_NE(world.state().events, 0);
 }
 
-// In the step after its release, a turning and swinging object has its momentum, with the impulse
-// of its weight. The cobot accelerates as its own model demands.
+// In the step after its release, a rotating and swinging object must have its momentum plus the
+// impulse of its weight. The cobot must accelerate as its own model demands.
 TEST(BreaksLoose, KeepsTheMomentumOfObjectAndCobot) {
   for (const bool fixed : {false, true}) {
     Scenario s = fixed ? RigidBox() : BoxScene(kMass);
@@ -94,7 +94,8 @@ TEST(BreaksLoose, KeepsTheMomentumOfObjectAndCobot) {
   }
 }
 
-// Two hands of stiffness k hold the handles where they were: z = −(m g / 2 k) (1 − cos ω t).
+// Two hands of stiffness k hold the handles at their initial places, so z = −(m g / 2 k) (1 − cos ω
+// t).
 TEST(BreaksLoose, TheObjectSwingsOnTheSpringsOfTwoHands) {
   const Scenario s = WithEvent(RigidBox(), Loose(0.1));
   constexpr double kSpring = 400;  // [N/m]
@@ -116,7 +117,7 @@ TEST(BreaksLoose, TheObjectSwingsOnTheSpringsOfTwoHands) {
   EXPECT_NEAR(lowest, -2 * sag, 0.01 * sag);
 }
 
-// The springs of the controller carried the weight.
+// The springs of the controller carried the weight, so the cobot rises when it is gone.
 TEST(BreaksLoose, TheCobotRisesToItsOwnEquilibrium) {
   World world(WithEvent(RigidBox(), Loose(0)));
   const double before = world.state().end_effector.X_W.p.z();
@@ -124,8 +125,8 @@ TEST(BreaksLoose, TheCobotRisesToItsOwnEquilibrium) {
   EXPECT_NEAR(world.state().end_effector.X_W.p.z() - before, kMass * kGravity / 500, 3e-4);
 }
 
-// A cobot with a wrist sensor, tared with the load, feels its loss as a force upwards and yields to
-// it with the speed F / D.
+// The wrist sensor of the cobot was tared with the load. The cobot feels the loss of the load as an
+// upward force and yields to it with the speed F / D.
 TEST(BreaksLoose, AnAdmittanceCobotYieldsToTheLostWeight) {
   Scenario s = RigidBox();
   s.cobot.controller = {"admittance", {}};
@@ -134,7 +135,7 @@ TEST(BreaksLoose, AnAdmittanceCobotYieldsToTheLostWeight) {
   EXPECT_NEAR(world.state().end_effector.V_W.z(), kMass * kGravity / 60, 0.02);
 }
 
-// Without contacts, the centre of mass comes to rest at the floor, on a support of 30 rad/s.
+// Without contacts, the centre of mass must come to rest at the floor, on a support of 30 rad/s.
 TEST(BreaksLoose, NoFallIsEndless) {
   for (const bool floor : {false, true}) {
     Scenario s = WithEvent(RigidBox(), Loose(0));
@@ -159,7 +160,7 @@ TEST(BreaksLoose, BelowTheFloorTheFallEndsOneMetreFurtherDown) {
 
 // ---- the object slips -------------------------------------------------------------------------
 
-// With closed brakes, the flange stays: the grip carries its limit of the weight.
+// With closed brakes, the flange stays in place, and the grip carries its limit of the weight.
 TEST(Slips, TheObjectSlidesWithTheForceBeyondTheLimit) {
   constexpr double kLimit = 15;  // [N]
   const double a = kGravity - kLimit / kMass;
@@ -178,7 +179,7 @@ TEST(Slips, TheObjectSlidesWithTheForceBeyondTheLimit) {
   EXPECT_LT(RotationError(world.state().object.X_W.q, start.q).norm(), 1e-3);
 }
 
-// A pair of forces at the handles turns the box about the vertical axis of its grip.
+// A pair of forces at the handles rotates the box about the vertical axis of its grip.
 TEST(Slips, TheObjectTurnsWithTheTorqueBeyondTheLimit) {
   constexpr double kForce = 5, kLimit = 1;  // [N], [N·m]
   Scenario s = WithEvent(RigidBox(), Slips(0.1, 1000, kLimit));
@@ -201,9 +202,9 @@ TEST(Slips, TheObjectTurnsWithTheTorqueBeyondTheLimit) {
   EXPECT_LT((world.state().object.X_W.p - start.p).norm(), 1e-3);
 }
 
-// Below its limits, the grip holds the object where it is. With the same inputs, the motion is that
-// of the rigid attachment, but for the error of the engine's steps, which differs in these
-// coordinates: both are at most about half a step ahead or behind.
+// Below its limits, the grip must hold the object in place. With the same inputs, the motion is
+// that of the rigid attachment, apart from the error of the engine's steps. The error differs in
+// these coordinates, and both motions are at most about half a step ahead or behind.
 TEST(Slips, BelowTheLimitNothingMoves) {
   for (const char* controller : {"", "admittance"}) {
     for (const JointType joint : {JointType::kFixed, JointType::kSpherical}) {
@@ -281,8 +282,8 @@ TEST(Slips, TheGripHoldsAgainAfterTheEvent) {
   }
 }
 
-// With closed brakes, the speed after the event is v₀ + (g − F₀/m) t − r t² / 2m, because the
-// grip's force F₀ grows at the rate r, until the object rests.
+// With closed brakes, the speed after the event is v₀ + (g − F₀/m) t − r t² / 2m until the object
+// rests, because the grip's force F₀ grows at the rate r.
 TEST(Slips, TheGripTightensWithoutAJolt) {
   constexpr double kLimit = 15;  // [N]
   Scenario s = WithEvent(RigidBox(), Slips(0.1, kLimit, 100));
@@ -297,7 +298,7 @@ TEST(Slips, TheGripTightensWithoutAJolt) {
   for (int n = 1; n * kTick < rest - 0.001; ++n) {
     ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
     const double t = n * kTick;
-    // Within a step, the force may already be that of its end.
+    // Within a step, the force may already be that of the step's end.
     EXPECT_NEAR(-world.state().object.V_W.z(), v0 + a * t - rate * t * t / 2, rate * kTick * t)
         << n;
   }
@@ -305,7 +306,8 @@ TEST(Slips, TheGripTightensWithoutAJolt) {
   EXPECT_LT(std::abs(world.state().object.V_W.z()), 2e-3);  // the brakes creep
 }
 
-// A grip without any force or torque is open. It grips again where the object then is.
+// A grip without any force or torque is open. It must grip the object again at its place at that
+// time.
 TEST(Slips, AnOpenGripClosesWhereTheObjectIs) {
   Scenario s = WithEvent(RigidBox(), Slips(0.1, 0, 0, 1));
   s.events[0].duration = 0.1;
@@ -314,7 +316,7 @@ TEST(Slips, AnOpenGripClosesWhereTheObjectIs) {
   RunWith(&world, Push(s, {0, 3, 0}), 0.2);
   Vector3 v = world.state().object.V_W.head<3>(), w = world.state().object.V_W.tail<3>();
   EXPECT_NEAR(v.z(), -kGravity * 0.1, 0.003);
-  const double longest = 0.3;  // for the grip to stop the object [s]
+  const double longest = 0.3;  // time in which the grip must stop the object [s]
   for (int k = 0; k < longest / kTick; ++k) {
     ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
     const WorldState& now = world.state();
@@ -328,7 +330,7 @@ TEST(Slips, AnOpenGripClosesWhereTheObjectIs) {
   EXPECT_LT((ObjectInFlange(world.state()).p - place.p).norm(), 1e-6);
 }
 
-// After the object has slid out of the grip, only gravity accelerates it.
+// After the object has slid out of the grip, only gravity may accelerate it.
 TEST(Slips, TheObjectLeavesTheGripBeyondItsReach) {
   Scenario s = WithEvent(RigidBox(), Slips(0, 15, 100, 0.02));
   s.events.push_back(Event("brakes_close"));
@@ -342,7 +344,7 @@ TEST(Slips, TheObjectLeavesTheGripBeyondItsReach) {
   EXPECT_NEAR(world.state().object.V_W.z(), v - kGravity * 0.1, 1e-9);
 }
 
-// A sliding object loses energy: the grip never drives it.
+// A sliding object loses energy, so the grip must never drive it.
 TEST(Slips, TheGripDissipates) {
   Scenario s = RigidBox();
   s.environment.gravity = 0;
@@ -359,8 +361,9 @@ TEST(Slips, TheGripDissipates) {
 
 // ---- saved state, heap, bad input -------------------------------------------------------------
 
-// In direct mode, the hands' masses are part of the scene: with them, the object breaks loose, is
-// saved and loaded in both scenes, and starts again after a reset, bit for bit.
+// In direct mode, the hands' masses are part of the scene. With them, the object breaks loose, is
+// saved and loaded in both scenes, and starts again after a reset. All of this must be repeatable
+// bit for bit.
 TEST(AttachmentEvents, ContinueBitForBitWithTheMassesOfHands) {
   Scenario s = RigidBox();
   s.mode = Mode::kDirect;
@@ -401,7 +404,8 @@ TEST(AttachmentEvents, TakeNothingFromTheHeap) {
   EXPECT_TRUE(ok);
 }
 
-// A light object between stiff couplings, released and spinning, neither diverges nor becomes NaN.
+// A light object spins between stiff couplings after its release. It must neither diverge nor
+// become NaN.
 TEST(AttachmentEvents, KeepALightObjectInTheCouplingFinite) {
   for (const bool slips : {false, true}) {
     Scenario s = RigidBox();

@@ -1,4 +1,4 @@
-// Joints between end-effector and object.
+// Tests the joints between end-effector and object.
 #include <gtest/gtest.h>
 
 #include "world_fixtures.h"

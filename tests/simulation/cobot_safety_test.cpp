@@ -1,4 +1,4 @@
-// The virtual cobot's own safety functions, against closed forms.
+// Compares the virtual cobot's own safety functions with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// A box fixed to the flange, with its handle at the flange.
+// Returns a cobot with a box fixed to the flange, whose handle is at the flange.
 Scenario SafeCobot(double mass = 2) {
   Scenario s = BoxScene(mass);
   s.object.attachment.joint = JointType::kFixed;
@@ -20,7 +20,7 @@ Scenario SafeCobot(double mass = 2) {
   return s;
 }
 
-// Runs until the cobot stops itself; returns the time, or −1 if it does not.
+// Runs until the cobot stops itself. Returns the time, or −1 if it does not stop.
 double TimeOfStop(World* world, const WorldInput& input, double longest) {
   for (int k = 0; k < std::lround(longest / kTick); ++k) {
     EXPECT_TRUE(world->Step(input, kTick).ok());
@@ -29,7 +29,7 @@ double TimeOfStop(World* world, const WorldInput& input, double longest) {
   return -1;
 }
 
-// The same under a force that grows slowly to `force` [N] within 2 s, so that nothing swings.
+// As above, under a force that grows slowly to `force` [N] within 2 s, so that nothing swings.
 double TimeOfStopUnderRamp(const Scenario& s, const Vector3& force, CobotStop* stop) {
   World world(s);
   for (int k = 0; k < 3000; ++k) {
@@ -42,7 +42,7 @@ double TimeOfStopUnderRamp(const Scenario& s, const Vector3& force, CobotStop* s
 
 CobotStop StopOf(const World& world) { return static_cast<CobotStop>(world.state().cobot_stop); }
 
-// The estimate settles at the force that acts, whatever the payload is.
+// The estimate must settle at the force that acts, whatever the payload is.
 TEST(CobotSafety, EstimatesTheForceOnTheEndEffector) {
   Scenario s = SafeCobot();
   s.cobot.safety.force = 12;
@@ -74,11 +74,11 @@ TEST(CobotSafety, StopsAtASpeedAndThenHolds) {
   const Vector3 decided = world.state().end_effector.X_W.p;
   for (int k = 0; k < 1000; ++k) ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
   EXPECT_LT(world.state().v.lpNorm<Eigen::Infinity>(), 1e-3);
-  // The fastest joint decelerates from v by a: the path is at most v² / 2a in each joint.
+  // The fastest joint decelerates from v by a. In each joint, the path is at most v² / 2a.
   const Vector3 rest = world.state().end_effector.X_W.p;
   EXPECT_LT((rest - decided).norm(), 0.02);
   for (int k = 0; k < 1000; ++k) ASSERT_TRUE(world.Step(push, kTick).ok());
-  EXPECT_EQ(StopOf(world), CobotStop::kSpeed);  // it does not restart on its own
+  EXPECT_EQ(StopOf(world), CobotStop::kSpeed);  // the cobot does not restart on its own
   world.Reset();
   EXPECT_EQ(StopOf(world), CobotStop::kNone);
 }
@@ -96,7 +96,7 @@ TEST(CobotSafety, JointDeceleratesAsConfigured) {
   EXPECT_NEAR(std::abs(world.state().q[fastest] - q), v * v / (2 * 2), 0.05 * v * v);
 }
 
-// The arm's effective mass at the flange along n: 1 / (nᵀ J M⁻¹ Jᵀ n) [kg].
+// Returns the arm's effective mass at the flange along n, 1 / (nᵀ J M⁻¹ Jᵀ n) [kg].
 double MassAlong(const Scenario& s, const WorldState& state, const Vector3& n) {
   ControlledRobot robot(s);
   robot.Update(state.q, state.v);
@@ -131,7 +131,8 @@ TEST(CobotSafety, StopsAtAnExternalTorqueInAJoint) {
   EXPECT_EQ(stop, CobotStop::kJointTorque);
 }
 
-// Above the cap, the spring of 500 N/m no longer grows: the cobot is pushed away.
+// Above the cap, the force of the spring of 500 N/m no longer grows, so a hand can push the cobot
+// away.
 TEST(CobotSafety, ForceCapBoundsTheSpring) {
   Scenario s = SafeCobot();
   s.cobot.safety.force_cap = 10;
@@ -144,8 +145,8 @@ TEST(CobotSafety, ForceCapBoundsTheSpring) {
   EXPECT_GT(start - world.state().end_effector.X_W.p.z(), 2 * 13.0 / 500);
 }
 
-// Beyond the cap, the cobot brakes with the arm's mass m and the time constant T = 10 ms, so that
-// the speed settles at F T / m above the cap.
+// Beyond the cap, the cobot brakes with the arm's mass m and the time constant T = 10 ms. The speed
+// settles at F T / m above the cap.
 TEST(CobotSafety, SpeedCapBrakes) {
   Scenario s = SafeCobot();
   s.cobot.controller = {"gravity_compensation", {}};

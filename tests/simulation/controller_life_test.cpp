@@ -1,4 +1,4 @@
-// Controllers with memory, a wrist sensor, a period and a delay.
+// Tests controllers with memory, a wrist sensor, a period and a delay.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,7 +36,8 @@ void RunFor(World* world, const WorldInput& input, double time) {
 
 // ---- the wrist sensor --------------------------------------------------------------------------
 
-// At rest, the load's weight acts on the end-effector, and about the flange its lever counts.
+// At rest, the load's weight acts on the end-effector, and its lever adds a moment about the
+// flange.
 TEST(WristSensor, MeasuresTheWeightOfTheLoad) {
   Scenario s = AdmittanceScene();
   s.object.primitive->center_of_mass = {0.1, 0, 0};
@@ -74,7 +75,7 @@ TEST(WristSensor, AddsBiasAndNoiseToAFilteredWrench) {
   const int count = 20000;
   for (int k = 0; k < count; ++k) {
     sensor.Step(F);
-    if (k == 19) {  // the step response of the filter after 20 ms
+    if (k == 19) {  // compares the step response of the filter after 20 ms
       EXPECT_NEAR(sensor.filtered()[0], 4 * (1 - std::exp(-sensor.cutoff() * 0.02)), 1e-9);
     }
     const double noise = sensor.reading()[0] - sensor.filtered()[0] - 1;
@@ -82,7 +83,7 @@ TEST(WristSensor, AddsBiasAndNoiseToAFilteredWrench) {
   }
   EXPECT_NEAR(sum / count, 0, 0.02);
   EXPECT_NEAR(std::sqrt(squares / count), 0.5, 0.02);
-  EXPECT_NEAR(sensor.reading()[5], 4.3, 1e-9);  // no noise of torque
+  EXPECT_NEAR(sensor.reading()[5], 4.3, 1e-9);  // torque has no noise
 }
 
 // ---- period and delay --------------------------------------------------------------------------
@@ -121,7 +122,7 @@ TEST(ControlTiming, RefusesPartsOfASubStep) {
 
 // ---- admittance --------------------------------------------------------------------------------
 
-// Without virtual stiffness, a constant force moves the end-effector at F/D.
+// Without virtual stiffness, a constant force must move the end-effector at F/D.
 TEST(Admittance, MovesAtForceOverDamping) {
   World world(AdmittanceScene({"damping_translation=80"}));
   const Vector3 start = world.state().end_effector.X_W.p;
@@ -132,7 +133,7 @@ TEST(Admittance, MovesAtForceOverDamping) {
   EXPECT_GT(E.X_W.p.y(), start.y() + 0.08);
 }
 
-// With it, the displacement settles at F/K.
+// With virtual stiffness, the displacement must settle at F/K.
 TEST(Admittance, SettlesAtForceOverStiffness) {
   World world(AdmittanceScene({"virtual_stiffness.translation=[200, 200, 200]"}));
   const Vector3 start = world.state().end_effector.X_W.p;
@@ -144,7 +145,7 @@ TEST(Admittance, SettlesAtForceOverStiffness) {
   EXPECT_LT((world.state().end_effector.X_W.p - start).norm(), 0.0015);
 }
 
-// The tare includes the load and the sensor's bias: without hands, nothing moves.
+// The tare includes the load and the sensor's bias, so nothing may move without hands.
 TEST(Admittance, RestsWithoutHands) {
   Scenario s = AdmittanceScene();
   s.cobot.wrist_sensor.bias = {5, -5, 5, 0.5, 0, 0};
@@ -162,7 +163,7 @@ struct WithMemory {
   std::vector<std::string> parameters = {};
 };
 
-// They rest without hands.
+// Without hands, these controllers rest.
 const WithMemory kWithMemory[] = {
     {"admittance"},
     {"hybrid_force_position", {"set_force=[0, 0, 19.62]", "force_integral_gain=2"}},
@@ -209,14 +210,14 @@ TEST_P(ControllerMemory, ReturnsToTheStartOnReset) {
   EXPECT_EQ(a.state().q, b.state().q);
 }
 
-// The state after a small push equals that of the linear model, with all states of sensor,
+// After a small push, the state must equal that of the linear model, with all states of sensor,
 // controller and delay.
 void ExpectLinearMotion(const Scenario& s, double tolerance) {
   World world(s);
   const LinearModel model = world.Linearise();
   const Eigen::Index n = model.A.rows();
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(n, n);
-  // The exact solution of a step [x' = A x + B u, u' = 0] by a matrix exponential.
+  // A matrix exponential gives the exact solution of a step, [x' = A x + B u, u' = 0].
   Eigen::MatrixXd both = Eigen::MatrixXd::Zero(n + 1, n + 1);
   const double force = 0.05;  // [N]
   both.topLeftCorner(n, n) = model.A;
@@ -252,7 +253,7 @@ TEST(Linearisation, DescribesPeriodAndDelay) {
   ExpectLinearMotion(s, 0.05);
 }
 
-// The delay matters: it changes the slowest decay of an oscillation.
+// The delay matters, because it changes the slowest decay of an oscillation.
 TEST(Linearisation, ContainsTheDelay) {
   const auto slowest = [](double delay) {
     Scenario s = AdmittanceScene({"inner_frequency=5"});

@@ -37,13 +37,13 @@ MatrixXd JacobianOf(const ControlledRobot& robot) {
   return J;
 }
 
-// Λ, computed with plain inverses.
+// Computes Λ with plain inverses.
 MatrixXd CartesianInertia(const ControlledRobot& robot) {
   const MatrixXd J = JacobianOf(robot);
   return Inverse(J * Inverse(robot.data.M()) * J.transpose());
 }
 
-// D, computed column by column from the torques: Jᵀ D J v = τ(0) − τ(v).
+// Computes D column by column from the torques: Jᵀ D J v = τ(0) − τ(v).
 MatrixXd DampingInJoints(ControlledRobot* robot) {
   const JointVector q = robot->q;
   MatrixXd D(7, 7);
@@ -71,7 +71,7 @@ TEST(Controllers, AreFoundByName) {
   }
 }
 
-// The error of a controller that cannot be made, or "".
+// Returns the error of a controller that cannot be created, or "".
 std::string ErrorOf(const std::string& type, const std::string& parameter) {
   Scenario s = PandaScene();
   s.cobot.controller = {type, {}};
@@ -109,8 +109,8 @@ TEST(CartesianImpedance, CarriesOnlyTheWeightAtTheSetPoint) {
   EXPECT_LT(robot.Energy(), 1e-18);
 }
 
-// Spring torques equal the negative gradient of the springs' energy, even far from the set-point
-// and with a different rotational stiffness about each axis.
+// Spring torques must equal the negative gradient of the springs' energy, even far from the
+// set-point and with a different rotational stiffness about each axis.
 TEST(CartesianImpedance, SpringsAreTheGradientOfTheirEnergy) {
   Scenario s = Impedance();
   s.cobot.controller.Set("posture_stiffness=0");
@@ -132,7 +132,7 @@ TEST(CartesianImpedance, SpringsAreTheGradientOfTheirEnergy) {
   }
 }
 
-// Near the set-point, the wrench on E is K times the error, in W's axes.
+// Near the set-point, the wrench on E must be K times the error, in W's axes.
 TEST(CartesianImpedance, StiffnessIsThatAskedForPerAxis) {
   Scenario s = Impedance();
   s.cobot.controller.Set("posture_stiffness=0");
@@ -148,8 +148,8 @@ TEST(CartesianImpedance, StiffnessIsThatAskedForPerAxis) {
   }
 }
 
-// Damping by double diagonalisation, compared with a generalised eigenproblem solved by another
-// method.
+// Compares damping by double diagonalisation with a generalised eigenproblem that another method
+// solves.
 TEST(CartesianImpedance, DampingIsDoublyDiagonal) {
   Scenario s = Impedance();
   s.cobot.controller.Set("posture_stiffness=0");
@@ -161,7 +161,7 @@ TEST(CartesianImpedance, DampingIsDoublyDiagonal) {
     const MatrixXd Lambda = CartesianInertia(robot);
     const MatrixXd J = JacobianOf(robot);
     const SymmetricModes modes = SymmetricModesOf(K.asDiagonal(), Lambda);
-    // With the modes W, Wᵀ Λ W = 1: D = Λ W (2 ζ √K0) Wᵀ Λ.
+    // With Wᵀ Λ W = 1 for the modes W, D = Λ W (2 ζ √K0) Wᵀ Λ.
     const MatrixXd& W = modes.eigenvectors;
     const VectorXd d = 2 * 0.7 * modes.eigenvalues.cwiseSqrt();
     const MatrixXd D = Lambda * W * d.asDiagonal() * W.transpose() * Lambda;
@@ -170,8 +170,8 @@ TEST(CartesianImpedance, DampingIsDoublyDiagonal) {
   }
 }
 
-// A mode that moves along one axis only has that axis's damping ratio. All modes lie between the
-// smallest and the largest ratio.
+// A mode that moves along one axis only must have that axis's damping ratio. All modes lie between
+// the smallest and the largest ratio.
 TEST(CartesianImpedance, RatioPerAxisReachesTheModesOfThatAxis) {
   Scenario s = Impedance();
   s.cobot.controller.Set("posture_stiffness=0");
@@ -180,7 +180,7 @@ TEST(CartesianImpedance, RatioPerAxisReachesTheModesOfThatAxis) {
   s.cobot.controller.Set("damping_ratio=[0.1, 0.2, 0.9, 0.3, 0.4, 0.5]");
   ControlledRobot robot(s);
   const MatrixXd D = DampingInJoints(&robot);
-  // One spring, one mode: its inertia along z is 1/(Λ⁻¹)_zz, and D is of rank one.
+  // One spring causes one mode. Its inertia along z is 1/(Λ⁻¹)_zz, and D is of rank one.
   const MatrixXd J = JacobianOf(robot);
   const MatrixXd Lambda = CartesianInertia(robot);
   const MatrixXd mobility = Inverse(Lambda);
@@ -205,7 +205,7 @@ TEST(CartesianImpedance, DampingNeverDrives) {
   }
 }
 
-// The torques that pull towards the posture, and their damping, do not accelerate E.
+// The torques that pull towards the posture, and their damping, must not accelerate E.
 TEST(CartesianImpedance, PostureTorqueDoesNotMoveTheEndEffector) {
   Scenario with = Impedance();
   with.cobot.controller.Set("posture_stiffness=30");
@@ -225,7 +225,7 @@ TEST(CartesianImpedance, PostureTorqueDoesNotMoveTheEndEffector) {
   }
 }
 
-// A stretched arm cannot move outwards: Λ is unbounded there, but the torques must be bounded.
+// A stretched arm cannot move outwards. Λ is unbounded there, but the torques must be bounded.
 TEST(CartesianImpedance, StaysBoundedInSingularPostures) {
   Scenario s = Impedance();
   ControlledRobot robot(s);
@@ -239,12 +239,12 @@ TEST(CartesianImpedance, StaysBoundedInSingularPostures) {
   }
 }
 
-// The set-point's acceleration is multiplied by Λ, so from rest E follows it exactly.
+// The set-point's acceleration is multiplied by Λ, so E must follow it exactly from rest.
 TEST(CartesianImpedance, FeedsTheSetPointsAccelerationForward) {
   Scenario s = Impedance();
   s.cobot.controller.Set("trajectory=[{time: 1, xyz: [0.1, 0.05, -0.1], rpy: [0.2, 0, 0.3]}]");
   ControlledRobot robot(s);
-  const double h = 1e-3;  // so early that the springs and dampers have no noticeable effect
+  const double h = 1e-3;  // so short that the springs and dampers have no noticeable effect
   const VectorXd tau = robot.Torque(h) - robot.data.gravity();
   const VectorXd acceleration = JacobianOf(robot) * Solve(robot.data.M(), tau);
   const Vector3 expected = 60 * h * (1 - h) * (1 - 2 * h) * Vector3(0.1, 0.05, -0.1);
@@ -275,7 +275,7 @@ TEST(JointImpedance, MatchesTheClosedForm) {
   }
 }
 
-// The torques depend only on the weight of the links, regardless of velocity.
+// The torques must depend only on the weight of the links, regardless of velocity.
 TEST(GravityCompensation, CarriesTheLinks) {
   Scenario s = PandaScene();
   s.cobot.controller = {"gravity_compensation", {}};

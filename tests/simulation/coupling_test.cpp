@@ -53,7 +53,8 @@ TEST(Coupling, DampsTheRelativeMotionFullyAtTwiceTheDeadband) {
   EXPECT_LT((damping - spec.damping * (H.V_W - D.V_W).head<3>()).norm(), 1e-9);
 }
 
-// At the edge of the deadband and at the speed cap, the force is continuous for any velocities.
+// At the edge of the deadband and at the speed cap, the force must be continuous for any
+// velocities.
 TEST(Coupling, IsContinuous) {
   const CouplingSpec spec;
   const double tiny = 1e-9;
@@ -100,7 +101,8 @@ TEST(Coupling, StaysStableForALightObject) {
   EXPECT_GT(v, -1.5);
 }
 
-// Compares with the accelerations of a free rigid body under unit forces in many directions.
+// Compares the mobility with the accelerations of a free rigid body under unit forces in many
+// directions.
 TEST(Coupling, MobilityIsTheLargestResponseOfAFreeBody) {
   const double mass = 3;
   Matrix3 inertia = Vector3(0.02, 0.05, 0.06).asDiagonal();

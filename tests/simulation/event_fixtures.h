@@ -22,7 +22,7 @@ inline EventSpec Event(const std::string& name, double after = 0,
   return event;
 }
 
-// A box of 2 kg fixed to the flange, so that nothing swings.
+// Returns a scenario with a box of 2 kg fixed to the flange, so that nothing swings.
 inline Scenario RigidBox() {
   Scenario s = BoxScene(2);
   s.object.attachment.joint = JointType::kFixed;

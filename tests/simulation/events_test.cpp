@@ -1,4 +1,4 @@
-// Events: when they begin and end, and what each hazard does to the cobot. Expected values are
+// Tests when events begin and end, and what each hazard does to the cobot. Expected values are
 // closed forms.
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ struct Moment {
   double height;
 };
 
-// The first of these moments at which the only event acts; −1: none.
+// Returns the index of the first moment at which the only event acts, or −1 if it never acts.
 int BeginsAt(const TriggerSpec& trigger, const std::vector<Moment>& moments,
              std::uint64_t seed = 1) {
   Scenario s = RigidBox();
@@ -82,7 +82,7 @@ TEST(Events, DrawTheirTimeFromTheSeed) {
     ASSERT_LE(at, 3000);
     sum += at * 1e-3, squares += at * at * 1e-6;
   }
-  // Uniform in [1 s, 3 s]: mean 2 s, standard deviation 1/√3 s.
+  // A uniform distribution in [1 s, 3 s] has the mean 2 s and the standard deviation 1/√3 s.
   const double mean = sum / seeds, deviation = std::sqrt(squares / seeds - mean * mean);
   EXPECT_NEAR(mean, 2, 4 / std::sqrt(3.0 * seeds));
   EXPECT_NEAR(deviation, 1 / std::sqrt(3.0), 0.08);
@@ -124,13 +124,13 @@ TEST(Events, EndAfterTheirDurationAndDoNotRepeat) {
     EXPECT_EQ(sequence.latest(), k < 100   ? 0
                                  : k < 200 ? 12
                                            : 1)
-        << k;  // the last of the first twelve, and the first
+        << k;  // the last of the first twelve, and the first one
   }
 }
 
 // ---- effects -----------------------------------------------------------------------------------
 
-// The controller pushes up with Δm g against its spring of 500 N/m.
+// The controller pushes upward with Δm g against its spring of 500 N/m.
 TEST(Hazards, WrongPayloadLiftsTheCobotByItsSpring) {
   Scenario s = RigidBox();
   s.events = {Event("wrong_payload", 0, {"payload_error=1.5"})};
@@ -151,8 +151,8 @@ TEST(Hazards, SetPointJumpMovesTheCobotByTheJump) {
   EXPECT_NEAR(turned.z(), 0.1, 2e-3);
 }
 
-// The spring already carries the weight of 2 kg, so three times the stiffness lift it by two thirds
-// of the deflection.
+// The spring already carries the weight of 2 kg, so three times the stiffness must lift the cobot
+// by two thirds of the deflection.
 TEST(Hazards, StiffnessStepChangesTheForceAtOnce) {
   Scenario s = RigidBox();
   s.events = {Event("stiffness_step", 0, {"translation_factor=3", "rotation_factor=1"})};
@@ -173,8 +173,8 @@ TEST(Hazards, ClosedBrakesHoldTheCobotAgainstAPush) {
   EXPECT_LT(world.state().v.lpNorm<Eigen::Infinity>(), 1e-3);
 }
 
-// Without torque, the cobot's tree accelerates as its weight demands; the first 20 ms are nearly
-// uniform: the end-effector falls.
+// Without torque, the cobot's tree accelerates as its weight demands, almost uniformly in the first
+// 20 ms. The end-effector falls.
 TEST(Hazards, PowerLossLetsTheCobotSinkUntilItsBrakesClose) {
   Scenario s = RigidBox();
   s.cobot.joint_friction = {};
@@ -206,7 +206,8 @@ TEST(Hazards, FrozenControllerKeepsItsTorque) {
   EXPECT_GT((world.state().torque - held).norm(), 1e-3);
 }
 
-// The torque that acts is the one computed 20 sub-steps earlier, while the state hardly moves.
+// The torque that acts must be the one computed 20 sub-steps earlier. The state hardly moves
+// meanwhile.
 TEST(Hazards, AddedDelayDelaysTheTorque) {
   Scenario s = RigidBox();
   s.events = {Event("set_point_jump", 0.1, {"xyz=[0, 0, 0.01]"}),
@@ -220,7 +221,7 @@ TEST(Hazards, AddedDelayDelaysTheTorque) {
   EXPECT_GT((world.state().torque - before).norm(), 0.5);
 }
 
-// An admittance cobot yields to the bias with the steady speed F / D.
+// An admittance cobot must yield to the bias with the steady speed F / D.
 TEST(Hazards, SensorBiasMakesAnAdmittanceCobotDrift) {
   Scenario s = RigidBox();
   s.left_handle->pose = {};
@@ -244,7 +245,7 @@ TEST(Hazards, SensorDriftGrows) {
   }
 }
 
-// Over-compensated Coulomb friction accelerates each joint in the direction in which it moves.
+// Over-compensated Coulomb friction must accelerate each joint in the direction in which it moves.
 TEST(Hazards, WrongFrictionAddsTorqueAlongTheMotion) {
   Scenario s = RigidBox();
   s.events = {Event("wrong_friction", 0, {"coulomb_error=2", "viscous_error=0.5"})};
@@ -253,7 +254,8 @@ TEST(Hazards, WrongFrictionAddsTorqueAlongTheMotion) {
   World disturbed(s), undisturbed(plain);
   const WorldInput push = Push(s, {5, 5, 5});
   ASSERT_TRUE(disturbed.Step(push, kTick).ok());
-  ASSERT_TRUE(undisturbed.Step(push, kTick).ok());  // the torques acted at rest: equal states
+  // at rest, the torques were the same, so the states are equal
+  ASSERT_TRUE(undisturbed.Step(push, kTick).ok());
   ASSERT_EQ((disturbed.state().v - undisturbed.state().v).norm(), 0);
   const JointVector v = undisturbed.state().v;
   ASSERT_TRUE(disturbed.Step(push, kTick).ok());
@@ -278,8 +280,8 @@ TEST(Hazards, TakeoverHandsOverToTheStandbyController) {
   EXPECT_GT((world.state().torque - before).norm(), 1);
 }
 
-// The admittance's reference begins where the torques continue, not at the posture from which the
-// cobot sagged.
+// The admittance's reference must begin where the torques continue, not at the posture from which
+// the cobot sagged.
 TEST(Hazards, TakeoverByAnAdmittanceContinuesTheTorque) {
   Scenario s = RigidBox();
   s.cobot.standby_controller = ControllerSpec{"admittance", {}};

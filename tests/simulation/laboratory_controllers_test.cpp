@@ -1,5 +1,5 @@
-// The controllers that laboratories use, against the closed forms of their laws. Each expected
-// value is computed here, from the law as published.
+// Compares the controllers that laboratories use with the closed forms of their laws. The tests
+// compute each expected value from the law as published.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ struct WrenchCase {
   std::vector<std::string> parameters;
 };
 
-// The force [N] of the hand by time [s] and state.
+// Returns the force [N] of the hand for a time [s] and a state.
 using HandForce = std::function<Vector3(const WorldState&)>;
 
 void Guide(World* world, double duration, const HandForce& force) {
@@ -35,7 +35,7 @@ void Guide(World* world, double duration, const HandForce& force) {
 
 // ---- variable impedance ------------------------------------------------------------------------
 
-// A constant force moves the end-effector at the speed v with d(v) v = F.
+// A constant force must move the end-effector at the speed v with d(v) v = F.
 TEST(VariableImpedance, ReachesTheSpeedAtWhichDampingBalancesTheForce) {
   for (const double force : {5.0, 10.0, 15.0}) {
     World world(FlangeScene("variable_impedance", {"damping_translation=120", "damping_minimum=40",
@@ -50,8 +50,8 @@ TEST(VariableImpedance, ReachesTheSpeedAtWhichDampingBalancesTheForce) {
   }
 }
 
-// A force that rises by r t, then falls at the same rate: m v̇ + d v = F with d = d_0 − α r, then
-// d_0 + α r. The mass is the virtual one and the box.
+// A force rises by r t and then falls at the same rate. The motion follows m v̇ + d v = F with d =
+// d_0 − α r, then d_0 + α r. The mass is that of the controller and the box.
 TEST(VariableImpedance, TakesARisingForceAsTheIntentionToAccelerate) {
   const double d0 = 100, gain = 2, r = 10, m = 8 + kMassOfBox, turn = 1, end = 1.6;
   World world(FlangeScene("variable_impedance",
@@ -62,7 +62,7 @@ TEST(VariableImpedance, TakesARisingForceAsTheIntentionToAccelerate) {
   };
   const double rising = d0 - gain * r, falling = d0 + gain * r;
   const auto ramp = [&](double d, double slope, double force, double v, double t) {
-    const double v_ramp = force / d - slope * m / (d * d);  // particular solution at t = 0
+    const double v_ramp = force / d - slope * m / (d * d);  // the particular solution at t = 0
     return v_ramp + slope * t / d + (v - v_ramp) * std::exp(-d * t / m);
   };
   const double v_turn = ramp(rising, r, 0, 0, turn);
@@ -96,8 +96,9 @@ JerkPoint MinimumJerkAt(double t, double T) {
           (30 * std::pow(s, 2) - 60 * std::pow(s, 3) + 30 * std::pow(s, 4)) / T};
 }
 
-// Along an exact minimum-jerk movement, the estimate equals it: within 2 % from a quarter of the
-// movement on, within 0.5 % from its middle on. It is noticed late, and begins at any time.
+// During an exact minimum-jerk movement, the estimate must equal it within 2 % from a quarter of
+// the movement on, and within 0.5 % from its middle on. The controller notices the movement late,
+// and the movement may begin at any time.
 TEST(MinimumJerkEstimate, EqualsAnExactMovement) {
   for (const double T : {0.7, 1.5, 4.0})
     for (const Vector3& distance : {Vector3(0.1, 0, 0), Vector3(-0.2, 0.3, 0.1)}) {
@@ -105,7 +106,7 @@ TEST(MinimumJerkEstimate, EqualsAnExactMovement) {
       controllers::MovementOnset onset(numbers);
       const Vector3 start(1, 2, 3);
       for (int k = 0; k < 1000 * (1 + T); ++k) {
-        const double t = 1e-3 * k - 0.5;  // it begins after half a second
+        const double t = 1e-3 * k - 0.5;  // the movement begins after half a second
         const JerkPoint point = MinimumJerkAt(t, T);
         const Vector3 p = start + point.x * distance, v = point.v * distance;
         if (t > 0.25 * T && t < 0.9 * T) {
@@ -120,9 +121,9 @@ TEST(MinimumJerkEstimate, EqualsAnExactMovement) {
     }
 }
 
-// A hand leads the box along a minimum-jerk movement with the force that this needs beyond the
-// assistance (which the controller fades in from s = 0.1 to 0.3), and a spring against deviations.
-// Returns the mean force [N] of the hand while the cobot assists fully.
+// A hand leads the box along a minimum-jerk movement. Its force is what this movement needs beyond
+// the assistance, which the controller fades in from s = 0.1 to 0.3, plus a spring against
+// deviations. Returns the hand's mean force [N] while the cobot assists fully.
 double MeanForceOfHand(double assistance, double T, double distance) {
   World world(FlangeScene("minimum_jerk_intention", {"damping_translation=60", "load_mass=2",
                                                      "assistance=" + std::to_string(assistance)}));
@@ -147,8 +148,8 @@ double MeanForceOfHand(double assistance, double T, double distance) {
 }
 
 // Without assistance, the hand moves the virtual mass, the box and the damper. With full
-// assistance, its force nearly vanishes. In faster movements a larger part is left (of 1 s: a
-// quarter): the position loop yields a little to the hand, and the estimate uses the real motion.
+// assistance, its force nearly vanishes. A larger part remains in faster movements (a quarter for 1
+// s), because the position loop yields a little to the hand and the estimate uses the real motion.
 TEST(MinimumJerkIntention, RelievesTheHand) {
   for (const double T : {1.5, 2.5}) {
     const double distance = 0.2;
@@ -174,7 +175,7 @@ Scenario WithoutFriction(const std::string& type, const std::vector<std::string>
   return s;
 }
 
-// The box stands on a table at the start.
+// At the start, the box stands on a table.
 Scenario OnTable(const std::string& type, const std::vector<std::string>& parameters) {
   Scenario s = FlangeScene(type, parameters);
   const ControlledRobot robot(s);
@@ -184,7 +185,7 @@ Scenario OnTable(const std::string& type, const std::vector<std::string>& parame
   return s;
 }
 
-// A hand lifts the box by a spring, 3 cm and its sag. Returns its force at rest [N].
+// A hand lifts the box with a spring by 3 cm plus its sag. Returns the hand's force at rest [N].
 double ForceToHoldInTheAir(const Scenario& s, double duration) {
   World world(s);
   const double table = world.state().end_effector.X_W.p.z();
@@ -254,7 +255,7 @@ TEST(LoadSharing, TakesItsPartOfTheInertialForce) {
   }
 }
 
-// Friction in the joints takes part of the force; the integral replaces it.
+// Friction in the joints takes part of the force, and the integral must replace it.
 TEST(HybridForcePosition, HoldsTheSetForceExactlyInSpiteOfFriction) {
   const auto carried = [](double force, double integral_gain) {
     Scenario s =
@@ -273,7 +274,7 @@ TEST(HybridForcePosition, BoundsItsIntegralAndLeavesTheBoundAtOnce) {
   ControllerInput input = robot.Input();
   for (int k = 0; k < 5000; ++k) robot.controller->Advance(input, 1e-3);
   EXPECT_EQ(robot.controller->memory()[2], 8);
-  input.F_E_W[2] = -60;  // the load weighs on the cobot
+  input.F_E_W[2] = -60;  // the load presses on the cobot
   robot.controller->Advance(input, 1e-3);
   EXPECT_NEAR(robot.controller->memory()[2], 8 - 1e-3 * 5 * 30, 1e-12);
 }
@@ -289,7 +290,8 @@ TEST(HybridForcePosition, HoldsThePositionAlongTheOtherAxes) {
   EXPECT_NEAR(moved.y(), -8.0 / 800, 1e-4);
 }
 
-// Across a guide, the displacement is F/K; along it, the speed is F/D. In a zone, its damper adds.
+// Across a guide, the displacement must be F/K. Along it, the speed must be F/D. In a zone, the
+// zone's damper is added.
 TEST(VirtualFixtures, GuideAcrossAndLeaveFreeAlong) {
   const auto moved = [](const std::string& guide, const std::string& zone, FrameMotion* E) {
     World world(WithoutFriction("virtual_fixtures", {"object_mass=2", "damping_translation=50",
@@ -306,7 +308,7 @@ TEST(VirtualFixtures, GuideAcrossAndLeaveFreeAlong) {
   EXPECT_NEAR(E.V_W[1], 5.0 / 50, 0.002);
   x = moved("{type: plane, direction: [0, 0, 1], stiffness: 2000}", "{}", &E);
   EXPECT_NEAR(x.z(), -8.0 / 2000, 2e-4);
-  EXPECT_NEAR(E.V_W[0], -4.0 / 50, 0.004);  // without compensation of Coriolis forces
+  EXPECT_NEAR(E.V_W[0], -4.0 / 50, 0.004);  // Coriolis forces are not compensated
   EXPECT_NEAR(E.V_W[1], 5.0 / 50, 0.002);
   moved("{type: line, direction: [0, 1, 0]}", "{radius: 0.3, damping: 150}", &E);
   EXPECT_NEAR(E.V_W[1], 5.0 / (50 + 150), 0.001);

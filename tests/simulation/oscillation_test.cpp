@@ -1,4 +1,4 @@
-// Modes of the cobot alone and under load: compares requested, linearised and simulated values.
+// Compares requested, linearised and simulated modes of the cobot alone and under load.
 #include <gtest/gtest.h>
 
 #include <complex>
@@ -31,12 +31,12 @@ std::vector<Vibration> OscillatingModes(const LinearModel& model) {
   return modes;
 }
 
-// The mode with the largest vertical motion of the left handle, relative to its modal mass.
+// Returns the mode with the largest vertical motion of the left handle, relative to its modal mass.
 Vibration VerticalMode(const LinearModel& model) {
   const Modes modes = ModesOf(model.A);
   const Eigen::MatrixXd re = modes.eigenvectors.real(), im = modes.eigenvectors.imag();
   const Eigen::VectorXcd left = (model.C.row(2) + model.C.row(8)) * modes.eigenvectors;
-  // The equation V right = B, in real numbers.
+  // This is the equation V right = B in real numbers.
   const Eigen::Index n = re.rows();
   MatrixXd V(2 * n, 2 * n);
   V << re, -im, im, re;
@@ -66,7 +66,7 @@ Vibration FitDecay(const std::vector<double>& x, double interval) {
   return ToMode(std::log(z) / interval);
 }
 
-// Height of the object above its start after a small push on the handles, every 10 ms.
+// Returns the height of the object above its start after a small push on the handles, every 10 ms.
 std::vector<double> Decay(const Scenario& s, double duration) {
   World world(s);
   const double rest = world.state().object.X_W.p.z();
@@ -79,7 +79,7 @@ std::vector<double> Decay(const Scenario& s, double duration) {
   return heights;
 }
 
-// The frequency of the undamped mode follows from the load, the spring and the cobot's own inertia.
+// The load, the spring and the cobot's own inertia determine the frequency of the undamped mode.
 TEST(Oscillation, LoadedFrequencyIsThatOfTheDesign) {
   const struct {
     double mass, low, high;  // [kg], [Hz]
@@ -88,8 +88,8 @@ TEST(Oscillation, LoadedFrequencyIsThatOfTheDesign) {
     Scenario s = BoxScene(c.mass);
     s.cobot.joint_friction.viscous = {0};
     s.cobot.controller.Set("damping_ratio=0.02");
-    // A posture that is less folded, as after sagging, where Λ_zz is 5 to 6 kg. (At 18 kg and the
-    // default posture it is 8.4 kg, and the mode is at 0.70 Hz.)
+    // This posture is less folded, as after sagging, and Λ_zz is 5 to 6 kg. At 18 kg and the
+    // default posture, Λ_zz is 8.4 kg, and the mode is at 0.70 Hz.
     if (c.mass == 18) s.cobot.posture = {0, -0.4, 0, -1.6, 0, 1.2, 0.785};
     const Vibration linear = VerticalMode(World(s).Linearise());
     EXPECT_GT(linear.frequency, c.low);
@@ -109,8 +109,8 @@ TEST(Oscillation, LoadedFrequencyAndRatioAreThoseOfTheLinearisation) {
   }
 }
 
-// The cobot alone, without friction: every mode has the requested damping ratio, for any stiffness
-// and posture.
+// Without friction, every mode of the cobot alone must have the requested damping ratio, for any
+// stiffness and posture.
 TEST(Oscillation, CobotAloneShowsTheRatioAskedFor) {
   const char* stiffnesses[] = {"{translation: [5, 5, 500], rotation: [100, 100, 100]}",
                                "{translation: [300, 80, 500], rotation: [20, 60, 5]}",
@@ -155,7 +155,7 @@ TEST(Oscillation, JointImpedanceShowsItsRatio) {
   for (const Vibration& mode : modes) EXPECT_NEAR(mode.ratio, 0.4, 1e-3);
 }
 
-// Compares B and C with the world itself: a force acts for one tick, and the resulting twist is
+// Compares B and C with the world itself. A force acts for one tick, and the resulting twist is
 // compared.
 TEST(Linearise, PredictsTheFirstTick) {
   Scenario s = BoxScene(9);
@@ -168,7 +168,7 @@ TEST(Linearise, PredictsTheFirstTick) {
     const VectorXd expected = model.C * model.B.col(i) * 0.1 * kTick;
     VectorXd twists(12);
     twists << world.state().handle[0].V_W, world.state().handle[1].V_W;
-    // Compares one implicit step with the slope at its start: the friction of 1 N·m·s/rad is
+    // One implicit step is compared with the slope at its start, so the friction of 1 N·m·s/rad is
     // noticeable.
     EXPECT_LT((twists - expected).norm(), 0.1 * expected.norm()) << i;
   }

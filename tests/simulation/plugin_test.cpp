@@ -1,4 +1,4 @@
-// Controllers outside the program: shared libraries and processes.
+// Tests controllers outside the program: shared libraries and processes.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -24,7 +24,7 @@ namespace {
 using test::Plugin;
 using test::PythonExample;
 
-// A Panda with a ball of 1 kg in its flange.
+// Returns a Panda with a ball of 1 kg in its flange.
 Scenario BallScene(const ControllerSpec& controller) {
   Scenario s = BoxScene(1);
   s.object.attachment.joint = JointType::kFixed;
@@ -38,14 +38,14 @@ ControllerSpec BuiltIn(const std::string& type, const std::vector<std::string>& 
   return spec;
 }
 
-// A process that does what `fault` names from the time `at` [s] on.
+// Returns a process that does what `fault` names from the time `at` [s] on.
 ControllerSpec Faulty(const std::string& fault, double at = 0.05) {
   return test::ProcessOf("[python3, " + std::string(PREDICTOR_SOURCE_DIR) +
                          "/tests/plugins/process.py, \"" + fault + "\", \"" + std::to_string(at) +
                          "\"]");
 }
 
-// The states of two worlds after every step of a push.
+// Compares the states of two worlds after every step of a push.
 void ExpectSameMotion(const Scenario& a, const Scenario& b, double duration) {
   World first(a), second(b);
   for (int k = 0; k < std::lround(duration / kTick); ++k) {
@@ -82,8 +82,8 @@ Quaternion ObjectInE(const World& world) {
   return world.state().end_effector.X_W.q.conjugate() * world.state().object.X_W.q;
 }
 
-// These answer the pose that they see. It is that before the step, also where the object turns in a
-// spherical attachment.
+// These controllers answer with the pose that they receive. It must be the pose before the step,
+// even if the object rotates in a spherical attachment.
 TEST(Plugin, SeesThePoseOfTheObject) {
   for (const ControllerSpec& controller :
        {Plugin("at_time", "fault=object at=0.05"), Faulty("object")}) {
@@ -146,7 +146,7 @@ TEST(Plugin, KeepsItsMemoryInTheSavedState) {
   Simulate(&a, Push(s, {3, 0, 0}), 0.3);
   Simulate(&b, Push(s, {3, 0, 0}), 0.3);
   EXPECT_EQ(a.state().torque, b.state().torque);
-  // A controller with another memory does not take the state.
+  // A controller with a different memory must not accept the state.
   World other(BallScene(Plugin("joint_impedance")));
   StateArchive wrong = StateArchive::ToLoad(std::span(bytes).first(save.used()));
   other.Archive(wrong);
@@ -211,7 +211,7 @@ TEST(Plugin, AProcessThatDoesNotFitIsRefusedWithPlaceAndRemedy) {
   ExpectError(Faulty("nan", 0), "cobot.controller", "its program does not answer, or with torques");
 }
 
-// The note of a trial is for these bytes of the library only.
+// The result of a trial applies only to a library with exactly these bytes.
 TEST(Plugin, IsRefusedWithRealArmsUnlessItHasPassedItsTrial) {
   test::FindPlugins();
   const test::TemporaryFolder folder;
@@ -236,7 +236,7 @@ TEST(Plugin, IsRefusedWithRealArmsUnlessItHasPassedItsTrial) {
 // ---- faults during a run
 // -------------------------------------------------------------------------
 
-// The status of the step that fails.
+// Returns the status of the step that fails.
 Status FirstFailure(const Scenario& s, World* world) {
   for (int k = 0; k < 200; ++k) {
     const Status status = world->Step(HandsOff(s), kTick);
@@ -263,7 +263,7 @@ TEST(Plugin, TorquesThatAreNotFiniteAreRefused) {
   }
 }
 
-// A memory that the program could shorten would end the control loop with a bus error.
+// If the process could shorten the memory, the control loop would end with a bus error.
 TEST(Plugin, AProcessCannotShortenTheSharedMemory) {
   World world(BallScene(Faulty("shorten")));
   const double limit = world.effort_limit()[0];
@@ -281,8 +281,8 @@ TEST(Plugin, AProcessThatCrashesIsNoticed) {
   EXPECT_EQ(world.state().controller, ControllerOutcome::kFailed);
 }
 
-// In real time, the program has a deadline. Until it answers again, gravity compensation and
-// damping act; after 0.1 s, the step is refused.
+// In real time, the program has a deadline. Gravity compensation and damping must act until it
+// answers again, and after 0.1 s the step must be refused.
 TEST(Plugin, AProcessThatMissesItsDeadlineIsReplacedAndThenStopped) {
   for (const bool hangs : {false, true}) {
     Scenario s = BallScene(Faulty(hangs ? "hang" : "late"));

@@ -1,4 +1,4 @@
-// Scenes for the tests, built in C++: a Panda that holds a box or a ball.
+// Scenes for the tests, built in C++. A Panda holds a box or a ball.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,8 @@ namespace predictor {
 
 inline constexpr double kGravity = 9.81;  // [m/s²]
 
-// The paper's cobot on a stand of 0.6 m, stiff in the vertical direction only; no floor.
+// Returns the paper's cobot on a stand of 0.6 m, stiff in the vertical direction only. The scene
+// has no floor.
 inline Scenario PandaScene() {
   Scenario s;
   s.file = std::filesystem::path(PREDICTOR_SOURCE_DIR) / "scenarios" / "test.yaml";
@@ -29,15 +30,15 @@ inline Scenario PandaScene() {
   return s;
 }
 
-// A box that hangs from the end-effector by a spherical joint in its top face, with a handle at
-// each side. The cobot is stronger than a Panda, whose wrist can barely hold 9 kg.
+// A box hangs from the end-effector by a spherical joint in its top face, with a handle at each
+// side. The cobot is stronger than a Panda, whose wrist can barely hold 9 kg.
 inline Scenario BoxScene(double mass) {
   Scenario s = PandaScene();
   s.cobot.effort_limit = {200};
   s.object.primitive = PrimitiveSpec{};
   s.object.primitive->size = {0.26, 0.38, 0.2};
   s.object.primitive->mass = mass;
-  s.object.attachment.on_end_effector.rpy = {M_PI, 0, 0};  // the flange looks down
+  s.object.attachment.on_end_effector.rpy = {M_PI, 0, 0};  // the flange faces down
   s.object.attachment.on_object.xyz = {0, 0, 0.1};
   s.left_handle = HandleSpec{};
   s.left_handle->pose.xyz = {0, 0.19, -0.1};
@@ -47,7 +48,7 @@ inline Scenario BoxScene(double mass) {
   return s;
 }
 
-// A box of 2 kg fixed to the flange, with one handle in the flange, under another controller.
+// A box of 2 kg is fixed to the flange, with one handle in the flange and another controller.
 inline Scenario FlangeScene(const std::string& type, const std::vector<std::string>& parameters) {
   Scenario s = BoxScene(2);
   s.object.attachment.joint = JointType::kFixed;
@@ -60,7 +61,7 @@ inline Scenario FlangeScene(const std::string& type, const std::vector<std::stri
   return s;
 }
 
-// Almost nothing in the hand (a grain of 1 mg), to observe the cobot alone.
+// The hand holds almost nothing (a grain of 1 mg), so that the test observes the cobot alone.
 inline Scenario EmptyScene() {
   Scenario s = PandaScene();
   s.object.primitive = PrimitiveSpec{};

@@ -1,4 +1,4 @@
-// A cobot that only slides, in closed form. Its object is fixed to it.
+// Compares a cobot that only slides, with an object fixed to it, with closed forms.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -57,8 +57,8 @@ environment: {floor: false}
   test::TemporaryFolder folder_;
 };
 
-// The carriage's own weight is compensated; the load's part along the axis stretches the spring by
-// m g n_z / k.
+// The carriage's own weight is compensated. The load's weight along the axis stretches the spring
+// by m g n_z / k.
 TEST_F(SlidingCobot, SagsByTheLoadsWeightAlongTheAxis) {
   for (const auto& [axis, n_z] :
        {std::pair("0 0 1", 1.0), std::pair("1 0 0", 0.0), std::pair("0 3 4", 0.8)}) {
@@ -69,7 +69,8 @@ TEST_F(SlidingCobot, SagsByTheLoadsWeightAlongTheAxis) {
   }
 }
 
-// Poles of the linearised world: ± i sqrt(k / (m + M)), with damping friction / (2 (m + M)).
+// The poles of the linearised world are ± i sqrt(k / (m + M)), with the damping friction / (2 (m +
+// M)).
 TEST_F(SlidingCobot, SwingsAsMassAndSpring) {
   const World world(On("0 3 4", {"cobot.joint_friction.viscous=4"}));
   const LinearModel linear = world.Linearise();

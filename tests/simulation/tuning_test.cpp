@@ -1,5 +1,5 @@
-// Stiffness and damping change while the cobot holds a load: the torque does not jump, and
-// afterwards the new spring acts.
+// Stiffness and damping change while the cobot holds a load. The torque must not jump, and
+// afterwards the new spring must act.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ void Displace(ControlledRobot* robot, double by) {
   robot->Update(q, JointVector::Zero(q.size()));
 }
 
-// Without a spring towards the posture.
+// The controller has no spring towards the posture.
 ControllerSpec ControllerWith(const std::string& type, const std::string& translation,
                               const std::string& rotation, const std::string& joints) {
   ControllerSpec spec = {type, {}};
@@ -45,7 +45,7 @@ TEST_P(Tuning, LeavesTheTorqueAsItIsAndTheSpringAsAskedFor) {
   Scenario s = EmptyScene();
   s.cobot.controller = ControllerWith(GetParam(), "[300, 400, 500]", "[100, 100, 100]", "100");
   ControlledRobot tuned(s), plain(s);
-  // A scenario that requests this stiffness from the beginning.
+  // This scenario requests the stiffness from the beginning.
   Scenario softer = s;
   softer.cobot.controller = ControllerWith(GetParam(), "[150, 200, 250]", "[50, 50, 50]", "50");
   ControlledRobot soft(softer);
@@ -53,7 +53,7 @@ TEST_P(Tuning, LeavesTheTorqueAsItIsAndTheSpringAsAskedFor) {
   Displace(&tuned, 0.05);
   Displace(&plain, 0.05);
   const JointVector before = Torque(&tuned);
-  // In steps, like a ramp.
+  // The value changes in steps, like a ramp.
   for (int k = 1; k <= 100; ++k) {
     const double factor = 1 - 0.005 * k;
     tuned.controller->Tune({factor, factor, 1}, tuned.Input(), true);
@@ -68,8 +68,7 @@ TEST_P(Tuning, LeavesTheTorqueAsItIsAndTheSpringAsAskedFor) {
   const JointVector soft_before = Torque(&soft) - soft.data.gravity();
   Displace(&soft, 0.0501);
   const JointVector expected = Torque(&soft) - soft.data.gravity() - soft_before;
-  // The offset rotates with the end-effector, which is an effect of second order in the
-  // displacement.
+  // The offset rotates with the end-effector, which is a second-order effect of the displacement.
   EXPECT_LT((change - expected).norm(), 0.1 * expected.norm());
   EXPECT_GT(expected.norm(), 1e-4);
 

@@ -1,4 +1,4 @@
-// The effect of the coupling in the world.
+// Tests the effect of the coupling in the world.
 #include <gtest/gtest.h>
 
 #include "world_fixtures.h"
@@ -27,7 +27,7 @@ TEST(WorldCoupling, HoldsTheObjectWhereTheDeviceStays) {
   EXPECT_TRUE(uncoupled.state().coupling[0].isZero(0));
 }
 
-// If the device follows exactly, a person feels only the cap on the handles' speed.
+// If the device follows exactly, a person must feel only the cap on the handles' speed.
 TEST(WorldCoupling, BrakesAboveTheSpeedCapOnly) {
   const Scenario s = BoxScene(9);
   World capped(s), free(s);

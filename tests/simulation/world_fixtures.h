@@ -18,7 +18,7 @@ inline WorldInput HandsOff(const Scenario& s) {
   return input;
 }
 
-// A force [N] in W on each existing handle.
+// Returns a force [N] in W on each existing handle.
 inline WorldInput Push(const Scenario& s, const Vector3& force) {
   WorldInput input = HandsOff(s);
   for (Wrench& F : input.F_H_W) F.head<3>() = force;

@@ -15,7 +15,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Only the hands add or remove energy.
+// In this scenario, only the hands add or remove energy.
 Scenario Frictionless(double mass, double ratio) {
   Scenario s = BoxScene(mass);
   s.cobot.joint_friction.viscous = {0};
@@ -125,7 +125,7 @@ TEST(World, HandsWorkBecomesEnergy) {
   EXPECT_NEAR(world.state().energy - start, work, 0.01 * std::abs(work));
 }
 
-// Without friction and hands but with damping, the energy above the equilibrium's does not rise.
+// With damping, but without friction and hands, the energy above the equilibrium's must not rise.
 TEST(World, IsPassive) {
   for (const double posture : {0.0, 10.0}) {
     Scenario s = Frictionless(9, 0.7);
@@ -223,7 +223,7 @@ TEST(World, TableHoldsTheBoxThatFallsOnIt) {
   EXPECT_LT(world.state().object.V_W.norm(), 1e-3);
 }
 
-// The box slides if the hands pull harder than μ m g = 71 N, with all its weight on the table.
+// With all its weight on the table, the box must slide if the hands pull harder than μ m g = 71 N.
 TEST(World, TableHoldsByFriction) {
   Scenario s = BoxScene(9);
   s.cobot.controller.Set("stiffness.translation=[5, 5, 0]");
@@ -238,7 +238,7 @@ TEST(World, TableHoldsByFriction) {
   EXPECT_GT((world.state().object.X_W.p - start).norm(), 0.02);
 }
 
-// A hand of mass m on a handle has the same effect as a reduction of the hand's force by m·a.
+// A hand of mass m on a handle must have the same effect as a reduction of the hand's force by m·a.
 TEST(World, HandMassInDirectModeIsItsInertia) {
   Scenario direct = BoxScene(9);
   direct.mode = Mode::kDirect;
@@ -258,7 +258,7 @@ TEST(World, HandMassInDirectModeIsItsInertia) {
   ASSERT_TRUE(light.Step(equivalent, kTick).ok());
   EXPECT_LT((light.state().handle[0].A_W - A).norm(), 1e-3 * A.norm());
   EXPECT_GT(mass * A.head<3>().norm(), 0.5);
-  // The hand's mass has no weight, so without a force the box does not move.
+  // The hand's mass has no weight, so the box must not move without a force.
   heavy.Reset();
   input.F_H_W[0].setZero();
   const Vector3 start = heavy.state().object.X_W.p;
@@ -266,7 +266,7 @@ TEST(World, HandMassInDirectModeIsItsInertia) {
   EXPECT_LT((heavy.state().object.X_W.p - start).norm(), 1e-8);
 }
 
-// Coulomb friction resists small forces (except for the creep of the engine's soft constraint).
+// Coulomb friction must resist small forces, except for the creep of the engine's soft constraint.
 TEST(World, CoulombFrictionHoldsSmallForces) {
   Scenario s = EmptyScene();
   s.cobot.controller.Set("stiffness.translation=[0, 0, 500]");

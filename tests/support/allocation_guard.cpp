@@ -17,7 +17,7 @@ std::int64_t AllocationGuard::Calls() { return calls; }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-// The executable's definitions take precedence over those of glibc, also for the libraries that it
+// The executable's definitions take precedence over those of glibc, even for the libraries that it
 // loads.
 extern "C" {
 

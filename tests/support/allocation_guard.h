@@ -1,4 +1,4 @@
-// Counts a piece of code's heap allocations and deallocations.
+// Counts the heap allocations and deallocations of a piece of code.
 #pragma once
 
 #include <cstdint>

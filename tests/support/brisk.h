@@ -1,4 +1,5 @@
-// A carry from side to side, at nearly the handles' cap, for tests of events during fast motion.
+// A carry from side to side, almost at the handles' speed cap, for tests of events during fast
+// motion.
 #pragma once
 
 #include <string>
@@ -10,8 +11,8 @@ namespace predictor {
 
 constexpr double kBriskBegin = 1, kBriskMove = 2, kBriskWay = 0.25;  // [s], [s], [m]
 // Each move has minimum jerk, with a speed of 30 u²(1 − u)² times its mean at the fraction u of its
-// time. The maximum is 15/8 of the mean. In half of the time the speed exceeds 9/16 of the maximum
-// (the value at a quarter).
+// time. The maximum is 15/8 of the mean. For half of the time, the speed exceeds 9/16 of the
+// maximum, which is its value at a quarter.
 constexpr double kBriskSpeed = 15.0 / 8 * kBriskWay / kBriskMove;  // [m/s]
 constexpr double kBriskMedian = 9.0 / 16 * kBriskSpeed;            // [m/s]
 

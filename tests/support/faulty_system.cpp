@@ -28,7 +28,7 @@ ClockGettime Real() {
   return real;
 }
 
-// The current error of a clock [s]; text: the value of FAULTY_CLOCK.
+// Returns the current error of a clock [s]. text: the value of FAULTY_CLOCK.
 long Jump(const char* text) {
   if (text == nullptr) return 0;
   timespec now{};
@@ -49,7 +49,7 @@ long BootJump() {
   return Jump(text);
 }
 
-// The thread whose memory runs out, and the time [s].
+// The thread that runs out of memory, and the time at which it does [s].
 struct Starved {
   Starved() noexcept {
     const char* const text = std::getenv("FAULTY_MEMORY");

@@ -24,7 +24,7 @@ class FaultySystem {
   FaultySystem& operator=(const FaultySystem&) = delete;
 
  private:
-  std::string fault_, others_;  // others: libraries that are preloaded anyway
+  std::string fault_, others_;  // others: libraries that are preloaded in any case
 };
 
 }  // namespace predictor

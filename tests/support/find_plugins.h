@@ -1,5 +1,4 @@
-// Where the plug-ins of the build folder are. A test that uses them depends on the target
-// `plugins`.
+// Locates the plug-ins in the build folder. A test that uses them depends on the target `plugins`.
 #pragma once
 
 #include <cstdlib>

@@ -9,7 +9,7 @@
 
 namespace predictor::test {
 
-// "NAME.so" of examples/plugins or tests/plugins, with its parameters.
+// Returns "NAME.so" of examples/plugins or tests/plugins with its parameters.
 inline ControllerSpec Plugin(const std::string& name, const std::string& parameters = "") {
   FindPlugins();
   ControllerSpec spec{"plugin", {}};
@@ -18,7 +18,7 @@ inline ControllerSpec Plugin(const std::string& name, const std::string& paramet
   return spec;
 }
 
-// A program, whose arguments are in YAML: "[python3, -c, ...]".
+// Returns a program whose arguments are in YAML: "[python3, -c, ...]".
 inline ControllerSpec ProcessOf(const std::string& command, const std::string& parameters = "") {
   ControllerSpec spec{"process", {}};
   spec.Set("command=" + command);

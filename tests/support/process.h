@@ -8,7 +8,7 @@
 
 namespace predictor::test {
 
-// Waits for `condition`, for at most twenty seconds.
+// Waits at most twenty seconds for `condition`.
 template <class Condition>
 bool Becomes(Condition condition) {
   for (int i = 0; i < 2000; ++i) {
@@ -18,7 +18,7 @@ bool Becomes(Condition condition) {
   return false;
 }
 
-// A field of /proc/PID/status; empty if there is none.
+// Returns a field of /proc/PID/status, or an empty text if there is none.
 inline std::string StatusOf(int pid, const std::string& field) {
   std::ifstream status("/proc/" + std::to_string(pid) + "/status");
   for (std::string line; std::getline(status, line);)

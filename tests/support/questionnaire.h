@@ -18,7 +18,7 @@ inline StoredAnswer Stored(const std::string& pseudonym, Condition condition, in
   return stored;
 }
 
-// The answers of the paper's own study, from one of the distributions that give its table.
+// Returns the answers of the paper's own study, from one of the distributions that give its table.
 inline std::vector<StoredAnswer> PapersAnswers() {
   std::vector<StoredAnswer> answers(kPaperPeople, Stored("", Condition::kEmulated, 0));
   for (std::size_t i = 0; i < kStatements; ++i) {

@@ -34,7 +34,7 @@ Nanoseconds Factor() {
   return factor;
 }
 
-// The function that this library replaces.
+// Returns the function that this library replaces.
 template <class Function>
 Function Real(const char* name) {
   return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
@@ -54,21 +54,22 @@ int Slower(int milliseconds) {
   return slow > INT_MAX ? INT_MAX : static_cast<int>(slow);
 }
 
-// The clocks that show the time that passes, as opposed to the processor time that is used.
+// Returns whether a clock shows the time that passes, as opposed to the processor time that is
+// used.
 bool Passes(clockid_t clock) {
   return clock == CLOCK_MONOTONIC || clock == CLOCK_MONOTONIC_RAW ||
          clock == CLOCK_MONOTONIC_COARSE || clock == CLOCK_BOOTTIME || clock == CLOCK_REALTIME ||
          clock == CLOCK_REALTIME_COARSE;
 }
 
-// The difference between the real and the slow time of all clocks [ns].
+// Returns the difference between the real and the slow time, which is the same for all clocks [ns].
 Nanoseconds Behind() {
   timespec now{};
   RealTime(CLOCK_MONOTONIC, &now);
   return Of(now) - Of(now) / Factor();
 }
 
-// The duration, in real time, until a slow clock shows `time`.
+// Returns the duration, in real time, until a slow clock shows `time`.
 timespec Until(clockid_t clock, const timespec& time) {
   timespec now{};
   clock_gettime(clock, &now);
@@ -76,7 +77,7 @@ timespec Until(clockid_t clock, const timespec& time) {
   return From(left > 0 ? left * Factor() : 0);
 }
 
-// The real time on the monotonic clock at which a slow clock shows `time`.
+// Returns the real time on the monotonic clock at which a slow clock shows `time`.
 timespec At(clockid_t clock, const timespec& time) {
   timespec now{};
   RealTime(CLOCK_MONOTONIC, &now);
@@ -90,7 +91,7 @@ extern "C" {
 int clock_gettime(clockid_t clock, timespec* time) noexcept {
   const int result = RealTime(clock, time);
   if (result == 0 && Passes(clock)) {
-    // The monotonic clock is read once only, so that it cannot step back.
+    // The monotonic clock is read only once, so that it cannot step back.
     *time = clock == CLOCK_MONOTONIC ? From(Of(*time) / Factor()) : From(Of(*time) - Behind());
   }
   return result;
@@ -111,7 +112,7 @@ int gettimeofday(timeval* __restrict__ time, void* __restrict__) noexcept {
   return 0;
 }
 
-// An interrupted wait reports the time that is left, in slow time.
+// An interrupted wait reports the remaining time, in slow time.
 int nanosleep(const timespec* time, timespec* left) {
   static const auto real = Real<int (*)(const timespec*, timespec*)>("nanosleep");
   const timespec slow = Slower(*time);
@@ -144,7 +145,7 @@ int poll(pollfd* ready, nfds_t count, int timeout) {
   return real(ready, count, Slower(timeout));
 }
 
-// What a checking C library makes of poll.
+// A C library with checks calls this instead of poll.
 int __poll_chk(pollfd* ready, nfds_t count, int timeout, std::size_t size) {
   if (size / sizeof *ready < count) std::abort();
   return poll(ready, count, timeout);
@@ -167,7 +168,7 @@ int timerfd_settime(int timer, int flags, const itimerspec* time, itimerspec* ol
   static const auto real =
       Real<int (*)(int, int, const itimerspec*, itimerspec*)>("timerfd_settime");
   itimerspec slow = *time;
-  // An absolute time of a monotonic timer, the only kind in use.
+  // The time is an absolute one of a monotonic timer, the only kind in use.
   slow.it_value = Slower(time->it_value);
   slow.it_interval = Slower(time->it_interval);
   return real(timer, flags, &slow, old);
@@ -194,7 +195,7 @@ int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, cl
   return real(condition, mutex, CLOCK_MONOTONIC, &at);
 }
 
-// Waits by the wall clock.
+// This function waits by the wall clock.
 int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex,
                            const timespec* time) {
   return pthread_cond_clockwait(condition, mutex, CLOCK_REALTIME, time);

@@ -1,4 +1,5 @@
-// Long variants of tests: ./dev soak sets PREDICTOR_SOAK, and tests named *Soak* then run in full.
+// Supports long variants of tests. ./dev soak sets PREDICTOR_SOAK, and tests named *Soak* then run
+// in full.
 #pragma once
 
 #include <cstdio>
@@ -9,16 +10,16 @@ namespace predictor {
 
 inline bool InFull() { return std::getenv("PREDICTOR_SOAK") != nullptr; }
 
-// Returns `full` in ./dev soak, which reads this value for docs/soak-record.csv, otherwise
-// `sample`.
+// Returns `full` in ./dev soak, and `sample` otherwise. ./dev soak copies the value into
+// docs/soak-record.csv.
 inline long Count(long sample, long full) {
   if (!InFull()) return sample;
   std::printf("soak: count=%ld\n", full);
   return full;
 }
 
-// Ends a test if this computer never kept real time. The test is skipped in a sample. The test
-// fails in a full run, and if PREDICTOR_REAL_TIME=required promises a quiet computer.
+// Ends a test if this computer never kept real time. In a sample, the test is skipped. In a full
+// run, or if PREDICTOR_REAL_TIME=required promises a quiet computer, the test fails.
 inline bool RealTimeIsRequired() {
   const char* says = std::getenv("PREDICTOR_REAL_TIME");
   return InFull() || (says && std::string_view(says) == "required");

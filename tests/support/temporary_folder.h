@@ -1,4 +1,4 @@
-// A separate folder for a test.
+// A separate folder for each test.
 #pragma once
 
 #include <unistd.h>
@@ -10,10 +10,10 @@
 
 namespace predictor::test {
 
-// Deletes the folder and its content at the end.
+// The destructor deletes the folder and its contents.
 class TemporaryFolder {
  public:
-  // Creates the folder within `where`.
+  // Creates the folder in `where`.
   explicit TemporaryFolder(
       const std::filesystem::path& where = std::filesystem::temp_directory_path()) {
     std::string name = (where / "predictor-XXXXXX").string();

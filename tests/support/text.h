@@ -1,4 +1,4 @@
-// Questions about texts.
+// Helpers for tests of texts.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ inline bool Contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-// A page without its script, which contains all words that any page may show.
+// Returns a page without its script, because the script contains all words that any page may show.
 inline std::string WithoutScript(const std::string& page) {
   return page.substr(0, page.rfind("<script>"));
 }

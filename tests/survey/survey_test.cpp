@@ -1,4 +1,4 @@
-// The server of the questionnaire, accessed through plain sockets.
+// Tests the server of the questionnaire through plain sockets.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -52,7 +52,7 @@ class SurveyServer : public ::testing::Test {
   WebSocket Connect(const std::string& head = "") {
     return WebSocket(server_->port(), "/ws", kSurveySubprotocol, head);
   }
-  // Returns the welcome message; null if not admitted.
+  // Returns the welcome message, or null if the server does not admit the client.
   static viewer::Json Hello(WebSocket* socket, const viewer::Json& with) {
     viewer::Json hello = {{"type", "hello"}};
     hello.update(with);

@@ -94,7 +94,8 @@ TEST(Admission, WrongTriesCountAgainstEveryPinThatWaits) {
   EXPECT_FALSE(admission.ByPin(control, kHere, kSecond));
 }
 
-// The viewer may die and restart: admitted clients stay admitted, but no others are admitted.
+// The viewer may die and restart. Clients that were admitted must stay admitted, but no others may
+// be.
 TEST(Admission, OutlivesAStartByItsSecret) {
   const std::string secret = NewAdmissionSecret();
   const Admission before(false, secret);
@@ -108,8 +109,8 @@ TEST(Admission, OutlivesAStartByItsSecret) {
   EXPECT_NE(real.code(), real_again.code());  // the old code may have been used
 }
 
-// An ended generation stays ended if the viewer starts again. The end invalidates its tokens and
-// the code that a disconnected client may know.
+// An ended generation must stay ended if the viewer starts again. The end invalidates its tokens
+// and the code, which a disconnected client may know.
 TEST(Admission, ANewGenerationEndsTokensPinsAndTheSharedCode) {
   const std::string secret = NewAdmissionSecret();
   Admission before(false, secret);
@@ -147,7 +148,7 @@ TEST(Admission, AnyNumberOfGenerationsEnds) {
   for (const std::string& token : tokens) EXPECT_FALSE(after.ByToken(token));
 }
 
-// No character of a token can be changed, in particular not that of the role.
+// No character of a token may be changed, in particular not that of the role.
 TEST(Admission, ATokenIsSigned) {
   const Admission admission(false, NewAdmissionSecret());
   const std::string token = admission.IssueToken(Role::kLook);
@@ -176,7 +177,7 @@ TEST(Admission, SecretsDiffer) {
         std::string::npos);
 }
 
-// PINs are uniform: each digit at each position has a frequency close to a tenth.
+// PINs must be uniform: each digit at each position has a frequency close to a tenth.
 TEST(Admission, PinsAreUniform) {
   Admission admission(false, NewAdmissionSecret());
   const int count = 20000;
@@ -189,7 +190,7 @@ TEST(Admission, PinsAreUniform) {
     for (const int n : place) EXPECT_NEAR(n, count / 10, 7 * 42.4);  // 7 standard deviations
 }
 
-// A client that guesses uses up its own attempts, not those of others.
+// A client that guesses must use up its own attempts, not those of others.
 TEST(Admission, WrongTriesCountForTheirAddressAlone) {
   Admission admission(false, NewAdmissionSecret());
   const std::string pin = admission.IssuePin(Role::kLook, 0);
@@ -210,7 +211,8 @@ TEST(Admission, ANewPinGivesNewTriesAtItAlone) {
   EXPECT_TRUE(admission.ByPin(admission.IssuePin(Role::kControl, kSecond), kHere, kSecond));
 }
 
-// The table of addresses is bounded, and so is the number of guesses from many addresses together.
+// The table of addresses must be bounded, and so must the number of guesses from many addresses
+// together.
 TEST(Admission, ManyAddressesDoNotGetManyTries) {
   Admission admission(false, NewAdmissionSecret());
   const std::string pin = admission.IssuePin(Role::kLook, 0);
@@ -264,7 +266,7 @@ TEST(Leases, EndThreeSecondsAfterTheLastHeartbeat) {
   Leases leases;
   leases.Take(LeaseKind::kControl, 1, 0);
   leases.Heartbeat(1, 2 * kSecond);
-  leases.Heartbeat(2, 4 * kSecond);  // from another client
+  leases.Heartbeat(2, 4 * kSecond);  // the heartbeat is from another client
   EXPECT_FALSE(leases.Expire(5 * kSecond - 1));
   EXPECT_TRUE(leases.Holds(LeaseKind::kControl, 1));
   EXPECT_TRUE(leases.Expire(5 * kSecond));

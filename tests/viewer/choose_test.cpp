@@ -1,4 +1,4 @@
-// A user chooses another scenario in a page: `predictor run` continues with it, and keeps the
+// A user chooses another scenario in a page. `predictor run` must continue with it and keep the
 // command-line options that still apply.
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -52,7 +52,8 @@ class ChooseTest : public testing::Test {
   }
 
   std::string Errors() const { return ReadText(folder_ / "errors"); }
-  // The rest of the line after `what`; empty if it does not appear within a minute.
+  // Returns the rest of the line after `what`, or an empty text if it does not appear within a
+  // minute.
   std::string After(const std::string& what) const {
     for (int i = 0; i < 6000; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(10))) {
       const std::string text = Errors();
@@ -69,8 +70,8 @@ class ChooseTest : public testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
-  // The scene that the server shows to a reconnecting page once it is the wanted one. Null and no
-  // page after a minute.
+  // Waits until the server shows the wanted scene to a page that reconnects. Returns the scene, or
+  // null and no page after a minute.
   static nlohmann::json Back(std::uint16_t port, const std::string& token,
                              std::unique_ptr<WebSocket>* page,
                              const std::function<bool(const nlohmann::json& scene)>& wanted) {
@@ -96,8 +97,9 @@ class ChooseTest : public testing::Test {
     }
     return false;
   }
-  // Takes the control and chooses a scenario until the server closes the connection for it. The
-  // server may still hold the control for a page that has just left, so the page asks each second.
+  // Takes the control and chooses a scenario until the server closes the connection because of it.
+  // The server may still hold the control for a page that has just left, so the page asks every
+  // second.
   static bool Choose(WebSocket* page, const std::string& name) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point end = Clock::now() + std::chrono::minutes(1);
@@ -141,7 +143,7 @@ TEST_F(ChooseTest, KeepsSeedAndDurationAndSaysWhatIsDropped) {
     EXPECT_TRUE(Choose(page.get(), "single_arm"));
   }
   EXPECT_NE(After("runs without --set name=Other"), "") << Errors();
-  // The port stays the same. A scenario that is chosen after a run starts automatically.
+  // The port must stay the same. A scenario that is chosen after a run must start automatically.
   std::unique_ptr<WebSocket> page;
   const nlohmann::json scene =
       Back(port, token, &page, [](const nlohmann::json& s) { return !s.contains("results"); });

@@ -20,10 +20,10 @@ class Transport {
   virtual long Read(char* bytes, std::size_t n) = 0;
 };
 
-// A TCP connection to a port of the loopback address. Every read fails after ten seconds.
+// A TCP connection to a port of the loopback address. Each read fails after ten seconds.
 class Socket {
  public:
-  // source: the local address of the connection; nullptr: any address.
+  // source: the local address of the connection, or nullptr for any address.
   explicit Socket(std::uint16_t port, int receive_buffer = 0, const char* source = nullptr);
   ~Socket();
   Socket(Socket&& other) noexcept;
@@ -31,7 +31,7 @@ class Socket {
 
   bool Send(const std::string& bytes);    // false if the connection is lost
   std::string Receive(std::size_t most);  // "" at the end of the connection or after ten seconds
-  std::string ReceiveAll();               // until the end
+  std::string ReceiveAll();               // reads to the end of the connection
   bool Ended();                           // waits for the end
   int descriptor() const { return descriptor_; }
   void Secure(std::shared_ptr<Transport> transport) { transport_ = std::move(transport); }
@@ -45,7 +45,7 @@ struct Answer {
   int status = 0;
   std::string head, body;
 };
-// Sends one request on a separate connection; `head` contains additional header lines, each ending
+// Sends one request on a separate connection. `head` contains additional header lines, each ending
 // in \r\n.
 Answer Get(std::uint16_t port, const std::string& target, const std::string& head = "",
            const std::string& method = "GET", const std::string& host = "");
@@ -60,7 +60,7 @@ struct Message {
 // A WebSocket. The client answers pings while it reads messages.
 class WebSocket {
  public:
-  // head: additional header lines. After a refusal, status() is not 101.
+  // head: additional header lines. If the server refuses the connection, status() is not 101.
   WebSocket(std::uint16_t port, const std::string& target = "/ws",
             const std::string& subprotocol = "predictor.v1", const std::string& head = "",
             int receive_buffer = 0);
@@ -72,13 +72,14 @@ class WebSocket {
   bool SendText(const std::string& text) { return SendFrame(1, text); }
   bool SendFrame(int opcode, const std::string& payload, bool final = true);
   bool SendRaw(const std::string& bytes) { return socket_.Send(bytes); }
-  // The next message other than a ping; nullopt at the end.
+  // Returns the next message other than a ping, or nullopt at the end.
   std::optional<Message> Next();
-  // The next text message whose "type" is `type` (as text). Skips all other messages.
+  // Returns the next text message whose "type" is `type`. Skips all other messages.
   std::optional<std::string> NextText(const std::string& type);
-  // The code of the close frame at the end; 0 if the connection ends without one.
+  // Returns the code of the close frame at the end, or 0 if the connection ends without one.
   int CloseCode();
-  // Sends a hello with `code` and waits for the welcome; "" if there is no welcome.
+  // Sends a hello with `code` and waits for the welcome. Returns the welcome, or "" if there is
+  // none.
   std::string Hello(const std::string& code);
   Socket& socket() { return socket_; }
 

@@ -1,5 +1,5 @@
-// The supplied layout shows only data that the server publishes, so no panel requests data that
-// does not exist.
+// The supplied layout may show only data that the server publishes, so that no panel requests data
+// that does not exist.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -29,7 +29,8 @@ std::map<std::string, Json> Schemas() {
   return schemas;
 }
 
-// JSON type of a message path such as /run.harder.cause; empty if the path does not exist.
+// Returns the JSON type of a message path such as /run.harder.cause, or an empty text if the path
+// does not exist.
 std::string TypeAt(const std::map<std::string, Json>& schemas, const std::string& path) {
   std::istringstream parts(path);
   std::string part;
@@ -46,7 +47,7 @@ std::string TypeAt(const std::map<std::string, Json>& schemas, const std::string
 
 bool IsNumber(const std::string& type) { return type == "number" || type == "integer"; }
 
-// The panels that occur in the layout's tree.
+// Returns the panels that occur in the layout's tree.
 std::set<std::string> Placed(const Json& node) {
   if (node.is_string()) return {node.get<std::string>()};
   std::set<std::string> all = Placed(node["first"]);
@@ -113,7 +114,7 @@ TEST(FoxgloveLayout, EveryPanelIsPlacedOnce) {
   EXPECT_EQ(Placed(layout["layout"]), configured);
 }
 
-// The 3D view uses a frame that /tf and /scene contain.
+// The 3D view must use a frame that /tf and /scene contain.
 TEST(FoxgloveLayout, TheViewsFrameExists) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");

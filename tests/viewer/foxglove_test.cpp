@@ -25,7 +25,7 @@ TEST(Foxglove, NeedsATokenAndOneOfItsSubprotocols) {
   EXPECT_EQ(WebSocket(server.port(), "/", "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), Path("wrong"), "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), "/?x=" + token, "foxglove.sdk.v1").status(), 401);
-  // A page's token must not be part of an address.
+  // A page's token must not be a part of an address.
   for (const Role role : {Role::kLook, Role::kOperator, Role::kControl})
     EXPECT_EQ(WebSocket(server.port(), Path(server.Token(role)), "foxglove.sdk.v1").status(), 401);
   EXPECT_EQ(WebSocket(server.port(), Path(token), "predictor.v1").status(), 400);
@@ -169,7 +169,7 @@ TEST(Foxglove, HearsThatTheRunHasEnded) {
   EXPECT_EQ(client.CloseCode(), 1001);
 }
 
-// Every message conforms to its own schema, as far as types and names are concerned.
+// Checks that a message conforms to its own schema, as far as types and names are concerned.
 void ExpectFits(const Json& schema, const Json& value, const std::string& path) {
   if (schema.contains("oneOf")) {
     const auto& choices = schema["oneOf"];
@@ -220,7 +220,8 @@ TEST(Foxglove, MessagesFitTheirSchemas) {
   }
 }
 
-// The cobot's figure and its links agree with the recorded end-effector pose, for any base.
+// The cobot's figure and its links must agree with the recorded pose of the end-effector, for any
+// base.
 TEST(Foxglove, ShowsTheCobotWhereItIs) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml",
@@ -258,7 +259,7 @@ TEST(Foxglove, ShowsTheCobotWhereItIs) {
   EXPECT_EQ(found, 2);
 }
 
-// The colours are green, orange and red, as in the page, relative to the current threshold.
+// The colours must be green, orange and red as in the page, relative to the current threshold.
 TEST(Foxglove, ArrowsWarn) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
@@ -283,7 +284,7 @@ TEST(Foxglove, ArrowsWarn) {
   EXPECT_NEAR(red(14, 15), 0.85, 1e-9);
   const Json a = arrow(20, 30);
   EXPECT_NEAR(a["shaft_length"].get<double>() + a["head_length"].get<double>(), 0.2, 1e-9);
-  // Along +z: the rotation maps x to z.
+  // The arrow points along +z, so the rotation maps x to z.
   const Json q = a["pose"]["orientation"];
   EXPECT_NEAR(q["y"].get<double>(), -std::sqrt(0.5), 1e-9);
 }

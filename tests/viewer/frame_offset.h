@@ -1,4 +1,4 @@
-// The position of a quantity in a state message, by the name that the page uses.
+// Finds the position of a quantity in a state message by the name that the page uses.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,8 @@
 
 namespace predictor::viewer {
 
-// Bytes from the start of the message. Throws std::out_of_range for an unknown name.
+// Returns the number of bytes from the start of the message. Throws std::out_of_range for an
+// unknown name.
 inline std::size_t FrameOffset(const std::string& name) {
   for (const FrameField& field : FrameFields())
     if (field.name == name) return field.offset;

@@ -28,7 +28,7 @@ const std::map<std::string, std::pair<std::size_t, double (*)(const std::string&
         {"f32", {4, Read<float>}},         {"f64", {8, Read<double>}},
 };
 
-// Decodes like the page, with the table alone.
+// Decodes the bytes with nothing but the table, as the page does.
 std::map<std::string, std::vector<double>> Decode(const std::string& bytes) {
   std::map<std::string, std::vector<double>> values;
   for (const FrameField& field : FrameFields()) {
@@ -50,8 +50,8 @@ TEST(Frame, HasNoGapAndNoOverlap) {
   EXPECT_EQ(next, FrameBytes());
 }
 
-// States and causes are sent as numbers, and fields have types. The page's generated source must
-// agree with the program.
+// The program sends states and causes as numbers, and fields have types. The page's generated
+// source must agree with the program.
 TEST(Frame, ThePagesTypesAreThoseOfTheTable) {
   std::ifstream file(PREDICTOR_SOURCE_DIR "/web/src/quantities.ts");
   const std::string source{std::istreambuf_iterator<char>(file), {}};
@@ -66,7 +66,7 @@ TEST(Frame, ThePagesTypeOfAPersonIsThatOfTheTable) {
       << "Write it again: build/release/bin/page_quantities person > web/src/person_state.ts";
 }
 
-// The fields have the names and sizes in docs/reference/viewer-protocol.md.
+// The fields must have the names and sizes given in docs/reference/viewer-protocol.md.
 TEST(Frame, HasTheFieldsOfTheProtocol) {
   const std::vector<std::tuple<std::string, std::string, std::uint32_t>> run = {
       {"tick", "u64", 1},
@@ -112,7 +112,7 @@ TEST(Frame, HasTheFieldsOfTheProtocol) {
   EXPECT_EQ(fields, expected);
 }
 
-// A record in which the fields of the frame differ from their defaults.
+// Returns a record in which the fields of the frame differ from their defaults.
 TickRecord FilledRecord() {
   TickRecord r = {};
   r.tick = (1ULL << 40) + 3;

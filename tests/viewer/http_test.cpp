@@ -1,4 +1,4 @@
-// The server over plain HTTP.
+// Tests the server over plain HTTP.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -123,7 +123,7 @@ TEST(Http, AnswersToItsOwnNamesOnly) {
     EXPECT_EQ(Get(server.port(), "/", "", "GET", host).status, 421) << host;
 }
 
-// RFC 9112, section 3.2.
+// The rules are those of RFC 9112, section 3.2.
 TEST(Http, RefusesAHostThatIsNotOne) {
   TestServer server;
   const std::string port = std::to_string(server.port());
@@ -195,7 +195,7 @@ TEST(Http, AHeadThatDoesNotEndIsCutOff) {
     sockets.emplace_back(server.port());
     sockets.back().Send("GET / HTTP/1.1\r\nX-");
   }
-  // An occasional byte does not extend the time limit: the connection ends even while bytes arrive.
+  // An occasional byte must not extend the time limit. The connection ends even while bytes arrive.
   int cut_off = 0;
   for (int k = 0; k < 200 && cut_off < 20; ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -206,7 +206,7 @@ TEST(Http, AHeadThatDoesNotEndIsCutOff) {
   EXPECT_EQ(Get(server.port(), "/").status, 200);
 }
 
-// More slow clients than the server has room for: it still serves the newest request.
+// There are more slow clients than the server has room for. It must still serve the newest request.
 TEST(Http, SlowClientsDoNotKeepOthersOut) {
   TestServer server;  // patient, so that none of the clients times out
   std::vector<Socket> sockets;
@@ -219,7 +219,8 @@ TEST(Http, SlowClientsDoNotKeepOthersOut) {
   EXPECT_TRUE(sockets.front().Ended());
 }
 
-// If one address opens too many connections, the server closes only connections of this address.
+// If one address opens too many connections, the server must close only connections of this
+// address.
 TEST(Http, OneAddressDoesNotKeepOthersOut) {
   TestServer::Setup setup;
   setup.server.max_guests_per_address = 4;

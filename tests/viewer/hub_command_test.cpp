@@ -1,4 +1,5 @@
-// What pages may ask of a run: stops, commands, parameters, scenarios and movements of the hands.
+// Tests the requests that pages may send to a run: stops, commands, parameters, scenarios and
+// movements of the hands.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -17,8 +18,8 @@ TEST_F(HubTest, EveryClientMayStop) {
   EXPECT_EQ(mailbox_.stops.load(), 1u);
 }
 
-// A stop has priority over the message limit, over a full mailbox, and even over a disconnection
-// for flooding.
+// A stop request has priority over the message limit, over a full mailbox, and even over a
+// disconnection for flooding.
 TEST_F(HubTest, NoLimitHoldsBackAStop) {
   auto page = Admit();
   while (mailbox_.inputs.Push({})) {

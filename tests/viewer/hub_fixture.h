@@ -1,5 +1,5 @@
-// A hub with its admission and mailbox, fake connections instead of a network, and a clock that the
-// test sets.
+// A hub with its admission and mailbox, fake connections that replace the network, and a clock that
+// the test sets.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ struct FakeConnection : Connection {
   void Admitted() override { admitted = true; }
   std::string peer() const override { return address; }
 
-  // The last message of this type; null if there was none.
+  // Returns the last message of this type, or null if there was none.
   Json Last(const std::string& type) const {
     Json last;
     for (const Json& text : texts)

@@ -1,4 +1,4 @@
-// What the hub reports about headsets to the run and to the other pages.
+// Tests what the hub reports about headsets to the run and to the other pages.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -19,7 +19,7 @@ TEST_F(HubTest, ReportsHeadsetsAndTheirSilenceToTheRun) {
   now_ += kSecond / 10;
   two->Say(sees_now());
   EXPECT_EQ(mailbox_.immersive.load(), 2u);
-  // The frame of the page that has been silent longest.
+  // The reported frame is that of the page that has been silent longest.
   EXPECT_EQ(mailbox_.immersive_frame_ns.load(), first);
   one->Say(sees_now());
   EXPECT_EQ(mailbox_.immersive_frame_ns.load(), first + kSecond / 10);
@@ -35,7 +35,7 @@ TEST_F(HubTest, ReportsHeadsetsAndTheirSilenceToTheRun) {
   EXPECT_EQ(mailbox_.immersive.load(), 0u);
 }
 
-// A page may keep sending messages although its picture is frozen.
+// A page may continue to send messages although its picture is frozen.
 TEST_F(HubTest, AHeadsetIsAsOldAsThePictureThatItShows) {
   auto page = Admit();
   page->Say({{"type", "immersive"}, {"active", true}});  // nothing drawn so far
@@ -56,7 +56,7 @@ TEST_F(HubTest, AHeadsetIsAsOldAsThePictureThatItShows) {
 }
 
 // When the session ends, the wearer sees as little as after a lost connection. If nothing moves,
-// this does not matter to the run.
+// the run may ignore this.
 TEST_F(HubTest, WithRealArmsTheEndOfASessionIsSilence) {
   HubSetup setup = TestSetup();
   setup.rules = RulesOfRealArms();

@@ -1,4 +1,4 @@
-// Leases: which page may command the run or move its hands, and until when.
+// Tests leases, which determine which page may command the run or move its hands, and until when.
 #include <gtest/gtest.h>
 
 #include "viewer/hub_fixture.h"
@@ -42,7 +42,7 @@ TEST_F(HubTest, ALeaseEndsThreeSecondsAfterTheLastHeartbeat) {
 }
 
 // A message arrives after a lease has ended and before the next tick. Whatever the message is, all
-// pages are notified that the lease is free, and any of them may take it.
+// pages must be notified that the lease is free, and any of them may take it.
 TEST_F(HubTest, AnEndedLeaseIsReportedWhicheverClientSpeaksFirst) {
   const Json heartbeat = {{"type", "heartbeat"}};
   const Json other_lease = {{"type", "lease"}, {"what", "operator"}, {"take", true}};
@@ -63,7 +63,7 @@ TEST_F(HubTest, AnEndedLeaseIsReportedWhicheverClientSpeaksFirst) {
   }
 }
 
-// An ended lease commands nothing, even between two ticks of the server.
+// A page whose lease has ended must not command anything, even between two ticks of the server.
 TEST_F(HubTest, AnEndedLeaseCommandsNothingEvenBeforeTheTick) {
   auto page = Controller();
   now_ += 3 * kSecond;
@@ -91,7 +91,7 @@ TEST_F(HubTest, TheConsoleMayFreeALease) {
   EXPECT_TRUE(Inputs().empty());
 }
 
-// If a connection drops silently, the server may detect it much later than the page does.
+// If a connection drops silently, the server may notice it much later than the page does.
 TEST_F(HubTest, AClientThatReconnectsBeforeTheServerNoticesKeepsItsLease) {
   auto page = Controller();
   const Json token = page->connection.Last("welcome")["token"];
@@ -107,7 +107,7 @@ TEST_F(HubTest, AClientThatReconnectsBeforeTheServerNoticesKeepsItsLease) {
   EXPECT_EQ(again->connection.Last("leases")["control"], again->id());
 }
 
-// A second page of the same person does not take a lease that the first page still uses.
+// A second page of the same person must not take a lease that the first page still uses.
 TEST_F(HubTest, AnotherPageOfTheSameTokenTakesNothingFromOneThatTalks) {
   auto page = Controller();
   const Json token = page->connection.Last("welcome")["token"];

@@ -1,4 +1,4 @@
-// Whom the hub admits and expels, and what it sends to every page.
+// Tests which clients the hub admits and expels, and what it sends to every page.
 #include "viewer/hub.h"
 
 #include <gtest/gtest.h>
@@ -113,7 +113,7 @@ TEST_F(HubTest, TheConsoleThrowsAClientOutForGood) {
   EXPECT_TRUE(with_new_code->connection.admitted);
 }
 
-// A client with the code may have obtained more tokens than the one in use.
+// A client with the code may have obtained more tokens than the one that it uses.
 TEST_F(HubTest, ARemovedClientHasNoOtherValidToken) {
   auto page = Controller();
   const std::string mine = page->connection.Last("welcome")["token"];
@@ -152,7 +152,7 @@ TEST_F(HubTest, TheConsoleThrowsEverybodyOut) {
   EXPECT_FALSE(back->connection.admitted);
 }
 
-// A machine on the network that guesses PINs does not keep other machines out.
+// A machine on the network that guesses PINs must not keep other machines out.
 TEST_F(HubTest, WrongPinsCountForTheirAddressAlone) {
   const std::string pin = admission_.IssuePin(Role::kOperator, now_);
   for (int i = 0; i < 20; ++i) {

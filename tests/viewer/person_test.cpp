@@ -1,4 +1,4 @@
-// The person's states on their way to the pages.
+// Tests the person's states on their way to the pages.
 #include <gtest/gtest.h>
 
 #include "viewer/test_server.h"

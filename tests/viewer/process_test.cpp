@@ -1,4 +1,4 @@
-// The viewer as a process: its rights, and the consequences of its death.
+// Tests the viewer's process: its rights, and what happens when it dies.
 #include "support/process.h"
 
 #include <fcntl.h>
@@ -28,7 +28,7 @@ using testing_client::WebSocket;
 using test::Becomes;
 using test::StatusOf;
 
-// True if a process listens on all addresses of this machine, according to the kernel.
+// Returns whether a process listens on all addresses of this machine, according to the kernel.
 bool ListensEverywhere(std::uint16_t port) {
   char wanted[40];
   std::snprintf(wanted, sizeof wanted, " 00000000:%04X 00000000:0000 0A ", port);
@@ -68,7 +68,7 @@ class ProcessTest : public testing::Test {
   bool Reports(const std::string& text) {
     return Becomes([&] { return reported().find(text) != std::string::npos; });
   }
-  // True if the token admits a page.
+  // Returns whether the token admits a page.
   bool Admits(const std::string& token) const {
     WebSocket back(viewer_->port());
     back.SendText("{\"type\":\"hello\",\"token\":\"" + token + "\"}");
@@ -121,8 +121,8 @@ TEST_F(ProcessTest, HasNoRights) {
     EXPECT_EQ(std::stoul(StatusOf(pid, "Uid")), geteuid());
   }
   EXPECT_EQ(StatusOf(pid, "Threads"), "1");
-  // Tests in tests/process check from inside which calls the sandbox refuses. This test checks that
-  // the sandbox is active. (The sanitizers do not work inside the sandbox.)
+  // The tests in tests/process check from inside which calls the sandbox refuses. This test checks
+  // that the sandbox is active. The sanitizers do not work inside the sandbox.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   if (StatusOf(getpid(), "Seccomp").empty()) GTEST_SKIP() << "This kernel has no seccomp.";
   EXPECT_EQ(StatusOf(pid, "Seccomp"), "2");
@@ -132,7 +132,7 @@ TEST_F(ProcessTest, HasNoRights) {
 #endif
 }
 
-// The viewer cannot misuse the shared memory that it holds against the run.
+// The viewer must not be able to use its shared memory against the run.
 TEST_F(ProcessTest, SharedMemoryIsSealed) {
   const int records = board_.descriptor(), inputs = mailbox_.descriptor();
   EXPECT_EQ(mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, records, 0), MAP_FAILED);
@@ -157,7 +157,7 @@ TEST_F(ProcessTest, ItsDeathIsReportedAndItRestartsOnTheSamePort) {
   EXPECT_TRUE(Reports("The viewer has ended (signal 9); the run continues."));
   ASSERT_TRUE(Becomes([&] { return viewer_->pid() != 0 && viewer_->pid() != pid; }));
   EXPECT_EQ(viewer_->port(), port);
-  EXPECT_EQ(Code(), code);  // with simulated arms
+  EXPECT_EQ(Code(), code);  // the code stays the same with simulated arms
   EXPECT_EQ(Get(port, "/").status, 200);
   WebSocket back(port);
   back.SendText("{\"type\":\"hello\",\"token\":\"" + token + "\"}");
@@ -193,7 +193,7 @@ TEST_F(ProcessTest, AnswersTheConsole) {
   EXPECT_TRUE(Reports("Foxglove: ws://localhost:" + std::to_string(viewer_->port()) + "/?token="));
 }
 
-// The disconnection is permanent: the next process knows it too.
+// The disconnection is permanent, and the next process must know it as well.
 TEST_F(ProcessTest, ThrowsAClientOut) {
   Start();
   WebSocket page(viewer_->port());
@@ -216,7 +216,7 @@ TEST_F(ProcessTest, ThrowsAClientOut) {
   EXPECT_FALSE(Admits(token));
 }
 
-// The request comes while there is no process, or while the process cannot answer any more.
+// The request comes while there is no process, or while the process can no longer answer.
 TEST_F(ProcessTest, ThrowsAClientOutWhileItStartsAgain) {
   Start();
   WebSocket page(viewer_->port());
@@ -242,12 +242,12 @@ TEST_F(ProcessTest, ThrowsAClientOutAfterItsDeath) {
   ASSERT_TRUE(Becomes([&] { return viewer_->pid() != 0 && viewer_->pid() != pid; }));
   EXPECT_FALSE(Admits(token));
   EXPECT_TRUE(Reports("Client 1 is disconnected"));
-  // The new process uses other client numbers than the first one.
+  // The new process must use other client numbers than the first one.
   WebSocket other(viewer_->port());
   EXPECT_GT(nlohmann::json::parse(other.Hello(Code()))["client"].get<std::uint32_t>(), 1u);
 }
 
-// The second request, at the latest, ends a viewer that hangs.
+// The second request, at the latest, must end a viewer that hangs.
 TEST_F(ProcessTest, AViewerThatDoesNotAnswerIsReplaced) {
   Start();
   WebSocket page(viewer_->port());
@@ -295,7 +295,7 @@ TEST_F(ProcessTest, ToOtherMachinesItSpeaksTlsAndShowsItsFingerprint) {
   viewer_.reset();
   options_.expose = true;  // needs no address
   Start();
-  // Clients that already trust it need not confirm it again.
+  // Clients that already trust the certificate need not confirm it again.
   EXPECT_EQ(viewer_->fingerprint(), for_itself);
   EXPECT_TRUE(ListensEverywhere(viewer_->port()));
   EXPECT_TRUE(viewer_->url().starts_with("https://")) << viewer_->url();

@@ -113,7 +113,7 @@ TEST(Protocol, ReadsTimesAsNumbersAndAsDigits) {
   EXPECT_EQ(drawn("0"), 0u);
 }
 
-// Any input results in no request or in a request within bounds.
+// Any input must result in no request or in a request within bounds.
 TEST(Protocol, SoakSurvivesAnyBytes) {
   std::mt19937 random(1);
   const std::string seeds[] = {

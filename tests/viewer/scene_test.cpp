@@ -50,7 +50,7 @@ TEST(Scene, HasTheMembersOfTheProtocol) {
   EXPECT_EQ(scene["parameters"].size(), 5u);
   EXPECT_EQ(scene["script"][1]["text"], "Lift the object by 10 cm.");
   EXPECT_EQ(scene["script"][1]["action"], "move");
-  // The object and three copies of the same robot.
+  // The scene has the object and three copies of the same robot.
   EXPECT_EQ(scene["arms"]["left"]["urdf"], scene["cobot"]["urdf"]);
   EXPECT_NE(scene["object"]["urdf"], scene["cobot"]["urdf"]);
 }
@@ -66,7 +66,7 @@ TEST(Scene, ContainsTheOperatorsPlace) {
   EXPECT_DOUBLE_EQ(known["eye"][2].get<double>(), -0.8 + 0.936 * 2);
   EXPECT_DOUBLE_EQ(known["forward"][0].get<double>(), -1);
 
-  // The left handle is at −y of the right one, so the operator looks along −x.
+  // The left handle is on the −y side of the right one, so the operator looks along −x.
   scenario.operator_.stance.reset();
   const auto guess = DescribeScene(scenario, {0.5, 0.1, 0.3}, &assets)["viewpoint"];
   EXPECT_EQ(guess["guess"], true);
@@ -75,7 +75,7 @@ TEST(Scene, ContainsTheOperatorsPlace) {
   EXPECT_DOUBLE_EQ(guess["eye"][0].get<double>(), 0.5 + 0.62);
 }
 
-// A page draws everything in W, so it receives the arms' bases there.
+// A page draws everything in W, so it must receive the arms' bases in W.
 TEST(Scene, HasTheBasesInTheWorldWhereverItIs) {
   Scenario scenario = Load("box_9kg.yaml");
   scenario.environment.shift = PoseSpec{{1, 2, 0.5}, {0, 0, 0.5 * std::numbers::pi}};
@@ -91,8 +91,8 @@ TEST(Scene, HasTheBasesInTheWorldWhereverItIs) {
   EXPECT_EQ(scene["cobot"]["base"]["p"].dump(), "[0.0,0.0,0.0]");
 }
 
-// The guidance centre is sent in W, although the scenario specifies it relative to the object's
-// start.
+// The guidance centre must be sent in W, although the scenario specifies it relative to the
+// object's start.
 TEST(Scene, GivesGuidanceInTheWorld) {
   AssetStore assets;
   const auto scene = DescribeScene(Load("bar_circle.yaml"), {0.5, 0.1, 0.3}, &assets);
@@ -159,10 +159,10 @@ TEST(Assets, AModelIsServedWithItsMeshesAndNoPathOfThisMachine) {
   EXPECT_TRUE(mesh->needs_token);
   EXPECT_NE(mesh->bytes.find("COLLADA"), std::string::npos);
   EXPECT_NE(served->bytes.find("filename=\"0.dae\""), std::string::npos);
-  // The served model still describes the same robot.
+  // The served model must still describe the same robot.
   const UrdfModel again = ParseUrdf(
       [&] {
-        // The parser checks that meshes exist, so any existing mesh will do.
+        // The parser checks that meshes exist. Any existing mesh will do.
         std::string text = served->bytes;
         const std::string any = urdf.links[0].visuals.at(0).mesh.string();
         for (int i = 0; i < 64; ++i)

@@ -1,6 +1,6 @@
-// The viewer's cost to the run. The test measures every tick of `predictor run` at its full rate
-// through the shared memory: first alone, then with the maximum number of clients and with further
-// connections that are not permitted.
+// Measures the viewer's cost to the run. The test measures each tick of `predictor run` at its full
+// rate through the shared memory, first alone, and then with the maximum number of clients and with
+// further connections that are not permitted.
 #include "support/soak.h"
 
 #include <fcntl.h>
@@ -40,13 +40,13 @@ using testing_client::Socket;
 using testing_client::WebSocket;
 using Clock = std::chrono::steady_clock;
 
-// PREDICTOR_SOAK_SECONDS shortens the windows of each soak for a trial.
+// PREDICTOR_SOAK_SECONDS shortens the windows of each soak test for a trial.
 std::chrono::seconds Window(long sample, long full) {
   const char* text = std::getenv("PREDICTOR_SOAK_SECONDS");
   return std::chrono::seconds(text ? std::atol(text) : Count(sample, full));
 }
 
-// `predictor run` at a separate terminal, so that it runs until it is ended.
+// Runs `predictor run` at a separate terminal, so that it runs until it is ended.
 class Program {
  public:
   explicit Program(const std::string& duration) {
@@ -70,7 +70,7 @@ class Program {
 
   std::uint16_t port() const { return port_; }
   const std::string& code() const { return code_; }
-  // The records, as other processes of the run read them; null if there are none.
+  // Returns the records as other processes of the run read them, or null if there are none.
   std::unique_ptr<Shared<RunBoard>> Board() const {
     for (const auto& entry :
          std::filesystem::directory_iterator("/proc/" + std::to_string(pid_) + "/fd")) {
@@ -101,7 +101,7 @@ class Program {
       text_.append(text, static_cast<std::size_t>(n));
     }
   }
-  // The rest of the line after `what`, once it appears; empty after a minute.
+  // Returns the rest of the line after `what` once it appears, or an empty text after a minute.
   std::string After(const std::string& what) {
     for (int i = 0; i < 6000; ++i, std::this_thread::sleep_for(milliseconds(10))) {
       const std::lock_guard lock(mutex_);
@@ -147,7 +147,7 @@ Ticks Measure(const RunBoard& board, std::chrono::seconds window) {
   return ticks;
 }
 
-// A page that reads all messages, in a separate thread.
+// A page that reads all messages in a separate thread.
 class Viewer {
  public:
   Viewer(std::uint16_t port, const std::string& code)
@@ -214,7 +214,7 @@ class Attackers {
     page.SendText(R"({"type":"hello","code":"guess"})");
     admitted_ += page.NextText("welcome").has_value();
   }
-  // Sends a message with a huge announced size, and a header that is huge.
+  // Sends a message that announces a huge size, and a huge header.
   void Boast() {
     WebSocket(port_).SendRaw(std::string("\x81\xff\x00\x00\x00\xff\xff\xff\xff\xff", 10));
     Socket(port_).Send("GET / HTTP/1.1\r\nX: " + std::string(65536, 'x'));
@@ -235,7 +235,7 @@ double Quantile(std::vector<double> values, double p) {
 }
 
 // Compares loaded and idle windows of the same run. Returns the larger of two ratios, that of the
-// medians and that of the 95th percentiles. The result must be at most kLoadCosts.
+// medians and that of the 95th percentiles. It must be at most kLoadCosts.
 constexpr double kLoadCosts = 1.3;  // as stated in docs/getting-started/viewer.md
 double Ratio(const char* what, const std::vector<double>& idle, const std::vector<double>& loaded) {
   double most = 0;
@@ -250,21 +250,22 @@ double Ratio(const char* what, const std::vector<double>& idle, const std::vecto
 
 TEST(ViewerLoadRatio, ComparesLikeWithLike) {
   std::vector<double> idle(20, 383);
-  idle.back() = idle[18] = 645;  // a twentieth of the windows, and one more
+  idle.back() = idle[18] = 645;  // one more than a twentieth of the windows
   std::vector<double> loaded = idle;
   for (double& us : loaded) us *= 1.2;
   EXPECT_NEAR(Ratio("", idle, loaded), 1.2, 1e-9);
-  // A median that rises is detected even if it stays below the 95th percentile of the idle windows.
+  // A higher median must be detected even if it stays below the 95th percentile of the idle
+  // windows.
   for (double& us : loaded) us = 600;
   EXPECT_GT(Ratio("", idle, loaded), 1.5);
-  // A risen 95th percentile is detected even if the median is unchanged.
+  // A higher 95th percentile must be detected even if the median is unchanged.
   loaded = idle;
   loaded.back() = loaded[18] = 1500;
   EXPECT_GT(Ratio("", idle, loaded), 2);
 }
 
-// The clients represent other machines, so here they should compete with the run for the processors
-// as little as possible. The program has already started and keeps its priority.
+// The clients represent other machines, so they should compete with the run for the processors as
+// little as possible. The program has already started and keeps its priority.
 void BeNice() { setpriority(PRIO_PROCESS, 0, 15); }
 
 class ViewerLoad : public testing::Test {
@@ -276,7 +277,7 @@ class ViewerLoad : public testing::Test {
     ASSERT_TRUE(Runs());
   }
   const RunBoard& board() const { return **board_; }
-  // Waits for at most a minute until the run has begun.
+  // Waits at most a minute until the run has begun.
   bool Runs() const {
     TickRecord record;
     for (int i = 0; i < 6000; ++i, std::this_thread::sleep_for(milliseconds(10))) {
@@ -308,7 +309,7 @@ TEST_F(ViewerLoad, TheTickDoesNotFeelTheViewersSoak) {
     const Ticks loaded = Measure(board(), window);
     EXPECT_GT(idle.tick_us.count(), 0u);
     EXPECT_GT(loaded.tick_us.count(), 0u);
-    // Otherwise there was no load, or the slowest ticks were not measured.
+    // If there were fewer, there was no load, or the slowest ticks were not measured.
     const long least = InFull() ? window.count() : 1;
     long states = 0;
     for (const auto& viewer : viewers) {
@@ -339,7 +340,8 @@ TEST_F(ViewerLoad, TheTickDoesNotFeelTheViewersSoak) {
   EXPECT_LE(woken, kLoadCosts);
 }
 
-// However many clients connect and disconnect, the run continues and the next page is admitted.
+// However many clients connect and disconnect, the run must continue, and the next page must be
+// admitted.
 TEST_F(ViewerLoad, TenThousandConnectionAttemptsSoak) {
   BeNice();
   const long attempts = Count(500, 10'000);
@@ -401,8 +403,8 @@ Delays Receive(WebSocket* page, std::chrono::seconds window) {
   return delays;
 }
 
-// Growth of the values from first to last, estimated by the median of all slopes (Theil and Sen),
-// so that a single disturbed window has no effect.
+// Returns the growth of the values from first to last, estimated by the median of all slopes (Theil
+// and Sen). A single disturbed window then has no effect.
 double Growth(const std::vector<double>& values) {
   std::vector<double> slopes;
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -411,8 +413,8 @@ double Growth(const std::vector<double>& values) {
   return Quantile(slopes, 0.5) * static_cast<double>(values.size() - 1);
 }
 
-// Mann and Kendall's test for an upward trend, in the normal approximation. Among series without a
-// trend, one in a hundred exceeds kTrend.
+// Computes Mann and Kendall's test for an upward trend in the normal approximation. Among series
+// without a trend, one in a hundred exceeds kTrend.
 constexpr double kTrend = 2.33;
 double Trend(const std::vector<double>& values) {
   double s = 0;

@@ -1,6 +1,6 @@
-// The time that a stop takes from a page to the run's mailbox while the server is as busy as
-// possible: 64 viewers read, and strangers perform handshakes, guess codes and announce huge
-// messages as fast as they may.
+// Measures how long a stop request takes from a page to the run's mailbox while the server is as
+// busy as possible. 64 viewers read, and strangers perform handshakes, guess codes and announce
+// huge messages as fast as they are allowed to.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -60,7 +60,7 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
     std::optional<Socket> socket = Connect("127.0.0.1");
     if (!socket) return nullptr;
     auto page = std::make_unique<WebSocket>(std::move(*socket), server_->port());
-    // A single token does not admit so many pages, nor does a role that may only look.
+    // A single token does not admit so many pages, and neither does a role that may only look.
     const std::string token = server_->Token(Role::kOperator);
     page->SendText("{\"type\":\"hello\",\"token\":\"" + token + "\"}");
     return page->NextText("welcome") ? std::move(page) : nullptr;
@@ -107,7 +107,7 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
       server_->Publish(tick);
   }
 
-  // Returns the delay of the stop [ms].
+  // Returns the delay of the stop request [ms].
   double Stop(WebSocket* page) {
     const std::uint32_t before = server_->mailbox().stops.load();
     const auto start = Clock::now();

@@ -1,4 +1,4 @@
-// `predictor survey` as a process: it stores an answer from inside its sandbox.
+// `predictor survey` must store an answer from inside its sandbox.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// A TLS connection for tests. It trusts any server.
+// A TLS connection for tests, which trusts any server.
 #pragma once
 
 #include <openssl/err.h>

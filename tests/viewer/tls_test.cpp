@@ -37,8 +37,8 @@ class TlsTest : public testing::Test {
     server_ = std::make_unique<TestServer>(setup);
   }
 
-  // Trusts only this certificate and requests `name`. Sends `request`, then `then` after the
-  // beginning of the answer. Returns the answer; "" if the handshake fails.
+  // Trusts only this certificate and requests `name`. Sends `request`, and sends `then` after the
+  // beginning of the answer. Returns the answer, or "" if the handshake fails.
   std::string Ask(const std::string& name, const std::string& request, int newest = 0,
                   std::string then = "") {
     const ContextPtr context(SSL_CTX_new(TLS_client_method()));
@@ -100,14 +100,15 @@ TEST_F(TlsTest, RefusesOldVersions) {
   EXPECT_EQ(Ask("localhost", "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n", TLS1_1_VERSION), "");
 }
 
-// Handshakes are expensive: a client that requests many must wait, but no other client has to.
+// Handshakes are expensive. A client that requests many must wait, but no other client may have to.
 TEST_F(TlsTest, HandshakesOfOneAddressDoNotKeepOthersOut) {
   TestServer::Setup setup;
   setup.app.tls = true;
   setup.server.certificate_pem = certificate_.certificate_pem;
   setup.server.key_pem = certificate_.key_pem;
   setup.server.head_time = std::chrono::milliseconds(500);
-  setup.server.handshake_rate_per_address = 1e-6;  // a single one within the duration of the test
+  // permits only one within the duration of the test
+  setup.server.handshake_rate_per_address = 1e-6;
   const TestServer server(setup);
   using testing_client::ConnectTls;
   EXPECT_TRUE(ConnectTls(server.port(), "127.0.0.2"));
@@ -118,7 +119,7 @@ TEST_F(TlsTest, HandshakesOfOneAddressDoNotKeepOthersOut) {
 TEST_F(TlsTest, WhoDoesNotShakeHandsIsCutOff) {
   testing_client::Socket silent(server_->port());
   EXPECT_TRUE(silent.Ended());
-  EXPECT_EQ(testing_client::Get(server_->port(), "/").status, 0);  // not without encryption
+  EXPECT_EQ(testing_client::Get(server_->port(), "/").status, 0);  // refused without encryption
   EXPECT_NE(Ask("localhost", "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"), "");
 }
 

@@ -1,4 +1,4 @@
-// The server over WebSockets, with pages and with other clients.
+// Tests the server over WebSockets, with pages and with other clients.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -26,7 +26,7 @@ std::uint64_t TickOf(const std::string& frame) {
   return tick;
 }
 
-// Publishes records, one a millisecond, until destroyed.
+// Publishes one record per millisecond until it is destroyed.
 class FakeRun {
  public:
   explicit FakeRun(TestServer* server)
@@ -48,7 +48,7 @@ class FakeRun {
   std::thread thread_;
 };
 
-// Waits for `condition`, for at most ten seconds.
+// Waits at most ten seconds for `condition`.
 template <class Condition>
 bool Becomes(Condition condition) {
   for (int i = 0; i < 1000; ++i) {
@@ -226,7 +226,7 @@ TEST(WebSocketServer, AMessageMustEndWithinASecond) {
     page.SendFrame(0, " ", false);
   }
   EXPECT_EQ(page.CloseCode(), 1008);
-  // The limit also applies if no frame is ever complete.
+  // The limit must also apply if no frame is ever complete.
   WebSocket slow(server.port());
   slow.Hello(server.code());
   slow.SendRaw(std::string("\x81\x90\x01\x02\x03\x04{", 7));
@@ -297,9 +297,9 @@ TEST(WebSocketServer, AFloodOfPingsIsCutOff) {
 
 // ---- slow readers -------------------------------------------------------------------------------
 
-// A client that does not read delays no other client. When it reads again, it receives the data
-// that was already under way, which is less than half a second of states, and then the newest
-// state.
+// A client that does not read must not delay any other client. When it reads again, it receives the
+// data that was already under way, which is less than half a second of states. After that it
+// receives the newest state.
 TEST(WebSocketServer, AClientThatDoesNotReadFindsTheNewestStateLater) {
   TestServer server;
   WebSocket sleeper(server.port()), other(server.port());
@@ -338,7 +338,7 @@ TEST(WebSocketServer, AClientThatNeverReadsIsCutOffInTheEnd) {
   EXPECT_TRUE(Becomes([&] { return server.Clients() == 0; }));
 }
 
-// A client sends but does not read: the number of waiting answers is bounded.
+// A client sends but does not read. The number of waiting answers must be bounded.
 TEST(WebSocketServer, AClientThatSpeaksAndNeverReadsIsCutOff) {
   TestServer::Setup setup;
   setup.server.max_waiting_text = 2000;

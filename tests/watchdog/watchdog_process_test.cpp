@@ -1,4 +1,4 @@
-// The watchdog as a process: its reaction to the end of the run, and to its own faults.
+// Tests the watchdog's process: its reaction to the end of the run, and to its own faults.
 #include "watchdog/watchdog_process.h"
 
 #include <arpa/inet.h>
@@ -23,11 +23,11 @@ namespace {
 
 using test::Becomes;
 
-// A UR's program port: sends something ten times a second, as controllers do, and stores the data
-// that it receives.
+// A UR's port for programs. It sends something ten times a second, as controllers do, and stores
+// the data that it receives.
 class ProgramPort {
  public:
-  // Uses an address that no other test uses.
+  // The port has an address that no other test uses.
   ProgramPort()
       : host_("127.77." + std::to_string(getpid() / 250 % 250) + "." +
               std::to_string(1 + getpid() % 250)) {
@@ -142,7 +142,7 @@ TEST_F(WatchdogProcessTest, BeatsAndStopsNothingWhereTheRunEndsAtRest) {
   EXPECT_EQ(port_.heard(), "");
 }
 
-// The loop continues to tick, so that the watchdog does not detect a hang.
+// The loop continues to tick, so the watchdog must not detect a hang.
 TEST_F(WatchdogProcessTest, StopsTheArmsWhereTheRunEndsInMotion) {
   EXPECT_TRUE(Beats());
   Enter(RunState::kRun);
@@ -150,8 +150,8 @@ TEST_F(WatchdogProcessTest, StopsTheArmsWhereTheRunEndsInMotion) {
   EXPECT_TRUE(Becomes([&] { return port_.heard().find("stopj") != std::string::npos; }));
 }
 
-// A program is killed during a motion. The end of its channel closes, but its watchdog continues to
-// run and stops the arms.
+// The program is killed during a motion. Its end of the channel closes, but its watchdog continues
+// to run and must stop the arms.
 TEST(WatchdogOfAKilledProgram, StopsTheArms) {
   ProgramPort port;
   const pid_t program = fork();

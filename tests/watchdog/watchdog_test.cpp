@@ -9,7 +9,7 @@ constexpr std::uint64_t kMillisecond = 1'000'000;
 
 class WatchdogTest : public testing::Test {
  protected:
-  // One millisecond later; `ticked` states whether the loop has ticked.
+  // Looks one millisecond later. `ticked` states whether the loop has ticked.
   bool Look(bool ticked, RunState state = RunState::kRun) {
     ticks_ += ticked;
     return watchdog_.Look(ticks_, state, now_ += kMillisecond);

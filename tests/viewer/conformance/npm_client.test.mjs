@@ -1,4 +1,4 @@
-// Foxglove's own client connects to the server of a real run (FOXGLOVE_URL; see program.py).
+// Connects Foxglove's own client to the server of a complete run (FOXGLOVE_URL, see program.py).
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
@@ -61,7 +61,7 @@ test("the well-known schemas are Foxglove's", () => {
   }
 });
 
-// Names that occur in a message but not in its schema.
+// Returns the names that occur in a message but not in its schema.
 function strangers(schema, value, path = "") {
   if (Array.isArray(value)) return value.flatMap((item) => strangers(schema.items, item, `${path}[]`));
   if (value === null || typeof value !== "object") return [];
@@ -70,7 +70,7 @@ function strangers(schema, value, path = "") {
   );
 }
 
-// Receives `count` messages of each channel. Returns them by topic: {time, message}.
+// Receives `count` messages of each channel. Returns them by topic, as {time, message}.
 function receive(count) {
   const topics = new Map();
   const ids = new Map(channels.map((channel) => [client.subscribe(channel.id), channel.topic]));

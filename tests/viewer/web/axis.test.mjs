@@ -1,4 +1,4 @@
-// The page draws a cobot whose first joint slides.
+// Tests how the page draws a cobot whose first joint is prismatic.
 import assert from 'node:assert/strict';
 import {after, test} from 'node:test';
 import {launch, near, nearRotation, open, ready, screenshot} from './harness.mjs';

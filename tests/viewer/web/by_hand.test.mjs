@@ -1,5 +1,5 @@
-// A person operates the program: with sliders, in several pages, and with the mouse, which lifts
-// the box.
+// A person operates the program with sliders, in several pages, and with the mouse, which lifts the
+// box.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {handleOnScreen, look, ready, take, until, waitFor} from './harness.mjs';
@@ -19,7 +19,7 @@ const ticks = (count) => rig.ticks(count);
 
 // ---- sliders -------------------------------------------------------------------------------------
 
-// Moves a slider; returns the states from then until the end of its ramp.
+// Moves a slider. Returns the states from then until the end of its ramp.
 async function draw(parameter, index, value) {
   const from = states.length - 1;
   await rig.page.locator(`#parameter-${parameter}`).fill(String(value));
@@ -91,7 +91,7 @@ test('of two pages one has control, and gives it on', async () => {
   const {page, client} = rig;
   const other = await rig.open(rig.program.url);
   await ready(other);
-  // Waits for the displayed text, because two pages on a slow computer draw it late.
+  // The test waits for the displayed text, because two pages on a slow computer draw it late.
   const holds = (p, words) => until(
       p, (w) => document.getElementById('control-holder').textContent === w, words);
   await take(page, 'control');
@@ -102,7 +102,7 @@ test('of two pages one has control, and gives it on', async () => {
   client.send({type: 'lease', what: 'control', take: true});
   await waitFor(() => client.denials.at(-1)?.what === 'lease', 'a denial');
   assert.match(client.denials.at(-1).reason, /holds this lease/);
-  // Both pages show the same run, and it progresses.
+  // Both pages must show the same run, and it must progress.
   for (const p of [page, other]) {
     const tick = await p.evaluate(() => window.predictor.state().tick);
     await until(p, (t) => window.predictor.state().tick > t + 200, tick);
@@ -166,8 +166,8 @@ test('the box is lifted by the mouse, by both handles', async () => {
   await page.keyboard.up('Control');
   await until(page, () => window.predictor.handTargets().right !== null);
   await page.mouse.move(at.x, goal.y, {steps: 10});
-  // A page that stalls for 250 ms releases the handles and grips them again, so on a busy computer
-  // the box is lifted later.
+  // A page that stalls for 250 ms releases the handles and grips them again, so the box is lifted
+  // later on a busy computer.
   const up = (s) => s.object[2] > start + kLift &&
       kSides.every((side) => s[`${side}_gripping`] === 1 && s[`${side}_wrench`][2] > 10);
   await waitFor(() => states.slice(from).some(up), 'the box is up, by both hands');
@@ -177,7 +177,7 @@ test('the box is lifted by the mouse, by both handles', async () => {
         (i) => held[`${side}_real`][i] - held[`${side}_virtual`][i]));
     assert.ok(apart < 0.01, `the real ${side} handle is ${apart} m off`);
   }
-  // The page sends the position of the hand; the rig limits the force.
+  // The page sends the position of the hand, and the rig must limit the force.
   const hardest = Math.max(...states.slice(from).flatMap((s) => kSides.map(
       (side) => Math.hypot(...s[`${side}_wrench`].slice(0, 3)))));
   assert.ok(hardest < kHandsLimit + 2, `${hardest} N`);

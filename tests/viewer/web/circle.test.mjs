@@ -1,4 +1,4 @@
-// The circle to follow, the table, and a page in a light colour scheme.
+// Tests the circle to follow, the table, and a page in a light colour scheme.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {asker, launch, open, ready, screenshot, serve, shotsWanted, until} from './harness.mjs';
@@ -69,8 +69,8 @@ test('after the circle its mean and largest error are shown', async () => {
   await until(page, () => !document.getElementById('score').hidden);
   const text = await page.locator('#score').textContent();
   const [, mean, largest] = text.match(/average (\d+\.\d) mm, at most (\d+\.\d) mm$/).map(Number);
-  // Deviation of 8 mm · sin 3a radially and 2 mm · sin 5a vertically: 5.3 mm on average, never more
-  // than 8.3 mm.
+  // The deviation is 8 mm · sin 3a radially and 2 mm · sin 5a vertically. That is 5.3 mm on average
+  // and never more than 8.3 mm.
   assert.ok(mean > 4 && mean < 6.5, text);
   assert.ok(largest > 7 && largest < 8.4, text);
   await screenshot(page, 'circle-score');

@@ -1,4 +1,4 @@
-// The connection of the page in Chromium: admission, delays, a silent run, and a lost server.
+// Tests the connection of the page in Chromium: admission, delays, a silent run, and a lost server.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {

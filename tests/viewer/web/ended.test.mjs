@@ -1,5 +1,5 @@
-// A run has ended: its page shows the results and offers the next steps. Without a terminal, the
-// program stays as long as a page is connected.
+// After a run has ended, its page must show the results and offer the next steps. Without a
+// terminal, the program must stay as long as a page is connected.
 import assert from 'node:assert/strict';
 import {existsSync, readFileSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -26,8 +26,8 @@ async function begin(set, args = []) {
   return {program, page};
 }
 
-// Ends the run as planned, with the page's button. On a busy computer, a run of short duration
-// might end before a page is open.
+// Ends the run as planned, with the page's button. On a busy computer, a short run might end before
+// a page is open.
 async function end(page) {
   if ((await page.evaluate(() => window.predictor.leases())).control === null) await take(page, 'control');
   await page.click('#end');
@@ -56,13 +56,13 @@ test('a run that ended as planned shows its results, and runs again', async () =
   assert.match(figures[1], /^Largest force\d+\.\d N\d+\.\d N$/);
   assert.equal(await page.locator('.results-curves canvas').count(), 2);
   await screenshot(page, 'ended');
-  // The report equals the file next to the recording.
+  // The report must equal the file next to the recording.
   const download = page.waitForEvent('download');
   await page.click('#save-report');
   const saved = readFileSync(await (await download).path(), 'utf8');
   assert.ok(existsSync(report) && saved === readFileSync(report, 'utf8') && saved.length > 1e5);
   assert.equal(program.code, null, 'a page looks: the program stays');
-  // The same scenario with the same settings starts without a further click.
+  // The same scenario with the same settings must start without a further click.
   await page.click('#run-again');
   await until(page, () => window.predictor.stateText() === 'Running');
   await shows(page, '#results', false);
@@ -95,12 +95,12 @@ test('a page with control ends a run as planned', async () => {
   await end(page);
   await resultsOf(page, 'Finished');
   assert.equal(await tone(page), 'ready');
-  // A different scenario also starts without a further click.
+  // A different scenario must also start without a further click.
   await page.selectOption('#scenario', 'bar_circle');
   await until(page, () => window.predictor?.ready() && /circle/i.test(window.predictor.scene()));
   await until(page, () => window.predictor.stateText() === 'Running');
   await program.end();
-  // The program has ended: the page reports this, keeps its last state, and does not try to
+  // The program has ended. The page must report this, keep its last state, and not try to
   // reconnect.
   await until(page, () => window.predictor.stateText() === 'Ended');
   assert.equal(await text(page, '#banner'), 'The run was ended from the console.');

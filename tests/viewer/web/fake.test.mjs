@@ -23,8 +23,8 @@ after(async () => {
   await program?.end();
 });
 
-// The keys of a value and the type of each member; for a list, the types of all elements. An empty
-// list has no element types, so those of `like` are used.
+// Returns the keys of a value and the type of each member, or the types of all elements of a list.
+// An empty list has no element types, so those of `like` are used.
 function shape(value, like) {
   if (value === null) return 'null';
   if (Array.isArray(value)) {

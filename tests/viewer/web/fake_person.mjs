@@ -1,13 +1,14 @@
-// An invented person for the fake server: a body that reaches both handles, and loads that change.
+// A made-up person for the fake server, with a body that reaches both handles and loads that
+// change.
 const kSides = ['left', 'right'];
-// Lengths of the invented body [m].
+// The lengths of the made-up body [m].
 const kHip = 0.92, kTrunk = 0.53, kShoulder = 0.19, kUpper = 0.3, kFore = 0.34, kFoot = 0.2;
 
 const add = (a, b, s = 1) => a.map((v, i) => v + s * b[i]);
 const length = (a) => Math.hypot(...a);
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-// The elbow between shoulder and hand, below the line between them.
+// Places the elbow between shoulder and hand, below the line between them.
 function elbowOf(shoulder, hand) {
   const d = add(hand, shoulder, -1);
   const reach = Math.min(length(d), kUpper + kFore - 1e-3);
@@ -19,8 +20,8 @@ function elbowOf(shoulder, hand) {
   return add(add(shoulder, axis, along), down, out);
 }
 
-// Points in W [m]. `handles`: where they are; each hand takes the one on its side. The trunk leans forward as far as
-// needed.
+// Returns the points of the body in W [m]. Each hand takes the handle on its side, of which
+// `handles` gives the places. The trunk leans forward as far as needed.
 export function pointsOf({ground, forward, feet}, handles) {
   const left = [-forward[1], forward[0], 0];
   const beside = (p) => p[0] * left[0] + p[1] * left[1];
@@ -67,7 +68,8 @@ function gauges(t, lean, wrenches) {
   };
 }
 
-// The message `person` at the run time t [s]. status: 'judged', or why not.
+// Returns the message `person` at the run time t [s]. status: 'judged', or the reason why nothing
+// is judged.
 export function personMessage(spec, t, tick, hands, wrenches, status = 'judged') {
   const judged = status === 'judged';
   const {points, lean} = pointsOf(spec.viewpoint, hands);

@@ -1,4 +1,4 @@
-// The scenes of the fake server: postures of the robots, and what is carried along which path.
+// The scenes of the fake server: the postures of the robots, the carried objects and their paths.
 import {pose, transform} from './panda.mjs';
 
 export const kPosture = [0, -0.3, 0, -2.0, 0, 1.7, 0.785];

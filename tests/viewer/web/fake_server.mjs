@@ -1,4 +1,4 @@
-// A server that implements docs/reference/viewer-protocol.md and plays an invented run, so that the
+// A server that implements docs/reference/viewer-protocol.md and plays a made-up run, so that the
 // page can be developed and tested without the program. Run as a command, it serves until Ctrl-C.
 import {readFile, readdir} from 'node:fs/promises';
 import {createServer} from 'node:http';
@@ -59,15 +59,16 @@ const now = () => Number(process.hrtime.bigint());
 const bearer = (request) => (request.headers.authorization ?? '').replace('Bearer ', '');
 
 export class FakeServer {
-  // Options: scene 'box' | 'circle', operator, simulated, state, table, light, object: the files of
-  // the object's model {name: text}, which must include model.urdf; ground: where the operator stands in W;
-  // person: why nothing is judged of the person; older: a server that knows no person.
+  // Options: scene 'box' | 'circle', operator, simulated, state, table, light. object: the files of
+  // the object's model {name: text}, which must include model.urdf. ground: where the operator
+  // stands in W. person: why nothing about the person is judged. older: a server that does not know
+  // the person.
   constructor(options = {}) {
     this.options = {scene: 'box', operator: 'virtual', simulated: true, state: 'RUN', ground: [1, 0, 0], ...options};
     this.preset = kScenes[this.options.scene];
     this.received = [];    // every message of every page
     this.hands = {left: null, right: null};
-    this.force = null;     // {left: [6], right: [6]}: replaces the invented wrenches
+    this.force = null;     // {left: [6], right: [6]}: replaces the made-up wrenches
     this.frozen = false;   // stops the run time, for comparisons
     this.sending = true;
     this.deaf = false;     // ignores stops
@@ -94,7 +95,7 @@ export class FakeServer {
     this.renew();
   }
 
-  // Becomes a new process with a different identity and code, which accepts no earlier token.
+  // Becomes a new process with a different identity and code. It accepts no earlier token.
   renew() {
     this.server = randomBytes(8).toString('hex');
     this.code = randomBytes(12).toString('base64url');
@@ -218,8 +219,8 @@ export class FakeServer {
                         (_all, name) => `"${meshes.indexOf(name)}.dae"`);
   }
 
-  // A model of cylinders and spheres for machines that draw slowly: uses the collision bodies as
-  // visuals.
+  // Returns a model of cylinders and spheres for machines that draw slowly. It uses the collision
+  // bodies as visuals.
   async lightModel() {
     const urdf = await readFile(join(kPanda, 'urdf/panda_collision.urdf'), 'utf8');
     return urdf.replace(/<visual>[^]*?<\/visual>/g, '').replaceAll('collision>', 'visual>');
@@ -341,7 +342,7 @@ export class FakeServer {
     }
   }
 
-  // Ends the run. `results`: a server with these results replaces this one; null: no server does.
+  // Ends the run. `results`: a server with these results replaces this one, or none does if null.
   async finish(how, results = null) {
     this.state = 'HELD';
     this.recording = false;
@@ -412,8 +413,8 @@ export class FakeServer {
     return multiply(this.objectPose(), fromPose(this.scene.handles[side]));
   }
 
-  // Largest force and torque: the invented run changes slowly, so the newest values are the
-  // largest.
+  // Returns the largest force and torque. The made-up run changes slowly, so the newest values are
+  // the largest.
   peak(side) {
     const wrench = this.wrench(side);
     return [Math.hypot(...wrench.slice(0, 3)), Math.hypot(...wrench.slice(3))];

@@ -1,5 +1,5 @@
-// A person's hands without a robot: with the mouse, and in the (emulated) headset with controllers
-// and with hands.
+// Tests a person's hands without a robot: with the mouse, and in the (emulated) headset with
+// controllers and with hands.
 import assert from 'node:assert/strict';
 import {after, test} from 'node:test';
 import {
@@ -26,7 +26,7 @@ async function fresh(options) {
   await browser?.close();
   await server?.close();
   browser = await launch({unpainted: true});
-  // Uses few triangles unless the test takes screenshots.
+  // The scene has few triangles unless the test takes screenshots.
   server = await serve({operator: 'browser', light: !shotsWanted, ...options.server});
   page = await open(browser, server.url, options.page);
   await ready(page);
@@ -196,7 +196,7 @@ test('the headset gives signs of life, at most ten a second', async () => {
   const reports = server.received.slice(before).filter((m) => m.type === 'immersive');
   assert.ok(reports.every((m) => m.active === true));
   assert.ok(reports.length <= 10 * seconds + 2);
-  // The head has the same pose as in the device, in W.
+  // In W, the head must have the same pose as in the device.
   const [x, y, z] = await predictor('inHeadsetSpace', reports.at(-1).p);
   near([x, y, z], [0, 1.5, 0.35], 0.05, 'head');
 });
@@ -255,7 +255,7 @@ test('a controller takes the handle it is at and carries it', async () => {
   await until(page, (z) => window.predictor.shown().object.p[2] > z, right.virtual.p[2] + 0.12);
   await headset.button('right', 'squeeze', 0);
   await waitFor(() => hands('left').at(-1).grip === false, 'letting go');
-  // A hand far from any handle takes nothing.
+  // A hand far from any handle must take nothing.
   await headset.place('right', [up[0], up[1], up[2] + 0.5]);
   const count = hands('left').length;
   await headset.button('right', 'trigger', 1);
@@ -312,7 +312,7 @@ test('above the warning level the controller pulses', async () => {
   assert.equal((await board()).hands[0].quantity, 'force');
   if (shotsWanted) await headset.look([0.1, 1.25, 0.55], 0.35, -0.35);  // box and board
   await headset.screenshot('vr-arrows');
-  // A torque counts like a force: the one that is nearer to its threshold decides.
+  // A torque counts like a force. The one that is nearer to its threshold determines the colour.
   server.force.left = [0, 0, 5, 0, 0, 4.6];
   await until(page, () => window.predictor.immersive().board.hands[0].quantity === 'torque');
   const {level, text} = (await board()).hands[0];
@@ -387,7 +387,7 @@ test('leaving the headset lets go and puts the page back', async () => {
 
 // ---- headset, real arms --------------------------------------------------------------------------
 
-// Places the controllers on the handles for a registration; returns their positions.
+// Places the controllers on the handles for a registration. Returns their positions.
 async function register() {
   const {hands: h} = await predictor('shown');
   const places = {left: await predictor('inHeadsetSpace', h.right.real.p),
@@ -437,7 +437,7 @@ test('a hand that holds a real handle and is seen elsewhere raises the alarm', a
     await headset.placeInSpace(side, await predictor('inHeadsetSpace', h[side].real.p));
   }
   await headset.frames(2);
-  server.state = 'RUN';  // now both hold
+  server.state = 'RUN';  // now both hands hold
   await until(page, () => window.predictor.shown().hands.left.gripping);
   await until(page, () => window.predictor.immersive().drift < 0.005);
   assert.equal((await board()).alarm, '');

@@ -12,18 +12,18 @@ const require = createRequire(join(web, 'package.json'));
 const {chromium} = require('playwright-core');
 
 const kChromium = process.env.PREDICTOR_CHROMIUM ?? '/usr/bin/chromium';
-// The exit code that makes ctest report a skipped test. If long tests or a browser are required, a
+// With this exit code, ctest reports a skipped test. If long tests or a browser are required, a
 // missing browser is a failure instead.
 const required = process.env.PREDICTOR_SOAK !== undefined || process.env.PREDICTOR_BROWSER === 'required';
 const kSkipped = required ? 1 : 77;
 const kShots = process.env.PREDICTOR_SCREENSHOTS ?? null;
 export const shotsWanted = kShots !== null;
-// limit of every wait, long enough for a busy machine
+// The limit of every wait, long enough for a busy machine.
 const kPatienceMs = Number(process.env.PREDICTOR_PATIENCE ?? 150) * 1000;
 
 // unpainted: for tests that check neither pixels of the scene nor frame times. Without a graphics
-// card, painting and compositing take nearly all of a frame's time. Screenshots are painted
-// regardless.
+// card, painting and compositing take nearly all of a frame's time. Screenshots are painted in any
+// case.
 export async function launch({unpainted = false} = {}) {
   if (!existsSync(kChromium)) {
     console.log(`${required ? 'FAILED' : 'SKIPPED'}: no browser at ${kChromium}; PREDICTOR_CHROMIUM may name one, and ` +
@@ -44,7 +44,7 @@ export async function serve(options = {}) {
   return new FakeServer(options).listen(Number(options.port ?? 0));
 }
 
-// Runs before a page loads: the scene is processed frame by frame, but painted only if
+// Runs before a page loads. The page then processes the scene frame by frame, but paints it only if
 // `window.painted` is set.
 function leaveUnpainted() {
   for (const {prototype} of [WebGLRenderingContext, WebGL2RenderingContext]) {
@@ -98,19 +98,19 @@ export async function take(page, what) {
   await until(page, (w) => window.predictor.leases()[w] === window.predictor.client(), what);
 }
 
-// Position of a handle on the page [px].
+// Returns the position of a handle on the page [px].
 export function handleOnScreen(page, side) {
   return page.evaluate(
       (s) => window.predictor.project(window.predictor.shown().hands[s].virtual.p), side);
 }
 
-// Waits until the function returns true in the page; passes its argument on.
+// Waits until the function returns true in the page. Passes its argument on.
 export async function until(page, what, argument) {
   await page.waitForFunction(what, argument, {timeout: kPatienceMs, polling: 50});
 }
 
-// Waits until an element is visible or hidden. On a busy machine the run may be silent for a
-// moment, and the page reports this, so the test waits instead of checking once.
+// Waits until an element is visible or hidden. On a busy machine, the run may be silent for a
+// moment, and the page reports this. Therefore the test waits instead of checking only once.
 export async function shows(page, selector, visible = true) {
   await page.locator(selector).waitFor({state: visible ? 'visible' : 'hidden'});
 }
@@ -155,8 +155,8 @@ export async function waitForText(locator, pattern) {
   assert.match(await locator.textContent(), pattern);
 }
 
-// What the page wrote to the console. The browser itself reports each refused connection while the
-// server is absent.
+// Returns what the page wrote to the console. The browser itself reports each refused connection
+// while there is no server.
 export function ownProblems(page) {
   return page.problems.filter((text) => !/ERR_CONNECTION_REFUSED|WebSocket connection/.test(text));
 }

@@ -2,7 +2,7 @@
 import {join} from 'node:path';
 import {asker, screenshot, until, web} from './harness.mjs';
 
-// Installs the headset in a page before it loads: window.xrDevice.
+// Installs the headset in a page before it loads, as window.xrDevice.
 export async function withHeadset(page) {
   await page.addInitScript({path: join(web, 'node_modules/iwer/build/iwer.min.js')});
   await page.addInitScript(() => {
@@ -33,7 +33,7 @@ export class Headset {
     await until(this.page, (m) => window.predictor.immersive().frames >= m, n + count);
   }
 
-  // Average duration of a frame [ms].
+  // Returns the average duration of a frame [ms].
   async frameMs(count = 20) {
     await this.frames(1);
     const start = performance.now();
@@ -43,7 +43,7 @@ export class Headset {
     return (performance.now() - start) / (m - n);
   }
 
-  // Places the head at `position` in its space, turned to the left and upwards by angles [rad].
+  // Places the head at `position` in its space, rotated to the left and upwards by angles [rad].
   async look(position, left, up) {
     const [cy, sy, cx, sx] = [Math.cos(left / 2), Math.sin(left / 2), Math.cos(up / 2), Math.sin(up / 2)];
     await this.page.evaluate(([p, q]) => {

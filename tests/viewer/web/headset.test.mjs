@@ -1,5 +1,5 @@
-// A person in an (emulated) headset operates the program: registers the scene, takes both handles
-// with the controllers, lifts the box, releases it, and stops.
+// A person in an (emulated) headset operates the program: the person registers the scene, takes
+// both handles with the controllers, lifts the box, releases it, and stops.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {near, take, until, waitFor} from './harness.mjs';
@@ -9,7 +9,8 @@ import {capitalised} from './messages.mjs';
 
 const kSides = ['left', 'right'];
 const kLift = 0.06;       // [m]
-// Duration of a frame. By design, a page that is silent for 250 ms releases the handles.
+// The longest duration of a frame. By design, a page that is silent for 250 ms releases the
+// handles.
 const kSlowestMs = 125;
 const kBoardAside = 0.4;  // from the box to the middle between it and the board [rad]
 
@@ -41,7 +42,7 @@ test('an immersive session begins, with the box within reach', async () => {
   await headset.screenshot('vr-begin');
 });
 
-// The true pose of the room: rotated by 20° and moved.
+// The true pose of the room is rotated by 20° and moved.
 const kYaw = 0.35;
 const kShift = [0.3, 0.9, 0.1];
 const truth = (p) => [

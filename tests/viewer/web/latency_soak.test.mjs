@@ -12,7 +12,7 @@ const kWindows = kInFull ? 10 : 2;
 const kTakes = kInFull ? 6 : 1;  // of a window
 const kTakeMs = kInFull ? 10_000 : 3000;  // the page keeps the delays of its last ten seconds
 const kLargestMovingMs = 2000;   // until the scene is drawn and moves
-// Mann and Kendall's statistic. Without a trend, one series in a hundred exceeds it.
+// This is Mann and Kendall's statistic. Among series without a trend, one in a hundred exceeds it.
 const kTrend = 2.33;
 const kNothingMs = 0.5;          // a growth of half a tick is negligible, however steady it is
 
@@ -23,13 +23,13 @@ function trend(values) {
   const s = values.flatMap((a, i) => values.slice(i + 1).map((b) => Math.sign(b - a))).reduce((x, y) => x + y, 0);
   return (s - 1) / Math.sqrt(n * (n - 1) * (2 * n + 5) / 18);
 }
-// Growth from first to last value, from the median of all slopes, so that a single disturbed window
-// has no effect.
+// The growth from the first to the last value follows from the median of all slopes, so that a
+// single disturbed window has no effect.
 const growth = (values) => (values.length - 1) *
     middle(values.flatMap((a, i) => values.slice(i + 1).map((b, k) => (b - a) / (k + 1))));
 const middle = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
-// The delays of the last seconds, and the counters so far.
+// Returns the delays of the last seconds, and the counters so far.
 const take = () => rig.page.evaluate(() => ({
   now: performance.now(), counters: window.predictor.counters(), latency: window.predictor.latency(),
 }));
@@ -76,8 +76,8 @@ test('opened, the page shows the scene moving within two seconds', async (t) => 
   const page = await open(rig.browser, 'about:blank', {viewport: {width: 1280, height: 720}});
   await rig.page.context().close();  // one page at a time, like a person
   await page.goto(rig.program.url, {waitUntil: 'commit'});
-  // Measures from the start of the navigation until two frames show the cobot at different joint
-  // angles.
+  // The test measures from the start of the navigation until two frames show the cobot at different
+  // joint angles.
   const {loaded, moved} = await page.evaluate(() => new Promise((resolve) => {
     let first = null;
     let loadedMs = 0;

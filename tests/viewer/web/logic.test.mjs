@@ -1,4 +1,4 @@
-// Tests the page's computations without a browser, bundled from its sources.
+// Tests the page's computations without a browser, in a bundle of its sources.
 import assert from 'node:assert/strict';
 import {createRequire} from 'node:module';
 import {before, test} from 'node:test';
@@ -21,7 +21,7 @@ before(async () => {
   page = await import(`data:text/javascript,${encodeURIComponent(outputFiles[0].text)}`);
 });
 
-// A state whose fields have the given values, or else zeros.
+// Returns a state whose fields have the given values, or otherwise zeros.
 function state(values) {
   const bytes = Math.max(...kFrame.map((f) => f.offset + 8 * f.count));
   const view = new DataView(new ArrayBuffer(bytes));
@@ -79,7 +79,7 @@ test('states are played one behind the newest, and never queued', () => {
   near(player.sample(received(19) + 8, () => {}).object.p, [18.5, 0, 0], 1e-3, 'half a state later');
   near(player.sample(received(19) + 500, () => {}).object.p, [19, 0, 0], 1e-6, 'never beyond');
   assert.ok(shown.length <= 8, 'the old ones are gone');
-  // A restarted run has earlier time stamps and ticks.
+  // A restarted run has earlier time stamps and ticks than the last one.
   player.add(state({tick: 1, wall_ns: 5e8, object: [9, 0, 0, 1, 0, 0, 0]}), received(21));
   assert.equal(player.latest.object.p[0], 9);
 });
@@ -155,7 +155,7 @@ test('the fit finds yaw and translation, and says what it leaves', () => {
   const off = known.map((p, i) => ({touched: truth(p).map((v, k) => v + (i === k ? 0.006 : 0)), known: p}));
   const best = page.fit(off);
   assert.ok(best.residual > 1e-3 && best.residual < 0.006);
-  // The fit is a least-squares solution: no neighbour has a smaller sum.
+  // The fit must be a least-squares solution, so no neighbour has a smaller sum.
   const left = ({yaw: a, t}) => off.reduce((sum, {touched, known: [x, y, z]}) => sum +
       (Math.cos(a) * x - Math.sin(a) * y + t[0] - touched[0]) ** 2 +
       (Math.sin(a) * x + Math.cos(a) * y + t[1] - touched[1]) ** 2 + (z + t[2] - touched[2]) ** 2, 0);
@@ -229,7 +229,7 @@ test('a fault of an arm behind the cause of a stop changes what is to be done', 
   const [force, device] = [message('stop.force.advice'), message('stop.device.advice')];
   assert.equal(held({}), `${force} ${message('next.reset')}`);
   assert.equal(held({right_arm_fault: 1}), `${force} ${device} ${message('next.restart')}`);
-  // the arm is absent
+  // The arm is absent.
   assert.equal(held({left_arm_fault: 1}), `${force} ${message('next.reset')}`);
   assert.equal(held({cause: 13, right_arm_fault: 1}), `${device} ${message('next.restart')}`);
 });
@@ -297,8 +297,8 @@ test('power that an arm keeps is reported first', () => {
   assert.match(page.dangerWords(kept, false), /still loaded: right handle, 30 N/);
 });
 
-// The texts of a stop with the longest possible numbers, for every pair of a cause and a second
-// cause that removes the power.
+// Generates the texts of a stop with the longest possible numbers, for every pair of a cause and a
+// second cause that removes the power.
 function* stopTexts() {
   const causes = page.kStopCauses.slice(1).map((_, i) => i + 1);
   for (const cause of causes) {
@@ -339,7 +339,7 @@ test('what the headset says of a stop ends above the bars of the hands, in lette
       }
     }
   }
-  // One pixel is 0.67 mm, seen from about a metre away.
+  // Seen from about a metre away, one pixel is 0.67 mm.
   assert.ok(smallest.alone >= 24 && smallest.all >= 19, JSON.stringify(smallest));
 });
 
@@ -354,7 +354,7 @@ test('the headset sounds once for each stop, loss of power, power that is kept, 
   assert.deepEqual([kept, {...kept, left_keeps_power: 1}, fault].map((it) => rings(it)), [true, false, false]);
   assert.deepEqual([rings(fault, true), rings(fault, true), rings(fault)], [true, false, false]);
   assert.deepEqual([null, fault].map((it) => rings(it)), [false, false]);
-  // after a reset, both occur together
+  // After a reset, both occur together.
   assert.deepEqual([{}, off].map((it) => rings(it)), [false, true]);
 });
 
@@ -381,7 +381,7 @@ test('a run that is done does not look like one that was stopped', () => {
     assert.match(words(name, 'none').meaning, /done/);
     assert.doesNotMatch(words(name, 'none').title, /[Ss]top/);
     assert.match(words(name, 'force').title, /^Stop/);
-    // after the end of the stop
+    // The stop has ended.
     assert.equal(words(name, 'none', {left_arm_fault: 1}).tone, 'stopped');
     assert.equal(words(name, 'none', {right_arm_fault: 1}).tone, 'calm');  // the arm is absent
   }

@@ -1,4 +1,4 @@
-// The texts of the message catalogue by id, with {name} replaced by the value.
+// Returns texts of the message catalogue by id, with {name} replaced by the value.
 import {readFileSync} from 'node:fs';
 
 const catalogue = JSON.parse(readFileSync(
@@ -9,7 +9,7 @@ export function message(id, values = {}) {
   return catalogue[id].replace(/\{(\w+)\}/g, (whole, name) => values[name] ?? whole);
 }
 
-// A text as a sentence without its full stop: 'A stop was requested'.
+// Returns a text as a sentence without its full stop, such as 'A stop was requested'.
 export function capitalised(id) {
   const text = message(id);
   return text[0].toUpperCase() + text.slice(1);

@@ -1,5 +1,5 @@
-// Models that cannot be displayed completely: the page replaces a missing mesh with a wire box and
-// a message, and still shows the rest of the robot.
+// Tests models that cannot be displayed completely. The page must replace a missing mesh with a
+// wire box and a message, and still show the rest of the robot.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {asker, launch, near, open, ready, screenshot, serve} from './harness.mjs';
@@ -13,7 +13,7 @@ const visual = (file, x) => `
 const kTetrahedron = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
 const kFaces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
-// In millimetres, and Z up: a URDF uses the axes of the mesh file itself.
+// The mesh is in millimetres and has Z up. A URDF uses the axes of the mesh file itself.
 const kCollada = `<?xml version="1.0" encoding="utf-8"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
   <asset><unit name="millimeter" meter="0.001"/><up_axis>Z_UP</up_axis></asset>
@@ -71,8 +71,8 @@ const predictor = asker(() => page);
 test('what can be shown is shown where it belongs, also if some meshes cannot be', async () => {
   const box = await predictor('meshBox', 'object');
   const {p} = (await predictor('shown')).object;
-  // The box reaches from the Collada file's tetrahedron at −0.3 m to that of the .obj file at +0.3
-  // m, each 0.1 m in size.
+  // The box must reach from the Collada file's tetrahedron at −0.3 m to that of the .obj file at
+  // +0.3 m. Each is 0.1 m in size.
   near(box.min, [p[0] - 0.3, p[1], p[2]], 2e-3, 'least');
   near(box.max, [p[0] + 0.4, p[1] + 0.1, p[2] + 0.1], 2e-3, 'largest');
   assert.ok(await predictor('linkPose', 'panda_link8'), 'the cobot too');

@@ -1,4 +1,4 @@
-// Names and fields of a state, from the page's generated source. tests/viewer/frame_test.cpp
+// The names and fields of a state, from the page's generated source. tests/viewer/frame_test.cpp
 // compares this source with the program's table of quantities.
 import {readFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
@@ -15,7 +15,7 @@ function list(name) {
 export const kStates = list('kRunStates');
 export const kCauses = list('kStopCauses');
 
-// The [name, type, count] of each field.
+// Returns the [name, type, count] of each field.
 function fields(name) {
   const [, text] = source.match(new RegExp(`export const ${name} = \\{([^}]*)\\}`));
   return [...text.matchAll(/(\w+): \['\w+', '\w+', '(\w+)', (\d+)\]/g)].map(

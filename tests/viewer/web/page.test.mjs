@@ -1,5 +1,5 @@
-// The page in Chromium: scene, panel, plots, mouse. The tests check states, but never frame rates or
-// times that depend on the machine.
+// Tests the page in Chromium: scene, panel, plots and mouse. The tests check states, but never
+// frame rates or times that depend on the machine.
 import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
 import {after, before, test} from 'node:test';
@@ -113,7 +113,7 @@ test('arrows take the colour of their part of the present threshold', async () =
     assert.equal(await predictor('arrowVisible', 'left'), true);
     await screenshot(page, `arrows-${color}`);
   }
-  // 26 N are red at a threshold of 30 N, and a lower threshold makes 14 N orange.
+  // At a threshold of 30 N, 26 N must be red. A lower threshold makes 14 N orange.
   server.force = {left: [0, 0, 14, 0, 0, 0], right: [0, 0, 0, 0, 0, 0]};
   server.targets[3] = 20;
   await until(page, () => window.predictor.arrowColour('left') === 'orange');
@@ -225,7 +225,7 @@ test('plots pause, zoom by dragging and change their window', async () => {
   assert.equal(await predictor('plotsPaused'), false);
 });
 
-// Parses the table of the plots: columns by name, rows of numbers (or '').
+// Parses the table of the plots. Returns columns by name, with rows of numbers (or '').
 function parseTable(text) {
   const [head, ...rows] = text.trim().split('\n').map((line) => line.split(','));
   return {head, column: (name) => rows.map((row) => row[head.findIndex((h) => h.startsWith(`${name} `))])};
@@ -293,7 +293,7 @@ test('plots are saved as a table and as a picture, the scene too', async () => {
 
 test('how far the script is, is shown', async () => {
   server.runTime = 15;
-  // Compares with the displayed state, whenever it is drawn.
+  // The test compares the text with the displayed state, whenever it is drawn.
   await until(page, (duration) => {
     const {runTime} = window.predictor.shown();
     const part = Number(document.getElementById('progress').getAttribute('aria-valuenow'));
@@ -340,7 +340,7 @@ test('stop is visible on a screen of 1280 × 720 and on a tablet', async () => {
     assert.ok(box.width * box.height > 10_000);
     const wide = await page.evaluate(() => document.documentElement.scrollWidth);
     assert.ok(wide <= width, 'nothing sticks out');
-    // Every slider is visible without scrolling.
+    // Every slider must be visible without scrolling.
     for (const name of ['stiffness_translation', 'damping_ratio', 'force', 'torque']) {
       const slider = await page.locator(`#parameter-${name}`).boundingBox();
       assert.ok(slider.y + slider.height <= height && slider.x + slider.width <= width, name);

@@ -1,5 +1,5 @@
-// Kinematics of the Panda, written independently of the page. The tests compare the drawn links
-// with it. Matrices are 4 x 4 in row-major order; quaternions are scalar first.
+// The kinematics of the Panda, written independently of the page. The tests compare the drawn links
+// with it. Matrices are 4 x 4 in row-major order, and quaternions have the scalar first.
 
 export function multiply(a, b) {
   const c = new Array(16).fill(0);
@@ -11,7 +11,7 @@ export function multiply(a, b) {
   return c;
 }
 
-// Makes a transform from position [m] and roll, pitch, yaw [rad] about fixed axes.
+// Returns a transform from a position [m] and roll, pitch, yaw [rad] about fixed axes.
 export function transform(xyz = [0, 0, 0], rpy = [0, 0, 0]) {
   const [r, p, y] = rpy;
   const [cr, sr, cp, sp, cy, sy] =
@@ -69,7 +69,7 @@ const kJoints = [
 ];
 const kFlange = transform([0, 0, 0.107]);
 
-// Poses of panda_link1 … panda_link8 in the base's parent frame.
+// Returns the poses of panda_link1 … panda_link8 in the base's parent frame.
 export function links(q, base = transform()) {
   const poses = [];
   let m = base;
@@ -84,7 +84,7 @@ export function links(q, base = transform()) {
 const cross = (a, b) =>
   [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-// Solves A x = b for small dense A, by elimination with pivoting.
+// Solves A x = b for small dense A by elimination with pivoting.
 function solve(A, b) {
   const n = b.length;
   const m = A.map((row, i) => [...row, b[i]]);
@@ -104,7 +104,7 @@ function solve(A, b) {
   return x;
 }
 
-// Joint angles that bring the flange to `target`, found by damped least squares from `q`.
+// Returns joint angles that bring the flange to `target`, found by damped least squares from `q`.
 export function reach(target, q, base = transform(), steps = 4) {
   let now = [...q];
   for (let step = 0; step < steps; step++) {

@@ -1,4 +1,5 @@
-// The person on the page: the body in the scene, the gauges beside it, the mirror, and why nothing is judged.
+// Tests the person on the page: the body in the scene, the gauges, the mirror, and the reasons why
+// nothing is judged.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {pointsOf} from './fake_person.mjs';
@@ -29,7 +30,7 @@ after(async () => {
 test('the body is drawn where the messages put it, coloured by its loads', async () => {
   await fresh();
   await until(page, () => window.predictor.body().visible);
-  server.frozen = true;  // the run time stands, so the messages repeat
+  server.frozen = true;  // the run time does not change, so the messages repeat
   const count = await predictor('personCount');
   await until(page, (n) => window.predictor.personCount() > n + 12, count);
   const {points, colors} = await predictor('body');
@@ -62,9 +63,9 @@ test('gauges, scores, damage and fatigue show the message, and say where it come
 test('a warning appears while the evaluation has it on', async () => {
   server.frozen = false;
   const warning = page.locator('[data-warning=left_shoulder]');
-  server.runTime = 6.2;  // the invented shoulder needs little
+  server.runTime = 6.2;  // the made-up shoulder has a small load
   await warning.waitFor({state: 'detached'});
-  server.runTime = 13.2;  // and now much
+  server.runTime = 13.2;  // now it has a large load
   await warning.waitFor();
   assert.match(await warning.innerText(), /half of the mean strength/);
 });

@@ -1,5 +1,5 @@
 // Runs `predictor run` at a separate terminal, because a run without a terminal ends with its
-// script. PREDICTOR_BINARY names the program; `link_poses` (tests/viewer/web/link_poses.cpp) is in
+// script. PREDICTOR_BINARY names the program. `link_poses` (tests/viewer/web/link_poses.cpp) is in
 // the same folder.
 import assert from 'node:assert/strict';
 import {spawn, spawnSync} from 'node:child_process';
@@ -220,7 +220,7 @@ export class Client {
     this.socket.send(JSON.stringify(message));
   }
 
-  // Decodes the fields of a state that the tests need.
+  // Decodes those fields of a state that the tests need.
   decode(data) {
     const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
     const read = {

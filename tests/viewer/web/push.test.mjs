@@ -1,6 +1,6 @@
-// A push while the program runs: each hand's arrow turns green, orange and red, and red is shown
-// before the stop. The push rises slowly, so that a page on a slow computer also draws every
-// colour. The push is directed upwards, where the cobot resists.
+// A person pushes while the program runs. Each hand's arrow must turn green, orange and red, and
+// red must be shown before the stop. The push rises slowly, so that a page on a slow computer also
+// draws every colour. It is directed upwards, where the cobot resists.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {screenshot, shotsWanted, until} from './harness.mjs';
@@ -9,7 +9,7 @@ import {message} from './messages.mjs';
 
 const kPush = (start, duration, force) =>
   `{action: push, start: ${start}, duration: ${duration}, force: [0, 0, ${force}], rise_time: 10}`;
-// For screenshots the arrow first stays red for a while.
+// If the test takes screenshots, the arrow first stays red for a while.
 const kScript = '[{action: grip, start: 0, duration: 0.5}, ' +
     (shotsWanted ? `${kPush(6, 30, 62)}, ${kPush(36, 20, 80)}]` : `${kPush(6, 40, 80)}]`);
 const kThreshold = 30;  // [N]
@@ -22,7 +22,7 @@ const {states, predictor} = rig;
 
 const force = (state, side) => Math.hypot(...state[`${side}_wrench`].slice(0, 3));
 
-// Data of one frame: the colour of the drawn arrow and the force that it represents.
+// Returns the data of one frame: the colour of the drawn arrow and the force that it represents.
 const seen = () => page.evaluate(() => {
   const {arrowColour, shown, stateText} = window.predictor;
   return ['left', 'right'].map((side) => ({
@@ -48,8 +48,8 @@ test('arrows take their colours at half and at 80 % of the threshold, red before
   }
   const running = samples.filter((s) => s.state === 'Running');
   for (const {colour, force: f} of running) {
-    // The force rises, so the colour may belong to the displayed force or, with sensor noise, to a
-    // slightly larger one.
+    // The force rises. The colour may therefore belong to the displayed force or, with sensor
+    // noise, to a slightly larger one.
     const colours = [f, f + 2, f + 4].map((it) => it / kThreshold)
                         .map((part) => (part < 0.5 ? 'green' : part <= 0.8 ? 'orange' : 'red'));
     assert.ok(colours.includes(colour), `${f} N: ${colour}`);
@@ -67,7 +67,7 @@ test('the force causes the stop, which is shown with hand, value and limit', asy
   assert.ok(Number(value) >= kThreshold && Number(value) < kThreshold + 5, cause);
   assert.equal(['Left', 'Right'][states.at(-1).cause_hand], hand);
   await screenshot(page, 'stopped-by-force');
-  // No earlier state exceeded the threshold, so the page showed the run's own values.
+  // No earlier state may exceed the threshold. Then the page has shown the run's own values.
   const last = states.findLast((s) => s.state === 'RUN');
   assert.ok(Math.max(force(last, 'left'), force(last, 'right')) <= kThreshold + 0.5);
 });

@@ -1,4 +1,4 @@
-// A recording in the page: the page shows the recorded state at the requested time.
+// For a recording, the page must show the recorded state at the requested time.
 import assert from 'node:assert/strict';
 import {mkdtempSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -49,7 +49,7 @@ async function pause() {
 test('it plays, from the beginning once it was over, and there is nothing to stop', async () => {
   await until(page, () => !document.getElementById('play').disabled);
   await pause();
-  await seek(Math.max(...recorded.keys()) / 1000);  // its end
+  await seek(Math.max(...recorded.keys()) / 1000);  // the end of the recording
   await page.click('#play');
   await waitFor(() => newest().tick > 300 && newest().tick < 9000, 'moving on');
   assert.equal(await page.locator('#stop').isVisible(), false);

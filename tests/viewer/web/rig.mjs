@@ -1,5 +1,5 @@
-// The setup for tests with the program: the program, a page that shows it, and a client that stores
-// every state.
+// The setup for tests with the program: it runs the program, a page that shows it, and a client
+// that stores every state.
 import {after, before} from 'node:test';
 import {asker, launch, open, ready, shotsWanted, waitFor} from './harness.mjs';
 import {Client, kStates, lightCobot, Program} from './program.mjs';
@@ -10,11 +10,11 @@ const kLarge = {width: 1280, height: 720};
 export class Rig {
   states = [];  // received by the client, with `state` as a word
 
-  // Sets up and ends the rig before and after all tests of a file. Options: set
+  // Sets up the rig before all tests of a file, and ends it after them. Options: set
   // (['path.to.key=value']), args; light: whether the cobot consists of cylinders and spheres
   // instead of its meshes (ignored for screenshots); viewport (ignored for screenshots); unpainted:
   // see launch; page: a function that receives the page before it loads anything; begun: a function
-  // to call once everything is ready.
+  // that is called once everything is ready.
   constructor(scenario, options = {}) {
     this.scenario = scenario;
     this.options = options;
@@ -66,9 +66,9 @@ export class Rig {
     await waitFor(() => this.newest.tick >= tick + count, `${count} ticks`);
   }
 
-  // Sends a command as the client, which needs control; while held, nothing moves during a test's
-  // preparations. Repeats a reset until it is granted, because hands must be free and everything
-  // must be at rest.
+  // Sends a command as the client, which needs control. While it is held, nothing moves during a
+  // test's preparations. Repeats a reset until it is granted, because hands must be free and
+  // everything must be at rest.
   async command(name, state) {
     const ask = () => this.client.send({type: 'command', command: name});
     ask();

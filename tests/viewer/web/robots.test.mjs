@@ -1,4 +1,4 @@
-// Other robots and scenes of the program: arms with STL meshes on a tablet, and the circle.
+// Tests other robots and scenes of the program: arms with STL meshes on a tablet, and the circle.
 import assert from 'node:assert/strict';
 import {after, test} from 'node:test';
 import {
@@ -45,7 +45,7 @@ test('two UR5 with STL meshes stand where their joint angles put them', async ()
   await screenshot(page, 'tablet-ur5');
 });
 
-// Touches the screen through the browser's own protocol, with {x, y} for each finger; an empty list
+// Touches the screen through the browser's own protocol, with {x, y} for each finger. An empty list
 // lifts all fingers.
 async function touch(session, type, points) {
   await session.send('Input.dispatchTouchEvent', {

@@ -1,4 +1,4 @@
-// The program runs the paper's scene: the drawn links have the poses of the program's own
+// The program runs the paper's scene. The drawn links must have the poses of the program's own
 // kinematics.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
@@ -30,7 +30,7 @@ after(async () => {
 
 const predictor = asker(() => page);
 
-// The drawn poses of one frame, and the state that they were drawn from.
+// Returns the poses that one frame drew, and the state from which it drew them.
 const drawn = (names) => page.evaluate((links) => {
   const {linkPose, shown} = window.predictor;
   return {state: shown(), poses: Object.fromEntries(links.map((name) => [name, linkPose(name)]))};
@@ -89,7 +89,7 @@ test('object and handles are drawn where the program has them', async () => {
 
 test('the visuals lie on their links: Z-up meshes are not turned', async () => {
   const box = await page.evaluate(() => window.predictor.meshBox('panda_link0'));
-  // The base of the Panda is 0.14 m high, stands on the floor, and is longer in x than in y.
+  // The base of the Panda is 0.14 m high and stands on the floor. It is longer in x than in y.
   near([box.min[2], box.max[2]], [0, 0.14], 0.02, 'height of the base');
   assert.ok(box.max[0] - box.min[0] > box.max[1] - box.min[1]);
 });

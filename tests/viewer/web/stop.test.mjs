@@ -1,4 +1,4 @@
-// Stops the program from the page, starts it again, and loses it.
+// Stops the program from the page, starts it again, and loses the connection to it.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {ready, screenshot, shows, take, until, waitFor} from './harness.mjs';
@@ -17,7 +17,7 @@ const ticks = (count) => rig.ticks(count);
 
 const text = (id) => page.locator(id).textContent();
 
-// Speed of a real handle between two states [m/s].
+// Returns the speed of a real handle between two states [m/s].
 function speed(a, b, side) {
   const way = Math.hypot(...[0, 1, 2].map((i) => b[`${side}_real`][i] - a[`${side}_real`][i]));
   return way / ((b.tick - a.tick) * 1e-3);
@@ -28,7 +28,7 @@ const lastSpeed = () => (states.length < 2 ? 0 : speed(states.at(-2), states.at(
 const enabled = () => page.evaluate(() => ['align', 'start', 'reset'].filter(
     (id) => !document.getElementById(id).disabled));
 
-// Presses a command's button once it is enabled, and waits for the following state.
+// Presses a command's button once it is enabled, and waits for the state that follows.
 async function command(button, title) {
   await page.click(`#${button}`);
   await until(page, (t) => window.predictor.stateText() === t, title);
@@ -56,7 +56,7 @@ test('the stop button brakes the arms and holds them', async () => {
   await waitFor(() => newest().state === 'HELD', 'HELD');
   const way = [...new Set(states.slice(from).map((s) => s.state))];
   assert.deepEqual(way.filter((s) => s !== 'STOPPING'), ['RUN', 'HELD']);
-  // After the stop, simulated time, the arms and the simulation stand still.
+  // After the stop, simulated time, the arms and the simulation must not move on.
   await ticks(300);
   const held = states.filter((s) => s.state === 'HELD');
   const [first, last] = [held.at(-10), held.at(-1)];
@@ -118,7 +118,7 @@ test('who may only look, by digits from the console, may stop', async () => {
               `${capitalised('stop.operator.cause')}.`);
   assert.deepEqual(other.problems, []);
   await other.context().close();
-  // If a busy computer silenced the page for three seconds, it no longer holds the lease.
+  // If a busy computer silenced the page for three seconds, the page no longer has the lease.
   if ((await predictor('leases')).control === null) await take(page, 'control');
   await reset();
   await command('align', 'Armed');
@@ -176,7 +176,7 @@ test('another scenario is chosen when idle, and starts by a person alone', async
   await reset();
   const before = await predictor('state');
   await page.selectOption('#scenario', 'bar_circle');
-  // The page, its address and its token stay the same, but the scene is different.
+  // The page, its address and its token must stay the same, but the scene must be a different one.
   await until(page, () => window.predictor?.ready() && /circle/i.test(window.predictor.scene()));
   await until(page, () => window.predictor.stateText() === 'Idle');
   assert.ok((await predictor('state')).tick < before.tick);

@@ -1,5 +1,5 @@
-// The paper's sudden push in real time: from zero to beyond the threshold in less than 0.1 s. Red
-// must be displayed, and the warning must precede the stop.
+// Repeats the paper's sudden push in real time, from zero to beyond the threshold in less than 0.1
+// s. Red must be displayed, and the warning must precede the stop.
 import assert from 'node:assert/strict';
 import {rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -16,7 +16,7 @@ const rig = new Rig('push.yaml', {args: ['--record', recording], begun: () => ({
 const {states} = rig;
 after(() => rmSync(recording, {force: true}));
 
-// The states of the run from the tick at which the force on a hand exceeds a limit [N].
+// Returns the states of the run from the tick at which the force on a hand exceeds a limit [N].
 function statesBeyond(side, limit) {
   const rows = channels(recording, ['run.state', `hands.${side}.wrench.force`]);
   const first = rows.findIndex((row) => Math.hypot(...row.slice(-3)) > limit);
@@ -25,7 +25,7 @@ function statesBeyond(side, limit) {
 }
 
 test('a short push is seen in red, and the warning precedes the stop', async () => {
-  // Stores the colours of the hands' arrows in each frame until the run stops.
+  // This code stores the colours of the hands' arrows in each frame until the run stops.
   await page.evaluate(() => {
     window.seen = {left: [], right: []};
     const look = () => {
@@ -42,8 +42,8 @@ test('a short push is seen in red, and the warning precedes the stop', async () 
   const seen = await page.evaluate((s) => window.seen[s], side);
   assert.ok(seen.includes('red'), [...new Set(seen)].join());
   assert.deepEqual(page.problems, []);
-  // The force takes about 15 ms from the warning to the threshold, less than from frame to frame.
-  // Therefore the recording, which has every tick, shows which comes first.
+  // The force takes about 15 ms from the warning to the threshold, which is less than from frame to
+  // frame. Therefore the test uses the recording, which has every tick, to find which comes first.
   await rig.program.end();
   const warned = statesBeyond(side, kWarning * parameters[3]);
   assert.equal(warned[0], 'RUN', 'the first tick that warns is one of the run');

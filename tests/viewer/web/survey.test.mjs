@@ -1,4 +1,4 @@
-// The questionnaire in a browser, served by `predictor survey`.
+// Tests the questionnaire in a browser, served by `predictor survey`.
 import assert from 'node:assert/strict';
 import {spawn, spawnSync} from 'node:child_process';
 import {mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
@@ -65,7 +65,7 @@ test('a person agrees, answers, sees the errors, and gets a pseudonym', async ()
   assert.ok(!page.url().includes('code'), 'the code does not stay in the address');
   await screenshot(page, 'survey-consent');
 
-  await page.reload();  // an admitted browser stays admitted
+  await page.reload();  // an admitted browser must stay admitted
   await page.click('#agree');
   assert.equal(await visible(page, '#condition'), false, 'the experimenter said it');
   assert.match(await page.locator('#S5 legend').textContent(),
@@ -84,7 +84,7 @@ test('a person agrees, answers, sees the errors, and gets a pseudonym', async ()
   await page.waitForSelector('#problem', {state: 'visible'});
   assert.match(await page.locator('#problem').textContent(), /age must be .* from 1 to 120/);
   await page.fill('#age', '23');
-  await page.evaluate(() => socket.close());  // as after the computer was asleep
+  await page.evaluate(() => socket.close());  // happens after a computer was asleep
   await until(page, () => tries > 0);
   await until(page, () => socket.readyState === WebSocket.OPEN && tries === 0);
   assert.equal(await visible(page, '#problem'), false);
@@ -136,7 +136,7 @@ test('the same person answers after the other run; the two are compared', async 
   const shown = await open(browser, `file://${join(folder, 'study.html')}`, kViewport);
   await shown.locator('#answers').scrollIntoViewIfNeeded();
   await shown.waitForSelector('#answers svg');
-  // One cross for each answer about the emulated system, and one in the legend.
+  // There must be one cross for each answer about the emulated system, and one in the legend.
   assert.equal(await shown.evaluate(() => {
     const color = getComputedStyle(document.documentElement).getPropertyValue('--c0').trim();
     return document.querySelectorAll(`#answers svg path[fill="${color}"]`).length;

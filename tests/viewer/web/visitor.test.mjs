@@ -1,5 +1,5 @@
-// The page for a visitor: it offers the hands, invites to take the handles, shows results, and fits
-// in a small window.
+// Tests the page for a visitor. It must offer the hands, invite the visitor to take the handles,
+// show results, and fit in a small window.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {
@@ -40,8 +40,8 @@ test('the only page gets the hands offered in the scene', async () => {
   await shows(page, '#take-hands');
   assert.equal(await page.locator('#invitation').textContent(), 'Take the handsthen drag a ring.');
   await screenshot(page, 'by-hand-first');
-  // While a second page is open, no page shows the offer. The offer returns when the second page
-  // has closed.
+  // While a second page is open, no page may show the offer. The offer must return when the second
+  // page has closed.
   const other = await open(browser, server.url, {viewport: kSmall});
   await ready(other);
   await shows(page, '#invitation', false);
@@ -113,12 +113,12 @@ test('a run that is over shows figures and curves, and is not red', async () => 
                    ['Duration25.0 s', 'Largest force18.2 N17.9 N']);
   assert.equal(await page.locator('.results-curves canvas').count(), 1);
   assert.ok((await predictor('counters')).points > 0, 'the plots of the run stay');
-  // The results are hidden and shown again.
+  // The results must be hidden and then shown again.
   await page.click('#hide-results');
   await shows(page, '#results', false);
   await page.click('#show-results');
   await shows(page, '#results');
-  // A page that is opened later shows the same.
+  // A page that is opened later must show the same.
   await page.reload();
   await until(page, () => document.getElementById('results-title').textContent === 'Finished');
 });
