@@ -12,8 +12,8 @@ if(CCACHE)
   endif()
 endif()
 if(PREDICTOR_PRECOMPILE)
-  # The compiler collects garbage less often, which saves a tenth of its time. (Not for lint, because Clang knows
-  # neither option.)
+  # The compiler collects garbage less often, which saves a tenth of its time. Clang knows neither
+  # option, so lint builds omit them.
   add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-expand=200>
                       $<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=1000000>)
 endif()
@@ -27,7 +27,7 @@ if(PREDICTOR_WERROR)
   target_compile_options(predictor_options INTERFACE -Werror)
 endif()
 if(PREDICTOR_SANITIZE OR PREDICTOR_FUZZ)
-  set(PREDICTOR_HARDEN OFF)  # sanitizers have their own checks and are incompatible with these
+  set(PREDICTOR_HARDEN OFF)  # sanitizers have their own checks, which are incompatible with these
 endif()
 if(PREDICTOR_HARDEN)
   # All targets get these flags, because all users of a precompiled header must have the same flags.

@@ -1,6 +1,7 @@
-# predictor_embed_files(TARGET FUNCTION FOLDER FILE...): compiles the files of FOLDER into TARGET unchanged. The
-# module itself declares FUNCTION, which returns the files: std::string_view FUNCTION(name), empty for any other name.
-# FUNCTION may name a namespace within predictor: survey::PageFile.
+# predictor_embed_files(TARGET FUNCTION FOLDER FILE...) compiles the files of FOLDER into TARGET
+# unchanged. The module itself declares FUNCTION, which returns the files as std::string_view
+# FUNCTION(name), or an empty one for any other name. FUNCTION may name a namespace within
+# predictor, such as survey::PageFile.
 function(predictor_embed_files TARGET FUNCTION FOLDER)
   set(SPACE predictor)
   if(FUNCTION MATCHES "^(.+)::(.+)$")
@@ -26,7 +27,7 @@ function(predictor_embed_files TARGET FUNCTION FOLDER)
     "std::string_view ${FUNCTION}(std::string_view name) {\n${CASES}  return {};\n}\n\n}  // namespace ${SPACE}\n")
   set(SOURCE ${CMAKE_BINARY_DIR}/embedded/${FUNCTION}.cpp)
   file(CONFIGURE OUTPUT ${SOURCE} CONTENT "${TEXT}" @ONLY)
-  # Among united sources, its dependence on the files would be lost.
+  # In a unity build, its dependence on the files would be lost.
   set_source_files_properties(${SOURCE} PROPERTIES
     OBJECT_DEPENDS "${DEPENDS}" SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
   target_sources(${TARGET} PRIVATE ${SOURCE})

@@ -1,5 +1,5 @@
-# The library message_table: src/core/message_catalogue.json as a table. core/message_catalogue.h searches it at
-# compile time, so that the compiler rejects an unknown id.
+# The library message_table contains src/core/message_catalogue.json as a table.
+# core/message_catalogue.h searches it at compile time, so that the compiler rejects an unknown id.
 set(MESSAGE_FOLDER ${CMAKE_BINARY_DIR}/messages)
 set(MESSAGE_CATALOGUE ${CMAKE_SOURCE_DIR}/src/core/message_catalogue.json)
 add_custom_command(OUTPUT ${MESSAGE_FOLDER}/message_table.inc

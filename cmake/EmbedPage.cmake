@@ -1,5 +1,6 @@
-# predictor_embed_page(TARGET): compiles the built page (index.html, app.js, app.css) into TARGET. If the page was not
-# built, a page with that message is compiled instead. CMake runs again if files appear in the folder or disappear.
+# predictor_embed_page(TARGET) compiles the built page (index.html, app.js, app.css) into TARGET. If
+# the page was not built, a page that says so is compiled instead. CMake runs again when files
+# appear in the folder or disappear.
 set(PREDICTOR_PAGE ${CMAKE_SOURCE_DIR}/web/dist CACHE PATH "Folder of the built page")
 
 function(predictor_embed_page TARGET)

@@ -1,5 +1,6 @@
-# predictor_embed_report(TARGET): compiles the style and the built script of the report's page into TARGET. Without
-# the script, the pages have no plots. CMake runs again if the script appears or disappears.
+# predictor_embed_report(TARGET) compiles the style and the built script of the report's page into
+# TARGET. Without the script, the pages have no plots. CMake runs again when the script appears or
+# disappears.
 function(predictor_embed_report TARGET)
   file(GLOB SCRIPT CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/web/dist/report.js)
   if(SCRIPT)

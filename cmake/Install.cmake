@@ -11,12 +11,12 @@ set(PREDICTOR_CONFIGDIR lib/cmake/predictor)
 # ---- runtime ----
 install(TARGETS predictor RUNTIME DESTINATION bin COMPONENT runtime)
 set_target_properties(predictor PROPERTIES INSTALL_RPATH "$ORIGIN/../${PREDICTOR_PRIVATE_LIBDIR}")
-# Installed under their sonames, which the program uses to load them.
+# They are installed under their sonames, which the program uses to load them.
 install(FILES ${PREDICTOR_DEPS}/prefix/mujoco/libmujoco.so.4.0.0 DESTINATION ${PREDICTOR_PRIVATE_LIBDIR} COMPONENT runtime)
 install(FILES ${PREDICTOR_PREFIX}/lib/libtinyxml2.so.11.0.0 RENAME libtinyxml2.so.11
         DESTINATION ${PREDICTOR_PRIVATE_LIBDIR} COMPONENT runtime)
 install(DIRECTORY scenarios assets DESTINATION ${PREDICTOR_DATADIR} COMPONENT runtime)
-# The robots of the shipped scenarios; PREDICTOR_PACKAGE_PATH adds others.
+# These robots belong to the shipped scenarios. PREDICTOR_PACKAGE_PATH adds others.
 foreach(ROBOT panda ur)
   install(DIRECTORY ${PREDICTOR_ROBOT_DATA}/${ROBOT}_description
           DESTINATION ${PREDICTOR_DATADIR}/example-robot-data/robots COMPONENT runtime)
@@ -24,7 +24,7 @@ endforeach()
 include(Notices)
 install(FILES LICENSE DESTINATION share/doc/predictor RENAME copyright COMPONENT runtime)
 install(FILES ${CMAKE_BINARY_DIR}/THIRD_PARTY_NOTICES DESTINATION share/doc/predictor COMPONENT runtime)
-# The manual page and the completion of commands, which the program itself prints.
+# The program itself prints the manual page and the completion of commands.
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/printed)
 foreach(PRINTED "man|predictor.1|share/man/man1" "completion bash|predictor|share/bash-completion/completions")
   string(REPLACE "|" ";" PRINTED "${PRINTED}")
@@ -40,7 +40,8 @@ foreach(PRINTED "man|predictor.1|share/man/man1" "completion bash|predictor|shar
 endforeach()
 
 # ---- development: the emulator and all modules that it is linked with ----
-# predictor_collect(OUT MODULE): the targets of this project that a program linked with MODULE needs.
+# predictor_collect(OUT MODULE) sets OUT to the targets of this project that a program linked with
+# MODULE needs.
 function(predictor_collect OUT MODULE)
   set(FOUND ${${OUT}})
   if(NOT MODULE IN_LIST FOUND)

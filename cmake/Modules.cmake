@@ -1,10 +1,12 @@
-# Half of the compile time was spent on repeatedly parsing the same headers, so the libraries' headers (never the
-# project's) are precompiled. Lint builds without them and therefore finds missing includes.
+# Compilers spent half of their time on parsing the same headers again and again. Therefore the
+# headers of libraries (never those of the project) are precompiled. Lint builds without them and
+# therefore finds missing includes.
 set(PREDICTOR_HEADERS <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <map> <memory>
     <numbers> <optional> <random> <sstream> <string> <string_view> <variant> <vector> <Eigen/Dense>)
 
-# predictor_precompiled(NAME [HEADERS ...] [LIBRARIES ...] [OPTIONS ...]): precompiles headers for targets that call
-# predictor_precompile(TARGET NAME). These targets must use the same compile options.
+# predictor_precompiled(NAME [HEADERS ...] [LIBRARIES ...] [OPTIONS ...]) precompiles headers for
+# targets that call predictor_precompile(TARGET NAME). These targets must use the same compile
+# options.
 function(predictor_precompiled NAME)
   cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES;OPTIONS" ${ARGN})
   if(PREDICTOR_PRECOMPILE)
@@ -22,21 +24,23 @@ function(predictor_precompile TARGET NAME)
   endif()
 endfunction()
 
-# Several sources become one, so that their headers are parsed and their templates instantiated once. A change then
-# compiles all of them, so the preset `dev` does without. Lint does without as well, in order to find missing includes.
+# Several sources become one, so that their headers are parsed and their templates instantiated only
+# once. A change then compiles all of them, so the preset `dev` does not do this. Lint does not
+# either, in order to find missing includes.
 function(predictor_unite TARGET)
   if(PREDICTOR_UNITY)
     set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
-    # A class with members of an unnamed namespace is only a defect in a header.
+    # A class with members of an unnamed namespace is a defect only in a header.
     target_compile_options(${TARGET} PRIVATE -Wno-subobject-linkage)
   endif()
 endfunction()
 
-# predictor_module(NAME [LIGHT] PUBLIC ... PRIVATE ...): builds src/NAME/**.cpp as the library predictor_NAME.
-# Dependencies on other modules are named without the prefix. LIGHT: the module is not used in the tick and computes
-# little. It is optimized less, which saves a third of its compile time.
+# predictor_module(NAME [LIGHT] PUBLIC ... PRIVATE ...) builds src/NAME/**.cpp as the library
+# predictor_NAME. Dependencies on other modules are named without the prefix. LIGHT means that the
+# tick does not use the module and that it computes little. It is optimized less, which saves a
+# third of its compile time.
 #
-# Header libraries; a program that links an installed module does not need them.
+# These libraries consist of headers. A program that links an installed module does not need them.
 set(PREDICTOR_HEADER_LIBRARIES pinocchio::pinocchio nlohmann_json::nlohmann_json boost_headers message_table)
 set(PREDICTOR_LIGHT_OPTIONS -O1 -Wno-maybe-uninitialized)  # false positives for std::optional
 function(predictor_module NAME)
@@ -77,20 +81,21 @@ endfunction()
 
 set(PREDICTOR_TEST_OPTIONS -O0 -U_FORTIFY_SOURCE)  # the tested code is optimized, which FORTIFY needs
 
-# Targets that are built and run under a sanitizer unless PREDICTOR_SANITIZE_ALL is set: the tests of the modules that
-# parse, store and decide. Other modules' tests only exercise that code indirectly, and slowly. The target `sanitized`
-# builds them.
+# These targets are built and run under a sanitizer unless PREDICTOR_SANITIZE_ALL is set. They are
+# the tests of the modules that parse, store and decide. Other modules' tests exercise that code
+# only indirectly, and slowly. The target `sanitized` builds them.
 option(PREDICTOR_SANITIZE_ALL "Run every module's tests under the sanitizer" OFF)
 set(PREDICTOR_SANITIZED core devices models process recording ros_tcp safety scenario viewer watchdog)
 add_custom_target(sanitized)
 
-# PROCESSORS of a test counts quarters of a processor (./dev test runs ctest -j with five per processor). Most tests
-# take a whole one. Tests that mostly wait take a quarter and start first.
+# PROCESSORS of a test counts quarters of a processor (./dev test runs ctest -j with five per
+# processor). Most tests take a whole one. Tests that mostly wait take a quarter and start first.
 set(PREDICTOR_ONE_PROCESSOR PROCESSORS 4)
 set(PREDICTOR_MOSTLY_WAITS PROCESSORS 1 COST 100)
 
-# predictor_test(NAME [LIBRARIES ...] [WAITING FILTER] [PROPERTIES ...]): builds tests/NAME/*_test.cpp as one
-# executable, test_NAME. WAITING: a GoogleTest filter for the tests that mostly wait; PROPERTIES do not apply to them.
+# predictor_test(NAME [LIBRARIES ...] [WAITING FILTER] [PROPERTIES ...]) builds
+# tests/NAME/*_test.cpp as one executable, test_NAME. WAITING is a GoogleTest filter for the tests
+# that mostly wait. PROPERTIES do not apply to them.
 function(predictor_test NAME)
   cmake_parse_arguments(ARG "" "WAITING" "LIBRARIES;PROPERTIES" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/${NAME}/*.cpp)
@@ -121,15 +126,16 @@ function(predictor_test NAME)
     PROPERTIES TIMEOUT 5000 ${PREDICTOR_ONE_PROCESSOR} ${ARG_PROPERTIES})
 endfunction()
 
-# predictor_web_tests([NAME=VALUE ...]): adds *.test.mjs of this folder as the tests web.*, with these values in their
-# environment. They run in Chromium, one at a time, and therefore start first. Without a browser, they are skipped (exit code 77), but in ./dev
-# soak they fail. A headset that is rendered in software needs two processors, because a slow headset lets go. A page
-# beside a program that sanitizers slow down needs two, as well.
+# predictor_web_tests([NAME=VALUE ...]) adds *.test.mjs of this folder as the tests web.*, with
+# these values in their environment. They run in Chromium, one at a time, and therefore start first.
+# Without a browser, they are skipped (exit code 77), but they fail in ./dev soak. A headset that is
+# rendered in software needs two processors, because a slow headset lets go. A page next to a
+# program that sanitizers slow down needs two as well.
 function(predictor_web_tests)
   file(GLOB PAGE_TESTS CONFIGURE_DEPENDS *.test.mjs)
   foreach(FILE ${PAGE_TESTS})
     get_filename_component(NAME ${FILE} NAME_WE)
-    string(REPLACE _soak Soak NAME ${NAME})  # the name by which ./dev soak finds long tests
+    string(REPLACE _soak Soak NAME ${NAME})  # ./dev soak finds long tests by this name
     set(PROCESSORS ${PREDICTOR_ONE_PROCESSOR})
     if(NAME STREQUAL headset OR PREDICTOR_SANITIZE)
       set(PROCESSORS PROCESSORS 8)

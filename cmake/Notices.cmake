@@ -1,10 +1,10 @@
-# Writes THIRD_PARTY_NOTICES in the build folder: the licences of third-party parts of an installed tree. Libraries
-# from Debian packages contain their own licences.
+# Writes THIRD_PARTY_NOTICES into the build folder, with the licences of third-party parts of an
+# installed tree. Libraries from Debian packages contain their own licences.
 set(NOTICES ${CMAKE_BINARY_DIR}/THIRD_PARTY_NOTICES)
 string(REPEAT "=" 100 RULE)
 file(WRITE ${NOTICES} "PREDICTOR contains the following third-party software and data.\n")
 
-# predictor_notice(TITLE FILE...): adds a section with the texts of the files.
+# predictor_notice(TITLE FILE...) adds a section with the texts of the files.
 function(predictor_notice TITLE)
   file(APPEND ${NOTICES} "\n${RULE}\n${TITLE}\n${RULE}\n\n")
   foreach(FILE ${ARGN})
@@ -31,7 +31,7 @@ predictor_notice("CLI11 (headers)" ${DEBIAN}/libcli11-dev/copyright)
 predictor_notice("JSON for Modern C++ (headers)" ${DEBIAN}/nlohmann-json3-dev/copyright)
 predictor_notice("Robot descriptions: Panda, UR5" ${WHEELS}/example_robot_data-6.0.0.dist-info/licenses/LICENSE
                  ${PREDICTOR_ROBOT_DATA}/panda_description/LICENSE)
-# The libraries that web/dist bundles; absent if the page was not built.
+# web/dist bundles these libraries. They are absent if the page was not built.
 if(EXISTS ${CMAKE_SOURCE_DIR}/web/dist/index.html)
   predictor_notice("three.js (in the viewer's page)" ${CMAKE_SOURCE_DIR}/web/node_modules/three/LICENSE)
   predictor_notice("uPlot (in the viewer's page)" ${CMAKE_SOURCE_DIR}/web/node_modules/uplot/LICENSE)

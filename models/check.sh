@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks the model of the safety state machine (safety.pml) with Spin: every property in every state
-# that can be reached, and that every defect of defects.txt is found.
+# Checks the model of the safety state machine (safety.pml) with Spin: each property must hold in
+# every state that can be reached, and each defect of defects.txt must be found.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
@@ -29,11 +29,11 @@ on_the_wire=(-DWIRE=2 -DMAIL=1 -DROOM=1 -DPRESSES=1)
 at_the_run=(-DWIRE=1 -DMAIL=2 -DROOM=2 -DPRESSES=2)
 deepest=2000000  # steps of a search's stack
 
-# make NAME CFLAGS MODEL_FLAGS...: the program that searches, $work/NAME/pan.
+# make_search NAME CFLAGS MODEL_FLAGS... builds the program that searches, $work/NAME/pan.
 make_search() {
   local folder=$work/$1 cflags=$2
   mkdir -p "$folder"
-  cp "$here"/*.pml "$folder"  # a counterexample is written beside its model
+  cp "$here"/*.pml "$folder"  # Spin writes a counterexample next to its model
   (
     cd "$folder"
     spin -a "${@:3}" safety.pml >spin.log 2>&1 || { cat spin.log; exit 1; }
@@ -46,7 +46,7 @@ field() { sed -n "s/$2/\\1/p" "$1" | head -1; }
 
 violation='\(assertion violated  *! *( *! *(\|acceptance cycle\|end state in claim reached\)'
 
-# One search. Sets errors, and why it does not count ("" if it does).
+# Runs one search. Sets errors, and the reason why the search does not count ("" if it does).
 search() {
   local log=$work/log
   (cd "$work/$1" && ./pan -b -m"$deepest" -w22 "${@:3}" -N "$2") >"$log" 2>&1 || true
@@ -63,7 +63,7 @@ search() {
   elif [ "$errors" = 0 ] && grep -q 'Search not completed' "$log"; then
     why="not complete"
   elif [ "$errors" != 0 ] && ! grep -q "^pan:1: $violation" "$log"; then
-    why=$(grep '^pan:1:' "$log")  # something else than the property
+    why=$(grep '^pan:1:' "$log")  # the log contains another failure than that of the property
   fi
 }
 
@@ -86,12 +86,12 @@ expect() {
 
 properties() { sed -n 's/^ltl \([a-z_]*\) .*/\1/p' "$here/safety.pml"; }
 
-# Whether it takes pages and leases to violate a property. What does not is found much sooner where
-# the viewer does as it likes.
+# Returns whether a property can be violated only by pages and leases. The violation of any other
+# property is found much sooner where the viewer does as it likes.
 of_pages() { [[ $1 =~ ^(one_holder|holder_commands|runs_out|passed_on|can_hand_over)$ ]]; }
 
 check_properties() {
-  # Whoever asks for stops matters little to their end, which is long to search for.
+  # For the end of a stop, it hardly matters who requested it, but the search for that takes long.
   local ends=(-DLIES) fast="-O2 -DSAFETY -DNOREDUCE" property
   row property errors states depth time memory ""
   if [ -n "${PREDICTOR_SOAK:-}" ]; then
@@ -103,7 +103,7 @@ check_properties() {
   fi
   make_search small "$fast" "${small[@]}"
   expect no small all
-  # Statements that no search comes by would make the model say less than it seems to.
+  # If no search reached a statement, the model would check less than it seems to.
   if grep -E 'state [0-9]+, "' "$work/log" | grep -v -e '"-end-"'; then failed=1; fi
   for property in ${PREDICTOR_SOAK:+$(properties | grep -vE '^(all|standstill|can_.*)$')}; do
     expect no small "$property"
@@ -119,7 +119,7 @@ check_properties() {
   done
 }
 
-# Nothing in the list is missing in the model or the other way round, and no property is unguarded.
+# The list and the model must contain the same defects, and each property must have one.
 check_list() {
   local listed
   listed=$(grep -v '^#' "$here/defects.txt")

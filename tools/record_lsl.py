@@ -17,12 +17,12 @@ from pathlib import Path
 
 import pylsl
 
-RESOLVE = 5.0  # how long it looks for a stream [s]
+RESOLVE = 5.0  # time for which it looks for a stream [s]
 UNITS = {"microvolts": "µV", "millivolts": "mV", "volts": "V", "meters": "m", "millimeters": "mm"}
 
 
 def labels_of(info):
-    """Names with units of a stream's channels, as its description has them."""
+    """Returns the names and units of a stream's channels from its description."""
     labels = []
     channel = info.desc().child("channels").child("channel")
     for i in range(info.channel_count()):
@@ -34,7 +34,7 @@ def labels_of(info):
 
 
 def unix_minus_lsl():
-    """Difference of the clocks, from the closest pair of readings of several. [s]"""
+    """Returns the difference of the clocks [s], from the closest of several pairs of readings."""
     pairs = []
     for _ in range(20):
         before = pylsl.local_clock()
@@ -45,7 +45,7 @@ def unix_minus_lsl():
 
 
 class Recorded:
-    """One stream and its files."""
+    """A stream and its files."""
 
     def __init__(self, name, folder):
         found = pylsl.resolve_byprop("name", name, timeout=RESOLVE) or pylsl.resolve_byprop("type", name, timeout=RESOLVE)

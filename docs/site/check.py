@@ -25,12 +25,12 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 PATH = re.compile(r"`((?:src|apps|tests|docs|scenarios|assets|deps|web|unity|models|bench|cmake|examples)/[\w./-]+)`")
 SKIPPED = ("hardware", "long")
 RUN = {"sh": ["bash", "-euo", "pipefail", "-c"], "python": [sys.executable, "-c"]}
-# Written by builds, or by the reader who follows a page.
+# A build writes these files, or the reader who follows a page.
 MADE = re.compile(r"^(web/(dist|node_modules)|docs/reference/generated|src/(simulation/controllers/viscous_guiding|evaluation/metrics/handle_speed|haptics/limits/handle_height|haptics/tasks/rest_posture|scenario/actions/shake)|scenarios/(mine\w*|my_cobot)\.(yaml|csv))")
 
 
 def blocks(text):
-    """(line, info, code) of each fenced block, and the text with the blocks blanked."""
+    """Returns (line, info, code) of each fenced block, and the text with the blocks blanked."""
     found, prose, fence = [], [], None
     for i, line in enumerate(text.split("\n"), 1):
         match = FENCE.match(line)

@@ -25,11 +25,12 @@ copybutton_exclude = ".linenos, .gp, .go"
 breathe_projects = {"predictor": str(ROOT / "build" / "docs" / "doxygen" / "xml")}
 breathe_default_project = "predictor"
 breathe_show_include = False
-# Words in the sources that Sphinx's C++ parser does not support.
+# Sphinx's C++ parser does not support these words in the sources.
 cpp_id_attributes = ["EIGEN_ALIGN16"]
 suppress_warnings = ["duplicate_declaration.cpp"]  # the namespace, once for each header
 
-# Diagrams are Mermaid, which repository hosts draw. Here Graphviz draws them, so that no external script is needed.
+# The diagrams are written in Mermaid, which repository hosts draw. Here Graphviz draws them, so
+# that no external script is needed.
 extensions.append("sphinx.ext.graphviz")
 graphviz_output_format = "svg"
 graphviz_dot_args = ["-Gbgcolor=transparent", "-Nfontname=sans-serif", "-Efontname=sans-serif", "-Nfontsize=11",
@@ -37,7 +38,7 @@ graphviz_dot_args = ["-Gbgcolor=transparent", "-Nfontname=sans-serif", "-Efontna
 
 
 def to_graphviz(match):
-    """A Mermaid state diagram or flowchart of plain `A --> B: label` edges, as Graphviz."""
+    """Converts a Mermaid state diagram or flowchart of plain `A --> B: label` edges to Graphviz."""
     kind, *lines = match[1].strip().split("\n")
     out = ["digraph {", "rankdir=" + (kind.split()[1] if kind.startswith("flowchart") else "TB").replace("TD", "TB")]
     for line in (text.strip() for text in lines):

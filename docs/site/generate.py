@@ -41,7 +41,7 @@ def number(value):
 
 
 def allowed(schema):
-    """The values that a key may have, in words."""
+    """Describes the values that a key may have."""
     if "anyOf" in schema or "oneOf" in schema:
         return ", or ".join(dict.fromkeys(allowed(a) for a in schema.get("anyOf", schema.get("oneOf"))))
     if "enum" in schema:
@@ -73,7 +73,7 @@ UNIT = re.compile(r"\s*\[([^\[\]]*)\]")
 
 
 def describe(schema):
-    """Unit and meaning: the schema writes the unit in brackets."""
+    """Returns unit and meaning. The schema writes the unit in brackets."""
     text = schema.get("description", "")
     found = UNIT.search(text)
     unit = schema.get("unit", found[1] if found else "")
@@ -81,7 +81,7 @@ def describe(schema):
 
 
 def keys(schema, path=""):
-    """Sections (path, meaning, rows) of all groups, depth first."""
+    """Returns the sections (path, meaning, rows) of all groups, depth first."""
     rows, below = [], []
     required = schema.get("required", [])
     for key, value in schema.get("properties", {}).items():
@@ -131,7 +131,7 @@ def json_schema(program, of):
 # ---- the command line ----------------------------------------------------------------------------------------------
 
 def subcommands(program, path):
-    """Names in the help that are commands, because they support --help themselves."""
+    """Returns the names in the help that are commands, because they support --help themselves."""
     found = []
     for name in re.findall(r"^  ([a-z][a-z-]*)(?: [A-Z<\[].*?)?(?:  +|$)", run(program, *path, "--help"), re.M):
         done = subprocess.run([program, *path, name, "--help"], capture_output=True, text=True, check=False)
@@ -158,7 +158,7 @@ def command_line_page(program):
 # ---- what a run leaves ---------------------------------------------------------------------------------------------
 
 def a_recording(program, folder):
-    """The beginning of the first experiment."""
+    """Returns the beginning of the first experiment."""
     recording = folder / "run.mcap"
     run(program, "simulate", "scenarios/box_9kg.yaml", "--duration", "6", "--record", recording)
     return recording

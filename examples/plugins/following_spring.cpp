@@ -1,5 +1,5 @@
-// A spring in the wrist whose set-point follows the hand, as a plug-in in C++ with memory and wrist
-// sensor: tau = g + J' K (p_set - p) + K_j (posture - q) - d v, and dp_set/dt = (F - F_start) / D.
+// A plug-in in C++ with memory and wrist sensor: a spring in the wrist whose set-point follows the
+// hand, tau = g + J' K (p_set - p) + K_j (posture - q) - d v, and dp_set/dt = (F - F_start) / D.
 //
 // Parameters: stiffness K [N/m], yielding 1/D [m/(N·s)].
 // Build: c++ -std=c++17 -O2 -shared -fPIC -I include following_spring.cpp -o following_spring.so

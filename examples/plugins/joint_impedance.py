@@ -1,7 +1,7 @@
 """Springs and dampers in the joints, tau = g + K (posture - q) - D v, as a process in Python.
 
-Only the standard library. Parameters, each for all joints: joint_stiffness [N·m/rad],
-joint_damping [N·m·s/rad]. In a scenario beside this file:
+It needs only the standard library. The parameters joint_stiffness [N·m/rad] and
+joint_damping [N·m·s/rad] apply to all joints. A scenario next to this file refers to it like this:
 
   cobot:
     controller: {type: process, command: [python3, joint_impedance.py]}
@@ -15,7 +15,7 @@ import time
 CREATE, START, COMPUTE, ADVANCE, END = 1, 2, 3, 4, 5
 VERSION = 2
 
-# Offsets in PredictorControllerMemory (predictor/controller.h).
+# These are offsets in PredictorControllerMemory (predictor/controller.h).
 REQUEST, ANSWER, KIND, REFUSED = 8, 12, 16, 20
 TORQUE, ENERGY, INPUT, POSTURE, TEXT = 32, 160, 1192, 4880, 5072
 DOF, Q, V, G = INPUT + 16, INPUT + 24, INPUT + 152, INPUT + 280
@@ -57,7 +57,7 @@ def main():
     version, size = struct.unpack_from("<II", memory, 0)
     if version != VERSION or size != len(memory):
         raise SystemExit(f"PREDICTOR has version {version} of the interface, but this controller {VERSION}.")
-    words = memoryview(memory).cast("I")  # single loads and stores
+    words = memoryview(memory).cast("I")  # each load and store is a single one
     parent = os.getppid()
     controller = JointImpedance(memory)
     answered, heard = 0, time.monotonic()

@@ -13,7 +13,8 @@ ROW = re.compile(r'(?:\d+: )? ?(\d+)  (.{50}) (continues|warned|holds|power off|
 STOP = re.compile(r'seen after +(-?\d+) of +(\d+) ticks; .* at rest after +(\d+) ms, +([\d.]+) mm; '
                   r'apart ([\d.]+) mm, ([\d.]+) deg[^;]*(?:; power off asked for after (\d+) of)?')
 
-# How the names of faults and outcomes begin, and their words on the page. The names themselves seed random numbers.
+# The names of faults and outcomes begin like this, and the page shows these words. The names
+# themselves seed random numbers.
 PAGE = {
     "joints that are no numbers any more": "joint positions that are not numbers",
     "the arm's last package for ever": "the arm repeats its last package",
@@ -67,7 +68,7 @@ def read(lines):
 
 
 def cell(values, rigs, i):
-    """The values of all rigs, or a single one if they are equal."""
+    """Returns the values of all rigs, or a single one if they are equal."""
     each = [values[r][i] if values.get(r) else '–' for r in rigs]
     if all(x == '–' for x in each):
         return ''

@@ -56,7 +56,7 @@ def significant(value, digits):
 
 
 def plus_minus(mean, deviation):
-    """Two significant digits of the smaller one, with at most four decimals, as the program prints it."""
+    """Formats with two significant digits of the smaller one and at most four decimals, as the program does."""
     least = min(x for x in (abs(mean), deviation) if x > 0) if mean or deviation else 0
     decimals = min(4, max(0, 1 - math.floor(math.log10(least)))) if least else 1
     return f"{fixed(mean, decimals)} ± {fixed(deviation, decimals)}"
@@ -98,7 +98,7 @@ class Numbers:
         return "–"
 
     def figure(self, experiment, column, label):
-        """The text of a cell; `–` if this condition lacks the quantity but another condition has it."""
+        """Returns the text of a cell, or `–` if this condition lacks the quantity but another condition has it."""
         quantity, unit = re.fullmatch(r"(.*) \[(.*)\]", label).groups()
         condition, style = STYLE.fullmatch(column).groups()
         if condition == "paper":
@@ -126,7 +126,7 @@ def plain(cell):
 
 
 class Document:
-    """A document's lines with the correct figures, and its errors."""
+    """Returns a document's lines with the correct figures, and its errors."""
 
     def __init__(self, name, text, numbers):
         self.name, self.numbers = name, numbers
@@ -218,13 +218,13 @@ def check_documents(root, update):
 
 # ---- the output of the program in a page ---------------------------------------------------------------------------
 
-# These depend on the computer.
+# These values depend on the computer.
 BY_THE_CLOCK = re.compile(r"times real time|^Time per tick|^  (read|sense|simulate|render|monitor|guard|write|tick) ")
 FIGURE = re.compile(r"\d+(?:\.\d+)?")
 
 
 def close(a, b):
-    """Whether the values differ by at most 3 % or two units of the last printed digit, as between processors."""
+    """Returns whether the values differ by at most 3 % or two units of the last printed digit, as between processors."""
     digit = 10.0 ** -len(a.partition(".")[2])
     return abs(float(a) - float(b)) <= max(0.03 * abs(float(b)), 2.001 * digit)
 

@@ -7,10 +7,10 @@ root=$PWD work=$PWD/build/extending code=0
 
 trim() { sed 's/^[[:space:]]*//; s/[[:space:]]*$//' <<<"$1"; }
 
-# Files that a patch touches outside tests; generated files do not count.
+# Counts the files that a patch touches outside tests. Generated files do not count.
 touched() { sed -n 's|^+++ b/||p' "$1" | grep -v '^tests/' || true; }
 
-# Tracked and new files, except removed ones.
+# Lists tracked and new files, except removed ones.
 copy_tree() {
   mkdir -p "$1"
   git ls-files -z --cached --others --exclude-standard |

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Counts patterns of our old dialect in sources and documents; the count of a file may only fall.
+"""Counts patterns of our old dialect in sources and documents. The count of a file may only fall.
 
     tests/language/dialect.py            fails if a file has more than tests/language/debt.txt allows
     tests/language/dialect.py FILE...    shows where they are

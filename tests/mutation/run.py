@@ -18,8 +18,8 @@ import time
 
 WANTED = 0.9
 # The tests that judge a safety condition, by the beginning of the mutated file's name: test
-# programs and a selection of their tests, quick ones first. Runs of several minutes detect no more
-# mutants than short ones.
+# programs and a selection of their tests, with the quick ones first. Runs of several minutes detect
+# no more mutants than short ones.
 EMULATOR = ('test_emulator', '-Accuracy*:*Soak*:Verify*:Hands.*:Buttons.*')
 JUDGES = {
     'apps/': [('test_machine', 'PushTests*:MachineOption*:ProcessFault.WithoutRealTime*')],
@@ -93,13 +93,13 @@ def copy(source, folder):
 
 
 class Copy:
-    """A separate copy of the sources, and its build."""
+    """A separate copy of the sources with its build."""
 
     def __init__(self, source, folder):
         self.folder, self.usual = folder, {}  # duration of each program without a mutant [s]
         folder.mkdir(parents=True, exist_ok=True)
         copy(source, folder)
-        # The same path as in the checkout, so that both share the compiler cache.
+        # The path is the same as in the checkout, so that both share the compiler cache.
         self.built = folder / 'build/release'
         subprocess.run(['cmake', '--preset', 'release'], cwd=folder, check=True, capture_output=True)
 
@@ -131,13 +131,14 @@ class Copy:
         return passed
 
     def detected(self, file):
-        """Returns the test program that detects the change of `file`; None if no test does, or if it does not compile."""
+        """Returns the test program that detects the change of `file`, or None if no test does or the change does
+        not compile."""
         for program, tests in judges(file):
             if (built := self.build(program)).returncode != 0:
                 print('DOES NOT COMPILE. Correct mutants.txt.\n' + built.stdout[-2000:])
                 return None
             passed = self.run(program, tests)
-            # the computer may have been busy once
+            # the computer may have been busy for once
             if passed is None and (passed := self.run(program, tests)) is None:
                 return program + ', which hung'
             if not passed:

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# An installed tree works wherever it lies: install.sh BUILD SOURCE program|embed. Installs the build folder, moves the
-# tree, and runs the program in it, or builds and runs examples/embed against it.
+# An installed tree must work wherever it lies. Usage: install.sh BUILD SOURCE program|embed.
+# Installs the build folder, moves the tree, and runs the program in it, or builds and runs
+# examples/embed with it.
 set -euo pipefail
 build=$1 source=$2 what=$3
 work=$(mktemp -d)
@@ -8,11 +9,11 @@ trap 'rm -rf "$work"' EXIT
 
 cmake --install "$build" --prefix "$work/first" >"$work/log" || { cat "$work/log"; exit 1; }
 mv "$work/first" "$work/moved"
-cd "$work"  # not the source folder, whose scenarios would be found
+cd "$work"  # the program would find the scenarios of the source folder
 
 case $what in
   program)
-    # By name and by path; the robot and the box come from the tree as well.
+    # The scenario is given by name and by path. The robot and the box come from the tree as well.
     for scenario in box_9kg scenarios/dual_ur5.yaml; do
       moved/bin/predictor simulate "$scenario" --duration 1 --json "$work/summary.json" --force --quiet
       test -s "$work/summary.json"

@@ -1,5 +1,5 @@
-"""A controller as a process that carries the cobot's weight with springs until a time, then does
-what its argument names: crash, hang, nan, late, shorten, object (answers its pose); or refuses, or ends at once."""
+"""A controller as a process. It carries the cobot's weight with springs until a certain time. Then it does what
+its argument names: crash, hang, nan, late, shorten, or object (answers its pose). It can also refuse or end at once."""
 
 import mmap
 import os
@@ -37,7 +37,8 @@ while os.getppid() == parent:
                 try:
                     os.ftruncate(3, 0)
                 except OSError:
-                    torque[0] = 1e3  # refused: the test sees this torque, at its limit
+                    # the program refuses this torque, so the test sees it at its limit
+                    torque[0] = 1e3
             if fault == "hang":
                 while os.getppid() == parent:
                     time.sleep(0.01)

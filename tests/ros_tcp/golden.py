@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Writes golden.txt: bytes of messages as ROS itself writes them, for messages_test.cpp.
+"""Writes golden.txt for messages_test.cpp: the bytes of messages as ROS itself writes them.
 
-ROS 1: Debian's message classes (python3-std-msgs, python3-sensor-msgs, python3-geometry-msgs,
-python3-visualization-msgs). ROS 2: PyPI's rosbags 0.11.9 (types of Humble). Neither is needed to run
-the tests. Run with a Python that sees both: `python3 golden.py > golden.txt`.
+For ROS 1, it uses Debian's message classes (python3-std-msgs, python3-sensor-msgs,
+python3-geometry-msgs, python3-visualization-msgs). For ROS 2, it uses PyPI's rosbags 0.11.9 (types of
+Humble). The tests need neither of them. Run it with a Python that finds both:
+`python3 golden.py > golden.txt`.
 """
 import io
 import sys

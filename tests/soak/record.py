@@ -3,8 +3,8 @@
 
   record.py RECORD COMMIT JUNIT   adds a row for each test in ctest's JUnit file
 
-A row: date, commit (with a + where the sources differ from it), test, count, seconds, result. Counts are the
-lines "soak: count=N" that tests/support/soak.h prints in full runs.
+A row contains the date, the commit (with a + if the sources differ from it), the test, the count, the
+seconds and the result. Counts are the lines "soak: count=N" that tests/support/soak.h prints in full runs.
 """
 import csv
 import datetime
@@ -18,7 +18,7 @@ RESULTS = {'run': 'passed', 'fail': 'failed', 'notrun': 'skipped', 'disabled': '
 
 
 def rows(junit, commit, date):
-    """One for each test case."""
+    """Returns one row for each test case."""
     for case in xml.parse(junit).getroot().iter('testcase'):
         output = case.findtext('system-out') or ''
         counts = dict.fromkeys(re.findall(r'^soak: count=(\d+)', output, re.MULTILINE))

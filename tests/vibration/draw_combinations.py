@@ -1,4 +1,4 @@
-"""Draws random haptic loops and labels them by their growth rate: combinations.txt.
+"""Draws random haptic loops and labels them by their growth rate, for combinations.txt.
 
     python3 -m venv VENV; VENV/bin/pip install numpy==2.4.6 pin==4.1.0
     VENV/bin/python draw_combinations.py PANDA_URDF SEED > combinations.txt
@@ -24,7 +24,8 @@ import pinocchio as pin
 
 DT = 0.001
 MAX_LEAD = 25  # [ms]
-LOWEST = 10  # of the fastest growing mode [Hz]; the growth detector handles slower ones
+# lowest frequency of the fastest growing mode [Hz]; the growth detector handles slower ones
+LOWEST = 10
 WANTED = {'fast': 200, 'slow': 100, 'stable': 200}
 POSTURE = np.array([0, -0.3, 0, -2.0, 0, 1.7, 0.785])
 STIFFNESS = np.array([5, 5, 500, 100, 100, 100.0])
@@ -71,7 +72,7 @@ def bar_inertia():
 
 
 class World:
-    """Cobot with its load, linear about its equilibrium: M a = -K dq - D v + sum J' F."""
+    """The cobot with its load, linear about its equilibrium: M a = -K dq - D v + sum J' F."""
 
     def __init__(self, urdf, inertia, attach, on_object_z, handles):
         self.cobot = panda(urdf)
@@ -99,7 +100,7 @@ class World:
         self.linearise()
 
     def torque(self, q, v):
-        """Torque of the controller (eq. 2 of the paper) and of the joints' friction."""
+        """Returns the torque of the controller (eq. 2 of the paper) and of the joints' friction."""
         m, d = self.cobot, self.cobot_data
         qc, vc = q[:7], v[:7]
         M = pin.crba(m, d, qc)
@@ -132,7 +133,7 @@ class World:
         return out
 
     def force(self, q, v):
-        """Generalised force minus the force that keeps the velocity v: M a."""
+        """Returns M a, the generalised force minus the force that keeps the velocity v."""
         return self.torque(q, v) - pin.rnea(self.model, self.data, q, v, np.zeros(self.model.nv))
 
     def slope(self, q):
@@ -180,7 +181,7 @@ class World:
 
 
 def second_order(bandwidth, ratio, h):
-    """exp(F h) of (q, v, a, u)."""
+    """Returns exp(F h) of (q, v, a, u)."""
     w = 2 * np.pi * bandwidth
     F = np.zeros((4, 4))
     F[0, 1] = F[1, 2] = 1
@@ -194,13 +195,13 @@ def second_order(bandwidth, ratio, h):
 
 
 class Loop:
-    """det(1 + L) of a combination, at many z at once."""
+    """Computes det(1 + L) of a combination, at many z at once."""
 
     def __init__(self, world, c, gain=1.0):
         self.w, self.c, self.gain = world, c, gain
 
     def arm(self, z):
-        """Transfer from the command to the handle's position, velocity and acceleration."""
+        """Returns the transfer function from the command to the handle's position, velocity and acceleration."""
         c = self.c
         n = int(np.floor(c['delay'] / DT + 1e-9))
         fraction = max(0.0, c['delay'] / DT - n)
@@ -217,7 +218,7 @@ class Loop:
         z = np.asarray(z, complex)
         zi = 1 / z
         x, v, a = self.arm(z).T
-        # World: implicit in the joints' friction, explicit in all other terms.
+        # The world is implicit in the joints' friction and explicit in all other terms.
         inv = np.linalg.inv(w.M + DT * w.friction)
         n = len(w.M)
         left = ((z - 1)[:, None, None] * np.eye(n) + DT * (inv @ w.D) +
@@ -228,10 +229,10 @@ class Loop:
         keep = np.exp(-2 * np.pi * 20 * DT)
         lead = 1 + c['lead'] * (1 - keep) / (1 - keep * zi) * (1 - zi) / DT
         gains = np.tile([2, 2, 2, 0.2, 0.2, 0.2], len(w.J) // 6)
-        # u = lead V_D + k (X_D - X_H), X_H = x u
+        # The law is u = lead V_D + k (X_D - X_H), with X_H = x u.
         command = lead[:, None, None] * twist + gains[:, None] * place
         command = command / (1 + gains * x[:, None])[:, :, None]
-        # Hand at each handle: force per command.
+        # This is the force of the hand at each handle per command.
         k = c['scale'] * np.array([250, 100, 100.0])
         d = 2 * 0.3 * np.sqrt(c['mass'] * k)
         reflex = 1 + 0.4 * zi ** 60
@@ -241,7 +242,7 @@ class Loop:
                 Z[:, h + i, h + i] = (k[i] * x + d[i] * v) * reflex + c['mass'] * a
                 Z[:, h + 3 + i, h + 3 + i] = (c['scale'] * 4 * x +
                                               np.sqrt(c['scale']) * 0.1 * v) * reflex
-        # Pose of the object as the handles show it.
+        # This is the pose of the object as the handles show it.
         mean = w.R @ (w.handles[0] + w.handles[1]) / 2
         lever = pin.skew(mean)[2]
         for row in (2, 8):
@@ -258,8 +259,8 @@ class Loop:
         return np.linalg.det(np.eye(12) + L)
 
     def outside(self, rate=0.0):
-        """Number of poles that grow faster than `rate`: the winding number of det along that circle
-        and around z = 1."""
+        """Returns the number of poles that grow faster than `rate`, which is the winding number of det along that
+        circle and around z = 1."""
         arc = 2 * np.pi * 0.02 * np.exp(0.5j * np.pi * np.linspace(0, 1, 20))
         f = np.r_[np.geomspace(0.02, 5, 60)[1:], np.linspace(5, 80, 250)[1:],
                   np.geomspace(80, 499.9, 60)[1:]]
@@ -276,7 +277,7 @@ class Loop:
         return round(-turned / np.pi)
 
     def poles(self, rates, step):
-        """The unstable poles, as rates s = log(z) / DT, without duplicates. The search starts from a
+        """Returns the unstable poles, as rates s = log(z) / DT, without duplicates. The search starts from a
         grid of rates and of the frequencies 10 Hz, 10 Hz + step, ..., and some lower ones."""
         f = np.r_[np.geomspace(0.4, 8, 8), np.arange(10, 62, step)]
         s = np.concatenate([rate + 2j * np.pi * f for rate in rates])
@@ -296,7 +297,7 @@ class Loop:
 
 
 def fastest(loop, outside):
-    """The fastest growing pole; None if a pole was not found or it is slower than LOWEST."""
+    """Returns the fastest growing pole, or None if a pole was not found or it is slower than LOWEST."""
     poles = loop.poles((0.5, 9, 30), 3)
     if outside != 2 * len(poles):
         poles = loop.poles((0.2, 2, 5, 9, 14, 20, 30, 40, 55, 75), 1)

@@ -4,16 +4,16 @@ limits. It shares no code with the program that wrote the commands.
 
     audit_commands.py FILE...     prints a line for each violation; the exit code is then 1
 
-A file contains runs one after the other (tests/devices/audit.h): the data on a run as JSON, then all bytes that were
+A file contains runs one after the other (tests/devices/audit.h): the data about a run as JSON, then all bytes that were
 written to an arm, with their times. For each arm, the audit checks:
   numbers      all finite, one for each joint of the arm
   velocity     of each joint: at most 80 % of the description's limit, and at most the scenario's limit
   acceleration of each joint, from one command to the next
-  jerk         of each joint of a Franka, which publishes a limit
+  jerk         of each joint of a Franka, because Franka publishes a limit
   the handles  not faster in translation or rotation than the state permits (ALIGN, RUN, RECOVERY). The kinematics come
                from the description, at the joint angles at which the arm will obey: the last measured angles plus the
                commands since then, and those before that within the arm's lag
-  rest         only zero in states without motion
+  rest         every command is zero in states without motion
   a stop       no handle accelerates (except while the jerk limit reverses an acceleration), and none exceeds the promised
                deceleration or jerk; afterwards every command is zero, as for rest
 """
@@ -33,15 +33,16 @@ POSTURE, NEARLY = 1.02, 0.001
 COARSE = 0.005                 # motion of the joints after which the kinematics are computed again [rad]
 FLUTTER = 0.5e-3               # change of a handle's speed between commands that is due to the posture [m/s]
 TICK = 0.001                   # period of the program [s]
-# If a motion already has a high jerk when a stop begins (for example because the emulated object shakes), the stop continues its
-# acceleration. Within TAKING_OVER after that, the jerk must not exceed that of the time JUST_BEFORE [s].
+# If a motion already has a high jerk when a stop begins (for example because the emulated object
+# shakes), the stop continues its acceleration. Within TAKING_OVER after that, the jerk must not
+# exceed that of the time JUST_BEFORE [s].
 TAKING_OVER, JUST_BEFORE = 0.005, 0.020
 # One profile stops both handles and continues the acceleration of the faster one. The other one may start to decelerate
 # immediately, with this fraction of the stop's acceleration.
 ONSET = 0.5
 # After lost commands, a Franka has deviated from the requested motion; it is led back within this time [s].
 LED_BACK = 0.020
-# From Franka's "Robot and interface specifications" (Research 3) [rad/s²], [rad/s³].
+# The limits are from Franka's "Robot and interface specifications" (Research 3) [rad/s²], [rad/s³].
 FRANKA_ACCELERATION, FRANKA_JERK = 10.0, 5000.0
 # Our driver of a Franka permits this fraction of the limits and never passes a requested velocity. The requested velocity is
 # therefore the one that a joint reaches once its acceleration has decayed to zero; the audit judges a stop by it. While the driver
@@ -61,7 +62,7 @@ STAND = (0.0,) * 6             # command to a UR's program to stop; the program 
 # ---- a robot's kinematics, from its description -------------------------------------------------
 
 def multiply(a, b):
-    """Product of two transforms. It is written out, because the audit spends most of its time here."""
+    """Returns the product of two transforms. It is written out, because the audit spends most of its time here."""
     (b00, b01, b02, b03), (b10, b11, b12, b13), (b20, b21, b22, b23), last = b
     return [[x * b00 + y * b10 + z * b20, x * b01 + y * b11 + z * b21, x * b02 + y * b12 + z * b22,
              x * b03 + y * b13 + z * b23 + w] for x, y, z, w in a[:3]] + [last]
@@ -94,7 +95,7 @@ def cross(a, b):
 
 
 def total(columns, rates):
-    """Sum of the columns, each multiplied by its rate."""
+    """Returns the sum of the columns, each multiplied by its rate."""
     x = y = z = 0.0
     for c, rate in zip(columns, rates):
         x, y, z = x + c[0] * rate, y + c[1] * rate, z + c[2] * rate
@@ -127,13 +128,13 @@ class Arm:
         if known['velocity_limit']:
             limits = [min(a, b) for a, b in zip(limits, known['velocity_limit'])]
         self.velocity = limits
-        loop = known['loop']  # second order plus a delay: its mean lag [s]
+        loop = known['loop']  # the mean lag of the loop, which is of second order plus a delay [s]
         self.lag = loop['delay'] + 2 * loop['damping_ratio'] / (2 * math.pi * loop['bandwidth'])
         a = known['acceleration_limit']
         self.acceleration = a if len(a) > 1 else a * self.dof
 
     def columns(self, q):
-        """For each joint: velocity of the handle's origin at 1 rad/s of this joint, and the joint's axis."""
+        """Returns for each joint the velocity of the handle's origin at 1 rad/s, and the joint's axis."""
         X, axes, k = self.base, [], 0
         for fixed, axis in self.chain:
             X = multiply(X, fixed)
@@ -148,14 +149,14 @@ class Arm:
         return [(cross(axis, [p[i] - at[i] for i in range(3)]), axis) for axis, at in axes]
 
     def handle_velocity(self, q, v):
-        """Velocity of the handle's origin [m/s]."""
+        """Returns the velocity of the handle's origin [m/s]."""
         return total((c[0] for c in self.columns(q)), v)
 
 
 # ---- the commands -------------------------------------------------------------------------------
 
 def rtde_command(data):
-    """Joint velocities of an RTDE package of inputs, or STAND; None for any other data."""
+    """Returns the joint velocities of an RTDE package of inputs, or STAND, or None for any other data."""
     if len(data) != RTDE_COMMAND or struct.unpack('>H', data[:2])[0] != len(data) or data[2:3] != b'U':
         return None
     v = struct.unpack('>6d', data[4:52])
@@ -164,7 +165,8 @@ def rtde_command(data):
 
 
 def franka_command(data):
-    """State number (negative before it wraps around) and joint velocities of an FCI command; None for any other data."""
+    """Returns the state number (negative before it wraps around) and the joint velocities of an FCI command, or None for any
+    other data."""
     if len(data) not in FRANKA_COMMANDS:
         return None
     return struct.unpack('<q', data[:8])[0], struct.unpack('<7d', data[64:120])
@@ -254,7 +256,8 @@ class Judge:
                     most = min(arm.acceleration[j], FRANKA_ACCELERATION) if franka else arm.acceleration[j]
                     if abs(now[j]) > most * (1 + ROUNDING) + 1e-9:
                         self.fail(hand, time, 'joint %d accelerates by %.3f rad/s²' % (j, now[j]))
-                    # Between the middles of the two intervals. In an interval without a command, the robot extrapolates.
+                    # The change is between the middles of the two intervals. In an interval without
+                    # a command, the robot extrapolates.
                     if franka and rates is not None and dt < 1.5 * TICK and last_dt < 1.5 * TICK and \
                             abs(now[j] - rates[j]) > FRANKA_JERK * dt * (1 + ROUNDING) + 1e-6:
                         self.fail(hand, time, 'joint %d jerks by %.0f rad/s³' % (j, (now[j] - rates[j]) / dt))
@@ -262,7 +265,7 @@ class Judge:
             before = (time, v)
 
     def held(self, hand, commands):
-        """Joints that a Franka's driver limits: first the jerk, then the acceleration as long as it is at its limit. For the time of
+        """The joints that a Franka's driver limits: first the jerk, then the acceleration as long as it is at its limit. For the time of
         each command, returns the joints that were limited within HELD_ON, each with its largest acceleration since then [rad/s²]
         and the time of its last limitation [s]."""
         times, holds = {}, {}
@@ -317,7 +320,7 @@ class Judge:
 
     @staticmethod
     def to_be_obeyed(q, commands, lag):
-        """The joint angles to which an arm at q will move with the commands of the last `lag` [s], which it has not obeyed yet."""
+        """Returns the joint angles to which an arm at q will move with the commands of the last `lag` [s], which it has not obeyed yet."""
         q, begin = list(q), commands[-1][0] - lag
         for (t0, v), (t1, _) in zip(commands, commands[1:]):
             if t1 > begin and len(v) == len(q):
@@ -363,7 +366,7 @@ class Judge:
         self.jerking(hand, rates, speeds[at], nominal)
 
     def along_the_way(self, hand, before, after):
-        """Speeds of the handle. The speed is negative while the handle moves back along its path."""
+        """Returns the speeds of the handle. A speed is negative while the handle moves back along its path."""
         arm, q = self.arms[hand], list(self.known['arms'][hand]['q'])
         for (t0, _), (t1, v) in zip(before, before[1:]):  # back to the posture in which the first was obeyed
             q = [a - b * (t1 - t0) for a, b in zip(q, v)]
@@ -386,7 +389,7 @@ class Judge:
 
     @staticmethod
     def bound_for(commands):
-        """The velocities that a Franka's joints reach once their accelerations have decayed to zero with the permitted jerk."""
+        """Returns the velocities that a Franka's joints reach once their accelerations have decayed to zero with the permitted jerk."""
         bound = [list(v) for _, v in commands]
         for k, ((t0, v0), (t1, v1)) in enumerate(zip(commands, commands[1:]), 1):
             for j, (a, b) in enumerate(zip(v0, v1)):
@@ -417,7 +420,8 @@ class Judge:
                      if y.time < first.time - TICK / 2 and y.time - x.time < 1.5 * nominal), default=0)
         usual = self.known['stop_jerk'] * nominal * 1.1 + FLUTTER / nominal
         for x, y in zip(rates, rates[1:]):
-            early = x.time - nominal < first.time + TAKING_OVER - TICK / 2  # the first of its three commands
+            # this is the first of its three commands
+            early = x.time - nominal < first.time + TAKING_OVER - TICK / 2
             allowed = usual + max(shook - usual, y.limits if first.limits > 0 else 0, 0) * (1 + ROUNDING) if early else usual
             # If a command was late, the arm kept the previous one; the resulting jerk is not the program's.
             late = max(y.time - x.time, x.time - before) > 1.5 * nominal
@@ -437,7 +441,7 @@ class Judge:
 
     @staticmethod
     def onset(before, after, first):
-        """Increase of the deceleration [m/s²]. An acceleration may end immediately."""
+        """Returns the increase of the deceleration [m/s²]. An acceleration may end immediately."""
         along = lambda rate: sum(a * b for a, b in zip(rate, first.sent)) / max(math.hypot(*first.sent), 1e-9)
         return min(along(before), 0) - along(after)
 

@@ -11,7 +11,7 @@ import unittest
 sys.dont_write_bytecode = True
 import audit_commands as audit  # noqa: E402
 
-# A planar arm whose joints rotate about z, at distances of 0.2 m.
+# This is a planar arm whose joints rotate about z, at distances of 0.2 m.
 URDF = '<robot name="r"><link name="l0"/>' + ''.join(
     '<link name="l%d"/><joint name="j%d" type="revolute"><parent link="l%d"/><child link="l%d"/>'
     '<origin xyz="0.2 0 0" rpy="0 0 0"/><axis xyz="0 0 1"/>'
@@ -44,7 +44,7 @@ class Stream:
         no = dict(allowed, speed=None, rotation=None)
         self.known['stages'].append(dict(no, time=int(1e9 * STOP), state='STOPPING'))
         self.known['stages'].append(dict(no, time=int(1e9 * REST), state='HELD'))
-        # Only the first joint moves: from rest to 0.1 rad/s, then a stop with bounded jerk.
+        # Only the first joint moves: from rest to 0.1 rad/s, and then in a stop with bounded jerk.
         self.file = os.path.join(folder, 'run')
         self.v = [[0.1 * self.profile(t)] + [0.0] * (dof - 1) for t in self.times()]
 
@@ -53,7 +53,7 @@ class Stream:
 
     @staticmethod
     def profile(t):
-        """Rises within 0.1 s and falls within 0.15 s from the stop on. Each acceleration is half a sine wave."""
+        """Returns a velocity that rises within 0.1 s and falls within 0.15 s from the stop on. Each acceleration is half a sine wave."""
         up = 0.5 - 0.5 * math.cos(math.pi * min(1, t / 0.1))
         down = 0.5 - 0.5 * math.cos(math.pi * min(1, max(0, t - STOP) / 0.15))
         return up * (1 - down)
@@ -80,7 +80,7 @@ class Stream:
 
 class AuditTest(unittest.TestCase):
     def each(self, spoil, word, makes=('ur', 'franka')):
-        """Without the defect the audit finds nothing; with it, the finding contains `word`."""
+        """Expects no finding without the defect, and a finding that contains `word` with it."""
         for make in makes:
             with tempfile.TemporaryDirectory() as folder:
                 stream = Stream(make, folder, 6 if make == 'ur' else 7)
@@ -99,7 +99,7 @@ class AuditTest(unittest.TestCase):
     def test_velocity(self):
         def spoil(s):
             for k in range(100, 280):
-                s.v[k][5] = 2.01  # limit: 80 % of 2.5
+                s.v[k][5] = 2.01  # the limit is 80 % of 2.5
         self.each(spoil, 'rad/s')
 
     def test_acceleration(self):
@@ -109,7 +109,7 @@ class AuditTest(unittest.TestCase):
         self.each(lambda s: self.add(s, 0.2, 0.202, 1, lambda t: 0.05), 'accelerates')
 
     def test_jerk(self):
-        # From −6 to +6 rad/s² in a millisecond, which is within the acceleration limit.
+        # The acceleration goes from −6 to +6 rad/s² in a millisecond and stays within its limit.
         def spoil(s):
             self.add(s, 0.2, 0.22, 4, lambda t: 0.1 - 6 * abs(t - 0.21) - 0.04)
         self.each(spoil, 'jerks', makes=('franka',))
@@ -183,14 +183,14 @@ class AuditTest(unittest.TestCase):
             self.each(spoil, 'in ' + state)
 
     def test_motion_before_anything_may_move(self):
-        # The first known state.
+        # This is the first known state.
         def spoil(s):
             s.known['stages'][0]['state'] = 'IDLE'
             self.add(s, 0, 0.004, 3, lambda t: 1e-5)
         self.each(spoil, 'in IDLE')
 
     def test_what_dies_away_when_nothing_may_move_any_more(self):
-        # Even a small and short motion counts.
+        # Even a small and short motion must be found.
         def spoil(s):
             s.known['stop'] = s.known['rest'] = 0
             self.add(s, REST - 0.02, REST + 0.004, 5, lambda t: 0.002 * min(1.0, (t - REST + 0.02) / 0.018,
@@ -211,12 +211,13 @@ class AuditTest(unittest.TestCase):
                   'while stopping')
 
     def test_jerk_in_a_stop(self):
-        # Within the acceleration limits of the joints and the handle.
+        # The motion is within the acceleration limits of the joints and the handle.
         self.each(lambda s: self.add(s, STOP + 0.08, STOP + 0.084, 0, lambda t: 0.008), 'm/s³',
                   makes=('ur',))
 
     def test_a_motion_that_jerks_already(self):
-        # A motion that shakes before a stop may end with a similar jerk. This is not permitted without the shaking, or later.
+        # A motion that shakes before a stop may end with a similar jerk. Without the shaking, or
+        # later, this is not permitted.
         shake = lambda begin, end: lambda s: self.add(s, begin, end, 0, lambda t: 0.008)
         with tempfile.TemporaryDirectory() as folder:
             stream = Stream('ur', folder, 6)
@@ -228,7 +229,7 @@ class AuditTest(unittest.TestCase):
         self.each(shake(STOP, STOP + 0.002), 'm/s³', makes=('ur',))
 
     def test_jerk_of_a_franka_in_a_stop(self):
-        # Within the limits of its joints, both during the stop and at its beginning.
+        # The stop is within the limits of its joints, both during the stop and at its beginning.
         for begin in (STOP + 0.08, STOP):
             self.each(lambda s: self.add(s, begin, begin + 0.004, 0, lambda t: 0.0042), 'm/s³', makes=('franka',))
 
@@ -248,7 +249,7 @@ class AuditTest(unittest.TestCase):
 
     @staticmethod
     def followed(asked):
-        """Velocities of a joint that never passes the requested ones and has the permitted jerk."""
+        """Returns velocities of a joint that never passes the requested ones and has the permitted jerk."""
         J, v, a, out = 0.95 * 5000, 0.0, 0.0, []
         for target in asked:
             def comes_to(rate):  # velocity once the acceleration has decayed to zero
@@ -271,7 +272,8 @@ class AuditTest(unittest.TestCase):
         return out
 
     def test_a_stop_that_a_driver_of_a_franka_follows(self):
-        # Decelerates at 9 rad/s² with the permitted jerk. The joint lags by a²/2j, which is no violation, but a spike is one.
+        # The joint decelerates at 9 rad/s² with the permitted jerk. It lags by a²/2j, which is no
+        # violation, but a spike is one.
         hardest, ramp = 9.0, 0.008
         def rate(t):
             return hardest * max(0.0, min(1.0, (t - STOP) / ramp, (STOP + 0.04 - t) / ramp))
@@ -293,11 +295,13 @@ class AuditTest(unittest.TestCase):
                 self.assertIn('m/s³', ' '.join(stream.wrong()), at)
 
     def test_a_handle_of_a_franka_whose_joint_is_held_back(self):
-        # 0.1 rad/s at 1.2 m, and faster for a few milliseconds: with the driver's permitted jerk; with slightly less;
-        # gently; for longer; and by more than a limited joint can lag behind.
+        # At 0.1 rad/s and 1.2 m, the handle is faster for a few milliseconds in five ways: with the
+        # driver's permitted jerk, with slightly less, gently, for longer, and by more than a
+        # limited joint can lag behind.
         full = 0.95 * 5 * 0.001
         quick = [full, 0.0085, 0.0085, 0.0085 - full]
-        # Shaken at its limit all the time. Too fast for 12 ms is a violation, even if the driver limits the joint.
+        # The joint is shaken at its limit all the time. Excess speed for 12 ms is a violation, even
+        # if the driver limits the joint.
         longer = [full, 0.0085] + [0.0085 - full * (k % 2) / 2 for k in range(12)] + [0.0085 - full]
         faster = [full * k for k in (1, 3, 4, 4, 3, 1)]
         for more, well in ((quick, True), ([0.9 * x for x in quick], False),
@@ -322,7 +326,7 @@ class AuditTest(unittest.TestCase):
                     v = 6 * begun if t < STOP else max(0.0, at - 2 * (t - STOP))
                     stream.v[k] = [v] + [0.0] * (stream.dof - 1)
                 return [w for w in stream.wrong() if 'while stopping' in w]
-        # Last commands: 0.012 rad/s at 1 m, and 0.018 rad/s at 1.2 m.
+        # The last commands are 0.012 rad/s at 1 m and 0.018 rad/s at 1.2 m.
         for make, most in (('ur', (0.012 + 0.015) * 1.25 + 0.005), ('franka', (0.018 * 1.2 * 1.25 + 0.005) / 1.2)):
             self.assertEqual(stop(make, most - 1e-5), [], make)
             self.assertTrue(stop(make, most + 1e-4), make)
@@ -338,7 +342,8 @@ class AuditTest(unittest.TestCase):
         return a + (b - a) * (0.5 - 0.5 * math.cos(math.pi * min(1.0, max(0.0, part))))
 
     def test_a_stop_that_begins_with_a_jerk(self):
-        # Decelerates at the limit from the first command on, or after a delay, and ends smoothly.
+        # The handle decelerates at the limit from the first command on, or after a delay, and ends
+        # smoothly.
         for wait in (0.0, 0.004, 0.02):
             def spoil(s):
                 hard = lambda t: max(0.2 - 4.5 * max(0.0, t - STOP - wait), 0.2 * math.exp(-(t - STOP - wait) / 0.04))
@@ -347,14 +352,15 @@ class AuditTest(unittest.TestCase):
             self.each(spoil, 'm/s³')
 
     def test_a_joint_at_its_limit_within_a_stop(self):
-        # After a steady motion there is no lag to recover.
+        # After a steady motion, there is no lag to recover.
         full = 0.95 * 5 * 0.001
         for at in (STOP + 0.001, STOP + 0.002, STOP + 0.003):
             self.each(lambda s: self.add(s, at, STOP + 0.1, 0, lambda t: -full * min(1, (STOP + 0.1 - t) / 0.02)), 'm/s³',
                       makes=('franka',))
 
     def test_speeding_up_later_in_a_stop(self):
-        # Decelerates to rest, accelerates to less than the first speed, and decelerates again.
+        # The handle decelerates to rest, accelerates to less than the first speed, and decelerates
+        # again.
         def spoil(s):
             self.at_handle(s, lambda t: self.smooth(0, 0.2, t / 0.1) if t < STOP else
                            self.smooth(0.2, 0, (t - STOP) / 0.08) if t < STOP + 0.08 else
@@ -369,7 +375,7 @@ class AuditTest(unittest.TestCase):
         self.each(spoil, 'm/s while stopping', makes=('ur',))
 
     def test_a_jerk_into_a_stop_is_no_shaking_before_it(self):
-        # Independently of how the state numbers round the times.
+        # The result must not depend on how the state numbers round the times.
         for number in (1000, 1523, 123456):
             def spoil(s):
                 s.number = number
@@ -378,7 +384,8 @@ class AuditTest(unittest.TestCase):
             self.each(spoil, 'm/s³', makes=('franka',))
 
     def test_what_one_joint_hides_of_another(self):
-        # One joint lags and the other does not: the requested motion has its jerk in one command, the commanded motion in the next.
+        # One joint lags and the other does not. The requested motion has its jerk in one command,
+        # the commanded motion in the next.
         def spoil(s):
             step, v, out = 0.95 * 5e-3, [0.0, 0.0], []
             for k in range(700):
@@ -398,7 +405,7 @@ class AuditTest(unittest.TestCase):
         self.each(spoil, 'at once')
 
     def test_one_package_that_leaves_early(self):
-        # The audit still judges the other packages.
+        # The audit must still judge the other packages.
         def spoil(s):
             s.early = STOP - 0.02
             self.add(s, STOP + 0.08, STOP + 0.084, 0, lambda t: 0.008)
@@ -412,7 +419,8 @@ class AuditTest(unittest.TestCase):
             self.assertIn('m/s³', ' '.join(stream.wrong()))
 
     def test_a_handle_that_turns_back(self):
-        # The velocity passes through zero and returns without a jerk. Its magnitude alone would appear to have one.
+        # The velocity passes through zero and returns without a jerk. Its magnitude alone would
+        # appear to have one.
         back = lambda s: self.add(s, STOP + 0.125, STOP + 0.185, 0,
                                   lambda t: -0.01 * math.sin(math.pi * (t - STOP - 0.125) / 0.06) ** 2)
         with tempfile.TemporaryDirectory() as folder:

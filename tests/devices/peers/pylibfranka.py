@@ -7,7 +7,7 @@ import pathlib
 import sys
 import unittest
 
-# Otherwise `import pylibfranka` would find this file.
+# Without this, `import pylibfranka` would find this file.
 HERE = str(pathlib.Path(__file__).parent)
 sys.path[:] = [folder for folder in sys.path if folder != HERE] + [HERE + "/support"]
 

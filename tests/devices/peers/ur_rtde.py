@@ -19,7 +19,7 @@ FIELDS = ["timestamp", "actual_q", "actual_qd", "safety_status_bits"]
 
 
 class Rig:
-    """The far end as a separate process."""
+    """The rig with its fakes, as a separate process."""
 
     def __init__(self):
         self.process = subprocess.Popen(
@@ -39,7 +39,7 @@ class Rig:
         return lines[:-1]
 
     def joints(self):
-        """The true joint angles of the left arm."""
+        """Returns the true joint angles of the left arm."""
         words = self.ask("state").split()
         first = words.index("q", words.index("left")) + 1
         return [float(word) for word in words[first:first + 6]]
@@ -64,7 +64,8 @@ class UrRtde(unittest.TestCase):
         self.rig = Rig()
         self.addCleanup(self.rig.close)
         self.control = self.receive = None
-        self.addCleanup(self.disconnect)  # before the rig closes, because the clients would try to reconnect
+        # runs before the rig closes, because the clients would try to reconnect
+        self.addCleanup(self.disconnect)
 
     def connect(self):
         self.control = rtde_control.RTDEControlInterface(HOST)
@@ -77,7 +78,7 @@ class UrRtde(unittest.TestCase):
         self.control = self.receive = None
 
     def sample(self):
-        """Time and joints from the same package, even if the calls are slow."""
+        """Returns time and joints from the same package, even if the calls are slow."""
         while True:
             stamp, q = self.receive.getTimestamp(), self.receive.getActualQ()
             if self.receive.getTimestamp() == stamp:

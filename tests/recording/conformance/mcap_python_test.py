@@ -20,7 +20,7 @@ from mcap_ros2.decoder import DecoderFactory
 
 
 def plain(value):
-    """A decoded message in the form of expected.jsonl."""
+    """Returns a decoded message in the form of expected.jsonl."""
     if isinstance(value, float):
         return "nan" if math.isnan(value) else "inf" if value == math.inf else "-inf" if value == -math.inf else value
     if isinstance(value, (list, tuple)) or type(value).__name__ == "array":
@@ -46,7 +46,7 @@ class Recording(unittest.TestCase):
         cls.summary = SeekingReader(io.BytesIO(cls.bytes)).get_summary()
 
     def record_at(self, offset):
-        """Opcode, content and end of the record at this position."""
+        """Returns opcode, content and end of the record at this position."""
         opcode, length = struct.unpack_from("<BQ", self.bytes, offset)
         return opcode, self.bytes[offset + 9:offset + 9 + length], offset + 9 + length
 
@@ -62,7 +62,7 @@ class Recording(unittest.TestCase):
         # Reads the file as a stream and checks the CRC of each chunk and of all data.
         streamed = sum(1 for _ in NonSeekingReader(io.BytesIO(self.bytes), validate_crcs=True).iter_messages())
         self.assertEqual(streamed, self.summary.statistics.message_count)
-        # Confirms that the check detects a damaged byte.
+        # This confirms that the check detects a damaged byte.
         middle = self.summary.chunk_indexes[1].chunk_start_offset + 200
         damaged = self.bytes[:middle] + bytes([self.bytes[middle] ^ 1]) + self.bytes[middle + 1:]
         with self.assertRaises(Exception):
@@ -132,7 +132,7 @@ class Recording(unittest.TestCase):
         self.assertEqual(reader.get_header().profile, "ros2")
         attachments = {a.name: a.data for a in reader.iter_attachments()}
         self.assertEqual(set(attachments), {"scenario.yaml", "machine.yaml", "robot.urdf", "predictor.copy"})
-        # The attachment's records precede the first chunk.
+        # The attachment's records come before the first chunk.
         self.assertIn(b"predictor: 1\nname: Box\n", attachments["predictor.copy"])
         self.assertIn(b"predictor.run", attachments["predictor.copy"])
         self.assertEqual(attachments["robot.urdf"], b"<robot/>\0x")
@@ -171,7 +171,7 @@ class Recording(unittest.TestCase):
                 if value["name"] in ("event", "loss"):
                     last.setdefault("/events", []).append((value["name"], value["tick"], value.get("lost")))
                 continue
-            # At most 50 a second.
+            # There are at most 50 a second.
             self.assertGreaterEqual(message.log_time - last.get(channel.topic, 0), 20_000_000)
             last[channel.topic] = message.log_time
         self.assertEqual(last["/events"], [("event", 600, None), ("loss", 700, 3)])
@@ -183,7 +183,7 @@ def io_stream(content):
 
 
 def messages_in(data):
-    """offset -> (channel, log time)"""
+    """Maps each offset to (channel, log time)."""
     there, offset = {}, 0
     while offset < len(data):
         opcode, length = struct.unpack_from("<BQ", data, offset)

@@ -1,4 +1,4 @@
-"""Bags of ROS 2 that the package rosbags wrote, of both kinds of storage: import, then evaluation."""
+"""Imports and evaluates bags of ROS 2 that the package rosbags wrote, with both kinds of storage."""
 
 import csv
 import json
@@ -75,7 +75,7 @@ def odometry(hand, t):
 
 
 def transforms(hand, t):
-    """The hand between two frames of other names, which differ in length: strings move what follows."""
+    """Places the hand between two frames whose names differ in length, so that the bytes after them move."""
     make = TYPES.types
 
     def transform(frame, p, q):
@@ -91,7 +91,7 @@ def transforms(hand, t):
 
 
 def write_other_poses(folder):
-    """The left pose as odometry, the right one as a transform."""
+    """Sends the left pose as odometry and the right one as a transform."""
     with Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         for hand, name, msgtype, make in (("left", "/left/odom", "nav_msgs/msg/Odometry", odometry),
                                           ("right", "/tf", "tf2_msgs/msg/TFMessage", transforms)):
@@ -115,7 +115,7 @@ def write_bag(folder, storage):
                 for i in range(3 * rate):
                     t = START + i / rate
                     message = pose(hand, t) if what == "pose" else wrench(t)
-                    # Received 20 ms late; the stamps count.
+                    # The message was received 20 ms late, and its stamp counts.
                     writer.write(topic, round((t + 0.02) * 1e9), TYPES.serialize_cdr(message, msgtype))
 
 
@@ -145,7 +145,7 @@ class Bags(unittest.TestCase):
                 p = [float(row[f"{hand}_hand.p.{axis} [m]"]) for axis in "xyz"]
                 np.testing.assert_allclose(p, position(hand, t), atol=2e-5)  # interpolated at 125 Hz
                 f = [float(row[f"{hand}_hand.force.{axis} [N]"]) for axis in "xyz"]
-                x, y, z = force(t)  # in the handle's axes, which are turned by 90° about z
+                x, y, z = force(t)  # in the handle's axes, which are rotated by 90° about z
                 np.testing.assert_allclose(f, [-y, x, z], atol=0.02)
         done = run("evaluate", file, "--json", "-", "--no-intervals", "--quiet")
         self.assertEqual(done.returncode, 0, done.stderr)

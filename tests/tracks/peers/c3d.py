@@ -1,4 +1,4 @@
-"""A C3D file that the package ezc3d wrote: markers of a head, with gaps, beside a simulated run."""
+"""Evaluates a simulated run with a C3D file that the package ezc3d wrote: markers of a head, with gaps."""
 
 import json
 import os
@@ -15,7 +15,7 @@ RATE, FRAMES = 120, 720
 
 
 def write_c3d(file):
-    """Four markers on a head that rests, in mm, z up, in a frame 1 m before W's origin."""
+    """Returns four markers on a resting head, in mm with z up, in a frame 1 m in front of W's origin."""
     head = np.array([-200.0, 50.0, 650.0])  # so in W: [0.8, 0.05, 0.65] m
     looks = {"FRONT": [-100, 0, 60], "BACK": [100, 0, 60], "LEFT": [0, -80, 60], "RIGHT": [0, 80, 60]}
     points = np.ones((4, len(looks), FRAMES))
@@ -66,7 +66,7 @@ class C3d(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         measured = json.loads(done.stdout)["measured"]
         parts = {part["what"]: part for part in measured["parts"]}
-        # The hidden marker takes the rotation, and with it the place of the eyes.
+        # While the marker is hidden, the rotation is unknown, and with it the place of the eyes.
         self.assertLess(parts["head"]["share_of_time"], 0.9)
         self.assertGreater(parts["head"]["share_of_time"], 0.7)
         self.assertEqual(parts["head"]["share_of_time"], parts["head rotation"]["share_of_time"])

@@ -1,4 +1,4 @@
-"""The recorder of the Lab Streaming Layer, beside a stream that another process sends with liblsl."""
+"""Tests the recorder of the Lab Streaming Layer with a stream that another process sends with liblsl."""
 
 import csv
 import math
@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
 
-# Sends the time of the day of each sample, so that the recorder's times can be checked.
+# This process sends the time of day with each sample, so that the recorder's times can be checked.
 SENDER = """
 import time, pylsl
 info = pylsl.StreamInfo("Head tracker", "MoCap", 4, 100, "double64", "made-up")
@@ -33,7 +33,7 @@ class Lsl(unittest.TestCase):
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
         folder = Path(temporary.name)
-        # Only this machine.
+        # The streams stay on this machine.
         (folder / "lsl.cfg").write_text("[multicast]\nResolveScope = machine\n[lab]\nKnownPeers = {127.0.0.1}\n")
         environment = dict(os.environ, LSLAPICFG=str(folder / "lsl.cfg"))
         sender = subprocess.Popen([sys.executable, "-c", SENDER], stdout=subprocess.PIPE, text=True, env=environment)

@@ -1,5 +1,5 @@
-"""OpenSim loads an exported person and computes the joint torques: by its solver from our postures, velocities and
-accelerations, and by its tool from the exported files alone."""
+"""OpenSim loads an exported person and computes the joint torques in two ways: its solver uses our postures,
+velocities and accelerations, and its tool uses the exported files alone."""
 
 import os
 import subprocess
@@ -14,7 +14,7 @@ PREDICTOR = os.environ["PREDICTOR_BINARY"]
 
 
 def table(file):
-    """Columns of a storage file by name."""
+    """Returns the columns of a storage file by name."""
     lines = Path(file).read_text().splitlines()
     begin = lines.index("endheader") + 1
     names = lines[begin].split("\t")
@@ -41,11 +41,13 @@ class OpenSim(unittest.TestCase):
         model = opensim.Model(str(self.folder / "person.osim"))
         state = model.initSystem()
         self.assertEqual(model.getNumCoordinates(), 26)
-        # De Leva's shares of a man of 75 kg without the legs: 2 (0.1416 + 0.0433 + 0.0137).
+        # These are De Leva's shares of a man of 75 kg without the legs: 2 (0.1416 + 0.0433 +
+        # 0.0137).
         self.assertAlmostEqual(model.getTotalMass(state), 75 * (1 - 2 * 0.1986), delta=0.02 * 75)
 
-    # Within 1 % of the largest torque of each joint, in the middle of the record: splines and differences disagree at
-    # its ends. For the pelvis, whose entries are what the legs exert, of the largest force or torque among them.
+    # The tolerance is 1 % of the largest torque of each joint, in the middle of the record, because
+    # splines and differences disagree at its ends. The entries of the pelvis are what the legs
+    # exert. For them, the tolerance refers to the largest force or torque among them.
     def test_tool_reproduces_torques(self):
         tool = opensim.InverseDynamicsTool(str(self.folder / "inverse_dynamics.xml"))
         tool.setResultsDir(str(self.folder))

@@ -1,6 +1,6 @@
 """Starts `predictor run` as in a terminal and requests Foxglove's address at its console.
 
-As a program: program.py PREDICTOR COMMAND... also runs COMMAND, with FOXGLOVE_URL in its environment.
+As a program, program.py PREDICTOR COMMAND... also runs COMMAND, with FOXGLOVE_URL in its environment.
 """
 
 import os
@@ -17,7 +17,7 @@ PATIENCE = 60  # limit until a line appears [s]; generous, because these tests d
 
 
 class Predictor:
-    """`foxglove_url`: address for a Foxglove client."""
+    """A run, with `foxglove_url` as the address for a Foxglove client."""
 
     def __init__(self, binary, *options):
         self._terminal, slave = pty.openpty()

@@ -11,7 +11,7 @@ TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
 
 
 class RawClient:
-    """Offers `subprotocols`. status: of HTTP. subprotocol: the server's choice (None: no choice)."""
+    """Offers `subprotocols`. status: the HTTP status. subprotocol: the server's choice, or None without one."""
 
     def __init__(self, url, subprotocols, patience=30):
         parts = urllib.parse.urlsplit(url)
@@ -53,7 +53,7 @@ class RawClient:
         self._send(TEXT, json.dumps(message).encode())
 
     def next(self):
-        """The next message as a dict, or as bytes if it is binary. Pings are answered."""
+        """Returns the next message as a dict, or as bytes if it is binary. Answers pings."""
         whole, kind = b"", None
         while True:
             first, second = self._take(2)
@@ -80,7 +80,7 @@ class RawClient:
                 return message
 
     def next_data(self):
-        """(subscription id, log time [ns], payload) of the next MESSAGE_DATA."""
+        """Returns (subscription id, log time [ns], payload) of the next MESSAGE_DATA."""
         while True:
             message = self.next()
             if isinstance(message, bytes) and message[0] == 1:

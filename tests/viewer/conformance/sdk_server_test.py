@@ -21,12 +21,12 @@ INTEGERS = {FieldDescriptor.TYPE_UINT32, FieldDescriptor.TYPE_FIXED32}
 
 
 def kinds(value):
-    """The structure of a message: names and types of its fields, without their values."""
+    """Returns the structure of a message: the names and types of its fields, without their values."""
     return {name: type(member).__name__ for name, member in value.items()}
 
 
 def differences(message, schema, path):
-    """The differences between the message of a Protocol Buffers descriptor and a JSON schema."""
+    """Returns the differences between the message of a Protocol Buffers descriptor and a JSON schema."""
     if message.full_name in ("google.protobuf.Timestamp", "google.protobuf.Duration"):
         title = {"Timestamp": "time", "Duration": "duration"}[message.name]
         same = schema.get("title") == title and set(schema["properties"]) == {"sec", "nsec"}
@@ -64,7 +64,7 @@ def field_differences(field, schema, path):
 
 
 def fill(message, value):
-    """Converts a JSON message to Protocol Buffers; an unknown name or a wrong type is an error."""
+    """Converts a JSON message to Protocol Buffers. An unknown name or a wrong type is an error."""
     for name, member in value.items():
         field = message.DESCRIPTOR.fields_by_name[name]
         if field.is_repeated:
@@ -92,7 +92,7 @@ def descriptor(schema_name, base64_set):
 
 
 def greeting(client):
-    """(serverInfo, {topic: channel}): what a server sends without a request."""
+    """Returns what a server sends without a request: (serverInfo, {topic: channel})."""
     info = client.next_op("serverInfo")
     return info, {channel["topic"]: channel for channel in client.next_op("advertise")["channels"]}
 
@@ -112,7 +112,7 @@ class SdkServer(unittest.TestCase):
 
     @classmethod
     def start_sdk(cls):
-        """Foxglove's server with our topics and schemas, and the well-known ones in its own encoding."""
+        """Starts Foxglove's server with our topics and schemas, and the well-known ones in its own encoding."""
         context = cls.context = foxglove.Context()  # the server ends with it
         cls.json_channels = {
             topic: foxglove.Channel(topic, schema=json.loads(channel["schema"]) | {"title": channel["schemaName"]},
@@ -142,7 +142,7 @@ class SdkServer(unittest.TestCase):
             self.assertEqual(json.loads(ours["schema"]), json.loads(theirs["schema"]), topic)
 
     def test_frames_are_the_same_bytes(self):
-        """Both servers send the same frames for the same message; the log time is within the message's own."""
+        """Both servers must send the same frames for the same message. The log time must agree with the message's own."""
         wanted = {100 + k: topic for k, topic in enumerate(self.our_channels)}
         for client, channels in ((self.ours, self.our_channels), (self.theirs, self.their_channels)):
             client.send({"op": "subscribe", "subscriptions": [
@@ -168,7 +168,8 @@ class SdkServer(unittest.TestCase):
                 client.send({"op": "subscribe", "subscriptions": [{"id": 9, "channelId": channels["/run"]["id"]}]})
                 client.send({"op": "unsubscribe", "subscriptionIds": [9]})
                 client.send({"op": "subscribe", "subscriptions": [{"id": 10, "channelId": 987654}]})
-                # Its arrival shows that the server has processed the unsubscription.
+                # The arrival of this message shows that the server has processed the
+                # unsubscription.
                 status = client.next_op("status")
                 self.assertIn(status["level"], (1, 2), status)
                 self.assertTrue(status["message"])
@@ -191,7 +192,7 @@ class SdkServer(unittest.TestCase):
             self.assertNotEqual(differences(message, schema, topic), [], "nothing is compared")
 
     def test_our_contents_are_messages_of_theirs(self):
-        """Each of our messages can be converted completely to Foxglove's own type."""
+        """It must be possible to convert each of our messages completely to Foxglove's own type."""
         wanted = {200 + k: topic for k, topic in enumerate(WELL_KNOWN)}
         self.ours.send({"op": "subscribe", "subscriptions": [
             {"id": number, "channelId": self.our_channels[topic]["id"]} for number, topic in wanted.items()]})

@@ -1,4 +1,4 @@
-"""The far end of a Franka arm's wire as a separate process, and the tests that every client must pass."""
+"""Runs a fake Franka arm as a separate process, and the tests that every client must pass."""
 
 import math
 import os
@@ -34,7 +34,7 @@ class FrankaRig:
         return lines[:-1]
 
     def joints(self):
-        """The true joint angles of the arm."""
+        """Returns the true joint angles of the arm."""
         words = self.ask("state").split()
         first = words.index("q", words.index("left")) + 1
         return [float(word) for word in words[first:first + 7]]
@@ -46,7 +46,7 @@ class FrankaRig:
 
 
 def speed_at(time):
-    """Velocities that rise from rest to SPEED and return to rest within DURATION."""
+    """Returns velocities that rise from rest to SPEED and return to rest within DURATION."""
     share = (1 - math.cos(2 * math.pi * min(time, DURATION) / DURATION)) / 2
     return [share * speed for speed in SPEED]
 
@@ -140,7 +140,7 @@ class FrankaCases:
         for place in range(self.ERRORS):
             self.rig.do(f"reflex {place}")
             before = name
-            # States that have not been read yet come first.
+            # The client first reads states that it has not read yet.
             for _ in range(5000):
                 name = str(self.read().current_errors).strip('[]"')
                 if name != before:
