@@ -25,7 +25,7 @@ class Inequalities {
       CI(2 * k + 1, bounded_[static_cast<std::size_t>(k)]) = -1;
     }
   }
-  // Number of bound constraints.
+  // Returns the number of bound constraints.
   int count() const { return 2 * static_cast<int>(bounded_.size()); }
 
   void Load(const Qp& qp) {
@@ -38,7 +38,7 @@ class Inequalities {
     ci0.tail(qp.m()) = -qp.b();
   }
 
-  // Multipliers from the solver's list of active constraints (equalities: −1 − row).
+  // Returns the multipliers from the solver's list of active constraints (equalities: −1 − row).
   template <typename Solver>
   void Unpack(const Solver& solver, Answer* answer) const {
     answer->solution.multiplier.fill(0);
@@ -102,7 +102,7 @@ class Fast final : public Candidate {
   Eigen::VectorXd f_, ce0_, x_;
 };
 
-// Sizes fixed at compile time for two arms of seven joints and one pair of links.
+// Uses sizes that are fixed at compile time, for two arms of seven joints and one pair of links.
 class Rt final : public Candidate {
  public:
   static constexpr int kVariables = 15;

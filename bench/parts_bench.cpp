@@ -31,7 +31,7 @@ class Medians final : public benchmark::ConsoleReporter {
 class Cursor {
  public:
   explicit Cursor(const Recording& recording) : recording_(recording) {}
-  // Returns the next tick; sets `wrapped` to true if it is the first one again.
+  // Returns the next tick. Sets `wrapped` to true if it is the first one again.
   std::size_t Next(bool* wrapped) {
     *wrapped = k_ + 2 >= recording_.ticks.size();
     k_ = *wrapped ? 1 : k_ + 1;
@@ -48,7 +48,7 @@ void Register(const char* name, Function function) {
   benchmark::RegisterBenchmark(name, function)->Unit(benchmark::kMicrosecond);
 }
 
-// Inputs of all ticks, built before the measurement.
+// The inputs of all ticks, built before the measurement.
 struct Inputs {
   std::vector<WorldInput> world;
   std::vector<DeviceCommand> command;
@@ -185,7 +185,7 @@ void RegisterRig(const Recording& recording, const std::shared_ptr<Inputs>& inpu
   });
 }
 
-// The complete tick, starting in the middle of a run. At the script's end it starts again in the
+// Measures the complete tick from the middle of a run. At the script's end, it starts again in the
 // middle.
 void RegisterTick(const Recording& recording) {
   auto emulator = std::make_shared<std::unique_ptr<Emulator>>();

@@ -1,5 +1,5 @@
-// What the evaluation of the person costs: posture, loads, muscles, 64 possible persons, and all
-// of it live.
+// Measures what the evaluation of the person costs: posture, loads, muscles, 64 possible persons,
+// and all of it during a run.
 #include <cmath>
 
 #include "assessment/live_person.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRate = 100;  // [Hz]
 
-// Handles on a circle of 0.1 m once in 4 s, each carrying 40 N.
+// Returns handles on a circle of 0.1 m, which they complete in 4 s. Each carries 40 N.
 person::BodySample HandlesAt(const person::Stance& stance, double time) {
   person::BodySample sample;
   sample.time = time;
@@ -29,7 +29,8 @@ person::BodySample HandlesAt(const person::Stance& stance, double time) {
   return sample;
 }
 
-// Activations and stiffness of both arms; returns their sum, so that nothing is optimised away.
+// Computes activations and stiffness of both arms. Returns their sum, so that nothing is optimised
+// away.
 double MusclesAt(const std::array<muscles::ArmModel, kHands>& arms,
                  const person::BodyMotion& motion, const person::BodyLoads& loads) {
   double sum = 0;
@@ -47,7 +48,7 @@ double MusclesAt(const std::array<muscles::ArmModel, kHands>& arms,
   return sum;
 }
 
-// Ticks of a run in which the hands follow HandlesAt.
+// Returns a tick of a run in which the hands follow HandlesAt.
 TickRecord TickAt(const person::Stance& stance, std::uint64_t tick) {
   TickRecord record{};
   record.tick = tick;
@@ -62,7 +63,8 @@ TickRecord TickAt(const person::Stance& stance, std::uint64_t tick) {
   return record;
 }
 
-// The share of a core that the evaluator needs: nominal person at 100 Hz, 64 persons at 5 Hz.
+// Measures the share of a core that the evaluator needs for the nominal person at 100 Hz and 64
+// persons at 5 Hz.
 void TimeLive(bool quick) {
   Scenario scenario;
   scenario.left_handle = scenario.right_handle = HandleSpec{};

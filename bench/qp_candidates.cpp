@@ -24,7 +24,7 @@ class Ours final : public Candidate {
   QpSolver solver_;
 };
 
-// DAQP with the equality rows before the other rows.
+// DAQP, with the equality rows before the other rows.
 class HardDaqp final : public Candidate {
  public:
   explicit HardDaqp(const Problem& example)

@@ -1,4 +1,4 @@
-// The solvers that were compared, behind one interface.
+// Puts the compared solvers behind one interface.
 #pragma once
 
 #include <memory>
@@ -19,11 +19,12 @@ class Candidate {
   virtual ~Candidate() = default;
   virtual std::string name() const = 0;
   virtual bool hard() const = 0;  // solves Problem::hard with E x = e, otherwise Problem::weighed
-  // Solves the problem, starting from its matrices. Includes any conversion that the solver needs.
+  // Solves the problem, starting from its matrices. The time includes any conversion that the
+  // solver needs.
   virtual void Solve(const Problem& problem, Answer* answer) = 0;
 };
 
-// Candidates for problems of the same size as `example`.
+// Returns candidates for problems of the same size as `example`.
 std::vector<std::unique_ptr<Candidate>> MakeCandidates(const Problem& example);
 std::unique_ptr<Candidate> MakeDaqp(const Problem& example, bool hard);
 std::unique_ptr<Candidate> MakeEiquadprogFast(const Problem& example, bool hard);
@@ -31,7 +32,7 @@ std::unique_ptr<Candidate> MakeEiquadprogRt(
     const Problem& example);  // null unless there are two arms with 7 joints
 std::unique_ptr<Candidate> MakeProxQp(const Problem& example, bool hard, bool warm);
 
-// KktResidual of the formulation that the candidate solved; infinite if it failed.
+// Returns the KktResidual of the formulation that the candidate solved, or infinity if it failed.
 double Residual(const Problem& problem, bool hard, const Answer& answer);
 
 }  // namespace predictor::bench

@@ -1,4 +1,4 @@
-// Quadratic programs that the scenarios produce, in both formulations.
+// The quadratic programs that the scenarios produce, in both formulations.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace predictor::bench {
 
 // One problem in two formulations: that of rendering, and that of the paper. In the paper's, the
-// relative pose is an equality E x = e of six rows instead of a heavily weighted term of the
+// relative pose is an equality E x = e of six rows. In ours, it is a heavily weighted term of the
 // objective.
 struct Problem {
   using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
@@ -32,9 +32,9 @@ struct ProblemSet {
 // Uses every `stride`-th tick of a recording.
 ProblemSet FromRecording(const Recording& recording, const std::string& name, int stride);
 
-// Random postures between the joint limits, at them, and up to 0.05 rad beyond them. In every third
-// posture, one arm is nearly straight. The target is up to 5 cm and 0.2 rad away. The postures are
-// the same in each call.
+// Returns problems in random postures between the joint limits, at them, and up to 0.05 rad beyond
+// them. In every third posture, one arm is nearly straight. The target is up to 5 cm and 0.2 rad
+// away. The postures are the same in each call.
 ProblemSet AtTheLimits(const Recording& recording, int count);
 
 }  // namespace predictor::bench

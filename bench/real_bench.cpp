@@ -30,7 +30,7 @@ const Rigging kRiggings[] = {
     {"UR, Franka", "ur_and_panda", {"ur", "franka"}, {false, false}},
 };
 
-// Durations of the stages of the ticks in RUN.
+// The durations of the stages of the ticks in RUN.
 using Stages = std::array<std::vector<double>, kStages>;
 
 void Add(const TickRecord& record, Stages* us) {
@@ -71,7 +71,7 @@ Stages InMemory(const Rigging& rigging, int ticks) {
   return us;
 }
 
-// The far end as a separate process that listens on addresses of this machine.
+// The fake rig as a separate process that listens on addresses of this machine.
 class FarEnd {
  public:
   explicit FarEnd(const Rigging& rigging)
@@ -110,7 +110,7 @@ Machine MachineOf(const Rigging& rigging, const Scenario& scenario) {
   return machine;
 }
 
-// The far end needs a moment to start.
+// The fake rig needs a moment to start.
 std::unique_ptr<RealDevice> ConnectTo(const Machine& machine, Scenario* scenario) {
   for (int attempt = 0;; ++attempt) try {
       return ConnectMachine(machine, scenario, SocketNetwork());
@@ -133,7 +133,7 @@ std::uint64_t Now() {
          static_cast<std::uint64_t>(t.tv_nsec);
 }
 
-// Acts like an operator, depending on the present state.
+// Acts as an operator would in the present state.
 void Hold(Emulator* emulator, int tick, FarEnd* far_end) {
   RunInput key;
   key.kind = InputKind::kEnable;

@@ -24,19 +24,19 @@ struct Recording {
 };
 Recording Record(const std::string& name);
 
-// Inputs of the modules in tick k, from the records of ticks k − 1, k and k + 1.
+// Returns the inputs of the modules in tick k, from the records of ticks k − 1, k and k + 1.
 WorldInput WorldInputAt(const Recording& recording, std::size_t k);
 ArmSample ArmSampleAt(const Recording& recording, std::size_t k, int hand);
 DeviceCommand CommandAt(const Recording& recording, std::size_t k);
 
-// All inputs of rendering, reconstructed from joints and targets.
+// Reconstructs all inputs of rendering from joints and targets.
 class RenderInput {
  public:
   explicit RenderInput(const Recording& recording);
 
-  // Loads the inputs of tick k; 1 ≤ k < ticks.size() − 1.
+  // Loads the inputs of tick k, with 1 ≤ k < ticks.size() − 1.
   void Load(const Recording& recording, std::size_t k) noexcept;
-  // Sets the inputs for the given joints; `last` [rad/s] is the previous command.
+  // Sets the inputs for the given joints. `last` [rad/s] is the previous command.
   void Place(const std::array<JointVector, kHands>& q,
              const std::array<JointVector, kHands>& last) noexcept;
 

@@ -9,7 +9,7 @@
 namespace predictor::bench {
 namespace {
 
-// CPU time of this process [s].
+// Returns the CPU time of this process [s].
 double CpuSeconds() {
   timespec t;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);

@@ -1,4 +1,4 @@
-// Functions to measure times and to print them as a table.
+// Measures times and prints them as a table.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace predictor::bench {
 
-// The p-quantile of the samples; 0 without samples.
+// Returns the p-quantile of the samples, or 0 without samples.
 inline double Quantile(std::vector<double> samples, double p) {
   if (samples.empty()) return 0;
   const auto rank = static_cast<std::ptrdiff_t>(p * static_cast<double>(samples.size() - 1) + 0.5);
@@ -18,7 +18,7 @@ inline double Quantile(std::vector<double> samples, double p) {
 }
 inline double Median(const std::vector<double>& samples) { return Quantile(samples, 0.5); }
 
-// Wall-clock time of a call [µs].
+// Returns the wall-clock time of a call [µs].
 template <typename Function>
 double Microseconds(Function&& function) {
   const auto start = std::chrono::steady_clock::now();

@@ -12,7 +12,7 @@
 
 namespace predictor::bench {
 
-// Whole runs in virtual time.
+// The times of whole runs in virtual time.
 struct RunTimes {
   std::array<double, kStages> p50{}, p99{};  // of ticks in RUN [µs], medians over the runs
   // Simulated time divided by CPU time, and by wall-clock time.
@@ -21,14 +21,15 @@ struct RunTimes {
 };
 RunTimes TimeRuns(const std::string& scenario, int runs);
 
-// Prints the time per tick of the drivers, monitor and guard of real arms. quick: fewer ticks, and
+// Prints the time per tick of the drivers, monitor and guard of real arms. quick: fewer ticks and
 // no sockets.
 void TimeDriversAndSupervisor(bool quick);
 
 // Prints the time of the evaluation of the person. quick: fewer samples.
 void TimePerson(bool quick);
 
-// Isolated benchmarks of the stages' parts by google-benchmark: name → median [µs].
+// Returns the results of isolated benchmarks of the stages' parts by google-benchmark, as name →
+// median [µs].
 std::map<std::string, double> TimeParts(const Recording& recording, int* argc, char** argv);
 
 // Compares the costs of recording runs of these scenarios.

@@ -1,9 +1,10 @@
 // Shows a running PREDICTOR in Unity, over Unity's ROS-TCP-Connector 0.7.0 (docs/how-to/unity.md).
-// NOT compiled or run by PREDICTOR's own tests: there is no Unity editor in them.
+// PREDICTOR's own tests do NOT compile or run this file, because they have no Unity editor.
 //
-// Put it on an empty GameObject, give it the robot that URDF-Importer made from the package of
-// `predictor export scene`, and press Play. Everything is set by what arrives: the bodies' own
-// physics (drives, gravity, collisions) is switched off, since the simulation runs in PREDICTOR.
+// Put this script on an empty GameObject, assign the robot that URDF-Importer made from the package
+// of `predictor export scene`, and press Play. The messages determine everything. The script
+// switches off the bodies' own physics (drives, gravity, collisions), since the simulation runs in
+// PREDICTOR.
 using System.Collections.Generic;
 using RosMessageTypes.Geometry;
 using RosMessageTypes.Sensor;
@@ -25,7 +26,8 @@ public class PredictorScene : MonoBehaviour
     public KeyCode stopKey = KeyCode.Space;
     public Material lineMaterial;
 
-    // The state comes up to 60 times a second. Without it for longer the picture is no longer the run's.
+    // The state arrives up to 60 times a second. After this time without it, the picture no longer
+    // shows the run.
     const float longestSilence = 0.5f;  // [s]
     const string connectionLost = "CONNECTION LOST: use the robot's emergency stop";
 
@@ -36,7 +38,8 @@ public class PredictorScene : MonoBehaviour
     readonly Dictionary<string, ArticulationBody> joints = new Dictionary<string, ArticulationBody>();
     readonly Dictionary<string, LineRenderer> lines = new Dictionary<string, LineRenderer>();
 
-    // Before any Start: URDF-Importer's own controller would move the joints by the arrow keys.
+    // Runs before any Start. Otherwise URDF-Importer's own controller would move the joints with
+    // the arrow keys.
     void Awake()
     {
         var controller = robot.GetComponent<Unity.Robotics.UrdfImporter.Control.Controller>();
@@ -68,7 +71,8 @@ public class PredictorScene : MonoBehaviour
         ros.Subscribe<StringMsg>("/predictor/state", OnState);
     }
 
-    // A link that hangs on others stands where their joints put it; one on its own can be placed.
+    // The joints determine the place of a link that is attached to others. A separate link can be
+    // placed.
     void DetachObject()
     {
         if (carriedObject == null) return;
@@ -86,7 +90,7 @@ public class PredictorScene : MonoBehaviour
 
     bool Lost => Time.realtimeSinceStartup - lastState > longestSilence;
 
-    // On the screen, also without a text in the scene.
+    // Shows the message on the screen, even if the scene has no text.
     void OnGUI()
     {
         if (!Lost) return;
@@ -96,7 +100,7 @@ public class PredictorScene : MonoBehaviour
         GUI.Box(new Rect(0, 0, Screen.width, 100), connectionLost, warning);
     }
 
-    // Angles are set, not driven to.
+    // The script sets the angles and does not drive the joints to them.
     void OnJoints(JointStateMsg message)
     {
         for (int i = 0; i < message.name.Length; i++)
@@ -116,7 +120,8 @@ public class PredictorScene : MonoBehaviour
         else carriedObject.SetPositionAndRotation(position, rotation);
     }
 
-    // Arrows of forces and torques, and the path to follow: lines in the colour that comes with them.
+    // Draws arrows of forces and torques, and the path to follow, as lines in the colour of the
+    // message.
     void OnMarker(MarkerMsg message)
     {
         string key = message.ns + message.id;

@@ -1,4 +1,5 @@
-// Bundles the page into dist/{index.html,app.js,app.css}: three files, and nothing else is served.
+// Bundles the page into dist/{index.html,app.js,app.css}. The server provides only these three
+// files.
 import {build} from 'esbuild';
 import {copyFile, mkdir, readFile, stat} from 'node:fs/promises';
 import {dirname, join} from 'node:path';
@@ -21,8 +22,8 @@ await build({
 });
 await copyFile(join(here, 'src/index.html'), join(out, 'index.html'));
 
-// The script of reports, a file for itself, which goes into every page with plots; and so do the licences of
-// the library that draws them.
+// The script of reports is a file of its own, which goes into every page with plots. So do the
+// licences of the library that draws them.
 const licences = await Promise.all(['echarts/NOTICE', 'zrender/LICENSE', 'echarts/licenses/LICENSE-d3'].map(
     (file) => readFile(join(here, 'node_modules', file), 'utf8')));
 await build({

@@ -1,6 +1,6 @@
-// Measures what a controller outside the program adds to a tick: the same scene with the same
-// torques, from the program and from a library in C in turn, tick by tick, and then from a process
-// in Python (in virtual time, where the tick waits for it).
+// Measures what a controller outside the program adds to a tick. The same scene has the same
+// torques, from the program and from a library in C in turn, tick by tick. Then a process in Python
+// computes them (in virtual time, where the tick waits for it).
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kTicks = 100'000;
 
-// The cobot carries itself, and a table carries the object.
+// The cobot carries its own weight, and a table carries the object.
 Scenario OnTable(const std::string& controller) {
   const std::string source = PREDICTOR_SOURCE_DIR;
   return LoadScenario(source + "/scenarios/box_9kg.yaml",

@@ -1,5 +1,5 @@
-// Runs the emulator in a program of one's own: a second of the paper's first experiment, in virtual
-// time.
+// Runs the emulator in a program of your own: one second of the paper's first experiment, in
+// virtual time.
 #include <cmath>
 #include <cstdio>
 #include <exception>

@@ -48,7 +48,7 @@ class FollowingSpring {
     }
   }
 
-  // The memory: set-point, then the sensor's reading at the start.
+  // The memory contains the set-point, followed by the sensor's reading at the start.
   double* memory() { return memory_.data(); }
   static constexpr int kMemory = 6;
 

@@ -9,7 +9,7 @@ export interface Ticks {
   text: string[];
 }
 
-// Formats a value; never writes a minus sign before zero.
+// Formats a value. It never writes a minus sign before zero.
 function fixed(value: number, decimals: number): string {
   const text = value.toFixed(decimals);
   return /^-[0.]*$/.test(text) ? text.slice(1) : text;
@@ -28,7 +28,7 @@ export function linearTicks({low, high}: Range, count: number): Ticks {
   return {at, text: at.map((value) => fixed(value, decimals))};
 }
 
-// Powers of ten, with 2 and 5 in between if there is room.
+// Returns powers of ten, with 2 and 5 in between if there is room.
 export function logTicks({low, high}: Range, count: number): Ticks {
   const decades = Math.log10(high / low);
   const factors = 3 * decades <= count ? [1, 2, 5] : [1];
@@ -44,7 +44,7 @@ export function logTicks({low, high}: Range, count: number): Ticks {
       text.push(fixed(value, Math.max(0, -p)));
     }
   }
-  // If the view shows less than a decade: round numbers in between.
+  // If the view shows less than a decade, the ticks are round numbers in between.
   return at.length >= 2 ? {at, text} : linearTicks({low, high}, count);
 }
 
@@ -53,7 +53,7 @@ export function ticksOf(axis: Axis, range: Range, count: number): Ticks {
   return axis.log ? logTicks(range, count) : linearTicks(range, count);
 }
 
-// `limits`: values that are included if they are near enough to the data.
+// `limits` are values that are included if they are near enough to the data.
 export function yRange(axis: Axis, data: Range, limits: number[]): Range {
   let {low, high} = data;
   if (!(low <= high)) [low, high] = axis.log ? [1, 10] : [0, 1];
@@ -78,7 +78,7 @@ export function yRange(axis: Axis, data: Range, limits: number[]): Range {
   return {low: axis.low ?? low, high: axis.high ?? high};
 }
 
-// A value under the cursor, with three significant digits more than its unit needs.
+// Formats a value under the cursor, with three significant digits more than its unit needs.
 export function readable(value: number): string {
   if (!Number.isFinite(value)) return '–';
   const size = Math.abs(value);

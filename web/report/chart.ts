@@ -1,5 +1,5 @@
-// An interactive plot with zoom and cursor. The library draws; this file selects the points of long lines to
-// draw.
+// Shows an interactive plot with zoom and cursor. The library draws it. This file selects the
+// points of long lines to draw.
 import type {ECharts} from 'echarts/core';
 import {h} from '../src/dom';
 import {readable} from './axis';
@@ -11,10 +11,10 @@ const kReach = 8;         // maximum distance of the cursor from a marker [px]
 const kFileWidth = 900;   // of a saved picture [px]
 const kPaperWidth = 900;  // of a printed plot, which is scaled to the paper's width [px]
 
-// Colours of the page's present style: dark, light or print.
+// Returns the colours of the page's present style: dark, light or print.
 const pageColors: Colors = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
-// Colours of the light page, regardless of the present style; used for saved pictures.
+// Returns the colours of the light page, regardless of the present style. Saved pictures use them.
 function lightColors(): Colors {
   const {dataset} = document.documentElement;
   const before = dataset.theme;
@@ -42,8 +42,8 @@ export class Chart {
   private chart: ECharts | null = null;
   private waiting = false;
 
-  // zoomed: called when this plot's view changes. pointed: called with the cursor's position, for the other
-  // plots of the group.
+  // zoomed: called when this plot's view changes. pointed: called with the cursor's position, for
+  // the other plots of the group.
   constructor(readonly spec: PlotSpec, private readonly zoomed: (view: Range | null) => void,
               private readonly pointed: (x: number | null) => void) {
     this.series = spec.panels.map((panel) => panel.series.map(readSeries));
@@ -65,7 +65,7 @@ export class Chart {
     this.redraw();
   }
 
-  // Shows the cursor of another plot of the group; null: the cursor has left it.
+  // Shows the cursor of another plot of the group. null means that the cursor has left it.
   setCursor(x: number | null) {
     if (!this.visible || !this.chart || !this.layout) return;
     const px = x === null ? NaN : Number(this.chart.convertToPixel({xAxisIndex: 0}, x));
@@ -112,7 +112,8 @@ export class Chart {
     this.reset.disabled = this.view === null;
   }
 
-  // Zoom and cursor. A drag selects a range of x; if both axes have equal scales, it moves the picture.
+  // Handles zoom and cursor. A drag selects a range of x, or moves the picture if both axes have
+  // equal scales.
   private interaction() {
     const {spec: {equal}, layout} = this;
     const zoom = {
@@ -143,7 +144,7 @@ export class Chart {
     };
   }
 
-  // The values of all visible lines at x.
+  // Lists the values of all visible lines at x.
   private tip(x: number): HTMLElement {
     const {spec, layout} = this;
     const reach = kReach * (layout!.x.high - layout!.x.low) / layout!.panels[0].grid.width;
@@ -201,7 +202,7 @@ export class Chart {
     event.preventDefault();
   }
 
-  // Saves the plot as a file with its present zoom, on white.
+  // Saves the plot as a file with its present zoom, on a white background.
   private save() {
     const svg = draw(this.layOutFor(kFileWidth, true), lightColors());
     const url = URL.createObjectURL(new Blob([svg], {type: 'image/svg+xml'}));

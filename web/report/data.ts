@@ -1,4 +1,4 @@
-// The plots as described by the program (src/report/plot.h), and their data.
+// Reads the plots as the program describes them (src/report/plot.h), with their data.
 
 export interface Axis {
   title: string;
@@ -62,8 +62,8 @@ function bytesOf(base64: string): Uint8Array {
   return bytes;
 }
 
-// Decodes the format of src/report/page.h. Multiplies instead of shifting, since a value may need more than
-// 32 bits.
+// Decodes the format of src/report/page.h. It multiplies instead of shifting, since a value may
+// need more than 32 bits.
 function decode(bytes: Uint8Array, step: number, to: Float64Array | Float32Array) {
   let value = 0;
   let at = 0;
@@ -106,7 +106,7 @@ function yColumn(n: number): Float32Array {
   return read(n, (count) => new Float32Array(count));
 }
 
-// Index of the first element of the ascending x that is not below `value`.
+// Returns the index of the first element of the ascending x that is not below `value`.
 function lowerBound(x: Float64Array, value: number): number {
   let low = 0;
   let high = x.length;
@@ -118,7 +118,7 @@ function lowerBound(x: Float64Array, value: number): number {
   return low;
 }
 
-// Parts of a detailed column without gaps: start index and end index (exclusive).
+// Returns the parts of a detailed column without gaps, as start index and end index (exclusive).
 function partsOf(x: Float64Array): [number, number][] {
   const parts: [number, number][] = [];
   if (x.length < 2) return parts;
@@ -135,7 +135,7 @@ function partsOf(x: Float64Array): [number, number][] {
   return parts;
 }
 
-// The coarse line, with all samples where they are available.
+// Returns the coarse line, with all samples where they are available.
 function merge(coarse: Points, detail: Points): Points {
   const parts = partsOf(detail.x);
   const pieces: [Points, number, number][] = [];
@@ -158,9 +158,9 @@ function merge(coarse: Points, detail: Points): Points {
   return all;
 }
 
-// Keeps the lowest and the highest point in each `width` of x, in their order, and a gap if there is one. The
-// bins are ranges of x instead of numbers of points. Otherwise, sparse points would be thinned in lines that
-// also contain a section with every tick.
+// Keeps the lowest and the highest point in each `width` of x, in their order, and a gap if there
+// is one. The bins are ranges of x, not numbers of points. Otherwise sparse points would be thinned
+// in lines that also contain a section with every tick.
 export function thin({x, y}: Points, width: number): Points {
   const places: number[] = [];
   for (let start = 0, end = 0; start < x.length; start = end) {
@@ -180,7 +180,7 @@ export function thin({x, y}: Points, width: number): Points {
   return {x: Float64Array.from(places, (i) => x[i]), y: Float32Array.from(places, (i) => y[i])};
 }
 
-// Smallest distance between neighbouring values of x; 0 if all are equal.
+// Returns the smallest distance between neighbouring values of x, or 0 if all are equal.
 export function spacing(x: Float64Array): number {
   let least = Infinity;
   for (let i = 1; i < x.length; ++i) {
@@ -207,7 +207,7 @@ export interface Range {
   high: number;
 }
 
-// A line with all its points; provides the part that a view shows.
+// A line with all its points, which provides the part that a view shows.
 export class Series {
   private readonly levels: Points[];  // each in bins four times as wide as in the previous level
 
@@ -221,8 +221,8 @@ export class Series {
     }
   }
 
-  // The points between two values of x, plus one on either side. For a line, only the lowest and the highest
-  // point of each of `bins` parts.
+  // Returns the points between two values of x, plus one on either side. For a line, it returns
+  // only the lowest and the highest point of each of `bins` parts.
   view({low, high}: Range, bins: number): Points {
     if (this.spec.kind !== 'line') return this.points;
     let part = this.points;
@@ -235,8 +235,8 @@ export class Series {
     return part.x.length <= 2 * bins ? part : thin(part, (high - low) / bins);
   }
 
-  // The value at x. For a line, the value of the preceding sample, or NaN in a gap. Otherwise, the value of
-  // the nearest point, or NaN if it is farther away than `reach`.
+  // Returns the value at x. For a line, this is the value of the preceding sample, or NaN in a gap.
+  // Otherwise, it is the value of the nearest point, or NaN if that is farther away than `reach`.
   at(x: number, reach: number): number {
     const {points, spec} = this;
     const i = lowerBound(points.x, x);

@@ -1,4 +1,5 @@
-// Converts a view of a plot to the charting library's description: panels in a column that share one x-axis.
+// Converts a view of a plot to the charting library's description, with panels in a column that
+// share one x-axis.
 import {format} from 'echarts/core';
 import {Ticks, ticksOf, yRange} from './axis';
 import {Axis, PanelSpec, PlotSpec, Range, Series, SeriesSpec} from './data';
@@ -90,7 +91,7 @@ export function wholeX(plot: PlotSpec, series: Series[][]): Range {
   return {low: plot.x.low ?? low - padding, high: plot.x.high ?? high + padding};
 }
 
-// Range of the data of a panel's visible lines within the view.
+// Returns the range of the data of a panel's visible lines within the view.
 function dataRange(view: View, panel: number): Range {
   const {log} = view.plot.panels[panel].y;
   let [low, high] = [Infinity, -Infinity];
@@ -106,7 +107,7 @@ function dataRange(view: View, panel: number): Range {
   return {low, high};
 }
 
-// Legend entries in rows; the first row stands beside the title if all entries fit there.
+// Puts the legend entries in rows. The first row is next to the title if all entries fit there.
 function legendRows(panel: number, series: Series[], title: string, room: number): Entry[][] {
   const entries = series.filter(({spec}) => spec.label !== '').map((one) => ({
     name: seriesName(panel, one), series: one, width: Math.min(kKey + widthOf(one.spec.label) + 12, room)}));
@@ -125,14 +126,14 @@ function legendRows(panel: number, series: Series[], title: string, room: number
   return rows;
 }
 
-// The horizontal position and width of the panels [px].
+// Returns the horizontal position and width of the panels [px].
 function frameOf({plot, width}: View): {left: number; width: number} {
   const names = plot.panels.flatMap(({y}) => y.names.map(widthOf));
   const left = Math.max(kLeft, ...names.map((name) => name + 34));
   return {left, width: width - left - kRight};
 }
 
-// Rows above the first panel in which no two notes overlap.
+// Distributes the notes to rows above the first panel, so that no two overlap in a row.
 function placeNotes(view: View, {low, high}: Range): Note[] {
   const {plot} = view;
   const frame = frameOf(view);
@@ -199,7 +200,7 @@ function axisOption(axis: Axis, {low, high}: Range, ticks: Ticks, color: Colors,
   };
 }
 
-// Bars, or strips of an area, each between two values of x.
+// Draws bars, or strips of an area, each between two values of x.
 function stripsOption(strips: number[][], opacity: number) {
   const renderItem = (_: unknown, api: any) => {
     const [x1, x2, low1, high1, low2, high2] = [0, 1, 2, 3, 4, 5].map((i) => api.value(i));
@@ -232,7 +233,7 @@ function drawErrorBar(_: unknown, api: any) {
     line(x, low, x, high), line(x - 4, low, x + 4, low), line(x - 4, high, x + 4, high)]};
 }
 
-// In the same series as the markers, so that the legend hides both.
+// The bars belong to the same series as the markers, so that the legend hides both.
 function errorsOption(series: Series) {
   const {x, y, error} = series.points;
   return {
@@ -282,7 +283,8 @@ function seriesOption(layout: Layout, i: number, series: Series, color: Colors):
   }
 }
 
-// Position of a limit's label: above its line, or below it if another line lies close above.
+// Returns the position of a limit's label: above its line, or below it if another line lies close
+// above.
 function limitSide(value: number, index: number, {spec, y, grid}: Panel): string {
   const room = 2.2 * kRow / grid.height * (y.high - y.low);
   const above = spec.limits.some((other, k) => k !== index &&
@@ -290,7 +292,7 @@ function limitSide(value: number, index: number, {spec, y, grid}: Panel): string
   return above ? 'insideEndBottom' : 'insideEndTop';
 }
 
-// Limits, notes and shaded parts of a panel, as a series without points.
+// Returns the limits, notes and shaded parts of a panel, as a series without points.
 function marksOption(layout: Layout, i: number, color: Colors) {
   const {view: {plot, x}, panels} = layout;
   const panel = panels[i];

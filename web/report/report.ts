@@ -1,4 +1,4 @@
-// The report's page: makes the plots interactive when they come into view.
+// Makes the plots of the report's page interactive when they come into view.
 import {Chart} from './chart';
 import {PlotSpec, Range} from './data';
 
@@ -41,7 +41,7 @@ const watcher = new IntersectionObserver((entries) => {
 }, {rootMargin: kMargin});
 document.querySelectorAll<HTMLElement>('figure.plot').forEach((figure) => watcher.observe(figure));
 
-// Dark or light: follows the system until the person chooses.
+// The style is dark or light as in the system, until the person chooses.
 const button = document.getElementById('theme') as HTMLButtonElement;
 const dark = matchMedia('(prefers-color-scheme: dark)');
 const redraw = () => charts.forEach((chart) => chart.redraw());

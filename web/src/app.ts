@@ -65,7 +65,7 @@ export class App {
       phase: (phase, reason) => this.phaseChanged(phase, reason),
       welcome: (welcome) => this.welcomed(welcome),
       state: (state, receivedMs) => this.received(state, receivedMs),
-      // Runs immediately, because a page in the background is rarely drawn.
+      // This runs immediately, because the browser rarely draws a page in the background.
       leases: () => this.invite(),
       denied: (_what, reason) => this.overlay.notify(reason),
       notice: (text) => this.overlay.warn(text),
@@ -132,7 +132,7 @@ export class App {
     }
   }
 
-  // The present problem between this page and the run, if any.
+  // Returns the present problem between this page and the run, if there is one.
   get trouble(): Trouble | null {
     if (this.connection.phase === 'ended') return kTroubles.ended;
     if (this.connection.phase === 'results') return kTroubles.results;
@@ -146,7 +146,8 @@ export class App {
     return this.connection.hasOperator && this.spec?.operator === 'browser';
   }
 
-  // Leaving the headset stops real arms that may move, because the wearer can no longer see them.
+  // Real arms that may move stop when the person leaves the headset, because the person can no
+  // longer see them.
   private get leavingStops(): boolean {
     const state = this.player.latest?.state;
     return this.spec?.simulated === false && state !== undefined && !isStopped(state) &&
@@ -170,7 +171,7 @@ export class App {
       this.mouse.update(state);
       this.keyboard.update(state);
     }
-    // If the connection is lost, the last state is shown, because the board must report the loss.
+    // If the connection is lost, the board shows the last state, because it must report the loss.
     const seen = state ?? this.lastSeen;
     this.lastSeen = seen;
     if (xrFrame) this.immersive.update(xrFrame, this.spec, seen, nowMs);
@@ -179,7 +180,7 @@ export class App {
     if (xrFrame) this.immersive.drawMirror();
     const renderedMs = performance.now();
     if (!this.stage.drawable) return;
-    // The first frames take long; the states that arrived meanwhile do not represent the run.
+    // The first frames take long. The states that arrived meanwhile do not represent the run.
     if (!this.stage.settled || ++this.pictures <= kFirstPictures) return;
     for (const {state: s, receivedMs} of news) this.latency.add(s, receivedMs, renderedMs);
     const newest = news.at(-1)?.state;
@@ -217,7 +218,7 @@ export class App {
     this.invitation.update(this.isOver ? null : this.shown, this.spec, performance.now());
   }
 
-  // The run has announced its end.
+  // Returns whether the run has announced its end.
   private get isOver(): boolean {
     return this.shownTrouble === kTroubles.ended || this.shownTrouble === kTroubles.results;
   }
@@ -268,7 +269,7 @@ export class App {
     this.score.add(state, this.spec, this.stage.guidance.error(state.object.p));
   }
 
-  // Clears drawings of times that have not occurred yet after a jump back.
+  // After a jump back, this clears drawings of times that have not occurred yet.
   private forget() {
     this.plots.clear();
     this.stage.guidance.clear();
@@ -277,8 +278,8 @@ export class App {
   }
 
   private welcomed(welcome: Welcome) {
-    // Another scenario: the page is reloaded, because its parts belong to the previous one. The token is
-    // kept.
+    // If the scenario is a different one, the page is reloaded, because its parts belong to the
+    // previous one. It keeps the token.
     if (this.welcome && scenarioOf(this.welcome.scene) !== scenarioOf(welcome.scene)) {
       return location.reload();
     }
@@ -289,7 +290,7 @@ export class App {
     this.person.reset();
     this.latency.reset();
     this.pictures = 0;
-    // The plots of a run stay visible beside its results.
+    // The plots of a run stay visible next to its results.
     if (!welcome.scene.results) {
       if (restarted) this.plots.clear();
       this.stage.guidance.clear();
@@ -315,8 +316,8 @@ export class App {
       this.player.reset();
       this.person.reset();
     }
-    // Updates immediately instead of with the next frame: the page must never show a stop button without
-    // effect.
+    // The page is updated immediately, not with the next frame, because it must never show a stop
+    // button that has no effect.
     this.showTrouble();
   }
 
@@ -345,7 +346,8 @@ export class App {
     }
   }
 
-  // Space and Esc stop the run regardless of the focus; Enter presses buttons. No other keys are bound.
+  // Space and Esc stop the run regardless of the focus. Enter presses buttons. No other keys are
+  // bound.
   private key(event: KeyboardEvent) {
     if (event.key === ' ' || event.key === 'Escape') {
       event.preventDefault();
@@ -365,7 +367,7 @@ export class App {
     if (view && !typing && !event.ctrlKey && !event.altKey && !event.metaKey) this.setView(view);
   }
 
-  // Browsers press a focused button when Space is released; this handler prevents that.
+  // Browsers press a focused button when Space is released. This handler prevents that.
   private keyUp(event: KeyboardEvent) {
     if (event.key === ' ') event.preventDefault();
   }

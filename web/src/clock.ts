@@ -1,5 +1,5 @@
-// Estimates the server's clock by pings. Of the latest ones, the quickest is used, because it was delayed
-// least.
+// Estimates the server's clock from pings. Of the latest ones, it uses the quickest, which was
+// delayed least.
 
 interface Sample {
   roundTripMs: number;
@@ -15,7 +15,8 @@ export class ServerClock {
     this.samples = [];
   }
 
-  // Adds a pong: sent and received by performance.now() [ms], answered at serverNs.
+  // Adds a pong that was sent and received at times of performance.now() [ms] and answered at
+  // serverNs.
   add(sentMs: number, receivedMs: number, serverNs: number) {
     const offsetMs = serverNs / 1e6 - (sentMs + receivedMs) / 2;
     this.samples.push({roundTripMs: receivedMs - sentMs, offsetMs});
@@ -26,12 +27,12 @@ export class ServerClock {
     return this.samples.length > 0;
   }
 
-  // Server's clock minus the page's clock [ms]; NaN while unknown.
+  // Returns the server's clock minus the page's clock [ms], or NaN while it is unknown.
   get offsetMs(): number {
     return this.best?.offsetMs ?? NaN;
   }
 
-  // Round trip of the best ping [ms]; half of it bounds the offset's error.
+  // Returns the round trip of the best ping [ms]. Half of it bounds the offset's error.
   get roundTripMs(): number {
     return this.best?.roundTripMs ?? NaN;
   }

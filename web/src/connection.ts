@@ -1,4 +1,4 @@
-// The WebSocket connection to the server: admission, reconnection, heartbeat and clock.
+// Maintains the WebSocket connection to the server: admission, reconnection, heartbeat and clock.
 import {ServerClock} from './clock';
 import {
   Credential, Headset, kSubprotocol, Leases, PageMessage, PersonState, Role, ServerMessage, State,
@@ -6,7 +6,7 @@ import {
 } from './protocol';
 
 export type Phase =
-  | 'pairing'     // neither code nor token: the person types the six digits
+  | 'pairing'     // has neither code nor token, so the person types the six digits
   | 'connecting'  // before the first welcome
   | 'open'        // admitted
   | 'lost'        // was admitted; tries again
@@ -60,8 +60,8 @@ export class Connection {
     window.setInterval(() => this.quickPing(), 120);
   }
 
-  // Starts with the URL's code, otherwise with this tab's token; otherwise requests the digits. An admitted
-  // page stays admitted, whatever address is opened.
+  // Starts with the URL's code, or otherwise with this tab's token. If there is neither, it
+  // requests the digits. An admitted page stays admitted, whatever address is opened.
   start(code: string | null) {
     if (this.phase === 'open') return;
     const token = sessionStorage.getItem(kTokenKey);
@@ -79,7 +79,7 @@ export class Connection {
     this.connect({pin});
   }
 
-  // Returns false if there is no connection: messages are never stored for later.
+  // Returns false if there is no connection. Messages are never stored for later.
   send(message: PageMessage): boolean {
     if (this.phase !== 'open' || this.socket?.readyState !== WebSocket.OPEN) return false;
     this.socket.send(JSON.stringify(message));
@@ -205,7 +205,7 @@ export class Connection {
     this.retryTimer = window.setTimeout(() => this.connect(credential), waitMs);
   }
 
-  // Waits for another server that replaces the one that announced the end of the run.
+  // Waits for the server that replaces the one that announced the end of the run.
   private awaitResults(credential: Credential) {
     const nowMs = performance.now();
     if (this.phase !== 'results') {

@@ -3,7 +3,8 @@
 type Child = Node | string | null;
 type Attributes = Record<string, string | number | boolean | ((event: Event) => void)>;
 
-// Attributes whose names start with "on" are listeners. true sets an empty attribute, false omits it.
+// An attribute whose name starts with "on" is a listener. true sets an empty attribute, and false
+// omits it.
 export function h<K extends keyof HTMLElementTagNameMap>(
     tag: K, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);

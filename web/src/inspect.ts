@@ -1,4 +1,5 @@
-// Read-only access for tests and developers: `window.predictor`. Nothing here changes the page.
+// Gives tests and developers read-only access through `window.predictor`. Nothing here changes the
+// page.
 import {Vector3} from 'three';
 import {App} from './app';
 import {kSteps, Step} from './latency';
@@ -19,12 +20,13 @@ export function inspection(app: App) {
     ready: () => stage.settled && app.shown !== null,
     ghostsReady: () => stage.ghostsLoaded,
     firstRenderMs: () => stage.firstRenderMs,
-    // Newest state as received, and the drawn (interpolated) state.
+    // The newest state as received, and the drawn (interpolated) state.
     state: (): State | null => app.player.latest,
     shown: (): State | null => app.shown,
-    // Drawn pose in W of a link of the cobot, of 'object', of 'left:LINK' (an arm), or of 'left:handle'.
+    // The drawn pose in W of a link of the cobot, of 'object', of 'left:LINK' (an arm), or of
+    // 'left:handle'.
     linkPose: (name: string): Pose | null => stage.linkPose(name),
-    // Bounding box in W of the visuals of a link of the cobot, or of 'object' [m].
+    // The bounding box in W of the visuals of a link of the cobot, or of 'object' [m].
     meshBox: (name: string) => stage.meshBox(name),
     placeholders: () => stage.placeholders,
     arrowColour: (side: Side, of: 'force' | 'torque' = 'force') => stage.arrows[side][of].level,
@@ -48,7 +50,7 @@ export function inspection(app: App) {
     project: (p: Vec3) => stage.project(p),
     handTargets: () => ({...hands.targets}),
     hovered: () => app.mouse.hovered,
-    // Radius of a handle's ring on the page [px].
+    // The radius of a handle's ring on the page [px].
     ringOnScreen: (side: Side) => stage.ringOnScreen(side),
     plotRange: () => plots.shownRange(),
     plotsPaused: () => plots.paused,
@@ -62,7 +64,8 @@ export function inspection(app: App) {
       board: immersive.board.content, registration: immersive.registrar.registration,
       drift: immersive.registrar.drift,
     }),
-    // The point with which a controller or hand touches, in the headset's space (three.js's axes) [m].
+    // The point with which a controller or hand touches, in the headset's space (three.js's axes)
+    // [m].
     tip: (side: Side): Vec3 | null => immersive.tips[side],
     // Converts a point in W, or a plate of the board, to the headset's space (three.js's axes) [m].
     inHeadsetSpace: (p: Vec3): Vec3 => stage.world.localToWorld(new Vector3(...p)).toArray(),

@@ -1,6 +1,6 @@
-// The keyboard as a hand while the scene has the focus. L and R take or release a handle, B both. Arrow keys
-// move the held handles relative to the camera, Page Up and Page Down lift and lower them, comma and dot turn
-// them.
+// The keyboard acts as a hand while the scene has the focus. L and R take or release a handle, and
+// B takes or releases both. Arrow keys move the held handles relative to the camera. Page Up and
+// Page Down lift and lower them, and comma and dot rotate them.
 import {Quaternion, Vector3} from 'three';
 import {Hands} from './hands';
 import {kSides, Pose, Side, State} from './protocol';
@@ -68,7 +68,7 @@ export class KeyboardHand {
     this.held = [];
   }
 
-  // Direction of the key in W [m]; null for any other key.
+  // Returns the direction of the key in W [m], or null for any other key.
   private wayOf(event: KeyboardEvent): Vector3 | null {
     const step = event.shiftKey ? kFineStep : kStep;
     const {camera} = this.stage.camera;
@@ -93,7 +93,7 @@ export class KeyboardHand {
     }
   }
 
-  // Turns both about their midpoint.
+  // Rotates both handles about their midpoint.
   private turn(angle: number) {
     const targets = this.targets();
     const turn = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), angle);

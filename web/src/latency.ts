@@ -1,5 +1,5 @@
-// The delays of a sample from the sensor to the end of drawing, step by step. A page cannot know when the
-// screen shows the picture.
+// Measures the delays of a sample from the sensor to the end of drawing, step by step. A page
+// cannot know when the screen shows the picture.
 import {ServerClock} from './clock';
 import {kStages, State} from './protocol';
 
@@ -38,7 +38,7 @@ class Samples {
 
 export class LatencyLedger {
   private readonly steps = new Map<Step, Samples>(kSteps.map((step) => [step, new Samples()]));
-  // Times of the last second, for the record: since the tick's start [ms].
+  // These times of the last second are for the record [ms]. They count from the tick's start.
   private received: number[] = [];
   private rendered: number[] = [];
 
@@ -73,7 +73,7 @@ export class LatencyLedger {
     return this.steps.get(step)!.figures();
   }
 
-  // Returns the medians since the last call and clears the data; null if there is no data.
+  // Returns the medians since the last call and clears the data, or null if there is no data.
   takeMedians(): {offset_ms: number; received_ms: number; rendered_ms: number} | null {
     if (this.rendered.length === 0 || !this.clock.known) return null;
     const middle = (values: number[]) => values.sort((a, b) => a - b)[values.length >> 1];

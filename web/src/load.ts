@@ -1,10 +1,12 @@
-// Colours of a load, as in reports (LoadColor in src/assessment): light green, amber, dark red. They become
-// darker, so that they can be distinguished without seeing red and green.
+// The colours of a load are the same as in reports (LoadColor in src/assessment): light green,
+// amber, dark red. They become darker, so that people who cannot see red and green can distinguish
+// them.
 
 const kStops = [[0x8f, 0xd3, 0xb6], [0xf2, 0xa9, 0x1e], [0x9c, 0x0f, 0x2c]];
 export const kNotJudged = 0xb9c2cd;
 
-// share: of what a part bears; above 1 the colour remains. null: not judged.
+// `share` is the load relative to what a part bears. Above 1, the colour remains the same. null
+// means that the part is not judged.
 export function loadColor(share: number | null): number {
   if (share === null || Number.isNaN(share)) return kNotJudged;
   const x = 2 * Math.min(Math.max(share, 0), 1);

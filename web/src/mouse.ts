@@ -1,4 +1,4 @@
-// Mouse, pen or finger as a hand: presses on a handle and drags it.
+// The mouse, a pen or a finger acts as a hand: it presses on a handle and drags it.
 import {Plane, Quaternion, Raycaster, Vector2, Vector3} from 'three';
 import {Hands} from './hands';
 import {kSides, Pose, Side, State} from './protocol';
@@ -94,7 +94,7 @@ export class MouseHand {
     if (this.grip?.pointer === event.pointerId) this.letGo();
   }
 
-  // The wheel turns the held handles about the vertical, both hands about their midpoint.
+  // The wheel rotates the held handles about the vertical, or both hands about their midpoint.
   private wheel(event: WheelEvent) {
     if (!this.grip) return;
     event.preventDefault();
@@ -126,7 +126,8 @@ export class MouseHand {
     this.stage.camera.controls.enabled = true;
   }
 
-  // Starts measuring the pointer's motion here: in the plane of the screen or, with Shift, vertically.
+  // Starts to measure the pointer's motion here, in the plane of the screen or, with Shift,
+  // vertically.
   private anchor(event: PointerEvent, main: Side, sides: Side[]) {
     const at = vector(this.hands.targets[main]!.p);
     const normal = this.stage.camera.camera.getWorldDirection(new Vector3());

@@ -1,4 +1,4 @@
-// Plays the states of the person: the body moves smoothly between them; everything else is taken
+// Plays the states of the person. The body moves smoothly between them, and everything else comes
 // from the newest state.
 import {kSides, PersonState, Side, Vec3} from './protocol';
 
@@ -39,13 +39,13 @@ export class PersonPlayer {
     }
   }
 
-  // The evaluator judges, but has sent nothing for too long.
+  // Returns whether the evaluator judges the person but has sent nothing for too long.
   silent(nowMs: number): boolean {
     return this.latest?.status === 'judged' && nowMs - this.receivedMs > kSilentMs;
   }
 
-  // The body at page time `nowMs`, about one message ago; null if it is not known. While no
-  // simulated time passes, it does not move.
+  // Returns the body at page time `nowMs`, about one message ago, or null if it is not known. While
+  // no simulated time passes, the body does not move.
   sample(nowMs: number): BodyPoints | null {
     const n = this.entries.length;
     if (n === 0) return null;
@@ -60,7 +60,7 @@ export class PersonPlayer {
   }
 }
 
-// null if a point is not known.
+// Returns null if a point is not known.
 function pointsOf(person: PersonState): BodyPoints | null {
   return Object.values(person.points).every((point) => point !== null) ? person.points as BodyPoints : null;
 }
@@ -72,15 +72,16 @@ function mixPoints(a: BodyPoints, b: BodyPoints, t: number): BodyPoints {
   })) as BodyPoints;
 }
 
-// Where a figure of the body in a mirror stands, and how large it is. Directions are horizontal unit vectors.
+// Where the figure of the body in a mirror stands, and how large it is. Directions are horizontal
+// unit vectors.
 export interface MirrorPlace {
   at: Vec3;        // position of the figure's feet
   toward: Vec3;    // direction from the person to the mirror
   scale: number;
 }
 
-// The body of a person, who stands at `ground` and faces `forward`, as seen in a mirror: it faces the person,
-// with the left on the person's left.
+// Returns the body of a person, who stands at `ground` and faces `forward`, as seen in a mirror. It
+// faces the person, with its left side on the person's left.
 export function mirrored(points: BodyPoints, ground: Vec3, forward: Vec3, {at, toward, scale}: MirrorPlace): BodyPoints {
   return Object.fromEntries(Object.entries(points).map(([name, p]) => {
     const [x, y, up] = p.map((v, i) => scale * (v - ground[i]));
@@ -97,5 +98,5 @@ export const kWhyNot: Record<Exclude<PersonState['status'], 'judged'>, string> =
   below_ground: 'The handles are below the ground: correct operator.stance.ground.',
 };
 
-// Damage and fatigue of the sides' shoulders and elbows, by the names of the state's parts.
+// Lists damage and fatigue of both sides' shoulders and elbows, by the names of the state's parts.
 export const kArmParts = kSides.flatMap((side: Side) => [`${side}_shoulder`, `${side}_elbow`] as const);

@@ -1,5 +1,5 @@
-// Messages between page and server (docs/reference/viewer-protocol.md). Units are SI, the world frame W has Z
-// up, quaternions are scalar first.
+// Messages between page and server (docs/reference/viewer-protocol.md). Units are SI, the world
+// frame W has Z up, and quaternions have the scalar first.
 
 import {PersonState} from './person_state';
 import {
@@ -56,8 +56,8 @@ export interface SceneSpec {
   simulated: boolean;
   operator: 'virtual' | 'browser' | 'person';
   rate: number;
-  // Of the operator in W: the eyes at the start, the direction of view (horizontal), and the ground
-  // between the feet, which are `feet` [m] apart. Without the ground the rest is a guess.
+  // The operator in W: the eyes at the start, the direction of view (horizontal), and the ground
+  // between the feet, which are `feet` [m] apart. Without the ground, the rest is a guess.
   viewpoint: {eye: Vec3; forward: Vec3; guess: boolean; ground: Vec3 | null; feet: number};
   cobot: RobotSpec;
   object: ObjectSpec;
@@ -186,7 +186,7 @@ export interface FrameField {
 
 export interface HandState extends HandQuantities {}
 
-// A fault: its value and the limit that it exceeded.
+// A fault, with its value and the limit that it exceeded.
 export interface Reason {
   cause: StopCause;
   hand: Side | null;
@@ -277,7 +277,8 @@ export function scenarioOf(spec: SceneSpec): string {
   return spec.file ?? spec.name;
 }
 
-// Time stamp of a state on the server's clock [ms]: start of its tick or, in virtual time, time of sending.
+// Returns the time stamp of a state on the server's clock [ms]: the start of its tick or, in
+// virtual time, the time of sending.
 export function stampMs(state: State): number {
   return (state.wallNs > 0 ? state.wallNs : state.sentNs) / 1e6;
 }

@@ -1,4 +1,5 @@
-// Measures how well a person followed a path; shown when the person has finished.
+// Measures how well a person followed a path. The page shows the score when the person has
+// finished.
 import {kSides, SceneSpec, State} from './protocol';
 
 export interface Score {
@@ -24,7 +25,7 @@ export class PathScore {
     this.done = null;
   }
 
-  // Call for each state with its distance from the path [m] (NaN: there is no path).
+  // Call this for each state with its distance from the path [m], which is NaN if there is no path.
   add(state: State, spec: SceneSpec, error: number) {
     if (!Number.isFinite(error)) return;
     if (!follows(state, spec)) {
@@ -46,7 +47,7 @@ export class PathScore {
     this.largest = Math.max(this.largest, error);
   }
 
-  // Score of the last attempt, once it has ended.
+  // Returns the score of the last attempt, once it has ended.
   get result(): Score | null {
     return this.done;
   }
@@ -56,8 +57,8 @@ export class PathScore {
   }
 }
 
-// True while the script requests the circle or, if the person determines the timing, while the object is
-// held.
+// Returns true while the script requests the circle or, if the person determines the timing, while
+// the object is held.
 function follows(state: State, spec: SceneSpec): boolean {
   if (state.state !== 'RUN') return false;
   const action = spec.script[state.action];

@@ -1,4 +1,5 @@
-// Types of the two parts of three.js's ColladaLoader, as far as they are used; no types are published.
+// Declares the types of two parts of three.js's ColladaLoader, as far as they are used. No types
+// are published.
 declare module 'three/examples/jsm/loaders/collada/ColladaParser.js' {
   export interface Geometry {
     sources: Record<string, {array: ArrayLike<number>}>;
@@ -8,7 +9,7 @@ declare module 'three/examples/jsm/loaders/collada/ColladaParser.js' {
     geometries: Record<string, Geometry>;
   }
   export class ColladaParser {
-    // Null if the XML is not well-formed.
+    // Returns null if the XML is not well-formed.
     parse(text: string): {library: Library; asset: {unit: number}; collada: Element} | null;
   }
 }

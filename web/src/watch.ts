@@ -1,5 +1,5 @@
-// Monitors whether the run still sends states and whether it obeyed a stop. A page that shows an old state
-// must not suggest that its stop button works.
+// Monitors whether the run still sends states and whether it followed a stop request. A page that
+// shows an old state must not suggest that its stop button works.
 import {kSides, RunState, State} from './protocol';
 
 const kSilenceMs = 500;  // states arrive 60 times per second
@@ -17,7 +17,7 @@ export class RunWatch {
   private tick = NaN;
   private state: RunState = 'INIT';
 
-  // For a new connection: it has the same time until its first state.
+  // A new connection has the same time until its first state.
   reset() {
     this.silentMs = 0;
     this.askedMs = NaN;
@@ -33,12 +33,12 @@ export class RunWatch {
     if (isStopped(state)) this.askedMs = NaN;
   }
 
-  // A stop was sent.
+  // The page has sent a stop request.
   asked() {
     if (!isStopped(this.state) && Number.isNaN(this.askedMs)) this.askedMs = 0;
   }
 
-  // Call often, with the page's clock [ms].
+  // Call this often, with the page's clock [ms].
   pass(nowMs: number) {
     const stepMs = Math.min(Math.max(nowMs - this.lastMs, 0), kLongestStepMs);
     this.lastMs = nowMs;
@@ -47,24 +47,24 @@ export class RunWatch {
     this.askedMs += stepMs;
   }
 
-  // Whether no new state has arrived for too long.
+  // Returns whether no new state has arrived for too long.
   get silent(): boolean {
     return this.silentMs > kSilenceMs;
   }
 
-  // Whether a requested stop had no effect.
+  // Returns whether a stop request had no effect.
   get ignored(): boolean {
     return this.askedMs > kStopMs;
   }
 }
 
-// The events that must alert a person in a headset: a stop, a power-off at the end of a stop, an arm's fault,
-// an arm that keeps its power, and the loss of the run.
+// Detects the events that must alert a person in a headset: a stop, a power-off at the end of a
+// stop, an arm's fault, an arm that keeps its power, and the loss of the run.
 export class AlarmBell {
   private known: string[] = [];
 
-  // Call often. state: the newest state, null before the first. Returns whether one of these events occurred
-  // since the last call.
+  // Call this often. state: the newest state, or null before the first. Returns whether one of
+  // these events has occurred since the last call.
   rings(state: State | null, trouble: boolean): boolean {
     const now = state ? [] : this.known.filter((it) => it !== 'trouble');
     if (trouble) now.push('trouble');

@@ -1,4 +1,4 @@
-// States, causes of stops and advice as texts from the catalogue.
+// Provides states, causes of stops and advice as texts from the catalogue.
 import {message, MessageId} from './messages';
 import {kSides, Quantity, Reason, RunState, SceneSpec, Side, State} from './protocol';
 
@@ -40,7 +40,7 @@ function trouble(name: 'closed' | 'silent' | 'ignored', mayStop: boolean): Troub
   };
 }
 
-// The run has ended: there is no problem, but nothing to stop either.
+// When the run has ended, there is no problem, but nothing to stop either.
 function atEnd(name: 'results' | 'ended'): Trouble {
   return {
     title: message(`link.${name}.title`), meaning: message(`link.${name}.meaning`),
@@ -63,7 +63,8 @@ export interface StopWords {
 
 type StopId = MessageId extends infer Id ? Id extends `stop.${infer Name}.advice` ? Name : never : never;
 
-// The stop's name in the catalogue; the measured quantity may be more specific than the cause.
+// Returns the stop's name in the catalogue. The measured quantity may be more specific than the
+// cause.
 function stopId({cause, quantity}: Reason): StopId | null {
   if (cause === 'none') return null;
   if (cause === 'stale' && quantity === 'arm_age') return 'arm_stale';
@@ -79,24 +80,24 @@ function stopId({cause, quantity}: Reason): StopId | null {
   return cause;
 }
 
-// Whether an arm reports a fault: it does not move until the program is restarted.
+// Returns whether an arm reports a fault. It does not move until the program is restarted.
 function armAtFault(state: State): boolean {
   return kSides.some((side) => state.hands[side].present && state.hands[side].armFault);
 }
 
-// Whether a reset is not enough.
+// Returns whether a reset is not enough.
 function needsANewStart(state: State): boolean {
   return armAtFault(state) || [state.stop, state.harder].some(({cause, quantity}) =>
     cause === 'device' || (cause === 'stale' && quantity === 'count'));
 }
 
-// Formats a value with this number of decimals; never writes a minus sign before zero.
+// Formats a value with this number of decimals. It never writes a minus sign before zero.
 export function fixed(value: number, decimals: number): string {
   const text = value.toFixed(decimals);
   return /^-[0.]*$/.test(text) ? text.slice(1) : text;
 }
 
-// A value in readable units: millimetres and degrees. more: additional digits.
+// Formats a value in readable units: millimetres and degrees. more: additional digits.
 export function readable(value: number, quantity: Quantity, more = 0): string {
   const degrees = (value * 180) / Math.PI;
   const d = 1 + more;
@@ -143,7 +144,7 @@ function advice(why: Reason): string {
   return id ? message(`stop.${id}.advice`) : '';
 }
 
-// Null unless a stop occurred. over: the run has ended, so there is nothing to reset.
+// Returns null unless a stop occurred. over: the run has ended, so there is nothing to reset.
 export function stopWords(state: State, simulated: boolean, over = false): StopWords | null {
   if (state.stop.cause === 'none') return null;
   // Without power, or if the program must be restarted, a reset is not enough.
@@ -158,7 +159,7 @@ export function stopWords(state: State, simulated: boolean, over = false): StopW
   return {cause: sentence(state.stop) + because, advice: [...steps, next].join(' ')};
 }
 
-// The console's text about arms that should be without power but are not; '' if there are no such arms.
+// Returns the console's text about arms that should be without power but are not, or '' without any.
 function powerWords(state: State): string {
   const kept = kSides.filter((side) => state.hands[side].present && state.hands[side].keepsPower);
   if (kept.length === 0) return '';
@@ -168,12 +169,13 @@ function powerWords(state: State): string {
 
 const kFreeForce = 5;  // a handle with a larger force is not free [N]
 
-// The remaining danger after a stop, if any. Only the worst is returned: the emergency stop comes first.
+// Returns the remaining danger after a stop, if there is one. Only the worst is returned, and the
+// emergency stop comes first.
 export function dangerWords(state: State, simulated: boolean): string {
   return powerWords(state) || loadedWords(state, simulated);
 }
 
-// Text about hands that real arms still press on after a stop; '' if there are no such hands.
+// Returns the text about hands that real arms still press on after a stop, or '' if there are none.
 function loadedWords(state: State, simulated: boolean): string {
   if (simulated || (state.state !== 'HELD' && state.state !== 'UNPOWERED')) return '';
   const loaded = kSides.flatMap((side) => {
@@ -187,7 +189,7 @@ function loadedWords(state: State, simulated: boolean): string {
   return message('danger.loaded_page', {handles: loaded.join('; '), caught});
 }
 
-// Texts for a run that has ended.
+// Returns the texts for a run that has ended.
 export function overWords(state: State | null, how: string): StateWords {
   const stopped = state !== null && (state.stop.cause !== 'none' || armAtFault(state));
   return stopped ? {title: message('state.over.stopped.title'), meaning: how, tone: 'stopped'} :
@@ -205,14 +207,16 @@ export const kParameterWords = {
 // How close a wrench is to its threshold.
 export type Level = 'green' | 'orange' | 'red';
 
-// Green below 50 % of the threshold, orange up to 80 %, red above, so that red appears before the stop.
+// Returns green below 50 % of the threshold, orange up to 80 %, and red above, so that red appears
+// before the stop.
 export function level(value: number, threshold: number): Level {
   const ratio = value / threshold;
   return ratio < 0.5 ? 'green' : ratio <= 0.8 ? 'orange' : 'red';
 }
 export const kWarningLevel = 0.8;
 
-// What the event that began last does, while an event acts, and whether the virtual cobot has stopped itself.
+// Describes what the event that began last does while an event acts, and whether the virtual cobot
+// has stopped itself.
 export function hazardWords(state: State, spec: SceneSpec): string {
   const meaning = state.events === 0 ? undefined : spec.hazards?.[state.latestEvent - 1];
   const words = meaning === undefined ? [] : [`Event: ${meaning}.`];

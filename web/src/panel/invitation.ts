@@ -26,7 +26,7 @@ export class Invitation {
     this.gauges = h('div', {class: 'gauges'}, ...[...this.bySide.values()].map(({element}) => element));
   }
 
-  // Whether the hands are free and this page is the only one that could take them.
+  // Returns whether the hands are free and this page is the only one that could take them.
   offered(spec: SceneSpec | null): boolean {
     const {phase, role, leases} = this.connection;
     return phase === 'open' && spec?.operator === 'browser' && !spec.replay && !spec.results &&
@@ -84,7 +84,7 @@ class Gauge {
                      h('div', {class: 'gauge-bar'}, this.bar));
   }
 
-  // force, limit: [N]. x, y: of the handle in the scene [px].
+  // force, limit: [N]. x, y: the position of the handle in the scene [px].
   show(force: number, limit: number, x: number, y: number) {
     setText(this.text, `${force.toFixed(0)} N of ${limit.toFixed(0)} N`);
     this.bar.style.width = `${100 * Math.min(force / limit, 1)}%`;

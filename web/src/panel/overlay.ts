@@ -1,4 +1,4 @@
-// Elements over the scene: title bar, instruction, guidance error, tools, banner.
+// Shows the elements over the scene: title bar, instruction, guidance error, tools, banner.
 import {h, setAttribute, setText} from '../dom';
 import {SceneSpec, State} from '../protocol';
 import {Score} from '../score';
@@ -12,7 +12,7 @@ const kViewWords: Record<View, string> = {
 
 const millimetres = (metres: number) => `${(1000 * metres).toFixed(1)} mm`;
 
-// Length of a run [s]; for a run without a planned end, the length of its script.
+// Returns the length of a run [s]. For a run without a planned end, it is the length of its script.
 function lengthOf(spec: SceneSpec): number {
   const script = spec.script.map(({start, duration}) => start + duration);
   return spec.duration > 0 ? spec.duration : Math.max(...script, 1);
@@ -53,7 +53,7 @@ export class Overlay {
       'div', {class: 'progress', id: 'progress', role: 'progressbar', 'aria-label': 'Script',
               'aria-valuemin': 0, 'aria-valuemax': 100, hidden: true}, this.progressBar);
   private readonly notice = h('div', {class: 'notice', id: 'notice', role: 'status', hidden: true});
-  // Stays until it is dismissed.
+  // The warning stays until the person dismisses it.
   private readonly warning = h('div', {});
   private readonly warningBox = h(
       'div', {class: 'notice warning', id: 'warning', role: 'status', hidden: true}, this.warning,
@@ -98,7 +98,7 @@ export class Overlay {
     this.buildProgress(spec);
   }
 
-  // The mirror was switched in the headset.
+  // The person switched the mirror in the headset.
   showMirror(on: boolean) {
     setAttribute(this.mirrorButton, 'aria-pressed', String(on));
   }
@@ -136,7 +136,7 @@ export class Overlay {
     }));
   }
 
-  // calm: there is no problem.
+  // calm: whether there is no problem.
   showBanner(text: string, calm: boolean) {
     setText(this.banner, text);
     this.banner.classList.toggle('calm', calm);
@@ -180,7 +180,7 @@ export class Overlay {
     this.bothButton.hidden = !isOperator;
   }
 
-  // stops: leaving the headset stops the real arms.
+  // stops: whether leaving the headset stops the real arms.
   showVr(immersive: boolean, stops: boolean) {
     setText(this.vrButton,
             !immersive ? 'Enter VR' : stops ? 'Leave VR (stops the arms)' : 'Leave VR');

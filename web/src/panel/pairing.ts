@@ -1,4 +1,4 @@
-// The form for the six digits, shown if the address contains no code.
+// Shows the form for the six digits if the address contains no code.
 import {h, setText} from '../dom';
 
 const kDigits = 6;
@@ -31,7 +31,7 @@ export class PairingPage {
             'console for digits. They are valid for two minutes.')));
   }
 
-  // lost: the page was connected to a run, and could stop it, until now.
+  // lost: whether the page was connected to a run, and could stop it, until now.
   show(reason: string, lost: boolean) {
     this.element.hidden = false;
     this.emergency.hidden = !lost;

@@ -1,4 +1,4 @@
-// The column beside the scene: state in words, stop, commands, leases, sliders, latency.
+// Shows the column next to the scene: state in words, stop, commands, leases, sliders, latency.
 import {Connection} from '../connection';
 import {h, setAttribute, setText} from '../dom';
 import {kSteps, LatencyLedger} from '../latency';
@@ -13,7 +13,7 @@ const kCommands: {command: Command; label: string; hint: string; states: RunStat
   {command: 'end', label: 'End', hint: 'Running', states: ['RUN']},
   {command: 'reset', label: 'Reset', hint: 'Stopped', states: ['HELD', 'UNPOWERED']},
 ];
-// States in which the arms are at rest: a page may choose the next scenario.
+// In these states, the arms are at rest, and a page may choose the next scenario.
 const kAtRest: RunState[] = ['IDLE', 'HELD', 'UNPOWERED'];
 const kLedgerMs = 500;
 const kNothingYet = {title: 'Connected', meaning: 'Waiting for the first state.', tone: 'calm'};
@@ -132,7 +132,7 @@ export class Panel {
     }
   }
 
-  // The results are available, but not shown.
+  // The results are available, but the page does not show them.
   offerResults(on: boolean) {
     this.resultsButton.hidden = !on;
   }
@@ -232,7 +232,7 @@ export class Panel {
       const button = this.commands.get(command)!;
       if (!possible && document.activeElement === button) this.commandHadFocus = true;
       button.disabled = !possible;
-      // A disabled button loses the focus. Keyboard users find it on the next enabled button.
+      // A disabled button loses the focus. Keyboard users then find it on the next enabled button.
       if (possible && this.commandHadFocus) {
         this.commandHadFocus = false;
         if (document.activeElement === document.body) button.focus({preventScroll: true});
@@ -278,8 +278,8 @@ export class Panel {
     this.choose(this.picker.value);
   }
 
-  // The server ends this scenario's run and restarts with the chosen one. If the scenario differs, the page
-  // then reloads.
+  // The server ends the run of this scenario and restarts with the chosen one. If the scenario
+  // differs, the page is then reloaded.
   choose(scenario: string) {
     this.againButton.disabled = true;
     if (!this.connection.hasControl) this.connection.send({type: 'lease', what: 'control', take: true});

@@ -1,4 +1,5 @@
-// The person: gauges with their intervals, classes of the worksheets, damage, fatigue and warnings.
+// Shows the person: gauges with their intervals, classes of the worksheets, damage, fatigue and
+// warnings.
 import {h, setAttribute, setText} from '../dom';
 import {loadColor} from '../load';
 import {kArmParts, kWhyNot} from '../person';
@@ -57,7 +58,7 @@ export function gaugeText(look: GaugeLook, value: number | null): string {
   return `${/^-[0.]*$/.test(text) ? text.slice(1) : text} ${look.unit}`;
 }
 
-// A value on a bar, with its 90 % interval as a band and its limit as a mark.
+// Shows a value on a bar, with its 90 % interval as a band and its limit as a mark.
 class Gauge {
   readonly element: HTMLElement;
   private readonly look: GaugeLook;
@@ -101,7 +102,7 @@ class Gauge {
   }
 }
 
-// The present score of a worksheet, and the probability of each action level as a bar.
+// Shows the present score of a worksheet, and the probability of each action level as a bar.
 class ScoreRow {
   readonly element: HTMLElement;
   private readonly score = h('output', {}, '–');
@@ -162,7 +163,7 @@ export class PersonCard {
         title('Scores', 'standard, probability'), ...[...this.scores.values()].map(({element}) => element),
         title('Muscles', 'modelled, lower bounds'), ...rows(from('muscles')),
         title('This run so far', 'standard'), this.damage, this.fatigue);
-    // Open where there is room beside the scene's objects.
+    // The card is open if there is room next to the scene's objects.
     const open = innerWidth >= kRoom[0] && innerHeight >= kRoom[1];
     this.element = h(
         'div', {class: 'person', id: 'person', hidden: true}, this.warnings,
@@ -176,7 +177,8 @@ export class PersonCard {
     this.show(null, false, Infinity);
   }
 
-  // person: the newest state; null: none yet. silent: none has come for too long.
+  // person: the newest state, or null if there is none yet. silent: whether none has arrived for
+  // too long.
   show(person: PersonState | null, silent: boolean, nowMs: number) {
     const judged = this.spec?.person?.judged ?? false;
     const why = !judged ? `Not judged: ${this.spec?.person?.why ?? 'the body or its place is not known.'}` :
@@ -201,7 +203,8 @@ export class PersonCard {
   }
 }
 
-// Damage caused by the run so far; if the run is repeated, by each repetition.
+// Describes the damage that the run has caused so far, or that each repetition causes if the run is
+// repeated.
 export function damageText({parts, since}: PersonState): string {
   const cost = (name: keyof PersonState['parts']) => {
     const part = parts[name].day_share;

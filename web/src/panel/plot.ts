@@ -1,4 +1,4 @@
-// One live plot, and the list of plotted quantities.
+// Shows one live plot. It also contains the list of plotted quantities.
 import uPlot from 'uplot';
 import {h} from '../dom';
 import {HandState, kSides, kStages, SceneSpec, Side, State} from '../protocol';
@@ -43,7 +43,7 @@ function limit(name: string, from: number, value: Series['value']): Series {
   return {label: 'limit', name: `${name}_limit`, color: hex(kMeaning.red), limit: from, value};
 }
 
-// In groups, of which one plot is visible at a time.
+// The plots form groups, of which one plot is visible at a time.
 export const kPlots: PlotSpec[][] = [
   [
     {
@@ -98,7 +98,7 @@ export class Plot {
   private readonly values: HTMLElement[];
   private shown: [number, number] = [0, 0];  // times [s]
 
-  // title: element of the title before the values.
+  // title: the element of the title before the values.
   constructor(readonly spec: PlotSpec, title: HTMLElement,
               onZoom: (min: number, max: number) => void,
               private readonly onCursor: (time: number | null) => void) {
@@ -136,7 +136,7 @@ export class Plot {
     this.showValues();
   }
 
-  // Shows the values at the cursor if there is one, otherwise the newest values.
+  // Shows the values at the cursor if there is one, and otherwise the newest values.
   private showValues() {
     const at = this.plot.cursor.idx;
     this.columns.forEach((column, i) => {
@@ -170,7 +170,7 @@ export class Plot {
       legend: {show: false},
       cursor: {
         drag: {x: true, y: false, setScale: false}, points: {show: false}, y: false,
-        // All plots show the same time; the plot in which a zoom was drawn reports it.
+        // All plots show the same time. The plot in which the person zooms reports it.
         sync: {
           key: kSync.key, setSeries: false, scales: ['x', null],
           filters: {pub: (type) => type === 'mousemove' || type === 'mouseleave'},
@@ -203,7 +203,7 @@ export class Plot {
     };
   }
 
-  // Upper end of the visible values; a limit is included once the values approach it.
+  // Returns the upper end of the visible values. It includes a limit once the values approach it.
   private upperEnd(u: uPlot): number {
     const times = u.data[0];
     const [min, max] = this.shown;
@@ -218,7 +218,7 @@ export class Plot {
     return Math.max(end * 1.12, this.spec.least);
   }
 
-  // Round times before the newest one.
+  // Returns round times before the newest one.
   private ticks(u: uPlot, min: number, max: number): number[] {
     const last = u.data[0].at(-1) ?? max;
     const step = kTickSteps.find((s) => (max - min) / s <= 5) ?? kTickSteps.at(-1)!;

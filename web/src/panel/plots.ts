@@ -1,4 +1,4 @@
-// Live plots of the last seconds that can be paused, zoomed and saved.
+// Shows live plots of the last seconds, which the person can pause, zoom and save.
 import {h, setText} from '../dom';
 import {SceneSpec, stampMs, State} from '../protocol';
 import {kPlots, Plot, PlotSpec} from './plot';
@@ -54,7 +54,7 @@ export class Plots {
     this.append(state, spec, time);
   }
 
-  // Called after a reconnection or a restart, since times may start again at zero.
+  // This is called after a reconnection or a restart, since times may start again at zero.
   clear() {
     this.waiting.length = 0;
     for (const plot of this.plots) plot.trim(this.times.length);
@@ -90,7 +90,7 @@ export class Plots {
     for (const plot of this.plots) plot.repaint();
   }
 
-  // Visible times [s], relative to the newest.
+  // Returns the visible times [s], relative to the newest one.
   shownRange(): [number, number] {
     const [min, max] = this.range();
     const last = this.times.at(-1) ?? 0;
@@ -101,7 +101,7 @@ export class Plots {
     return this.times.length;
   }
 
-  // The values of all plots in the visible time range.
+  // Returns the values of all plots in the visible time range.
   table(): string {
     const [min, max] = this.range();
     const columns = this.plots.flatMap(({spec, columns: values}) => spec.series.map(
@@ -144,7 +144,7 @@ export class Plots {
     if (blob) save('plots.png', blob);
   }
 
-  // Builds a group of plots of which one is visible; buttons with their names show the others.
+  // Builds a group of plots of which one is visible. Buttons with their names show the others.
   private buildGroup(specs: PlotSpec[]): HTMLElement {
     const plots: Plot[] = [];
     const show = (seen: number) => plots.forEach(({element}, i) => (element.hidden = i !== seen));

@@ -1,4 +1,4 @@
-// The results of a run that has ended: how it ended, its figures and curves, and the available next steps.
+// Shows the results of a run: how it ended, its figures and curves, and the available next steps.
 import uPlot from 'uplot';
 import {h, setAttribute, setText} from '../dom';
 import {Curve, Figure, kSides, Results, SceneSpec, Side} from '../protocol';
@@ -9,7 +9,8 @@ export interface ResultsActions {
   saveReport(): void;
 }
 
-// The scenario after the present one in the list; null if the present one is not in the list.
+// Returns the scenario after the present one in the list, or null if the present one is not in the
+// list.
 export function nextScenario(spec: SceneSpec): {name: string; title: string} | null {
   const at = spec.scenarios.findIndex(({name}) => name === spec.file);
   return at < 0 || spec.scenarios.length < 2 ? null : spec.scenarios[(at + 1) % spec.scenarios.length];
@@ -64,8 +65,8 @@ export class ResultsCard {
     this.curves.replaceChildren(...results.curves.map((curve) => this.figure(curve)));
   }
 
-  // stopped, cause: whether and why the run was stopped. may: this page may choose the next scenario. alive:
-  // the program is still running and can start it.
+  // stopped, cause: whether and why the run was stopped. may: whether this page may choose the next
+  // scenario. alive: whether the program is still running and can start it.
   update(title: string, stopped: boolean, cause: string, may: boolean, alive: boolean) {
     if (!this.spec?.results) return;
     setText(this.title, title);
@@ -141,7 +142,7 @@ function options(curve: Curve, sides: Side[]): uPlot.Options {
     ticks: {show: false}, font: '11px system-ui, sans-serif',
   };
   const largest = Math.max(...sides.flatMap((side) => curve[side]!), 0);
-  // The limit is drawn if the values come near it.
+  // The limit is drawn if the values come close to it.
   const top = 1.1 * (largest > 0.3 * curve.limit ? Math.max(largest, curve.limit) : largest || 1);
   return {
     width: 300, height: 150, legend: {show: false},

@@ -1,4 +1,4 @@
-// Saves files by offering them as downloads; no data leaves the browser.
+// Saves files by offering them as downloads. No data leaves the browser.
 
 export function save(name: string, content: Blob) {
   const link = document.createElement('a');

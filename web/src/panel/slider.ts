@@ -1,4 +1,5 @@
-// One parameter that may change during a run. The server ramps it; the mark shows its present value.
+// Shows one parameter that may change during a run. The server ramps it, and the mark shows its
+// present value.
 import {h, setAttribute, setText} from '../dom';
 import {ParameterName, ParameterSpec} from '../protocol';
 
@@ -48,7 +49,8 @@ export class ParameterSlider {
     return `${value.toFixed(this.words.digits)} ${this.words.unit}`;
   }
 
-  // Sends at most ten values per second while the slider is dragged; always sends the last value.
+  // Sends at most ten values per second while the person drags the slider, and always sends the
+  // last value.
   private changed() {
     const nowMs = performance.now();
     this.touchedMs = nowMs;

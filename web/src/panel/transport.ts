@@ -1,4 +1,5 @@
-// Controls for playing a recording: position, speed and single steps. They replace the stop button.
+// Shows the controls for playing a recording: position, speed and single steps. They replace the
+// stop button.
 import {Connection} from '../connection';
 import {h, setAttribute, setText} from '../dom';
 import {SceneSpec, State} from '../protocol';
@@ -76,7 +77,8 @@ export class Transport {
     this.connection.send({type: 'replay', play: this.playing ? Number(this.speed.value) : 0});
   }
 
-  // A person who opens the page wants to play the recording, so it requests control; the first page gets it.
+  // A person who opens the page wants to play the recording, so the page requests control. The
+  // first page gets it.
   private takeControl() {
     const {phase, role, leases} = this.connection;
     if (this.asked || phase !== 'open') return;
@@ -86,8 +88,8 @@ export class Transport {
     }
   }
 
-  // Derives from the received positions whether the recording is playing, since another page may have started
-  // it, or it may have ended.
+  // Derives from the received positions whether the recording is playing. Another page may have
+  // started it, or it may have ended.
   private follow(place: number, nowMs: number) {
     const moved = place !== this.place;
     this.place = place;

@@ -1,4 +1,5 @@
-// Force and torque of a hand at its handle, as arrows whose colour shows how near the threshold is.
+// Shows force and torque of a hand at its handle as arrows. Their colour shows how near the
+// threshold is.
 import {
   ConeGeometry, CylinderGeometry, Group, Mesh, MeshStandardMaterial, Quaternion, TorusGeometry,
   Vector3,
@@ -18,7 +19,8 @@ const kHoldMs = 500;  // minimum time for which a colour is shown, so that short
 const kLevels: readonly Level[] = ['green', 'orange', 'red'];
 
 class Colored {
-  // Drawn over everything: a hand's force must also be visible if the object hides the handle.
+  // The arrows are drawn over everything, because a hand's force must be visible even if the object
+  // hides the handle.
   readonly material = new MeshStandardMaterial(
       {roughness: 0.4, emissiveIntensity: 0.35, depthTest: false, transparent: true});
   level: Level = 'green';
@@ -106,14 +108,14 @@ export class WrenchArrows {
     this.group.visible = false;
   }
 
-  // Largest force and torque since the previous state [N], [N·m].
+  // Reports the largest force and torque since the previous state [N], [N·m].
   reached(peak: number[], forceThreshold: number, torqueThreshold: number) {
     const nowMs = performance.now();
     if (peak[0] >= 0) this.force.reached(peak[0], forceThreshold, nowMs);
     if (peak[1] >= 0) this.torque.reached(peak[1], torqueThreshold, nowMs);
   }
 
-  // Wrench of the hand on the handle at `origin`, in axes of W [N], [N·m].
+  // Sets the wrench of the hand on the handle at `origin`, in axes of W [N], [N·m].
   set(origin: Vector3, wrench: number[], forceThreshold: number, torqueThreshold: number) {
     this.group.position.copy(origin);
     this.force.set(new Vector3(wrench[0], wrench[1], wrench[2]), forceThreshold);

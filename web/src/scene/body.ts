@@ -1,4 +1,4 @@
-// The body of the person: limbs between the joints, coloured by their load.
+// Shows the body of the person: limbs between the joints, coloured by their load.
 import {
   BufferGeometry, Color, CylinderGeometry, Group, Matrix4, Mesh, MeshLambertMaterial, SphereGeometry, Vector3,
 } from 'three';
@@ -10,7 +10,7 @@ import {vector} from './frames';
 type PointName = keyof BodyPoints;
 type PartName = keyof PersonState['parts'];
 
-// Rough radii [m] at both ends, as in reports (design choice).
+// The rough radii [m] at both ends are those of reports (a design choice).
 interface Limb {
   from: PointName;
   to: PointName;
@@ -44,7 +44,7 @@ class LimbMesh {
 
   constructor(readonly limb: Limb, sphere: BufferGeometry) {
     const [a, b] = limb.radii;
-    // From z = 0 to 1.
+    // The cone extends from z = 0 to 1.
     const cone = new CylinderGeometry(b, a, 1, 18, 1, true).rotateX(Math.PI / 2).translate(0, 0, 0.5);
     this.shaft = solid(cone, this.material);
     this.balls = limb.radii.map(() => solid(sphere, this.material));
@@ -62,7 +62,7 @@ class LimbMesh {
   }
 }
 
-// Axes: z = `along`, with its length; x near `beside`. `size` scales them.
+// Sets the axes: z is along `along`, with its length, and x is near `beside`. `size` scales them.
 function span(matrix: Matrix4, at: Vector3, along: Vector3, beside: Vector3, size: number[]) {
   const y = along.clone().cross(beside);
   if (y.lengthSq() < 1e-12) y.set(0, 1, 0);
@@ -85,7 +85,7 @@ export class Body {
   private readonly nose: Mesh;
   private readonly neck: Mesh;
 
-  // scale: of a small figure; its radii become smaller as well.
+  // scale: the size of a small figure, whose radii are smaller as well.
   constructor(private readonly scale = 1) {
     const sphere = new SphereGeometry(1, 20, 14);
     this.limbs = kLimbs.map((limb) => new LimbMesh(limb, sphere));
@@ -115,7 +115,7 @@ export class Body {
     this.placeHead(at('neck'), at('head'), at('eyes'), left);
   }
 
-  // parts: of the state of the person; null: nothing is judged.
+  // parts: those of the state of the person, or null if nothing is judged.
   paint(parts: PersonState['parts'] | null) {
     const color = (part: PartName) => loadColor(parts?.[part].load ?? null);
     this.trunkMaterial.color.copy(new Color(color('lower_back')));
@@ -127,7 +127,8 @@ export class Body {
     }
   }
 
-  // The person's own view contains limbs only: the eyes are within the head, and the trunk would fill the view.
+  // The person's own view contains only limbs. The eyes are within the head, and the trunk would
+  // fill the view.
   showTrunk(on: boolean) {
     for (const part of [this.head, this.nose, this.neck, this.chest, this.belly, this.hips]) part.visible = on;
   }

@@ -1,4 +1,5 @@
-// Camera of the page: presets and free orbit. World axes in this file are those of three.js, Y up.
+// Controls the camera of the page: presets and free orbit. World axes in this file are those of
+// three.js, with Y up.
 import {Object3D, PerspectiveCamera, Vector3} from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {Pose, SceneSpec, Vec3} from '../protocol';
@@ -37,7 +38,7 @@ export class CameraRig {
     });
   }
 
-  // Moves the camera there without an animation, at the beginning.
+  // Moves the camera there without an animation, when the page opens.
   jump(view: View, spec: SceneSpec, object: Vec3) {
     this.view = view;
     this.stand(this.placeOf(view, spec, object));
@@ -54,7 +55,7 @@ export class CameraRig {
     this.move = {from, to, startMs: performance.now()};
   }
 
-  // Pose of a person's headset in W; null: no headset.
+  // Sets the pose of a person's headset in W, or null if there is no headset.
   setHeadset(pose: Pose | null) {
     this.headset = pose;
   }
@@ -79,7 +80,7 @@ export class CameraRig {
     this.camera.updateProjectionMatrix();
   }
 
-  // Otherwise, the inertia of the last manual turn would continue after the move.
+  // Otherwise the inertia of the last manual turn would continue after the move.
   private stopInertia() {
     this.controls.enableDamping = false;
     this.controls.update();
@@ -135,7 +136,7 @@ export class CameraRig {
     }
   }
 
-  // The page's world has a fixed pose while no headset is used.
+  // The page's world has a fixed pose while no one uses a headset.
   private toThree(p: Vec3): Vector3 {
     return new Vector3(p[0], p[2], -p[1]);
   }

@@ -1,5 +1,6 @@
-// Reads Collada files quickly. Their long lists of numbers make up nearly the whole file. Passing them to the
-// browser's XML parser would take most of the time, so they are extracted and returned as typed arrays.
+// Reads Collada files quickly. Their long lists of numbers make up nearly the whole file, and the
+// browser's XML parser would spend most of its time on them. Therefore this file extracts them and
+// returns them as typed arrays.
 import {Object3D, Texture} from 'three';
 import {ColladaComposer} from 'three/examples/jsm/loaders/collada/ColladaComposer.js';
 import {ColladaParser, Geometry} from 'three/examples/jsm/loaders/collada/ColladaParser.js';
@@ -33,7 +34,7 @@ export function parseCollada(text: string): ColladaModel {
   return {scene, textured};
 }
 
-// Returns the text without the long lists of its geometries; appends those to `lists`.
+// Returns the text without the long lists of its geometries and appends these to `lists`.
 function takeOut(text: string, lists: Float64Array[]): string {
   const from = Math.max(text.indexOf('<library_geometries'), 0);
   const to = text.lastIndexOf('</library_geometries');

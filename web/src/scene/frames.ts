@@ -1,4 +1,4 @@
-// Conversions between the protocol's poses (W: Z up, scalar first) and three.js's matrices.
+// Converts between the protocol's poses (W: Z up, scalar first) and three.js's matrices.
 import {Matrix4, Object3D, Quaternion, Vector3} from 'three';
 import {Pose, Quat, Vec3} from '../protocol';
 
@@ -16,7 +16,7 @@ export function matrix(pose: Pose): Matrix4 {
   return new Matrix4().compose(vector(pose.p), quaternion(pose.q), kOne);
 }
 
-// Pose of a rigid transform.
+// Returns the pose of a rigid transform.
 export function poseOf(m: Matrix4): Pose {
   const p = new Vector3();
   const q = new Quaternion();
@@ -33,15 +33,16 @@ export function distance(a: Vec3, b: Vec3): number {
   return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-// Angle of the rotation between two orientations [rad].
+// Returns the angle of the rotation between two orientations [rad].
 export function angle(a: Quat, b: Quat): number {
   const sign = a.reduce((sum, value, i) => sum + value * b[i], 0) < 0 ? -1 : 1;
-  // Computed from the chord: the cosine of a small angle in single precision has an error of 0.03°.
+  // The angle is computed from the chord, because the cosine of a small angle in single precision
+  // has an error of 0.03°.
   const chord = Math.hypot(...a.map((value, i) => sign * value - b[i]));
   return 4 * Math.asin(Math.min(chord / 2, 1));
 }
 
-// Pose of `object` in the frame of `frame`, from their poses in the scene graph.
+// Returns the pose of `object` in the frame of `frame`, from their poses in the scene graph.
 export function poseIn(object: Object3D, frame: Object3D): Pose {
   object.updateWorldMatrix(true, false);
   frame.updateWorldMatrix(true, false);

@@ -1,4 +1,4 @@
-// The circle to follow, the object's trail, and its present distance from the circle.
+// Shows the circle to follow, the object's trail, and its present distance from the circle.
 import {
   BufferGeometry, Color, Float32BufferAttribute, Group, Line, LineBasicMaterial, Mesh,
   MeshBasicMaterial, Points, PointsMaterial, SphereGeometry, TorusGeometry,
@@ -91,7 +91,7 @@ export class Guidance {
     this.group.add(this.circle);
   }
 
-  // Shortest distance of `p` from the circle [m]; NaN if there is no circle.
+  // Returns the shortest distance of `p` from the circle [m], or NaN if there is no circle.
   error(p: Vec3): number {
     return this.active ? distance(p, this.closest(p)) : NaN;
   }
@@ -100,7 +100,8 @@ export class Guidance {
     if (this.active) this.nearest.position.set(...this.closest(p));
   }
 
-  // Called for each state, drawn or not, so that the trail is equally fine on a slow computer.
+  // This is called for each state, drawn or not, so that the trail is equally fine on a slow
+  // computer.
   track(p: Vec3, runTime: number) {
     if (this.last && distance(this.last, p) > kJump) this.clear();
     if (this.last && distance(this.last, p) < kTrailStep) return;
@@ -138,8 +139,8 @@ export class Guidance {
     this.nearest.material.color.set(color);
   }
 
-  // On the path, the colour of small hand forces; it changes towards red with the distance. Constant if there
-  // is no path.
+  // On the path, the colour is that of small hand forces. It changes towards red with the distance,
+  // and is constant if there is no path.
   private colorAt(p: Vec3): Color {
     if (!this.active) return this.color.set(this.theme === 'dark' ? '#ffd166' : '#c46b00');
     const off = Math.min(this.error(p) / kFarOff, 1);

@@ -1,4 +1,5 @@
-// Handles: virtual ones are solid, real ones are outlines, so that their distance is visible.
+// Shows the handles. Virtual ones are solid and real ones are outlines, so that their distance is
+// visible.
 import {
   AxesHelper, CapsuleGeometry, CylinderGeometry, EdgesGeometry, Group, LineBasicMaterial,
   LineSegments, Mesh, MeshStandardMaterial, SphereGeometry, TorusGeometry,
@@ -20,7 +21,7 @@ export class Handle {
   readonly group = new Group();
   readonly virtual = new Group();
   readonly real = new Group();
-  // Invisible sphere for pointer hits.
+  // This invisible sphere detects where the pointer hits.
   readonly target = new Mesh(new SphereGeometry(kPickRadius, 12, 8));
   private readonly material: MeshStandardMaterial;
   private readonly halo: Mesh<TorusGeometry, MeshStandardMaterial>;
@@ -31,7 +32,7 @@ export class Handle {
   constructor(readonly side: Side) {
     const color = kMeaning[side];
     this.material = new MeshStandardMaterial({color, roughness: 0.35, emissive: color});
-    // Along Y, like a bar in a hand whose fingers close around it from below.
+    // The grip lies along Y, like a bar in a hand whose fingers close around it from below.
     const grip = new Mesh(new CapsuleGeometry(kRadius, kLength - 2 * kRadius, 8, 24), this.material);
     grip.castShadow = true;
     const ring = new Mesh(new TorusGeometry(kRingRadius, 0.007, 12, 48), this.material);
@@ -81,8 +82,8 @@ export class Handle {
     this.isHovered = on;
   }
 
-  // Shows a second ring around it. The ring pulses while it invites, and is bright under the pointer and
-  // while the handle is held.
+  // Shows a second ring around the handle. The ring pulses while it invites, and is bright under
+  // the pointer and while the handle is held.
   invite(on: boolean, nowMs: number) {
     this.halo.visible = on || this.isHovered || this.isHeld;
     const still = this.isHovered || this.isHeld || matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -91,12 +92,12 @@ export class Handle {
     this.halo.material.emissiveIntensity = still ? 1.2 : 0.5 + 0.7 * beat;
   }
 
-  // As drawn [m].
+  // The radius as drawn [m].
   get ringRadius(): number {
     return kRingRadius * this.rings.scale.x;
   }
 
-  // pixelsPerMetre: at the handle; infinite: true size.
+  // pixelsPerMetre: the scale at the handle. If infinite, the handle has its true size.
   setScreenScale(pixelsPerMetre: number) {
     const scale = kMinRingRadius / (kRingRadius * pixelsPerMetre);
     this.rings.scale.setScalar(Math.min(Math.max(scale, 1), kMaxScale));

@@ -1,4 +1,4 @@
-// A mirror beside the scene, in which the person sees their own body, at half its size.
+// Shows a mirror in the scene, in which people see their own body at half its size.
 import {DoubleSide, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, PlaneGeometry} from 'three';
 import {BodyPoints, mirrored, MirrorPlace} from '../person';
 import {PersonState, SceneSpec, Vec3} from '../protocol';
@@ -22,7 +22,7 @@ export class Mirror {
         new Mesh(plane, new MeshBasicMaterial(
             {color: 0x24405f, transparent: true, opacity: 0.45, depthWrite: false, side: DoubleSide, fog: false})),
         new LineSegments(new EdgesGeometry(plane), new LineBasicMaterial({color: 0x7cc0ff, fog: false})));
-    // From the plane's axes (y up, facing z) to those of W.
+    // This rotates the plane's axes (y up, facing z) to those of W.
     this.glass.rotation.set(Math.PI / 2, 0, 0, 'ZXY');
     this.group.add(this.glass, this.body.group);
     this.group.visible = false;
@@ -41,7 +41,7 @@ export class Mirror {
     this.glass.rotation.z = Math.atan2(toward[1], toward[0]) - Math.PI / 2;
   }
 
-  // Of the body's points in W; null: the body is not known.
+  // points: the body's points in W, or null if the body is not known.
   set(points: BodyPoints | null, parts: PersonState['parts'] | null) {
     const ground = this.spec?.viewpoint.ground;
     this.body.group.visible = points !== null && !!ground;

@@ -1,4 +1,4 @@
-// Loads robots and objects from the server's URDF files; each request needs the token.
+// Loads robots and objects from the server's URDF files. Each request needs the token.
 import {
   BufferGeometry, BoxGeometry, Color, CylinderGeometry, EdgesGeometry, Group, LineBasicMaterial,
   LineSegments, LoadingManager, Material, Mesh, MeshPhongMaterial, MeshStandardMaterial, Object3D,
@@ -40,14 +40,15 @@ function finish(root: Object3D) {
   });
 }
 
-// Reports a part that failed or is not shown, while the rest is still shown; called once per model.
+// Reports a part that failed or is not shown, while the rest is still shown. It is called once per
+// model.
 export type Complaint = (words: string) => void;
 
 export const kPlaceholder = 'placeholder';
 const kPlaceholderSize = 0.06;  // size of the box that represents a mesh that cannot be shown [m]
 
-// Loads a mesh file of any format that robots commonly use. Throws an Error if the format is different, or if
-// the file is missing or cannot be parsed.
+// Loads a mesh file in any format that robots commonly use. Throws an Error if the format is
+// different, or if the file is missing or cannot be parsed.
 async function loadMesh(url: string, token: string, material: Material,
                         complain: Complaint): Promise<Object3D> {
   const kind = url.slice(url.lastIndexOf('.') + 1).toLowerCase();
@@ -76,7 +77,8 @@ function readCollada(url: string, text: string): ColladaModel {
   }
 }
 
-// An .obj file names its materials in a separate file, which is not served, so the URDF's material is used.
+// An .obj file names its materials in a separate file, which the server does not provide. The
+// URDF's material is used instead.
 function withMaterial(root: Object3D, material: Material): Object3D {
   root.traverse((node) => {
     if (node instanceof Mesh) node.material = material;
@@ -84,7 +86,7 @@ function withMaterial(root: Object3D, material: Material): Object3D {
   return root;
 }
 
-// A wire box in place of a mesh, which shows that something is missing, and where.
+// A wire box takes the place of a mesh. It shows that something is missing, and where.
 function placeholder(): Object3D {
   const box = new BoxGeometry(kPlaceholderSize, kPlaceholderSize, kPlaceholderSize);
   const mesh = new LineSegments(new EdgesGeometry(box), new LineBasicMaterial({color: 0xff9f1c}));
@@ -107,8 +109,8 @@ function removeLinks(xml: Document, names: string[]) {
   }
 }
 
-// Loads a URDF with its meshes; a mesh that cannot be shown is replaced by a placeholder. Throws an Error if
-// the URDF itself is missing or cannot be parsed.
+// Loads a URDF with its meshes. A placeholder replaces a mesh that cannot be shown. Throws an Error
+// if the URDF itself is missing or cannot be parsed.
 export async function loadUrdf(url: string, removed: string[], token: string,
                                complain: Complaint): Promise<URDFRobot> {
   const text = await (await fetchModel(url, token)).text();
@@ -128,7 +130,7 @@ export async function loadUrdf(url: string, removed: string[], token: string,
     }).then((mesh) => done(mesh)));
   };
   const robot = loader.parse(xml);
-  // Measured positions are shown even beyond a joint limit.
+  // Measured positions must be visible even beyond a joint limit.
   Object.values(robot.joints).forEach((joint) => (joint.ignoreLimits = true));
   await Promise.all(meshes);
   finish(robot);
@@ -153,7 +155,7 @@ export class Robot {
     this.group.add(this.robot);
   }
 
-  // Joint positions in the order of spec.joints [rad].
+  // Sets the joint positions in the order of spec.joints [rad].
   setJoints(q: number[]) {
     if (!this.robot) return;
     this.spec.joints.forEach((name, i) => this.robot!.setJointValue(name, q[i]));
@@ -171,7 +173,7 @@ function shapeGeometry(spec: {shape: string; size: number[]}): BufferGeometry {
   return new CylinderGeometry(x, x, y, 48).rotateX(Math.PI / 2);  // along Z, as in URDF
 }
 
-// The carried object.
+// Loads the carried object.
 export async function loadObject(spec: ObjectSpec, token: string,
                                  complain: Complaint): Promise<Object3D> {
   if ('urdf' in spec) return loadUrdf(spec.urdf, [], token, complain);
@@ -180,8 +182,8 @@ export async function loadObject(spec: ObjectSpec, token: string,
   return mesh;
 }
 
-// Makes a model translucent, so that it does not distract from the model beside it. Its depth is drawn first,
-// so that only its nearest surface is visible.
+// Makes a model translucent, so that it does not distract from the model next to it. Its depth is
+// drawn first, so that only its nearest surface is visible.
 export function makeGhost(root: Object3D) {
   const material = new MeshStandardMaterial({
     transparent: true, opacity: 0.3, depthWrite: false, roughness: 0.9, metalness: 0,

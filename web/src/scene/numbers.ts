@@ -1,8 +1,8 @@
 // Reads long lists of decimal numbers in mesh files quickly.
 
-// Parses decimal numbers between white space. Numbers of up to 15 digits are exact, because both the digits
-// as an integer and the power of ten that divides them are exact. Numbers that are longer or have an exponent
-// are parsed by the language.
+// Parses decimal numbers between white space. Numbers of up to 15 digits are exact, because both
+// the digits as an integer and the power of ten that divides them are exact. JavaScript itself
+// parses numbers that are longer or have an exponent.
 export function parseNumbers(text: string): Float64Array {
   const end = text.length;
   const numbers = new Float64Array((end >> 1) + 1);

@@ -1,4 +1,4 @@
-// Floor, grid, table and light.
+// Shows floor, grid, table and light.
 import {
   BoxGeometry, BufferGeometry, CircleGeometry, Color, CylinderGeometry, DirectionalLight, Float32BufferAttribute, Fog,
   Group, HemisphereLight, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
@@ -11,7 +11,7 @@ const kFloorRadius = 6;   // [m]
 const kGridHalf = 3;      // [m]
 const kGridStep = 0.1;    // [m]
 const kMajorEvery = 5;    // lines
-// The virtual floor where the ground is below it: a round table on a column.
+// If the ground is below the virtual floor, this floor is shown as a round table on a column.
 const kPlate = {radius: 1, thickness: 0.03, column: 0.12};  // [m]
 const kBesidePlate = 0.25, kMinPlate = 0.4;  // distance of the plate's edge from the feet; minimum radius [m]
 const kFoot = [0.13, 0.05];  // half length and half width of a footprint [m]
@@ -88,7 +88,7 @@ export class Room {
     this.group.add(this.table);
   }
 
-  // The ground is where the operator stands. If that is below the virtual floor, the virtual floor is a
+  // The operator stands on the ground. If it is below the virtual floor, the virtual floor is a
   // plate above it.
   private stand({viewpoint, floor, cobot}: SceneSpec) {
     const {ground, forward, feet} = viewpoint;
@@ -98,7 +98,7 @@ export class Room {
     this.plate.visible = floor && raised;
     const middle = [cobot.base.p[0] + 0.25, cobot.base.p[1]];
     this.plate.position.set(middle[0], middle[1], 0);
-    // Not through the operator's legs.
+    // The plate must not pass through the operator's legs.
     const room = ground ? Math.hypot(ground[0] - middle[0], ground[1] - middle[1]) - kBesidePlate : kPlate.radius;
     const radius = Math.min(Math.max(room, kMinPlate), kPlate.radius);
     this.top.scale.set(radius / kPlate.radius, 1, radius / kPlate.radius);

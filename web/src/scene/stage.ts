@@ -1,4 +1,4 @@
-// The scene: all objects of W, under one rotation from Z up to three.js's Y up.
+// The scene contains all objects of W, under one rotation from Z up to three.js's Y up.
 import {
   Box3, BufferGeometry, Group, Line, LineDashedMaterial, Mesh, MeshBasicMaterial,
   MeshStandardMaterial, Object3D, PCFShadowMap, Scene, SphereGeometry, Vector3, WebGLRenderer,
@@ -19,7 +19,8 @@ import {Room} from './room';
 const kSlowFrameMs = 45;  // if frames take longer for a while: fewer pixels, then fewer shadows
 const kPatienceMs = 3000;
 const kWaitForModelsMs = 1200;   // before an empty room is drawn, because drawing delays the loading
-// Maximum time for compiling the shaders in the background; then the scene is drawn even if they are not ready.
+// This is the maximum time for compiling the shaders in the background. After it, the scene is
+// drawn even if they are not ready.
 const kLongestCompileMs = 4000;
 const kOverArrows = 30;  // order of drawing
 const kShadowEvery = 6;  // frames, on a slow computer
@@ -33,7 +34,7 @@ function drawnBySoftware(): boolean {
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
-// A line from a handle to the pointer's desired position, like a rubber band.
+// Draws a line from a handle to the pointer's desired position, like a rubber band.
 class Rubber {
   readonly group = new Group();
   private readonly geometry = new BufferGeometry();
@@ -63,7 +64,7 @@ class Rubber {
   }
 }
 
-// The part of a scene description that is drawn; results and notices do not affect it.
+// Returns the part of a scene description that is drawn. Results and notices do not affect it.
 function drawnOf(spec: SceneSpec): string {
   return JSON.stringify({...spec, results: undefined, notice: undefined});
 }
@@ -73,7 +74,7 @@ export interface Thresholds {
   torque: number;
 }
 
-// Present thresholds: the ramped ones, otherwise those of the scenario.
+// Returns the present thresholds: the ramped ones, or otherwise those of the scenario.
 export function presentThresholds(spec: SceneSpec, state: State): Thresholds {
   const force = state.parameters[3];
   const torque = state.parameters[4];
@@ -86,7 +87,8 @@ export function presentThresholds(spec: SceneSpec, state: State): Thresholds {
 export class Stage {
   readonly renderer: WebGLRenderer;
   readonly scene = new Scene();
-  // Outside a headset: the identity. Inside: the pose of W in the headset's space (registration).
+  // Outside a headset, this is the identity. Inside, it is the pose of W in the headset's space
+  // (registration).
   readonly root = new Group();
   readonly world = new Group();
   readonly camera: CameraRig;
@@ -181,7 +183,7 @@ export class Stage {
     return this.spec !== null && this.compiled && this.standing && (this.modelsLoaded || waited);
   }
 
-  // The real arms beside the virtual scene; loaded at the first request.
+  // Shows the real arms next to the virtual scene. They are loaded at the first request.
   setGhosts(on: boolean) {
     this.ghosts = on;
     this.room.setTranslucent(on);
@@ -207,7 +209,8 @@ export class Stage {
     return arms.length > 0 && arms.every((arm) => arm.loaded);
   }
 
-  // A state has arrived: its warnings are shown immediately instead of when its own time has come.
+  // When a state arrives, its warnings are shown immediately and do not wait until its own time has
+  // come.
   warn(state: State) {
     if (!this.spec) return;
     const thresholds = presentThresholds(this.spec, state);
@@ -245,8 +248,8 @@ export class Stage {
     this.settled = this.modelsLoaded;
   }
 
-  // The body of the person; null: it is not known. The wearer of a headset sees it in the mirror only, and the
-  // operator's view is from its head.
+  // points: the body of the person, or null if it is not known. The wearer of a headset sees it
+  // only in the mirror. The operator's view is from the head of this body.
   applyPerson(points: BodyPoints | null, parts: PersonState['parts'] | null) {
     const {body, mirror} = this;
     body.group.visible = points !== null && this.bodyWanted && !this.renderer.xr.isPresenting;
@@ -274,21 +277,22 @@ export class Stage {
     this.saveTime(nowMs);
   }
 
-  // The present picture as a PNG; null in a headset, or if the browser cannot make it.
+  // Returns the present picture as a PNG, or null in a headset or if the browser cannot make it.
   picture(): Promise<Blob | null> {
     if (this.renderer.xr.isPresenting) return Promise.resolve(null);
     this.renderer.render(this.scene, this.camera.camera);  // the browser discards the content of the canvas
     return new Promise((resolve) => this.renderer.domElement.toBlob(resolve));
   }
 
-  // Pose in W of a link of the cobot, from the scene graph; null if it does not exist. Other names: 'object':
-  // the object; 'left:LINK': a link of an arm; 'left:handle': a virtual handle.
+  // Returns the pose in W of a link of the cobot, from the scene graph, or null if it does not
+  // exist. Other names are 'object' for the object, 'left:LINK' for a link of an arm, and
+  // 'left:handle' for a virtual handle.
   linkPose(name: string): Pose | null {
     const node = this.node(name);
     return node ? poseIn(node, this.world) : null;
   }
 
-  // Bounding box in W of only the visuals of a link of the cobot, or of 'object' [m].
+  // Returns the bounding box in W of only the visuals of a link of the cobot, or of 'object' [m].
   meshBox(name: string): {min: Vec3; max: Vec3} | null {
     const link = name === 'object' ? this.object : this.cobot?.link(name);
     if (!link) return null;
@@ -308,14 +312,14 @@ export class Stage {
     return {min: box.min.toArray(), max: box.max.toArray()};
   }
 
-  // Number of boxes that represent meshes of the object that cannot be shown.
+  // Returns the number of boxes that represent meshes of the object that cannot be shown.
   get placeholders(): number {
     let count = 0;
     this.object?.traverse((node) => (count += node.name === kPlaceholder ? 1 : 0));
     return count;
   }
 
-  // Position on the page of a point in W [px].
+  // Returns the position on the page of a point in W [px].
   project(p: Vec3): {x: number; y: number} {
     const v = this.world.localToWorld(new Vector3(...p)).project(this.camera.camera);
     const box = this.renderer.domElement.getBoundingClientRect();
@@ -326,13 +330,13 @@ export class Stage {
     return this.spec !== null && drawnOf(this.spec) === drawn;
   }
 
-  // Radius of a handle's ring on the page [px].
+  // Returns the radius of a handle's ring on the page [px].
   ringOnScreen(side: Side): number {
     const {virtual, ringRadius} = this.handles[side];
     return ringRadius * this.pixelsPerMetre(virtual.position.toArray());
   }
 
-  // At a point in W, on the page.
+  // Returns the scale on the page at a point in W.
   private pixelsPerMetre(p: Vec3): number {
     const {camera} = this.camera;
     const distance = camera.position.distanceTo(this.world.localToWorld(new Vector3(...p)));
@@ -373,7 +377,8 @@ export class Stage {
                   this.arrows.left.group];
     const gl = this.renderer.getContext();
     if (!gl.getExtension('KHR_parallel_shader_compile')) {
-      // The browser does not report when they are ready, but it starts compiling when this is flushed.
+      // The browser does not report when the shaders are ready, but it starts to compile them when
+      // this is flushed.
       for (const group of seen) this.renderer.compile(group, this.camera.camera, this.scene);
       gl.flush();
       done();
@@ -411,7 +416,8 @@ export class Stage {
     this.camera.resize(clientWidth, clientHeight);
   }
 
-  // On a computer without a graphics card: first fewer pixels, then less frequent shadows.
+  // On a computer without a graphics card, first the number of pixels is reduced, then the
+  // frequency of shadows.
   private saveTime(nowMs: number) {
     const frameMs = nowMs - this.lastFrameMs;
     this.lastFrameMs = nowMs;

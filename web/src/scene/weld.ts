@@ -5,8 +5,8 @@ import {BufferAttribute, BufferGeometry} from 'three';
 const kFine = 1e5;    // steps per metre: 0.01 mm
 const kCoarse = 500;  // steps of a normal's component
 
-// Merges corners with equal position and normal. Geometries that already have an index, or that have relevant
-// attributes other than positions and normals, are returned unchanged.
+// Merges corners with equal position and normal. Geometries that already have an index, or that
+// have relevant attributes other than positions and normals, are returned unchanged.
 export function weld(geometry: BufferGeometry): BufferGeometry {
   const position = geometry.getAttribute('position');
   const normal = geometry.getAttribute('normal');
@@ -32,8 +32,8 @@ export function weld(geometry: BufferGeometry): BufferGeometry {
   return welded;
 }
 
-// For rows of six numbers: the index of the distinct row of each, and the first occurrence of each distinct
-// row.
+// For rows of six numbers, returns the index of the distinct row of each, and the first occurrence
+// of each distinct row.
 function unique(keys: Int32Array, rows: number): {index: Uint32Array; firsts: number[]} {
   const size = 1 << Math.ceil(Math.log2(rows * 2 + 1));
   const table = new Int32Array(size).fill(-1);  // open addressing; contains distinct rows

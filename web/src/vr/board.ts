@@ -1,4 +1,5 @@
-// The board inside the headset: state, stop cause, warning levels, prompts, and touchable plates.
+// Shows the board inside the headset: state, stop cause, warning levels, prompts, and plates to
+// touch.
 import {
   BoxGeometry, CanvasTexture, Group, Mesh, MeshBasicMaterial, PlaneGeometry, SRGBColorSpace, Vector3,
 } from 'three';
@@ -33,7 +34,7 @@ const kPlates: {name: PlateName; label: string; color: string; width: number}[] 
   {name: 'mirror', label: 'Mirror on or off', color: '#2b5f99', width: 0.19},
 ];
 
-// A plane with a canvas as its texture.
+// A plane whose texture is a canvas.
 class Canvas {
   readonly context: CanvasRenderingContext2D;
   readonly texture: CanvasTexture;
@@ -77,7 +78,7 @@ class Plate {
     this.group.add(this.body, front.mesh);
   }
 
-  // True once when one of the points (in the scene's axes) enters.
+  // Returns true once when one of the points (in the scene's axes) enters.
   touched(points: Vector3[]): boolean {
     const was = this.inside;
     this.inside = points.some((point) => {
@@ -112,7 +113,7 @@ export class Board {
     this.group.visible = false;
   }
 
-  // The bodies that pointing rays can hit.
+  // Returns the bodies that pointing rays can hit.
   get bodies(): Mesh[] {
     return this.plates.map((plate) => plate.body);
   }

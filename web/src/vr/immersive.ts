@@ -1,5 +1,5 @@
-// The scene in a headset (WebXR): at true scale, with the person's hands on the handles and the run's state
-// on a board. Only the person moves the view.
+// Shows the scene in a headset (WebXR) at true scale, with the person's hands on the handles and
+// the run's state on a board. Only the person moves the view.
 import {Matrix4, Mesh, PerspectiveCamera, Raycaster, Vector3} from 'three';
 import {Connection} from '../connection';
 import {Hands} from '../hands';
@@ -60,7 +60,7 @@ export class Immersive {
     return (await navigator.xr?.isSessionSupported('immersive-vr').catch(() => false)) ?? false;
   }
 
-  // Must be called in a user action. Throws an Error if the headset refuses.
+  // This must be called in a user action. Throws an Error if the headset refuses.
   async enter(spec: SceneSpec, state: State): Promise<void> {
     this.tone.unlock();
     const session = await navigator.xr!.requestSession('immersive-vr', {
@@ -82,8 +82,8 @@ export class Immersive {
             this.registrar.registration ?? standAt(eye, forward, ground?.[2] ?? 0));
   }
 
-  // Call once per frame while the headset shows the scene, before it is drawn. The stop button and the
-  // message about a lost run need neither the headset's pose nor a state.
+  // Call this once per frame while the headset shows the scene, before it is drawn. The stop button
+  // and the message about a lost run need neither the headset's pose nor a state.
   update(frame: XRFrame, spec: SceneSpec | null, state: State | null, nowMs: number) {
     this.counters.frames++;
     if (this.inputs.stopPressed(frame.session)) this.stop();
@@ -109,7 +109,7 @@ export class Immersive {
     this.report(head, nowMs);
   }
 
-  // Shows the headset's view on the page beside it; call after the headset's frame was drawn.
+  // Shows the headset's view on the page. Call this after the headset's frame was drawn.
   drawMirror() {
     const {renderer, scene, camera} = this.stage;
     if (this.counters.frames % kMirrorEvery !== 0 || !ownFramebuffer(renderer.xr.getBaseLayer())) {
@@ -138,7 +138,7 @@ export class Immersive {
     clearFrom(this.stage.root);
   }
 
-  // Places the board at arm's length beside the object, below the eyes and facing them.
+  // Places the board at arm's length next to the object, below the eyes and facing them.
   private placeBoard(spec: SceneSpec, object: Vec3, head: Vector3) {
     const {forward} = spec.viewpoint;
     const left = new Vector3(-forward[1], forward[0], 0);
@@ -230,7 +230,8 @@ export class Immersive {
     if (!this.registrar.registration) this.stage.root.position.y += stick * kHeightSpeed * dt;
   }
 
-  // A pulse in the controller that holds or touches a handle whose force or torque approaches its threshold.
+  // Sends a pulse to the controller that holds or touches a handle whose force or torque approaches
+  // its threshold.
   private warn(inputs: Input[], spec: SceneSpec, state: State, nowMs: number) {
     for (const side of kSides) {
       const ratio = handLevel(side, spec, state).part;
@@ -271,8 +272,8 @@ export class Immersive {
     // Sends the head's pose only to servers that forward it to the other pages.
     const forwarded = this.connection.features.includes('headset');
     const pose: Partial<Pose> = forwarded ? poseOf(this.inWorld(head)) : {};
-    // Reports the time of the drawn state instead of the time of sending, because a frozen picture is not a
-    // sign of life.
+    // Reports the time of the drawn state, not the time of sending, because a frozen picture is not
+    // a sign of life.
     const drawn = this.drawnNs > 0 ? {drawn: this.drawnNs} : {};
     if (this.connection.send({type: 'immersive', active: true, ...drawn, ...pose})) {
       this.counters.reports++;
@@ -290,7 +291,7 @@ export class Immersive {
   }
 }
 
-// Force or torque of a hand, whichever is nearer to its threshold.
+// Returns force or torque of a hand, whichever is nearer to its threshold.
 function handLevel(side: Side, spec: SceneSpec, state: State): HandLevel {
   const thresholds = presentThresholds(spec, state);
   const {wrench} = state.hands[side];
@@ -306,8 +307,8 @@ function handLevel(side: Side, spec: SceneSpec, state: State): HandLevel {
   };
 }
 
-// Whether the headset draws into its own framebuffer, so that the page's canvas is free for a mirror. On a
-// standalone headset, the page is not visible to other people.
+// Returns whether the headset draws into its own framebuffer, so that the page's canvas is free for
+// a mirror. On a standalone headset, other people do not see the page.
 function ownFramebuffer(layer: XRWebGLLayer | XRProjectionLayer | null): boolean {
   if (!layer || /OculusBrowser|Pico|Quest/i.test(navigator.userAgent)) return false;
   return !('framebuffer' in layer) || layer.framebuffer !== null;

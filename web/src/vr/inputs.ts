@@ -1,5 +1,5 @@
-// Common interface of the headset's controllers and tracked hands: their poses, their touching points, and
-// whether they are closed.
+// A common interface to the headset's controllers and tracked hands: their poses, their touching
+// points, and whether they are closed.
 import {
   BufferGeometry, CapsuleGeometry, Group, InstancedMesh, Line, LineBasicMaterial, Matrix4, Mesh,
   MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
@@ -66,7 +66,7 @@ export class Inputs {
     this.bodies.right.hide();
   }
 
-  // Whether a stop button was pressed, even if no controller can be tracked.
+  // Returns whether a stop button was pressed, even if no controller can be tracked.
   stopPressed(session: XRSession): boolean {
     let pressed = false;
     for (const source of session.inputSources) {
@@ -133,7 +133,7 @@ export class Inputs {
   }
 }
 
-// The plain shape of a controller or hand, which shows the person where it is.
+// A plain shape of a controller or hand, which shows the person where it is.
 class Body {
   readonly group = new Group();
   private readonly material = new MeshStandardMaterial({color: 0xdfe6ee, roughness: 0.6});

@@ -1,4 +1,5 @@
-// Layout of the sentences on the headset's board: above the hands' bars, regardless of their length.
+// Lays out the sentences on the headset's board. They stay above the hands' bars, regardless of
+// their length.
 
 export interface BoardText {
   title: string;
@@ -11,7 +12,7 @@ export interface BoardText {
 
 export const kBarsFrom = 490;  // distance from the top of the board [px]
 
-// Lengths in pixels of the board; y: distance from the top to the baseline.
+// Lengths are in pixels of the board. y is the distance from the top to the baseline.
 export interface Line {
   text: string;
   y: number;
@@ -25,7 +26,7 @@ const kSmallest = 0.5;  // smaller letters cannot be read
 export const kTones = {calm: '#9aa7b8', ready: '#2fbf71', running: '#2fbf71', warning: '#ff9f1c',
                        stopped: '#f23645'};
 
-// Bottom of the descenders of the last line.
+// Returns the bottom of the descenders of the last line.
 export function endOf(lines: Line[]): number {
   const {y, size} = lines[lines.length - 1];
   return y + 0.25 * size;
@@ -34,7 +35,7 @@ export function endOf(lines: Line[]): number {
 export function layOut(text: BoardText): Line[] {
   let scale = 1;
   let lines = scaled(text, scale);
-  // Letters are made smaller instead of cutting off text, because the person may need that text most.
+  // The letters become smaller, but no text is cut off, because the person may need that text most.
   while (endOf(lines) > kBarsFrom && scale > kSmallest) {
     scale *= kSmaller;
     lines = scaled(text, scale);

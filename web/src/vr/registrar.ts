@@ -1,5 +1,5 @@
-// The registration as the person performs it in the headset: touching known points, or placing the
-// controllers on the handles. Afterwards, the registration is monitored.
+// Performs the registration with the person in the headset, who touches known points or places the
+// controllers on the handles. Afterwards, it monitors the registration.
 import {kSides, SceneSpec, scenarioOf, Side, State, Vec3} from '../protocol';
 import {distance, matrix, vector} from '../scene/frames';
 import {fit, load, PointPair, Registration, store, toWorld} from './registration';
@@ -21,14 +21,14 @@ interface Point {
   known(state: State): Vec3;
 }
 
-// Position of a controller, in the headset's space (Z up) and in W.
+// The position of a controller, in the headset's space (Z up) and in W.
 export interface Place {
   space: Vec3;
   world: Vec3;
 }
 export type Controllers = Partial<Record<Side, Place>>;
 
-// A controller or hand that moves with a handle: it lies on the handle or holds it.
+// A controller or hand that moves with a handle, because it lies on the handle or holds it.
 interface Attached {
   handle: Side;
   offset: Vec3;        // position of the controller in the handle's frame [m]
@@ -60,8 +60,8 @@ export class Registrar {
     this.cancel('');
   }
 
-  // The person touched something at `tip` in W. Near a handle, the touch shows whether the registration of an
-  // earlier session is still valid.
+  // The person touched something at `tip` in W. Near a handle, the touch shows whether the
+  // registration of an earlier session is still valid.
   check(tip: Vec3, state: State) {
     if (!this.unchecked) return;
     const off = Math.min(...kSides.filter((side) => state.hands[side].present)
@@ -97,7 +97,7 @@ export class Registrar {
     this.askForPoint();
   }
 
-  // A point was touched: in the headset's space, Z up.
+  // The person touched a point, in the headset's space with Z up.
   touch(touched: Vec3, spec: SceneSpec, state: State) {
     if (!this.touching) return;
     const {points, pairs} = this.touching;
@@ -114,7 +114,7 @@ export class Registrar {
     this.mounting = {leftMs: kMountMs, samples: {left: [], right: []}};
   }
 
-  // Call in each frame with the head's position in the headset's space (Z up).
+  // Call this in each frame with the head's position in the headset's space (Z up).
   update(nowMs: number, controllers: Controllers, head: Vec3, spec: SceneSpec, state: State) {
     this.drift = NaN;
     this.driftAlarm = false;
@@ -192,7 +192,7 @@ export class Registrar {
     this.attach(measured.map((side) => mean(samples[side])), head, spec, state);
   }
 
-  // Determines which controller is on which handle from the person's position, which is opposite the cobot.
+  // Determines which controller is on which handle. The person stands opposite the cobot.
   private attach(touched: Vec3[], head: Vec3, spec: SceneSpec, state: State) {
     const fits = [kSides, [...kSides].reverse()].map((handles) => ({
       handles,
@@ -225,8 +225,9 @@ export class Registrar {
     this.pending = false;
   }
 
-  // A hand that holds a real handle stays where it grabbed it. The worlds have drifted apart if the sensor
-  // still reports a grip, but the tracked hand or controller leaves the handle or was never near it.
+  // A hand that holds a real handle stays where it gripped it. If the sensor still reports a grip,
+  // but the tracked hand or controller leaves the handle or was never near it, the worlds have
+  // drifted apart.
   private watchHeld(nowMs: number, controllers: Controllers, state: State) {
     for (const side of kSides) {
       const {present, gripping, real} = state.hands[side];

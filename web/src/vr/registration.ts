@@ -1,5 +1,6 @@
-// The pose of the virtual world W in the headset's space for which the virtual handles coincide with the real
-// ones: a rotation about the vertical and a translation, fitted to touched points.
+// Finds the pose of the virtual world W in the headset's space for which the virtual handles
+// coincide with the real ones. It is a rotation about the vertical and a translation, fitted to
+// touched points.
 //
 // Positions in the headset's space have Z up in this file (x right, y forward), like W.
 import {Object3D} from 'three';
@@ -19,8 +20,8 @@ export interface PointPair {
   known: Vec3;    // the same point in W
 }
 
-// Least squares over all pairs: minimises Σ |R(yaw) known + t − touched|². Throws an Error with a message for
-// the person if the points do not determine the rotation.
+// Computes least squares over all pairs, which minimise Σ |R(yaw) known + t − touched|². Throws an
+// Error with a message for the person if the points do not determine the rotation.
 export function fit(pairs: PointPair[]): Registration {
   const n = pairs.length;
   if (n < 2) throw new Error('At least two points are needed.');
@@ -55,8 +56,9 @@ export function fit(pairs: PointPair[]): Registration {
   return {yaw, t, residual: Math.sqrt(squares.reduce((x, y) => x + y) / n)};
 }
 
-// Places W so that a person at the space's origin who looks ahead is at `eye`, on the ground below it, and
-// faces along `forward` (horizontal). `ground`: its height in W [m]. Used until the person registers.
+// Places W so that a person at the space's origin who looks ahead is at `eye`, on the ground below
+// it, and faces along `forward` (horizontal). `ground` is its height in W [m]. This applies until
+// the person registers.
 export function standAt(eye: Vec3, forward: Vec3, ground: number): Registration {
   const yaw = Math.PI / 2 - Math.atan2(forward[1], forward[0]);
   const p = turn([eye[0], eye[1], 0], yaw);
@@ -89,7 +91,7 @@ export function clearFrom(root: Object3D) {
   root.rotation.set(0, 0, 0);
 }
 
-// The registration stored for a scene; null if there is none or it cannot be read.
+// Returns the registration stored for a scene, or null if there is none or it cannot be read.
 export function load(scene: string): Registration | null {
   try {
     const value = JSON.parse(localStorage.getItem(kKey(scene)) ?? 'null') as Registration | null;
