@@ -10,7 +10,7 @@ namespace {
 constexpr int kMaxIterations = 200;
 constexpr double kTolerance = 1e-10;  // of the slope, relative to the largest torque
 
-// The dual at one λ, negated so that it is minimised.
+// The dual at one λ, negated so that it can be minimised.
 struct Dual {
   double value = 0;
   ArmVector slope;
@@ -24,12 +24,12 @@ double CostOf(const ActivationProblem& p, double square, int i, double a) {
   return p.weight[i] * effort + p.trust[i] * miss * miss / 2;
 }
 
-// The activation at which the marginal cost equals `gain`, and the derivative of that activation
-// with respect to `gain`.
+// Returns the activation at which the marginal cost equals `gain`, and the derivative of that
+// activation with respect to `gain`.
 double ActivationAt(const ActivationProblem& p, double square, int i, double gain, double* slope) {
   const double w = p.weight[i];
   const double pulled = gain + p.trust[i] * p.measured[i];
-  // Twice the cost of the square of the activation.
+  // This is twice the cost of the square of the activation.
   const double v = p.trust[i] + square * w;
   if (p.power == 2) {
     *slope = 1 / v;
@@ -40,7 +40,7 @@ double ActivationAt(const ActivationProblem& p, double square, int i, double gai
   return pulled > 0 ? 2 * pulled / (v + root) : pulled / v;
 }
 
-// reserve_scale: r²/c. square: weight of the activation's square in the cost.
+// reserve_scale is r²/c. square is the weight of the activation's square in the cost.
 Dual DualAt(const ActivationProblem& p, const ArmVector& reserve_scale, double square,
             const ArmVector& lambda) {
   Dual dual;
@@ -60,7 +60,7 @@ Dual DualAt(const ActivationProblem& p, const ArmVector& reserve_scale, double s
   return dual;
 }
 
-// Newton's method, starting from result->multiplier.
+// Runs Newton's method from result->multiplier.
 void Minimise(const ActivationProblem& problem, double square, ActivationResult* result) {
   const ArmVector reserve_scale = problem.reserve_unit.cwiseAbs2() / problem.reserve_cost;
   const double small = kTolerance * std::max(1.0, problem.target.cwiseAbs().maxCoeff());

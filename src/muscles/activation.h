@@ -1,22 +1,23 @@
-// Static optimisation: the muscle activations that produce given torques at the least cost.
+// Computes the muscle activations that produce given torques at the least cost (static
+// optimisation).
 #pragma once
 
 #include "muscles/arm_model.h"
 
 namespace predictor::muscles {
 
-// min Σ w a^p / p + Σ v (a - e)² / 2 + c Σ (s / r)² / 2 subject to B a + s = τ and lower ≤ a ≤
-// upper. The reserve s is what the muscles cannot produce: it makes every problem solvable, and
+// Minimises Σ w a^p / p + Σ v (a - e)² / 2 + c Σ (s / r)² / 2 subject to B a + s = τ and lower ≤ a
+// ≤ upper. The reserve s is what the muscles cannot produce. It makes every problem solvable, and
 // must be shown wherever activations are shown.
 struct ActivationProblem {
   MomentArms torque = MomentArms::Zero();  // B: torques of each muscle at full activation [N·m]
   ArmVector target = ArmVector::Zero();    // τ: torques minus those of the passive forces [N·m]
   MuscleVector lower = MuscleVector::Zero(), upper = MuscleVector::Ones();
   MuscleVector weight = MuscleVector::Ones();  // w > 0
-  // 2: least sum of squares; 3 (Crowninshield & Brand 1981, R): distributes the load more evenly.
-  // To bound the slope, kSquareShare of the cost for p = 2 is added.
+  // 2 gives the least sum of squares. 3 (Crowninshield & Brand 1981, R) distributes the load more
+  // evenly. To bound the slope, kSquareShare of the cost for p = 2 is added.
   int power = 2;
-  // Measured activations e with weights v ≥ 0 (0: not measured).
+  // Measured activations e with weights v ≥ 0 (0 if not measured).
   MuscleVector measured = MuscleVector::Zero(), trust = MuscleVector::Zero();
   ArmVector reserve_unit = ArmVector::Ones();  // r [N·m]
   double reserve_cost = 10;                    // c (D)
@@ -27,7 +28,7 @@ inline constexpr double kSquareShare = 0.01;  // (D)
 struct ActivationResult {
   MuscleVector activation;
   ArmVector reserve;  // s [N·m]
-  // λ [1/(N·m)]: derivative of the cost with respect to the target.
+  // λ [1/(N·m)] is the derivative of the cost with respect to the target.
   ArmVector multiplier;
   double cost = 0;
   double residual = 0;  // largest violation of B a + s = τ [N·m]
@@ -35,9 +36,10 @@ struct ActivationResult {
   bool converged = false;
 };
 
-// Semismooth Newton method on the dual, which has one unknown for each joint: a(λ) minimises the
-// cost minus λᵀ B a within the bounds, s = λ r² / c, and the slope of the strictly convex dual is B
-// a(λ) + s(λ) - τ. A line search makes it converge from any start. Deterministic, no heap.
+// Applies a semismooth Newton method to the dual, which has one unknown for each joint: a(λ)
+// minimises the cost minus λᵀ B a within the bounds, s = λ r² / c, and the slope of the strictly
+// convex dual is B a(λ) + s(λ) - τ. A line search makes it converge from any start. It is
+// deterministic and does not use the heap.
 ActivationResult Activate(const ActivationProblem& problem) noexcept;
 
 }  // namespace predictor::muscles

@@ -77,7 +77,7 @@ void AddStraight(const ArmPlacement& arm, const Point& from, const Point& to, do
   }
 }
 
-// The contact with the obstacle between two points, and the joint level of the obstacle.
+// Returns the contact with the obstacle between two points, and the joint level of the obstacle.
 std::optional<Contact> ContactOf(const ArmPlacement& arm, Wrap wrap, double radius,
                                  const Vector3& from, const Vector3& to, int* level) {
   constexpr auto kRotation = static_cast<std::size_t>(ArmJoint::kShoulderRotation);
@@ -104,8 +104,8 @@ std::optional<Contact> ContactOf(const ArmPlacement& arm, Wrap wrap, double radi
   }
 }
 
-// Strength of the person's muscles of a group, as a multiple of the mean (D: the mean of the
-// person's multiples where none is given).
+// Returns the strength of the person's muscles of a group, as a multiple of the mean (D: the mean
+// of the person's multiples where none is given).
 double StrengthOf(const BodySpec& spec, MuscleGroup group) {
   const auto& given = spec.strength;
   switch (group) {
@@ -122,7 +122,7 @@ double StrengthOf(const BodySpec& spec, MuscleGroup group) {
   }
 }
 
-// For each joint, the end of its working range that bit i of `corner` selects (D).
+// Returns for each joint the end of its working range that bit i of `corner` selects (D).
 ArmVector WorkingCorner(int corner) {
   constexpr double kRange[person::kArmJoints][2] = {{0, 90},   {0, 60},   {-30, 45}, {0, 130},
                                                     {-70, 70}, {-45, 45}, {-15, 25}};
@@ -204,7 +204,7 @@ MuscleLines ArmModel::LinesAt(const ArmVector& q) const noexcept {
       int level = 0;
       if (const auto contact = ContactOf(arm, node.wrap, node.radius, from.p, to.p, &level)) {
         // The path is a shortest one, so its length does not change to first order when the ends of
-        // the contact slide: they count as points of the obstacle.
+        // the contact slide. They count as points of the obstacle.
         AddStraight(arm, from, {contact->begin, level}, &length, &moment_arm);
         length += contact->length;
         from = {contact->end, level};

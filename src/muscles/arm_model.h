@@ -15,19 +15,20 @@ using ArmMatrix = Eigen::Matrix<double, person::kArmJoints, person::kArmJoints>;
 using MuscleVector = Eigen::Matrix<double, kMuscles, 1>;
 using MomentArms = Eigen::Matrix<double, person::kArmJoints, kMuscles>;
 
-// The values of the joints of a hand's arm in a vector for the whole body.
+// Returns the values of the joints of a hand's arm in a vector for the whole body.
 inline ArmVector ArmOf(const person::BodyVector& q, int hand) {
   return q.segment<person::kArmJoints>(person::Of(hand, person::ArmJoint::kShoulderFlexion));
 }
 
-// Lengths of the lines from origin to insertion [m], and moment arms R = -∂l/∂q [m]: a muscle with
-// the force F produces the torques R F, positive in the direction of the joints (person::ArmJoint).
+// The lengths of the muscle paths from origin to insertion [m], and the moment arms R = -∂l/∂q [m].
+// A muscle with the force F produces the torques R F, positive in the direction of the joints
+// (person::ArmJoint).
 struct MuscleLines {
   MuscleVector length;
   MomentArms moment_arm;
 };
 
-// Forces along the tendons at full activation and without activation [N].
+// The forces along the tendons at full activation and without activation [N].
 struct MuscleForces {
   MuscleVector active, passive;
   MuscleVector fibre_length;  // relative to the optimal length; 0: slack
@@ -35,7 +36,7 @@ struct MuscleForces {
 
 class ArmModel {
  public:
-  // An arm of the body (hand 0: left). The lines scale with the lengths of upper arm, forearm and
+  // An arm of the body (hand 0: left). The paths scale with the lengths of upper arm, forearm and
   // hand. Forces scale with mass times height over length, relative to 75 kg and 1.75 m (a muscle's
   // volume is proportional to mass times height, R), are 0.7 of that for women (D), and are
   // multiplied by the person's own strength. Tendon lengths are chosen so that the longest fibres
@@ -47,9 +48,9 @@ class ArmModel {
   const person::BodyModel& body() const { return body_; }
   const MuscleParameters& muscle(int i) const { return muscles_[static_cast<std::size_t>(i)]; }
 
-  // q [rad]. No heap.
+  // q is in [rad]. Does not use the heap.
   MuscleLines LinesAt(const ArmVector& q) const noexcept;
-  // At the joints' velocities v [rad/s]. No heap.
+  // v contains the joints' velocities [rad/s]. Does not use the heap.
   MuscleForces ForcesAt(const MuscleLines& lines, const ArmVector& v) const noexcept;
 
  private:
@@ -73,7 +74,7 @@ class ArmModel {
   std::array<Line, kMuscles> lines_;
 };
 
-// Length of the longest fibres in the working range, relative to the optimal length (D).
+// The length of the longest fibres in the working range, relative to the optimal length (D).
 inline constexpr double kLongestFibre = 1.2;
 
 }  // namespace predictor::muscles

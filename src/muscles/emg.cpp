@@ -12,7 +12,7 @@ namespace {
 
 using Filter = Butterworth<double>;
 
-// Filters forward and backward, so without delay.
+// Filters forward and backward, and therefore without delay.
 void Filtered(Filter::Pass pass, double cutoff, double dt, std::vector<double>* values) {
   for (int direction = 0; direction < 2; ++direction) {
     Filter filter(pass, cutoff, dt, values->front());

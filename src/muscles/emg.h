@@ -15,16 +15,16 @@ struct EmgProcessing {
   double delay = 0.04;  // from the electrical to the mechanical onset, 0.01 to 0.08 [s]
 };
 
-// Band-pass, absolute value, low-pass; each filter is a second-order filter, run forward and
-// backward, so without delay. The result is at least 0, in the unit of the input. Throws InputError
-// for an impossible rate or band.
+// Applies a band-pass, takes the absolute value, and applies a low-pass. Each filter is a
+// second-order filter, run forward and backward, and therefore without delay. The result is at
+// least 0, in the unit of the input. Throws InputError for an impossible rate or band.
 std::vector<double> EmgEnvelope(std::span<const double> raw, const EmgProcessing& processing);
 
-// a = (e^(A u) - 1) / (e^A - 1) for an envelope u relative to MVC, limited to 0 ... 1. shape: A,
-// from -3 (curved) to 0 (straight).
+// Returns a = (e^(A u) - 1) / (e^A - 1) for an envelope u relative to MVC, limited to 0 ... 1.
+// shape is A, from -3 (curved) to 0 (straight).
 double ActivationOfEmg(double u, double shape);
 
-// Activations of a raw signal, one for each sample: the envelope over mvc, shaped by
+// Returns the activations of a raw signal, one for each sample: the envelope over mvc, shaped by
 // ActivationOfEmg, and delayed.
 std::vector<double> EmgActivation(std::span<const double> raw, const EmgProcessing& processing);
 

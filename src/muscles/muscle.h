@@ -1,8 +1,8 @@
 // A muscle with a stiff tendon: the force that its fibres can produce at a given length and
 // velocity.
 //
-// Marks of the figures: V, agrees with an independent copy; R, recalled from the literature; D, our
-// choice.
+// Marks at the figures state their origin. V: agrees with an independent copy. R: quoted from
+// memory of the literature. D: our choice.
 #pragma once
 
 namespace predictor::muscles {
@@ -14,30 +14,31 @@ struct MuscleParameters {
   double tendon_slack = 0;  // length of the tendon, which does not stretch [m]
 };
 
-// Fibres at one moment. A path shorter than the tendon leaves them slack: length and forces are
-// then zero.
+// The fibres at one time. A path shorter than the tendon leaves them slack, so that length and
+// forces are zero.
 struct Fibre {
   double length = 0;         // relative to the optimal length
   double velocity = 0;       // positive while lengthening, relative to kMaxVelocity
   double cos_pennation = 1;  // the muscle's thickness is constant (Zajac 1989, R)
 };
-// path_length [m] and its rate [m/s] are those of the whole line from origin to insertion.
+// path_length [m] and its rate [m/s] are those of the whole path from origin to insertion.
 Fibre FibreOf(const MuscleParameters& muscle, double path_length, double path_rate);
 
-// Shortening velocity at which no force is left, in optimal lengths per second (Thelen 2003, V: the
-// default of a public simulator).
+// The shortening velocity at which no force is left, in optimal lengths per second (Thelen 2003, V:
+// the default of a public simulator).
 inline constexpr double kMaxVelocity = 10;
 
-// Active force of fibres at full activation over max_force, exp(-(l - 1)² / 0.45) (Thelen 2003, R).
+// Returns the active force of fibres at full activation over max_force, exp(-(l - 1)² / 0.45)
+// (Thelen 2003, R).
 double ActiveForceLength(double length);
-// Passive force over max_force, (exp(4 (l - 1) / 0.6) - 1) / (exp(4) - 1) above the optimal length,
-// else 0 (Thelen 2003, R).
+// Returns the passive force over max_force, (exp(4 (l - 1) / 0.6) - 1) / (exp(4) - 1) above the
+// optimal length, else 0 (Thelen 2003, R).
 double PassiveForceLength(double length);
-// Factor of the active force (V: MuJoCo's muscle with fvmax 1.2): (1 + v)² while shortening, 0
-// below -1; 1.2 - (0.2 - v)² / 0.2 up to v = 0.2 while lengthening, then 1.2.
+// Returns the factor of the active force (V: MuJoCo's muscle with fvmax 1.2): (1 + v)² while
+// shortening, 0 below -1; 1.2 - (0.2 - v)² / 0.2 up to v = 0.2 while lengthening, then 1.2.
 double ForceVelocity(double velocity);
 
-// Forces along the tendon [N]: `active` at full activation, and `passive` without activation.
+// The forces along the tendon [N]: `active` at full activation, and `passive` without activation.
 struct TendonForces {
   double active = 0, passive = 0;
 };

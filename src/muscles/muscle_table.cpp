@@ -6,7 +6,7 @@ namespace {
 using enum MuscleGroup;
 using enum Part;
 
-// Factor of MyoArm's forces of wrist and fingers (D): with the full forces, the moments of the
+// The factor of MyoArm's forces of wrist and fingers (D). With the full forces, the moments of the
 // wrist are more than twice the measured ones.
 constexpr double kWrist = 0.5;
 

@@ -1,13 +1,14 @@
 // The muscles of an arm: their names, paths and strengths.
 //
-// Sources. Lines: attachments and via points were read from the MyoArm model of the package myo-sim
-// 0.2.4 (Apache-2.0) in the posture of zero angles, expressed in the segments of our body, rounded
-// to millimetres and reduced to a few points (V for what was read, D for what was omitted or
-// moved). Wraps: D, chosen so that moment arms agree with measured ones (docs/concepts/muscles.md).
-// Forces: Holzbaur, Murray & Delp 2005 for shoulder and elbow (triceps, biceps and brachialis V
-// against the public model arm26; the others R); for the forearm those of MyoArm (V), which are
-// larger, with the four lines of each finger muscle added up, and half of them for wrist and
-// fingers (D). Fibre lengths and pennation: Holzbaur et al. 2005 (the same six V, the others R).
+// Sources of the paths: attachments and via points were read from the MyoArm model of the package
+// myo-sim 0.2.4 (Apache-2.0) in the posture of zero angles, expressed in the segments of our body,
+// rounded to millimetres and reduced to a few points (V for what was read, D for what was omitted
+// or moved). Wraps are D, chosen so that moment arms agree with measured ones
+// (docs/concepts/muscles.md). Sources of the forces: Holzbaur, Murray & Delp 2005 for shoulder and
+// elbow (triceps, biceps and brachialis V, compared with the public model arm26; the others R), and
+// MyoArm (V) for the forearm. MyoArm's forces are larger. The four paths of each finger muscle are
+// added up, and wrist and fingers have half of the forces (D). Source of fibre lengths and
+// pennation: Holzbaur et al. 2005 (the same six V, the others R).
 #pragma once
 
 #include <array>
@@ -27,7 +28,8 @@ enum class MuscleGroup : int {
 };
 inline constexpr int kMuscleGroups = 7;
 const char* GroupName(int group);
-// True if the group's muscles act at the shoulder, where the model is not valid with a raised arm.
+// Returns whether the group's muscles act at the shoulder, where the model is not valid with a
+// raised arm.
 constexpr bool ActsAtShoulder(int group) {
   return group <= static_cast<int>(MuscleGroup::kRotatorCuff);
 }
@@ -43,7 +45,7 @@ enum class Part : int {
   kHand,      // from the wrist joint
 };
 
-// Round obstacles. A muscle takes the shortest path around the obstacle, on the given side.
+// The round obstacles. A muscle takes the shortest path around the obstacle, on the given side.
 enum class Wrap : int {
   kNone,
   kHead,          // ball about the shoulder joint; the shorter side
@@ -55,7 +57,7 @@ enum class Wrap : int {
   kForearmInner,  // cylinder about the forearm's axis; the muscle pronates
 };
 
-// A point of a line, and the obstacle between it and the previous point.
+// A point of a path, and the obstacle between it and the previous point.
 struct PathPoint {
   Part part = Part::kNone;
   double x = 0, y = 0, z = 0;  // [mm]
@@ -77,8 +79,8 @@ struct MuscleSpec {
 inline constexpr int kMuscles = 33;
 std::span<const MuscleSpec, kMuscles> MuscleTable();
 
-// Lengths of the segments in which the points are given [m]; the points scale with the lengths of a
-// body's own segments.
+// The lengths of the segments in which the points are given [m]. The points scale with the lengths
+// of a body's own segments.
 inline constexpr double kTableUpperArm = 0.2904, kTableForearm = 0.2535, kTableHand = 0.080;
 
 }  // namespace predictor::muscles

@@ -1,4 +1,4 @@
-// Stiffness of the arm's joints and of its hand, from the forces of the muscles.
+// Computes the stiffness of the arm's joints and of its hand from the forces of the muscles.
 #pragma once
 
 #include <optional>
@@ -7,42 +7,42 @@
 
 namespace predictor::muscles {
 
-// Stiffness of a muscle's line in its direction, over force per optimal fibre length: k = 23 F / l0
-// (short-range stiffness of active fibres, Rack & Westbury 1974, Cui et al. 2008, R; the tendon
-// counts as rigid, so k is too large for muscles with a long tendon).
+// The stiffness of a muscle along its path, over force per optimal fibre length: k = 23 F / l0
+// (short-range stiffness of active fibres, Rack & Westbury 1974, Cui et al. 2008, R). The tendon
+// counts as rigid, so k is too large for muscles with a long tendon.
 inline constexpr double kShortRangeStiffness = 23;
 
-// K = -∂τ/∂q [N·m/rad] at constant activations: Rᵀ diag(k) R - (∂Rᵀ/∂q) F, where R is the matrix of
-// moment arms with one row for each muscle. Only `active_force` [N] contributes to the stiffness k;
-// all of `force` [N] contributes to the second term. That term is a central difference of the
-// moment arms.
+// Returns K = -∂τ/∂q [N·m/rad] at constant activations: Rᵀ diag(k) R - (∂Rᵀ/∂q) F, where R is the
+// matrix of moment arms with one row for each muscle. Only `active_force` [N] contributes to the
+// stiffness k, while all of `force` [N] contributes to the second term. That term is a central
+// difference of the moment arms.
 ArmMatrix JointStiffness(const ArmModel& arm, const ArmVector& q, const MuscleVector& active_force,
                          const MuscleVector& force) noexcept;
 
 // A point of the hand, in a posture of the whole body.
 struct HandPoint {
-  // Twist of the frame at the point, per velocity of the arm's joints.
+  // The twist of the frame at the point, per velocity of the arm's joints.
   Eigen::Matrix<double, 6, person::kArmJoints> J;
   // ∂(JᵀF)/∂q for the force F on the hand [N·m/rad].
   ArmMatrix turning;
 };
-// `p` [m] and `force` [N] in the axes of the placement.
+// `p` [m] and `force` [N] are in the axes of the placement.
 HandPoint HandPointAt(const person::BodyModel& body, const person::Placement& at, int hand,
                       const Vector3& p, const Vector3& force) noexcept;
 
-// Stiffness [N/m] of the hand's point for small displacements without rotation, as with a handle
-// that keeps its orientation: the block of the position in (J (K - ∂(JᵀF)/∂q)⁻¹ Jᵀ)⁻¹. Weights and
-// the moment on the hand are neglected. Empty if the posture is not stable, or if the arm cannot
-// move the hand in all directions.
+// Returns the stiffness [N/m] of the hand's point for small displacements without rotation, as with
+// a handle that keeps its orientation. It is the block of the position in (J (K - ∂(JᵀF)/∂q)⁻¹
+// Jᵀ)⁻¹. Weights and the moment on the hand are neglected. Returns no value if the posture is not
+// stable, or if the arm cannot move the hand in all directions.
 std::optional<Matrix3> EndpointStiffness(const ArmMatrix& joint_stiffness,
                                          const HandPoint& point) noexcept;
 
-// Principal stiffnesses in ascending order [N/m].
+// Returns the principal stiffnesses in ascending order [N/m].
 Vector3 PrincipalStiffness(const Matrix3& stiffness) noexcept;
 
-// The smallest common lower bound of all activations, in steps of 1/256, at which the smallest
-// principal stiffness of the hand's point reaches `target` [N/m]; 1 if no bound suffices. `problem`
-// has that bound afterwards. `forces`: those of the problem.
+// Returns the smallest common lower bound of all activations, in steps of 1/256, at which the
+// smallest principal stiffness of the hand's point reaches `target` [N/m], or 1 if no bound
+// suffices. `problem` has that bound afterwards. `forces` are those of the problem.
 double CoContractionFor(const ArmModel& arm, const ArmVector& q, const MuscleForces& forces,
                         const HandPoint& point, double target, ActivationProblem* problem) noexcept;
 

@@ -12,9 +12,9 @@
 namespace predictor::person {
 namespace {
 
-// A row of de Leva's table: mass as a fraction of the body's mass; centre of mass from the proximal
-// end, and radii of gyration (sagittal, transverse, longitudinal axis), as fractions of the length;
-// length at the table's mean height [m].
+// A row of de Leva's table. The mass is a fraction of the body's mass. The centre of mass (from the
+// proximal end) and the radii of gyration (about the sagittal, transverse and longitudinal axes)
+// are fractions of the length. The length is that at the table's mean height [m].
 struct Row {
   double mass, com;
   Vector3 radii;
@@ -27,8 +27,8 @@ struct Table {
   double shoulder_height;  // height of the shoulder joints above the hip joints [m]
 };
 
-// The trunk's rows are given from the cranial end and the head's row from the vertex, as in the
-// paper. The hand's proximal end is the wrist; its length ends at the third knuckle.
+// As in the paper, the trunk's rows are given from the cranial end and the head's row from the
+// vertex. The hand's proximal end is the wrist, and its length ends at the third knuckle.
 const Table kMaleTable = {1.741,
                           {.0694, .5002, {.303, .315, .261}, .2429},
                           {.1596, .5066, {.505, .320, .465}, .2421},
@@ -57,9 +57,9 @@ const Table kFemaleTable = {1.735,
 constexpr double kMinHeight = 1.2, kMaxHeight = 2.4;              // [m]
 constexpr double kMinMass = 30, kMaxMass = 250;                   // [kg]
 constexpr double kMinBodyMassIndex = 12, kMaxBodyMassIndex = 70;  // [kg/m²]
-// Range of a measured length, as factors of the estimate.
+// The range of a measured length, as factors of the estimate.
 constexpr double kMinLengthFactor = 0.7, kMaxLengthFactor = 1.4;
-// Range of the height that the other lengths leave for the head, as a fraction of the body's
+// The range of the height that the other lengths leave for the head, as a fraction of the body's
 // height.
 constexpr double kMinHeadHeight = 0.08, kMaxHeadHeight = 0.2;
 
@@ -95,14 +95,14 @@ Segment Make(const Row& row, double mass, double length) {
   return s;
 }
 
-// The same with a centre of mass that the table measures from the distal end.
+// As above, for a centre of mass that the table measures from the distal end.
 Segment FromFarEnd(const Row& row, double mass, double length) {
   Segment s = Make(row, mass, length);
   s.com = length - s.com;
   return s;
 }
 
-// Combines two segments along z into one; `distal` begins where `proximal` ends.
+// Combines two segments along z into one. `distal` begins where `proximal` ends.
 Segment Combine(const Segment& proximal, const Segment& distal) {
   Segment s;
   s.mass = proximal.mass + distal.mass;

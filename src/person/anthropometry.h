@@ -1,7 +1,7 @@
 // A person's segment masses, centres of mass, inertias and lengths, from height, mass and sex.
 //
-// Marks of the figures: V, agrees with an independent copy (the biobuddy 0.3.2 package); R,
-// recalled from the literature; D, our choice.
+// Marks at the figures state their origin. V: agrees with an independent copy (the biobuddy 0.3.2
+// package). R: quoted from memory of the literature. D: our choice.
 #pragma once
 
 #include "core/types.h"
@@ -9,8 +9,8 @@
 
 namespace predictor::person {
 
-// A rigid segment. Its axes in the upright posture with hanging arms and thumbs forward: x forward,
-// y left, z up.
+// A rigid segment. Its axes in the upright posture, with hanging arms and thumbs forward, are x
+// forward, y left, z up.
 struct Segment {
   double mass = 0;                    // [kg]
   double length = 0;                  // [m]
@@ -19,13 +19,13 @@ struct Segment {
 };
 
 // The pelvis is de Leva's lower trunk (mid hip to omphalion), the torso de Leva's middle and upper
-// trunk (omphalion to C7). Proximal ends: of the head, C7; of the torso, the omphalion; of the
-// pelvis, the midpoint of the hip joints; of the foot, the heel.
+// trunk (omphalion to C7). The proximal end of the head is C7, that of the torso the omphalion,
+// that of the pelvis the midpoint of the hip joints, and that of the foot the heel.
 struct Anthropometry {
   double height = 0;  // [m]
   double mass = 0;    // [kg]
   Segment head, torso, pelvis, upper_arm, forearm, hand, thigh, shank, foot;
-  // Heights above the midpoint of the hip joints, upright [m].
+  // The heights above the midpoint of the hip joints in the upright posture [m].
   double shoulder_height = 0, l5s1_height = 0;
   double l5s1_behind = 0;          // distance behind the line from the hips to C7 [m]
   double half_shoulder_width = 0;  // distance of a shoulder joint from the midplane [m]
@@ -36,7 +36,7 @@ struct Anthropometry {
   double hip_height() const { return ankle_height + shank.length + thigh.length; }  // [m]
 };
 
-// Masses, centres of mass, radii of gyration and lengths of de Leva, "Adjustments to
+// Masses, centres of mass, radii of gyration and lengths are those of de Leva, "Adjustments to
 // Zatsiorsky-Seluyanov's segment inertia parameters", J. Biomech. 29 (1996) 1223-1230 (V; shoulder
 // height R). Lengths scale with the height; inertia = m (r L)². Masses are scaled by at most 0.01 %
 // so that they sum to the person's mass. The centre of mass of the upper arm is 0.5772 (0.5754) of

@@ -5,7 +5,7 @@
 namespace predictor::person {
 
 DiscLoads BodyDynamics::DiscOf(const Placement& at, const JointLoads& loads) const {
-  // In the pelvis's axes. `force` and `moment` act on the upper body; flexion and lateral bending
+  // `force` and `moment` act on the upper body, in the pelvis's axes. Flexion and lateral bending
   // are positive about y and x, so the muscles that resist them produce the opposite moments.
   const Matrix3 to_pelvis = at.R[kPelvisList].transpose();
   const Vector3 force = to_pelvis * loads.force[kTorsoFlexion];

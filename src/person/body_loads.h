@@ -1,4 +1,4 @@
-// Loads of the body in one posture and motion: joint torques, lower back, balance.
+// The loads of the body in one posture and motion: joint torques, lower back, balance.
 #pragma once
 
 #include <array>
@@ -10,12 +10,13 @@
 
 namespace predictor::person {
 
-// Posture and its derivatives [rad, rad/s, rad/s²; m for the pelvis's position].
+// A posture and its derivatives [rad, rad/s, rad/s²; m for the pelvis's position].
 struct BodyMotion {
   BodyVector q = BodyVector::Zero(), v = BodyVector::Zero(), a = BodyVector::Zero();
 };
 
-// The disc between the fifth lumbar vertebra and the sacrum, loaded by everything above it.
+// The loads of the disc between the fifth lumbar vertebra and the sacrum, which carries everything
+// above it.
 struct DiscLoads {
   double flexion_moment = 0;  // moment that the back muscles must produce, positive: extensors
                               // [N·m]
@@ -42,12 +43,12 @@ struct BodyLoads {
   Balance balance;
 };
 
-// Single equivalent extensor (Chaffin & Andersson; marks R). The disc is perpendicular to a
-// direction fixed to the pelvis, which leans kSacralAngle forward from the pelvis's long axis.
-// Compression = force along this direction + √(flexion² + lateral moment²) / muscle_arm; shear =
-// force across it, forward. The muscle pulls along the compression. Abdominal pressure and
-// co-contraction are neglected, so the loads of upright standing are underestimated. Compare with
-// 3.4 kN (NIOSH, R) and with shear of 0.7 to 1 kN (Gallagher & Marras 2012, R).
+// The model is a single equivalent extensor (Chaffin & Andersson; marks R). The disc is
+// perpendicular to a direction fixed to the pelvis, which leans kSacralAngle forward from the
+// pelvis's long axis. Compression = force along this direction + √(flexion² + lateral moment²) /
+// muscle_arm; shear = force across it, forward. The muscle pulls along the compression. Abdominal
+// pressure and co-contraction are neglected, so the loads of upright standing are underestimated.
+// Compare with 3.4 kN (NIOSH, R) and with a shear of 0.7 to 1 kN (Gallagher & Marras 2012, R).
 inline constexpr double kSacralAngle = 0.698;   // 40° [rad]
 inline constexpr double kBackMuscleArm = 0.06;  // 0.05 to 0.07 [m]
 
@@ -56,7 +57,7 @@ class BodyDynamics {
   BodyDynamics(const BodyModel& model, const Stance& stance, double muscle_arm = kBackMuscleArm)
       : model_(model), stance_(stance), muscle_arm_(muscle_arm) {}
 
-  // Uses the wrenches in `sample`.
+  // Computes the loads with the wrenches of `sample`.
   BodyLoads Evaluate(const BodyMotion& motion, const BodySample& sample) const;
 
  private:
@@ -82,11 +83,12 @@ void ForEachBodyValue(Loads& loads, F f) {
   f("balance_margin", loads.balance.margin);
 }
 
-// Postures at the constant interval dt [s], smoothed without phase shift, with their derivatives.
-// The filter is a second-order Butterworth filter, run forward and backward, with the overall
-// cutoff `cutoff` [Hz] (Winter 2009: each pass has 1/0.802 of it), followed by central differences.
-// There is no delay, but the last half second changes when samples are added. The cutoff is at most
-// half of the Nyquist frequency. Fewer than three postures have derivatives of zero.
+// Smooths postures at the constant interval dt [s] without phase shift and computes their
+// derivatives. It runs a second-order Butterworth filter forward and backward, with the overall
+// cutoff `cutoff` [Hz] (Winter 2009: each pass has 1/0.802 of it), and then takes central
+// differences. There is no delay, but the last half second changes when samples are added. The
+// cutoff is at most half of the Nyquist frequency. Fewer than three postures have derivatives of
+// zero.
 std::vector<BodyMotion> SmoothMotion(std::span<const BodyVector> q, double dt, double cutoff = 6);
 
 }  // namespace predictor::person

@@ -63,7 +63,7 @@ void BodyModel::Carry(int joint, const Segment& segment, const Vector3& com) {
   j.com = com;
 }
 
-// Limits of the torso: reference (R); of neck and pelvis: D.
+// The limits of the torso are the reference's (R). Those of neck and pelvis are our choice (D).
 void BodyModel::AddTrunk() {
   const Anthropometry& a = anthropometry_;
   const Vector3 none = Vector3::Zero(), x = Vector3::UnitX(), y = Vector3::UnitY(),
@@ -87,9 +87,9 @@ void BodyModel::AddTrunk() {
   Carry(kNeckTwist, a.head, {0, 0, a.head.com});
 }
 
-// Limits: rotation, pronation and deviation from the MyoArm model (V); elbow up to 2.5 rad (D);
-// wrist flexion clinical (R); shoulder flexion clinical (R); abduction ends before the singularity
-// of the sequence (D).
+// The limits of rotation, pronation and deviation are from the MyoArm model (V). The elbow reaches
+// 2.5 rad (D). Wrist flexion and shoulder flexion are clinical values (R). Abduction ends before
+// the singularity of the sequence (D).
 void BodyModel::AddArm(int hand) {
   const Anthropometry& a = anthropometry_;
   const double side = hand == 0 ? 1 : -1;  // sign of y on the arm's side

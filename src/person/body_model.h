@@ -1,8 +1,9 @@
 // The body as a tree of rigid segments: joints, kinematics, inverse dynamics.
 //
 // The body is described in S, the frame on the ground between the feet: x is the direction that the
-// person faces, y points left, z up. S does not move. In the zero posture, the person stands
-// upright with hanging arms and the thumbs forward, and the axes of all segments are those of S.
+// person faces, y points left, and z points up. S does not move. In the zero posture, the person
+// stands upright with hanging arms and the thumbs forward, and the axes of all segments are those
+// of S.
 #pragma once
 
 #include <array>
@@ -14,8 +15,8 @@
 
 namespace predictor::person {
 
-// Joints, in order along the chains. The first six are those of the pelvis in S. A joint moves all
-// joints after it in its chain; arms and neck begin at the torso.
+// The joints, in order along the chains. The first six are those of the pelvis in S. A joint moves
+// all joints after it in its chain. Arms and neck begin at the torso.
 enum Joint : int {
   kPelvisX,       // forward [m]
   kPelvisY,       // left [m]
@@ -35,7 +36,7 @@ inline constexpr int kArmJoints = 7;
 inline constexpr int kRightArm = kLeftArm + kArmJoints;
 inline constexpr int kBodyJoints = kRightArm + kArmJoints;
 
-// Joints of an arm; Of() gives their index in the body. The shoulder is a sequence of flexion,
+// The joints of an arm. Of() gives their index in the body. The shoulder is a sequence of flexion,
 // abduction and rotation. It is singular at an abduction of 90°, but not for a hanging upper arm.
 enum class ArmJoint : int {
   kShoulderFlexion,    // positive forward
@@ -50,16 +51,16 @@ constexpr int Of(int hand, ArmJoint joint) {
   return (hand == 0 ? static_cast<int>(kLeftArm) : kRightArm) + static_cast<int>(joint);
 }
 
-// "pelvis_x", ..., "left_shoulder_flexion", ...
+// Returns "pelvis_x", ..., "left_shoulder_flexion", ...
 const char* JointName(int joint);
-// Position of the pelvis [m]; all other joints are angles [rad].
+// The pelvis's position is in [m], and all other joints are angles [rad].
 constexpr bool IsPrismatic(int joint) { return joint <= kPelvisZ; }
 
 using BodyVector = Eigen::Matrix<double, kBodyJoints, 1>;
 using BodyJacobian = Eigen::Matrix<double, 6, kBodyJoints>;
 
-// A joint, and the segment that it moves. If several joints are at the same place, only the last
-// one carries mass.
+// A joint and the segment that it moves. If several joints are at the same place, only the last one
+// carries mass.
 struct BodyJoint {
   int parent = -1;                   // parent joint; -1: S
   Vector3 offset = Vector3::Zero();  // position of this joint in the parent's frame [m]
@@ -70,10 +71,10 @@ struct BodyJoint {
   Vector3 inertia = Vector3::Zero();  // about the axes x, y, z through the centre of mass [kg·m²]
 };
 
-// The grip frame G in the axes of the hand: x along the bar towards the thumb, z from the knuckles
-// to the wrist. Its origin is the centre of the bar: in a power grip, 0.9 of the hand's length from
-// the wrist and 0.025 m from it on the palm's side; in a hook grip, 1.2 of the length and 0.02 m
-// (D).
+// Returns the grip frame G in the axes of the hand: x along the bar towards the thumb, z from the
+// knuckles to the wrist. Its origin is the centre of the bar. In a power grip, this is at 0.9 of
+// the hand's length from the wrist and 0.025 m from it on the palm's side. In a hook grip, it is at
+// 1.2 of the length and 0.02 m (D).
 Pose GripInHand(const Anthropometry& a, int hand, GripKind kind);
 
 class BodyModel {
@@ -86,8 +87,8 @@ class BodyModel {
   BodyVector lower() const;
   BodyVector upper() const;
 
-  // Mass of the segments above the hip joints [kg]. The legs are not part of the tree, see
-  // person/legs.h.
+  // Returns the mass of the segments above the hip joints [kg]. The legs are not part of the tree,
+  // see person/legs.h.
   double mass_above_hips() const;
 
  private:
@@ -101,7 +102,7 @@ class BodyModel {
   std::array<BodyJoint, kBodyJoints> joints_;
 };
 
-// Frames of all joints in S at one posture.
+// The frames of all joints in S at one posture.
 struct Placement {
   std::array<Matrix3, kBodyJoints> R;     // R_SJ
   std::array<Vector3, kBodyJoints> p;     // p_SJ [m]
@@ -111,8 +112,8 @@ struct Placement {
 };
 Placement Place(const BodyModel& model, const BodyVector& q);
 
-// J with V_S = J v: the twist, in the axes of S, of the frame at p [m, in S] that moves with
-// `joint`.
+// Returns J with V_S = J v, where V_S is the twist, in the axes of S, of the frame at p [m, in S]
+// that moves with `joint`.
 BodyJacobian JacobianAt(const BodyModel& model, const Placement& at, int joint, const Vector3& p);
 
 // An external wrench on the body, about the point p of S, in the axes of S.
@@ -123,26 +124,26 @@ struct ExternalWrench {
 };
 
 struct JointLoads {
-  // Generalised forces of the joints [N·m; N for the pelvis's translations]: what the muscles must
-  // produce, positive in the direction of the joint. The first six are the legs' action on the
+  // The generalised forces of the joints [N·m; N for the pelvis's translations], which the muscles
+  // must produce, positive in the direction of the joint. The first six are the legs' action on the
   // pelvis.
   BodyVector torque;
-  // Force [N] and moment [N·m] that the inner segment exerts on the outer segment at each joint's
-  // origin, in the axes of S.
+  // The force [N] and moment [N·m] that the inner segment exerts on the outer segment at each
+  // joint's origin, in the axes of S.
   std::array<Vector3, kBodyJoints> force, moment;
 };
 
-// Inverse dynamics: τ = M a + h - Σ Jᵀ F by the recursive Newton-Euler algorithm (Luh, Walker &
-// Paul 1980), in the axes of S. gravity [m/s²] acts along -z.
+// Computes inverse dynamics, τ = M a + h - Σ Jᵀ F, by the recursive Newton-Euler algorithm (Luh,
+// Walker & Paul 1980), in the axes of S. gravity [m/s²] acts along -z.
 JointLoads InverseDynamics(const BodyModel& model, const BodyVector& q, const BodyVector& v,
                            const BodyVector& a, std::span<const ExternalWrench> wrenches,
                            double gravity = kStandardGravity);
 
-// The body as a MuJoCo model, with the joints' names and order in this file. The legs stand upright
-// and do not move.
+// Returns the body as a MuJoCo model, with the joints' names and order of this file. The legs stand
+// upright and do not move.
 std::string MjcfOf(const BodyModel& model);
 
-// A part of the body that moves as one: the joints first ... last are at one place, and the last
+// A part of the body that moves as one. The joints first ... last are at one place, and the last
 // carries its mass.
 struct BodyPart {
   const char* name;  // "pelvis", "left_hand"
@@ -150,11 +151,11 @@ struct BodyPart {
 };
 std::span<const BodyPart> BodyParts();
 
-// The body as an OpenSim model (4.x): the same joints, names, limits and masses, without legs and
-// muscles. Forces and torques of its pelvis are the legs' action. x forward, y up, z right, as is
-// usual there.
+// Returns the body as an OpenSim model (4.x) with the same joints, names, limits and masses,
+// without legs and muscles. Forces and torques of its pelvis are the legs' action. As is usual in
+// OpenSim, x points forward, y up and z to the right.
 std::string OpenSimModelOf(const BodyModel& model);
-// A vector of S in OpenSim's axes.
+// Converts a vector of S to OpenSim's axes.
 inline Vector3 InOpenSim(const Vector3& v) { return {v.x(), v.z(), -v.y()}; }
 
 }  // namespace predictor::person

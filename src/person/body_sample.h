@@ -1,4 +1,4 @@
-// The measurements of a person at one time, and where the person stands.
+// The measurements of a person at one time, and the place where the person stands.
 #pragma once
 
 #include <array>
@@ -9,35 +9,37 @@
 
 namespace predictor::person {
 
-// Where the person stands. S: origin on the ground between the feet, x in the direction that the
-// person faces, z up.
+// Where the person stands. The origin of S is on the ground between the feet, x points in the
+// direction that the person faces, and z up.
 struct Stance {
   Pose X_WS;
   double width = 0.25;  // distance between the ankles [m]
 };
-// Stance at the point `ground` of W [m]; the person faces `direction` (only its horizontal part
-// counts). Throws InputError if that part is zero, or if the width is outside 0 to 1 m.
+// Returns the stance at the point `ground` of W [m]. The person faces `direction`, of which only
+// the horizontal part counts. Throws InputError if that part is zero, or if the width is outside 0
+// to 1 m.
 Stance StanceAt(const Vector3& ground, const Vector3& direction, double width = 0.25);
-// The stance of a scenario.
+// Returns the stance of a scenario.
 Stance StanceOf(const StanceSpec& spec);
 
 // How a hand holds its handle D: the pose of the grip frame G (see GripInHand).
 struct Grip {
   GripKind kind = GripKind::kPower;
   Pose X_DG;
-  // True if the hand may have closed at any angle about the bar (x of G) and the bar may lie
-  // obliquely in it; the arm's comfort then determines these angles.
+  // Whether the hand may have closed at any angle about the bar (x of G) and the bar may lie
+  // obliquely in it. The arm's comfort then determines these angles.
   bool turns = true;
 };
-// X_DG of a hand that holds a bar in the direction `bar` (towards the thumb) at D's origin, with
-// the wrist in the direction `wrist` from there, both in D. Throws InputError if they are parallel.
+// Returns X_DG of a hand that holds a bar in the direction `bar` (towards the thumb) at D's origin,
+// with the wrist in the direction `wrist` from there, both in D. Throws InputError if they are
+// parallel.
 Pose GripOn(const Vector3& bar, const Vector3& wrist);
 
 struct HandSample {
   bool present = false;  // the hand holds the handle
   Pose X_WD;             // pose of the handle
-  // Wrench of the hand on the handle, about D's origin, in the axes of W. The hand itself feels the
-  // opposite.
+  // The wrench of the hand on the handle, about D's origin, in the axes of W. The hand itself feels
+  // the opposite wrench.
   Wrench F_D_W = Wrench::Zero();
 };
 
@@ -49,7 +51,7 @@ struct BodySample {
   std::array<std::optional<Vector3>, kHands> p_WElbow = {};  // elbow joints [m]
 };
 
-// External wrenches on the body due to the sample's hands, in S.
+// Returns the external wrenches on the body due to the sample's hands, in S.
 std::array<ExternalWrench, kHands> WrenchesOn(const BodySample& sample, const Stance& stance);
 
 }  // namespace predictor::person

@@ -1,4 +1,4 @@
-// The body as MuJoCo's XML.
+// Writes the body as MuJoCo's XML.
 #include "core/text.h"
 #include "person/body_model.h"
 #include "person/legs.h"

@@ -8,31 +8,31 @@
 namespace predictor::person {
 
 struct ArmAngles {
-  // Angle of the upper arm to the torso, in the torso's midplane: 0 along the torso, positive
+  // The angle of the upper arm to the torso, in the torso's midplane: 0 along the torso, positive
   // forward, negative behind (RULA and REBA: flexion, extension) [rad].
   double upper_arm_flexion = 0;
-  // Angle of the upper arm to the torso's midplane, positive away from the body [rad].
+  // The angle of the upper arm to the torso's midplane, positive away from the body [rad].
   double upper_arm_abduction = 0;
-  // Angle of the upper arm to the vertical, 0 hanging ... π up (ISO 11226) [rad].
+  // The angle of the upper arm to the vertical, from 0 (hanging) to π (up) (ISO 11226) [rad].
   double upper_arm_elevation = 0;
   double upper_arm_rotation = 0;  // about its own axis, positive inward [rad]
   double elbow_flexion = 0;       // 0 straight [rad]
   double wrist_flexion = 0;       // positive towards the palm, negative extension [rad]
   double wrist_deviation = 0;     // positive ulnar, negative radial [rad]
   double forearm_twist = 0;       // 0 with the thumb up, positive pronation (palm down) [rad]
-  // Distance of the knuckles from the torso's midplane, towards the arm's own side [m]: negative if
-  // the forearm crosses the midline; larger than the shoulder's distance if the forearm is out to
-  // the side.
+  // The distance of the knuckles from the torso's midplane, towards the arm's own side [m]. It is
+  // negative if the forearm crosses the midline, and larger than the shoulder's distance if the
+  // forearm is out to the side.
   double hand_beside_midline = 0;
-  // The same minus the distance of the shoulder joint: positive out to the side [m].
+  // As above, minus the distance of the shoulder joint, so it is positive out to the side [m].
   double hand_beside_shoulder = 0;
 };
 
 // The shoulder girdle does not move in this model, so a raised shoulder cannot be detected.
 struct PostureAngles {
   std::array<ArmAngles, kHands> arms;
-  // Angle of the torso to the vertical in the direction that the pelvis faces, positive forward,
-  // negative: extension [rad].
+  // The angle of the torso to the vertical in the direction that the pelvis faces, positive forward
+  // and negative in extension [rad].
   double trunk_flexion = 0;
   double trunk_side_bend = 0;  // of the torso to the vertical, positive to the right [rad]
   double trunk_twist = 0;      // of the torso relative to the pelvis, positive to the left [rad]

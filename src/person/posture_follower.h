@@ -9,17 +9,17 @@ namespace predictor::person {
 
 inline constexpr int kFollowIterations = 5;
 
-// Performs a few steps of the solver's first stage at a time, so its cost is bounded. The hands do
-// not reach the handles exactly: comfort costs a few millimetres, and more while the handles move
-// fast.
+// Performs only a few steps of the solver's first stage at a time, so that its cost is bounded. The
+// hands do not reach the handles exactly. Comfort costs a few millimetres, and more while the
+// handles move fast.
 class PostureFollower {
  public:
-  // Allocates all memory.
+  // The constructor allocates all memory.
   explicit PostureFollower(const PostureSolver& solver);
   ~PostureFollower();
 
   // Improves q for this sample by at most kFollowIterations steps. The result depends only on the
-  // sample and q. No heap, no exception.
+  // sample and q. Does not use the heap or throw.
   void Follow(const BodySample& sample, BodyVector* q) noexcept;
 
   const PostureSolver& solver() const { return solver_; }

@@ -9,11 +9,11 @@
 namespace predictor::person {
 namespace {
 
-// Standard normal numbers of one person: for the prior, the body and the back muscle.
+// The standard normal numbers of one person, for the prior, the body and the back muscle.
 constexpr int kDraws = kPriorVariations + kBodyVariations + 1;
 
-// Antithetic pairs: every second person has the negated numbers of the previous one, so the mean of
-// each varied parameter is its nominal value.
+// Draws antithetic pairs. Every second person has the negated numbers of the previous one, so the
+// mean of each varied parameter is its nominal value.
 std::vector<std::array<double, kDraws>> DrawPersons(std::uint64_t seed) {
   std::vector<std::array<double, kDraws>> z(kPostureSamples);
   RandomStream random(seed, "posture");

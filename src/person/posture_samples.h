@@ -1,4 +1,5 @@
-// The uncertainty of posture and loads: two hands and a head do not determine a body's posture.
+// Computes the uncertainty of posture and loads, because two hands and a head do not determine a
+// body's posture.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,7 @@
 
 namespace predictor::person {
 
-// Standard deviations of everything that must be assumed (all D; a swivel of ±15° is the
+// The standard deviations of everything that must be assumed (all D; a swivel of ±15° is the
 // reference's).
 struct PostureSpread {
   double swivel = 0.262;           // of each elbow (15°); half of it is common to both [rad]
@@ -31,12 +32,12 @@ struct PostureSpread {
 // with probability 59/65 = 0.91.
 inline constexpr int kPostureSamples = 64;
 
-// Median and 90 % interval of one value.
+// The median and the 90 % interval of one value.
 struct Interval {
   double median = 0, low = 0, high = 0;
 };
-// The median, and the ⌊n/20⌋-th smallest and largest value (of 64: the third). `values` is
-// reordered. Throws std::invalid_argument if it is empty.
+// Returns the median, and the ⌊n/20⌋-th smallest and largest value (of 64: the third). Reorders
+// `values`. Throws std::invalid_argument if it is empty.
 Interval IntervalOf(std::span<double> values);
 
 // One possible person.
@@ -67,14 +68,15 @@ class PostureSampler {
                  const PosturePrior& prior = DefaultPrior(), const PostureSpread& spread = {},
                  std::uint64_t seed = 1);
 
-  // `nominal` is the motion of the nominal posture. Its velocities and accelerations are used for
-  // all samples. Their postures are solved for this time alone, starting from the nominal posture.
+  // `nominal` is the motion of the nominal posture. All samples use its velocities and
+  // accelerations. Their postures are solved for this time alone, starting from the nominal
+  // posture.
   SampledBody Evaluate(const BodySample& sample, const BodyMotion& nominal) const;
-  // The same for one of the kPostureSamples persons.
+  // As above, for one of the kPostureSamples persons.
   SampledPosture EvaluatePerson(std::size_t i, const BodySample& sample,
                                 const BodyMotion& nominal) const;
 
-  // The body of the k-th sample.
+  // Returns the body of the k-th sample.
   const BodyModel& model(std::size_t k) const { return persons_[k].solver.model(); }
 
  private:
@@ -85,16 +87,16 @@ class PostureSampler {
   std::vector<Person> persons_;
 };
 
-// A person with a different posture: the prior's comfort, swivel and weights change by `spread`
-// times kPriorVariations standard normal numbers.
+// Returns a person with a different posture. The prior's comfort, swivel and weights change by
+// `spread` times kPriorVariations standard normal numbers.
 inline constexpr int kPriorVariations = 3 + 4 + 4 + 2 + kHands * kArmJoints;
 PosturePrior VariedPrior(const PosturePrior& prior, std::span<const double> z,
                          const PostureSpread& spread);
 
-// A person with different lengths and masses: each segment has the factor 1 + spread · z (z: 9
-// standard normal numbers for upper arm, forearm, hand, shoulder distance, trunk, and the masses of
-// torso, upper arm, forearm, hand). Lengths that are measured in `spec` are unchanged. The mass of
-// the whole body is unchanged: the pelvis takes the difference.
+// Returns a person with different lengths and masses. Each segment has the factor 1 + spread · z
+// (z: 9 standard normal numbers for upper arm, forearm, hand, shoulder distance, trunk, and the
+// masses of torso, upper arm, forearm, hand). Lengths that are measured in `spec` are unchanged.
+// The mass of the whole body is unchanged, because the pelvis takes the difference.
 Anthropometry VariedBody(const BodySpec& spec, std::span<const double> z, double length,
                          double mass);
 inline constexpr int kBodyVariations = 9;

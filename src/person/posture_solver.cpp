@@ -17,7 +17,7 @@ constexpr double kPriorWeight = 1e-3;
 constexpr double kLargestStep = 0.4;  // of a joint [rad] or [m]
 constexpr double kMaxDamping = 1e4;
 
-// One stage: which tasks count, whether the prior counts, and when it ends.
+// One stage: which tasks count, whether the prior counts, and when the stage ends.
 struct Stage {
   bool hands_only;
   double damping, min_damping;  // initial and smallest damping
@@ -50,7 +50,7 @@ class Descent {
         solver_(work->solver),
         solution_(work->solution) {}
 
-  // Improves q, after moving it within the limits. Returns the number of iterations.
+  // Improves q after moving it within the limits. Returns the number of iterations.
   int Run(const Stage& stage, BodyVector* q) {
     *q = q->cwiseMax(lower_).cwiseMin(upper_);
     double damping = stage.damping;

@@ -1,4 +1,5 @@
-// Inverse kinematics: a person's posture from the handles, and from head and elbows if measured.
+// Computes a person's posture from the handles, and from head and elbows if they are measured
+// (inverse kinematics).
 #pragma once
 
 #include <array>
@@ -7,20 +8,21 @@
 
 namespace predictor::person {
 
-// Determines the posture where the measurements do not. All figures D. Squared deviations have
-// these weights; a hand's squared position error has the weight 1 [1/m²], and its squared rotation
-// error 0.04 [1/rad²].
+// Determines the posture where the measurements do not (all figures D). These are the weights of
+// squared deviations. A hand's squared position error has the weight 1 [1/m²], and its squared
+// rotation error 0.04 [1/rad²].
 struct PosturePrior {
   BodyVector comfort;  // [rad], [m]
   BodyVector weight;   // [1/rad²], [1/m²]
-  // Angle by which the elbow is turned outward about the line from shoulder to wrist [rad],
-  // measured from the direction straight down, tilted backwards by 30°; and its weight [1/m² of the
+  // The angle by which the elbow is rotated outward about the line from shoulder to wrist [rad],
+  // measured from the direction straight down, tilted backwards by 30°, and its weight [1/m² of the
   // elbow's displacement].
   std::array<double, kHands> swivel = {0.35, 0.35};
   double swivel_weight = 0.1;
-  // Cost of lowering the hips [1/m]. It is nearly linear, like the squared knee angle (8 d / length
-  // of the leg for hips lowered by d; four times the weight of an arm's joint), so the knees stay
-  // straight unless bending them is worth it: lowering · (√(z² + s²) - s) with s = kLoweringSmooth.
+  // The cost of lowering the hips [1/m]. It is nearly linear, like the squared knee angle (8 d /
+  // length of the leg for hips lowered by d; four times the weight of an arm's joint), so the knees
+  // stay straight unless bending them is worth it. The cost is lowering · (√(z² + s²) - s) with s =
+  // kLoweringSmooth.
   double lowering = 3.5e-2;
 };
 inline constexpr double kLoweringSmooth = 0.01;  // [m]
@@ -28,7 +30,7 @@ PosturePrior DefaultPrior();
 
 struct Posture {
   BodyVector q;
-  // Remaining errors of the handles' poses; 0 for an absent hand. For a grip that turns, the
+  // The remaining errors of the handles' poses, or 0 for an absent hand. For a grip that turns, the
   // rotation error is only the angle by which the bar lies more obliquely in the hand than 0.7 rad.
   std::array<double, kHands> position_error = {};  // [m]
   std::array<double, kHands> rotation_error = {};  // [rad]
@@ -36,21 +38,21 @@ struct Posture {
   std::array<double, kHands> elbow_error = {};     // [m]; 0 if not measured
   double head_error = 0;                           // [m]; 0 if not measured
   int iterations = 0;
-  // True if both hands are within 1e-6 m and 1e-6 rad. Otherwise, the posture is the nearest one
+  // Whether both hands are within 1e-6 m and 1e-6 rad. If not, the posture is the nearest one
   // found.
   bool reached = false;
 };
 
 // Solves in two stages: first the weighted compromise of all tasks and the prior, then the shortest
 // step that brings the hands exactly to the handles. Both use damped Gauss-Newton steps (Levenberg
-// & Marquardt), each step a quadratic program with the joint limits as bounds. The programs are
+// & Marquardt). Each step is a quadratic program with the joint limits as bounds. The programs are
 // solved without a warm start, so the result depends only on the sample and the start.
 class PostureSolver {
  public:
   PostureSolver(const BodyModel& model, const Stance& stance, const std::array<Grip, kHands>& grips,
                 const PosturePrior& prior = DefaultPrior());
 
-  // Starts at the prior's comfort.
+  // Starts at the prior's comfortable posture.
   Posture Solve(const BodySample& sample) const { return Solve(sample, prior_.comfort); }
   // Starts at `start`, for example the posture of the previous sample.
   Posture Solve(const BodySample& sample, const BodyVector& start) const;

@@ -10,14 +10,14 @@ constexpr double kElbowWeight = 1;    // [1/m²]
 constexpr double kHeadWeight = 0.3;   // [1/m²]; times kRotationLength² [1/rad²]
 constexpr double kDifference = 1e-6;  // step of numerical differentiation [m]
 
-// Points of an arm in S [m].
+// The points of an arm in S [m].
 struct ArmPoints {
   Vector3 shoulder, elbow, wrist;
 };
 
-// Displacement of the elbow [m] outward about the line from shoulder to wrist that is needed to
-// reach `swivel` [rad]. It fades where the reference direction of the angle is parallel to that
-// line.
+// Returns the displacement of the elbow [m] outward about the line from shoulder to wrist that is
+// needed to reach `swivel` [rad]. It fades where the reference direction of the angle is parallel
+// to that line.
 double MissingSwivel(const ArmPoints& arm, int hand, double swivel) {
   const double side = hand == 0 ? 1 : -1;
   const Vector3 line = arm.wrist - arm.shoulder;
@@ -91,7 +91,7 @@ Vector6 PostureTasks::HandError(const Placement& at, int hand) const {
   Vector6 error;
   error.head<3>() = goal.q.conjugate() * (goal.p - now.p);
   if (turns_[k]) {
-    // Only the direction of the bar counts: the chord between the unit vectors.
+    // Only the direction of the bar counts, measured by the chord between the unit vectors.
     error.tail<3>() = Vector3::UnitX() - goal.q.conjugate() * (now.q * Vector3::UnitX());
   } else {
     error.tail<3>() = goal.q.conjugate() * RotationError(goal.q, now.q);
@@ -186,7 +186,7 @@ void PostureTasks::Judge(Posture* posture) const {
       posture->oblique[k] = 2 * std::asin(std::min(1.0, posture->rotation_error[k] / 2));
       posture->rotation_error[k] = std::max(0.0, posture->oblique[k] - kMaxOblique);
     }
-    // Also false if measurements are not finite.
+    // The condition is also false if measurements are not finite.
     if (!(posture->position_error[k] <= 1e-6 && posture->rotation_error[k] <= 1e-6))
       posture->reached = false;
   }

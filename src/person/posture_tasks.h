@@ -1,4 +1,4 @@
-// The tasks of inverse kinematics as rows of a least-squares problem.
+// Writes the tasks of inverse kinematics as rows of a least-squares problem.
 #pragma once
 
 #include <array>
@@ -9,13 +9,13 @@
 namespace predictor::person {
 
 inline constexpr double kRotationLength = 0.2;  // weighs rotation against translation [m/rad]
-// Weight for a bar that lies obliquely in a hand that turns about it [1/rad²], and the largest
+// The weight for a bar that lies obliquely in a hand that turns about it [1/rad²], and the largest
 // angle (D).
 inline constexpr double kObliqueWeight = 5e-3, kMaxOblique = 0.7;
 inline constexpr int kMaxTaskRows = 28;
 
-// Error e = goal - value and Jacobian of the value. Each row is scaled by the square root of its
-// weight.
+// The error e = goal - value and the Jacobian of the value. Each row is scaled by the square root
+// of its weight.
 struct TaskRows {
   Eigen::Matrix<double, kMaxTaskRows, kBodyJoints, Eigen::RowMajor> J;
   Eigen::Matrix<double, kMaxTaskRows, 1> e;
@@ -31,8 +31,8 @@ class PostureTasks {
   PostureTasks(const BodyModel& model, const Stance& stance, const std::array<Grip, kHands>& grips,
                const PosturePrior& prior, const BodySample& sample);
 
-  // Rows of the hands alone (for a hand that turns, only its position), or of all tasks. Jacobians
-  // are computed only on request.
+  // Computes the rows of the hands alone (for a hand that turns, only its position), or of all
+  // tasks. Jacobians are computed only on request.
   void Rows(const BodyVector& q, bool hands_only, bool with_jacobian, TaskRows* rows) const;
   // Writes the errors of all tasks.
   void Judge(Posture* posture) const;

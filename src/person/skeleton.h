@@ -7,7 +7,7 @@
 
 namespace predictor::person {
 
-// Points of one side of the body, in S [m].
+// The points of one side of the body, in S [m].
 struct SkeletonSide {
   Vector3 shoulder, elbow, wrist, knuckles, hip, knee, ankle, heel, toes;
 };
@@ -21,6 +21,6 @@ struct Skeleton {
   std::array<SkeletonSide, kHands> sides;
 };
 
-// `width`: distance between the ankles [m], see LegsOf.
+// `width` is the distance between the ankles [m], see LegsOf.
 Skeleton SkeletonOf(const BodyModel& model, const BodyVector& q, double width);
 }  // namespace predictor::person

@@ -1,4 +1,4 @@
-// Zero-phase smoothing and differentiation of postures.
+// Smooths and differentiates postures without phase shift.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,7 @@ void FilterForward(double cutoff, double dt, std::vector<BodyVector>* q) {
   for (BodyVector& x : *q) x = filter.Update(x);
 }
 
-// `q` extended by `n` samples on either side, by point reflection about its ends.
+// Returns `q` extended by `n` samples on either side, by point reflection about its ends.
 std::vector<BodyVector> Continued(std::span<const BodyVector> q, std::size_t n) {
   std::vector<BodyVector> all;
   all.reserve(q.size() + 2 * n);

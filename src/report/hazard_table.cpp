@@ -1,4 +1,4 @@
-// What the hands felt after the events of a scenario.
+// Tabulates what the hands felt after the events of a scenario.
 #include <algorithm>
 #include <array>
 

@@ -10,7 +10,7 @@
 
 namespace predictor {
 
-// Embedded at build time.
+// The build embeds this file.
 std::string_view ReportStyleFile(std::string_view name);
 std::string_view ReportScriptFile(std::string_view name);
 
@@ -58,7 +58,7 @@ Json List(const Items& items, Function function) {
 }
 
 // Time axes have a resolution of a tenth of a millisecond, so that no point moves by a pixel.
-// Logarithmic axes need the same resolution because their values start small.
+// Logarithmic axes need the same resolution, because their values start small.
 double StepOfX(const Plot& plot) { return plot.x.unit == "s" || plot.x.log ? 1e-4 : 0; }
 
 Json ToJson(const Plot& plot, PageData* data) {

@@ -10,10 +10,10 @@
 
 namespace predictor {
 
-// Each value is rounded to a whole number of steps. A byte 0 represents a value that is not finite.
+// Rounds each value to a whole number of steps. A byte 0 represents a value that is not finite.
 // Otherwise the byte 1 is followed by the zigzag-coded difference from the previous value, in
-// groups of seven bits, lowest group first; the eighth bit means that more bytes follow. Slowly
-// varying values take one byte each.
+// groups of seven bits with the lowest group first. The eighth bit means that more bytes follow.
+// Slowly varying values take one byte each.
 std::string EncodeSteps(const std::vector<double>& values, double step);
 
 std::string Base64(const std::string& bytes);
@@ -21,9 +21,10 @@ std::string Base64(const std::string& bytes);
 // The columns of a page. Each distinct column is stored once.
 class PageData {
  public:
-  // Returns the column's number. step: rounding step of the values; 0: 1/50000 of their range.
+  // Returns the column's number. step: the rounding step of the values, or 0 for 1/50000 of their
+  // range.
   int Add(const Samples& values, double step);
-  // The columns as HTML elements of the page.
+  // Returns the columns as HTML elements of the page.
   std::string Html() const { return html_; }
 
  private:
@@ -33,19 +34,19 @@ class PageData {
   std::string html_;
 };
 
-// The page contains its plots as data; its script draws them on the screen and on paper.
+// A page that contains its plots as data. Its script draws them on the screen and on paper.
 class ReportPage {
  public:
-  // `words`: HTML shown below the title.
+  // `words` is HTML that appears below the title.
   explicit ReportPage(std::string title, std::string words = "");
 
   // Starts a chapter. `id` is unique within the page.
   void Section(const std::string& id, const std::string& title);
-  // Adds raw HTML: escape any external text (EscapeMarkup).
+  // Adds raw HTML. Escape any external text first (EscapeMarkup).
   void Html(const std::string& html);
   void Paragraph(const std::string& text);  // plain text; it is escaped here
   void Figure(const Plot& plot);
-  // Adds the text of a file, collapsed until the user opens it.
+  // Adds the text of a file, which is collapsed until the user opens it.
   void Folded(const std::string& title, const std::string& text);
 
   std::string Finish();
@@ -60,7 +61,8 @@ class ReportPage {
   bool open_ = false;
 };
 
-// A table whose first row is the header and whose first column names the rows. Cells are HTML.
+// Returns a table whose first row is the header and whose first column names the rows. Cells are
+// HTML.
 std::string HtmlTable(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// Paths of the object and the handles.
+// Plots the paths of the object and the handles.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -13,7 +13,7 @@
 namespace predictor {
 namespace {
 
-// "a" is the horizontal and "b" the vertical axis of a path in W on the page.
+// `a` is the horizontal and `b` the vertical axis of a path in W on the page.
 Plot PathPlot(const Runs& runs, const char* id, const char* title, std::size_t a, std::size_t b) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
   Plot plot;

@@ -46,8 +46,8 @@ struct PlotSeries {
   PlotSymbol symbol = PlotSymbol::kDot;
   Samples base;   // lower edge of an area
   Samples error;  // of markers: half the length of the error bars; null: none
-  // For a line: every sample of some parts of it. The page draws these samples when the view is
-  // zoomed in.
+  // For a line, every sample of some parts of it. The page draws these samples when the reader
+  // zooms in.
   Samples x_detail, y_detail;
   double resolution = 0;   // step to which the page rounds y; 0: 1/50000 of the range
   double bar_width = 0.8;  // of kBars, in x's unit; for a logarithmic axis, a ratio above 1
@@ -82,7 +82,7 @@ struct PlotAxis {
   bool zero = false;                // include zero in the range
   bool log = false;                 // logarithmic: values that are not positive are not drawn
   double least = 0;                 // smallest range, so that noise does not fill the panel
-  // Labels of the values `first`, `first` + 1, ..., shown instead of numbers.
+  // The labels of the values `first`, `first` + 1, ..., which appear instead of numbers.
   std::vector<std::string> names;
   double first = 0;
 };
@@ -95,7 +95,7 @@ struct PlotPanel {
   double height = 1;  // relative to other panels
 };
 
-// Panels stacked vertically, with a common x-axis.
+// The panels are stacked vertically and share an x-axis.
 struct Plot {
   std::string id;     // of the figure and of the file to which it is saved: letters, digits, '-'
   std::string title;  // description of the content
@@ -108,13 +108,13 @@ struct Plot {
   std::string group;        // plots of the same group zoom together; empty: independent
 };
 
-// "Force [N]".
+// Returns "Force [N]", for example.
 std::string AxisTitle(const PlotAxis& axis);
 
-// `x` with `digits` significant digits and at most `decimals` digits after the decimal point,
-// without an exponent ("0.0123", "12.3").
+// Formats `x` with `digits` significant digits and at most `decimals` digits after the decimal
+// point, without an exponent ("0.0123", "12.3").
 std::string Significant(double x, int digits = 3, int decimals = 6);
-// The same without trailing zeros, for values chosen by people ("30", "0.3").
+// As above, without trailing zeros, for values chosen by people ("30", "0.3").
 std::string Round(double x, int digits = 4);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// Parts that the plots of a report have in common.
+// Provides the parts that the plots of a report have in common.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ inline constexpr int kPair = 2;  // colour of curves that concern both handles
 
 inline bool Single(const Runs& runs) { return runs.size() == 1; }
 
-// The first run, with which all others are compared.
+// Returns the first run, with which all others are compared.
 inline const RunData& First(const Runs& runs) { return runs.front().run(); }
 
 inline std::string LabelOf(const Runs& runs, std::size_t r) { return runs[r].run().info.name; }

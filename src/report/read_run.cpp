@@ -31,7 +31,7 @@ constexpr std::pair<InputKind, const char*> kInputWords[] = {
     {InputKind::kWatchdog, "the watchdog stopped responding"},
     {InputKind::kSuspended, "the computer was suspended"}};
 
-// The worst value so far and its position in the trace.
+// The worst value so far, and its position in the trace.
 struct Worst {
   const char* what;
   double value = 0;
@@ -142,7 +142,7 @@ void RunCollector::Impl::FollowStates(const TickRecord& record) {
   action_ = record.action;
 }
 
-// Marks them in the plots.
+// Marks the events in the plots.
 void RunCollector::Impl::FollowEvents(const TickRecord& record) {
   const unsigned changed = record.events ^ std::exchange(active_events_, record.events);
   for (std::size_t i = 0; i < d_.info.scenario.events.size(); ++i) {
@@ -159,7 +159,7 @@ void RunCollector::Impl::FollowEvents(const TickRecord& record) {
        true);
 }
 
-// Uses the summary's result; the summary has already processed this record.
+// Uses the summary's result, because the summary has already processed this record.
 void RunCollector::Impl::FollowStop(const TickRecord& record) {
   const std::vector<StopSummary>& stops = summary_.stops().stops();
   if (d_.stops.size() != stops.size()) {
@@ -172,8 +172,8 @@ void RunCollector::Impl::FollowStop(const TickRecord& record) {
 }
 
 // The fault that removes the power occurs with the decision or long after it, and belongs to the
-// last stop. If the last stop was not kept because there were too many, the fault is not assigned
-// to any stop.
+// last stop. If the last stop was not kept because there were too many, the fault belongs to none
+// of the kept stops.
 void RunCollector::Impl::FollowPower(const TickRecord& record) {
   const StopCause before = std::exchange(harder_, record.harder.cause);
   if (harder_ == StopCause::kNone || before != StopCause::kNone) return;

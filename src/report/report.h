@@ -1,4 +1,4 @@
-// The report on one run, or on several runs side by side.
+// Makes the report on one run, or on several runs side by side.
 #pragma once
 
 #include <functional>
@@ -17,11 +17,11 @@ struct ReportDocument {
 
 class ReportPage;
 
-// Adds chapters of another module to the page.
+// A function that adds chapters of another module to the page.
 using AddChapters = std::function<void(ReportPage*)>;
 
-// `runs`: at least one. program_version: version of the program that makes the report. `chapters`:
-// come after the forces.
+// `runs` contains at least one run. program_version: the version of the program that makes the
+// report. `chapters` are placed after the forces.
 ReportDocument MakeReport(
     const std::vector<RunData>& runs, const std::string& program_version,
     const AddChapters& chapters = [](ReportPage*) {});

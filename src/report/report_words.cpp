@@ -26,7 +26,8 @@ std::string Count(std::uint64_t n) {
 }
 std::string Times(std::uint64_t n) { return n == 1 ? "once" : Count(n) + " times"; }
 
-// "0.098 ± 0.088": both numbers have the decimals that the larger one needs for three digits.
+// Returns "0.098 ± 0.088", for example. Both numbers have the decimals that the larger one needs
+// for three digits.
 std::string Spread(double mean, double deviation, int decimals) {
   const double larger = std::max(std::abs(mean), deviation);
   const int exponent = larger > 0 ? static_cast<int>(std::floor(std::log10(larger))) : 0;
@@ -104,7 +105,7 @@ std::string ForceWords(const RunData& run) {
   return text;
 }
 
-// Reports the worst window, and whether it needs attention.
+// Describes the worst window and whether it needs attention.
 std::string OscillationWords(const RunData& run) {
   const auto largest = [&](const char* key) {
     double value = 0;
@@ -205,7 +206,8 @@ std::vector<std::string> PortRow(const std::string& name, const PortEnergy& port
           Significant(port.peak_return, 3, 3)};
 }
 
-// Times before the stop at which the hand's force or torque last exceeded shares of its limit.
+// Lists the times before the stop at which the hand's force or torque last exceeded shares of its
+// limit.
 std::string Approach(const RunData& run, const ReportedStop& stop) {
   const StopSummary& s = stop.summary;
   const bool force = s.cause == StopCause::kForce, torque = s.cause == StopCause::kTorque;
@@ -250,7 +252,7 @@ struct NamedNumber {
   double value;      // NaN: none
 };
 
-// The numbers of a result that are compared, in its shown unit.
+// Returns the numbers of a result that are compared, in the unit in which it is shown.
 std::vector<NamedNumber> NumbersOf(const Result& result) {
   const double factor = IsMissing(result.value) ? NAN : result.unit.factor;
   if (const auto* s = std::get_if<Statistics>(&result.value))
@@ -262,7 +264,7 @@ std::vector<NamedNumber> NumbersOf(const Result& result) {
   return {};
 }
 
-// The figures of all metrics, then the number of stops.
+// Returns the figures of all metrics, followed by the number of stops.
 std::vector<Figure> FiguresOf(const Summary& summary) {
   std::vector<Figure> figures;
   for (const Result& result : summary.results) {

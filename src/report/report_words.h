@@ -1,4 +1,4 @@
-// The text and the tables of a report.
+// Writes the text and the tables of a report.
 #pragma once
 
 #include <string>
@@ -9,23 +9,23 @@
 
 namespace predictor {
 
-// Summary of the run in a few sentences, as HTML.
+// Summarises the run in a few sentences, as HTML.
 std::string SummaryWords(const RunData& run);
-// Description of one stop as HTML: the decision and its cause, the preceding events, and the time
-// and distance of the stop.
+// Describes one stop as HTML: the decision and its cause, the preceding events, and the time and
+// distance of the stop.
 std::string StopWords(const RunData& run, const ReportedStop& stop);
-// The parts of the runs that are shown tick by tick, as HTML.
+// Describes the parts of the runs that are shown tick by tick, as HTML.
 std::string DetailWords(const Runs& runs);
 
-// The results of the run's metrics that belong to a chapter, as HTML.
+// Returns the results of the run's metrics that belong to a chapter, as HTML.
 std::string ResultTables(const RunData& run, Chapter chapter);
 std::string EnergyTable(const RunData& run);
 std::string LatencyTable(const RunData& run);
 std::string EventTable(const RunData& run);
-// The scenario's events and what the hands felt after them, as HTML.
+// Describes the scenario's events and what the hands felt after them, as HTML.
 std::string HazardTable(const RunData& run);
-// A table of all compared results with a column per run, including the difference from the first
-// run.
+// Returns a table of all compared results with a column per run, including the difference from the
+// first run.
 std::string ComparisonTable(const std::vector<RunData>& runs);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// Data of one run for a report, collected in one pass over its records.
+// The data of one run for a report, collected in one pass over its records.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@
 
 namespace predictor {
 
-// Information about a recording in addition to its ticks.
+// What is known about a recording besides its ticks.
 struct RunInfo {
   std::string name;           // file name, or another name that distinguishes the run
   std::string file;           // full file name, if `name` is shortened
@@ -39,7 +39,7 @@ struct RunInfo {
   std::vector<Event> events;  // markers
 };
 
-// Channels of a hand in the trace.
+// The channels of a hand in the trace.
 enum class HandChannel : std::size_t {
   kError,  // distance of the real from the virtual handle [mm]; like the following ones, only while
            // simulated time passes
@@ -88,7 +88,7 @@ constexpr std::size_t ChannelOf(RunChannel channel, int joint = 0) {
          static_cast<std::size_t>(joint);
 }
 
-// A stop and its time and distance.
+// A stop, with its time and distance.
 struct ReportedStop {
   std::uint64_t tick = 0;       // tick of the decision
   StopSummary summary;          // its time is on the report's time axis
@@ -107,7 +107,7 @@ struct ReportedPart {
   RunState state = RunState::kInit;
 };
 
-// Latencies of one page: from a tick's start to its reception, and to its display [ms].
+// The latencies of one page, from a tick's start to its reception and to its display [ms].
 struct PageLatency {
   Histogram received, rendered;
 };
@@ -156,7 +156,7 @@ struct RunData {
   double kkt_max = 0;
 
   static constexpr int kTickBins = 20;
-  // [s] on the report's time axis.
+  // Returns the time on the report's time axis [s].
   double TimeOf(std::uint64_t tick) const {
     return (static_cast<double>(tick) - static_cast<double>(origin)) * dt;
   }
@@ -176,7 +176,7 @@ class RunCollector {
   RunCollector& operator=(const RunCollector&) = delete;
   // Adds the next record.
   void Add(const TickRecord& record);
-  // Returns the collected data. Call once.
+  // Returns the collected data. Call this only once.
   RunData Finish();
 
  private:

@@ -17,7 +17,7 @@ bool Differ(const Names& names) {
   return std::set<std::string>(names.begin(), names.end()).size() == names.size();
 }
 
-// The name with a number of folders: "b/run" for a/b/run.mcap and one folder.
+// Returns the name with a number of folders, such as "b/run" for a/b/run.mcap and one folder.
 std::string NameOf(const std::filesystem::path& file, int folders) {
   std::string name = file.stem().string();
   std::filesystem::path folder = file.parent_path();
@@ -26,7 +26,8 @@ std::string NameOf(const std::filesystem::path& file, int folders) {
   return name;
 }
 
-// Adds as many folders as needed to make the names unique. Empty if a file is named twice.
+// Adds as many folders as needed to make the names unique. Returns no value if a file is named
+// twice.
 std::optional<Names> NamesOf(const std::vector<NamedRun>& runs) {
   constexpr int kMaxFolders = 64;
   for (int folders = 0; folders < kMaxFolders; ++folders) {
@@ -38,7 +39,7 @@ std::optional<Names> NamesOf(const std::vector<NamedRun>& runs) {
   return {};
 }
 
-// Length of the common beginning of all names, up to and including a separator.
+// Returns the length of the common beginning of all names, up to and including a separator.
 std::size_t CommonStart(const Names& names) {
   std::size_t common = names[0].size();
   for (const std::string& name : names) {

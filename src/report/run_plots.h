@@ -1,5 +1,5 @@
-// The plots of a report. One run: both hands in one panel. Several runs: one panel per hand and one
-// colour per run.
+// Makes the plots of a report. For one run, both hands share a panel. For several runs, there is
+// one panel per hand and one colour per run.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace predictor {
 
-// Curves of a run that several of its plots use.
+// The curves of a run that several of its plots use.
 class RunCurves {
  public:
   explicit RunCurves(const RunData& run)
@@ -30,20 +30,21 @@ Plot TrackingPlot(const Runs& runs);   // Fig. 7
 Plot ForcePlot(const Runs& runs);      // Fig. 8
 Plot ForceAxesPlot(const Runs& runs);  // Fig. 12
 Plot TickHistogram(const Runs& runs);
-// Paths of the object and the handles from above and from the side, with the guidance path.
+// Plots the paths of the object and the handles from above and from the side, with the guidance
+// path.
 std::vector<Plot> PathPlots(const Runs& runs);
 Plot ObjectPlot(const Runs& runs);
 Plot CouplingPlot(const Runs& runs);
 Plot SlackPlot(const Runs& runs);
 Plot OscillationPlot(const Runs& runs);
 
-// Of a single run.
+// The following plots show a single run.
 Plot JointPlot(const RunCurves& curves);  // Fig. 9
 Plot EnergyPlot(const RunCurves& curves);
 Plot TickPlot(const RunCurves& curves);
 Plot StopPlot(const RunCurves& curves, const ReportedStop& stop, std::size_t number);
 
-// A threshold as set at the end of the run.
+// Returns a threshold as set at the end of the run.
 double ThresholdOf(const RunData& run, Parameter parameter);
 
 }  // namespace predictor

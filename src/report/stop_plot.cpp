@@ -1,4 +1,4 @@
-// Every tick before and after a stop.
+// Plots every tick before and after a stop.
 #include <algorithm>
 #include <cstdint>
 #include <string>

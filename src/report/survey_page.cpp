@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-// Uses a true minus sign; a dash for an undefined value.
+// Formats a value with a true minus sign, or as a dash if it is undefined.
 std::string Figure(const char* format, double value) {
   if (value != value) return "–";
   char buffer[32];
@@ -26,7 +26,7 @@ std::string MeanText(const StatementSummary& s) {
   return Figure("%.2f", s.mean) + " ± " + Figure("%.2f", s.deviation);
 }
 
-// `counted`: name of the counted items. `zero`: meaning of a zero.
+// `counted` is the name of the counted items. `zero` is the meaning of a zero.
 std::string ShiftTable(const char* counted, const char* zero, const ShiftSummaries& summaries) {
   Rows rows = {{"", counted, zero, "shift", "interval", "its confidence", "p", "p (Holm)"}};
   for (std::size_t i = 0; i < kStatements; ++i) {

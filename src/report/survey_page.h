@@ -1,4 +1,4 @@
-// The page about a questionnaire: plot, tables, comments and methods.
+// Makes the page about a questionnaire: plot, tables, comments and methods.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@ struct LikertSeries {
   std::string name;
   std::array<ScoreCounts, kStatements> counts{};
 };
-// A plot like Fig. 11 of the paper: a cross for each answer (equal answers side by side), and a dot
-// with a bar for mean and standard deviation. One or two series.
+// Makes a plot like Fig. 11 of the paper for one or two series. It has a cross for each answer
+// (equal answers side by side), and a dot with a bar for mean and standard deviation.
 Plot LikertPlot(const std::vector<LikertSeries>& series);
 
-// One self-contained page.
+// Returns one self-contained page.
 std::string SurveyPage(const SurveyReport& report);
 
 }  // namespace predictor

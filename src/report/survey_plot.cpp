@@ -1,4 +1,4 @@
-// The plot in Fig. 11 of the paper.
+// Makes a plot like Fig. 11 of the paper.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-// In units of the axes: each statement is 1 wide, each score is 1 high.
+// The units are those of the axes: each statement is 1 wide, and each score is 1 high.
 constexpr double kMarginX = 0.06, kMeanWidth = 0.2;  // space beside the crosses of a series
 constexpr double kStepX = 0.085, kStepY = 0.11;      // distance of neighbouring crosses
 constexpr double kHighest = 2.6;                     // largest y; the smallest is its negative
@@ -21,7 +21,7 @@ struct Points {
   std::vector<double> x, y, error;
 };
 
-// The crosses at one score, in as many rows as needed, centred on the score.
+// Adds the crosses at one score, in as many rows as needed, centred on the score.
 void AddCrosses(double left, double width, double score, int count, Points* points) {
   const int a_row = std::max(kMinRow, (count + kMaxRows - 1) / kMaxRows);
   const int rows = (count + a_row - 1) / a_row;

@@ -1,5 +1,5 @@
-// Channels of a run over time, in bounded memory and one pass: the lowest and highest value of each
-// 50 ms, and every tick of the important parts.
+// Stores channels of a run over time, in bounded memory and one pass: the lowest and highest value
+// of each 50 ms, and every tick of the important parts.
 #pragma once
 
 #include <cstddef>
@@ -26,30 +26,30 @@ class Trace {
   static constexpr int kBinsPerBlock = 20;  // parts are kept or discarded in blocks of one second
   static constexpr double kBefore = 10;     // longest `before` of an interest [s]
 
-  // dt: tick [s]. detail: longest time for which every tick is kept [s]. A run that is not longer
-  // is kept completely.
+  // dt: duration of a tick [s]. detail: the longest time for which every tick is kept [s]. A run
+  // that is not longer is kept completely.
   Trace(std::size_t channels, double dt, double detail);
 
-  // Returns the sum of the values of all channels, or NaN if there are no channels. Ticks must
-  // ascend; missing ticks are gaps. Throws InputError if the ticks lie in more seconds than memory
-  // allows (eight hours).
+  // Adds a tick with a value of each channel (NaN if there is none). Ticks must ascend, and missing
+  // ticks are gaps. Throws InputError if the ticks lie in more seconds than memory allows (eight
+  // hours).
   void Add(std::uint64_t tick, const float* values);
-  // Keeps every tick near a given point in time, which may be at most kBefore in the past. Returns
-  // the interest's number.
+  // Keeps every tick near a given time, which may be at most kBefore in the past. Returns the
+  // interest's number.
   std::size_t Keep(TraceInterest interest);
   // Moves an interest, for example when a new worst value replaces the old one.
   void Move(std::size_t interest, std::uint64_t tick) { interests_[interest].tick = tick; }
   void Finish();  // throws like Add
 
-  // Call after Finish. Times are relative to the tick `origin` [s].
+  // Call this after Finish. Times are relative to the tick `origin` [s].
   Samples Times(std::uint64_t origin) const;
   Samples Values(std::size_t channel) const;
   Samples DetailTimes(std::uint64_t origin) const;
   Samples DetailValues(std::size_t channel) const;
-  // The ticks in (from, to) with their times, as far as they were kept.
+  // Returns the ticks in (from, to) with their times, as far as they were kept.
   void Part(std::uint64_t from, std::uint64_t to, std::uint64_t origin, std::size_t channel,
             std::vector<double>* times, std::vector<double>* values) const;
-  // Interests for which every tick was kept; interests without room are omitted.
+  // Returns the interests for which every tick was kept. Interests without room are omitted.
   std::vector<TraceInterest> Kept() const;
   bool complete() const { return complete_; }  // every tick of the run was kept
   double detail_seconds() const;               // total time kept with every tick [s]

@@ -10,7 +10,7 @@
 namespace predictor::tracks {
 namespace {
 
-// The channels of `names`: all of them, or NAME with an axis added.
+// Returns the channels of `names`: all of them, or NAME with an axis added.
 std::vector<const Series*> ChannelsOf(const SeriesFile& file, const std::vector<std::string>& names,
                                       const std::vector<const char*>& axes) {
   std::vector<const Series*> channels;
@@ -150,7 +150,7 @@ class Mapper {
     return all;
   }
 
-  // From the tracked frame in F to the part in W.
+  // Converts from the tracked frame in F to the part in W.
   void Place(const PartMap& part, PartTrack* track) const {
     const Pose X_TP = PoseFromXyzRpy(part.xyz, part.rpy);
     for (std::size_t i = 0; i < track->p.size(); ++i) {
@@ -161,7 +161,7 @@ class Mapper {
       }
       Quaternion& q = track->q[i];
       const bool turned = q.coeffs().allFinite();
-      // Without the rotation, the offset from the tracked point is not known.
+      // Without the rotation, the offset from the tracked point is unknown.
       p = turned                 ? X_WF_ * (p + q * X_TP.p)
           : X_TP.p.norm() < 1e-9 ? X_WF_ * p
                                  : Vector3::Constant(kMissing);
@@ -198,7 +198,7 @@ class Mapper {
   Pose X_WF_;
 };
 
-// The measurements around a time: index of the later one, and its weight.
+// The measurements around a time: the index of the later one, and its weight.
 struct Between {
   std::size_t after = 0;
   double weight = 0;
@@ -213,14 +213,14 @@ std::optional<Between> Around(const std::vector<double>& times, double time, dou
   return Between{i, (time - times[i - 1]) / (times[i] - times[i - 1])};
 }
 
-// A value between two; exactly at a measurement, the other one may be missing.
+// Returns a value between two measurements. Exactly at a measurement, the other one may be missing.
 template <class T>
 T Blend(const std::vector<T>& values, const Between& at) {
   if (at.weight == 1) return values[at.after];
   return (1 - at.weight) * values[at.after - 1] + at.weight * values[at.after];
 }
 
-// Nothing if at most one value lies within `width` about the time.
+// Returns no value if at most one value lies within `width` around the time.
 template <class T>
 std::optional<T> MeanWithin(const std::vector<double>& times, const std::vector<T>& values,
                             double time, double width) {

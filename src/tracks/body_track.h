@@ -18,11 +18,12 @@ struct PartTrack {
   std::vector<Vector3> p;     // in W [m]; NaN: missing
   std::vector<Quaternion> q;  // R_WT; empty: not measured; NaN: missing
 
-  // Linear between two measurements that are at most `gap` [s] apart; nothing outside of them.
+  // Interpolates linearly between two measurements that are at most `gap` [s] apart. There is no
+  // value outside of them.
   std::optional<Vector3> PositionAt(double time, double gap = kMaxGap) const;
   std::optional<Quaternion> RotationAt(double time, double gap = kMaxGap) const;
 
-  // A missing part is not invented over longer times (design choice) [s].
+  // A part that is missing for longer than this is not interpolated (design choice) [s].
   static constexpr double kMaxGap = 0.05;
 };
 
@@ -34,8 +35,9 @@ struct HandTrack {
   bool along_handle = false;        // F is along the handle's axes, otherwise along those of W
   Vector3 about = Vector3::Zero();  // in the handle's frame [m]
 
-  // F_D_W, about the handle's origin; nothing where pose or wrench are missing. Mean within `width`
-  // [s] about the time, if there are several values; otherwise linear.
+  // Returns F_D_W about the handle's origin, or no value where the pose or the wrench is missing.
+  // If there are several values within `width` [s] around the time, it is their mean. Otherwise it
+  // is interpolated linearly.
   std::optional<Wrench> WrenchAt(double time, double width = 0) const;
   bool HoldsAt(double time) const;
 };
@@ -45,8 +47,9 @@ struct SignalTrack {
   std::string name, unit;
   std::vector<double> times, values;
 
-  // Mean of the values within `width` [s] about the time, if there are several; otherwise linear
-  // between neighbours that are at most twice the median interval apart. NaN: missing.
+  // Returns the mean of the values within `width` [s] around the time, if there are several.
+  // Otherwise it interpolates linearly between neighbours that are at most twice the median
+  // interval apart. NaN means that the value is missing.
   double At(double time, double width) const;
 };
 
@@ -65,7 +68,8 @@ struct BodyTrack {
 // is no unit quaternion, or a part was never seen.
 BodyTrack ApplyMap(const TrackMap& map, const SeriesFile& file);
 
-// A mapping (.yaml) with its file, or a table with named columns (MapOfColumns). Throws InputError.
+// Loads a mapping (.yaml) with its file, or a table with named columns (MapOfColumns). Throws
+// InputError.
 BodyTrack LoadBodyTrack(const std::filesystem::path& file);
 
 }  // namespace predictor::tracks

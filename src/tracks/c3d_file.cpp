@@ -1,4 +1,5 @@
-// Points and analog channels as binary (C3D). Layout: https://www.c3d.org/HTML/default.htm.
+// Reads binary points and analog channels (C3D). The layout is described at
+// https://www.c3d.org/HTML/default.htm.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -15,7 +16,8 @@ namespace {
 constexpr std::size_t kBlock = 512;
 constexpr int kIntel = 84;
 
-// One parameter. Its numbers or its texts are read; `dims` counts from the fastest index.
+// One parameter, with either its numbers or its texts. The first entry of `dims` belongs to the
+// fastest index.
 struct Parameter {
   std::vector<double> numbers;
   std::vector<std::string> texts;
@@ -114,12 +116,12 @@ class C3dReader {
                ? kMissing
                : found->second.numbers[i];
   }
-  // Whole numbers up to 65535 are stored in signed ones.
+  // The format stores whole numbers up to 65535 in signed numbers.
   std::size_t Unsigned(const std::string& name, std::size_t i = 0) const {
     const double x = Number(name, i);
     return x >= 0 ? static_cast<std::size_t>(x) : x < 0 ? static_cast<std::size_t>(x + 65536) : 0;
   }
-  // The texts of NAME, NAME2, NAME3, ...
+  // Returns the texts of NAME, NAME2, NAME3, ...
   std::vector<std::string> Texts(const std::string& name) const {
     std::vector<std::string> all;
     for (int i = 1; i < 100; ++i) {

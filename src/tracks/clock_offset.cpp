@@ -21,7 +21,7 @@ constexpr double kMinDeviation = 0.01;  // of a speed that says something [m/s]
 constexpr std::size_t kBlocks = 8, kMinBlocks = 3;
 constexpr double kMaxWork = 2e8;  // products in the search over all offsets
 
-// Speeds on a grid of times.
+// The speeds on a grid of times.
 struct Speeds {
   double start = 0, step = 0;  // [s]
   std::vector<double> values;  // [m/s]; NaN: not known
@@ -37,7 +37,7 @@ Vector3 Interpolated(const Path& path, double time) {
   return (1 - w) * path.p[i - 1] + w * path.p[i];
 }
 
-// Symmetric about each time, so that nothing is delayed.
+// The differences are symmetric about each time, so they cause no delay.
 Speeds SpeedsOf(const Path& path) {
   Speeds speeds{path.times.front(), 1 / kRate, {}};
   const auto n = static_cast<std::size_t>((path.times.back() - path.times.front()) * kRate) + 1;
@@ -58,7 +58,7 @@ Speeds SpeedsOf(const Path& path) {
   return speeds;
 }
 
-// Means of `n` values each.
+// Returns the means of `n` values each.
 Speeds Coarser(const Speeds& fine, std::size_t n) {
   Speeds coarse{fine.start + fine.step * (static_cast<double>(n) - 1) / 2,
                 fine.step * static_cast<double>(n),
@@ -71,8 +71,9 @@ Speeds Coarser(const Speeds& fine, std::size_t n) {
   return coarse;
 }
 
-// The part of `a` from `begin` to `end`, compared with `b` moved by `lag` steps: value i of `a`
-// meets value i - lag of `b`. Nothing if fewer than `least` values meet, or one of them rests.
+// Compares the part of `a` from `begin` to `end` with `b` shifted by `lag` steps, so that value i
+// of `a` meets value i - lag of `b`. Returns no value if fewer than `least` values meet, or if one
+// of the parts is at rest.
 std::optional<double> Correlation(const Speeds& a, const Speeds& b, std::ptrdiff_t lag,
                                   std::size_t begin, std::size_t end, double least) {
   double n = 0, sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
@@ -98,7 +99,7 @@ struct Fit {
   double lag = 0, correlation = -1;  // lag in steps
 };
 
-// The best lag between `low` and `high`, refined by a parabola.
+// Returns the best lag between `low` and `high`, refined by a parabola.
 std::optional<Fit> BestLag(const Speeds& a, const Speeds& b, std::ptrdiff_t low,
                            std::ptrdiff_t high, std::size_t begin, std::size_t end, double least) {
   std::optional<std::ptrdiff_t> best;
@@ -119,12 +120,12 @@ std::optional<Fit> BestLag(const Speeds& a, const Speeds& b, std::ptrdiff_t low,
   return fit;
 }
 
-// The offset of the grids' starts, in addition to the lag.
+// Returns the offset of the grids' starts plus the lag.
 double OffsetOf(const Speeds& a, const Speeds& b, double lag) {
   return a.start - b.start + lag * a.step;
 }
 
-// Searches all offsets on coarse grids. Throws InputError if none fits, or several.
+// Searches all offsets on coarse grids. Throws InputError if no offset fits, or if several do.
 double SearchAll(const Speeds& fine_a, const Speeds& fine_b, const std::string& what) {
   const auto work = [&](std::size_t n) {
     const std::size_t a = fine_a.values.size() / n;

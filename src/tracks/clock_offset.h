@@ -1,4 +1,4 @@
-// The offset between the clocks of two measurements of the same hand.
+// Estimates the offset between the clocks of two measurements of the same hand.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace predictor::tracks {
 
-// Positions of a point over time; NaN: missing. Times ascend [s].
+// The positions of a point over time, with NaN where they are missing. Times ascend [s].
 struct Path {
   std::span<const double> times;
   std::span<const Vector3> p;  // in any frame that rests [m]
@@ -21,18 +21,18 @@ struct ClockOffset {
   double correlation = 0;  // of the speeds at this offset
 };
 
-// Estimates the offset from the speeds, whose course does not depend on the frames. The normalised
+// Estimates the offset from the speeds, which do not depend on the frames. The normalised
 // cross-correlation of the speeds has its maximum at the offset. The offsets of eight parts of the
 // record give its uncertainty (a jackknife over blocks, because errors of neighbouring samples are
 // not independent).
 //
-// Throws InputError, which begins with `what`, if the records overlap too little, the hand moves
-// too little, the best correlation is below kMinCorrelation, another offset fits nearly as well
-// (kMaxSecond of the best, as a periodic motion has), or the offset changes within the record (a
-// clock that jumps or drifts).
+// Throws InputError, which begins with `what`, in these cases: the records overlap too little, the
+// hand moves too little, the best correlation is below kMinCorrelation, another offset fits nearly
+// as well (kMaxSecond of the best, as for a periodic motion), or the offset changes within the
+// record (because a clock jumps or drifts).
 ClockOffset EstimateOffset(const Path& reference, const Path& track, const std::string& what);
 
-// Design choices.
+// These values are design choices.
 inline constexpr double kMinCorrelation = 0.8;
 inline constexpr double kMaxSecond = 0.9;
 inline constexpr double kMinOverlap = 3;  // [s]

@@ -1,4 +1,4 @@
-// Tables.
+// Reads tables.
 #include <algorithm>
 #include <cctype>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxColumns = 2000;
 
-// "name [unit]".
+// Parses "name [unit]".
 Series HeadOf(std::string_view cell) {
   Series series;
   const std::size_t open = cell.rfind(" [");
@@ -128,7 +128,7 @@ class CsvReader {
     Series& series = file_.series[i];
     const std::optional<double> value = NumberIn(cell);
     if (!value && !words_[i]) {
-      // A column of words has one from its first cell that is not empty.
+      // A column of words contains one from its first cell that is not empty.
       if (std::ranges::any_of(series.values, [](double x) { return x - x == 0; }))
         Fail("Column " + Quote(series.name) + " has " + Quote(cell) + ", which is not a number.");
       words_[i] = true;

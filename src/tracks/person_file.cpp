@@ -104,7 +104,7 @@ class Table {
     return text + "\n";
   }
 
-  // `k`: row.
+  // `k` is the row.
   std::string Row(std::size_t k) {
     const double time = start_ + static_cast<double>(k) / kPersonRate;
     text_ = Formatted("%.2f", static_cast<double>(k) / kPersonRate);
@@ -120,7 +120,7 @@ class Table {
     return text_ + "\n";
   }
 
-  // Number of rows in which a hand was not measured.
+  // Returns the number of rows in which a hand was not measured.
   const std::array<std::size_t, kHands>& missing() const { return missing_; }
 
  private:
@@ -170,7 +170,8 @@ struct Span {
   double begin = -INFINITY, end = INFINITY;
 };
 
-// Where the poses and forces of all hands are measured. Throws InputError if they never are.
+// Returns the time in which the poses and forces of all hands are measured. Throws InputError if
+// there is none.
 Span CommonSpan(const BodyTrack& track) {
   Span span;
   const auto meet = [&](const std::vector<double>& times, const std::string& what) {

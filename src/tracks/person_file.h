@@ -1,6 +1,7 @@
-// Recordings of a person that come from another system: what the hands did, and what of it matters
-// to judge the person. A table with named columns (MapOfColumns) at 100 Hz, and before it comments
-// with a few keys in YAML. They are no recordings of the emulator, because they have no ticks.
+// Recordings of a person that come from another system: what the hands did, and everything else
+// that is needed to judge the person. A recording is a table with named columns (MapOfColumns) at
+// 100 Hz, after comments with a few keys in YAML. It is not a recording of the emulator, because it
+// has no ticks.
 #pragma once
 
 #include <filesystem>
@@ -35,7 +36,7 @@ struct PersonFile {
 
 inline constexpr double kPersonRate = 100;  // rows [Hz]
 
-// A mapping for `predictor import`: that of a track without its file, and the header's keys.
+// A mapping for `predictor import`: that of a track without its file, plus the header's keys.
 struct ImportMap {
   TrackMap channels;
   PersonHeader person;
@@ -44,10 +45,10 @@ struct ImportMap {
 // Throws InputError with file:line:column.
 ImportMap ParseImportMap(const std::string& text, const std::string& name);
 
-// The text of a recording of a person. Throws InputError that names what is missing: a hand, its
-// rotation or force, a time in which all of them are measured. Means of the forces within 10 ms; a
-// pose or force that is missing for more than PartTrack::kMaxGap counts as not holding, and the
-// header says for how long.
+// Returns the text of a recording of a person. Throws InputError that names what is missing: a
+// hand, its rotation or force, or a time in which all of them are measured. Forces are means over
+// 10 ms. If a pose or force is missing for more than PartTrack::kMaxGap, the hand counts as not
+// holding, and the header states for how long.
 std::string ImportPerson(const ImportMap& map, const SeriesFile& file);
 
 bool IsPersonFile(const std::filesystem::path& file);

@@ -1,4 +1,4 @@
-// Bags of ROS 2: files of the two kinds of storage, and their topics.
+// Reads bags of ROS 2: files of the two kinds of storage, and their topics.
 #include <sqlite3.h>
 #include <zstd.h>
 
@@ -18,7 +18,7 @@ using mcap::Parser;
 
 constexpr std::uint64_t kMaxChunk = std::uint64_t{1} << 28U;  // uncompressed [bytes]
 
-// Topics by the number that the storage gives them.
+// The topics by the number that the storage gives them.
 class Topics {
  public:
   Topics(std::string file, MessageTime clock) : file_(std::move(file)), clock_(clock) {}
@@ -77,7 +77,7 @@ class McapBag {
  private:
   [[noreturn]] void Fail(const std::string& sentence) const { throw InputError(file_, sentence); }
 
-  // The file ends with its final magic, or was cut off: complete records are read.
+  // The file may end with its final magic or be cut off. All complete records are read.
   void ReadRecords(std::string_view rest, bool in_chunk) {
     for (Parser parser{rest}; parser.rest.size() >= mcap::kHead;) {
       const auto op = static_cast<Op>(parser.Number<std::uint8_t>());
@@ -193,7 +193,7 @@ class SqliteBag {
   std::unique_ptr<sqlite3, Close> database_;
 };
 
-// The storage file in a bag's folder.
+// Returns the storage file in a bag's folder.
 std::filesystem::path FileIn(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> found;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -214,7 +214,7 @@ SeriesFile ReadRosBag(const std::filesystem::path& given, MessageTime clock) {
     const std::string bytes = ReadBytes(file);
     McapBag(file.string(), &topics).Read(bytes);
   } else {
-    ReadBytes(file);  // its refusals: missing, empty, too large
+    ReadBytes(file);  // throws its errors: missing, empty, too large
     SqliteBag(file.string()).Read(&topics);
   }
   return topics.Finish();

@@ -10,7 +10,7 @@
 #include "core/text.h"
 
 namespace predictor::tracks {
-// Reads untrusted CDR: each number is aligned to its size after the header of four bytes.
+// Reads untrusted CDR. After the header of four bytes, each number is aligned to its size.
 class Cdr {
  public:
   explicit Cdr(std::string_view bytes) {
@@ -42,7 +42,7 @@ class Cdr {
     at_ += n;
     return text;
   }
-  // Number of entries that follow, each of at least `bytes`.
+  // Returns the number of entries that follow, each of at least `bytes`.
   std::size_t Count(std::size_t bytes) {
     const std::size_t n = Number<std::uint32_t>();
     if (!ok_ || n > (rest_.size() - at_) / bytes) ok_ = false;
@@ -76,7 +76,7 @@ const std::vector<Field> kWrench = {{"force.x", "N"},    {"force.y", "N"},    {"
                                     {"torque.x", "N m"}, {"torque.y", "N m"}, {"torque.z", "N m"}};
 const std::vector<Field> kNumber = {{"data", ""}};
 
-// Messages that begin with a sequence of float64: after a header, `prefix` names the group.
+// Messages that begin with a sequence of float64. After a header, `prefix` names the group.
 struct Layout {
   bool stamped;
   std::string prefix;
@@ -115,7 +115,7 @@ std::string ShortType(const std::string& type) {
   return msg == std::string::npos ? type : type.substr(0, msg) + type.substr(msg + 4);
 }
 
-// The stamp of a header [s]; 0 if it was not set. Reads the whole header.
+// Returns the stamp of a header [s], or 0 if it was not set. Reads the whole header.
 double StampOf(Cdr* cdr) {
   const auto seconds = cdr->Number<std::int32_t>();
   const auto nanoseconds = cdr->Number<std::uint32_t>();

@@ -1,4 +1,4 @@
-// Messages of ROS 2 as numbers over time.
+// Converts messages of ROS 2 to numbers over time.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace predictor::tracks {
 
-// Whose clock gives a message its time.
+// The clock that gives a message its time.
 enum class MessageTime {
   kStamp,     // header.stamp, if the message has one
   kReceived,  // when the recorder received it
@@ -21,24 +21,24 @@ enum class MessageTime {
 class Cdr;  // reader of serialised messages
 
 // Collects the messages of one topic as channels TOPIC.FIELD, for example
-// /left/wrench.wrench.force.x. Known are Wrench, Pose, Point, Vector3 and Quaternion of
+// /left/wrench.wrench.force.x. It knows Wrench, Pose, Point, Vector3 and Quaternion of
 // geometry_msgs with and without Stamped, PoseWithCovarianceStamped, TransformStamped, TFMessage
-// (as TOPIC[CHILD FRAME].transform; from its parent, whatever that is), Odometry (its pose),
-// JointState (as TOPIC.position[JOINT]) and Float64 of std_msgs, in CDR of either byte order.
-// Positions have the unit m, forces N, torques N m (REP 103).
+// (as TOPIC[CHILD FRAME].transform, relative to any parent), Odometry (its pose), JointState (as
+// TOPIC.position[JOINT]) and Float64 of std_msgs, in CDR of either byte order. Positions have the
+// unit m, forces N, torques N m (REP 103).
 class RosTopic {
  public:
   RosTopic(std::string topic, const std::string& type);
   static bool IsKnown(const std::string& type);
 
-  // `received` [ns]. Throws InputError if the bytes are no such message.
+  // `received` is in [ns]. Throws InputError if the bytes are not such a message.
   void Add(std::string_view cdr, std::int64_t received, MessageTime clock);
   // Moves the channels to `series`. Throws InputError if the times go back. Messages that repeat
-  // the time of the one before are left out.
+  // the time of their predecessor are omitted.
   void Finish(const std::string& file, std::vector<Series>* series);
 
  private:
-  // `cdr` contains one message, or one transform of a TFMessage, from here on.
+  // From here on, `cdr` contains one message, or one transform of a TFMessage.
   void AddOne(Cdr* cdr, std::int64_t received, MessageTime clock);
   void AddTransforms(Cdr* cdr, std::int64_t received, MessageTime clock);
   void Put(const std::string& field, const char* unit, double value);
@@ -50,8 +50,9 @@ class RosTopic {
   std::vector<RosTopic> frames_;            // of a TFMessage: one for each child frame
 };
 
-// A bag of ROS 2, by its kind: MCAP or SQLite (.db3), or the folder that contains one such file.
-// Topics of other types are left out; their names are in the error about a missing channel.
+// Reads a bag of ROS 2 according to its kind: MCAP or SQLite (.db3), or a folder that contains one
+// such file. Topics of other types are omitted, and the error about a missing channel lists their
+// names.
 SeriesFile ReadRosBag(const std::filesystem::path& file, MessageTime clock);
 
 }  // namespace predictor::tracks

@@ -8,7 +8,7 @@
 
 namespace predictor::tracks {
 
-// Takes one line after another, without their ends (LF or CR LF) and without a byte order mark.
+// Takes one line after another, without its end (LF or CR LF) and without a byte order mark.
 class TextLines {
  public:
   explicit TextLines(std::string_view text);
@@ -21,13 +21,14 @@ class TextLines {
   int number_ = 0;
 };
 
-// Cells between separators, without spaces and quotation marks around them.
+// Returns the cells between separators, without spaces and quotation marks around them.
 std::vector<std::string_view> CellsOf(std::string_view line, char separator);
 
-// NaN for an empty cell and for "nan" in any spelling; nothing if the text is not a number.
+// Returns NaN for an empty cell and for "nan" in any spelling, and no value if the text is not a
+// number.
 std::optional<double> NumberIn(std::string_view cell);
 
-// "file:line", the place for messages.
+// Returns "file:line", the place for messages.
 std::string LineOf(const std::string& file, int line);
 
 }  // namespace predictor::tracks

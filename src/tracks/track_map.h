@@ -1,4 +1,4 @@
-// The mapping from the channels of a foreign file to parts of a person's body.
+// The mapping from the channels of another system's file to parts of a person's body.
 #pragma once
 
 #include <filesystem>
@@ -13,12 +13,12 @@
 
 namespace predictor::tracks {
 
-// Where a part of the body is. Its frame is T as tracked, times the pose `xyz`, `rpy`.
+// Where a part of the body is. Its frame is the tracked frame T, times the pose `xyz`, `rpy`.
 struct PartMap {
   std::vector<std::string> position;  // three channels, or NAME for NAME.x, NAME.y, NAME.z
   std::vector<std::string> markers;   // or points whose mean it is; one missing: all missing
   std::vector<std::string> rotation;  // four channels w, x, y, z, or NAME for NAME.w, ...
-  // Or markers on its sides: x of T from back to front, y from right to left.
+  // Or four sets of markers on its sides: x of T points from back to front, y from right to left.
   std::vector<std::string> front, back, left, right;
   Vector3 xyz = Vector3::Zero(), rpy = Vector3::Zero();
 };
@@ -60,12 +60,12 @@ struct TrackMap {
   std::vector<SeriesMap> series;
 };
 
-// The mapping of a table whose columns are named like the parts: head.p.x [m], head.q.w,
+// Returns the mapping of a table whose columns are named like the parts: head.p.x [m], head.q.w,
 // left_elbow.p.x [m], left_hand.p.x [m], left_hand.force.x [N], left_hand.torque.x [N m],
-// left_hand.holds, ..., in W and in the clock of the recording. All other columns are series.
+// left_hand.holds, ..., in W and in the clock of the recording. All other columns are signals.
 TrackMap MapOfColumns(const SeriesFile& file);
 
-// Throws InputError with file:line:column, and what to write instead.
+// Throws InputError with file:line:column and the text to write instead.
 TrackMap ParseTrackMap(const std::string& text, const std::string& name);
 TrackMap LoadTrackMap(const std::filesystem::path& file);
 // Reports parts that are described incompletely or twice.

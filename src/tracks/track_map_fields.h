@@ -1,4 +1,4 @@
-// Every key of a mapping with its unit, meaning and range.
+// Lists every key of a mapping with its unit, meaning and range.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Markers as text (TRC).
+// Reads markers in text form (TRC).
 #include <cmath>
 
 #include "core/error.h"
@@ -79,7 +79,7 @@ class TrcReader {
     frame_ = *frame;
     times_.push_back(*time);
     for (std::size_t i = 2; i < needed; ++i) {
-      // Missing markers at a line's end may be left out.
+      // Markers that are missing at the end of a line may be omitted.
       const auto value = i < cells.size() ? NumberIn(cells[i]) : NAN;
       if (!value)
         Fail("Marker " + Quote(file_.series[i - 2].name) + " is " + Quote(cells[i]) +
@@ -88,7 +88,7 @@ class TrcReader {
     }
   }
 
-  // Frames have a constant rate, so a clock that jumps is seen.
+  // Frames have a constant rate, so a jump of the clock is noticed.
   void CheckClock(double frame, double time) const {
     const double step = time - times_.back(), expected = (frame - frame_) / rate_;
     if (!(frame > frame_) || !(step > 0))
