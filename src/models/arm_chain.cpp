@@ -31,7 +31,7 @@ bool IsGripper(const UrdfJoint& joint, const UrdfModel& urdf) {
          Contains(joint.name, std::array{"finger", "thumb", "jaw", "knuckle", "gripper"});
 }
 
-// Which joints and links of a robot belong to arms. Indices are those of the model.
+// Determines which joints and links of a robot belong to arms. Indices are those of the model.
 class Arms {
  public:
   explicit Arms(const UrdfModel& urdf)
@@ -57,7 +57,8 @@ class Arms {
   int carriers(int link) const { return at(carriers_, link); }  // number of movable joints
   int above(int link) const { return at(above_, link); }        // joint; −1 at the root
 
-  // The link that most joints of an arm carry; the last of them that is not part of a finger.
+  // Returns the link that most joints of an arm carry: the last of them that is not part of a
+  // finger.
   int EndEffector() const {
     int best = urdf_.root;
     const auto rank = [this](int link) {
@@ -74,7 +75,7 @@ class Arms {
     return list[static_cast<std::size_t>(i)];
   }
 
-  // From the tips to the base, so that all joints after a joint are known.
+  // The loop runs from the tips to the base, so that all joints after a joint are known.
   void MarkGrippers() {
     std::vector<bool> carries_arm(urdf_.links.size(), false);
     for (std::size_t j = urdf_.joints.size(); j-- > 0;) {

@@ -1,4 +1,4 @@
-// Joint limits of a device arm that rendering and the guard apply.
+// The joint limits of a device arm that rendering and the guard apply.
 #pragma once
 
 #include "models/robot.h"

@@ -15,7 +15,7 @@ void CheckLink(const RobotModel& model, const std::string& link, const std::stri
   }
 }
 
-// Units of the joints' positions: "rad", or "rad or m".
+// Returns the units of the joints' positions: "rad", or "rad or m".
 std::string UnitsOf(const RobotModel& model) {
   for (int j = 0; j < model.dof(); ++j)
     if (model.is_prismatic(j)) return kAngleOrLength;

@@ -17,17 +17,17 @@ namespace predictor {
 JointVector PostureOf(const std::vector<double>& posture, const RobotModel& model,
                       const std::string& key);
 
-// For each joint of the cobot, whether it is prismatic. Throws InputError if its model cannot be
-// loaded.
+// Returns for each joint of the cobot whether it is prismatic. Throws InputError if its model
+// cannot be loaded.
 std::vector<bool> PrismaticJoints(const Scenario& scenario);
 
 // Refuses an angle for a prismatic joint and a length for a revolute one, in the list at `key` of
 // the tree from which a scenario was read. Throws InputError at the entry.
 void CheckPostureUnits(const YamlNode& tree, const RobotModel& model, const std::string& key);
 
-// Loads the model of an arm and checks its links and posture. `base`: its pose in the frame in
+// Loads the model of an arm and checks its links and posture. `base` is its pose in the frame in
 // which the model is to compute, which is W for an emulation (Scenario::X_WB) and the rig's frame R
-// for commissioning (BaseSpec::X_RB). `folder`: start of relative paths. Throws InputError at the
+// for commissioning (BaseSpec::X_RB). Relative paths start at `folder`. Throws InputError at the
 // invalid key within `key` ("device.arms.left").
 std::shared_ptr<const RobotModel> LoadArmModel(const ArmSpec& spec, const Pose& base,
                                                const std::filesystem::path& folder,

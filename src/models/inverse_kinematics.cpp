@@ -1,4 +1,4 @@
-// Inverse kinematics by damped least squares with limits and seeded restarts.
+// Solves inverse kinematics by damped least squares with limits and seeded restarts.
 #include <Eigen/Cholesky>
 #include <algorithm>
 
@@ -22,7 +22,7 @@ class Solver {
     still_.setZero(model.dof());
   }
 
-  // Weighted error [m] at q; sets error_ and the kinematics.
+  // Returns the weighted error [m] at q. Sets error_ and the kinematics.
   double Error(const JointVector& q) {
     data_.UpdateKinematics(model_, q, still_);
     error_ = PoseError(goal_, data_.FramePose(model_, frame_));
@@ -35,7 +35,7 @@ class Solver {
     return error_.head<3>().norm() < kTolerance && error_.tail<3>().norm() < kTolerance;
   }
 
-  // Levenberg-Marquardt from q; damping falls after a good step and grows after a bad one.
+  // Runs Levenberg-Marquardt from q. The damping falls after a good step and grows after a bad one.
   bool Descend(JointVector* q, double* best) {
     double damping = 1e-3;
     *best = Error(*q);
@@ -72,8 +72,8 @@ class Solver {
   }
 
  private:
-  // Damped least-squares step within the limits: joints that would exceed a limit are set to it,
-  // and the system is solved again for the other joints.
+  // Takes a damped least-squares step within the limits. Joints that would exceed a limit are set
+  // to it, and the system is solved again for the other joints.
   JointVector Step(const JointVector& q, double damping) {
     data_.UpdateKinematics(model_, q, still_);
     Jacobian J;

@@ -1,4 +1,5 @@
-// Kinematic Hessian, and the gradient of manipulability computed from it (Haviland & Corke 2021).
+// Computes the kinematic Hessian, and from it the gradient of manipulability (Haviland & Corke
+// 2021).
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -37,8 +38,9 @@ void RobotData::ManipulabilityGradient(const RobotModel& model, const FrameId& f
   for (int k = 0; k < n; ++k) A += J.col(k).head<3>() * J.col(k).head<3>().transpose();
   *m = std::sqrt(std::max(0.0, A.determinant()));
   if (*m < 1e-9) return;
-  // dm/dq_i = m Σ_j b_j · H_i,j with b_j the columns of A^-1 J_v. By the triple product the sum
-  // over j ≥ i is w_i · Σ v_j × b_j, and the one over j < i is v_i · Σ b_j × w_j: two sweeps.
+  // dm/dq_i = m Σ_j b_j · H_i,j, where b_j are the columns of A^-1 J_v. By the triple product, the
+  // sum over j ≥ i is w_i · Σ v_j × b_j, and the one over j < i is v_i · Σ b_j × w_j. Two sweeps
+  // compute these sums.
   const Matrix3 A_inverse = A.inverse();
   Vector3 before = Vector3::Zero();
   for (int i = 0; i < n; ++i) {

@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// Reads 32-bit integers from the file at `offset`; zeros beyond its end.
+// Reads 32-bit integers from the file at `offset`, or zeros beyond its end.
 template <std::size_t N>
 std::array<std::uint32_t, N> ReadNumbers(std::ifstream* stream, std::streamoff offset) {
   std::array<std::uint32_t, N> numbers = {};
@@ -19,8 +19,8 @@ std::array<std::uint32_t, N> ReadNumbers(std::ifstream* stream, std::streamoff o
   return numbers;
 }
 
-// True if the file has at least this many bytes. Otherwise its header is not valid (in a text file
-// the same bytes also form a number).
+// Returns whether the file has at least this many bytes. Otherwise its header is not valid, because
+// in a text file the same bytes also form a number.
 bool HasBytes(std::ifstream* stream, std::uint64_t bytes) {
   stream->seekg(0, std::ios::end);
   const std::streamoff end = stream->tellg();
@@ -41,7 +41,7 @@ std::size_t OfMsh(std::ifstream* stream) {
   return std::max(faces, vertices / 3);
 }
 
-// Number of words in a line, not counting the first.
+// Returns the number of words in a line, not counting the first.
 std::size_t CountWords(const std::string& line) {
   std::size_t words = 0;
   for (std::size_t i = 1; i < line.size(); ++i) {

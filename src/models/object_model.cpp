@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-// Poses of the links in O.
+// Returns the poses of the links in O.
 std::vector<Pose> PlaceLinks(const UrdfModel& urdf) {
   std::vector<Pose> X_OL(urdf.links.size());
   for (const UrdfJoint& joint : urdf.joints) {
@@ -27,7 +27,7 @@ std::vector<Pose> PlaceLinks(const UrdfModel& urdf) {
   return X_OL;
 }
 
-// Inertia of a point mass at r about the origin [kg·m²].
+// Returns the inertia of a point mass at r about the origin [kg·m²].
 Matrix3 PointInertia(double mass, const Vector3& r) {
   return mass * (r.squaredNorm() * Matrix3::Identity() - r * r.transpose());
 }
@@ -67,7 +67,7 @@ void CheckMeshSizes(const ObjectModel& object) {
   }
 }
 
-// Principal moments about the centre [kg·m²] for a body of uniform density.
+// Returns the principal moments about the centre [kg·m²] for a body of uniform density.
 Vector3 UniformInertia(const PrimitiveSpec& p) {
   switch (p.shape) {
     case Shape::kBox: {

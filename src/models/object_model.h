@@ -19,9 +19,9 @@ struct ObjectModel {
   std::vector<ModelShape> visuals, collisions;  // X_LG in O
 };
 
-// Limit for all collision meshes of an object together. At start-up the physics engine computes the
-// convex hull of each mesh: in the worst case (every vertex on the hull) this takes 0.7 s for this
-// number of triangles and 4 s for 100 000.
+// The limit for all collision meshes of an object together. At start-up, the physics engine
+// computes the convex hull of each mesh. In the worst case (every vertex on the hull), this takes
+// 0.7 s for this number of triangles and 4 s for 100 000.
 inline constexpr std::size_t kMaxCollisionTriangles = 20000;
 
 // Reads an object's URDF. It has one link, or several that are connected by fixed joints and

@@ -7,8 +7,9 @@
 namespace predictor {
 namespace {
 
-// Writes the same body in another frame, in which its present frame is at (R, p). Steiner's rule
-// with the first moment h: R I Rᵀ − [p][h] − [h][p] − m [p][p], where −[a][b] = (a·b) 1 − b aᵀ.
+// Writes the same body in another frame, in which its present frame is at (R, p). By Steiner's rule
+// with the first moment h, this is R I Rᵀ − [p][h] − [h][p] − m [p][p], where −[a][b] = (a·b) 1 − b
+// aᵀ.
 void Transform(const BodyInertia& body, const Matrix3& R, const Vector3& p, BodyInertia* out) {
   const Vector3 h = R * body.moment;
   out->mass = body.mass;
@@ -18,13 +19,13 @@ void Transform(const BodyInertia& body, const Matrix3& R, const Vector3& p, Body
   out->inertia.diagonal().array() += p.dot(h + out->moment);
 }
 
-// Momentum of a body with twist V; or the wrench that accelerates it from rest.
+// Returns the momentum of a body with twist V, or the wrench that accelerates it from rest.
 inline Spatial Times(const BodyInertia& body, const Spatial& V) {
   return {body.mass * V.linear + V.angular.cross(body.moment),
           body.inertia * V.angular + body.moment.cross(V.linear)};
 }
 
-// Rate of change of a momentum that is constant in a body with twist V.
+// Returns the rate of change of a momentum that is constant in a body with twist V.
 inline Spatial CrossForce(const Spatial& V, const Spatial& momentum) {
   return {V.angular.cross(momentum.linear),
           V.angular.cross(momentum.angular) + V.linear.cross(momentum.linear)};
@@ -55,8 +56,8 @@ void Turn(const EngineJoint& joint, double sine, double cosine, Matrix3* R) {
   R->col(last) = R->col(joint.own_axis).cross(R->col(next));
 }
 
-// Torques C v of Coriolis and centrifugal forces: recursive Newton–Euler without joint acceleration
-// and gravity (table 5.1).
+// Computes the torques C v of Coriolis and centrifugal forces by recursive Newton–Euler without
+// joint acceleration and gravity (table 5.1).
 void ComputeCoriolis(const EngineModel& model, EngineState* state) {
   const JointVector& v = state->v;
   std::array<Spatial, kMaxJoints + 1> V, A, F;
@@ -79,9 +80,9 @@ void ComputeCoriolis(const EngineModel& model, EngineState* state) {
   }
 }
 
-// Mass matrix by composite rigid bodies (table 6.2): a joint's acceleration moves all that it
-// carries, which loads the joints that carry it. Torques of gravity: the weight that each joint
-// carries.
+// Computes the mass matrix by composite rigid bodies (table 6.2): a joint's acceleration moves
+// everything that it carries, which loads the joints that carry it. The torques of gravity follow
+// from the weight that each joint carries.
 void ComputeComposite(const EngineModel& model, double gravity, EngineState* state) {
   state->composite = state->inertia;
   for (std::size_t j = model.joints.size(); j > 0; --j) {

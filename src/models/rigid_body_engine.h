@@ -1,5 +1,5 @@
-// Kinematics and dynamics of a tree of joints. Everything is computed in W, where the results are
-// plain sums along the tree (Featherstone 2008, "Rigid body dynamics algorithms").
+// Computes kinematics and dynamics of a tree of joints. All quantities are in W, where the results
+// are plain sums along the tree (Featherstone 2008, "Rigid body dynamics algorithms").
 #pragma once
 
 #include <array>
@@ -11,7 +11,8 @@
 
 namespace predictor {
 
-// Inertia of a body about the origin of a frame, in its axes. Those of several bodies add up.
+// The inertia of a body about the origin of a frame, in its axes. Inertias of several bodies add
+// up.
 struct BodyInertia {
   double mass = 0;                    // [kg]
   Vector3 moment = Vector3::Zero();   // mass times centre of mass [kg·m]
@@ -25,10 +26,10 @@ struct BodyInertia {
   }
 };
 
-// Of a body with its inertia about its centre of mass, in the same axes.
+// Converts from the inertia of a body about its centre of mass, in the same axes.
 BodyInertia InertiaAboutOrigin(double mass, const Vector3& com, const Matrix3& inertia);
 
-// A movable joint J with the body that it carries. Joints are counted from 1; 0 is the base.
+// A movable joint J with the body that it carries. Joints are counted from 1, and 0 is the base.
 struct EngineJoint {
   std::size_t parent = 0;  // joint that carries it, before it in the list
   Matrix3 R_PJ = Matrix3::Identity();
@@ -43,7 +44,7 @@ struct EngineModel {
   std::vector<EngineJoint> joints;
 };
 
-// Results, and memory for intermediate ones.
+// Results, and memory for intermediate results.
 struct EngineState {
   JointVector v;  // [rad/s]
   std::array<Matrix3, kMaxJoints + 1> R_WJ;
@@ -62,21 +63,21 @@ struct EngineState {
 EngineModel MakeEngineModel(const UrdfModel& urdf, const Pose& X_WB, std::vector<int>* body,
                             std::vector<Pose>* X_JL);
 
-// The state of `model`, with the base in place and all other results zero.
+// Returns the state of `model`, with the base in place and all other results zero.
 EngineState MakeEngineState(const EngineModel& model);
 
-// R_WJ, p_WJ, J_W at q. No allocation.
+// Computes R_WJ, p_WJ and J_W at q without allocation.
 void ComputeKinematics(const EngineModel& model, const JointVector& q, EngineState* state) noexcept;
-// Computes the above, and M and gravity torques at q. gravity [m/s²] acts along −z of W. The model
-// must outlive the next call of Bias. No allocation.
+// Computes the above, and M and gravity torques at q, without allocation. gravity [m/s²] acts along
+// −z of W. The model must outlive the next call of Bias.
 void ComputeDynamics(const EngineModel& model, const JointVector& q, const JointVector& v,
                      double gravity, EngineState* state) noexcept;
-// Bias torques at (q, v) of the last ComputeDynamics [N·m]. Computed when first asked for, because
-// most controllers do without them. No allocation.
+// Returns the bias torques at (q, v) of the last ComputeDynamics [N·m]. They are computed at the
+// first request, because most controllers do not need them. Does not allocate.
 const JointVector& Bias(EngineState* state) noexcept;
 
-// A twist [m/s, rad/s] or a wrench [N, N·m] at W's origin. Its halves are apart because operations
-// on them are faster than on a Vector6 that was just composed of them.
+// A twist [m/s, rad/s] or a wrench [N, N·m] at W's origin. Its halves are separate, because
+// operations on them are faster than on a Vector6 that was just composed of them.
 struct Spatial {
   Vector3 linear, angular;
 
@@ -86,18 +87,18 @@ struct Spatial {
     return {linear + other.linear, angular + other.angular};
   }
   Spatial operator*(double x) const noexcept { return {linear * x, angular * x}; }
-  // Power of a twist and a wrench.
+  // Returns the power of a twist and a wrench.
   double dot(const Spatial& other) const noexcept {
     return linear.dot(other.linear) + angular.dot(other.angular);
   }
 };
 
-// V × S: rate of change of the twist S of an axis that moves with the twist V.
+// Returns V × S, the rate of change of the twist S of an axis that moves with the twist V.
 inline Spatial CrossMotion(const Spatial& V, const Spatial& S) noexcept {
   return {V.angular.cross(S.linear) + V.linear.cross(S.angular), V.angular.cross(S.angular)};
 }
 
-// Twist of W's origin caused by joint k, counted from 0, at a velocity of 1.
+// Returns the twist of W's origin caused by joint k, counted from 0, at a velocity of 1.
 inline Spatial Axis(const EngineState& state, Eigen::Index k) noexcept {
   return {state.J_W.col(k).head<3>(), state.J_W.col(k).tail<3>()};
 }

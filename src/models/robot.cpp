@@ -46,7 +46,7 @@ void CheckJointCount(const UrdfModel& urdf) {
   }
 }
 
-// A point of a body, which only the joints in `support` move.
+// A point of a body. Only the joints in `support` move it.
 struct LinkPoint {
   std::uint32_t support;
   Vector3 p;  // p_WF [m]
@@ -150,9 +150,9 @@ Twist RobotData::FrameTwist(const RobotModel& model, const FrameId& frame) const
 
 FrameMotion RobotData::MotionOf(const RobotModel& model, const FrameId& frame,
                                 const JointVector& a) const {
-  // Sums along the chain with the columns S_k of J_W, in W. Each column is moved by the preceding
-  // joints, so the spatial acceleration gains V × S_k v_k (Featherstone 2008, (2.47)). The result
-  // is then converted to the classical acceleration.
+  // The loop sums along the chain with the columns S_k of J_W, in W. Each column is moved by the
+  // preceding joints, so the spatial acceleration gains V × S_k v_k (Featherstone 2008, (2.47)).
+  // The result is then converted to the classical acceleration.
   const LinkPoint point = At(model, impl_->state, frame);
   const JointVector& v = impl_->state.v;
   Spatial V = Spatial::Zero(), A = V;

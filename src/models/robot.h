@@ -1,7 +1,7 @@
 // Kinematics and dynamics of one arm, from its URDF.
 //
-// RobotModel is constant after loading; RobotData is the writable workspace. After construction
-// only Load, Build, Frame, link_names and KinematicHessian allocate memory.
+// RobotModel is constant after loading, and RobotData is the writable workspace. After
+// construction, only Load, Build, Frame, link_names and KinematicHessian allocate memory.
 #pragma once
 
 #include <filesystem>
@@ -25,8 +25,8 @@ struct RobotSource {
                          // be empty
 };
 
-// A frame that moves with a robot: a link's origin or a point fixed to a link. A plain value made
-// by RobotModel::Frame; any number of frames may be made at any time.
+// A frame that moves with a robot: a link's origin or a point fixed to a link. It is a plain value
+// made by RobotModel::Frame. Any number of frames may be made at any time.
 struct FrameId {
   int body = -1;  // the movable joint that carries it, counted from 1; 0: the base
   Pose X_JF;      // pose in the frame of that joint; in W if fixed to the base
@@ -35,12 +35,12 @@ struct FrameId {
 
 class RobotModel {
  public:
-  // Reads, checks (see models/urdf.h) and builds. The base is fixed. There are 1 to kMaxJoints
-  // revolute, continuous or prismatic joints, ordered depth-first in the file's order. A mimic
-  // joint is treated as an independent joint (see models/urdf.h). Throws InputError that names
-  // file, link or joint and the remedy.
+  // Reads and checks a URDF (see models/urdf.h) and builds the model. The base is fixed. There are
+  // 1 to kMaxJoints revolute, continuous or prismatic joints, ordered depth-first in the file's
+  // order. A mimic joint is treated as an independent joint (see models/urdf.h). Throws InputError
+  // that names file, link or joint and the remedy.
   static std::shared_ptr<const RobotModel> Load(const RobotSource& source);
-  // The same from a URDF that has already been read.
+  // Builds the model from a URDF that has already been read.
   static std::shared_ptr<const RobotModel> Build(const UrdfModel& urdf, const Pose& X_WB);
   ~RobotModel();
 
@@ -56,7 +56,7 @@ class RobotModel {
   double mass() const;                        // mass of all links, including the base [kg]
   std::vector<std::string> link_names() const;
 
-  // Frame fixed to a link at X_LF. Throws InputError that suggests similar link names.
+  // Returns a frame fixed to a link at X_LF. Throws InputError that suggests similar link names.
   FrameId Frame(const std::string& link, const Pose& X_LF = {}) const;
 
   struct Impl;
@@ -74,28 +74,28 @@ class RobotData {
   RobotData(RobotData&&) noexcept;
   RobotData& operator=(RobotData&&) noexcept;
 
-  // Placements and joint Jacobians at (q, v) [rad], [rad/s]. The getters below refer to this state
-  // until the next Update.
+  // Computes placements and joint Jacobians at (q, v) [rad], [rad/s]. The getters below refer to
+  // this state until the next Update.
   void UpdateKinematics(const RobotModel& model, const JointVector& q, const JointVector& v);
   Pose FramePose(const RobotModel& model, const FrameId& frame) const;    // X_WF
   Twist FrameTwist(const RobotModel& model, const FrameId& frame) const;  // V_WF, axes of W
-  // Pose, twist, and acceleration J a + dJ/dt v for joint accelerations a [rad/s²], [m/s²].
+  // Returns pose, twist, and acceleration J a + dJ/dt v for joint accelerations a [rad/s²], [m/s²].
   FrameMotion MotionOf(const RobotModel& model, const FrameId& frame, const JointVector& a) const;
-  // J such that V_WF = J v, axes of W; 6 × dof.
+  // Writes J with V_WF = J v, in the axes of W; 6 × dof.
   void FrameJacobian(const RobotModel& model, const FrameId& frame, Jacobian* J) const;
 
-  // Mass matrix M [kg·m²], bias h = C v + g [N·m] and gravity torques g [N·m] at (q, v). `gravity`
-  // [m/s²] acts along −z of W. Includes UpdateKinematics.
+  // Computes the mass matrix M [kg·m²], bias h = C v + g [N·m] and gravity torques g [N·m] at (q,
+  // v). `gravity` [m/s²] acts along −z of W. Includes UpdateKinematics.
   void UpdateDynamics(const RobotModel& model, const JointVector& q, const JointVector& v,
                       double gravity);
   const JointMatrix& M() const;
   const JointVector& bias() const;
   const JointVector& gravity() const;
 
-  // Gradient with respect to the joints of a frame's translational manipulability m = sqrt(det(J_v
-  // J_vᵀ)), from the kinematic Hessian (Haviland & Corke 2021): dm/dq_i = m tr((J_v J_vᵀ)^-1 H_i
-  // J_vᵀ). Also writes m. At a singularity (m < 1e-9) the gradient is zero. Refers to the last
-  // Update.
+  // Computes the gradient with respect to the joints of a frame's translational manipulability m =
+  // sqrt(det(J_v J_vᵀ)), from the kinematic Hessian (Haviland & Corke 2021): dm/dq_i = m tr((J_v
+  // J_vᵀ)^-1 H_i J_vᵀ). Also writes m. At a singularity (m < 1e-9), the gradient is zero. Refers to
+  // the last Update.
   void ManipulabilityGradient(const RobotModel& model, const FrameId& frame, double* m,
                               JointVector* gradient) const;
 
@@ -105,12 +105,13 @@ class RobotData {
   std::unique_ptr<Impl> impl_;
 };
 
-// Kinematic Hessian H[i] = dJ/dq_i (6 × n each), from a frame's Jacobian in the axes of W.
+// Computes the kinematic Hessian H[i] = dJ/dq_i (6 × n each) from a frame's Jacobian in the axes of
+// W.
 void KinematicHessian(const Jacobian& J, std::vector<Jacobian>* H);
 
-// Joints q within limits that bring frame F to X_WF (damped least squares from `start`, then from
-// `restarts` random starts, the same ones each time). Returns whether the position error is below
-// 1e-6 m and the rotation error below 1e-6 rad. Otherwise q is the best solution found.
+// Finds joints q within limits that bring frame F to X_WF (damped least squares from `start`, then
+// from `restarts` random starts, the same ones each time). Returns whether the position error is
+// below 1e-6 m and the rotation error below 1e-6 rad. Otherwise, q is the best solution found.
 bool SolveInverseKinematics(const RobotModel& model, const FrameId& frame, const Pose& X_WF,
                             const JointVector& start, int restarts, JointVector* q);
 

@@ -1,4 +1,4 @@
-// Members of RobotModel and RobotData.
+// Defines the members of RobotModel and RobotData.
 #pragma once
 
 #include <array>

@@ -13,7 +13,8 @@ namespace {
 
 namespace pin = pinocchio;
 
-// Only the joint types in use: compiling Pinocchio's default collection of 25 takes a minute.
+// Only the joint types in use are listed, because compiling Pinocchio's default collection of 25
+// takes a minute.
 template <typename S, int O>
 struct ArmJoints {
   using Scalar = S;
@@ -37,7 +38,7 @@ InertialParameters InertialParametersOf(const BodyInertia& body) {
   return parameters;
 }
 
-// Without inertia, on which a regressor does not depend.
+// The model has no inertia, because a regressor does not depend on it.
 Model PinocchioModel(const EngineModel& engine, double gravity) {
   Model model;
   for (const EngineJoint& joint : engine.joints) {

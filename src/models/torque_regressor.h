@@ -1,4 +1,4 @@
-// Joint torques of an arm as a linear function of its links' inertial parameters.
+// Computes the joint torques of an arm as a linear function of its links' inertial parameters.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@ namespace predictor {
 
 struct EngineRegressor;
 
-// Inertial parameters of a body, ten of them: mass m [kg], m c [kg·m], and inertia about the body's
+// The ten inertial parameters of a body: mass m [kg], m c [kg·m], and inertia about the body's
 // frame, xx xy yy xz yz zz [kg·m²], all in the axes of that frame.
 using InertialParameters = Eigen::Matrix<double, 10, 1>;
 
@@ -19,12 +19,12 @@ class TorqueRegressor {
   // `model` must outlive this object. gravity [m/s²] acts along −z of W.
   TorqueRegressor(const RobotModel& model, double gravity);
 
-  // Y(q, v, a), dof × 10 dof, of τ = Y π. τ [N·m] moves the arm without friction and with nothing
-  // at its end-effector; π are the parameters of its moving bodies (Atkeson, An & Hollerbach 1986).
-  // Valid until the next call.
+  // Returns Y(q, v, a), dof × 10 dof, of τ = Y π. τ [N·m] moves the arm without friction and with
+  // nothing at its end-effector. π are the parameters of its moving bodies (Atkeson, An &
+  // Hollerbach 1986). The result is valid until the next call.
   const Eigen::MatrixXd& Compute(const JointVector& q, const JointVector& v, const JointVector& a);
 
-  // π of the model. Fixed links are included in the bodies that carry them.
+  // Returns π of the model. Fixed links are included in the bodies that carry them.
   const Eigen::VectorXd& parameters() const { return parameters_; }
 
  private:
@@ -32,8 +32,8 @@ class TorqueRegressor {
   Eigen::VectorXd parameters_;
 };
 
-// Parameters of a body from its mass [kg], centre of mass [m] and inertia about the centre of mass
-// [kg·m²].
+// Returns the parameters of a body from its mass [kg], centre of mass [m] and inertia about the
+// centre of mass [kg·m²].
 InertialParameters InertialParametersOf(double mass, const Vector3& com, const Matrix3& inertia);
 
 }  // namespace predictor

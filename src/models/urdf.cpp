@@ -38,7 +38,7 @@ std::string ReadText(const std::filesystem::path& file) {
   return text;
 }
 
-// Index of each name. Duplicate names are refused.
+// The index of each name. Duplicate names are refused.
 using Names = std::unordered_map<std::string, int>;
 
 std::string UniqueName(const UrdfSource& source, const XmlElement& element, Names* names) {
@@ -98,7 +98,7 @@ void ReadJointNames(const UrdfSource& source, XmlElement* robot, const Names& li
   }
 }
 
-// Requires mass and inertia of everything that moves as one body; otherwise a joint's acceleration
+// Requires mass and inertia of everything that moves as one body. Otherwise a joint's acceleration
 // would be undefined.
 void CheckMovingMasses(const UrdfSource& source, const UrdfModel& model) {
   std::vector<double> mass(model.links.size()), inertia(model.links.size());
@@ -123,7 +123,7 @@ void CheckMovingMasses(const UrdfSource& source, const UrdfModel& model) {
   }
 }
 
-// The XML after processing: with links removed, absolute mesh paths and independent joints.
+// Returns the XML after processing, with links removed, absolute mesh paths and independent joints.
 std::string Print(const tinyxml2::XMLDocument& doc) {
   tinyxml2::XMLPrinter printer;
   doc.Print(&printer);

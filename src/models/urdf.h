@@ -72,19 +72,19 @@ struct UrdfModel {
 // mass, moving links without mass or inertia, inertia that is not positive semidefinite or violates
 // the triangle inequality, zero axes, missing limits, lower ≥ upper, shapes without size, missing
 // mesh files, mesh paths outside the readable folders (scenario/paths.h), and unsupported joint
-// types. `scenario_folder`: folder of the scenario that refers to the URDF; if empty, the URDF's
-// own folder.
+// types. `scenario_folder` is the folder of the scenario that refers to the URDF. If empty, it is
+// the URDF's own folder.
 //
 // A planar joint becomes two prismatic joints and a continuous one (models/urdf_planar.h).
 //
 // A mimic joint becomes an independent joint: it is a degree of freedom and does not follow the
-// other joint. (Grippers have mimic joints, but an arm's end-effector does not move with them. If
-// the fingers do not matter, remove the gripper with remove_links.)
+// other joint. Grippers have mimic joints, but an arm's end-effector does not move with them. If
+// the fingers do not matter, remove the gripper with remove_links.
 UrdfModel ReadUrdf(const std::filesystem::path& file,
                    const std::vector<std::string>& remove_links = {},
                    const std::filesystem::path& scenario_folder = {});
 
-// The same from text. `name` replaces the file name in errors; relative mesh paths start at
+// As above, from text. `name` replaces the file name in errors. Relative mesh paths start at
 // `folder`.
 UrdfModel ParseUrdf(const std::string& text, const std::string& name,
                     const std::filesystem::path& folder,

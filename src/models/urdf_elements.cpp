@@ -26,7 +26,7 @@ double PositiveNumber(const UrdfSource& source, const XmlElement& element, const
   return x;
 }
 
-// The file that a <mesh> or <texture> refers to. Its absolute path replaces the URI.
+// Returns the file that a <mesh> or <texture> refers to. Its absolute path replaces the URI.
 std::filesystem::path ResolveFile(const UrdfSource& source, XmlElement* element,
                                   const std::string& link) {
   const std::string uri = source.Text(*element, "filename");
@@ -87,7 +87,7 @@ void ReadGeometry(const UrdfSource& source, XmlElement* geometry, const std::str
   }
 }
 
-// Colour of a <material>: its own, or that of the robot's material with the same name.
+// Reads the colour of a <material>: its own, or that of the robot's material with the same name.
 void ReadMaterial(const UrdfSource& source, const XmlElement& robot, XmlElement* material,
                   const std::string& link, ModelShape* shape) {
   XmlElement* texture = material->FirstChildElement("texture");
@@ -104,7 +104,7 @@ void ReadMaterial(const UrdfSource& source, const XmlElement& robot, XmlElement*
   if (color != nullptr) shape->color = source.Color(*color, "rgba");
 }
 
-// xx xy xz yy yz zz of <inertia>, as a matrix.
+// Reads xx xy xz yy yz zz of <inertia> as a matrix.
 Matrix3 ReadInertia(const UrdfSource& source, const XmlElement& element) {
   const double xx = source.Number(element, "ixx"), yy = source.Number(element, "iyy"),
                zz = source.Number(element, "izz"), xy = source.Number(element, "ixy", 0),

@@ -15,7 +15,7 @@ std::string Text(const Vector3& v) {
   return FormatNumber(v.x()) + " " + FormatNumber(v.y()) + " " + FormatNumber(v.z());
 }
 
-// Direction of x in the plane.
+// Returns the direction of x in the plane.
 Vector3 InPlane(const Vector3& normal) {
   constexpr double kNearlyNormal = 0.9;
   const Vector3 along = std::abs(normal.x()) < kNearlyNormal ? Vector3::UnitX() : Vector3::UnitY();
@@ -30,7 +30,8 @@ class Splitter {
   void Split() {
     for (const char* ending : {"_x", "_y", "_yaw"}) RefuseTaken("joint", name_ + ending);
     for (const char* ending : {"_x_link", "_y_link"}) RefuseTaken("link", name_ + ending);
-    // Read as a prismatic joint, so that its axis and limits are checked where they are written.
+    // The joint is read as a prismatic one, so that its axis and limits are checked where they are
+    // written.
     joint_->SetAttribute("type", "prismatic");
     UrdfJoint plane;
     plane.name = name_;
@@ -62,7 +63,7 @@ class Splitter {
       robot_->InsertFirstChild(added);
   }
 
-  // A prismatic joint from `parent` to the new link NAME<ending>_link.
+  // Adds a prismatic joint from `parent` to the new link NAME<ending>_link.
   void AddSlide(const std::string& ending, const std::string& parent, const Vector3& axis,
                 bool at_origin) {
     tinyxml2::XMLDocument* doc = joint_->GetDocument();
@@ -86,7 +87,7 @@ class Splitter {
     InsertBefore(slide);
   }
 
-  // What remains of the planar joint.
+  // Adds the rest of the planar joint.
   void TurnAbout(const Vector3& normal) {
     joint_->SetAttribute("name", (name_ + "_yaw").c_str());
     joint_->SetAttribute("type", "continuous");

@@ -10,7 +10,7 @@ namespace {
 
 using Indices = std::vector<int>;
 
-// For each link, the joint above it; −1 for a root. Refuses a link with two parents.
+// Returns for each link the joint above it, or −1 for a root. Refuses a link with two parents.
 Indices JointsAbove(const UrdfSource& source, const UrdfModel& model) {
   Indices above(model.links.size(), -1);
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
@@ -48,7 +48,7 @@ Indices JointsAbove(const UrdfSource& source, const UrdfModel& model) {
           ". Delete one of the joints between them.");
 }
 
-// The joints below `root`, depth-first; the joints of each link are in the file's order.
+// Returns the joints below `root`, depth-first. The joints of each link are in the file's order.
 Indices DepthFirst(const UrdfModel& model, int root) {
   std::vector<Indices> below(model.links.size());
   for (std::size_t j = model.joints.size(); j-- > 0;) {
@@ -74,7 +74,7 @@ std::vector<T> Pick(const std::vector<T>& from, const Indices& order) {
   return picked;
 }
 
-// Index of the link named in entry `entry` of the list of links to remove.
+// Returns the index of the link named in entry `entry` of the list of links to remove.
 std::size_t FindLink(const UrdfModel& model, const std::string& name, std::size_t entry) {
   const std::string key = "remove_links." + std::to_string(entry);
   const auto found = std::find_if(model.links.begin(), model.links.end(),

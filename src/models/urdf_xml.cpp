@@ -20,8 +20,8 @@ constexpr int kMaxAttributes = 100;  // maximum number of attributes per element
   throw InputError(name + ":" + std::to_string(line), sentence);
 }
 
-// End of the tag that begins at `at`. Refuses a tag with an absurd number of attributes, because
-// the parser compares each attribute with all previous ones.
+// Returns the end of the tag that begins at `at`. Refuses a tag with an absurd number of
+// attributes, because the parser compares each attribute with all previous ones.
 std::size_t EndOfTag(const std::string& text, std::size_t at, const std::string& name) {
   int attributes = 0;
   char quote = 0;
@@ -92,7 +92,7 @@ std::string Of(const XmlElement& element, const char* attribute) {
   return std::string(attribute) + " of <" + element.Name() + ">";
 }
 
-// `count` finite numbers.
+// Reads `count` finite numbers.
 std::vector<double> Numbers(const UrdfSource& source, const XmlElement& element,
                             const char* attribute, std::size_t count,
                             double largest = UrdfSource::kLargest) {

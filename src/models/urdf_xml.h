@@ -15,30 +15,30 @@ namespace predictor {
 
 using XmlElement = tinyxml2::XMLElement;
 
-// Origin of a URDF, for messages and for the meshes it refers to.
+// The origin of a URDF, for messages and for the meshes it refers to.
 struct UrdfSource {
   std::string name;
   std::filesystem::path folder;
-  // Meshes must be in a place that this scenario may read; if empty, `folder` is used.
+  // Meshes must be in a place that this scenario may read. If it is empty, `folder` is used.
   std::filesystem::path scenario_folder = {};
 
   std::string Place(const tinyxml2::XMLNode& at) const;  // "file:line"
   [[noreturn]] void Fail(const tinyxml2::XMLNode& at, const std::string& sentence) const;
 
-  // Value of an attribute. Throws if it is missing or empty.
+  // Returns the value of an attribute. Throws if it is missing or empty.
   std::string Text(const XmlElement& element, const char* attribute) const;
-  // A finite number of at most kLargest. Returns `missing` if the attribute is missing; throws if
-  // `missing` is NaN.
+  // Returns a finite number of at most kLargest. If the attribute is missing, returns `missing`, or
+  // throws if `missing` is NaN.
   double Number(const XmlElement& element, const char* attribute, double missing = kNone,
                 double largest = kLargest) const;
-  // Three or four such numbers.
+  // Reads three or four such numbers.
   Vector3 Triple(const XmlElement& element, const char* attribute, const Vector3& missing) const;
   std::array<double, 4> Color(const XmlElement& element, const char* attribute) const;
-  // Pose of the child <origin>, or identity without one.
+  // Returns the pose of the child <origin>, or the identity without one.
   Pose Origin(const XmlElement& element) const;
-  // The only child of this name, or nullptr. Throws if there are several.
+  // Returns the only child of this name, or nullptr. Throws if there are several.
   const XmlElement* Child(const XmlElement& element, const char* name) const;
-  // The same, but throws if there is none.
+  // As above, but throws if there is none.
   const XmlElement& Required(const XmlElement& element, const char* name) const;
 
   static constexpr double kLargest = 1e6;  // larger than any length, mass, ... of a robot, in SI

@@ -1,5 +1,5 @@
-// Common Data Representation as written by ROS 2 (little-endian, each value aligned to its size),
-// based on core/tick_fields.h.
+// Common Data Representation as ROS 2 writes it (little-endian, with each value aligned to its
+// size), based on core/tick_fields.h.
 #pragma once
 
 #include <array>
@@ -16,10 +16,11 @@ namespace predictor::recording {
 
 static_assert(std::endian::native == std::endian::little);
 inline constexpr std::size_t kCdrHead = 4;  // marks little-endian data
-// Upper bound of a tick's messages: each value costs at most its alignment in addition to its size.
+// The upper bound of a tick's messages. Each value costs at most its alignment in addition to its
+// size.
 inline constexpr std::size_t kLongestTickMessage = 2 * sizeof(TickRecord) + 64;
 
-// Bitwise: −0 differs from 0, and a NaN equals itself.
+// Compares bitwise, so −0 differs from 0, and a NaN equals itself.
 template <class T>
 bool SameBits(const T& a, const T& b) {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -57,7 +58,7 @@ class CdrWriter {
     for (const auto& value : x) Put(value);
   }
   void Named(const TickField& f, const auto&, const auto& x) { Values(f, x); }
-  // Writes as many values as there are joints; more if later values are not zero.
+  // Writes as many values as there are joints, or more if later values are not zero.
   template <std::size_t N>
   void Joints(const TickField&, const std::array<double, N>& x, std::uint8_t dof) {
     std::size_t n = N;
@@ -73,7 +74,7 @@ class CdrWriter {
   void Wrench(const TickField& f, const std::array<double, 6>& x) { Values(f, x); }
   void Reserved(const auto&) {}
   void Message(const TickField&, const char*, auto&& visit) { visit(*this); }
-  // Writes as many inputs as were used; more if a later one is not in its initial state.
+  // Writes as many inputs as were used, or more if a later one is not in its initial state.
   void Inputs(const TickField&, const char*, const auto& list, std::uint8_t count, auto&& visit) {
     const RunInput none;
     std::size_t n = list.size();

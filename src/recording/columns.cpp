@@ -134,7 +134,7 @@ bool Matches(std::string_view name, std::string_view pattern) {
          Matches(name.substr(1), pattern.substr(1));
 }
 
-// True if the pattern is this name, a matching pattern, or the name of a group.
+// Returns whether the pattern is this name, a matching pattern, or the name of a group.
 bool IsMeant(const std::string& name, const std::string& pattern) {
   if (Matches(name, pattern)) return true;
   return name.starts_with(pattern) && name.size() > pattern.size() &&

@@ -1,5 +1,5 @@
-// The numbers of a record by name, for tables and for naming the quantity in which two records
-// differ.
+// The numbers of a record by name. Tables use them, and so does the message that names the quantity
+// in which two records differ.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@ struct Column {
   std::string (*text)(const std::byte* number) = nullptr;
   bool of_clock = false;  // measured by the computer's clock, so a replay does not reproduce it
   bool of_input = false;  // part of an input of a person or page
-  // Numbers (of type uint8) in the record that must exceed a value, because hands and joints may be
-  // absent.
+  // These numbers (of type uint8) in the record must exceed a value, because hands and joints may
+  // be absent.
   struct Condition {
     std::size_t offset, above;
   };
@@ -35,18 +35,18 @@ struct Column {
   }
 };
 
-// All numbers of a record, in the order of its messages (core/tick_fields.h).
+// Returns all numbers of a record in the order of its messages (core/tick_fields.h).
 const std::vector<Column>& AllColumns();
 
-// Columns that exist in `record`, without absent hands and joints. Columns of inputs are optional:
-// they outnumber all others and are empty in most ticks.
+// Returns the columns that exist in `record`, without absent hands and joints. Columns of inputs
+// are optional, because they outnumber all others and are empty in most ticks.
 enum class InputColumns { kLeftOut, kIncluded };
 std::vector<Column> ColumnsOf(const TickRecord& record,
                               InputColumns inputs = InputColumns::kLeftOut);
 
-// Columns whose names match one of the patterns. `*` matches any text; the name of a group, such as
-// "hands.left", selects the whole group. If a pattern matches nothing, throws InputError with the
-// most similar name.
+// Returns the columns whose names match one of the patterns. `*` matches any text, and the name of
+// a group, such as "hands.left", selects the whole group. If a pattern matches nothing, throws
+// InputError with the most similar name.
 std::vector<Column> Select(const std::vector<Column>& columns,
                            const std::vector<std::string>& patterns);
 

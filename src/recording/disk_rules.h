@@ -1,4 +1,5 @@
-// How a recording uses its disk: when it warns, when it ends, and how often it synchronises.
+// Determines how a recording uses its disk: when it warns, when it ends, and how often it
+// synchronises.
 #pragma once
 
 #include <chrono>
@@ -11,10 +12,11 @@ namespace predictor {
 struct DiskRules {
   std::uint64_t warn_below = 10'000'000'000;  // free space below which a warning is given [bytes]
   std::uint64_t end_below = 1'000'000'000;    // space below which the recording is closed [bytes]
-  // Interval of synchronisation; half a second and the duration of the synchronisation are added.
+  // The interval of synchronisation, to which half a second and the duration of the synchronisation
+  // are added.
   std::chrono::milliseconds sync_period{2000};
-  // Receives sentences for the user: little space is left, or the recording has ended. Called by a
-  // thread of the recorder.
+  // Receives sentences for the user: little space is left, or the recording has ended. A thread of
+  // the recorder calls it.
   std::function<void(const std::string&)> notify;
 };
 
@@ -27,7 +29,7 @@ class DiskWatch {
  public:
   explicit DiskWatch(const DiskRules& rules) : rules_(rules) {}
 
-  // Returns why the recording must end, or "". Warns once.
+  // Returns the reason why the recording must end, or "". Warns once.
   std::string Look(const McapFile& file);
   std::uint64_t free_bytes() const { return free_; }  // free space at the last check
 

@@ -14,7 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// True if nothing was written to it: a hand that is absent or was never filled in.
+// Returns whether nothing was written to the record, because the hand is absent or was never filled
+// in.
 bool IsZero(const HandRecord& hand) {
   static const HandRecord kNone = [] {
     HandRecord none;
@@ -32,7 +33,7 @@ bool HasInputs(const TickRecord& record) {
   return false;
 }
 
-// Levels of Foxglove's log: information, warning, error.
+// Returns a level of Foxglove's log: information, warning or error.
 int LevelOf(std::string_view kind) {
   if (kind == "stop") return 4;
   return kind == "loss" || kind == "omitted" ? 3 : 2;
@@ -81,8 +82,8 @@ Encoder::Encoder(const RecordingHeader& header, std::vector<JsonChannel> scene)
       person_channel_ = static_cast<std::uint16_t>(kFirstJsonChannel + i);
 }
 
-// Uses the clock if the record contains it, otherwise (in virtual time) the tick. The time never
-// decreases.
+// Uses the clock if the record contains it, and otherwise (in virtual time) the tick. The time
+// never decreases.
 std::uint64_t Encoder::TimeOf(const TickRecord& record) {
   std::uint64_t since = 0;
   if (record.wall_ns == 0) {
@@ -135,7 +136,7 @@ void Encoder::AddScene(const TickRecord& record, std::uint64_t time) {
   }
 }
 
-// Its time is that of its tick, whose messages have been added before.
+// The state has the time of its tick, whose messages were added before.
 void Encoder::AddPerson(const PersonState& state) {
   if (person_channel_ == 0) return;
   std::uint64_t time = now_ns_;

@@ -38,10 +38,10 @@ class Encoder {
   // Throws std::invalid_argument if the data exceed kLargestSnapshot.
   void AddSnapshot(std::uint64_t tick, std::span<const std::byte> data);
   void AddEvent(const RecordingEvent& event);  // sets the event's time
-  // Adds a state of the person if the recording has their topic.
+  // Adds a state of the person if the recording has a topic for them.
   void AddPerson(const PersonState& state);
 
-  // True if a chunk should be taken.
+  // Returns whether a chunk should be taken.
   bool Due() const;
   bool empty() const { return chunk_.empty(); }
   Chunk Take() { return chunk_.Finish(); }

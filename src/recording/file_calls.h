@@ -1,4 +1,4 @@
-// The system calls that write a recording; tests can make them fail.
+// The system calls that write a recording. Tests can make them fail.
 #pragma once
 
 #include <sys/types.h>
@@ -22,7 +22,7 @@ class FileCalls {
   virtual int Close(int fd);
   // Syncs the folder of the file, so that the file's name is durable.
   virtual int SyncFolder(const std::string& path);
-  // Free bytes on the file's device; ~0 if unknown.
+  // Returns the free bytes on the file's device, or ~0 if they are unknown.
   virtual std::uint64_t FreeBytes(int fd);
 };
 

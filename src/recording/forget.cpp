@@ -37,7 +37,7 @@ bool IsMcap(const InputFile& file) {
   return file.size() >= n && file.Read(0, n) == mcap::kMagic;
 }
 
-// The name of the compression of the chunk at `at`; empty: none.
+// Returns the name of the compression of the chunk at `at`, or "" if it is not compressed.
 std::string CompressionAt(const InputFile& file, std::uint64_t at, std::uint64_t length) {
   const std::string head = file.Read(at + mcap::kHead, std::min<std::uint64_t>(length, 64));
   mcap::Parser from{head};
@@ -45,7 +45,8 @@ std::string CompressionAt(const InputFile& file, std::uint64_t at, std::uint64_t
   return std::string(from.String());
 }
 
-// Whether a compressed chunk has the text. Throws InputError if one cannot be read.
+// Returns whether a compressed chunk contains the text. Throws InputError if a chunk cannot be
+// read.
 bool HasInChunks(const InputFile& file, const std::string& text) {
   for (std::uint64_t at = mcap::kMagic.size();;) {
     const auto head = ReadHead(file, at);
@@ -60,7 +61,7 @@ bool HasInChunks(const InputFile& file, const std::string& text) {
   }
 }
 
-// What compressed the file; null: nothing known.
+// Returns the program that compressed the file, or null if it is not known.
 const char* ArchiveKind(const InputFile& file) {
   using namespace std::string_view_literals;
   static constexpr std::array<std::pair<std::string_view, const char*>, 8> kMagics = {
@@ -80,20 +81,21 @@ const char* ArchiveKind(const InputFile& file) {
   return nullptr;
 }
 
-// The time at which the run of a recording started [ns]; copies of the recording have the same.
+// Returns the time at which the run of a recording started [ns]. Copies of the recording have the
+// same time.
 std::optional<std::int64_t> StartOf(const InputFile& file) {
   try {
     const std::int64_t start = ReadOpening(file).header.start_unix_ns;
     if (start != 0) return start;
   } catch (const InputError&) {
-    // A file of another program.
+    // This is a file of another program.
   }
   return {};
 }
 
 // ---- the search -------------------------------------------------------------------------------
 
-// "run.mcap" -> "run", "lift.person.csv" -> "lift". Empty for other files.
+// Maps "run.mcap" to "run" and "lift.person.csv" to "lift". Returns "" for other files.
 std::string StemOfRun(const fs::path& file) {
   const std::string name = file.filename().string();
   for (const std::string ending : {".mcap", ".person.csv"})
@@ -102,7 +104,7 @@ std::string StemOfRun(const fs::path& file) {
   return "";
 }
 
-// Whether the program gives this name to what it makes from the run STEM, if none is chosen.
+// Returns whether the program gives this name by default to files that it makes from the run STEM.
 bool IsMadeFrom(const std::string& stem, const fs::path& file) {
   const std::string name = file.filename().string();
   if (!name.starts_with(stem + ".") || name.ends_with(".survey.json")) return false;
@@ -191,14 +193,14 @@ class Search {
   }
 
   void AddCopies() {
-    // A recording that was found by its name was not opened.
+    // A recording that was found by its name has not been opened yet.
     for (const PersonalFile& found : std::vector(result_.found))
       if (found.path.extension() == ".mcap" && fs::is_regular_file(fs::symlink_status(found.path)))
         try {
           if (const auto start = StartOf(InputFile(found.path.string())))
             starts_[*start] = found.path.filename().string();
         } catch (const InputError&) {
-          // It is deleted anyway.
+          // The file is deleted in any case.
         }
     for (const auto& [path, start] : recordings_)
       if (const auto of = starts_.find(start); of != starts_.end() && !IsFound(path))

@@ -1,4 +1,4 @@
-// The content of a recording apart from its ticks.
+// The contents of a recording apart from its ticks.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ struct RecordingHeader {
 struct JsonChannel {
   std::string topic, schema_name;
   std::string schema;  // JSON Schema
-  // Empty: the messages do not follow from ticks.
+  // If this is empty, the messages do not follow from ticks.
   std::function<std::string(const TickRecord& record, std::uint64_t unix_ns)> message;
 };
 
@@ -50,9 +50,9 @@ JsonChannel PersonChannel();
 struct RecordingEvent {
   std::uint64_t tick = 0;  // the newest tick when the event was recorded
   std::uint64_t unix_ns = 0;
-  // "event"; "marker": set by a person; "loss": ticks before `tick` are missing. Derived from the
-  // ticks: "state", "stop", "reset", "parameter", "hazard", and "omitted" (number of events above
-  // the limit).
+  // "event"; "marker": a person set it; "loss": ticks before `tick` are missing. These are derived
+  // from the ticks: "state", "stop", "reset", "parameter", "hazard", and "omitted" (number of
+  // events above the limit).
   std::string kind;
   std::string text;
   std::uint64_t lost = 0;  // number of lost ticks

@@ -1,4 +1,4 @@
-// Reads untrusted files: records, chunks, messages, ticks. Allocates no memory for data that the
+// Reads untrusted files: records, chunks, messages, ticks. It allocates no memory for data that the
 // file does not contain, and never more than fixed limits.
 #pragma once
 
@@ -37,21 +37,22 @@ class InputFile {
   std::uint64_t size_ = 0;
 };
 
-// The header of the record at `offset` if it is plausible: opcode and length fit into the file.
+// The header of the record at `offset`. It is plausible if opcode and length fit into the file.
 struct RecordHead {
   mcap::Op op = {};
   std::uint64_t length = 0;  // length of the content
 };
 std::optional<RecordHead> ReadHead(const InputFile& file, std::uint64_t offset);
 
-// Finds the possible starts of records in order; reads each byte only once.
+// Finds the possible starts of records in order. It reads each byte only once.
 class MarkFinder {
  public:
-  // Finds records `op` that have `mark` at `mark_at` bytes after their start, before `farthest`.
+  // Searches for records `op` that have `mark` at `mark_at` bytes after their start, before
+  // `farthest`.
   MarkFinder(const InputFile& file, std::string mark, std::uint64_t mark_at, mcap::Op op,
              std::uint64_t farthest = ~std::uint64_t{0});
 
-  // The next start at `from` or later; end() if there are no more.
+  // Returns the next start at `from` or later, or end() if there are no more.
   std::uint64_t Next(std::uint64_t from);
   std::uint64_t end() const { return end_; }
 
@@ -67,12 +68,12 @@ class MarkFinder {
   std::string bytes_;
 };
 
-// The index of the chunk at `offset`, as far as the chunk itself contains it (no message indexes).
-// Empty if there is no complete chunk of our format.
+// Returns the index of the chunk at `offset`, as far as the chunk itself contains it (no message
+// indexes). Returns no value if there is no complete chunk of our format.
 std::optional<mcap::ChunkIndex> ChunkAt(const InputFile& file, std::uint64_t offset);
 
-// A chunk's messages, uncompressed. Throws InputError that names the chunk and its offset if it
-// does not match the index or its CRC is wrong.
+// Returns a chunk's messages, uncompressed. Throws InputError that names the chunk and its offset
+// if it does not match the index or its CRC is wrong.
 std::string ReadChunk(const InputFile& file, const mcap::ChunkIndex& index);
 
 struct Message {

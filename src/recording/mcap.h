@@ -1,4 +1,5 @@
-// The container format MCAP: its records as bytes. https://mcap.dev/spec describes their content.
+// The container format MCAP, with its records as bytes. https://mcap.dev/spec describes their
+// contents.
 #pragma once
 
 #include <cstdint>
@@ -34,10 +35,10 @@ enum class Op : std::uint8_t {
 
 using Map = std::map<std::string, std::string>;
 
-// CRC of `bytes`, continued from the CRC of the preceding data.
+// Returns the CRC of `bytes`, continued from the CRC of the preceding data.
 std::uint32_t Crc(std::string_view bytes, std::uint32_t before = 0);
 
-// Bytes under construction.
+// Builds a sequence of bytes.
 class Bytes {
  public:
   template <class T>
@@ -94,7 +95,7 @@ struct Parser {
   std::map<std::uint16_t, std::uint64_t> Offsets();
 };
 
-// Offset and content of a chunk.
+// The offset and the contents of a chunk.
 struct ChunkIndex {
   std::uint64_t start_time = 0, end_time = 0;      // times of its messages [ns]
   std::uint64_t offset = 0, length = 0;            // position of the chunk's record in the file

@@ -45,8 +45,8 @@ bool McapFile::Fail(const char* what) {
   return false;
 }
 
-// If the file system cannot reserve space, the file is written anyway. There may then be no space
-// for the end of the file.
+// If the file system cannot reserve space, the file is written nevertheless. There may then be no
+// space for the end of the file.
 bool McapFile::Reserve(std::uint64_t bytes) {
   const std::uint64_t size = size_.load();
   if (!can_reserve_ || size + bytes <= reserved_) return true;
@@ -126,7 +126,7 @@ std::string McapFile::Statistics() const {
   return mcap::Record(mcap::Op::kStatistics, content.text);
 }
 
-// Data end, summary, summary offsets, footer, magic.
+// The ending consists of data end, summary, summary offsets, footer and magic.
 std::string McapFile::Ending() const {
   mcap::Bytes end;
   end.text = mcap::Record(mcap::Op::kDataEnd, mcap::Bytes().U32(crc_).text);

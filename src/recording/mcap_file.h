@@ -1,4 +1,4 @@
-// A recording on the disk: the preamble, the chunks, and the index after them.
+// Writes a recording to the disk: the preamble, the chunks, and the index after them.
 #pragma once
 
 #include <atomic>
@@ -24,8 +24,8 @@ struct Preamble {
   mcap::Attachment copy;  // written after the first chunk, in case the start of the file is damaged
 };
 
-// Space for the index is reserved before each chunk is written. Therefore the file is completed
-// even on a full disk. Not thread-safe, except for Sync.
+// Reserves space for the index before it writes each chunk, so that the file is completed even on a
+// full disk. Only Sync is thread-safe.
 class McapFile {
  public:
   // Throws InputError if the file exists or cannot be created. `calls` is borrowed.
@@ -34,15 +34,15 @@ class McapFile {
   McapFile(const McapFile&) = delete;
   McapFile& operator=(const McapFile&) = delete;
 
-  // Returns false on failure: the file is then as before, and error() gives the reason.
+  // Returns false if it fails. The file is then as before, and error() gives the reason.
   bool Put(Chunk chunk);
-  // Writes index and footer; nothing can be added afterwards. Returns false on failure; the chunks
-  // can still be read.
+  // Writes index and footer. Nothing can be added afterwards. Returns false if that fails, but the
+  // chunks can still be read.
   bool End();
   // Ends the file early. Returns the outcome of the recording as sentences for the user.
   std::string EndBecause(const std::string& why);
-  // Makes the written data durable in case of a loss of power. May be called from any thread while
-  // the file is open.
+  // Makes the written data durable in case of a loss of power. Any thread may call this while the
+  // file is open.
   bool Sync();
   std::uint64_t FreeBytes() const { return calls_->FreeBytes(fd_); }
 

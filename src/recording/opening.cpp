@@ -48,11 +48,12 @@ std::optional<RunRecord> RunAt(const InputFile& file, std::uint64_t at) {
   return run;
 }
 
-// The start of an attachment with this name, up to its data.
+// Returns the start of an attachment with this name, up to its data.
 std::string CopyHead() { return mcap::Bytes().String(kCopy).String(kBytes).text; }
 constexpr std::uint64_t kCopyNameAt = mcap::kHead + 8 + 8;  // position in the attachment's record
 
-// Start of the data of the copy whose run metadata are intact; empty if there is none.
+// Returns the start of the data of the copy whose run metadata are intact, or no value if there is
+// none.
 std::optional<std::uint64_t> FindCopy(const InputFile& file) {
   constexpr std::uint64_t kFarthest = kLargestPreamble + 2 * kLargestChunk;
   constexpr int kMaxTries = 16;  // limit, because a hostile file may contain many
@@ -66,7 +67,7 @@ std::optional<std::uint64_t> FindCopy(const InputFile& file) {
   return {};
 }
 
-// Describes the consequence of a lost part for the user.
+// Describes for the user what the loss of a part means.
 std::string Consequence(const std::string& name) {
   if (name == kScenarioFile)
     return "without it, the run cannot be shown, recomputed, reported or used to identify "
@@ -315,9 +316,9 @@ class OpeningReader {
 
   const InputFile& file_;
   Opening opening_;
-  // Position after the run's metadata, in the original and in the copy.
+  // The position after the run's metadata, in the original and in the copy.
   std::uint64_t start_ = 0, copy_start_ = 0;
-  // Start of the copy's data, once it has been searched for.
+  // The start of the copy's data, once it has been searched for.
   std::optional<std::optional<std::uint64_t>> copy_;
   std::size_t records_ = 0;
   std::map<std::uint16_t, std::pair<std::string, std::string>> schemas_;  // name, text

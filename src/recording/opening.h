@@ -21,7 +21,7 @@ struct Opening {
 // places.
 Opening ReadOpening(const InputFile& file);
 
-// True for complete data between chunks: an index of messages, or the copy.
+// Returns true for complete data between chunks: an index of messages, or the copy.
 bool IsBetweenChunks(const InputFile& file, std::uint64_t offset, const RecordHead& head);
 
 }  // namespace predictor::recording

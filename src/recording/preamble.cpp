@@ -61,7 +61,7 @@ class PreambleBuilder {
   static std::string MetadataRecord(const std::string& name, const mcap::Map& map) {
     return mcap::Record(mcap::Op::kMetadata, mcap::Bytes().String(name).Strings(map).text);
   }
-  // One line per part: its length, its CRC, whether it is copied, and its name.
+  // Returns one line per part: its length, its CRC, whether it is copied, and its name.
   std::string Contents() {
     std::string lines;
     std::uint64_t copied = 0;

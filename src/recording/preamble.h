@@ -14,8 +14,8 @@ namespace predictor::recording {
 
 inline constexpr const char* kFormat = "2";  // version of the metadata and the preamble
 
-// Channel ID of a group; the IDs after the groups are for snapshots, events, and JSON-encoded
-// events.
+// Returns the channel ID of a group. The IDs after the groups are for snapshots, events, and events
+// in JSON.
 constexpr std::uint16_t ChannelOf(TickGroup group) {
   return static_cast<std::uint16_t>(static_cast<int>(group) + 1);
 }
@@ -23,11 +23,11 @@ inline constexpr std::uint16_t kSnapshotChannel = kTickGroupCount + 1;
 inline constexpr std::uint16_t kEventChannel = kTickGroupCount + 2;
 inline constexpr std::uint16_t kFirstJsonChannel = kTickGroupCount + 3;
 
-// Names of the metadata and attachments, and of the parts of the preamble that contain them.
+// The names of the metadata and attachments, and of the parts of the preamble that contain them.
 inline constexpr const char* kRunMetadata = "predictor.run";
 inline constexpr const char* kLabelMetadata = "predictor.labels";
 inline constexpr const char* kModelMetadata = "predictor.models";
-// Parts that were lost to damage before the recording was repaired.
+// The parts that were lost to damage before the recording was repaired.
 inline constexpr const char* kLostMetadata = "predictor.lost";
 inline constexpr const char* kScenarioFile = "scenario.yaml";
 inline constexpr const char* kMachineFile = "machine.yaml";
@@ -35,12 +35,12 @@ inline constexpr const char* kTopics = "topics";  // the part with the schemas a
 inline constexpr const char* kCopy = "predictor.copy";
 inline constexpr const char* kBytes = "application/octet-stream";
 
-// Entries in the run's metadata: the list of the parts that follow it, and the CRC of the metadata
-// itself.
+// The entries in the run's metadata: the list of the parts that follow it, and the CRC of the
+// metadata itself.
 inline constexpr const char* kContents = "contents";
 inline constexpr const char* kLayout = "layout";
 inline constexpr const char* kCrc = "crc32";
-// Entry for the predicted haptic loop, if available.
+// The entry for the predicted haptic loop, if available.
 inline constexpr const char* kLead = "lead_s";
 inline constexpr const char* kMargin = "stability_margin";
 
@@ -49,16 +49,17 @@ inline constexpr std::uint64_t kLargestCopied = 256U << 10U;  // maximum per par
 inline constexpr std::uint64_t kLargestCopy = 8U << 20U;      // [bytes]
 inline constexpr std::uint64_t kLargestRun = 2U << 20U;       // the run's metadata [bytes]
 
-// The first bytes of the file, which are always the same.
+// Returns the first bytes of the file, which are always the same.
 const std::string& Beginning();
 
-// CRC of all entries except the CRC entry itself.
+// Returns the CRC of all entries except the CRC entry itself.
 std::string CrcOfRun(mcap::Map run);
 
-// CRC of the layout of a tick's bytes, so that ticks can be read even if their schemas are lost.
+// Returns the CRC of the layout of a tick's bytes, with which ticks can be read even if their
+// schemas are lost.
 std::string LayoutCrc();
 
-// The preamble's bytes, its index entries, and the parts that are rewritten.
+// Returns the preamble's bytes, its index entries, and the parts that are written again.
 Preamble MakePreamble(const RecordingHeader& header, const std::vector<JsonChannel>& scene);
 
 }  // namespace predictor::recording

@@ -25,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Folders of the recorded files. Their relative positions are kept, so that references between the
-// scenario and the URDFs remain valid.
+// The folders of the recorded files. Their relative positions are kept, so that references between
+// the scenario and the URDFs remain valid.
 constexpr const char* kScenarioFolder = "scenario";
 constexpr const char* kAssetsFolder = "assets";
 constexpr const char* kPackagesFolder = "packages";
@@ -54,15 +54,15 @@ std::string Sha256(const std::string& bytes) {
   return text;
 }
 
-// Path of `file` below `root`; empty if it is not below.
+// Returns the path of `file` below `root`, or "" if it is not below.
 std::string Below(const fs::path& file, const fs::path& root) {
   if (root.empty()) return "";
   const fs::path relative = file.lexically_relative(root);
   return relative.empty() || *relative.begin() == ".." ? "" : relative.generic_string();
 }
 
-// Name of the file in a recording. `file` and `folder` (the scenario's folder): with symlinks
-// resolved.
+// Returns the name of the file in a recording. Symlinks in `file` and in the scenario's `folder`
+// are resolved.
 std::string NameOf(const fs::path& file, const fs::path& folder) {
   const auto at = [&](const char* place, const fs::path& root) {
     const std::string below = Below(file, root);
@@ -78,8 +78,8 @@ std::string NameOf(const fs::path& file, const fs::path& folder) {
   throw InputError(file.string(), "The file is outside the folders that a scenario can use.");
 }
 
-// Records a URDF that the scenario refers to, with its meshes. The scenario then refers to the
-// recorded file.
+// Records a URDF that the scenario refers to, with its meshes. Afterwards the scenario refers to
+// the recorded file.
 void Describe(std::string* model, const std::vector<std::string>& remove_links,
               const fs::path& folder, std::set<fs::path>* files) {
   if (model->empty()) return;
@@ -99,7 +99,7 @@ bool IsPinned(const std::string& name) {
   return name.starts_with(std::string(kPinnedFolder) + "/");
 }
 
-// A path below `folder` for an untrusted file name `name`.
+// Returns a path below `folder` for an untrusted file name `name`.
 fs::path PlaceFor(const std::string& name, const fs::path& folder) {
   const fs::path path = fs::path(name).lexically_normal();
   if (path.empty() || path.is_absolute() || *path.begin() == "..")
@@ -143,7 +143,7 @@ void AddPackagePath(const fs::path& packages) {
   setenv("PREDICTOR_PACKAGE_PATH", path.c_str(), 1);
 }
 
-// Recordings of earlier versions hold the parameters of all controllers and actions.
+// Recordings of earlier versions contain the parameters of all controllers and actions.
 std::string ScenarioText(const RecordingHeader& header, const std::string& file) {
   YamlNode tree = ParseYaml(header.scenario_yaml, file);
   bool is_earlier = false;
@@ -152,7 +152,7 @@ std::string ScenarioText(const RecordingHeader& header, const std::string& file)
   return is_earlier ? WriteYaml(tree) : header.scenario_yaml;
 }
 
-// A recording never runs a program: the controller's answers stand for it.
+// A replay never runs a program. It uses the controller's recorded answers instead.
 void UseTape(const RecordingHeader& header, Scenario* scenario) {
   std::vector<double> tape;
   for (const RecordingAttachment& file : header.attachments) {

@@ -1,4 +1,4 @@
-// The files from which a run was made, so that it can be displayed and repeated elsewhere.
+// Stores the files from which a run was made, so that it can be displayed and repeated elsewhere.
 #pragma once
 
 #include <filesystem>
@@ -11,25 +11,26 @@
 
 namespace predictor {
 
-// The header of a recording that starts now: the scenario with all its values, its model files
-// (every URDF, and all other files that no pinned package contains), and the hashes of all of them.
-// File references in COLLADA files (textures) are not followed. Throws InputError if a model cannot
-// be read.
+// Returns the header of a recording that starts now: the scenario with all its values, its model
+// files (every URDF, and all other files that no pinned package contains), and the hashes of all of
+// them. File references in COLLADA files (textures) are not followed. Throws InputError if a model
+// cannot be read.
 RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program_version,
                             const std::map<std::string, std::string>& labels);
 
-// Adds what a controller outside the program answered while the run was set up
-// (EmulatorSetup::controller_tape), so that the run can be repeated without it.
+// Adds the answers of a controller outside the program while the run was set up
+// (EmulatorSetup::controller_tape), so that the run can be repeated without the controller.
 void AddControllerTape(const std::vector<double>& tape, RecordingHeader* header);
 
-// The recorded scenario, from its text. `file`: the recording's name for errors. Relative model
-// paths start at `folder`. Throws InputError, also if the scenario is damaged.
+// Returns the recorded scenario from its text. `file` is the recording's name for errors. Relative
+// model paths start at `folder`. Throws InputError, for example if the scenario is damaged.
 Scenario RecordedScenario(const RecordingHeader& header, const std::string& file,
                           const std::filesystem::path& folder);
 
 // Writes the recorded scenario and its model files into `folder` (which must exist) and loads the
 // scenario from there. Extends the search path for packages, so no other threads may run. Throws
-// InputError, also if a pinned robot description of this program differs from the recorded one.
+// InputError, for example if a pinned robot description of this program differs from the recorded
+// one.
 Scenario RestoreScenario(const RecordingHeader& header, const std::filesystem::path& folder);
 
 }  // namespace predictor

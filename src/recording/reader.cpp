@@ -20,8 +20,8 @@ using recording::TickDecoder;
 
 namespace {
 
-// A hostile file must not exhaust memory. No real run has this many events; further events are only
-// counted.
+// A hostile file must not exhaust memory. No real run has this many events, and further events are
+// only counted.
 constexpr std::size_t kMaxLoggedEvents = 200'000;
 constexpr std::size_t kMaxEventBytes = 64U << 20U;
 constexpr std::size_t kLongestEvent = 64 * 1024;  // [bytes]
@@ -56,7 +56,7 @@ struct RecordingReader::Impl {
   std::vector<mcap::ChunkIndex> chunks;
   std::optional<std::uint64_t> count;
 
-  // Position of the next call of Next().
+  // The position of the next call of Next().
   std::size_t next_chunk = 0;
   std::size_t chunk = 0;  // chunk that `rest` belongs to
   std::string messages;
@@ -68,7 +68,7 @@ struct RecordingReader::Impl {
     std::size_t chunk;
     std::uint64_t offset;
   };
-  // First tick of each chunk, if known.
+  // The first tick of each chunk, if known.
   std::vector<std::optional<std::optional<std::uint64_t>>> first_ticks;
   bool others_found = false;
   std::vector<RecordingEvent> events;
@@ -230,7 +230,7 @@ void RecordingReader::Impl::FindOthersIn(std::size_t i) {
   if (!complete) count = count.value_or(0) + ticks;
 }
 
-// Uses the index; for a truncated recording, reads all of it.
+// Uses the index. If the recording is truncated, reads all of it.
 void RecordingReader::Impl::FindOthers() {
   if (others_found) return;
   events.clear(), snapshots.clear(), places.clear();
@@ -301,7 +301,7 @@ void RecordingReader::Seek(std::uint64_t tick) {
   r.pending.reset();
   r.rest = {};
   r.decoder = {};
-  // The last chunk that starts at or before `tick`. Chunks without ticks are skipped.
+  // This finds the last chunk that starts at or before `tick`. Chunks without ticks are skipped.
   std::size_t low = 0, high = r.chunks.size();
   while (low < high) {
     const std::size_t middle = (low + high) / 2;

@@ -17,8 +17,8 @@ struct RecordedSnapshot {
   std::vector<std::byte> bytes;
 };
 
-// All data are compared with their CRC. Data that cannot be trusted are never returned; they cause
-// an InputError that names their position. Memory is limited whatever the file claims.
+// Compares all data with their CRC. Data that cannot be trusted are never returned, but cause an
+// InputError that names their position. Memory is limited whatever the file claims.
 class RecordingReader {
  public:
   // Throws InputError if the file is not a recording, has another version, or its description is
@@ -29,30 +29,33 @@ class RecordingReader {
   RecordingReader& operator=(const RecordingReader&) = delete;
 
   const RecordingHeader& header() const;
-  // True if the recording was closed: its index exists and is valid. Otherwise it was truncated (or
-  // its index is damaged), and it is read up to its last complete chunk.
+  // Returns whether the recording was closed, so that its index exists and is valid. Otherwise it
+  // was truncated (or its index is damaged), and it is read up to its last complete chunk.
   bool complete() const;
-  // Sentences for the user: whether the recording is incomplete, which parts of its header were
-  // read from the copy, and which are lost. Empty without a problem so far.
+  // Returns sentences for the user: whether the recording is incomplete, which parts of its header
+  // were read from the copy, and which are lost. The text is empty if there has been no problem so
+  // far.
   const std::string& problem() const;
   std::uint64_t bytes() const;  // size of the file
 
-  // Number of ticks; for a truncated recording this reads all of it. Throws InputError.
+  // Returns the number of ticks. If the recording is truncated, this reads all of it. Throws
+  // InputError.
   std::uint64_t count();
   // Reads the next tick. Returns false after the last one. Throws InputError.
   bool Next(TickRecord* record);
   // Makes Next() continue with the first tick at or after `tick`. Throws InputError.
   void Seek(std::uint64_t tick);
 
-  // The ticks with snapshots, in ascending order. Throws InputError.
+  // Returns the ticks with snapshots in ascending order. Throws InputError.
   const std::vector<std::uint64_t>& snapshots();
-  // The newest snapshot at or before `tick`. Returns false if there is none. Throws InputError.
+  // Reads the newest snapshot at or before `tick`. Returns false if there is none. Throws
+  // InputError.
   bool SnapshotAt(std::uint64_t tick, RecordedSnapshot* snapshot);
 
-  // In order, at most the first 200 000. Throws InputError.
+  // Returns the events in order, at most the first 200 000. Throws InputError.
   const std::vector<RecordingEvent>& events();
   std::uint64_t more_events();  // number of further events in the file
-  // Events about lost ticks.
+  // Returns the events about lost ticks.
   std::vector<RecordingEvent> gaps();
 
   // Reads the whole file and verifies the CRC of the file, each chunk, and each message against its

@@ -38,7 +38,7 @@ void Note(const char* why, std::string* text) noexcept {
   }
 }
 
-// Chunks that wait to be written to the disk.
+// The chunks that wait to be written to the disk.
 class ChunkQueue {
  public:
   explicit ChunkQueue(std::size_t most) : most_(most) {}
@@ -62,7 +62,7 @@ class ChunkQueue {
     abandoned_ = true;
     change_.notify_all();
   }
-  // The next chunk, if one arrives within `patience`.
+  // Returns the next chunk, if one arrives within `patience`.
   std::optional<Chunk> Take(milliseconds patience) {
     std::unique_lock lock(mutex_);
     change_.wait_for(lock, patience, [this] { return !chunks_.empty() || no_more_; });
@@ -87,7 +87,7 @@ class ChunkQueue {
   bool no_more_ = false, abandoned_ = false;
 };
 
-// One buffer that is passed between the tick and the recorder.
+// A buffer that the tick and the recorder pass to each other.
 class SnapshotBox {
  public:
   explicit SnapshotBox(std::size_t bytes) : buffer_(bytes) {}
@@ -178,7 +178,7 @@ struct Recorder::Impl {
   recording::Encoder encoder;
   ChunkQueue queue;
 
-  // Used only by the thread that encodes.
+  // Only the thread that encodes uses the following members.
   std::uint64_t newest = 0;               // tick
   std::optional<PersonState> waiting;     // the person's next state
   std::uint64_t seen = 0;                 // number of lost ticks noticed so far
@@ -190,7 +190,7 @@ struct Recorder::Impl {
   std::optional<Clock::time_point> asked;  // time of the last request for a snapshot
   bool wants_snapshot = false;
 
-  // Used only by the thread that writes.
+  // Only the thread that writes uses the following members.
   recording::DiskWatch disk;
   bool ended = false;
 
@@ -223,7 +223,7 @@ void Recorder::Impl::Encode() {
   queue.NoMore();
 }
 
-// The queue is written completely; then the recording ends.
+// The queue is written completely. Then the recording ends.
 void Recorder::Impl::EncodingFailed(const char* why) {
   {
     const std::scoped_lock lock(mutex);
@@ -283,8 +283,8 @@ void Recorder::Impl::TakeMarks() {
   }
 }
 
-// A state that was read before its tick waits for it: its time is that of its tick. States that were
-// overwritten are missing without a notice: nothing depends on them.
+// A state that was read before its tick waits for it, because it has the time of its tick. States
+// that were overwritten are missing without a notice, because nothing depends on them.
 void Recorder::Impl::TakePersons(bool all) {
   for (std::size_t k = 0; persons && k < kPersonRing; ++k) {
     PersonState state;

@@ -34,8 +34,9 @@ struct RecorderOptions : DiskRules {
       nullptr;  // whose states are recorded as well; null: none; borrowed
 };
 
-// One thread reads the ring, encodes and compresses; another writes; a third synchronises the disk.
-// A slow disk therefore delays the second and third thread, and the first only after `max_queued`.
+// One thread reads the ring, encodes and compresses, another writes, and a third synchronises the
+// disk. A slow disk therefore delays the second and third thread, and the first only after
+// `max_queued`.
 class Recorder {
  public:
   // Records everything that is published from now on. `ring` and `calls` are borrowed. Throws
@@ -47,9 +48,9 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  // Wait-free; only for the thread that ticks. If a snapshot of the complete state is wanted,
-  // returns its buffer; otherwise an empty span. SnapshotTaken then gives the tick after which it
-  // was taken, and its size (0: it could not be taken).
+  // These functions are wait-free and only for the thread that ticks. If a snapshot of the complete
+  // state is wanted, SnapshotBuffer returns its buffer, and otherwise an empty span. SnapshotTaken
+  // then reports the tick after which it was taken, and its size (0 if it could not be taken).
   std::span<std::byte> SnapshotBuffer() noexcept;
   void SnapshotTaken(std::uint64_t tick, std::size_t bytes) noexcept;
 

@@ -19,16 +19,16 @@ namespace predictor {
 namespace recording {
 namespace {
 
-// Identifies a chunk among arbitrary bytes: the name of its compression, at this distance from its
-// start.
+// This text identifies a chunk among arbitrary bytes: the name of its compression, at this distance
+// from its start.
 constexpr std::string_view kMark{"\4\0\0\0zstd", 8};
 constexpr std::uint64_t kMarkAt = mcap::kHead + 8 + 8 + 8 + 4;
 // A hostile file may contain many apparent chunks, each of which seems to contain the rest of the
 // file.
 constexpr std::uint64_t kMaxWasted = 2 * kLargestChunk, kMaxWastedPerByte = 16;  // [bytes]
 
-// The part of the chunk at `offset` (which ends before `end`) that can be decompressed, whatever
-// length its header claims.
+// Returns the part of the chunk at `offset` (which ends before `end`) that can be decompressed,
+// whatever length its header claims.
 std::string DecompressSome(const InputFile& file, std::uint64_t offset, std::uint64_t end) {
   const std::uint64_t start = offset + mcap::kHead + mcap::kChunkHead;
   if (start >= end) return {};
@@ -146,8 +146,8 @@ class Recovery {
     }
   }
 
-  // States of the person, and events with a text of a person or a program. The others are derived
-  // from the ticks.
+  // Returns whether a message is a state of the person, or an event with a text of a person or a
+  // program. The others are derived from the ticks.
   bool IsOfPerson(const Message& message) const {
     if (message.channel == states_) return true;
     RecordingEvent event;
@@ -195,7 +195,7 @@ class Recovery {
   RecoverReport report_;
   ChunkBuilder builder_;
   TickDecoder decoder_;
-  // Messages of the current incomplete tick.
+  // The messages of the current incomplete tick.
   std::vector<std::pair<std::uint16_t, std::string>> parts_;
   std::optional<std::uint64_t> last_;  // newest recovered tick
   bool damage_ = false;                // whether damage was found since the last tick

@@ -26,14 +26,14 @@ struct RecoverReport {
   std::string Text() const;  // Sentences for the user.
 };
 
-// What a copy changes on purpose.
+// What a copy is meant to change.
 struct Rewriting {
   std::function<void(RecordingHeader*)> change;  // of the header; may throw; empty: none
   bool person = true;  // keep events with free text, and the states of the person
 };
 
-// Writes all intact parts of `in` to `out`, with a new index. From a damaged chunk, only ticks with
-// a valid CRC are kept. `in` is not changed. Throws InputError if `in` is not a recording or is
+// Writes all intact parts of `in` to `out`, with a new index. From a damaged chunk, it keeps only
+// ticks with a valid CRC. `in` is not changed. Throws InputError if `in` is not a recording or is
 // damaged before its first tick, or if `out` exists. Throws RecordingError if `out` cannot be
 // written. `calls` is borrowed.
 RecoverReport Recover(const std::string& in, const std::string& out, FileCalls* calls = nullptr,

@@ -11,13 +11,13 @@
 namespace predictor::recording {
 
 // Compares each record with the previous one. Returns at most kMaxPerSecond events per second.
-// Events about parameters have a lower priority than other events of the run. Omitted events are
-// counted.
+// Events about parameters have a lower priority than other events of the run. Events that were
+// omitted are counted.
 class RunEvents {
  public:
   static constexpr int kMaxPerSecond = 50;
 
-  // The changes in this record at time `unix_ns`; empty for the first record.
+  // Returns the changes in this record at time `unix_ns`, or nothing for the first record.
   std::vector<RecordingEvent> Follow(const TickRecord& record, std::uint64_t unix_ns);
 
  private:

@@ -1,4 +1,4 @@
-// The scene in a recording, for Foxglove.
+// Describes the scene in a recording, for Foxglove.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace predictor {
 
-// "/tf" and "/scene" in Foxglove's schemas; object_start: O in W at the start [m]. Throws
+// Returns "/tf" and "/scene" in Foxglove's schemas. object_start: O in W at the start [m]. Throws
 // InputError.
 std::vector<JsonChannel> RecordedScene(const Scenario& scenario, const Vector3& object_start);
 

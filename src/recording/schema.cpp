@@ -98,7 +98,7 @@ class SchemaVisitor {
     Line(type, f);
     DefineGeometry(type);
   }
-  // Also defines the types of its members.
+  // Defines the types of its members as well.
   void DefineGeometry(const std::string& type) {
     for (const auto& [known, definition] : kGeometry) {
       if (type != known) continue;

@@ -7,7 +7,7 @@
 
 namespace predictor::recording {
 
-// Definition of a group's message and the types that it uses.
+// Returns the definition of a group's message and of the types that it uses.
 const std::string& Definition(TickGroup group);
 
 inline constexpr const char* kSnapshotTopic = "/snapshot";
@@ -16,12 +16,12 @@ inline constexpr const char* kSnapshotDefinition =
     "uint64 tick  # after which the state was so\nuint8[] data  # of this build of the program\n";
 
 inline constexpr const char* kEventsTopic = "/events";
-// Foxglove's type, so that its log panel shows the events, plus the tick and the number of lost
-// ticks.
+// This is Foxglove's type, so that its log panel shows the events, plus the tick and the number of
+// lost ticks.
 inline constexpr const char* kEventType = "foxglove.Log";
 const std::string& EventSchema();  // JSON Schema
 
-// A definition reduced to the content that determines the bytes: without comments, constants and
+// Reduces a definition to the content that determines the bytes, without comments, constants and
 // empty lines.
 std::string Layout(const std::string& definition);
 

@@ -9,7 +9,7 @@
 namespace predictor {
 namespace {
 
-// Labels that describe the run and not the person.
+// These labels describe the run and not the person.
 constexpr const char* kConditionLabel = "condition";
 
 bool IsTrue(const YamlNode* node) { return node != nullptr && node->text == "true"; }

@@ -1,4 +1,4 @@
-// A copy of a recording without the data of the person, for sharing.
+// Copies a recording without the data of the person, so that it can be shared.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@ namespace predictor {
 // Removes operator.body and operator.stance from a header's scenario, and all labels except
 // `condition`, because they may name a person. Returns what was removed, such as "operator.body" or
 // "label pseudonym". Throws InputError if a simulated operator moves on that body
-// (operator.embodied): without it the run cannot be repeated, and no person is described.
+// (operator.embodied): the run could not be repeated without it, and it describes no person.
 std::vector<std::string> RemovePerson(RecordingHeader* header);
 
-// Writes all of `in` to the new file `out`, but without the person (RemovePerson) and without
-// the states of the person, which follow from the body, and markers, whose text a person wrote. The
-// ticks stay the same, so a replay repeats them. Throws InputError and RecordingError as Recover
-// does. Returns what was removed.
+// Writes all of `in` to the new file `out`, but without the person (RemovePerson), without the
+// states of the person, which follow from the body, and without markers, whose text a person wrote.
+// The ticks stay the same, so a replay repeats them. Throws InputError and RecordingError as
+// Recover does. Returns what was removed.
 std::vector<std::string> WriteShared(const std::string& in, const std::string& out);
 
 }  // namespace predictor

@@ -16,7 +16,7 @@
 namespace predictor {
 
 // A recording could not continue: the disk is full or nearly full, or it fails. what() gives the
-// reason, the amount of data kept, and that the file can be read up to there.
+// reason and the amount of data kept, and states that the file can be read up to there.
 class RecordingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -26,8 +26,8 @@ class RecordingError : public std::runtime_error {
 // closed, and further data are ignored. The destructor closes the file without reporting errors.
 class RecordingWriter {
  public:
-  // Throws InputError if the file exists or cannot be created. `calls` is borrowed. Without rules
-  // the disk may be filled completely.
+  // Throws InputError if the file exists or cannot be created. `calls` is borrowed. Without rules,
+  // the recording may fill the disk completely.
   RecordingWriter(const std::string& path, const RecordingHeader& header,
                   std::vector<JsonChannel> scene = {}, FileCalls* calls = nullptr,
                   const DiskRules& rules = {.warn_below = 0, .end_below = 0});
@@ -36,7 +36,8 @@ class RecordingWriter {
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
   void Add(const TickRecord& record);
-  // The complete state after `tick`: opaque, at most 32 MiB (larger: std::invalid_argument).
+  // Adds the complete state after `tick`, as opaque bytes of at most 32 MiB (more:
+  // std::invalid_argument).
   void AddSnapshot(std::uint64_t tick, std::span<const std::byte> bytes);
   void AddEvent(const std::string& text, std::uint64_t tick);
   // Records that `count` ticks before `tick` are missing.
