@@ -18,7 +18,7 @@ namespace {
 
 thread_local std::int64_t allocation_calls = 0;
 
-// The C library's own functions. The names in this program lead to the counting ones.
+// These are the C library's own functions. The names in this program refer to the counting ones.
 void* (*real_malloc)(std::size_t);
 void* (*real_calloc)(std::size_t, std::size_t);
 void* (*real_realloc)(void*, std::size_t);
@@ -67,7 +67,7 @@ Counted CountedAs(const char* name, F* counting, F** real) {
 
 using Functions = std::array<Counted, 6>;
 
-// The tables of a loaded library in which the addresses of foreign functions lie.
+// The tables of a loaded library that contain the addresses of functions of other libraries.
 struct Tables {
   const ElfW(Sym) * symbols = nullptr;
   const char* names = nullptr;
@@ -100,7 +100,7 @@ void Replace(void** place, void* with) {
 }
 
 int CountIn(dl_phdr_info* library, std::size_t, void* functions) {
-  // The kernel's own library has addresses of another kind, and allocates nothing.
+  // The kernel's own library has addresses of another kind and allocates nothing.
   if (std::string_view(library->dlpi_name).starts_with("linux-vdso")) return 0;
   const Tables tables = TablesOf(*library);
   if (!tables.symbols || !tables.names) return 0;

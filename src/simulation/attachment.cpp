@@ -16,8 +16,8 @@ constexpr double kConverged = 1e-12;
 constexpr int kMaxPasses = 8;  // of Newton's method with contacts and friction
 constexpr double kSettled = 1e-9;
 
-// The x with |x| ≤ radius that minimises ½ xᵀ A x + bᵀ x, for a positive definite A. With a
-// multiplier μ ≥ 0, (A + μ) x = −b; Newton's method on 1/|x| finds μ (Moré & Sorensen 1983).
+// Returns the x with |x| ≤ radius that minimises ½ xᵀ A x + bᵀ x, for a positive definite A. With a
+// multiplier μ ≥ 0, (A + μ) x = −b. Newton's method on 1/|x| finds μ (Moré & Sorensen 1983).
 Vector3 MinimumInBall(const Matrix3& A, const Vector3& b, double radius, bool* at_limit) {
   const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(A);
   const Vector3 a = eigen.eigenvalues(), c = eigen.eigenvectors().transpose() * b;
@@ -56,7 +56,7 @@ Attachment::Attachment(const AttachmentSpec& spec, Engine* engine)
   M_.setZero(nv, nv);
 }
 
-// X_EA, with the rotation of O instead of A.
+// Returns X_EA with the rotation of O instead of that of A.
 Pose Attachment::Place() const noexcept {
   const Pose X_EO = PoseOf(SceneBody::kEndEffector).Inverse() * PoseOf(SceneBody::kObject);
   return {X_EO * p_OA_, X_EO.q};
@@ -71,7 +71,7 @@ void Attachment::Grip() noexcept {
   load_.setZero();
 }
 
-// Lower limits apply at once; what slid in the last step is held at most a step's share tighter.
+// Lower limits apply at once. What slid in the last step is held at most a step's share tighter.
 void Attachment::Tighten() noexcept {
   const double dt = engine_.step();
   const bool open = is_open();
@@ -100,7 +100,8 @@ bool Attachment::Hold() noexcept {
     applied = others;
     applied.noalias() += J_.transpose().lazyProduct(wrench_);
   };
-  // Contacts and joint friction react to the attachment, and it reacts to them: Newton's method.
+  // Contacts and joint friction react to the attachment, and it reacts to them. Newton's method
+  // solves both.
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     apply();
     if (engine_.has_reactions() && !engine_.ComputeAccelerations(false)) return false;
@@ -115,7 +116,7 @@ bool Attachment::Hold() noexcept {
   return true;
 }
 
-// Jacobian, its rate and inertia at the present state.
+// Computes the Jacobian, its rate and the inertia in the present state.
 void Attachment::Prepare() noexcept {
   p_WA_ = PoseOf(SceneBody::kObject) * p_OA_;
   engine_.JacobianRate(SceneBody::kEndEffector, p_WA_, J_);
@@ -129,7 +130,7 @@ void Attachment::Prepare() noexcept {
   factor_.compute(M_);
 }
 
-// G, with contacts and friction that hold at present.
+// Computes G, with the contacts and the friction that hold at present.
 void Attachment::UpdateMobility() noexcept {
   holding_ = M_;
   engine_.AddReactions(holding_);
@@ -140,8 +141,8 @@ void Attachment::UpdateMobility() noexcept {
   }
 }
 
-// The wrench on E about A, if the others react to its change from the present one, wrench_, as
-// UpdateMobility determined.
+// Returns the wrench on E about A if contacts and friction react to its change from the present
+// one, wrench_, as UpdateMobility determined.
 Wrench Attachment::Solve() noexcept {
   const double dt = engine_.step();
   DofVector force(engine_.dof());
@@ -151,7 +152,7 @@ Wrench Attachment::Solve() noexcept {
   Vector6 error;  // of the object from the place where the grip holds
   error << p_WA_ - E * grip_.p, RotationError(PoseOf(SceneBody::kObject).q, E.q * grip_.q);
   if (!is_fixed_) error.tail<3>().setZero();
-  // The relative position changes by dt J v + ½ dt² J̇ v in the step.
+  // In the step, the relative position changes by dt J v + ½ dt² J̇ v.
   Vector6 b = (J_.lazyProduct(v) + dt / 2 * bias_ - kCorrection * error) / dt - G_ * wrench_;
   if (!is_fixed_ && damping_ > 0) {
     b.tail<3>() -= bias_.tail<3>() / 2;  // a damper acts on the velocity
@@ -169,7 +170,8 @@ Wrench Attachment::Solve() noexcept {
   return holds ? wrench : WithinLimits(b, wrench);
 }
 
-// Minimises ½ λᵀ G λ + bᵀ λ within the limits, from a first λ, by turns over force and torque.
+// Minimises ½ λᵀ G λ + bᵀ λ within the limits, starting from a given λ, alternately over force and
+// torque.
 Wrench Attachment::WithinLimits(const Vector6& b, Wrench wrench) noexcept {
   const double torque = is_fixed_ ? limits_.torque : HUGE_VAL;
   for (int i = 0; i < kMaxTurns; ++i) {

@@ -1,5 +1,5 @@
-// The attachment of an object that is a body of its own: a grip with limits, which holds, slips or
-// is open.
+// The attachment of an object that is a separate body. It is a grip with limits, which holds, slips
+// or is open.
 #pragma once
 
 #include "core/archive.h"
@@ -15,33 +15,35 @@ namespace predictor {
 // velocity at A after the step, as long as its force and its torque are within the grip's limits.
 // Beyond them, they act at the limit against the sliding: λ minimises ½ λᵀ G λ + λᵀ V/dt over both
 // balls, where G = J M⁻¹ Jᵀ, and V is the relative velocity that would result without λ (maximum
-// dissipation, Moreau 1977; Stewart & Trinkle 1996). Where it slid, it holds again.
+// dissipation, Moreau 1977; Stewart & Trinkle 1996). The grip then holds at the new place.
 //
 // If the limits rise while the object slides, the grip tightens at kForceRate and kTorqueRate until
-// it no longer slides: a grip that held at once would stop it within one step.
+// the object no longer slides. A grip that held immediately would stop the object within one step.
 //
 // A spherical attachment transmits no torque except that of its damping, so only its mount slips.
 class Attachment {
  public:
-  // How fast a grip tightens [N/s], [N·m/s]. A design choice: about 100 N within 0.1 s.
+  // The rates at which a grip tightens [N/s], [N·m/s]. About 100 N within 0.1 s is a design choice.
   static constexpr double kForceRate = 1000, kTorqueRate = 100;
 
-  // `engine`: with a free object (Holding::kFree); must outlive this. Throws InputError if its
+  // `engine` has a free object (Holding::kFree) and must outlive this. Throws InputError if its
   // cobot has too many joints.
   Attachment(const AttachmentSpec& spec, Engine* engine);
 
-  // Grips the object where it is.
+  // Grips the object at its present place.
   void Grip() noexcept;
-  // What the grip shall hold.
+  // Sets what the grip shall hold.
   void SetLimits(const GripLimits& limits) noexcept { wanted_ = limits; }
 
   // Adds the attachment's forces to the engine's joint forces. All other forces must be complete.
-  // Uses the state of the last Prepare. Returns false on an error of the engine. No heap.
+  // Uses the state of the last Prepare. Returns false on an error of the engine. Does not use the
+  // heap.
   bool Hold() noexcept;
-  // Moves the place of the grip as far as the object slid, at the state after the step.
+  // Moves the place of the grip as far as the object slid, in the state after the step.
   void Follow() noexcept;
 
-  // Wrench of the object on the end-effector in the last Hold, about E, in axes of W [N, N·m].
+  // Returns the wrench of the object on the end-effector in the last Hold, about E, in axes of W
+  // [N, N·m].
   const Wrench& load() const noexcept { return load_; }
 
   void Archive(StateArchive& a) noexcept {
@@ -74,7 +76,7 @@ class Attachment {
   bool slides_ = false, turns_ = false;  // in the last Hold
   Wrench load_ = Wrench::Zero();
   Wrench wrench_ = Wrench::Zero();  // λ in the last Hold: on E, about A, in axes of W
-  // Workspace.
+  // The following members are workspace.
   Vector3 p_WA_ = Vector3::Zero();
   DofJacobian J_, other_;           // V_WE − V_WO at A, by the velocities
   Vector6 bias_ = Vector6::Zero();  // J̇ v

@@ -29,7 +29,7 @@ JointVector CobotSafety::Friction(const JointVector& v) const noexcept {
   return torque;
 }
 
-// The wrench F on E with Jᵀ F ≈ torque.
+// Returns the wrench F on E with Jᵀ F ≈ torque.
 Wrench CobotSafety::WrenchOf(const ControllerInput& input, const JointVector& torque) noexcept {
   input.data->FrameJacobian(*input.model, input.end_effector, &J_);
   FactorDamped(J_, &factor_);
@@ -81,7 +81,7 @@ CobotStop CobotSafety::Exceeded(const ControllerInput& input) noexcept {
   return CobotStop::kNone;
 }
 
-// Inverse of the arm's effective mass at E along a direction [1/kg] (Khatib 1995).
+// Returns the inverse of the arm's effective mass at E along a direction [1/kg] (Khatib 1995).
 double CobotSafety::Mobility(const ControllerInput& input, const Vector3& direction) noexcept {
   M_factor_.compute(input.data->M());
   const JointVector along = J_.topRows<3>().transpose().lazyProduct(direction);
@@ -94,7 +94,7 @@ void CobotSafety::Limit(const ControllerInput& input, double dt, JointVector* to
   if (spec_.speed_cap) CapSpeed(input, torque);
 }
 
-// The controller's force at E is what remains of its torques after the arm's weight and the
+// The controller's force at E is the part of its torques that exceeds the arm's weight and the
 // payload.
 void CobotSafety::CapForce(const ControllerInput& input, JointVector* torque) noexcept {
   const Wrench F = WrenchOf(input, *torque - input.data->gravity()) + payload_;
@@ -116,7 +116,7 @@ void CobotSafety::CapSpeed(const ControllerInput& input, JointVector* torque) no
   torque->noalias() -= J_.topRows<3>().transpose().lazyProduct(force);
 }
 
-// All joints decelerate together, the fastest by stop_deceleration; then they hold.
+// All joints decelerate together, the fastest at stop_deceleration. Then they hold.
 void CobotSafety::StopTorque(const ControllerInput& input, double dt,
                              JointVector* torque) noexcept {
   q_stop_ += fade_ * dt * v_stop_;

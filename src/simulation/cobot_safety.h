@@ -1,4 +1,4 @@
-// The safety functions of the virtual cobot, as a vendor ships them: protective stops and caps.
+// The safety functions of the virtual cobot, as a vendor provides them: protective stops and caps.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -21,17 +21,17 @@ class CobotSafety {
 
   bool is_on() const noexcept { return watches_ || spec_.force_cap || spec_.speed_cap; }
   CobotStop stop() const noexcept { return stop_; }
-  // Estimated wrench on E beyond the payload, about E, axes of W [N], [N·m].
+  // Returns the estimated wrench on E beyond the payload, about E, in axes of W [N], [N·m].
   Wrench external_wrench() const noexcept { return F_E_W_ - payload_; }
 
-  // The cobot rests at `input` under its torques; what acts on it is its payload.
+  // The cobot rests at `input` under its torques. Any force that acts on it is that of its payload.
   void Reset(const ControllerInput& input) noexcept;
-  // Takes the state after a sub-step of dt [s] under input.torque. Begins a protective stop if a
+  // Takes the state after a sub-step of dt [s] under input.torque. Starts a protective stop if a
   // limit is exceeded.
   void Watch(const ControllerInput& input, double dt) noexcept;
   // Takes the velocities [rad/s] after a sub-step in which closed brakes held the joints.
   void Skip(const JointVector& v) noexcept { v_before_ = v; }
-  // Caps the controller's torques, or replaces them in a protective stop, which lasts until Reset.
+  // Caps the controller's torques. In a protective stop, which lasts until Reset, it replaces them.
   void Limit(const ControllerInput& input, double dt, JointVector* torque) noexcept;
 
   void Archive(StateArchive& a) noexcept;

@@ -1,4 +1,4 @@
-// When the virtual cobot's controller computes, and when its torques act.
+// Determines when the virtual cobot's controller computes, and when its torques act.
 #pragma once
 
 #include <vector>
@@ -12,26 +12,27 @@ namespace predictor {
 // A zero-order hold with a delay, in sub-steps of the simulation.
 class ControlTiming {
  public:
-  // step: duration of a sub-step [s]. max_added: largest delay that AddDelay adds [s]. Throws
+  // step: duration of a sub-step [s]. max_added: the largest delay that AddDelay adds [s]. Throws
   // InputError if period or delay is not a whole number of sub-steps.
   ControlTiming(const ControlSpec& spec, double step, double max_added = 0);
 
-  // The controller's period [sub-steps, s], and the delay of its torques [sub-steps].
+  // These functions return the controller's period [sub-steps, s], and the delay of its torques
+  // [sub-steps].
   int period() const noexcept { return period_; }
   double period_time() const noexcept { return period_ * step_; }
   int delay() const noexcept { return delay_; }
   bool is_immediate() const noexcept { return period_ == 1 && past_.size() == 1; }
-  // Mean time from the state at which torques are computed until they act [s], in addition to the
-  // hold of one sub-step.
+  // Returns the mean time from the state at which torques are computed until they act [s], in
+  // addition to the hold of one sub-step.
   double mean_delay() const noexcept { return (delay_ + 0.5 * (period_ - 1)) * step_; }
 
-  // From now on, `torque` has been applied for a long time [N·m].
+  // From now on, `torque` counts as applied for a long time [N·m].
   void Reset(const JointVector& torque) noexcept;
-  // Delays the torques by `time` more [s], to the nearest sub-step, at most by max_added.
+  // Delays the torques further by `time` [s], to the nearest sub-step, but at most by max_added.
   void AddDelay(double time) noexcept;
-  // True if the controller computes in this sub-step.
+  // Returns whether the controller computes in this sub-step.
   bool is_due() const noexcept { return count_ % static_cast<std::uint32_t>(period_) == 0; }
-  // Call once per sub-step with the torque last computed. Returns the torque that acts.
+  // Call this once per sub-step with the torque last computed. Returns the torque that acts.
   const JointVector& Apply(const JointVector& torque) noexcept;
 
   void Archive(StateArchive& a) noexcept {

@@ -149,7 +149,7 @@ bool ControlledScene::ComputeTorque(double t, JointVector* torque) noexcept {
   return Acting().outcome() != ControllerOutcome::kFailed;
 }
 
-// What the controller compensates although it is not there: a load at E, and friction.
+// Adds what the controller compensates although it does not exist: a load at E, and friction.
 void ControlledScene::AddModelErrors(JointVector* torque) const noexcept {
   const Disturbance& d = disturbance_;
   if (d.payload != 0) {
@@ -275,7 +275,7 @@ Wrench ControlledScene::LandingOf(const FrameMotion& object) const noexcept {
   return LandingWrench(carried_->object_model(), object, loose_->landing);
 }
 
-// A closed brake is friction in the joint that holds as much as the motor can give.
+// A closed brake is friction in the joint that holds as much as the motor can exert.
 void ControlledScene::SetBrakes(bool closed) noexcept {
   for (int j = 0; j < q_.size(); ++j) {
     DofFriction friction = friction_[static_cast<std::size_t>(j)];
@@ -313,7 +313,7 @@ void ControlledScene::CheckAttachmentEvent(const EventSequence& events, std::siz
                               "the cobot. Remove the duration, or use object_slips.");
 }
 
-// What an event needs and this cobot lacks; "" if it lacks nothing.
+// Returns the part that an event needs and this cobot lacks, or "" if it lacks nothing.
 std::string ControlledScene::Missing(HazardNeeds needs) const {
   switch (needs) {
     case HazardNeeds::kWristSensor:

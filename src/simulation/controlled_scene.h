@@ -1,4 +1,4 @@
-// The scene and the controller of its cobot: everything that acts in it except the hands.
+// The scene and the controller of its cobot, which is everything that acts in it except the hands.
 #pragma once
 
 #include <memory>
@@ -22,21 +22,21 @@ namespace predictor {
 // and a heavy box would make a simulation with 1 ms steps unstable.
 class ControlledScene {
  public:
-  // `events` are those that will disturb it. Throws InputError, also for an event that would have
-  // no effect on this cobot.
+  // `events` are those that will disturb it. Throws InputError, for example for an event that would
+  // have no effect on this cobot.
   ControlledScene(const Scenario& scenario, const EventSequence& events);
 
-  // The scene at present: the one in which the cobot carries the object, or, from the first event
-  // of the attachment on, the one with a free object.
+  // Returns the scene at present. It is the one in which the cobot carries the object or, from the
+  // first event of the attachment on, the one with a free object.
   Engine& engine() const { return is_loose_ ? *loose_->engine : *carried_; }
   Engine& start_engine() const { return *carried_; }
-  // The scene with a free object; null unless an event lets it slip or break loose.
+  // Returns the scene with a free object, or null unless an event lets it slip or break loose.
   Engine* loose_engine() const noexcept { return loose_ ? loose_->engine.get() : nullptr; }
   const RobotModel& robot() const { return *robot_; }
   const JointVector& posture() const { return posture_; }
   const JointVector& effort_limit() const { return effort_limit_; }  // [N·m]
 
-  // Updates what follows from positions and velocities in `engine`, which is at a state of the
+  // Updates what follows from positions and velocities in `engine`, which is in a state of the
   // present scene, and in the model of the cobot. The functions below use it. Returns false on an
   // error of the engine.
   bool Update(Engine* engine) noexcept;
@@ -46,18 +46,18 @@ class ControlledScene {
   // not finite.
   bool ApplyController(double t, Engine* engine) noexcept;
 
-  // The controller's life: StartController once, at the equilibrium at time 0; ResetController at
-  // every return to it. In each sub-step, StepController applies the torques that act (as
-  // ApplyController, with period and delay); SenseWrist reads the wrist sensor after the engine's
-  // forces are known and before Update; AdvanceController advances the controller's memory after
-  // Update.
+  // The controller's life has these stages. StartController is called once, at the equilibrium at
+  // time 0, and ResetController at every return to it. In each sub-step, StepController applies the
+  // torques that act (as ApplyController does, with period and delay). SenseWrist reads the wrist
+  // sensor after the engine's forces are known and before Update. AdvanceController advances the
+  // controller's memory after Update.
   void StartController() noexcept;
   void ResetController() noexcept;
   bool StepController(double t) noexcept;
   void SenseWrist() noexcept;
   void AdvanceController(double t) noexcept;
 
-  // For the linearisation: the states of sensor and controller, and their rates.
+  // The linearisation needs the states of sensor and controller, and their rates.
   bool has_wrist_sensor() const {
     return controller_->uses_wrist_sensor() || (standby_ && standby_->uses_wrist_sensor());
   }
@@ -65,38 +65,39 @@ class ControlledScene {
   std::span<double> memory() { return controller_->memory(); }
   const ControlTiming& timing() const { return timing_; }
   void Advance(double t, double dt) noexcept { controller_->Advance(Input(t), dt); }
-  // Wrench of the load on the end-effector, about E, in axes of W, after the engine's forces are
-  // known.
+  // Returns the wrench of the load on the end-effector, about E, in axes of W, after the engine's
+  // forces are known.
   Wrench WristWrench(const Engine& engine) const noexcept;
 
-  // Tunes the controller at the state of the last Update; `t` is its time [s].
+  // Tunes the controller in the state of the last Update. `t` is its time [s].
   void Tune(const ControllerTuning& tuning, double t) noexcept;
-  // What hazards do from now on, at the state of the last Update.
+  // Sets what hazards do from now on, in the state of the last Update.
   void Disturb(const Disturbance& disturbance, double t) noexcept;
-  // The same, before a state is restored in which they already acted.
+  // As above, before a state is restored in which they already acted.
   void Resume(const Disturbance& disturbance) noexcept;
   CobotStop cobot_stop() const noexcept { return safety_.stop(); }
   bool is_loose() const noexcept { return is_loose_; }
-  // Whether what hazards do requires the scene with a free object now.
+  // Returns whether the present hazards require the scene with a free object.
   bool must_loosen() const noexcept { return !is_loose_ && disturbance_.grip != GripLimits(); }
-  // Frees the object: from now on, the scene is the loose one, with the same poses, velocities and
+  // Frees the object. From now on, the scene is the loose one, with the same poses, velocities and
   // torques.
   void Loosen() noexcept;
-  // Before a state of that scene is restored.
+  // Call this before a state of that scene is restored.
   void SetLoose(bool loose) noexcept { is_loose_ = loose && loose_; }
-  // For a free object, in each sub-step: HoldObject adds the attachment's forces after all others
-  // are applied, and returns false on an error of the engine; FollowObject after Update.
-  // LandingOf: wrench about its centre of mass that ends a fall.
+  // For a free object, these functions are called in each sub-step. HoldObject adds the
+  // attachment's forces after all others are applied, and returns false on an error of the engine.
+  // FollowObject is called after Update. LandingOf returns the wrench about its centre of mass that
+  // ends a fall.
   bool HoldObject() noexcept;
   void FollowObject() noexcept;
   Wrench LandingOf(const FrameMotion& object) const noexcept;
-  // How the last step of the controller that acts went, and the status of a refused step.
+  // Returns how the last step of the controller that acts went, and the status of a refused step.
   ControllerOutcome outcome() const noexcept {
     return disturbance_.frozen ? ControllerOutcome::kComputed : Acting().outcome();
   }
   Status failure() const noexcept { return Acting().failure(); }
   void SetRealTime(bool real_time) noexcept { controller_->SetRealTime(real_time); }
-  // Null unless the controller is outside the program.
+  // Returns null unless the controller is outside the program.
   TapedController* taped() const noexcept { return controller_->taped(); }
   void Archive(StateArchive& a) noexcept;
 
@@ -106,9 +107,9 @@ class ControlledScene {
   void SetTorque(const JointVector& torque) noexcept { torque_ = torque; }
   FrameMotion EndEffector() const;  // X and V; A is zero
 
-  // Kinetic energy, potential energy of the object, and energy stored in the controller's springs
-  // [J]. The cobot's own potential energy is excluded, because its controllers compensate its
-  // weight.
+  // Returns the kinetic energy, the potential energy of the object, and the energy stored in the
+  // controller's springs [J]. The cobot's own potential energy is excluded, because its controllers
+  // compensate its weight.
   double Energy(double t) const noexcept;
 
  private:
@@ -120,8 +121,8 @@ class ControlledScene {
     void Archive(StateArchive& a) noexcept { a(attachment, landing); }
   };
   ControllerInput Input(double t) const;
-  // The controller's torques at time t [s], within the effort limits [N·m]. Returns false if they
-  // are not finite.
+  // Computes the controller's torques at time t [s], within the effort limits [N·m]. Returns false
+  // if they are not finite.
   bool ComputeTorque(double t, JointVector* torque) noexcept;
   void AddModelErrors(JointVector* torque) const noexcept;
   void SetGains(double t, bool keeps_force) noexcept;

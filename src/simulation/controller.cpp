@@ -12,7 +12,7 @@ namespace {
 constexpr const ParameterKind* kControllerKinds[] = {PREDICTOR_CONTROLLERS(PREDICTOR_ENTRY)};
 #undef PREDICTOR_ENTRY
 
-// When the program starts, so that every scenario is read with their parameters.
+// This runs when the program starts, so that every scenario is read with their parameters.
 [[maybe_unused]] const bool kDeclared = (DeclareControllers(kControllerKinds), true);
 
 }  // namespace

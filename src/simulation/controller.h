@@ -17,7 +17,7 @@ namespace predictor {
 
 class TapedController;
 
-// A controller's input: what the controller of a real cobot can measure.
+// A controller's input, which is what the controller of a real cobot can measure.
 struct ControllerInput {
   double time = 0;                 // simulated time [s]
   const JointVector* q = nullptr;  // [rad]
@@ -25,8 +25,8 @@ struct ControllerInput {
   const RobotModel* model = nullptr;
   const RobotData* data = nullptr;  // after UpdateDynamics at (q, v): poses, Jacobians, M, gravity
   FrameId end_effector;
-  // Reading of the wrist sensor: wrench of the load on the end-effector, about E, in axes of W.
-  // Zero unless the controller uses the sensor.
+  // The reading of the wrist sensor: the wrench of the load on the end-effector, about E, in axes
+  // of W. It is zero unless the controller uses the sensor.
   Wrench F_E_W = Wrench::Zero();
   const JointVector* torque = nullptr;  // that acts at present [N·m]
   Pose X_WO;                            // of the object, without any error
@@ -35,55 +35,58 @@ struct ControllerInput {
 class Controller {
  public:
   virtual ~Controller() = default;
-  // Joint torques [N·m] before the effort limits are applied. They depend only on the input, the
-  // memory and the last Tune. Earlier calls must have no effect, since start, reset and
-  // linearisation call this function at other states. Uses no heap or lock; does not throw.
+  // Computes joint torques [N·m] before the effort limits are applied. They depend only on the
+  // input, the memory and the last Tune. Earlier calls must have no effect, since start, reset and
+  // linearisation call this function at other states. Does not use the heap or a lock, and does not
+  // throw.
   virtual void Compute(const ControllerInput& input, JointVector* torque) noexcept = 0;
-  // The memory: everything that Advance changes, as numbers of any unit that vary smoothly. Its
-  // size is constant. Saved states and the linearisation contain it.
+  // Returns the memory: everything that Advance changes, as numbers of any unit that vary smoothly.
+  // Its size is constant. Saved states and the linearisation contain it.
   virtual std::span<double> memory() noexcept { return {}; }
   // Sets the memory for a cobot that has rested at `input` for a long time.
   virtual void Start(const ControllerInput&) noexcept {}
-  // Sets the memory for a controller that takes over at `input`, where input.torque acts. Uses no
-  // heap or lock; does not throw.
+  // Sets the memory for a controller that takes over at `input`, where input.torque acts. Does not
+  // use the heap or a lock, and does not throw.
   virtual void TakeOver(const ControllerInput& input) noexcept { Start(input); }
-  // Advances the memory by the controller's period dt [s]. Uses no heap or lock; does not throw.
+  // Advances the memory by the controller's period dt [s]. Does not use the heap or a lock, or
+  // throw.
   virtual void Advance(const ControllerInput& input, double dt) noexcept {
     static_cast<void>(input), static_cast<void>(dt);
   }
-  // Whether the input contains the wrist sensor's reading.
+  // Returns whether the input contains the wrist sensor's reading.
   virtual bool uses_wrist_sensor() const noexcept { return false; }
-  // Energy stored in the controller's springs [J]; 0 if it has none.
+  // Returns the energy stored in the controller's springs [J], or 0 if it has none.
   virtual double StoredEnergy(const ControllerInput& input) const noexcept = 0;
   // Changes stiffness and damping. If `keeps_force`, the set-point shifts so that the springs'
   // force at `input` does not change. Does nothing for a controller without springs and dampers.
-  // Uses no heap or lock; does not throw.
+  // Does not use the heap or a lock, and does not throw.
   virtual void Tune(const ControllerTuning& tuning, const ControllerInput& input,
                     bool keeps_force) noexcept {
     static_cast<void>(tuning), static_cast<void>(input), static_cast<void>(keeps_force);
   }
   virtual bool has_springs() const noexcept { return false; }
-  // Moves the Cartesian set-point by `shift` from where it would be: a translation [m] and a
-  // rotation vector [rad] in W. Does nothing for a controller without one. Uses no heap or lock;
-  // does not throw.
+  // Shifts the Cartesian set-point by `shift` from its usual place: a translation [m] and a
+  // rotation vector [rad] in W. Does nothing for a controller without one. Does not use the heap or
+  // a lock, and does not throw.
   virtual void ShiftSetPoint(const Vector6& shift) noexcept { static_cast<void>(shift); }
   virtual bool has_set_point() const noexcept { return false; }
   // Undoes Tune and ShiftSetPoint.
   virtual void ResetTuning() noexcept {}
-  // How the last Compute went, and the status of a refused step.
+  // Returns how the last Compute went, and the status of a refused step.
   virtual ControllerOutcome outcome() const noexcept { return ControllerOutcome::kComputed; }
   virtual Status failure() const noexcept {
     return {StopCause::kPhysics, -1, std::numeric_limits<double>::quiet_NaN(), 0, Quantity::kNone};
   }
-  // In real time, a controller outside the program has a deadline; otherwise the program waits.
+  // In real time, a controller outside the program has a deadline. Otherwise the program waits for
+  // it.
   virtual void SetRealTime(bool) noexcept {}
-  // Null unless the controller is outside the program.
+  // Returns null unless the controller is outside the program.
   virtual TapedController* taped() noexcept { return nullptr; }
-  // Archives the changes by Tune, ShiftSetPoint and Start. The memory is archived by the caller.
+  // Archives the changes by Tune, ShiftSetPoint and Start. The caller archives the memory.
   virtual void Archive(StateArchive&) noexcept {}
 };
 
-// Data from which a controller is made: its part of the scenario, the robot, and the start.
+// The data from which a controller is made: its part of the scenario, the robot, and the start.
 struct ControllerContext {
   const ControllerSpec& spec;
   const RobotModel& model;
@@ -102,8 +105,8 @@ struct ControllerKind : ParameterKind {
   std::unique_ptr<Controller> (*make)(const ControllerContext&, const OwnParameters&);
 };
 
-// The kind of a controller C whose constructor takes the context and its parameters P. `name`: its
-// cobot.controller.type.
+// Returns the kind of a controller C whose constructor takes the context and its parameters P.
+// `name` is its cobot.controller.type.
 template <class C, class P>
 constexpr ControllerKind ControllerKindOf(const char* name, const char* doc,
                                           ControllerPlace place = ControllerPlace::kProgram) {
@@ -114,8 +117,8 @@ constexpr ControllerKind ControllerKindOf(const char* name, const char* doc,
           }};
 }
 
-// `values` of the parameter `key`, one per joint; a single value is for all joints. Throws
-// InputError for another number of values.
+// Returns the `values` of the parameter `key`, one per joint. A single value is for all joints.
+// Throws InputError for another number of values.
 JointVector PerJoint(const ControllerContext& context, const std::string& key,
                      const std::vector<double>& values);
 

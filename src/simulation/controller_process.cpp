@@ -35,12 +35,12 @@ double Since(Clock::time_point start) {
   throw InputError::At(kKey, std::string(kKey) + why);
 }
 
-// Anonymous memory that the program inherits. Returns its descriptor.
+// Creates anonymous memory that the program inherits. Returns its descriptor.
 int NewMemory() {
   const int made = memfd_create("controller", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   const int descriptor = made < 0 ? -1 : fcntl(made, F_DUPFD_CLOEXEC, kSafeDescriptor);
   if (made >= 0) close(made);
-  // Its size is sealed: if the program could shorten it, the control loop would crash.
+  // The size is sealed. If the program could shorten the memory, the control loop would crash.
   if (descriptor < 0 || ftruncate(descriptor, sizeof(PredictorControllerMemory)) != 0 ||
       fcntl(descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
     Refuse(std::string(": no shared memory: ") + std::strerror(errno) + ".");
@@ -65,7 +65,7 @@ pid_t Spawn(const std::vector<std::string>& command, const std::filesystem::path
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
-  // Ctrl-C at the terminal is meant for the run, which then ends the program itself.
+  // Ctrl-C at the terminal is meant for the run, which then ends the program by itself.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
   pid_t pid = 0;
   const int error =

@@ -1,4 +1,4 @@
-// A controller that runs as a process of its own and answers through shared memory.
+// Runs a controller as a separate process that answers through shared memory.
 #pragma once
 
 #include <predictor/controller.h>
@@ -19,21 +19,21 @@ class ControllerProcess {
   ControllerProcess(const ControllerProcess&) = delete;
   ControllerProcess& operator=(const ControllerProcess&) = delete;
 
-  // What the next request contains, and the last answer.
+  // Returns the contents of the next request, and of the last answer.
   PredictorControllerMemory& shared() noexcept { return *shared_; }
 
-  // Sends a request of this kind and waits for the answer, in any case. Returns false if the
-  // program ends, or does not answer within `limit` [s].
+  // Sends a request of this kind and always waits for the answer. Returns false if the program
+  // ends, or does not answer within `limit` [s].
   bool AskAndWait(int kind, double limit) noexcept;
 
-  // For the tick in real time: no system call and no lock. Sends a request unless the last one is
-  // still unanswered, and watches until `deadline` [s] has passed.
+  // For the tick in real time, without system calls and locks. Sends a request unless the last one
+  // is still unanswered, and watches until `deadline` [s] has passed.
   bool AskAndWatch(int kind, double deadline) noexcept;
 
-  // True while an answer to an earlier request may still arrive: `shared` then belongs to the
-  // program.
+  // Returns true while an answer to an earlier request may still arrive. `shared` then belongs to
+  // the program.
   bool IsBusy() const noexcept;
-  // "exit code 1", or "" while it runs.
+  // Returns "exit code 1", for example, or "" while the program runs.
   std::string HowItEnded() noexcept;
 
  private:

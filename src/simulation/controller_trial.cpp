@@ -12,7 +12,7 @@
 namespace predictor {
 namespace {
 
-// Of this thread: other programs do not count [s].
+// Returns the time of this thread, in which other programs do not count [s].
 double CpuTime() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

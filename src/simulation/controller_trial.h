@@ -1,4 +1,5 @@
-// Tries a controller on recorded states: does it allocate, and how long does it take?
+// Tries a controller on recorded states to find out whether it allocates memory, and how long it
+// takes.
 #pragma once
 
 #include <cstdint>
@@ -30,13 +31,13 @@ struct TrialFigures {
 
 class ControllerTrial {
  public:
-  // Makes the scenario's controller, and counts the allocations of this process from now on.
-  // Throws InputError.
+  // Makes the scenario's controller. From now on, it counts the allocations of this process. Throws
+  // InputError.
   explicit ControllerTrial(const Scenario& scenario);
   ~ControllerTrial();
 
   int dof() const;
-  // One step of the controller at a recorded state [s, rad, rad/s].
+  // Performs one step of the controller at a recorded state [s, rad, rad/s].
   void Step(double time, const JointVector& q, const JointVector& v);
   TrialFigures Figures() const;
 

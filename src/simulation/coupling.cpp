@@ -9,7 +9,7 @@ namespace {
 constexpr double kMaxStepGain = 0.3;     // d·dt·mobility of a damper
 constexpr double kRotationLength = 0.2;  // converts speed_damping into rotational damping [m]
 
-// `damping` [N·s/m or N·m·s/rad], reduced if necessary so that a step of dt [s] is stable.
+// Returns `damping` [N·s/m or N·m·s/rad], reduced if necessary so that a step of dt [s] is stable.
 double Limited(double damping, double mobility, double dt) {
   return std::min(damping, kMaxStepGain / (mobility * dt));
 }

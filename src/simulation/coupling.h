@@ -1,4 +1,5 @@
-// Wrench of the device on the virtual object, which may not run away from the arms that display it.
+// Computes the wrench that keeps the virtual object from running away from the arms that display
+// it.
 #pragma once
 
 #include "core/messages.h"
@@ -6,15 +7,16 @@
 
 namespace predictor {
 
-// Mobility of the free object at one handle. A cobot that holds the object can only reduce the
-// mobility. The mobility therefore bounds the effect of an explicit damper in one step.
+// The mobility of the free object at one handle. A cobot that holds the object can only reduce the
+// mobility, so it bounds the effect of an explicit damper in one step.
 struct HandleMobility {
   double translation = 1;  // maximum, for a force [1/kg]
   double rotation = 1;     // maximum, for a torque [1/(kg·m²)]
 };
 
-// Mobility of an object with `mass` [kg] and `inertia` about its centre of mass [kg·m²]. `lever` is
-// the vector from the centre of mass to the handle [m], in the same axes as the inertia.
+// Returns the mobility of an object with `mass` [kg] and `inertia` about its centre of mass
+// [kg·m²]. `lever` is the vector from the centre of mass to the handle [m], in the same axes as the
+// inertia.
 HandleMobility MobilityAt(double mass, const Matrix3& inertia, const Vector3& lever);
 
 // The wrench on a virtual handle D that results from the device's limits; zero in normal running:
@@ -32,11 +34,13 @@ class Coupling {
   Coupling(const CouplingSpec& spec, double speed_cap, double rotation_speed_cap,
            const HandleMobility& mobility, double dt);
 
-  // Wrench on D, about D, in axes of W [N, N·m]. Uses no heap or lock; does not throw.
+  // Returns the wrench on D, about D, in axes of W [N, N·m]. Does not use the heap or a lock, or
+  // throw.
   Wrench Compute(const FrameMotion& D, const FrameMotion& H) const noexcept;
 
  private:
-  // Parameters of translation or of rotation; units with m for translation, with rad for rotation.
+  // The parameters of translation or of rotation, in units with m for translation and with rad for
+  // rotation.
   struct Part {
     double deadband = 0, stiffness = 0, damping = 0;  // [m], [N/m], [N·s/m]
     double speed_cap = 0, speed_damping = 0;          // [m/s], [N·s/m]

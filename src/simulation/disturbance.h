@@ -8,7 +8,7 @@
 
 namespace predictor {
 
-// What the attachment's grip on the object holds.
+// The limits up to which the attachment's grip holds the object.
 struct GripLimits {
   double force = HUGE_VAL;   // beyond it, the object slides [N]; 0 with a torque of 0: open
   double torque = HUGE_VAL;  // beyond it, it turns [N·m]

@@ -1,4 +1,4 @@
-// A physics engine, as the rest of this module sees it: a scene at one state.
+// The interface of a physics engine to the rest of this module: a scene in one state.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,13 +16,13 @@
 
 namespace predictor {
 
-// How the object is part of the scene: a body that the attachment's joint connects to the
-// end-effector, or a free body.
+// How the object is part of the scene: as a body that the attachment's joint connects to the
+// end-effector, or as a free body.
 enum class Holding { kJoint, kFree };
 
 enum class SceneBody { kEndEffector, kObject };  // their frames are E and O
 
-// Coulomb friction of a joint of the cobot, and how little it creeps (1: not at all).
+// The Coulomb friction of a joint of the cobot, and how little it creeps (1: not at all).
 struct DofFriction {
   double torque, impedance;  // [N·m] or [N], [1]
 };
@@ -36,13 +36,13 @@ struct Contact {
   double depth = 0;                    // of the penetration; negative: a gap [m]
 };
 
-// Its positions and velocities are those of the cobot's joints and of the attachment's joint or the
-// free object, in the engine's order (Layout). A rotation may have more positions than velocities;
-// a change of the positions is a vector as long as the velocities (tangent space).
+// The positions and velocities are those of the cobot's joints and of the attachment's joint or the
+// free object, in the engine's order (Layout). A rotation may have more positions than velocities.
+// A change of the positions is a vector as long as the velocities (tangent space).
 //
-// A step has two stages. Prepare computes what follows from positions and velocities; then forces
-// are set; Advance computes the accelerations and integrates. The functions that say so use the
-// state of the last Prepare.
+// A step has two stages. Prepare computes what follows from positions and velocities. Then forces
+// are set, and Advance computes the accelerations and integrates. Some functions use the state of
+// the last Prepare, and say so.
 //
 // Functions that are noexcept use neither heap nor lock.
 class Engine {
@@ -69,7 +69,8 @@ class Engine {
   int dof() const noexcept { return layout_.dof; }
   double step() const noexcept { return layout_.step; }
 
-  // Another state of the same scene. Masses of hands, friction and options are common to both.
+  // Returns another state of the same scene. Masses of hands, friction and options are common to
+  // both.
   virtual std::unique_ptr<Engine> Copy() const = 0;
 
   // ---- the state -------------------------------------------------------------------------------
@@ -79,28 +80,30 @@ class Engine {
   virtual Values positions() noexcept = 0;
   virtual Values velocities() noexcept = 0;
   virtual Values joint_forces() noexcept = 0;  // applied, one for each velocity [N·m, N]
-  // Applied to the object, about its centre of mass, in axes of W [N, N·m].
+  // Sets the wrench on the object, about its centre of mass, in axes of W [N, N·m].
   virtual void SetObjectWrench(const Wrench& wrench) noexcept = 0;
   virtual ConstValues accelerations() const noexcept = 0;  // of the last step
-  // Where an iterative solver of contacts begins; the results depend on it in the last digits.
+  // Forgets where an iterative solver of contacts begins, on which the last digits of the results
+  // depend.
   virtual void ForgetSolution() noexcept = 0;
 
-  // All of the above as numbers; a restored state continues bit for bit.
+  // The following functions archive all of the above as numbers. A restored state continues bit for
+  // bit.
   virtual std::size_t state_size() const noexcept = 0;
   virtual void Save(std::span<double> to) const noexcept = 0;
   virtual void Restore(std::span<const double> from) noexcept = 0;  // to be followed by Prepare
-  // With Holding::kFree: gives the object this pose and twist (not the acceleration).
+  // With Holding::kFree, gives the object this pose and twist (not the acceleration).
   virtual void MoveObject(const FrameMotion& O) noexcept = 0;
-  // Everything at rest at the model's zero. Also repairs the state after an error.
+  // Puts everything at rest at the model's zero. It also repairs the state after an error.
   virtual void Clear() noexcept = 0;
 
   // ---- a step ----------------------------------------------------------------------------------
 
-  // These return false on an error of the engine, and when there were more contacts than it can
+  // These return false on an error of the engine, and if there were more contacts than it can
   // treat. The state is then unusable until Clear or Restore.
   virtual bool Prepare() noexcept = 0;
   virtual bool Advance() noexcept = 0;  // by layout().step
-  // Only the accelerations, at the present forces; also the load's wrench, if `load`.
+  // Computes only the accelerations at the present forces, and the load's wrench if `load`.
   virtual bool ComputeAccelerations(bool load) noexcept = 0;
 
   // ---- kinematics and forces, at the last Prepare ----------------------------------------------
@@ -109,42 +112,46 @@ class Engine {
   virtual FrameMotion MotionOf(SceneBody body) const noexcept = 0;  // A_W is zero
   virtual Vector3 object_com() const noexcept = 0;                  // in W [m]
   virtual double KineticEnergy() noexcept = 0;                      // [J]
-  // Of the point p_W of a body: its velocity, then the body's angular velocity, by the velocities.
+  // For the point p_W of a body, writes its velocity and then the body's angular velocity, per
+  // velocity of the joints.
   virtual void Jacobian(SceneBody body, const Vector3& p_W, Jacobian6 J) noexcept = 0;
   virtual void JacobianRate(SceneBody body, const Vector3& p_W, Jacobian6 J) noexcept = 0;
   virtual void MassMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept = 0;
   virtual void TimesMass(const double* a, double* force) const noexcept = 0;  // M a
-  // The matrix of a step: the change of the velocities is its inverse times step · forces. It is
-  // the mass matrix, with whatever the integrator treats implicitly.
+  // Writes the matrix of a step: the change of the velocities is its inverse times step · forces.
+  // It is the mass matrix plus whatever the integrator treats implicitly.
   virtual void StepMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept = 0;
-  // All forces of the last ComputeAccelerations, but those that StepMatrix contains [N·m, N].
+  // Writes all forces of the last ComputeAccelerations except those that StepMatrix contains [N·m,
+  // N].
   virtual void Forces(Eigen::Ref<Eigen::VectorXd> forces) noexcept = 0;
-  // Whether contacts, limits or friction react to applied forces, and what those that hold add to
-  // the StepMatrix in response.
+  // Returns whether contacts, limits or friction react to applied forces. AddReactions adds what
+  // those that hold contribute to the StepMatrix.
   virtual bool has_reactions() const noexcept = 0;
   virtual void AddReactions(Eigen::Ref<Eigen::MatrixXd> M) const noexcept = 0;
-  // positions ⊕ scale · change.
+  // Sets positions ⊕ scale · change.
   virtual void Displace(const double* change, double scale) noexcept = 0;
 
-  // With Holding::kJoint and a wrist sensor, after ComputeAccelerations(true) or Advance: wrench of
-  // the load on the end-effector, about the attachment, in axes of W; sets the attachment's place.
+  // With Holding::kJoint and a wrist sensor, after ComputeAccelerations(true) or Advance, returns
+  // the wrench of the load on the end-effector, about the attachment, in axes of W. Sets the
+  // attachment's place.
   virtual Wrench LoadWrench(Vector3* p_WA) const noexcept = 0;
 
-  // Contacts of the last Prepare; their forces are those of the last accelerations.
+  // Returns the contacts of the last Prepare. Their forces are those of the last accelerations.
   virtual int contact_count() const noexcept = 0;
   virtual Contact contact(int i) const noexcept = 0;
 
   // ---- the scene -------------------------------------------------------------------------------
 
-  // Friction of joint j of the cobot.
+  // Returns the friction of joint j of the cobot.
   virtual DofFriction JointFriction(int j) const noexcept = 0;
   virtual void SetJointFriction(int j, const DofFriction& friction) noexcept = 0;
 
-  // Direct mode: mass of a hand [kg], which moves with its handle and has no weight. SetHandMass
-  // returns whether the mass changed; if so, Prepare must follow. Other modes: 0.
+  // In direct mode, returns the mass of a hand [kg], which moves with its handle and has no weight.
+  // SetHandMass returns whether the mass changed. If so, Prepare must follow. In other modes, the
+  // mass is 0.
   virtual double HandMass(int hand) const noexcept = 0;
   virtual bool SetHandMass(int hand, double mass) noexcept = 0;
-  // Sums of masses, with the rounding errors that changes of the hands' masses left.
+  // Archives sums of masses with the rounding errors that changes of the hands' masses left.
   virtual void ArchiveMasses(StateArchive& a) noexcept = 0;
 
   // Options for searches outside the tick: whether the joints have Coulomb friction, and how
@@ -163,7 +170,7 @@ class Engine {
 };
 
 // Composes the scene of a scenario: cobot, object, handles, floor and table. The object collides
-// with floor and table. `wrist_sensor`: whether LoadWrench will be used. Throws InputError.
+// with floor and table. `wrist_sensor` states whether LoadWrench will be used. Throws InputError.
 std::unique_ptr<Engine> MakeEngine(const Scenario& scenario, const RobotModel& cobot,
                                    bool wrist_sensor, Holding holding);
 

@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kTolerance = 1e-8;  // tolerance of accelerations [rad/s², m/s²]
-// Contacts must be solved more accurately than that.
+// Contacts must be solved more accurately than the equilibrium itself.
 constexpr double kContactTolerance = 1e-14;
 constexpr int kIterations = 1000;
 constexpr double kMaxStep = 0.1;      // maximum change of a coordinate in an iteration [rad, m]
@@ -24,7 +24,7 @@ constexpr double kUnstable = -0.01;  // eigenvalue of M⁻¹ H below which the s
 constexpr double kNudge = 0.01;      // away from an unstable equilibrium [rad, m]
 
 // Searches by the implicit flow M dq = τ r(q ⊕ dq), where r is the generalised force at rest. While
-// the pseudo-time τ is small, this is a heavily damped motion; when τ is large, it is Newton's
+// the pseudo-time τ is small, this is a heavily damped motion. When τ is large, it is Newton's
 // method.
 class EquilibriumSearch {
  public:
@@ -47,7 +47,8 @@ class EquilibriumSearch {
       const double softest = modes.eigenvalues.real().minCoeff(&worst);
       if (before < kTolerance && softest > kUnstable) return before;
       if (before < kTolerance) {
-        // An unstable equilibrium (an object balanced above its joint): push the object off.
+        // The equilibrium is unstable (an object is balanced above its joint), so the object is
+        // pushed away from it.
         const VectorXd away = modes.eigenvectors.col(worst).real();
         Move(kNudge * away / away.lpNorm<Eigen::Infinity>());
         tau = kPseudoTime;
@@ -68,7 +69,7 @@ class EquilibriumSearch {
  private:
   int nv() const { return engine_.dof(); }
 
-  // Generalised force M·qacc at rest in the present posture [N·m, N].
+  // Returns the generalised force M·qacc at rest in the present posture [N·m, N].
   VectorXd Force() {
     engine_.velocities().setZero();
     engine_.ForgetSolution();
@@ -96,7 +97,7 @@ class EquilibriumSearch {
     engine_.Displace(dq.data(), 1);
   }
 
-  // H = −∂r/∂q by central differences.
+  // Computes H = −∂r/∂q by central differences.
   MatrixXd Stiffness() {
     Engine::Values q = engine_.positions();
     const VectorXd start = q;
@@ -120,7 +121,7 @@ class EquilibriumSearch {
 };
 
 // The reason why the cobot cannot hold the object in the posture where the search ended, and the
-// key that sets it; "" if nothing prevents it.
+// key that sets it, or "" if nothing prevents it.
 struct Obstacle {
   std::string key, text;
 };

@@ -16,7 +16,7 @@ namespace {
 constexpr const ParameterKind* kHazardKinds[] = {PREDICTOR_HAZARDS(PREDICTOR_ENTRY)};
 #undef PREDICTOR_ENTRY
 
-// When the program starts, so that every scenario is read with their parameters.
+// This runs when the program starts, so that every scenario is read with their parameters.
 [[maybe_unused]] const bool kDeclared = (DeclareHazards(kHazardKinds), true);
 
 constexpr double kGrip = 0.5;  // force of a hand that grips [N]
@@ -40,7 +40,8 @@ EventSequence::EventSequence(const Scenario& scenario) {
     auto parameters = ReadParameters(*kind, {spec.parameters, path}, &problems);
     problems.ThrowIfAny();
     const auto place = std::find(std::begin(kHazardKinds), std::end(kHazardKinds), kind);
-    // A stream for each event, so that further events do not change the times of others.
+    // Each event has its own random stream, so that further events do not change the times of
+    // others.
     events_.push_back({kind, std::move(parameters), spec.trigger, spec.duration,
                        RandomStream(scenario.seed, "event " + std::to_string(i)),
                        static_cast<std::uint8_t>(place - std::begin(kHazardKinds) + 1)});

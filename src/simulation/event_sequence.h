@@ -1,4 +1,4 @@
-// The events of a scenario: when each hazard begins and ends.
+// The events of a scenario, which determine when each hazard begins and ends.
 #pragma once
 
 #include <array>
@@ -23,15 +23,17 @@ class EventSequence {
   double longest_delay() const;     // sum of all that events add [s]
   bool loosens_attachment() const;  // an event lets the object slip or break loose
 
-  // No event has begun. Draws the times again, since a person knows those of the last run.
+  // Returns to a state in which no event has begun. Draws the times again, since a person knows
+  // those of the last run.
   void Reset() noexcept;
-  // Begins and ends events at the state of the world, and returns what those that act do.
+  // Begins and ends events in the state of the world. Returns what the events that act do.
   Disturbance Update(const WorldState& world, const WorldInput& input) noexcept;
-  // What the events that act did at the last Update.
+  // Returns what the events that acted did at the last Update.
   Disturbance disturbance() const noexcept;
 
   std::uint16_t active() const noexcept;  // bit: number of the event
-  // 1 + number of the hazard (in the order of hazards.h) that began last; 0: none.
+  // Returns 1 + the number of the hazard (in the order of hazards.h) that began last, or 0 for
+  // none.
   std::uint8_t latest() const noexcept { return latest_; }
 
   void Archive(StateArchive& a) noexcept;

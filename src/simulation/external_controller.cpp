@@ -12,7 +12,7 @@
 namespace predictor {
 namespace {
 
-// Damping of the fallback, as a rate: M times it resists the motion [1/s].
+// The fallback's damping as a rate [1/s]. The mass matrix times this rate resists the motion.
 constexpr double kFallbackRate = 10;
 
 template <class M>

@@ -1,4 +1,4 @@
-// What controllers outside the program have in common: a plug-in, or a process of its own.
+// The common part of controllers outside the program: plug-ins and separate processes.
 #pragma once
 
 #include <predictor/controller.h>
@@ -12,12 +12,12 @@
 
 namespace predictor {
 
-// The values of the interface at an input of the program.
+// Provides the values of the interface at an input of the program.
 class InterfaceInput {
  public:
-  // dt: period of the controller [s].
+  // dt is the period of the controller [s].
   InterfaceInput(double dt, int dof);
-  // Writes everything. The result is valid until the next call. No heap, no throw.
+  // Writes all values. The result is valid until the next call. Does not use the heap or throw.
   const PredictorControllerInput& Fill(const ControllerInput& input) noexcept;
 
  private:
@@ -26,14 +26,14 @@ class InterfaceInput {
   Jacobian J_;
 };
 
-// Words of cobot.controller.parameters.
+// A word of cobot.controller.parameters.
 struct InterfaceParameter {
   std::string key, value;
 };
 // Throws InputError if a word is not "key=value".
 std::vector<InterfaceParameter> InterfaceParameters(const std::string& text);
 
-// False for a number that no controller needs, and that a saved state cannot contain.
+// Returns false for a number that no controller needs and that a saved state cannot contain.
 inline bool IsUsable(double x) noexcept { return std::abs(x) < 1e12; }
 
 void FillPose(const Pose& X, double* to) noexcept;
@@ -48,7 +48,8 @@ class ExternalController : public Controller {
   Status failure() const noexcept final { return failure_; }
 
  protected:
-  // Asks for the torques. Returns whether they came; otherwise, how long none has come [s].
+  // Requests the torques. The answer states whether they arrived, and otherwise for how long none
+  // have [s].
   struct Answer {
     bool came = true;
     double silence = 0;
@@ -57,7 +58,7 @@ class ExternalController : public Controller {
   const PredictorControllerInput& Fill(const ControllerInput& input) const noexcept {
     return input_.Fill(input);
   }
-  // The silence after which the run stops [s].
+  // Returns the silence after which the run stops [s].
   virtual double longest_silence() const noexcept { return 0; }
 
  private:

@@ -1,4 +1,4 @@
-// Where an object ends that nothing holds: contacts may be missing, but no fall is endless.
+// Ends the fall of an object that nothing holds, because the scene may have no contacts.
 #pragma once
 
 #include "core/messages.h"
@@ -6,12 +6,12 @@
 
 namespace predictor {
 
-// Wrench about the centre of mass, in axes of W [N, N·m], that brings a falling object softly to
-// rest when its centre of mass is below `height` [m]; zero above it.
+// Returns the wrench about the centre of mass, in axes of W [N, N·m], that brings a falling object
+// softly to rest when its centre of mass is below `height` [m]. Above this height, it is zero.
 Wrench LandingWrench(const ObjectModel& object, const FrameMotion& O, double height) noexcept;
 
-// The height for an object that breaks loose with its centre of mass at `height` [m]: the floor,
-// z = 0, or one metre further down if it is already below the floor.
+// Returns the height for an object that breaks loose with its centre of mass at `height` [m]. It is
+// that of the floor, z = 0, or one metre further down if the object is already below the floor.
 inline double LandingHeight(double height) noexcept { return height > 0 ? 0 : height - 1; }
 
 }  // namespace predictor

@@ -10,7 +10,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kPositionStep = 1e-6;  // [rad, m]
-// [rad/s, m/s]; exact, because the forces are quadratic in it.
+// The step is in [rad/s, m/s]. The result is exact, because the forces are quadratic in it.
 constexpr double kVelocityStep = 1e-4;
 constexpr double kWrenchStep = 1e-2;  // [N, N·m]
 constexpr double kMemoryStep = 1e-6;  // of a controller
@@ -70,16 +70,18 @@ class Linearisation {
 
  private:
   int dof() const { return static_cast<int>(scene_.torque().size()); }
-  // States of the wrist sensor's filter, then of the controller's memory.
+  // Returns the number of states of the wrist sensor's filter plus those of the controller's
+  // memory.
   int inner() const { return sensed_ + static_cast<int>(memory_.size()); }
 
-  // Rates caused by component `i` of a wrench on a handle whose velocity is `row` times v.
+  // Returns the rates caused by component `i` of a wrench on a handle whose velocity is `row` times
+  // v.
   VectorXd EffectOfWrench(const Eigen::RowVectorXd& row, const Pose& X_OD, int i) {
     const VectorXd zero = VectorXd::Zero(n_), same = VectorXd::Zero(inner());
     if (sensed_ == 0) {
       return Slope(kWrenchStep, zero, zero, row.transpose(), same).head(n_ + inner());
     }
-    // The wrist sensor sees wrenches on the object, but no forces on joints.
+    // The wrist sensor senses wrenches on the object, but not forces on joints.
     on_object_ = AtCenterOfMass(X_OD, Vector6::Unit(i));
     const VectorXd rates = Slope(kWrenchStep, zero, zero, zero, same).head(n_ + inner());
     on_object_.setZero();
@@ -87,8 +89,8 @@ class Linearisation {
   }
 
   // Delays the controller's torques by two first-order all-pass sections per joint (as the loop's
-  // other delays, haptics/stability.cpp). With z' = c (input − z), a section's output is
-  // 2 z − input. The torques that act differ from the computed ones by 2 z_2 − 2 z_1.
+  // other delays, haptics/stability.cpp). With z' = c (input − z), a section's output is 2 z −
+  // input. The torques that act differ from the computed ones by 2 z_2 − 2 z_1.
   void AddDelay(const MatrixXd& torque, LinearModel* model) {
     const Eigen::Index states = model->A.rows(), joints = dof();
     const double c = 4 / scene_.timing().mean_delay();
@@ -112,9 +114,8 @@ class Linearisation {
     model->C.conservativeResizeLike(MatrixXd::Zero(model->C.rows(), A.rows()));
   }
 
-  // Central difference of the rates along a direction of positions, velocities, forces, and states
-  // of sensor and controller.
-  // `on_object_` is part of the direction.
+  // Returns the central difference of the rates along a direction of positions, velocities, forces,
+  // and states of sensor and controller. `on_object_` is part of the direction.
   VectorXd Slope(double step, const VectorXd& dq, const VectorXd& v, const VectorXd& force,
                  const VectorXd& in) {
     const VectorXd ahead = Rates(step * dq, step * v, step * force, step * in, step);
@@ -128,7 +129,8 @@ class Linearisation {
       memory[i] = memory_[i] + change[sensed_ + static_cast<Eigen::Index>(i)];
   }
 
-  // Accelerations; rates of the sensor's and the controller's states; the controller's torques.
+  // Returns the accelerations, the rates of the sensor's and the controller's states, and the
+  // controller's torques.
   VectorXd Rates(const VectorXd& dq, const VectorXd& v, const VectorXd& force, const VectorXd& in,
                  double step) {
     engine_.positions() = positions_;
@@ -147,8 +149,8 @@ class Linearisation {
     return rates;
   }
 
-  // Cutoff of the wrist sensor [rad/s], with the lag of sampling: a reading is half a sub-step old
-  // on average, and the memory is advanced explicitly, half a period late.
+  // Returns the cutoff of the wrist sensor [rad/s], with the lag of sampling. A reading is half a
+  // sub-step old on average, and the memory is advanced explicitly, half a period late.
   double WristRate() {
     const double lag = 0.5 * (engine_.step() + scene_.timing().period_time());
     return 1 / (1 / scene_.wrist().cutoff() + lag);
@@ -167,7 +169,7 @@ class Linearisation {
     return rates;
   }
 
-  // A wrench on a handle as a wrench about the object's centre of mass.
+  // Converts a wrench on a handle to a wrench about the object's centre of mass.
   Wrench AtCenterOfMass(const Pose& X_OD, const Wrench& F_D) {
     const VectorXd zero = VectorXd::Zero(n_);
     Rates(zero, zero, zero, VectorXd::Zero(inner()), 0);
@@ -175,7 +177,7 @@ class Linearisation {
     return ShiftWrench(F_D, p_WD - engine_.object_com());
   }
 
-  // V_WD = J v.
+  // Returns J with V_WD = J v.
   MatrixXd HandleJacobian(const Pose& X_OD) {
     const VectorXd zero = VectorXd::Zero(n_);
     Rates(zero, zero, zero, VectorXd::Zero(inner()), 0);

@@ -10,7 +10,7 @@ namespace predictor {
 
 class PluginLibrary {
  public:
-  // Loads the library; this runs its code. Throws InputError that states what does not fit.
+  // Loads the library, which runs code in it. Throws InputError that states what does not fit.
   explicit PluginLibrary(const std::filesystem::path& file);
 
   const PredictorController& functions() const { return *functions_; }

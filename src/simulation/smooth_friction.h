@@ -1,12 +1,12 @@
-// Friction of a joint, smooth about standstill.
+// Computes the friction of a joint, which is smooth about standstill.
 #pragma once
 
 #include <cmath>
 
 namespace predictor {
 
-// Torque that opposes the velocity v [rad/s] of a joint with Coulomb friction [N·m] and viscous
-// friction [N·m·s/rad]. Below 0.01 rad/s, Coulomb friction falls smoothly to 0.
+// Returns the torque that opposes the velocity v [rad/s] of a joint with Coulomb friction [N·m] and
+// viscous friction [N·m·s/rad]. Below 0.01 rad/s, Coulomb friction falls smoothly to 0.
 inline double SmoothFriction(double coulomb, double viscous, double v) noexcept {
   constexpr double kSmooth = 0.01;  // [rad/s]
   return viscous * v + coulomb * std::tanh(v / kSmooth);

@@ -1,4 +1,4 @@
-// The answers of a controller outside the program, kept for a replay without it.
+// Stores the answers of a controller outside the program for a replay without it.
 #pragma once
 
 #include <memory>
@@ -12,19 +12,20 @@ namespace predictor {
 // A controller outside the program with its tape, or the tape alone.
 //
 // While a scene is set up (the search for the start, the linearisation), every answer goes to the
-// tape, in order: a replay makes the same calls. In a tick, the record itself has the answer.
+// tape in order. A replay makes the same calls. In a tick, the record itself contains the answer.
 class TapedController final : public Controller {
  public:
   explicit TapedController(std::unique_ptr<Controller> controller, int dof);
-  // Replays. Throws InputError if the tape does not fit a cobot with dof joints.
+  // Makes a controller that replays. Throws InputError if the tape does not fit a cobot with dof
+  // joints.
   TapedController(std::vector<double> tape, int dof);
 
   TapedController* taped() noexcept override { return this; }
   void SetUp(bool begins) noexcept { sets_up_ = begins; }
   std::span<const double> tape() const noexcept { return tape_; }
-  // Replays only: the answer of the tick that follows.
+  // Sets the answer of the tick that follows. This is for replays only.
   void Play(const ControllerAnswer& answer) noexcept { answer_ = answer; }
-  // That answer; null in a run, and while the scene is set up.
+  // Returns that answer, or null in a run and while the scene is set up.
   const ControllerAnswer* played() const noexcept {
     return controller_ || sets_up_ ? nullptr : &answer_;
   }
@@ -45,8 +46,8 @@ class TapedController final : public Controller {
 
   std::unique_ptr<Controller> controller_;  // null in a replay
   bool sets_up_ = true;
-  // Whether it uses the wrist sensor, the size of its memory, the number of joints, and the
-  // answers.
+  // The tape contains whether the controller uses the wrist sensor, the size of its memory, the
+  // number of joints, and the answers.
   mutable std::vector<double> tape_;
   mutable std::size_t next_ = 3;
   std::vector<double> memory_;  // of a replay

@@ -14,7 +14,7 @@
 namespace predictor {
 namespace {
 
-// Beyond these values, the simulation has diverged: no arm or load moves that fast.
+// Beyond these values, the simulation has diverged, because no arm or load moves that fast.
 constexpr double kMaxVelocity = 100;      // of a joint [rad/s, m/s]
 constexpr double kMaxAcceleration = 1e6;  // of a joint [rad/s², m/s²]
 
@@ -108,7 +108,7 @@ struct World::Impl {
     controlled.Update(&engine());
   }
 
-  // Archives the engine's state, and the hands' masses, by which direct mode changes its scene.
+  // Archives the engine's state, and the hands' masses with which direct mode changes its scene.
   void Archive(StateArchive& a) noexcept {
     bool is_loose = controlled.is_loose();
     Engine* loose = controlled.loose_engine();
@@ -134,7 +134,7 @@ struct World::Impl {
   }
 
   // Frees the object, with its motion and the masses of the hands on it. A step that fails returns
-  // to this moment.
+  // to this time.
   void Loosen() noexcept {
     for (int hand = 0; hand < kHands; ++hand) {
       controlled.loose_engine()->SetHandMass(hand, engine().HandMass(hand));
@@ -241,7 +241,7 @@ struct World::Impl {
   Hands hands;
   std::array<Pose, kHands> X_OD;
   std::array<Coupling, kHands> coupling;
-  // Engine states: at the start, before the present step.
+  // The engine's states at the start and before the present step.
   std::vector<double> start, saved, saved_loose;
   FrameMotion object, end_effector;
   WorldState state;

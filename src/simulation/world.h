@@ -1,4 +1,4 @@
-// The virtual world: cobot, object, handles, floor and table, simulated by MuJoCo behind this
+// The virtual world: cobot, object, handles, floor and table, which MuJoCo simulates behind this
 // class.
 #pragma once
 
@@ -22,33 +22,35 @@ class World {
 
   // Advances by dt [s] (a whole number of 1 ms sub-steps) under the hands' wrenches and the
   // coupling, both updated in each sub-step. If a step is non-finite or diverges, keeps the
-  // previous state and returns kPhysics. Uses no heap or lock; does not throw.
+  // previous state and returns kPhysics. Does not use the heap or a lock, and does not throw.
   Status Step(const WorldInput& input, double dt) noexcept;
 
-  // Changes the controller's stiffness and damping until Reset, without a jump of its force. Uses
-  // no heap or lock; does not throw.
+  // Changes the controller's stiffness and damping until Reset, without a jump of its force. Does
+  // not use the heap or a lock, and does not throw.
   void Tune(const ControllerTuning& tuning) noexcept;
 
-  // Only a controller outside the program does something here. SetRealTime: whether it has a
-  // deadline. Play: what it answered in the tick that follows, in a replay without it. Tape: what
-  // it answered while this world was set up; empty for another controller.
+  // These functions have an effect only for a controller outside the program. SetRealTime
+  // determines whether it has a deadline. Play gives its answer in the tick that follows, in a
+  // replay without it. Tape returns its answers while this world was set up, and nothing for
+  // another controller.
   void SetRealTime(bool real_time) noexcept;
   void Play(const ControllerAnswer& answer) noexcept;
   std::vector<double> ControllerTape() const;
 
-  // State after the last Step: poses and twists at state().time; accelerations (A_W), torque and
-  // coupling of the last sub-step. A_W is the change of the twist over that sub-step. `energy` is
-  // the sum of the kinetic energy, the object's potential energy, and the energy of the
-  // controller's springs. It excludes the cobot's weight, which its controllers compensate.
+  // Returns the state after the last Step: poses and twists at state().time, and accelerations
+  // (A_W), torque and coupling of the last sub-step. A_W is the change of the twist over that
+  // sub-step. `energy` is the sum of the kinetic energy, the object's potential energy, and the
+  // energy of the controller's springs. It excludes the cobot's weight, which its controllers
+  // compensate.
   const WorldState& state() const;
 
   // Returns to the initial equilibrium at time 0.
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept;
 
-  // Linear model about the present posture, at rest. Includes the controller, joint friction and
-  // contacts, but not the coupling, hands and Coulomb friction. x: tangent-space change of the
-  // coordinates (nv), then their rates (nv). Allocates memory.
+  // Returns a linear model about the present posture, at rest. It includes the controller, joint
+  // friction and contacts, but not the coupling, hands and Coulomb friction. x contains the
+  // tangent-space change of the coordinates (nv) and then their rates (nv). Allocates memory.
   LinearModel Linearise() const;
 
   double object_mass() const;                    // [kg]

@@ -9,11 +9,11 @@
 
 namespace predictor {
 
-// reading = low-pass(true wrench) + bias + white noise. The wrench is that of the load on the
+// The reading is low-pass(true wrench) + bias + white noise. The wrench is that of the load on the
 // end-effector, about E, in axes of W.
 class WristSensor {
  public:
-  // dt: sampling time [s].
+  // dt is the sampling time [s].
   WristSensor(const WristSensorSpec& spec, double dt, std::uint64_t seed);
 
   // Settles at the true wrench F_E_W, without noise.
@@ -22,7 +22,8 @@ class WristSensor {
   void Step(const Wrench& F_E_W) noexcept;
   Wrench reading() const noexcept { return filter_.value() + bias_ + noise_; }
 
-  // The filter's state, for linearisation. Its derivative is cutoff() · (true wrench − filtered).
+  // Returns the filter's state, for linearisation. Its derivative is cutoff() · (true wrench −
+  // filtered).
   const Wrench& filtered() const noexcept { return filter_.value(); }
   void SetFiltered(const Wrench& F_E_W) noexcept { filter_.Reset(F_E_W); }
   double cutoff() const noexcept;  // [rad/s]

@@ -36,7 +36,7 @@ void AdmittanceLaw::Start(const ControllerInput& input) noexcept {
   Reference() = posture_;
 }
 
-// With V = 0 and a slow return to the posture: τ − g = M (ω² (q_ref − q) − 2 ω q̇).
+// With V = 0 and a slow return to the posture, τ − g = M (ω² (q_ref − q) − 2 ω q̇).
 void AdmittanceLaw::TakeOver(const ControllerInput& input) noexcept {
   std::fill(memory_.begin(), memory_.end(), 0.0);
   M_factor_.compute(input.data->M());
@@ -63,7 +63,7 @@ void AdmittanceLaw::Compute(const ControllerInput& input, JointVector* torque) n
   torque->noalias() += input.data->M().lazyProduct(wanted);
 }
 
-// q̇_ref = J⁺ V + (1 − J⁺ J) (posture − q_ref) / time.
+// Returns q̇_ref = J⁺ V + (1 − J⁺ J) (posture − q_ref) / time.
 JointVector AdmittanceLaw::ReferenceSpeed(const ControllerInput& input) noexcept {
   input.data->FrameJacobian(*input.model, input.end_effector, &J_);
   FactorDamped(J_, &factor_);

@@ -56,12 +56,12 @@ class AdmittanceLaw : public Controller {
   void Archive(StateArchive& a) noexcept final { a(tare_); }
 
  protected:
-  // `own`: numbers of the derived controller in the memory, 0 at the start.
+  // `own` is the number of values of the derived controller in the memory. They are 0 at the start.
   AdmittanceLaw(const ControllerContext& context, const AdmittanceParameters& parameters, int own);
 
-  // F + F_a − D_d V: the wrench that accelerates M_d.
+  // Returns F + F_a − D_d V, the wrench that accelerates M_d.
   virtual Wrench Accelerating(const ControllerInput& input, const Wrench& F) noexcept = 0;
-  // Advances the derived controller's numbers, before V and x advance.
+  // Advances the derived controller's values before V and x advance.
   virtual void AdvanceOwn(const ControllerInput&, const Wrench&, double) noexcept {}
 
   Vector6 V() const noexcept { return Vector6::Map(memory_.data()); }

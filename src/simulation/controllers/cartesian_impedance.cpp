@@ -22,7 +22,7 @@ namespace predictor::controllers {
 namespace {
 
 struct CartesianImpedanceParameters {
-  // Along and about W's axes, at the end-effector.
+  // These values apply along and about W's axes, at the end-effector.
   Vector3 stiffness_translation = {500, 500, 500};  // [N/m]
   Vector3 stiffness_rotation = {100, 100, 100};     // [N·m/rad]
   std::vector<double> damping_ratio = {0.7};        // one, or six: x y z, rotation x y z
@@ -52,12 +52,14 @@ void Fields(V& v, CartesianImpedanceParameters& p) {
          "roll, pitch, yaw [rad]"));
 }
 
-// Added to Λ⁻¹ to bound Λ in a singular posture. There, J cancels the large values of Λ, so that
-// the joint torques stay bounded (a test checks this). In other postures, the effect is negligible.
+// This is added to Λ⁻¹ to bound Λ in a singular posture. There, J cancels the large values of Λ, so
+// that the joint torques stay bounded (a test checks this). In other postures, the effect is
+// negligible.
 constexpr double kMinMobility = 1e-9;  // [1/kg], [1/(kg·m²)]
 
-// Inverse of the left Jacobian of the rotation vector e [rad]. With R = exp(e)ᵀ R_set and spring
-// energy ½ eᵀ K e, the torque on the body is Jl⁻¹(e) K e. It equals K e if K is isotropic.
+// Returns the inverse of the left Jacobian of the rotation vector e [rad]. With R = exp(e)ᵀ R_set
+// and the spring energy ½ eᵀ K e, the torque on the body is Jl⁻¹(e) K e. It equals K e if K is
+// isotropic.
 Matrix3 InverseLeftJacobian(const Vector3& e) {
   const double angle2 = e.squaredNorm();
   const double angle = std::sqrt(angle2);
@@ -81,7 +83,7 @@ class CartesianImpedance final : public Controller {
     ResetTuning();
   }
 
-  // K' (e + s') = K (e + s) for each axis.
+  // The new offset satisfies K' (e + s') = K (e + s) on each axis.
   void Tune(const ControllerTuning& tuning, const ControllerInput& input,
             bool keeps_force) noexcept override {
     const Vector6 e = Error(Target(input.time).X_W, input);
@@ -119,8 +121,8 @@ class CartesianImpedance final : public Controller {
     if (input.q->size() > 6) AddPostureTorque(input, velocity, torque);
   }
 
-  // Energy of the Cartesian springs. The null-space spring is excluded: its projection does no work
-  // on E, so it has no potential energy.
+  // Returns the energy of the Cartesian springs. The null-space spring is excluded, because its
+  // projection does no work on E, so it has no potential energy.
   double StoredEnergy(const ControllerInput& input) const noexcept override {
     const Vector6 e = Error(Target(input.time).X_W, input) + shift_;
     return 0.5 * e.dot(K_.cwiseProduct(e));
@@ -146,7 +148,7 @@ class CartesianImpedance final : public Controller {
     return wrench;
   }
 
-  // M = L Lᵀ and Λ⁻¹ = J M⁻¹ Jᵀ = (J L⁻ᵀ)(J L⁻ᵀ)ᵀ.
+  // The factors follow from M = L Lᵀ and Λ⁻¹ = J M⁻¹ Jᵀ = (J L⁻ᵀ)(J L⁻ᵀ)ᵀ.
   void UpdateInertia(const JointMatrix& M) {
     M_factor_.compute(M);
     half_ = J_;
@@ -156,7 +158,7 @@ class CartesianImpedance final : public Controller {
     mobility_.compute(mobility);
   }
 
-  // D v. With Λ⁻¹ = G Gᵀ, Λ = L Lᵀ for L = G⁻ᵀ.
+  // Returns D v. With Λ⁻¹ = G Gᵀ, Λ = L Lᵀ for L = G⁻ᵀ.
   Vector6 DampingWrench(const Twist& v) {
     const Matrix6 G = mobility_.matrixL();
     damping_.Compute(G, K_, ratio_);
@@ -167,7 +169,7 @@ class CartesianImpedance final : public Controller {
     return wrench;
   }
 
-  // A spring and a damper towards the posture, in the part of the joint space that does not
+  // Adds a spring and a damper towards the posture, in the part of the joint space that does not
   // accelerate E: P = 1 − M⁻¹ Jᵀ Λ J, τ = Pᵀ k (q_0 − q) − c M P q̇, M P = Pᵀ M P. In a
   // one-dimensional null space, c sets the damping ratio exactly.
   void AddPostureTorque(const ControllerInput& input, const Twist& velocity, JointVector* torque) {
@@ -200,7 +202,7 @@ class CartesianImpedance final : public Controller {
   Vector6 ratio_;
   Vector6 shift_;  // shift of the set-point by tuning [m], [rad]
   Vector6 jump_;   // by ShiftSetPoint
-  // Workspace.
+  // The following members are workspace.
   Jacobian J_, half_, from_joints_;
   Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMaxJoints, 6> J_Lambda_;
   Eigen::LLT<JointMatrix> M_factor_;

@@ -1,5 +1,5 @@
-// Springs and dampers in the joints: τ = g + K (q_0 − q) − D q̇. D results from double
-// diagonalisation of the cobot's mass matrix and K. The set-point is the posture; it does not move.
+// Springs and dampers in the joints, τ = g + K (q_0 − q) − D q̇. D results from double
+// diagonalisation of the cobot's mass matrix and K. The set-point is the posture and does not move.
 #include <Eigen/Cholesky>
 
 #include "simulation/controllers/controllers.h"
@@ -35,7 +35,8 @@ class JointImpedance final : public Controller {
     posture_spec_ = posture_;
   }
 
-  // K' (q_0' − q) = K (q_0 − q). A joint uses the factor of the stiffness of its kind.
+  // The new set-point satisfies K' (q_0' − q) = K (q_0 − q). A joint uses the factor of the
+  // stiffness of its kind.
   void Tune(const ControllerTuning& tuning, const ControllerInput& input,
             bool keeps_force) noexcept override {
     for (int j = 0; j < K_.size(); ++j) {
@@ -77,7 +78,7 @@ class JointImpedance final : public Controller {
   JointVector K_;        // [N·m/rad], [N/m]
   JointVector ratio_;
   JointVector posture_spec_, K_spec_, ratio_spec_;  // from the scenario
-  // Workspace.
+  // The following members are workspace.
   Eigen::LLT<JointMatrix> M_factor_;
   JointMatrix L_inverse_transposed_;
   ModalDamping<JointVector, JointMatrix> damping_;

@@ -41,7 +41,8 @@ class LoadSharing final : public WrenchControl {
 
   std::span<double> memory() noexcept override { return velocity_; }
   void Start(const ControllerInput&) noexcept override { velocity_.fill(0); }
-  // An implicit step, because Compute sees v_f after it: then ẍ of a steady acceleration is exact.
+  // The step is implicit, because Compute sees v_f after it. The ẍ of a steady acceleration is then
+  // exact.
   void Advance(const ControllerInput& input, double dt) noexcept override {
     const Twist V = input.data->FrameTwist(*input.model, input.end_effector);
     auto v_f = Vector3::Map(velocity_.data());

@@ -16,7 +16,7 @@ constexpr double kMaxDuration = 100;   // [s]
 
 double RatioAt(double s) noexcept { return 30 * (1 - s) * (1 - s) / (10 + s * (-15 + 6 * s)); }
 
-// The inverse of RatioAt.
+// Inverts RatioAt.
 double PhaseAt(double ratio) noexcept {
   const double r = std::clamp(ratio, 0.0, 3.0);
   return (60 - 15 * r - std::sqrt(15 * r * (8 - r))) / (60 - 12 * r);

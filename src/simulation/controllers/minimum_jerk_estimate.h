@@ -23,7 +23,8 @@ struct MinimumJerkEstimate {
   Vector3 Acceleration() const noexcept;  // [m/s²]
 };
 
-// What the estimate needs to know of the past: numbers in a controller's memory, 0 at the start.
+// What the estimate must know about the past, as values in a controller's memory that are 0 at the
+// start.
 class MovementOnset {
  public:
   static constexpr int kSize = 8;
@@ -36,7 +37,8 @@ class MovementOnset {
   MinimumJerkEstimate Estimate(const Vector3& p, const Vector3& v) const noexcept;
 
  private:
-  // 0 or 1; position [m] and speed [m/s] of the last sample at rest, time since then [s]; r and Δ.
+  // The values are: 0 or 1; position [m] and speed [m/s] of the last sample at rest, and the time
+  // since then [s]; r and Δ.
   enum { kMoving, kRest, kSpeed = kRest + 3, kTime, kGrowth, kNoticed };
 
   double* at_;

@@ -1,4 +1,5 @@
-// Damping by double diagonalisation: each mode of stiffness and inertia gets the desired ratio.
+// Damping by double diagonalisation, in which each mode of stiffness and inertia gets the desired
+// ratio.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -9,17 +10,18 @@ namespace predictor {
 // For an inertia Λ = L Lᵀ and a diagonal stiffness K, both are diagonal in the basis Q = L U: Λ = Q
 // Qᵀ, K = Q K0 Qᵀ with L⁻¹ K L⁻ᵀ = U K0 Uᵀ. D = Q diag(2 ζ √K0) Qᵀ damps each mode separately
 // (Albu-Schäffer, Ott, Frese & Hirzinger 2003, "double diagonalization design"). Vector and Matrix
-// are Eigen types of fixed size or of fixed capacity. Uses no heap.
+// are Eigen types of fixed size or of fixed capacity. Does not use the heap.
 template <class Vector, class Matrix>
 class ModalDamping {
  public:
   // For vectors with `size` elements.
   explicit ModalDamping(Eigen::Index size) : eigen_(size), H_(size, size), damping_(size) {}
 
-  // `L_inverse_transposed`: L⁻ᵀ. `K`: diagonal of the stiffness. `ratio`: ζ of each axis. A mode's
-  // ratio is the mean of these, weighted by each axis's share of the energy in the mode's springs.
+  // `L_inverse_transposed` is L⁻ᵀ, `K` the diagonal of the stiffness, and `ratio` the ζ of each
+  // axis. A mode's ratio is the mean of these, weighted by each axis's share of the energy in the
+  // mode's springs.
   void Compute(const Matrix& L_inverse_transposed, const Vector& K, const Vector& ratio) {
-    // L⁻¹ K L⁻ᵀ = Hᵀ H, where column i of H U contains mode i's displacements times √K.
+    // In L⁻¹ K L⁻ᵀ = Hᵀ H, column i of H U contains mode i's displacements times √K.
     H_.noalias() = K.cwiseSqrt().asDiagonal() * L_inverse_transposed;
     eigen_.compute(H_.transpose().lazyProduct(H_));
     const Matrix& U = eigen_.eigenvectors();
@@ -32,7 +34,7 @@ class ModalDamping {
     }
   }
 
-  // U diag(2 ζ √K0) Uᵀ x. If x = Lᵀ v, then L times the result is D v.
+  // Returns U diag(2 ζ √K0) Uᵀ x. If x = Lᵀ v, then L times the result is D v.
   Vector Apply(const Vector& x) const {
     const Matrix& U = eigen_.eigenvectors();
     const Vector modal = damping_.cwiseProduct(U.transpose().lazyProduct(x));

@@ -1,4 +1,4 @@
-// A controller in a shared library, through the C interface predictor/controller.h.
+// A controller in a shared library that implements the C interface predictor/controller.h.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -86,7 +86,7 @@ class Plugin final : public ExternalController {
     return {};
   }
 
-  // A C++ exception must not leave the library. Its next torques are then refused.
+  // A C++ exception must not leave the library. If one does, its next torques are refused.
   template <class Call>
   void Guard(Call call) const noexcept {
     try {

@@ -1,4 +1,4 @@
-// A controller in a process of its own, through the shared memory of predictor/controller.h.
+// A controller in a separate process that uses the shared memory of predictor/controller.h.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -53,7 +53,7 @@ class Process final : public ExternalController {
     WriteText(context, parameters);
     if (!process_.AskAndWait(PREDICTOR_CREATE, kStartTime)) Refuse(parameters, NoAnswer());
     if (shared.refused != 0) Refuse(parameters, "refuses this scenario. " + Said());
-    // Read once: the program can change it at any time.
+    // The value is read only once, because the program can change it at any time.
     const std::int32_t size = __atomic_load_n(&shared.memory_size, __ATOMIC_RELAXED);
     if (size < 0 || size > PREDICTOR_MAX_MEMORY)
       Refuse(parameters, "has a memory of " + std::to_string(size) +
@@ -74,7 +74,8 @@ class Process final : public ExternalController {
     if (!memory_.empty() && TryStart(Fill(input)) && Request(PREDICTOR_ADVANCE, Fill(input)))
       TakeMemory();
   }
-  // At the input of the last torques: a question of its own would take as long as theirs.
+  // Returns the energy at the input of the last torques. A separate request would take as long as
+  // theirs.
   double StoredEnergy(const ControllerInput&) const noexcept override { return energy_; }
 
  private:
@@ -109,7 +110,8 @@ class Process final : public ExternalController {
 
   bool Request(int kind, const PredictorControllerInput& input) noexcept {
     if (process_.IsBusy()) {
-      // The shared memory is not ours. In virtual time, the program has been given up.
+      // The shared memory belongs to the program at present. In virtual time, the program has been
+      // given up.
       return false;
     }
     PredictorControllerMemory& shared = process_.shared();
@@ -119,8 +121,8 @@ class Process final : public ExternalController {
                       : process_.AskAndWait(kind, kLongestWait);
   }
 
-  // Foreign numbers, which the program can change at any time: one that is not finite would spoil
-  // every later step.
+  // The program can change these numbers at any time. One that is not finite would spoil every
+  // later step.
   void TakeMemory() noexcept {
     std::array<double, PREDICTOR_MAX_MEMORY> taken;
     std::copy_n(process_.shared().memory, memory_.size(), taken.begin());

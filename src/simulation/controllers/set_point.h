@@ -1,4 +1,4 @@
-// Set-points over time: minimum jerk from waypoint to waypoint, from rest to rest.
+// Set-points over time, with minimum jerk from waypoint to waypoint and from rest to rest.
 #pragma once
 
 #include <vector>
@@ -10,13 +10,14 @@ namespace predictor {
 
 class SetPointTrajectory {
  public:
-  // `start`: the set-point before the first waypoint, to which the waypoints are relative. Without
-  // waypoints, the set-point stays there. Throws InputError if the times do not increase from 0.
+  // `start` is the set-point before the first waypoint, to which the waypoints are relative.
+  // Without waypoints, the set-point stays there. Throws InputError if the times do not increase
+  // from 0.
   SetPointTrajectory(const std::vector<Waypoint>& waypoints, const Pose& start);
 
-  // Pose, twist and acceleration of the set-point at time t [s], in W. Between waypoints, position
-  // and rotation vector follow 10 s³ − 15 s⁴ + 6 s⁵ (Flash & Hogan 1985); the rotation is about one
-  // axis of W.
+  // Returns pose, twist and acceleration of the set-point at time t [s], in W. Between waypoints,
+  // position and rotation vector follow 10 s³ − 15 s⁴ + 6 s⁵ (Flash & Hogan 1985). The rotation is
+  // about one axis of W.
   FrameMotion At(double t) const noexcept;
 
  private:

@@ -1,9 +1,9 @@
-// What the controllers have in common that exert a wrench F at the end-effector while the cobot
+// The common part of the controllers that exert a wrench F at the end-effector while the cobot
 // carries its own weight:
 //
 //   τ = g + Jᵀ (F − D V + k e)
 //
-// k e keeps the orientation of the start (rotation vector e); D V damps every motion.
+// k e keeps the orientation of the start (rotation vector e), and D V damps every motion.
 #pragma once
 
 #include "simulation/controller.h"
@@ -31,7 +31,7 @@ struct KnownLoad {
   double mass = 0;                     // [kg]
   Vector3 center_of_mass = {0, 0, 0};  // p in E [m]
 
-  // Wrench about E, in axes of W, that exerts `force` [N] at the centre of mass.
+  // Returns the wrench about E, in axes of W, that exerts `force` [N] at the centre of mass.
   Wrench WrenchOf(const Vector3& force, const Pose& X_WE) const noexcept {
     return (Wrench() << force, (X_WE.q * center_of_mass).cross(force)).finished();
   }
@@ -53,10 +53,10 @@ class WrenchControl : public Controller {
   WrenchControl(const ControllerContext& context, const WrenchControlParameters& parameters)
       : p_(parameters), gravity_(context.gravity), X_start_(context.X_WE_start) {}
 
-  // F, about E, in axes of W.
+  // Returns F, about E, in axes of W.
   virtual Wrench Command(const ControllerInput& input, const Pose& X_WE,
                          const Twist& V_WE) noexcept = 0;
-  // Potential energy of F [J].
+  // Returns the potential energy of F [J].
   virtual double Potential(const Pose&) const noexcept { return 0; }
 
   const Pose& start() const noexcept { return X_start_; }

@@ -1,5 +1,5 @@
-// Deliberate hazards. docs/how-to/hazards.md explains how scenarios use them. To add one, give it a
-// struct of parameters and a function that writes a Disturbance, and a line in hazards.h.
+// Hazards on purpose. docs/how-to/hazards.md explains how scenarios use them. To add one, write a
+// struct of parameters, a function that writes a Disturbance, and a line in hazards.h.
 #pragma once
 
 #include "scenario/own_parameters.h"
@@ -11,15 +11,17 @@ namespace predictor {
 // that can slip (kSlipping), or that it lasts until the end (kNoEnd).
 enum class HazardNeeds { kNothing, kWristSensor, kSetPoint, kSprings, kStandby, kSlipping, kNoEnd };
 
-// The registry's description of a hazard. Sentence: what happens, in a report ("the brakes close").
+// The registry's description of a hazard. The sentence states what happens, for a report ("the
+// brakes close").
 struct HazardKind : ParameterKind {
   const char* sentence;
   HazardNeeds needs;
-  // Adds the hazard to the disturbance, `elapsed` [s] after it began. No heap and no exception.
+  // Adds the hazard to the disturbance, `elapsed` [s] after it began. Does not use the heap or
+  // throw.
   void (*disturb)(const OwnParameters&, double elapsed, Disturbance*) noexcept;
 };
 
-// The kind of a hazard with parameters P. `name`: events: {event: NAME}.
+// Returns the kind of a hazard with parameters P. `name` is that of events: {event: NAME}.
 template <class P, void (*disturb)(const P&, double, Disturbance*) noexcept>
 constexpr HazardKind HazardKindOf(const char* name, const char* doc, const char* sentence,
                                   HazardNeeds needs = HazardNeeds::kNothing) {

@@ -1,4 +1,4 @@
-// The hazards: one line each. A recording contains their numbers, so a new one is the last.
+// Lists the hazards, one line each. Recordings contain their numbers, so a new hazard goes last.
 #pragma once
 
 #include "simulation/hazards/hazard.h"

@@ -15,8 +15,8 @@
 namespace predictor {
 namespace {
 
-// The child's answer: the numbers of vertices and triangles, then the data itself in the memory
-// layout of CollisionMesh.
+// The child's answer contains the numbers of vertices and triangles, followed by the data in the
+// memory layout of CollisionMesh.
 struct Header {
   std::uint32_t vertices, faces;
 };
@@ -31,7 +31,7 @@ void Append(const void* data, std::size_t size, std::vector<std::byte>* to) {
 }
 
 // Runs in the child. Compiles a model of only this mesh, as a visual, so that no hull is computed.
-// The engine moves a mesh's vertices to its centre and principal axes; this function undoes that.
+// The engine moves a mesh's vertices to its centre and principal axes, which this function undoes.
 std::vector<std::byte> ReadByEngine(const std::filesystem::path& file) {
   const SpecPtr spec(mj_makeSpec());
   spec->compiler.usethread = 0;

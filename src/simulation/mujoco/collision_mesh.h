@@ -1,4 +1,4 @@
-// Vertices and triangles of a mesh file, read in a separate process.
+// Reads vertices and triangles of a mesh file in a separate process.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,7 @@ struct CollisionMesh {
 // Reads the file of a mesh shape (binary STL, OBJ, MSH) with the physics engine's readers. They run
 // in a sandboxed child whose answer is checked: finite numbers, at most kMaxCollisionTriangles
 // triangles, and valid vertex indices. Throws InputError with the place in the URDF, the file, and
-// a remedy. Not for the tick.
+// a remedy. It must not be called in a tick.
 CollisionMesh ReadCollisionMesh(const ModelShape& shape);
 
 }  // namespace predictor

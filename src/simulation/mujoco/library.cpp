@@ -25,7 +25,7 @@ std::string FirstLine(mjSpec* spec) {
   return error.substr(0, error.find('\n'));
 }
 
-// Only MuJoCo's C frames are between setjmp and longjmp: no destructor is skipped.
+// Only MuJoCo's C frames are between setjmp and longjmp, so no destructor is skipped.
 bool Guarded(void (*function)(const mjModel*, mjData*), const mjModel* model,
              mjData* data) noexcept {
   std::jmp_buf here;

@@ -1,4 +1,4 @@
-// Owning pointers to MuJoCo's objects, and handling of its errors.
+// Provides owning pointers to MuJoCo's objects, and handles its errors.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -18,17 +18,17 @@ using ModelPtr = std::unique_ptr<mjModel, MujocoDeleter>;
 using DataPtr = std::unique_ptr<mjData, MujocoDeleter>;
 
 // After this call, MuJoCo prints nothing, writes no log file and does not end the process. Its
-// warnings are only counted in mjData, and its errors return to Guarded. Takes effect once; any
-// thread may call it.
+// warnings are only counted in mjData, and its errors return to Guarded. Only the first call has an
+// effect, and any thread may call it.
 void SilenceMujoco();
 
-// Why the engine could not compile `spec`: the first line of its message. The other lines refer to
-// places in the engine's own model.
+// Returns the reason why the engine could not compile `spec`, which is the first line of its
+// message. The other lines refer to places in the engine's own model.
 std::string FirstLine(mjSpec* spec);
 
 // Calls function(model, data) and returns true, or false if MuJoCo raised an error (for instance,
 // because an arena is too small). By default, such an error would end the process. After an error,
-// `data` is unusable until mj_resetData. Uses no heap or lock; does not throw.
+// `data` is unusable until mj_resetData. Does not use the heap or a lock, and does not throw.
 bool Guarded(void (*function)(const mjModel*, mjData*), const mjModel* model,
              mjData* data) noexcept;
 

@@ -1,4 +1,4 @@
-// MuJoCo as the engine of the virtual world.
+// Implements the engine of the virtual world with MuJoCo.
 #include <algorithm>
 
 #include "simulation/engine.h"
@@ -65,7 +65,8 @@ class MujocoEngine final : public Engine {
     double* X = data_->qpos + scene_->object_qpos;
     Eigen::Map<Vector3>{X} = O.X_W.p;
     X[3] = q.w(), X[4] = q.x(), X[5] = q.y(), X[6] = q.z();
-    // The engine's free joint: linear velocity of O in axes of W, angular velocity in axes of O.
+    // The engine's free joint has the linear velocity of O in axes of W and the angular velocity in
+    // axes of O.
     double* V = data_->qvel + scene_->object_dof;
     Eigen::Map<Vector3>{V} = O.V_W.head<3>();
     Eigen::Map<Vector3>{V + 3} = q.conjugate() * Vector3(O.V_W.tail<3>());
@@ -122,8 +123,8 @@ class MujocoEngine final : public Engine {
                scene_->object, forces.data());
   }
   bool has_reactions() const noexcept override { return data_->nefc > 0; }
-  // Those that hold act like inertia: each is a force of −efc_D times the acceleration along its
-  // row.
+  // Reactions that hold act like inertia. Each is a force of −efc_D times the acceleration along
+  // its row.
   void AddReactions(Eigen::Ref<Eigen::MatrixXd> M) const noexcept override {
     for (int i = 0; i < data_->nefc; ++i) {
       if (data_->efc_state[i] != mjCNSTRSTATE_QUADRATIC) continue;
@@ -180,7 +181,7 @@ class MujocoEngine final : public Engine {
   int Index(SceneBody body) const noexcept {
     return body == SceneBody::kObject ? scene_->object : scene_->end_effector;
   }
-  // The engine omits what does not fit into its memory, with a warning.
+  // If something does not fit into its memory, the engine omits it with a warning.
   bool IsComplete() const noexcept {
     return data_->warning[mjWARN_CONTACTFULL].number == 0 &&
            data_->warning[mjWARN_CNSTRFULL].number == 0;

@@ -17,8 +17,8 @@ namespace {
 constexpr double kTimestep = 0.001;   // [s]
 constexpr double kHandRadius = 0.04;  // radius of the ball that defines a hand's inertia [m]
 constexpr double kHandleReach = 0.2;  // maximum distance of a handle from the object's shape [m]
-// The engine's Coulomb friction creeps under small forces. With the engine's default constants
-// (0.02, 0.9), it creeps fifty times more than with these.
+// The engine's Coulomb friction creeps under small forces. With its default constants (0.02, 0.9),
+// it creeps fifty times more than with these.
 constexpr double kFrictionTime = 0.004;  // [s]
 constexpr double kFrictionImpedance = 0.99;
 constexpr const char* kCobotPrefix = "cobot/";
@@ -50,7 +50,7 @@ void SetOptions(mjSpec* spec, const EnvironmentSpec& environment) {
   SetVector(option.gravity, Vector3(0, 0, -environment.gravity));
 }
 
-// The environment collides with the object; the object does not collide with itself.
+// The environment collides with the object, but the object does not collide with itself.
 void SetContact(mjsGeom* geom, bool environment, double friction) {
   geom->contype = environment ? 1 : 0;
   geom->conaffinity = environment ? 0 : 1;
@@ -76,7 +76,7 @@ void AddEnvironment(mjsBody* world, const EnvironmentSpec& environment) {
   }
 }
 
-// The cobot alone, as loaded by the engine.
+// Returns the cobot alone, as loaded by the engine.
 SpecPtr CobotSpecOf(const Scenario& scenario) {
   const auto file = ResolveModelPath(scenario.cobot.model, scenario.folder());
   const std::string text =
@@ -136,7 +136,7 @@ mjsBody* AddCobot(mjSpec* spec, const Scenario& scenario, const RobotModel& cobo
   return end_effector;
 }
 
-// Makes `geom` a mesh of this shape; `name` is the mesh's name in the engine's model.
+// Makes `geom` a mesh of this shape. `name` is the mesh's name in the engine's model.
 void AddMesh(mjSpec* spec, const ModelShape& shape, const CollisionMesh& from,
              const std::string& name, mjsGeom* geom) {
   mjsMesh* mesh = mjs_addMesh(spec, nullptr);
@@ -217,7 +217,7 @@ mjsBody* AddObject(mjSpec* spec, mjsBody* end_effector, const Scenario& scenario
   return object;
 }
 
-// Force, then torque, between the end-effector and the object, at the attachment.
+// Adds a sensor of force and torque between the end-effector and the object, at the attachment.
 void AddWristSensor(mjSpec* spec, mjsBody* object, const AttachmentSpec& attachment) {
   mjsSite* site = mjs_addSite(object, nullptr);
   mjs_setName(site->element, kWristSite);
@@ -268,8 +268,8 @@ void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cob
   }
 }
 
-// Distance [m] from a point to the nearest of the object's shapes; each shape is represented by its
-// bounding box.
+// Returns the distance [m] from a point to the nearest of the object's shapes, each of which is
+// represented by its bounding box.
 double DistanceToObject(const Scene& scene, mjData* data, const Vector3& p_W) {
   const mjModel& model = *scene.model;
   double nearest = std::numeric_limits<double>::infinity();
@@ -285,8 +285,8 @@ double DistanceToObject(const Scene& scene, mjData* data, const Vector3& p_W) {
   return nearest;
 }
 
-// Called after the engine rejected the whole model: names the first mesh that it also rejects
-// alone, if any.
+// This is called after the engine has rejected the whole model. It names the first mesh that the
+// engine also rejects alone, if there is one.
 void CheckMeshes(const ObjectModel& object) {
   for (const ModelShape& shape : object.collisions) {
     if (shape.kind != ShapeKind::kMesh) continue;

@@ -1,5 +1,4 @@
-// The scene for MuJoCo: cobot, object, handles, floor and table, composed into one
-// tree.
+// Composes cobot, object, handles, floor and table into one tree, the scene for MuJoCo.
 #pragma once
 
 #include <array>
@@ -28,25 +27,24 @@ struct Scene {
 
 // Composes and compiles the scene. The attachment's joint connects the object's body to the
 // end-effector's, so that only contacts need the constraint solver. Object, floor and table collide
-// with each other if at least one of the two can move; the cobot's links collide with nothing. In
-// direct mode, each handle has a body without weight whose mass is set at run time. Throws
-// InputError.
-// wrist_sensor: whether a sensor measures the wrench between the end-effector and the object that
-// it carries.
+// with each other if at least one of the two can move, while the cobot's links collide with
+// nothing. In direct mode, each handle has a body without weight whose mass is set at run time.
+// Throws InputError. wrist_sensor: whether a sensor measures the wrench between the end-effector
+// and the object that it carries.
 Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor = false,
                    Holding holding = Holding::kJoint);
 
-// Text of the scene (MJCF). Throws InputError if the engine cannot write it.
+// Returns the text of the scene (MJCF). Throws InputError if the engine cannot write it.
 std::string SceneText(const Scene& scene);
 
-// Sets the mass [kg] of the body that represents a hand; does nothing if there is no such body.
+// Sets the mass [kg] of the body that represents a hand, or does nothing if there is no such body.
 // Returns whether the mass changed. If it did, everything that depends on the state must be
-// recomputed.
+// computed again.
 bool SetHandMass(const Scene& scene, int hand, double mass) noexcept;
 
-// Friction of a joint of the cobot in the engine's model.
+// Returns the friction of a joint of the cobot in the engine's model.
 DofFriction FrictionOf(const Scene& scene, int joint) noexcept;
-// Sets it. With closed brakes, the joint also creeps a hundred times less.
+// Sets the friction. With closed brakes, the joint also creeps a hundred times less.
 void SetFriction(const Scene& scene, int joint, const DofFriction& friction) noexcept;
 
 }  // namespace predictor
