@@ -27,7 +27,7 @@ bool Resume(RecordingReader* reader, const TickRecord& record, Emulator* emulato
 }
 
 // Data about lost and refused packets and about power reports of real arms are displayed but not
-// recorded. Therefore, the recorded warnings about them are used.
+// recorded. Therefore the recorded warnings about them are used.
 TickRecord WithWarningsOf(const TickRecord& recorded, const TickRecord& computed) {
   TickRecord with = computed;
   for (std::size_t hand = 0; hand < kHands; ++hand) {

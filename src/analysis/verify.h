@@ -1,4 +1,4 @@
-// Replays a recording: computes the run again from its recorded inputs.
+// Replays a recording by computing the run again from its recorded inputs.
 #pragma once
 
 #include <cstdint>
@@ -31,13 +31,13 @@ struct Verification {
 // Computes the run again from the start and, after lost ticks, from the next saved state. With real
 // arms, each tick receives the recorded samples of arms and sensors. Everything else is computed,
 // except the warnings about losses on the connections to the arms. Stops at the first difference.
-// `scenario`: from RestoreScenario. progress: receives the number of ticks so far. Throws
+// `scenario` comes from RestoreScenario. progress: receives the number of ticks so far. Throws
 // InputError if the recording cannot be read.
 Verification Verify(RecordingReader* reader, const Scenario& scenario,
                     const std::function<void(std::uint64_t)>& progress);
 
-// First field in which two records of the same tick differ, except wall-clock times; empty if they
-// agree bit for bit.
+// Returns the first field in which two records of the same tick differ, except wall-clock times, or
+// no value if they agree bit for bit.
 std::optional<Departure> FirstDifference(const TickRecord& recorded, const TickRecord& computed);
 
 }  // namespace predictor

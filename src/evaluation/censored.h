@@ -1,7 +1,7 @@
-// Statistics of values some of which are only known to be at least as large as observed.
+// Statistics of values of which some are only known to be at least as large as observed.
 //
 // The emulator stops a run at its limit of force. The largest force of such a run is a lower bound
-// of what the person would have felt without the stop: a right-censored observation.
+// of what the person would have felt without the stop. This is a right-censored observation.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ struct CensoredValue {
   bool at_least = false;  // the true value is at least this large
 };
 
-// The product-limit estimate of Kaplan & Meier (1958), J. Am. Stat. Assoc. 53, 457–481.
+// A step of the product-limit estimate of Kaplan & Meier (1958), J. Am. Stat. Assoc. 53, 457–481.
 struct SurvivalStep {
   double value = 0;           // at which exact values were observed
   std::size_t at_risk = 0;    // number of values and bounds that are not smaller
@@ -25,18 +25,20 @@ struct SurvivalStep {
   double standard_error = 0;  // of share_above, by Greenwood's formula
 };
 
-// The steps in ascending order. By convention, a bound that equals an observed value counts as
-// larger than it. The estimate assumes that whether a value is censored does not depend on what the
-// value would have been: true for a stop at a fixed limit, doubtful for other stops.
+// Returns the steps in ascending order. By convention, a bound that equals an observed value counts
+// as larger than it. The estimate assumes that whether a value is censored does not depend on what
+// the value would have been. That is true for a stop at a fixed limit, but doubtful for other
+// stops.
 std::vector<SurvivalStep> KaplanMeier(std::span<const CensoredValue> values);
 
-// The smallest observed value that is exceeded by a share of at most 1 − probability. If too many
-// values are censored, the estimate does not reach this probability. The result is then a lower
-// bound: the quantile of all values, censored or not (Quantile), or the largest exact value if that
-// is larger. Without censored values, the result is Quantile. kUndefined without values.
+// Returns the smallest observed value that is exceeded by a share of at most 1 − probability. If
+// too many values are censored, the estimate does not reach this probability. The result is then a
+// lower bound: the quantile of all values, censored or not (Quantile), or the largest exact value
+// if that is larger. Without censored values, the result is Quantile. Without any values, it is
+// kUndefined.
 CensoredValue CensoredQuantile(std::span<const CensoredValue> values, double probability);
 
-// "31.2 N", or "at least 31.2 N".
+// Returns "31.2 N" or "at least 31.2 N".
 std::string BoundText(const CensoredValue& value, const char* format);
 
 }  // namespace predictor

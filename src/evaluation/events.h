@@ -1,4 +1,4 @@
-// The events of a scenario in a run, and what the hands felt after them, derived from its records.
+// Derives the events of a scenario in a run, and what the hands felt after them, from its records.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct EventSummary {
   std::string meaning;          // what happens, as text
   std::optional<double> begin;  // run time at which it began [s]; empty: it did not begin
   std::optional<double> end;    // run time at which it ended [s]
-  // Largest values of a hand from the beginning of the event to the end of RUN.
+  // The largest values of a hand from the beginning of the event to the end of RUN.
   std::array<double, kHands> force = {}, torque = {}, speed = {};  // [N], [N·m], [m/s]
   std::optional<double> until_stop;  // from the beginning of the event to the emulator's next stop
                                      // [s]
@@ -27,15 +27,15 @@ struct CobotStopSummary {
   double time;  // run time [s]
 };
 
-// Collects the events of the run since its last reset. Add uses no heap.
+// Collects the events of the run since its last reset. Add does not use the heap.
 class EventLog {
  public:
   explicit EventLog(const Scenario& scenario);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // In the order of the scenario's events.
+  // Returns the events in the order of the scenario.
   const std::vector<EventSummary>& events() const { return events_; }
-  // The first protective stop of the virtual cobot itself.
+  // Returns the first protective stop of the virtual cobot itself.
   const std::optional<CobotStopSummary>& cobot_stop() const { return cobot_stop_; }
 
  private:

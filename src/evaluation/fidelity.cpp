@@ -50,7 +50,7 @@ bool GoRound(const std::vector<Run>& runs) {
                      [](const Run& run) { return run.cycles >= kMinCycles; });
 }
 
-// Mean duration of the compared cycles [s].
+// Returns the mean duration of the compared cycles [s].
 double PeriodOf(const Run& run, std::size_t cycles) {
   const double samples =
       PlaceOfPhase(run.phase, static_cast<double>(cycles)) - PlaceOfPhase(run.phase, 0);
@@ -59,8 +59,8 @@ double PeriodOf(const Run& run, std::size_t cycles) {
 
 using Repeats = std::vector<std::vector<double>>;
 
-// The parts of one channel of one run that are compared: its cycles, or its first `length` samples
-// as a single part.
+// Returns the parts of one channel of one run that are compared: its cycles, or its first `length`
+// samples as a single part.
 Repeats RepeatsOf(const Run& run, const std::string& name, bool by_phase, std::size_t length) {
   const FidelityChannel* channel = FindChannel(*run.signals, name);
   if (!channel) return {};
@@ -83,7 +83,7 @@ Repeats RepeatsOf(const std::vector<Run>& runs, const std::string& name, bool by
   return all;
 }
 
-// The first `count` repeats, concatenated.
+// Concatenates the first `count` repeats.
 std::vector<double> Joined(const Repeats& repeats, std::size_t count) {
   std::vector<double> joined;
   for (std::size_t k = 0; k < std::min(count, repeats.size()); ++k)
@@ -165,7 +165,7 @@ ChannelFidelity CompareChannel(const FidelityChannel& channel, const std::vector
   return f;
 }
 
-// Cycles as ranges of samples, or one range of all samples.
+// Returns the cycles as ranges of samples, or one range of all samples.
 std::vector<SampleRange> PartsOf(const Run& run, const Alignment& alignment) {
   if (!alignment.by_phase) return {{0, alignment.length}};
   std::vector<SampleRange> parts;

@@ -14,7 +14,7 @@
 
 namespace predictor {
 
-// Sampling rate of all compared signals [Hz]. Hand motion ends far below it.
+// The sampling rate of all compared signals [Hz]. Hand motion ends far below it.
 inline constexpr double kFidelityRate = 100;
 
 struct FidelityChannel {
@@ -26,11 +26,11 @@ struct FidelityChannel {
 // One run, sampled in steps of 1 / kFidelityRate.
 struct FidelitySignals {
   std::vector<FidelityChannel> channels;
-  // Horizontal path of the object in W [m], by which cycles are counted. May be empty.
+  // The horizontal path of the object in W [m], by which cycles are counted. It may be empty.
   std::vector<double> path_x, path_y;
   std::size_t filled = 0;  // number of samples without a record, which are interpolated
 };
-// The channel of this name; null if no channel has it.
+// Returns the channel of this name, or null if no channel has it.
 const FidelityChannel* FindChannel(const FidelitySignals& signals, const std::string& name);
 
 // Converts records, in order, to signals: the position of the end-effector and the force of each
@@ -56,7 +56,7 @@ class FidelityCollector {
   std::array<bool, kHands> present_ = {};
 };
 
-// One channel of run b compared with the same channel of run a. A result that needs more cycles or
+// One channel of run b, compared with the same channel of run a. A result that needs more cycles or
 // repeats than exist is NaN.
 struct ChannelFidelity {
   std::string name, unit;
@@ -76,7 +76,7 @@ struct ChannelFidelity {
 };
 inline constexpr double kHighestCoherence = 3;  // [Hz]
 
-// Just noticeable difference (JND) as a share of the first of two stimuli. Published values lie
+// The just noticeable difference (JND) as a share of the first of two stimuli. Published values lie
 // between the two numbers.
 struct NoticeableDifference {
   double low = 0, high = 0;
@@ -93,12 +93,12 @@ struct PerceivedQuantity {
   double difference = 0;            // (b − a) / |a|
   double error = 0;                 // standard error of the difference
   NoticeableDifference jnd;
-  // kUndecided if the standard error of a or of the difference reaches the JND. If the standard
-  // errors are unknown, the values alone decide and the report contains a warning.
+  // This is kUndecided if the standard error of a or of the difference reaches the JND. If the
+  // standard errors are unknown, the values alone decide, and the report contains a warning.
   Noticed noticed = Noticed::kUndecided;
 };
 
-// True if there is a verdict although the standard errors are unknown.
+// Returns whether there is a verdict although the standard errors are unknown.
 bool ErrorUnknown(const PerceivedQuantity& quantity);
 
 struct FidelityReport {
@@ -115,7 +115,7 @@ struct FidelityReport {
 };
 
 // Compares the first run of `a` with the first run of `b`, each channel with the channel of the
-// same name. The other runs of each side must be of the same kind; they show how much repeats
+// same name. The other runs of each side must be of the same kind, and they show how much repeats
 // differ. The comparison is by phase if the path of every run has at least two cycles, unless
 // `by_phase` is set. Throws InputError if a side is empty, if no channel name occurs on both sides,
 // or if a run is shorter than one second.
@@ -123,10 +123,10 @@ FidelityReport CompareFidelity(std::span<const FidelitySignals> a,
                                std::span<const FidelitySignals> b,
                                std::optional<bool> by_phase = {});
 
-// Report for people. `name_a` and `name_b` are names such as "real" and "emulated".
+// Returns the report for people. `name_a` and `name_b` are names such as "real" and "emulated".
 std::string FidelityText(const FidelityReport& report, const std::string& name_a,
                          const std::string& name_b);
-// The same for scripts, in SI units; null for undefined values.
+// Returns the report for scripts, in SI units, with null for undefined values.
 std::string FidelityJson(const FidelityReport& report, const std::string& name_a,
                          const std::string& name_b);
 

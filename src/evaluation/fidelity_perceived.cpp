@@ -14,14 +14,14 @@
 namespace predictor {
 namespace {
 
-// Weber fractions of hand and arm (Jones 1989: force 7 %; Jones & Hunter 1990 and 1993: stiffness
-// 23 %, viscosity 34 %).
+// These are Weber fractions of hand and arm (Jones 1989: force 7 %; Jones & Hunter 1990 and 1993:
+// stiffness 23 %, viscosity 34 %).
 constexpr NoticeableDifference kForce = {0.07, 0.10};
 constexpr NoticeableDifference kMass = {0.20, 0.20};
 constexpr NoticeableDifference kStiffness = {0.22, 0.23};
 constexpr NoticeableDifference kViscosity = {0.34, 0.34};
 
-// Sum of the forces of both hands along an axis; empty without hands.
+// Returns the sum of the forces of both hands along an axis, or nothing without hands.
 std::vector<double> TotalForce(const FidelitySignals& signals, const std::string& axis) {
   std::vector<double> total;
   for (const char* hand : {"left", "right"}) {
@@ -33,7 +33,7 @@ std::vector<double> TotalForce(const FidelitySignals& signals, const std::string
   return total;
 }
 
-// |F| of one hand; empty if the hand is absent.
+// Returns |F| of one hand, or nothing if the hand is absent.
 std::vector<double> ForceSize(const FidelitySignals& signals, const std::string& hand) {
   std::vector<double> size;
   for (const char* axis : {"x", "y", "z"}) {
@@ -52,15 +52,13 @@ std::span<const double> Part(const std::vector<double>& samples, const SampleRan
   return std::span(samples).subspan(begin, end - begin);
 }
 
-// If a hand moves the object less than this (standard deviation) [m], the hand yields instead of
-// leading. Motion and force then show the stiffness and mass of the hand itself, with the opposite
-// sign.
+// If a hand moves the object less than this (standard deviation) [m], it yields and does not lead.
+// Motion and force then show the stiffness and mass of the hand itself, with the opposite sign.
 constexpr double kLed = 5e-3;
 
-// Smooths with w = (1 − cos)² and differentiates using integration by parts: the means of x' and
-// x'' under w equal those of −x under w' and of x under w'' (modulating functions). Motion and
-// force therefore pass through exactly the same filter, and no noise is differentiated sample by
-// sample.
+// Smooths with w = (1 − cos)² and differentiates by integration by parts: the means of x' and x''
+// under w equal those of −x under w' and of x under w'' (modulating functions). Motion and force
+// therefore pass through exactly the same filter, and no noise is differentiated sample by sample.
 class Kernels {
  public:
   explicit Kernels(std::size_t length) : values_(3, std::vector<double>(length)) {
@@ -76,7 +74,7 @@ class Kernels {
     }
   }
   std::size_t size() const { return values_[0].size(); }
-  // The smoothed signal (order 0) or its first or second derivative [1/s], [1/s²].
+  // Returns the smoothed signal (order 0), or its first or second derivative [1/s], [1/s²].
   double Apply(std::size_t order, std::span<const double> samples) const {
     double sum = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) sum += values_[order][i] * samples[i];
@@ -91,8 +89,8 @@ struct Estimate {
   double mean = kUndefined, error = kUndefined;
 };
 
-// Mean over the parts and its standard error. The parts are the independent repeats, not the
-// samples.
+// Returns the mean over the parts and its standard error. The parts are the independent repeats,
+// not the samples.
 Estimate OverParts(std::span<const SampleRange> parts,
                    const std::function<double(const SampleRange&)>& figure) {
   std::vector<double> figures;

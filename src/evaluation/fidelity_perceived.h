@@ -1,4 +1,4 @@
-// Estimates, from motion and force, the object's dynamics that a hand on it would feel.
+// Estimates from motion and force the dynamics of the object that a hand on it would feel.
 #pragma once
 
 #include <span>
@@ -8,27 +8,28 @@
 
 namespace predictor {
 
-// Coefficients of force = mass · a + viscosity · v + stiffness · x + constant along one axis, by
-// least squares.
+// The coefficients of force = mass · a + viscosity · v + stiffness · x + constant along one axis,
+// by least squares.
 struct ApparentImpedance {
   double mass = 0;       // [kg]
   double viscosity = 0;  // [N·s/m]
   double stiffness = 0;  // [N/m]
-  // Deviation of acceleration from proportionality to position, 0 to 1. For a single sine it is 0,
-  // and mass and stiffness cannot be distinguished.
+  // How far the acceleration deviates from proportionality to the position, from 0 to 1. For a
+  // single sine it is 0, and mass and stiffness cannot be distinguished.
   double separable = 0;
 };
 inline constexpr double kSeparable = 0.05;  // below this value, mass and stiffness cannot be
                                             // distinguished: mass is set to 0
 
 // position [m] and force [N] are sampled at kFidelityRate and smoothed over `span` [s]. The result
-// is NaN if there are too few samples or if the axis moves less than 5 mm (standard deviation): the
-// person then does not lead the object, and the result would describe the hand.
+// is NaN if there are too few samples or if the axis moves less than 5 mm (standard deviation). In
+// that case, the person does not lead the object, and the result would describe the hand.
 ApparentImpedance FitImpedance(std::span<const double> position, std::span<const double> force,
                                double span = 0.4);
 
-// Quantities of two runs and whether a person would notice their difference. `parts` are the ranges
-// of samples that count as repeats: the cycles, or a single range of all samples.
+// Compares quantities of two runs and determines whether a person would notice their difference.
+// `parts` are the ranges of samples that count as repeats: the cycles, or a single range of all
+// samples.
 struct SampleRange {
   std::size_t begin = 0, end = 0;
 };

@@ -23,7 +23,8 @@ struct Circle {
   double x = 0, y = 0, radius = 0;
 };
 
-// Least squares of x² + y² = 2 x_c x + 2 y_c y + c over the samples near the circle (Kåsa 1976).
+// Computes the least squares of x² + y² = 2 x_c x + 2 y_c y + c over the samples near the circle
+// (Kåsa 1976).
 Circle FitOnce(std::span<const double> x, std::span<const double> y, const Circle* before) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -46,8 +47,8 @@ Circle FitCircle(std::span<const double> x, std::span<const double> y) {
   return circle;
 }
 
-// Fourier transform of one segment at one frequency [cycles/sample], windowed, with the mean
-// removed.
+// Returns the Fourier transform of one segment at one frequency [cycles/sample], windowed, with the
+// mean removed.
 std::complex<double> Transform(std::span<const double> segment, double frequency) {
   const double mean = Mean(segment);
   const double n = static_cast<double>(segment.size());
@@ -104,7 +105,7 @@ double PlaceOfPhase(std::span<const double> phase, double at) {
   const auto after = std::upper_bound(phase.begin(), phase.end(), at);
   if (after == phase.begin()) return 0;
   if (after == phase.end()) {
-    // The first sample at the final phase; the samples after it are at rest.
+    // This is the first sample at the final phase. The samples after it are at rest.
     return static_cast<double>(std::lower_bound(phase.begin(), phase.end(), phase.back()) -
                                phase.begin());
   }
@@ -152,7 +153,7 @@ Lag LagOf(std::span<const double> a, std::span<const double> b, std::size_t long
   if (n < 2) return best;
   std::ptrdiff_t place = 0;
   for (std::ptrdiff_t step = 0; step <= 2 * most; ++step) {
-    // 0, 1, −1, 2, −2, ...: the shortest lag wins among equals
+    // The order is 0, 1, −1, 2, −2, ..., so that the shortest lag wins among equals.
     const std::ptrdiff_t lag = step % 2 == 0 ? -step / 2 : (step + 1) / 2;
     const double correlation = at(lag);
     if (best.correlation != best.correlation || correlation > best.correlation)

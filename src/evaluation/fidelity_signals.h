@@ -1,4 +1,4 @@
-// Comparisons of two signals: pure functions of samples at one constant rate.
+// Compares two signals with pure functions of samples at one constant rate.
 #pragma once
 
 #include <cstddef>
@@ -7,27 +7,29 @@
 
 namespace predictor {
 
-// Number of turns of a planar path up to each sample, starting at 0 [cycles]: the unwrapped angle
-// about the centre of the best-fitting circle, increasing in either direction of rotation. The
-// phase never decreases: while the path moves backwards, the phase is constant. Samples far inside
-// the circle (before the path is reached) do not change it. All values are 0 for a path without
-// extent. x and y have the same length [m].
+// Returns the number of turns of a planar path up to each sample, starting at 0 [cycles]. This is
+// the unwrapped angle about the centre of the best-fitting circle, increasing in either direction
+// of rotation. The phase never decreases: while the path moves backwards, the phase is constant.
+// Samples far inside the circle (before the path is reached) do not change it. All values are 0 for
+// a path without extent. x and y have the same length [m].
 std::vector<double> CyclePhase(std::span<const double> x, std::span<const double> y);
 
-// Number of whole cycles in a phase. The last cycle may be up to 2 % short; its last value is then
-// held.
+// Returns the number of whole cycles in a phase. The last cycle may be up to 2 % short, and its
+// last value is then held.
 std::size_t CyclesIn(std::span<const double> phase);
 
-// The last time at which the phase has the value `at`, interpolated between samples [samples]: if
-// the phase pauses before a cycle, the end of the pause. `at` is within the range of the phase.
+// Returns the last time at which the phase has the value `at`, interpolated between samples
+// [samples]. If the phase pauses before a cycle, this is the end of the pause. `at` is within the
+// range of the phase.
 double PlaceOfPhase(std::span<const double> phase, double at);
 
-// One cycle of a signal, from phase `cycle` to `cycle` + 1, at `points` equal steps of the phase
-// (including the first and excluding the last), with linear interpolation.
+// Returns one cycle of a signal, from phase `cycle` to `cycle` + 1, at `points` equal steps of the
+// phase (including the first and excluding the last), with linear interpolation.
 std::vector<double> CutCycle(std::span<const double> samples, std::span<const double> phase,
                              std::size_t cycle, std::size_t points);
 
-// Root mean square of the difference of two signals of the same length; NaN if they are empty.
+// Returns the root mean square of the difference of two signals of the same length, or NaN if they
+// are empty.
 double RootMeanSquareError(std::span<const double> a, std::span<const double> b);
 double RootMeanSquare(std::span<const double> a);
 
@@ -36,13 +38,13 @@ struct Lag {
   double correlation = 0;  // Pearson's correlation of the overlapping parts at the nearest whole
                            // lag
 };
-// The shift with the largest correlation, among shifts of at most `longest` samples; NaN if either
-// signal is constant.
+// Returns the shift with the largest correlation among shifts of at most `longest` samples, or NaN
+// if either signal is constant.
 Lag LagOf(std::span<const double> a, std::span<const double> b, std::size_t longest);
 
-// Dynamic time warping: the smallest sum of |a[i] − b[j]| along a path from the first to the last
-// pair, divided by the longer length. The path steps in i, in j or in both, and stays within `band`
-// of the diagonal (as a share of the longer length). NaN for empty signals.
+// Computes dynamic time warping: the smallest sum of |a[i] − b[j]| along a path from the first to
+// the last pair, divided by the longer length. The path steps in i, in j or in both, and stays
+// within `band` of the diagonal (as a share of the longer length). Returns NaN for empty signals.
 double WarpedDistance(std::span<const double> a, std::span<const double> b, double band = 0.1);
 
 struct Coherence {
@@ -50,19 +52,19 @@ struct Coherence {
   double chance = 0;  // unrelated noise stays below this value at one frequency in 95 % of cases
   std::size_t segments = 0;
 };
-// Welch's estimate from 0 (excluded) to `highest` [Hz], with Hann windows of `segment` samples that
-// overlap by half and have their mean removed. NaN if there are fewer than two segments or no
-// power. `chance` treats only non-overlapping segments as independent.
+// Computes Welch's estimate from 0 (excluded) to `highest` [Hz], with Hann windows of `segment`
+// samples that overlap by half and have their mean removed. Returns NaN if there are fewer than two
+// segments or no power. `chance` treats only non-overlapping segments as independent.
 Coherence CoherenceOf(std::span<const double> a, std::span<const double> b, double rate,
                       std::size_t segment, double highest);
 
-// Distance between two sets of repeats, compared with the distances within each set.
+// The distance between two sets of repeats, compared with the distances within each set.
 struct RepeatComparison {
   double within = 0;   // rms difference of two repeats of the same set; both sets have equal weight
   double between = 0;  // rms difference between a repeat of one set and a repeat of the other
   double ratio = 0;    // between / within; about 1 if both sets are of the same kind
 };
-// All repeats have the same length. NaN if a set has fewer than two.
+// All repeats have the same length. The result is NaN if a set has fewer than two.
 RepeatComparison CompareRepeats(const std::vector<std::vector<double>>& a,
                                 const std::vector<std::vector<double>>& b);
 

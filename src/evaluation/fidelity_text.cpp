@@ -1,4 +1,4 @@
-// The comparison of two runs as text and numbers.
+// Writes the comparison of two runs as text and numbers.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,12 +14,12 @@ namespace {
 double Shown(double value, const std::string& unit) { return unit == "m" ? 1e3 * value : value; }
 const char* ShownUnit(const std::string& unit) { return unit == "m" ? "mm" : unit.c_str(); }
 
-// Right-aligned in `width`; a dash for an undefined value.
+// Right-aligns in `width`, and writes a dash for an undefined value.
 std::string Figure(const char* format, double value, std::size_t width) {
   char buffer[48] = "-";
   if (value == value) std::snprintf(buffer, sizeof buffer, format, value);
   std::string text = buffer;
-  // Zero has no sign.
+  // Zero must have no sign.
   if (const std::size_t sign = text.find_first_of("+-");
       sign != std::string::npos && text.find('0') != std::string::npos &&
       text.find_first_of("123456789") == std::string::npos)

@@ -1,4 +1,4 @@
-// Distance of the object from the path that guides a person.
+// Computes the distance of the object from the path that guides a person.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// [m]; empty if there is no path. object, start: position of the object now and when RUN began, in
-// W [m].
+// Returns the distance [m], or no value if there is no path. object, start: the position of the
+// object now and when RUN began, in W [m].
 inline std::optional<double> GuidanceDistance(const GuidanceSpec& guidance,
                                               const std::array<double, 3>& object,
                                               const std::array<double, 3>& start) noexcept {

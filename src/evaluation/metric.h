@@ -43,26 +43,26 @@ struct Quantiles {
 };
 Quantiles QuantilesOf(const Histogram& histogram);
 
-// A number that is not finite, statistics without samples, and monostate are missing values: null
-// in files, and omitted from text.
+// A number that is not finite, statistics without samples, and monostate are missing values. They
+// are null in files and are omitted from text.
 using ResultValue =
     std::variant<std::monostate, double, std::uint64_t, bool, std::string, Statistics, Quantiles>;
 
-// Chapter of the report that shows a result. Results of kTiming depend on the computer's speed.
+// The chapter of the report that shows a result. Results of kTiming depend on the computer's speed.
 enum class Chapter { kSummary, kTracking, kForces, kRendering, kTiming };
 
 struct Result {
-  // Keys in the summary JSON, ending in the SI unit: "wrench.left.force_n".
+  // The keys in the summary JSON, ending in the SI unit: "wrench.left.force_n".
   std::string path;
-  // Text for people. Adjacent results of one group form a table of statistics or of quantiles, or a
-  // line of single values.
+  // The following texts are for people. Adjacent results of one group form a table of statistics or
+  // of quantiles, or a line of single values.
   std::string group;   // title
   std::string label;   // row, or the words after a single value
   std::string column;  // in a table of statistics
   Unit unit = units::kNone;
   std::string meaning;  // description for the reference
   ResultValue value;
-  // Whether it is shown in a table or line of the printed summary and of the report of one run.
+  // Whether the printed summary and the report of one run show it in a table or line.
   bool shown = true;
   bool compared = true;                 // whether it is shown in the comparison of runs
   Chapter chapter = Chapter::kSummary;  // set from the metric's kind
@@ -71,8 +71,8 @@ struct Result {
 class Metric {
  public:
   virtual ~Metric() = default;
-  // Adds the next record. Called for every tick, in order, also while simulated time is paused
-  // (`ran` is 0). No heap.
+  // Adds the next record. It is called for every tick, in order, even while simulated time is
+  // paused (`ran` is 0). It must not use the heap.
   virtual void Add(const TickRecord& record) noexcept = 0;
   // Appends the results so far. Their number and paths must not depend on the records.
   virtual void AppendTo(std::vector<Result>* results) const = 0;
@@ -89,12 +89,12 @@ std::unique_ptr<Metric> MakeMetric(const Scenario& scenario) {
   return std::make_unique<M>(scenario);
 }
 
-// All metrics, in the order of the summary.
+// Returns all metrics in the order of the summary.
 std::span<const MetricKind* const> Metrics();
 
 bool IsMissing(const ResultValue& value);
 
-// Results of one group in the form that text and report show. Missing values and empty rows are
+// The results of one group in the form that text and report show. Missing values and empty rows are
 // omitted.
 struct ResultGroup {
   struct Row {
@@ -107,10 +107,10 @@ struct ResultGroup {
   std::vector<Row> rows;
   std::string line;  // the single values: "3 solved, 0 failed"
 };
-// Groups the shown results.
+// Groups the results that are shown.
 std::vector<ResultGroup> GroupResults(const std::vector<Result>& results);
 
-// "force [N]".
+// Returns "force [N]", for example.
 std::string WithUnit(const std::string& name, const Unit& unit);
 
 }  // namespace predictor

@@ -9,10 +9,10 @@
 
 namespace predictor {
 
-// Power from 3 to 10 Hz divided by the power from 0 to 10 Hz, in windows of 4 s that overlap by
-// half: mean removed, Hann window, summed over the axes (similar to the index of Dimeas and
-// Aspragathos, 2016). It does not detect oscillations below 3 Hz: an underdamped cobot at 1 Hz is
-// detected by the growth of its cycles.
+// Divides the power from 3 to 10 Hz by the power from 0 to 10 Hz, in windows of 4 s that overlap by
+// half. The mean is removed, the window is a Hann window, and the axes are summed (similar to the
+// index of Dimeas and Aspragathos, 2016). The index does not detect oscillations below 3 Hz. An
+// underdamped cobot at 1 Hz is detected by the growth of its cycles.
 class OscillationIndex {
  public:
   static constexpr double kWindow = 4;               // [s]
@@ -26,16 +26,16 @@ class OscillationIndex {
     double index = 0;  // 0 to 1
     double rms = 0;    // of the force from 3 to 10 Hz [N]
     double total = 0;  // rms up to 10 Hz, with the mean removed [N]
-    // False if the force hardly varies: the index is then meaningless.
+    // This is false if the force hardly varies. The index is then meaningless.
     bool IsMeaningful() const { return total > kMinForce; }
     bool IsStrong() const { return total > kStopForce; }
   };
 
   explicit OscillationIndex(double dt);
-  // force [N], axes of W; time: time of the tick [s]. Returns the window that this force completes,
-  // or null. No heap.
+  // force [N] is in axes of W, and time is the time of the tick [s]. Returns the window that this
+  // force completes, or null. Does not use the heap.
   const Window* Add(double time, const Vector3& force) noexcept;
-  // Call if the next force does not immediately follow the last one.
+  // Call this if the next force does not immediately follow the last one.
   void Break() noexcept;
 
  private:

@@ -1,4 +1,4 @@
-// Energy through a port between two systems.
+// Computes the energy through a port between two systems.
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 
 namespace predictor {
 
-// Power [W] of a wrench [N, N·m] on a body that moves with a twist [m/s, rad/s].
+// Returns the power [W] of a wrench [N, N·m] on a body that moves with a twist [m/s, rad/s].
 inline double Power(const std::array<double, 6>& wrench,
                     const std::array<double, 6>& twist) noexcept {
   double power = 0;
@@ -14,7 +14,7 @@ inline double Power(const std::array<double, 6>& wrench,
   return power;
 }
 
-// Energy that flows through a port in both directions.
+// The energy that flows through a port in both directions.
 struct PortEnergy {
   double sum = 0;          // [J]
   double lowest = 0;       // lowest value of the running sum [J]

@@ -44,7 +44,7 @@ std::string ReadText(const Json& object, const char* key) {
   return value->get<std::string>();
 }
 
-// True only for a whole JSON number from `least` to `most`.
+// Returns true only for a whole JSON number from `least` to `most`.
 bool IsWhole(const Json& value, int least, int most) {
   if (value.is_number_unsigned())
     return most >= 0 && value.get<std::uint64_t>() <= static_cast<std::uint64_t>(most) &&
@@ -99,7 +99,7 @@ std::string ReadComment(const Json& object) {
   return comment;
 }
 
-// Fields that a form and a stored answer have in common.
+// Reads the fields that a form and a stored answer have in common.
 SurveyAnswer ReadFields(const Json& object) {
   SurveyAnswer answer;
   const auto condition = ConditionNamed(ReadText(object, "condition"));

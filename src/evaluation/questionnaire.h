@@ -22,9 +22,9 @@ struct Statement {
   const char* aspect;  // "Usability"
   const char* text;
 };
-// In the wording of the paper.
+// Returns the statements in the wording of the paper.
 const std::array<Statement, kStatements>& Statements();
-// "Strongly disagree" and so on, starting with the lowest score.
+// Returns "Strongly disagree" and so on, starting with the lowest score.
 const std::array<const char*, kScores>& ScoreNames();
 
 // The system used before answering: the real system (mode: direct) or its emulation.
@@ -33,7 +33,8 @@ inline constexpr std::size_t kConditions = 2;
 const char* Name(Condition condition);  // "real", "emulated"
 std::optional<Condition> ConditionNamed(std::string_view name);
 
-// The consent that a person gives before the first question. Stored answers contain its version.
+// Returns the consent that a person gives before the first question. Stored answers contain its
+// version.
 const char* ConsentText();
 inline constexpr int kConsentVersion = 1;
 
@@ -53,7 +54,7 @@ struct SurveyAnswer {
 
 // Parses the text that the page sends: {"consent": true, "condition", "answers": {"S1": 2, ...},
 // "age", "sex", "comment", "pseudonym"}. A statement, age and sex may be null. Throws InputError
-// with a sentence for the person; its key() names the field.
+// with a sentence for the person, whose key() names the field.
 SurveyAnswer ParseSurveyForm(std::string_view json);
 
 // Converts a stored answer to text and back. Parsing throws InputError.

@@ -25,7 +25,7 @@ InputError CannotWrite(const fs::path& file, int error) {
                     std::string("The answer cannot be stored: ") + std::strerror(error) + ".");
 }
 
-// Writes all of `text` to `descriptor` and to the disk. Returns errno on failure.
+// Writes all of `text` to `descriptor` and to the disk. Returns errno if that fails.
 int WriteAll(int descriptor, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = write(descriptor, text.data(), text.size());

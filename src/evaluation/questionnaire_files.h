@@ -10,14 +10,14 @@
 
 namespace predictor {
 
-// "RECORDING.PSEUDONYM.CONDITION.survey.json", with the recording's name without its extension.
-// Without a recording the first part is omitted.
+// Returns "RECORDING.PSEUDONYM.CONDITION.survey.json", with the recording's name without its
+// extension. Without a recording, the first part is omitted.
 std::string SurveyFileName(const SurveyAnswer& answer);
 
 // Writes the answer into `folder`, readable only by the owner, and waits until it is on the disk.
 // Returns its path. Throws InputError with key "pseudonym" if this person has already answered for
-// this recording and condition. Throws InputError without a key if the file cannot be written; no
-// partial file remains.
+// this recording and condition. Throws InputError without a key if the file cannot be written, in
+// which case no partial file remains.
 std::filesystem::path StoreSurveyAnswer(const std::filesystem::path& folder,
                                         const SurveyAnswer& answer);
 
@@ -30,7 +30,7 @@ struct StoredAnswer {
 // followed). They are sorted by pseudonym. Throws InputError that names a missing or invalid file.
 std::vector<StoredAnswer> ReadSurveyAnswers(const std::vector<std::filesystem::path>& places);
 
-// Removes the files with this pseudonym in their names, without reading them, so damaged files are
+// Removes the files with this pseudonym in their names. It does not read them, so damaged files are
 // removed too. Returns the removed files. Throws InputError if the pseudonym is invalid, a place is
 // missing, or a file cannot be removed.
 std::vector<std::filesystem::path> RemoveSurveyAnswers(

@@ -44,7 +44,7 @@ void CountPerson(const SurveyAnswer& answer, ConditionSummary* summary,
   summary->other += answer.sex == "other" ? 1 : 0;
 }
 
-// For one statement: each person's score or difference, if available.
+// Returns each person's score or difference for one statement, if available.
 std::vector<double> ScoresOf(const Answers& people, std::size_t condition, std::size_t statement) {
   std::vector<double> scores;
   for (const auto& [pseudonym, answers] : people)
@@ -95,7 +95,7 @@ ConditionSummary SummariseCondition(const Answers& people, std::size_t condition
   return summary;
 }
 
-// "%+.2f", for example; a dash for an undefined value.
+// Formats a value with "%+.2f", for example, or as a dash if it is undefined.
 std::string Figure(const char* format, double value) {
   if (value != value) return "–";
   char text[32];
@@ -130,7 +130,7 @@ std::string ConditionTable(const ConditionSummary& c, Condition condition) {
   return text;
 }
 
-// `counted`: name of the counted items.
+// `counted` is the name of the counted items.
 std::string ShiftTable(const char* counted, const ShiftSummaries& summaries) {
   std::string text = "   " + RightAligned(counted, 7) +
                      "  zeros   shift     interval  confidence        p     Holm\n";

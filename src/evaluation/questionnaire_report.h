@@ -1,4 +1,4 @@
-// The answers of many people to the questionnaire, summarised, and as a table.
+// Summarises the answers of many people to the questionnaire, also as a table.
 #pragma once
 
 #include <array>
@@ -14,12 +14,13 @@ namespace predictor {
 struct StatementSummary {
   ScoreCounts counts{};
   int answers = 0;
-  // NaN if undefined; the deviation is computed with n − 1
+  // Undefined values are NaN. The deviation is computed with n − 1.
   double mean = 0, deviation = 0, median = 0;
   double agreeing = 0;  // share of "agree" and "strongly agree"
 };
 
-// Location of a statement's scores, or of the differences between the two answers of each person.
+// The location of a statement's scores, or of the differences between the two answers of each
+// person.
 struct ShiftSummary {
   int count = 0;
   SignedRankTest test;  // against 0; zeros are dropped
@@ -54,13 +55,13 @@ struct SurveyReport {
 StatementSummary SummariseCounts(const ScoreCounts& counts);
 
 // Throws InputError if there is no answer, or if a person answered twice in one condition (after
-// two runs): two answers of one person must not count as two people.
+// two runs), because two answers of one person must not count as two people.
 SurveyReport SummariseSurvey(const std::vector<StoredAnswer>& answers);
 
-// "0.0312", or "<0.0001": a probability is never shown as zero.
+// Returns "0.0312" or "<0.0001". A probability is never shown as zero.
 std::string ProbabilityText(double p);
 
-// For the terminal.
+// Returns a table for the terminal.
 std::string SurveyTable(const SurveyReport& report);
 
 }  // namespace predictor

@@ -12,35 +12,35 @@ namespace predictor {
 
 inline constexpr int kPaperPeople = 17;
 
-// Mean and sample standard deviation (n − 1) in hundredths, as printed with two decimals.
+// The mean and the sample standard deviation (n − 1) in hundredths, as printed with two decimals.
 struct RoundedFigures {
   int mean = 0, deviation = 0;
   bool operator==(const RoundedFigures&) const = default;
 };
 
-// Uses integers only; a half is rounded away from zero. (With 17 answers, no half can occur, so
-// every rule that rounds to the nearest gives the same result; truncation does not.) Needs at least
-// two answers.
+// Uses integers only. A half is rounded away from zero. (With 17 answers, no half can occur, so
+// every rule that rounds to the nearest gives the same result, but truncation does not.) Needs at
+// least two answers.
 RoundedFigures FiguresOf(const ScoreCounts& counts);
 
-// All distributions of `people` answers that have these rounded values and no score below `lowest`,
-// in ascending order.
+// Returns all distributions of `people` answers that have these rounded values and no score below
+// `lowest`, in ascending order.
 std::vector<ScoreCounts> MatchingCounts(RoundedFigures figures, int people,
                                         int lowest = kLowestScore);
 
-// The middle score, or the mean of the two middle scores for an even number of answers. NaN without
-// answers.
+// Returns the middle score, or the mean of the two middle scores for an even number of answers.
+// Returns NaN without answers.
 double MedianOf(const ScoreCounts& counts);
 
 struct PaperRow {
   RoundedFigures figures;
-  // Lower bound stated in the paper's text: "for the statements S2–S4, there was no degree of
+  // The lower bound stated in the paper's text: "for the statements S2–S4, there was no degree of
   // agreement below Neutral", and "no level of agreement below Agree" for S8.
   int lowest = kLowestScore;
 };
 const std::array<PaperRow, kStatements>& PaperTable();
 
-// One line per statement: the printed values, the distributions and their medians.
+// Returns one line per statement: the printed values, the distributions and their medians.
 std::string PaperTableText();
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// Running statistics without storing the samples.
+// Computes running statistics without storing the samples.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace predictor {
 
-// Mean, standard deviation (n − 1) and largest value (Welford's method).
+// Computes the mean, the standard deviation (n − 1) and the largest value (Welford's method).
 class Statistics {
  public:
   void Add(double x) {

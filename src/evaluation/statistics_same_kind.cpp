@@ -35,8 +35,8 @@ Eigen::MatrixXd DistancesOf(const std::vector<std::span<const double>>& repeats)
   return distances;
 }
 
-// One divided by the number of ways to divide the repeats into the two sets; twice that if the sets
-// have the same size and are therefore interchangeable.
+// Returns one divided by the number of ways to divide the repeats into the two sets. If the sets
+// have the same size and are therefore interchangeable, it returns twice that.
 double MinP(std::size_t a, std::size_t b, int draws) {
   double ways = 1;
   for (std::size_t k = 1; k <= a; ++k) ways *= static_cast<double>(b + k) / static_cast<double>(k);

@@ -11,8 +11,8 @@ namespace predictor {
 inline constexpr double kSignificance = 0.05;
 
 struct SameKindTest {
-  // Energy distance (Székely & Rizzo 2013): the mean distance between repeats of different sets,
-  // minus the mean distance between repeats of the same set. Both sets have equal weight.
+  // The energy distance (Székely & Rizzo 2013) is the mean distance between repeats of different
+  // sets minus the mean distance between repeats of the same set. Both sets have equal weight.
   double distance = 0;
   double p = 1;      // probability that randomly assigned repeats are at least as far apart as the
                      // actual sets
@@ -21,12 +21,12 @@ struct SameKindTest {
   bool distinguished() const { return p <= kSignificance; }
 };
 
-// `a` and `b`: repeats, each a series of the same length. Their distance is the rms difference. The
-// test permutes whole repeats because distances that share a repeat are correlated. For sets of the
-// same kind, whatever their distribution, it reports a difference in at most a share kSignificance
-// of cases. It uses `draws` permutations, always the same ones. The actual sets count as an
-// additional permutation, so p is never too small (Phipson & Smyth 2010). Each set needs at least
-// two repeats.
+// `a` and `b` contain repeats, each a series of the same length. Their distance is the rms
+// difference. The test permutes whole repeats, because distances that share a repeat are
+// correlated. For sets of the same kind, whatever their distribution, it reports a difference in at
+// most a share kSignificance of cases. It uses `draws` permutations, always the same ones. The
+// actual sets count as an additional permutation, so p is never too small (Phipson & Smyth 2010).
+// Each set needs at least two repeats.
 SameKindTest TestSameKind(std::span<const std::vector<double>> a,
                           std::span<const std::vector<double>> b, int draws = 9999);
 

@@ -12,7 +12,8 @@
 namespace predictor {
 namespace {
 
-// Twice the mean rank of each absolute value, so that ranks are integers. The values are ascending.
+// Returns twice the mean rank of each absolute value, so that ranks are integers. The values are
+// ascending.
 std::vector<std::size_t> DoubledRanks(const std::vector<double>& sizes) {
   std::vector<std::size_t> ranks(sizes.size());
   for (std::size_t begin = 0; begin < sizes.size();) {
@@ -25,8 +26,8 @@ std::vector<std::size_t> DoubledRanks(const std::vector<double>& sizes) {
   return ranks;
 }
 
-// [s]: number of the 2^n sign assignments for which the positive (doubled) ranks sum to s. These
-// are integers up to 2^50, which a double represents exactly.
+// Entry s is the number of the 2^n sign assignments for which the positive (doubled) ranks sum to
+// s. These are integers up to 2^50, which a double represents exactly.
 std::vector<double> CountSums(const std::vector<std::size_t>& ranks) {
   std::vector<double> counts(1 + std::accumulate(ranks.begin(), ranks.end(), std::size_t{0}));
   counts[0] = 1;

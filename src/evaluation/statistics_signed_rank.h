@@ -12,7 +12,7 @@ enum class ZeroRule {
   kPratt,    // Pratt (1959): ranked with the others, then dropped
 };
 
-// Up to this number of differences, the distribution is enumerated; beyond it, the normal
+// Up to this number of differences, the distribution is enumerated. Beyond it, the normal
 // approximation is used.
 inline constexpr std::size_t kMaxEnumerated = 50;
 
@@ -45,8 +45,9 @@ struct ShiftEstimate {
   double confidence = 0;
 };
 
-// The centre of symmetry of the differences, including zeros. The ends of the interval are Walsh
-// averages chosen by the untied distribution of the signed-rank statistic. NaN without differences.
+// Returns the centre of symmetry of the differences, including zeros. The ends of the interval are
+// Walsh averages chosen by the untied distribution of the signed-rank statistic. Without
+// differences, the result is NaN.
 ShiftEstimate HodgesLehmann(std::span<const double> differences, double confidence = 0.95,
                             std::size_t max_enumerated = kMaxEnumerated);
 

@@ -1,4 +1,4 @@
-// The stops of a run, derived from its records.
+// Derives the stops of a run from its records.
 #pragma once
 
 #include <array>
@@ -20,46 +20,48 @@ struct StopSummary {
   double time = 0;      // emulated time until the stop, including the time before resets [s]
   double duration = 0;  // from the decision to rest [s]
   double distance = 0;  // path of the faster handle from the decision to rest [m]
-  // Simulated rig only: time from the true force (torque) crossing its threshold to the decision.
+  // Only for a simulated rig: the time from the true force (torque) crossing its threshold to the
+  // decision.
   std::optional<double> detection;  // [s]
   StatusRecord harder = {};  // the fault that removed the power at the end of a stop that would
                              // otherwise have held
 };
 
-// True if the arms did not come to rest although they were commanded to. This follows from the
-// stop's final fault or, if the run had ended without a cause, from its cause. Duration and
-// distance are then only the values observed so far.
+// Returns whether the arms failed to come to rest although they were commanded to. This follows
+// from the stop's final fault or, if the run had ended without a cause, from its cause. Duration
+// and distance are then only the values observed so far.
 bool DidNotRest(const StopSummary& stop);
 
-// True for a stop that censors what the person feels: a stop by the force or the torque of a hand,
-// by the coupling, or by tracking, which ends runs in which the handles would have to exceed their
-// speed cap. The largest values of such a run are lower bounds.
+// Returns whether a stop censors what the person feels: a stop by the force or the torque of a
+// hand, by the coupling, or by tracking, which ends runs in which the handles would have to exceed
+// their speed cap. The largest values of such a run are lower bounds.
 bool IsLimit(StopCause cause);
 
-// Lengths of the handles' paths. They are measured in steps of kStep because the encoders'
-// quantisation would otherwise accumulate.
+// Measures the lengths of the handles' paths in steps of kStep, because the encoders' quantisation
+// would otherwise accumulate.
 class HandleOdometer {
  public:
   static constexpr double kStep = 1e-4;  // [m]
 
-  // X_WH: poses of the handles; the poses of absent handles must be constant.
+  // X_WH contains the poses of the handles. Those of absent handles must be constant.
   void Start(const std::array<Pose, kHands>& X_WH) noexcept;
   // Returns the longer of the two handles' paths so far [m].
   double Add(const std::array<Pose, kHands>& X_WH) noexcept;
 
  private:
-  // End of the last step of each path.
+  // The end of the last step of each path.
   std::array<Vector3, kHands> corner_ = {Vector3::Zero(), Vector3::Zero()};
   std::array<double, kHands> path_ = {};  // length up to the corner [m]
 };
 
-// Collects the stops. Add uses no heap.
+// Collects the stops. Add does not use the heap.
 class StopLog {
  public:
   explicit StopLog(const Scenario& scenario);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // Stops with a cause, in order; only the first kMaxStops are kept. count() counts all of them.
+  // Returns the stops with a cause, in order. Only the first kMaxStops are kept, but count() counts
+  // all.
   const std::vector<StopSummary>& stops() const { return stops_; }
   std::uint64_t count() const { return count_; }
 
@@ -82,7 +84,7 @@ class StopLog {
   double before_ = 0, run_time_ = 0;  // emulated time before the last reset, and since then [s]
   StopCause cause_ = StopCause::kNone;
 
-  // For the last stop: path and time of the handles from the decision to rest.
+  // For the last stop, the path and time of the handles from the decision to rest.
   bool stopping_ = false;
   HandleOdometer odometer_;
   RestDetector rest_;

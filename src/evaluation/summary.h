@@ -1,5 +1,5 @@
-// The summary of a run: the results of its metrics and its stops, computed only from its
-// TickRecords.
+// The summary of a run contains the results of its metrics and its stops. It is computed only from
+// its TickRecords.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct Summary {
   std::vector<EventSummary> events;  // in the order of the scenario
   std::optional<CobotStopSummary> cobot_stop;
 
-  // Provided by the caller.
+  // The caller provides the following values.
   double real_time_factor = 0;
   bool by_the_clock = false;  // the run was paced by the clock, so its real-time factor does not
                               // show the computer's speed
@@ -35,7 +35,7 @@ struct Summary {
                                       // it
   std::uint64_t overruns = 0, records_dropped = 0;
 
-  // The result with this path, which must exist.
+  // Returns the result with this path, which must exist.
   const Result& At(std::string_view path) const;
   template <class T>
   const T& Get(std::string_view path) const {
@@ -46,7 +46,7 @@ struct Summary {
 };
 
 // Builds a summary from records, in order. Statistics include every tick in which simulated time
-// passed, also the tick in which a stop was decided and the value that caused it.
+// passed, including the tick in which a stop was decided and the value that caused it.
 class SummaryBuilder {
  public:
   explicit SummaryBuilder(const Scenario& scenario);
@@ -62,17 +62,17 @@ class SummaryBuilder {
   EventLog events_;
 };
 
-// JSON for scripts; scripts depend on its format. `timing`: include the values that depend on the
-// computer's speed.
+// Returns JSON for scripts, which depend on its format. `timing`: whether to include the values
+// that depend on the computer's speed.
 std::string SummaryJson(const Summary& summary, bool timing = true);
 
-// JSON Schema of SummaryJson.
+// Returns the JSON Schema of SummaryJson.
 std::string SummarySchema();
 
-// The same for people: tables in mm, degrees and N.
+// Returns the summary for people, as tables in mm, degrees and N.
 std::string SummaryTable(const Summary& summary);
 
-// Lead, margin and prediction as a sentence.
+// Describes lead, margin and prediction in a sentence.
 std::string LoopWords(const PredictedLoop& loop);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// The summary as JSON, and its schema. Both are made from lists of results.
+// Writes the summary as JSON, and its schema. Both are made from lists of results.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -129,7 +129,7 @@ void Collapse(Json* json) {
   if (!any) *json = nullptr;
 }
 
-// A path such as "wrench.left" as a JSON pointer; `between` replaces the dot.
+// Converts a path such as "wrench.left" to a JSON pointer. `between` replaces the dot.
 Json::json_pointer PlaceOf(const std::string& path, const std::string& between = "/") {
   std::string pointer = "/";
   for (const char c : path) pointer += c == '.' ? between : std::string(1, c);

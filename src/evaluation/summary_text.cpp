@@ -1,4 +1,4 @@
-// The summary for people.
+// Writes the summary for people.
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +22,7 @@ void EndLine(std::string* text) {
   *text += '\n';
 }
 
-// "mean ± deviation   largest", with column widths that suit the unit's decimals.
+// The columns "mean ± deviation   largest" have widths that suit the unit's decimals.
 int RoomOf(const Unit& unit) { return std::max(unit.decimals, 2); }
 int WidthOf(const Unit& unit) { return 3 * RoomOf(unit) + 16; }
 std::string CellText(const Result& result) {
@@ -66,7 +66,7 @@ void AddQuantiles(const ResultGroup& group, std::string* text) {
   }
 }
 
-// timing: adds only the results that depend on the computer's speed; otherwise, only the others.
+// timing: adds only the results that depend on the computer's speed, or only the others if false.
 void AddResults(const std::vector<ResultGroup>& groups, bool timing, std::string* text) {
   const ResultGroup* above = nullptr;
   for (const ResultGroup& group : groups) {

@@ -1,4 +1,4 @@
-// The evaluator: a process alongside the run that judges the person live.
+// The evaluator is a process alongside the run that judges the person live.
 #pragma once
 
 #include <functional>
@@ -10,21 +10,21 @@
 
 namespace predictor::evaluator {
 
-// The internal subcommand that turns this program into the evaluator; only EvaluatorProcess uses
+// The internal subcommand that turns this program into the evaluator. Only EvaluatorProcess uses
 // it.
 inline constexpr const char* kEvaluatorSubcommand = "evaluator-process";
 int EvaluatorMain();
 
 class EvaluatorProcess {
  public:
-  // Shows a message to the user; called from a separate thread.
+  // Shows a message to the user. It is called from a separate thread.
   using Notify = std::function<void(const std::string& text)>;
 
   // Starts the evaluator and waits until it follows `board`. The evaluator writes its states to
   // `states` and may do nothing else. It runs at a lower priority than the run's threads, and the
-  // run never waits for it. If it dies, a message reports this, and it is restarted; damage and
-  // fatigue then begin again. The descriptors of both are borrowed. Throws InputError if body or
-  // stance are missing or impossible, or std::runtime_error if no process can be started.
+  // run never waits for it. If it dies, a message reports this, and it is restarted. Damage and
+  // fatigue then start from zero again. The descriptors of both are borrowed. Throws InputError if
+  // body or stance are missing or impossible, or std::runtime_error if no process can be started.
   EvaluatorProcess(const Scenario& scenario, const Shared<RunBoard>& board,
                    const Shared<EvaluationBoard>& states, Notify show);
   int pid() const { return process_.pid(); }  // 0 while no process is running

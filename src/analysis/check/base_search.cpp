@@ -7,12 +7,12 @@ namespace {
 
 constexpr int kSweeps = 6;  // maximum number of sweeps over the arms per step width
 constexpr std::array<double, 3> kSteps = {0.1, 0.05, 0.025};  // [m]
-// Initial bases behind, beside and below the handle [m].
+// The initial positions of the bases behind, beside and below the handle [m].
 constexpr std::array<double, 3> kBehind = {0.35, 0.45, 0.55};
 constexpr std::array<double, 3> kOutside = {-0.05, 0.1, 0.25};
 constexpr std::array<double, 4> kBelow = {0.2, 0.3, 0.4, 0.5};
 
-// Both arms with their bases at the same position relative to their handles.
+// Both arms, with their bases at the same position relative to their handles.
 struct Placed {
   Vector3 offset = Vector3::Zero();  // position of the left base relative to its handle; mirrored
                                      // for the right arm [m]
@@ -40,7 +40,7 @@ class Search {
  private:
   Vector3 Handle(int hand) const { return paths_[0][0].X_WO * s_.handle(hand).pose.xyz; }
 
-  // Rounded positions, mirrored for the right arm.
+  // Returns rounded positions, mirrored for the right arm.
   std::array<Vector3, kHands> Bases(const Vector3& offset) const {
     std::array<Vector3, kHands> xyz = {Vector3::Zero(), Vector3::Zero()};
     for (const int i : s_.hands()) {
@@ -51,7 +51,7 @@ class Search {
     return xyz;
   }
 
-  // Mean of the arms' current base positions.
+  // Returns the mean of the arms' current base positions.
   Vector3 Present() const {
     Vector3 sum = Vector3::Zero();
     int arms = 0;
@@ -72,7 +72,7 @@ class Search {
   }
 
   double ComfortAt(const std::array<Vector3, kHands>& xyz) const {
-    // The bases must not collide with each other either.
+    // The bases must not collide with each other, either.
     std::vector<PairReach> pairs = device_.NoDistances();
     if (s_.Has(0) && s_.Has(1)) pairs.push_back({"bases", {(xyz[0] - xyz[1]).norm(), 0, -1}});
     double comfort = std::numeric_limits<double>::infinity();

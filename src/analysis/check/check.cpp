@@ -20,7 +20,7 @@ constexpr double kSlow =
     4;  // [Hz]; slower oscillations are caused by the virtual cobot, faster ones by the arms
 constexpr double kNearTorqueLimit = 0.8;  // share that causes a warning
 
-// Pose of the object without its weight, with the attachment at its zero position.
+// Returns the pose of the object without its weight, with the attachment at its zero position.
 Pose UnsaggedObject(const Scenario& s, const RobotModel& cobot) {
   JointVector q = JointVector::Zero(cobot.dof());
   for (std::size_t j = 0; j < s.cobot.posture.size(); ++j)

@@ -17,14 +17,14 @@
 
 namespace predictor {
 
-// Smallest singular value of a handle's Jacobian on the path [m]
+// The smallest singular value of a handle's Jacobian on the path [m].
 inline constexpr double kMinSingularValue = 0.03;
 inline constexpr double kMinMargin = 2;           // factor by which the hands' impedance may grow
                                                   // (StabilityMargin)
 inline constexpr double kMarginPrecision = 1.02;  // precision of the bisection for the margin
 inline constexpr double kPathStep = 0.02;         // interval of a path's samples [s]
 
-// The virtual cobot with its load at rest, and the arms.
+// The results for the virtual cobot with its load at rest, and for the arms.
 struct ModelsReport {
   double cobot_mass = 0;  // [kg]
   int cobot_joints = 0;
@@ -46,7 +46,7 @@ struct ModelsReport {
   std::array<std::optional<Arm>, kHands> arms;
 };
 
-// Margins of the haptic loop (haptics/stability.h).
+// The margins of the haptic loop (haptics/stability.h).
 struct StabilityReport {
   double lag = 0;         // lag of the arms [s]
   double lead = 0;        // chosen automatically or set by the scenario [s]
@@ -72,7 +72,7 @@ struct CheckReport {
   std::optional<ShiftProposal> shift_proposal;
   std::optional<StabilityReport> stability;  // empty without a device
   // A stop from `handle_speed` [m/s] as the arms perform it (StopOfArms), and the same with a joint
-  // at its speed limit (MinStopAcceleration). Empty without a device.
+  // at its speed limit (MinStopAcceleration). They are empty without a device.
   std::optional<StopBudget> stop, longest_stop;
   double handle_speed = 0;
   std::vector<std::string> problems;  // sentences, each with its remedy; if there are any, the
@@ -88,27 +88,27 @@ struct CheckOptions {
   std::function<void(double share, const char* what)> progress = [](double, const char*) {};
 };
 
-// Throws InputError for every error for which `run` would refuse the scenario, except a start out
-// of reach, which makes the check fail.
+// Throws InputError for every error for which `run` would refuse the scenario, except for a start
+// out of reach, with which the check fails.
 CheckReport Check(const Scenario& scenario, const CheckOptions& options);
 
-// True if a margin is sufficient, as far as it is known.
+// Returns whether a margin is sufficient, as far as it is known.
 inline bool Suffices(const StabilityMargin& margin) {
   return kMarginPrecision * margin.gain >= kMinMargin;
 }
 
-// A hand with another mass [kg] and stiffness [N/m] but the same damping ratio. `stiffness` is its
-// largest component; the other components and the rotational stiffness change in proportion.
+// Returns a hand with another mass [kg] and stiffness [N/m] but the same damping ratio. `stiffness`
+// is its largest component. The other components and the rotational stiffness change in proportion.
 HandSpec Varied(HandSpec hand, double mass, double stiffness);
 
-// Stability margins of the loop. `world`: at rest, hands off. The table covers a range of hands:
-// the scenario's hand with each mass, and its stiffness scaled to each given value of the largest
-// component (same damping ratio).
+// Computes the stability margins of the loop. `world` is at rest, with hands off. The table covers
+// a range of hands: the scenario's hand with each mass, and its stiffness scaled to each given
+// value of the largest component (same damping ratio).
 StabilityReport CheckStability(const Scenario& scenario, const LinearModel& world,
                                const std::vector<double>& masses,
                                const std::vector<double>& stiffnesses, const OnProgress& progress);
 
-// The report as text for the user, and as JSON in SI units.
+// These functions return the report as text for the user and as JSON in SI units.
 std::string CheckText(const CheckReport& report);
 std::string CheckJson(const CheckReport& report);
 

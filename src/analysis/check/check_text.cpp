@@ -1,4 +1,4 @@
-// The report of a check as text for the user, and as JSON.
+// Writes the report of a check as text for the user, and as JSON.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -107,7 +107,7 @@ void AddProposal(const CheckReport& report, const BaseProposal& p, std::string* 
   AddComfort(report, p.comfort, text);
 }
 
-// A shift in the form that the scenario takes.
+// Returns a shift in the form that the scenario takes.
 std::string ShiftText(const PoseSpec& shift) {
   return Formatted("{xyz: [%.3f, %.3f, %.3f], rpy: [0, 0, %.4g deg]}", shift.xyz.x(), shift.xyz.y(),
                    shift.xyz.z(), kDegrees * shift.rpy.z());

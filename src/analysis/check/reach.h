@@ -1,5 +1,5 @@
-// Reach of the device along a path of the object: the motion of the arms' joints and its worst
-// values.
+// Computes the reach of the device along a path of the object: the motion of the arms' joints and
+// its worst values.
 #pragma once
 
 #include <array>
@@ -34,8 +34,8 @@ struct Extreme {
 struct ArmReach {
   std::optional<double> lost;  // first time at which the handle cannot be at its pose [s]
   double reached = 0;          // share of the path's samples before that time
-  // smallest singular value of the handle's Jacobian, with rotation weighted by
-  // rendering.characteristic_length [m]
+  // The smallest singular value of the handle's Jacobian, with rotation weighted by
+  // rendering.characteristic_length [m].
   Extreme singular_value = Extreme::Smallest();
   Extreme joint_margin = Extreme::Smallest();  // distance to the nearest position limit [rad]
   Extreme joint_speed;  // share of the speed that the velocity limit and (near its end) the
@@ -47,7 +47,7 @@ struct PairReach {
   Extreme distance = Extreme::Smallest();  // [m]
 };
 
-// Motion of a handle itself.
+// The motion of a handle itself.
 struct HandleReach {
   Extreme speed;           // [m/s]
   Extreme rotation_speed;  // [rad/s]
@@ -62,7 +62,7 @@ struct Reach {
 // An arm that follows a path.
 class ArmFollower {
  public:
-  // Origins of the arm's links in the link pairs, one list per sample.
+  // The origins of the arm's links in the link pairs, one list per sample.
   struct Track {
     ArmReach reach;
     std::vector<std::vector<Vector3>> links;
@@ -72,7 +72,7 @@ class ArmFollower {
   ArmFollower(const Scenario& scenario, int hand);
 
   const std::shared_ptr<const RobotModel>& model() const { return model_; }
-  // Links whose positions Follow stores.
+  // Sets the links whose positions Follow stores.
   void Watch(const std::vector<FrameId>& links) { links_ = links; }
 
   // Follows the object's path with the base moved by `shift` [m], sample by sample, with damped
@@ -95,7 +95,7 @@ class ArmFollower {
   std::vector<FrameId> links_;
 };
 
-// The arms of a scenario that has a device; empty for absent sides.
+// The arms of a scenario that has a device. Absent sides are empty.
 class DeviceReach {
  public:
   // Throws InputError.
@@ -105,8 +105,8 @@ class DeviceReach {
     return arms_[static_cast<std::size_t>(hand)];
   }
 
-  // The worst values over all paths, with the bases moved by `shift` [m]. With `give_up`, a path
-  // ends as soon as a handle is lost.
+  // Returns the worst values over all paths, with the bases moved by `shift` [m]. With `give_up`, a
+  // path ends as soon as a handle is lost.
   Reach Over(const std::vector<std::vector<IntendedSample>>& paths,
              const std::array<Vector3, kHands>& shift = {Vector3::Zero(), Vector3::Zero()},
              bool give_up = false) const;
@@ -129,9 +129,9 @@ class DeviceReach {
   std::vector<WatchedPair> pairs_;
 };
 
-// Paths that a task may take from the object's start. If the script lets go and grips again, there
-// are two: the object stays where it was released, or it returns to its start. Otherwise there is
-// one.
+// Returns the paths that a task may take from the object's start. If the script lets go and grips
+// again, there are two: the object stays where it was released, or it returns to its start.
+// Otherwise there is one.
 std::vector<std::vector<IntendedSample>> TaskPaths(const Scenario& scenario, const Pose& X_WO,
                                                    double step);
 

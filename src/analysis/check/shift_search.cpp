@@ -14,7 +14,8 @@ struct StepWidth {
 };
 constexpr std::array<StepWidth, 3> kWidths = {
     {{0.1, 20 * kDegree}, {0.05, 10 * kDegree}, {0.025, 5 * kDegree}}};
-// Initial bases behind (or, negative, in front of) and below the handles [m].
+// The initial positions of the bases behind (or, if negative, in front of) and below the handles
+// [m].
 constexpr std::array<double, 6> kStartsBehind = {0.35, 0.45, 0.55, -0.35, -0.45, -0.55};
 constexpr std::array<double, 4> kStartsBelow = {0.2, 0.3, 0.4, 0.5};
 

@@ -29,8 +29,8 @@ ArmDistribution::Vector MomentsOf(const HandSpec& hand) {
   return x;
 }
 
-// A square root of a covariance, which may be singular. Throws InputError if the matrix is not a
-// covariance.
+// Returns a square root of a covariance, which may be singular. Throws InputError if the matrix is
+// not a covariance.
 ArmDistribution::Matrix RootOf(const ArmDistribution::Matrix& covariance) {
   using Matrix = ArmDistribution::Matrix;
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(covariance);
@@ -55,7 +55,7 @@ nlohmann::json ParseArm(const std::string& file) {
   }
 }
 
-// The indices of the parameters that the file names.
+// Returns the indices of the parameters that the file names.
 std::vector<int> ParametersIn(const nlohmann::json& json) {
   std::vector<int> found;
   for (const auto& entry : json.at("parameters")) {
@@ -91,7 +91,7 @@ ArmDistribution ArmDistribution::Prior(const HandSpec& hand) {
   return arm;
 }
 
-// For a log-normal x with mean m: Cov(log xi, log xj) = log(1 + Cij / (mi mj)), and for a normal g,
+// For a log-normal x with mean m, Cov(log xi, log xj) = log(1 + Cij / (mi mj)). For a normal g,
 // Cov(g, log x) = C / m.
 ArmDistribution ArmDistribution::FromMoments(const Vector& mean, const Matrix& covariance,
                                              const HandSpec& hand, const std::string& source) {
@@ -127,7 +127,7 @@ ArmDistribution ArmDistribution::Read(const std::string& file, const HandSpec& h
     const auto covariance = json.at("covariance").get<std::vector<std::vector<double>>>();
     if (mean.size() != which.size() || covariance.size() != which.size())
       throw InputError("parameters, mean and covariance must have the same length.");
-    // Moments of the prior, for parameters that the file does not contain.
+    // These are moments of the prior, for parameters that the file does not contain.
     Vector m = MomentsOf(hand);
     Matrix c = Matrix::Zero();
     const ArmDistribution prior = Prior(hand);

@@ -10,7 +10,7 @@
 
 namespace predictor {
 
-// Impedance of one arm, as felt at the handle.
+// The impedance of one arm, as felt at the handle.
 struct ArmImpedance {
   Vector3 stiffness;              // along W's axes [N/m]
   double damping_ratio = 0;       // D = 2 ζ √(mass · stiffness)
@@ -24,26 +24,27 @@ struct ArmImpedance {
 };
 
 inline constexpr int kArmParameters = 7;
-// "stiffness_x", "stiffness_y", "stiffness_z", "damping_ratio", "mass", "reflex_gain",
-// "reflex_delay".
+// The names are "stiffness_x", "stiffness_y", "stiffness_z", "damping_ratio", "mass", "reflex_gain"
+// and "reflex_delay".
 extern const std::array<const char*, kArmParameters> kArmParameterNames;
 
-// All parameters are log-normal, except for the reflex gain, which is normal; they may be
+// All parameters are log-normal, except for the reflex gain, which is normal. They may be
 // correlated. The rotational impedance scales with the geometric mean of the stiffness.
 class ArmDistribution {
  public:
   using Vector = Eigen::Matrix<double, kArmParameters, 1>;
   using Matrix = Eigen::Matrix<double, kArmParameters, kArmParameters>;
 
-  // The distribution that this project assumes for people whose arms were not identified, centred
-  // on `hand`. Standard deviations of the logarithms: 0.35 (stiffness, common to all axes), 0.2 (in
-  // addition for each axis), 0.35 (damping ratio), 0.3 (mass), 0.2 (reflex delay); standard
-  // deviation of the reflex gain: 0.15. Design choices: with the default hand, 95 % of the people
-  // then lie within the ranges that Mussa-Ivaldi et al. 1985, Tsuji et al. 1995, Dolan et al. 1993
-  // and Pruszynski & Scott 2012 report, as recalled in the project's reference (not checked again).
+  // Returns the distribution that this project assumes for people whose arms were not identified,
+  // centred on `hand`. The standard deviations of the logarithms are 0.35 (stiffness, common to all
+  // axes), 0.2 (in addition for each axis), 0.35 (damping ratio), 0.3 (mass) and 0.2 (reflex
+  // delay). That of the reflex gain is 0.15. These are design choices: with the default hand, 95 %
+  // of the people then lie within the ranges that Mussa-Ivaldi et al. 1985, Tsuji et al. 1995,
+  // Dolan et al. 1993 and Pruszynski & Scott 2012 report. The ranges are quoted from the project's
+  // reference and were not checked again.
   static ArmDistribution Prior(const HandSpec& hand);
-  // From the mean and the covariance of the parameters themselves, in their units. Throws
-  // InputError if a mean is not positive or the matrix is not a covariance.
+  // Makes the distribution from the mean and the covariance of the parameters themselves, in their
+  // units. Throws InputError if a mean is not positive or the matrix is not a covariance.
   static ArmDistribution FromMoments(const Vector& mean, const Matrix& covariance,
                                      const HandSpec& hand, const std::string& source);
   // Reads mean and covariance from JSON: {"predictor_arm": 1, "source": "...", "parameters": [...],
@@ -52,7 +53,8 @@ class ArmDistribution {
 
   ArmImpedance Draw(RandomStream* random) const;
   const std::string& source() const { return source_; }  // a sentence for the user
-  // Quantile of the marginal distribution of a parameter; probability 0.05, 0.5 or 0.95.
+  // Returns a quantile of the marginal distribution of a parameter. The probability is 0.05, 0.5 or
+  // 0.95.
   double Percentile(int parameter, double probability) const;
 
  private:

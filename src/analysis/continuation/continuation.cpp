@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kUnlimited = 1e6;  // replaces a limit of force, torque, distance or speed
 
-// The same scenario without the limits that would stop the run.
+// Returns the same scenario without the limits that would stop the run.
 Scenario WithoutLimits(Scenario scenario) {
   SafetySpec& s = scenario.safety;
   for (double* limit :
@@ -88,7 +88,7 @@ class RunObserver {
   ContinuedRun run_;
 };
 
-// The joints of the arms, as measured [rad]; empty for an absent arm.
+// Returns the measured joints of the arms [rad]. Absent arms are empty.
 std::array<JointVector, kHands> JointsIn(const TickRecord& record) {
   std::array<JointVector, kHands> q;
   for (std::size_t i = 0; i < kHands; ++i)
@@ -97,7 +97,7 @@ std::array<JointVector, kHands> JointsIn(const TickRecord& record) {
   return q;
 }
 
-// An emulator without the limits, used by one thread.
+// An emulator without the limits, which one thread uses.
 class Continuer {
  public:
   Continuer(const StoppedRun& run, const OperatorMaker& recorded) : run_(run) {
@@ -110,7 +110,7 @@ class Continuer {
     emulator_->Tick();  // shows the operator its step
   }
 
-  // draw: if null, the recorded operator continues.
+  // If `draw` is null, the recorded operator continues.
   ContinuedRun Run(const Continuation& c, const IntentModel& intent, const OperatorDraw* draw) {
     emulator_->LoadState(run_.state);
     LiftThresholds();
@@ -132,8 +132,8 @@ class Continuer {
   }
 
  private:
-  // The saved state contains the thresholds. Without an upper limit, they rise so fast that in the
-  // next tick they no longer have an effect.
+  // The saved state contains the thresholds. Without an upper limit, they rise so fast that they
+  // have no effect in the next tick.
   void LiftThresholds() {
     for (const Parameter parameter : {Parameter::kForceThreshold, Parameter::kTorqueThreshold}) {
       RunInput input;
@@ -149,7 +149,7 @@ class Continuer {
   std::unique_ptr<Emulator> emulator_;
 };
 
-// Lends each thread a Continuer of its own, which the thread returns after each piece.
+// Lends each thread its own Continuer, which the thread returns after each piece.
 class ContinuerPool {
  public:
   ContinuerPool(const StoppedRun& run, OperatorMaker recorded)
@@ -213,9 +213,9 @@ Interval90 Continuation::IntervalOf(double ContinuedRun::*value) const {
   std::vector<CensoredValue> values;
   for (const ContinuedRun& run : runs)
     if (std::isfinite(run.*value)) values.push_back({run.*value, run.ending == Ending::kFault});
-  // With these probabilities, one further draw lies within the interval with 90 % probability, for
-  // any number n of draws. The ranks of the order statistics are p (n + 1); Quantile counts them as
-  // 1 + p' (n - 1).
+  // With these probabilities, a further draw lies in the interval with a probability of 90 %, for
+  // any number n of draws. The ranks of the order statistics are p (n + 1), but Quantile counts
+  // them as 1 + p' (n - 1).
   const auto n = static_cast<double>(values.size());
   const auto probability = [n](double p) {
     return n < 2 ? p : std::clamp((p * (n + 1) - 1) / (n - 1), 0.0, 1.0);

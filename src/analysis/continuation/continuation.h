@@ -1,5 +1,5 @@
-// What would have happened if the emulator had not stopped a run: its continuation from the tick of
-// the stop, for many possible operators.
+// Predicts what would have happened if the emulator had not stopped a run. It continues the run
+// from the tick of the stop, for many possible operators.
 #pragma once
 
 #include <array>
@@ -28,11 +28,11 @@ enum class Ending {
   kFault,         // the emulator stopped for another reason: what follows is not known
 };
 inline constexpr int kEndings = 5;
-// "settles", "stays_above", "diverges", "cobot_stops", "fault".
+// Returns "settles", "stays_above", "diverges", "cobot_stops" or "fault".
 const char* Name(Ending ending);
 
-// One continued run, from the stop on. Forces are the sensors' readings, like those that the stop
-// uses.
+// One continued run, from the stop on. Forces are readings of the sensors, which the stop uses as
+// well.
 struct ContinuedRun {
   double peak_force = 0, peak_torque = 0;  // largest of a hand [N], [N·m]
   double peak_speed = 0;                   // of a handle [m/s]
@@ -45,14 +45,14 @@ struct ContinuedRun {
   std::vector<double> force;  // largest force of a hand in each interval of kCurveStep [N]
   TickRecord at_peak{};       // the tick with the largest force
   OperatorDraw person;        // not set for the reference
-  // Largest torque of elbows and shoulders at the time of the largest force, as a multiple of the
-  // mean strength for the person's sex; NaN: the posture is not known or does not reach the
-  // handles.
+  // The largest torque of elbows and shoulders at the time of the largest force, as a multiple of
+  // the mean strength for the person's sex. It is NaN if the posture is unknown or does not reach
+  // the handles.
   double joint_use = kUndefined;
 };
 inline constexpr double kCurveStep = 0.01;  // [s]
 
-// 90 % interval.
+// A 90 % interval.
 struct Interval90 {
   CensoredValue low, median, high;  // 5 %, 50 %, 95 %
 };
@@ -68,12 +68,12 @@ struct Continuation {
   std::vector<double> past_times,
       past_force;                  // before the stop: time relative to the stop, largest force
   std::vector<ContinuedRun> runs;  // one per draw, in order
-  // For a simulated operator: what that operator would have done.
+  // For a simulated operator, what that operator would have done.
   std::optional<ContinuedRun> reference;
   std::string no_joint_use;  // why no posture could be judged; empty: it could
 
-  // Interval of a quantity over the draws in which it is known. For a run that ended with another
-  // fault, the value is a lower bound.
+  // Returns the interval of a quantity over the draws in which it is known. For a run that ended
+  // with another fault, the value is a lower bound.
   Interval90 IntervalOf(double ContinuedRun::*value) const;
   int CountOf(Ending ending) const;
 };
@@ -92,7 +92,7 @@ struct ContinueOptions {
   OperatorMaker recorded_operator = [](const Scenario& scenario) {
     return MakeOperator(scenario, HandInertia::kInWrench);
   };
-  // Called only from the caller's thread.
+  // Only the caller's thread calls this.
   std::function<void(double share)> progress = [](double) {};
 };
 
@@ -101,16 +101,16 @@ struct ContinueOptions {
 Continuation Continue(const StoppedRun& run, const ArmDistribution& arms,
                       const ContinueOptions& options);
 
-// `recording`: name of the file.
+// `recording` is the name of the file.
 std::string ContinuationText(const Continuation& c);
 std::string ContinuationJson(const Continuation& c, const std::string& recording);
 std::string ContinuationPage(const Continuation& c, const std::string& recording,
                              const std::string& program_version);
-// JSON Schema (draft-07) of ContinuationJson.
+// Returns the JSON Schema (draft-07) of ContinuationJson.
 std::string ContinuationSchema();
-// Sentences that state the assumptions and omissions of the prediction.
+// Returns sentences that state the assumptions and omissions of the prediction.
 std::vector<std::string> ContinuationAssumptions(const Continuation& c);
-// "settles in 71 %, ..." of the draws.
+// Returns "settles in 71 %, ..." of the draws.
 std::string EndingWords(const Continuation& c);
 
 // The results over the draws that the text, the page and the JSON show, in the order of the JSON.

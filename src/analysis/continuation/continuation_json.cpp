@@ -1,4 +1,4 @@
-// A continuation as JSON, and its schema.
+// Writes a continuation as JSON, and its schema.
 #include "analysis/continuation/continuation.h"
 #include "core/json_schema.h"
 

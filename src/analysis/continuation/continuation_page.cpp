@@ -1,4 +1,4 @@
-// A continuation as a page with plots.
+// Writes a continuation as a page with plots.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kBarWidth = 5;  // of the histogram [N]
 
-// The forces in one interval of kCurveStep, of all runs that last that long.
+// Returns the forces in one interval of kCurveStep, of all runs that last that long.
 std::vector<double> ForcesAt(const Continuation& c, std::size_t piece) {
   std::vector<double> forces;
   for (const ContinuedRun& run : c.runs)

@@ -1,4 +1,4 @@
-// A continuation as text for people.
+// Writes a continuation as text for people.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// An operator of whom only the recorded motion and forces are known: the model with which a run is
+// An operator of whom only the recorded motion and forces are known. With this model, a run is
 // continued after a stop.
 #pragma once
 
@@ -14,30 +14,30 @@
 
 namespace predictor {
 
-// Assumptions about the operator after the stop, apart from the arm (design choices). How long an
-// intention keeps changing is unknown: each draw assumes that it goes on changing at its present
-// rate until it has changed by about as much as the hand's present force.
+// The assumptions about the operator after the stop, apart from the arm (design choices). It is
+// unknown how long an intention keeps changing. Each draw assumes that it continues to change at
+// its present rate until it has changed by about as much as the hand's present force.
 struct IntentModel {
-  // Time before the stop from which the present rate is taken, log-uniform in this range [s].
+  // The time before the stop from which the present rate is taken, log-uniform in this range [s].
   double shortest_trend = 0.04, longest_trend = 0.2;
-  // Further change as a multiple of the present force: median, and standard deviation of its
-  // logarithm. The rate decays with a time constant of at most `longest_change` [s].
+  // The further change as a multiple of the present force: its median, and the standard deviation
+  // of its logarithm. The rate decays with a time constant of at most `longest_change` [s].
   double change = 1.8, change_spread = 0.6, longest_change = 1;
   // With this probability, the change (for example, a push) ends after a time that is log-uniform
-  // in this range [s]: the drive then returns to its mean over the first kBaselineTime of the past,
+  // in this range [s]. The drive then returns to its mean over the first kBaselineTime of the past,
   // with a time constant of `end_time` [s].
   double chance_of_end = 0.5, earliest_end = 0.15, latest_end = 1.5, end_time = 0.08;
-  // New intentions: the intended position moves at a random speed, with this rms along each axis
-  // [m/s], correlated over `wander_time` [s].
+  // New intentions are modelled by an intended position that moves at a random speed, with this rms
+  // along each axis [m/s], correlated over `wander_time` [s].
   double wander = 0.08, wander_time = 0.5;
-  // Noise of force and torque: rms of the vectors, as a share of their present size, correlated
-  // over `noise_time` [s]. It stands for everything that the model omits.
+  // The noise of force and torque, as rms of the vectors relative to their present size, correlated
+  // over `noise_time` [s]. It represents everything that the model omits.
   double noise = 0.1, noise_time = 0.3;
   // The arm stiffens with its force: K (1 + c |F| / kStiffeningForce), with c uniform from 0 to
   // this value.
   double max_stiffening = 1;
-  // Visual correction: uniform up to this multiple of the scenario's stiffness, and the spread of
-  // its delay.
+  // The visual correction is uniform up to this multiple of the scenario's stiffness, and its delay
+  // has this spread.
   double max_sight = 1.5, sight_delay_spread = 0.15;
 };
 inline constexpr double kStiffeningForce = 30;  // [N]
@@ -54,8 +54,8 @@ struct OperatorDraw {
   double sight_delay = 0;           // [s]
   RandomStream noise{0, ""};
 };
-// The draw with this number. The same number gives the same operator for every run (common random
-// numbers), so that two runs are compared for the same operators.
+// Returns the draw with this number. The same number gives the same operator for every run (common
+// random numbers), so that two runs are compared for the same operators.
 OperatorDraw DrawOperator(const ArmDistribution& arms, const HandSpec& hand,
                           const IntentModel& intent, std::uint64_t seed, int number);
 
@@ -63,20 +63,20 @@ OperatorDraw DrawOperator(const ArmDistribution& arms, const HandSpec& hand,
 // contains the damping D √(1 + c |F| / 30 N) v, and x is the displacement of the handle. The drive
 // u = K xr + D vr + its reflex and feed-forward is what the operator intends, expressed as a force.
 // Before the stop, it follows from the measured force and motion. After the stop, its trend over
-// the last `trend_time` continues and decays with a time constant (IntentModel); then u is
-// constant, apart from noise. Stiffness that grows with force: Perreault, Kirsch & Crago 2002
-// (recalled).
+// the last `trend_time` continues and decays with a time constant (IntentModel). Then u is
+// constant, apart from noise. The stiffness grows with the force as in Perreault, Kirsch & Crago
+// 2002 (quoted from memory).
 class EstimatedHand {
  public:
-  // past: consecutive records up to the tick that decided the stop; record_step: their interval
-  // [s]; dt: step of the operator [s].
+  // past: consecutive records up to the tick in which the stop was decided. record_step: their
+  // interval [s]. dt: the step of the operator [s].
   void Begin(std::span<const TickRecord> past, std::size_t hand, double record_step, double dt,
              const IntentModel& intent, const OperatorDraw& draw);
   // Advances by dt and returns the wrench F_H_W on the handle.
   Wrench Step(const FrameMotion& handle) noexcept;
   bool holds() const { return holds_; }
 
-  // The estimated drive and its trend at the stop.
+  // These functions return the estimated drive and its trend at the stop.
   const Vector6& drive() const { return drive_; }
   const Vector6& trend() const { return trend_; }  // [N/s], [N·m/s]
 
@@ -109,12 +109,12 @@ class EstimatedHand {
   FractionalDelay<Vector3, 1024> sight_;
 };
 
-// Behaves like the recorded operator until Begin, so that a saved state can be loaded, and from
-// then on like the estimate of that operator. The estimate never uses the recorded operator's
-// state.
+// Behaves like the recorded operator until Begin, so that a saved state can be loaded. From then
+// on, it behaves like the estimate of that operator. The estimate never uses the recorded
+// operator's state.
 class EstimatedOperator final : public Operator {
  public:
-  // recorded: the operator whose state the saved states contain; null if they contain none.
+  // recorded: the operator whose state the saved states contain, or null if they contain none.
   explicit EstimatedOperator(std::unique_ptr<Operator> recorded) : recorded_(std::move(recorded)) {}
 
   // From the next step on, the estimate replaces the recorded operator.

@@ -1,4 +1,4 @@
-// The load on the operator's joints at the largest force of each continued run.
+// Computes the load on the operator's joints at the largest force of each continued run.
 #pragma once
 
 #include "analysis/continuation/continuation.h"

@@ -34,7 +34,7 @@ StopFinder FindInRecording(RecordingReader* reader, const Scenario& scenario) {
       "continued without that limit.");
 }
 
-// Recomputes the ticks up to the one before `stop`. Throws InputError.
+// Computes the ticks up to the one before `stop` again. Throws InputError.
 void Recompute(RecordingReader* reader, std::uint64_t stop, Emulator* emulator,
                const std::function<void(std::uint64_t)>& progress) {
   RecordedSnapshot snapshot;

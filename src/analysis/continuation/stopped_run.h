@@ -31,11 +31,11 @@ inline constexpr double kPastTime = 0.5;  // [s]
 class StopFinder {
  public:
   explicit StopFinder(double rate);
-  // Adds the next record, in order. Returns true if the stop was decided in its tick; later records
+  // Adds the next record, in order. Returns true if the stop was decided in its tick. Later records
   // are ignored.
   bool Add(const TickRecord& record);
   bool found() const { return found_; }
-  // The first other cause that stopped the run; kNone if nothing did.
+  // Returns the first other cause that stopped the run, or kNone if there was none.
   StopCause other() const { return other_; }
   const std::vector<TickRecord>& past() const { return past_; }
   double peak_before() const { return peak_; }  // [N]
@@ -50,10 +50,10 @@ class StopFinder {
   bool found_ = false;
 };
 
-// Finds the stop in a recording, and recomputes the run up to the stop from the last saved state
-// (or from the start). `scenario`: from RestoreScenario. progress: receives the number of ticks so
-// far. Throws InputError if there is no stop by a limit, ticks before it are lost, the recomputed
-// run differs from the recorded one, or the run cannot be continued.
+// Finds the stop in a recording, and computes the run up to the stop again from the last saved
+// state (or from the start). `scenario` comes from RestoreScenario. progress: receives the number
+// of ticks so far. Throws InputError if there is no stop by a limit, ticks before it are lost, the
+// computed run differs from the recorded one, or the run cannot be continued.
 StoppedRun FindStop(RecordingReader* reader, const Scenario& scenario,
                     const std::function<void(std::uint64_t)>& progress);
 

@@ -23,7 +23,7 @@ namespace {
 
 // The hazard begins at a random time in this window, so that an operator cannot anticipate it.
 constexpr double kAfter = 2, kWindow = 2;  // [s]
-// The cobot's own limits in the study. A design choice: wide enough for every undisturbed run.
+// The cobot's own limits in the study are a design choice: wide enough for every undisturbed run.
 const std::vector<std::string> kCobotSafety = {"cobot.safety.force=100", "cobot.safety.speed=0.75",
                                                "cobot.safety.joint_torque=60"};
 
@@ -49,7 +49,7 @@ struct Piece {
   std::string key;
 };
 
-// By how much the true force of the hand that caused the stop exceeds `threshold` [N].
+// Returns by how much the true force of the hand that caused the stop exceeds `threshold` [N].
 double ExcessOf(const TickRecord& record, double threshold) {
   const HandRecord& hand = record.hands[static_cast<std::size_t>(record.cause_hand)];
   return std::max(0.0, Norm(hand.true_wrench.data()) - threshold);
@@ -101,7 +101,7 @@ void SetLoad(Scenario* scenario) {
       Formatted("object_center_of_mass=[%.9g, %.9g, %.9g]", com.x(), com.y(), com.z()));
 }
 
-// A grip that is too weak for the object, even while the person carries part of the weight.
+// Sets a grip that is too weak for the object, even while the person carries part of the weight.
 void SetGrip(Scenario* scenario) {
   const ObjectModel object = LoadObject(scenario->object, scenario->folder());
   scenario->events.front().Set(

@@ -1,5 +1,5 @@
-// The hazard study: what simulated operators feel when a hazard occurs at a time unknown to them,
-// for several scenarios, controllers and hazards.
+// The hazard study shows what simulated operators feel when a hazard occurs at a time unknown to
+// them, for several scenarios, controllers and hazards.
 #pragma once
 
 #include <array>
@@ -58,7 +58,7 @@ struct HazardStudyOptions {
   int seeds = 50;
   double duration = 6;  // duration of a run [s]
   int workers = 0;      // 0: the number of cores
-  // Called only from the caller's thread.
+  // Only the caller's thread calls this.
   std::function<void(double share)> progress = [](double) {};
 };
 
@@ -67,10 +67,10 @@ struct HazardStudyOptions {
 // hazards.md. Throws InputError.
 HazardStudy MakeHazardStudy(const HazardStudyOptions& options);
 
-// One row per cell.
+// Returns a table with one row per cell.
 std::string HazardStudyCsv(const HazardStudy& study);
 std::string HazardStudyJson(const HazardStudy& study);
-// For each scenario, a table of controllers and hazards, in Markdown.
+// Returns a table of controllers and hazards for each scenario, in Markdown.
 std::string HazardStudyTables(const HazardStudy& study);
 // States whether the requirements hold over all runs: time of detection, travel and speed.
 std::string HazardStudyWords(const HazardStudy& study);

@@ -28,7 +28,7 @@ bool ReadNumber(const std::string& text, double* x) {
   return error == std::errc() && last == end;
 }
 
-// The value of the enumeration whose name is `name`.
+// Returns the value of the enumeration whose name is `name`.
 template <class E>
 bool ReadName(const std::string& name, int count, E* value) {
   for (int k = 0; k < count; ++k) {

@@ -1,4 +1,4 @@
-// The finished runs of a hazard study in a CSV file, so that they survive an interruption.
+// Stores the finished runs of a hazard study in a CSV file, so that they survive an interruption.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,14 @@
 
 namespace predictor {
 
-// A run is identified by the key of its cell and by its seed. Unreadable lines (such as the last
-// line of a killed study) are skipped. Any thread may call Add.
+// The key of its cell and its seed identify a run. Unreadable lines (such as the last line of a
+// killed study) are skipped. Any thread may call Add.
 class HazardRunStore {
  public:
   // Reads the file. Throws InputError if it cannot be written.
   explicit HazardRunStore(const std::filesystem::path& file);
 
-  // Loads the run; false if it is not stored.
+  // Loads the run. Returns false if it is not stored.
   bool Find(const std::string& key, std::uint64_t seed, HazardRun* run) const;
   // key: a hash of the cell's scenario and of the program's behaviour. Throws InputError if the
   // file cannot be written.
@@ -34,7 +34,7 @@ class HazardRunStore {
   std::mutex mutex_;
 };
 
-// The numbers of a run as cells of a row, without the run's key and names.
+// Returns the numbers of a run as cells of a row, without the run's key and names.
 std::string TextOf(const HazardRun& run);
 
 }  // namespace predictor

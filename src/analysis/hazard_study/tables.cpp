@@ -1,4 +1,4 @@
-// The results of a hazard study as text.
+// Writes the results of a hazard study as text.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInTime = 0.0035;  // 3 ms, in whole ticks of 1 ms [s]
 
-// The values of the runs in which the hazard began; values below `least` are missing.
+// Returns the values of the runs in which the hazard began. Values below `least` are missing.
 std::vector<double> ValuesOf(const HazardCell& cell, double HazardRun::*value, double least = 0) {
   std::vector<double> values;
   for (const HazardRun& run : cell.runs)
@@ -23,9 +23,9 @@ std::vector<double> ValuesOf(const HazardCell& cell, double HazardRun::*value, d
   return values;
 }
 
-// The largest forces after the hazard began. The emulator's stop ends the force as well, so the
-// force of a stopped run is a lower bound. The cobot's own stop does not count: the person would
-// have experienced it, too.
+// Returns the largest forces after the hazard began. The emulator's stop ends the force as well, so
+// the force of a stopped run is a lower bound. The cobot's own stop does not count as such, because
+// the person would have experienced it too.
 std::vector<CensoredValue> ForcesOf(const HazardCell& cell) {
   std::vector<CensoredValue> forces;
   for (const HazardRun& run : cell.runs)
@@ -42,7 +42,7 @@ std::map<std::string, int> CountBy(const HazardCell& cell, E HazardRun::*cause) 
   return counts;
 }
 
-// "force 80 %, oscillation 20 %".
+// Returns "force 80 %, oscillation 20 %", for example.
 std::string Shares(const std::map<std::string, int>& counts, std::size_t runs) {
   std::vector<std::string> parts;
   for (const auto& [name, count] : counts)
@@ -51,8 +51,8 @@ std::string Shares(const std::map<std::string, int>& counts, std::size_t runs) {
   return Join(parts, ", ");
 }
 
-// The cause of the stop, its delay and the force: "force 80 % after 0.42 s; at least 30.2 N (10.1 N
-// before)".
+// Describes the cause of the stop, its delay and the force: "force 80 % after 0.42 s; at least 30.2
+// N (10.1 N before)".
 std::string CellWords(const HazardCell& cell) {
   if (cell.impossible.find("would have no effect") != std::string::npos) return "no effect";
   if (!cell.impossible.empty()) return "impossible";
@@ -68,7 +68,7 @@ std::string CellWords(const HazardCell& cell) {
          Formatted(" (%.1f N before)", Quantile(ValuesOf(cell, &HazardRun::before), 0.95));
 }
 
-// The distinct values of a member, in the order of the cells.
+// Returns the distinct values of a member, in the order of the cells.
 std::vector<std::string> NamesIn(const HazardStudy& study, std::string HazardCell::*member) {
   std::vector<std::string> names;
   for (const HazardCell& cell : study.cells)
@@ -198,7 +198,7 @@ std::string HazardStudyWords(const HazardStudy& study) {
              "after more than 3 ms by at most %.2f N.",
              excess, late_excess);
   AppendLine(&text, "The longest stop used %.0f %% of its travel budget.", 100 * travel);
-  // Until an arm obeys a command, its posture changes.
+  // An arm's posture changes until it follows a command.
   AppendLine(&text, "The fastest handle reached %.1f %% of the cap on its commanded speed.",
              100 * speed);
   return text;

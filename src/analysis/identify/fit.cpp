@@ -21,7 +21,7 @@ constexpr double kDependent = 1e-6;  // share of a unit column's squared length 
 constexpr int kMinLag = 10;      // minimum lag of the scores' autocovariance; half of it is due to
                                  // overlapping windows [windows]
 constexpr int kExcessLags = 40;  // lags of the residuals' autocorrelation [windows]
-// Lower bound of the residuals' scale, because the simulated world moves in steps.
+// The residuals' scale has this lower bound, because the simulated world moves in steps.
 constexpr double kMinScale = 0.01;  // [N·m]
 constexpr double kTiny = 1e-9;      // [N·m]
 
@@ -39,7 +39,7 @@ double RobustScale(const Eigen::VectorXd& r) {
   return std::max(kMinScale, 1.4826 * Median(std::move(sizes)));
 }
 
-// Sum over windows of a(k) a(k + lag), for the pairs that exist.
+// Returns the sum over windows of a(k) a(k + lag), for the pairs that exist.
 double LaggedProduct(const std::vector<long>& window, const Eigen::VectorXd& r, long lag,
                      double* pairs) {
   double sum = 0;
@@ -54,8 +54,8 @@ double LaggedProduct(const std::vector<long>& window, const Eigen::VectorXd& r, 
   return sum;
 }
 
-// Variance of the residuals' mean, divided by the variance for the same number of independent
-// residuals.
+// Returns the variance of the residuals' mean, divided by the variance for the same number of
+// independent residuals.
 double VarianceExcess(const std::vector<long>& window, const Eigen::VectorXd& r, double scale) {
   const Eigen::VectorXd clipped = r.cwiseMin(3 * scale).cwiseMax(-3 * scale);
   double pairs = 0;
@@ -69,7 +69,7 @@ double VarianceExcess(const std::vector<long>& window, const Eigen::VectorXd& r,
   return std::max(1.0, excess);
 }
 
-// Curvature and gradient of the weighted sum of squares, for all parameters.
+// The curvature and the gradient of the weighted sum of squares, for all parameters.
 struct Normal {
   Eigen::MatrixXd H;
   Eigen::VectorXd g;
@@ -119,7 +119,7 @@ Eigen::VectorXd Residual(const FitRows& rows, const Eigen::VectorXd& value) {
   return rows.y - rows.x * own;
 }
 
-// One iteration of reweighting. Returns the largest relative change of a scale.
+// Performs one iteration of reweighting. Returns the largest relative change of a scale.
 double Reweigh(const FitProblem& problem, Fit* fit) {
   double change = 0;
   for (std::size_t j = 0; j < problem.joints.size(); ++j) {
@@ -137,7 +137,7 @@ double Reweigh(const FitProblem& problem, Fit* fit) {
   return change;
 }
 
-// The first window of any joint, and the number of windows from there to the last one.
+// Returns the first window of any joint, and the number of windows from there to the last one.
 std::pair<long, long> WindowsOf(const FitProblem& problem) {
   long first = std::numeric_limits<long>::max(), last = 0;
   for (const FitRows& rows : problem.joints) {
@@ -148,8 +148,8 @@ std::pair<long, long> WindowsOf(const FitProblem& problem) {
   return {first, last - first + 1};
 }
 
-// Scores of the requested estimates, one column per window: the window's contribution to the error
-// of the estimate.
+// Returns the scores of the requested estimates, one column per window. A score is the window's
+// contribution to the error of the estimate.
 Eigen::MatrixXd Influence(const FitProblem& problem, const FitModel& model, const Fit& fit,
                           const Eigen::MatrixXd& G) {
   std::vector<int> place(static_cast<std::size_t>(problem.parameters), -1);
@@ -175,7 +175,8 @@ Eigen::MatrixXd Influence(const FitProblem& problem, const FitModel& model, cons
   return influence;
 }
 
-// Andrews' lag for Bartlett's kernel, assuming AR(1) processes with the scores' autocorrelations.
+// Computes Andrews' lag for Bartlett's kernel, assuming AR(1) processes with the scores'
+// autocorrelations.
 int LagFor(const Eigen::MatrixXd& scores) {
   const Eigen::Index n = scores.cols();
   double above = 0, below = 0;
@@ -184,7 +185,7 @@ int LagFor(const Eigen::MatrixXd& scores) {
     if (!(own > 0)) continue;
     const double next = scores.row(i).head(n - 1).dot(scores.row(i).tail(n - 1));
     const double rho = std::clamp(next / own, -0.97, 0.97);
-    // Uses the variance of the innovations for which each score has variance 1.
+    // The variance of the innovations is the one for which each score has variance 1.
     above += 4 * rho * rho / std::pow(1 - rho, 4);
     below += (1 + rho) * (1 + rho) / ((1 - rho) * (1 - rho));
   }
@@ -204,8 +205,8 @@ Eigen::MatrixXd LongRunCovariance(const Eigen::MatrixXd& scores, int lag) {
   return S;
 }
 
-// Rate at which the scores fall as the parameters change. It uses the mean slope of Huber's ψ of
-// each joint, which is smaller than the mean of its weights.
+// Returns the rate at which the scores fall as the parameters change. It uses the mean slope of
+// Huber's ψ of each joint, which is smaller than the mean of its weights.
 Normal Slope(const FitProblem& problem, const Fit& fit) {
   Normal slope(problem.parameters);
   for (std::size_t j = 0; j < problem.joints.size(); ++j) {
@@ -332,8 +333,8 @@ std::vector<int> BaseParameters(const FitProblem& problem, const Fit& fit,
   const double longest = length.maxCoeff();
   for (double& l : length) l = l > 1e-9 * longest ? 1 / l : 0;
   const Eigen::MatrixXd gram = length.asDiagonal() * normal.H(all, all) * length.asDiagonal();
-  // Pivoted Cholesky factorisation: the next column is always the one furthest from the previous
-  // ones.
+  // In this pivoted Cholesky factorisation, the next column is always the one furthest from the
+  // previous ones.
   Eigen::MatrixXd rest = gram;
   std::vector<int> chosen;
   std::vector<bool> taken(all.size(), false);

@@ -1,5 +1,5 @@
-// Robust least squares with priors over the equations of several joints, with intervals that
-// account for the correlation of neighbouring windows.
+// Fits the equations of several joints by robust least squares with priors. The intervals account
+// for the correlation of neighbouring windows.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,8 +25,8 @@ struct FitProblem {
 // contain any number.
 void CloseGaps(FitProblem* problem);
 
-// The free parameters and their prior: mean 0, with a precision (1/variance); 0: no prior. All
-// other parameters are 0.
+// The free parameters and their prior, which has mean 0 and a precision (1/variance), or 0 for no
+// prior. All other parameters are 0.
 struct FitModel {
   std::vector<int> free;      // parameters, ascending
   Eigen::VectorXd precision;  // of all parameters
@@ -43,13 +43,13 @@ struct Fit {
   std::vector<Eigen::VectorXd> weight;    // Huber's weights, divided by scale² excess
 };
 
-// Huber's M-estimate, iteratively reweighted. The covariance of `wanted` is a sandwich: the
-// long-run covariance of the scores (Newey & West 1987, lag by Andrews 1991 with an AR(1)) between
-// the curvatures, times N/(N − p) for the p estimated parameters, plus the contribution of the
-// prior.
+// Computes Huber's M-estimate, iteratively reweighted. The covariance of `wanted` is a sandwich:
+// the long-run covariance of the scores (Newey & West 1987, lag by Andrews 1991 with an AR(1))
+// between the curvatures, times N/(N − p) for the p estimated parameters, plus the contribution of
+// the prior.
 Fit FitRobustly(const FitProblem& problem, const FitModel& model, const std::vector<int>& wanted);
 
-// Each block of time is left out in turn and predicted from the others (with the fit's weights).
+// Leaves out each block of time in turn and predicts it from the others (with the fit's weights).
 struct CrossValidation {
   std::vector<double> loss;           // mean of Huber's loss in each block, in units of scale
   std::vector<double> error_squares;  // sum for each joint [N²·m²]
@@ -58,9 +58,9 @@ struct CrossValidation {
 CrossValidation CrossValidate(const FitProblem& problem, const FitModel& model, const Fit& fit,
                               const std::vector<double>& scale, int blocks);
 
-// The parameters in `among`, ordered by the information that each adds to the previous ones, as far
-// as the (weighted) equations can distinguish them. `condition`: condition number of these and of
-// `always`, for columns of unit length.
+// Returns the parameters in `among`, ordered by the information that each adds to the previous
+// ones, as far as the (weighted) equations can distinguish them. `condition` is the condition
+// number of these and of `always`, for columns of unit length.
 std::vector<int> BaseParameters(const FitProblem& problem, const Fit& fit,
                                 const std::vector<int>& always, const std::vector<int>& among,
                                 double* condition);

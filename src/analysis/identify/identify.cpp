@@ -24,7 +24,7 @@ constexpr double kLoadMass = 1;     // standard deviation of the load's mass, as
 constexpr double kLoadCom = 0.1;    // [m]
 constexpr double kLoadInertia = 1;  // as a share of the trace
 
-// The six unique elements in the order of InertialParameters.
+// Returns the six unique elements in the order of InertialParameters.
 Vector6 Elements(const Matrix3& I) {
   Vector6 e;
   e << I(0, 0), I(0, 1), I(1, 1), I(0, 2), I(1, 2), I(2, 2);
@@ -45,8 +45,8 @@ Body BodyOf(const InertialParameters& p) {
   return body;
 }
 
-// Columns for mass (density), centre of mass x y z, and elements of the inertia, each for one
-// standard deviation.
+// Returns columns for mass (density), centre of mass x y z, and elements of the inertia, each for
+// one standard deviation.
 InertialPrior PriorOf(const Body& body, double mass_share, double com, double inertia_share) {
   InertialPrior prior;
   prior.nominal = InertialParametersOf(body.mass, body.com, body.inertia);
@@ -62,13 +62,14 @@ InertialPrior PriorOf(const Body& body, double mass_share, double com, double in
   return prior;
 }
 
-// Prior of a link with parameters π and the uncertainty in `options`, to first order.
+// Returns the prior of a link with parameters π and the uncertainty in `options`, to first order.
 InertialPrior LinkPrior(const InertialParameters& nominal, const IdentifyOptions& options) {
   return PriorOf(BodyOf(nominal), options.mass_uncertainty, options.com_uncertainty,
                  options.inertia_uncertainty);
 }
 
-// Prior of the load, which is nearly unknown (its mass by 100 %, its centre of gravity by 0.1 m).
+// Returns the prior of the load, which is nearly unknown (its mass by 100 %, its centre of gravity
+// by 0.1 m).
 InertialPrior LoadPrior(double mass, const Vector3& com, const Matrix3& inertia) {
   return PriorOf({mass, com, inertia}, kLoadMass, kLoadCom, kLoadInertia);
 }
@@ -87,8 +88,8 @@ constexpr int kBody = 10;      // number of inertial parameters of a body
 constexpr const char* kHowToExcite =
     "Record a run in which the controller moves all joints, as in scenarios/excite_cobot.yaml.";
 
-// All parameters in order: viscous and Coulomb friction of each joint, then z of each body; the
-// load is last.
+// All parameters in order: viscous and Coulomb friction of each joint, then z of each body, of
+// which the load is the last.
 struct Layout {
   int joints;
   int links() const { return kFrictionColumns * joints; }
@@ -119,7 +120,7 @@ std::vector<InertialPrior> PriorsOf(const RowBuilder& builder, const IdentifyOpt
   return priors;
 }
 
-// The rows of the prior, in units of its standard deviation.
+// Adds the rows of the prior, in units of its standard deviation.
 FitProblem ProblemOf(const RowBuilder& builder, const std::vector<InertialPrior>& priors) {
   const Layout layout{builder.robot().dof()};
   FitProblem problem;
@@ -179,7 +180,7 @@ double Quantile(std::vector<float> x, double q) {
 
 std::string Seconds(double t) { return FormatNumber(std::round(10 * t) / 10) + " s"; }
 
-// Why a joint's friction cannot be identified; "" if it can be.
+// Returns the reason why a joint's friction cannot be identified, or "" if it can be.
 std::string RefusalOf(const JointIdentification& joint) {
   const auto& [back, forth] = joint.moving;
   if (back < kMinMotionTime || forth < kMinMotionTime) {
@@ -228,7 +229,7 @@ double Mean(const std::vector<double>& x) {
   return x.empty() ? 0 : sum / static_cast<double>(x.size());
 }
 
-// Root mean square of the prediction errors of all joints.
+// Returns the root mean square of the prediction errors of all joints.
 double HeldOut(const CrossValidation& c) {
   double squares = 0, rows = 0;
   for (std::size_t j = 0; j < c.rows.size(); ++j) squares += c.error_squares[j], rows += c.rows[j];
@@ -249,7 +250,7 @@ ModelScore ScoreOf(const CrossValidation& c, const CrossValidation& regularised)
   return score;
 }
 
-// The regularised model, unless another predicts significantly better.
+// Chooses the regularised model, unless another one predicts significantly better.
 InertiaModel Choose(const std::array<ModelScore, kInertiaModels>& scores) {
   auto best = InertiaModel::kRegularised;
   double least = 0;
@@ -284,7 +285,7 @@ struct Identifier::Impl {
     }
   }
 
-  // Checks the motion of each joint and which joints must be refused.
+  // Checks the motion of each joint, and determines which joints must be refused.
   void Excitation(Identification* result) const {
     for (int j = 0; j < builder.robot().dof(); ++j) {
       const JointRows& rows = builder.rows()[static_cast<std::size_t>(j)];

@@ -7,7 +7,7 @@
 // τ is the commanded torque (a sensor on the link side would not measure the friction). b and c are
 // viscous and Coulomb friction, Y is the joint-torque regressor, π the links' inertial parameters,
 // A the attachment of the load, and P the projection on the wrenches that the attachment transmits.
-// All unknowns enter linearly; robust least squares finds them. docs/how-to/identify-friction.md
+// All unknowns enter linearly, so robust least squares finds them. docs/how-to/identify-friction.md
 // describes method and accuracy.
 #pragma once
 
@@ -25,14 +25,14 @@ namespace predictor {
 
 struct IdentifyOptions {
   double window = 0.1;  // time over which an equation is averaged, with a Hann window [s]
-  // Assumed deviation of the links from their model, as standard deviations.
+  // The assumed deviations of the links from their model, as standard deviations.
   double mass_uncertainty = 0.03;    // mass of a link, as a share of the mass
   double com_uncertainty = 0.005;    // centre of mass of a link, along each axis [m]
   double inertia_uncertainty = 0.1;  // inertia of a link, as a share of its trace
 };
 
-// True if the interval exceeds both ±5 % of the value and an amount too small to feel: 0.005 N·m or
-// N·m·s/rad; for the load 0.005 kg or m.
+// Returns whether the interval exceeds both ±5 % of the value and an amount too small to feel:
+// 0.005 N·m or N·m·s/rad, or 0.005 kg or m for the load.
 bool IsWide(const Estimate& estimate);
 
 struct JointIdentification {
@@ -55,7 +55,7 @@ struct LoadIdentification {
   bool identified() const { return refusal.empty(); }
 };
 
-// Model of the links' inertial parameters.
+// The model of the links' inertial parameters.
 enum class InertiaModel { kFixed, kRegularised, kBase };
 inline constexpr int kInertiaModels = 3;
 inline constexpr std::array<const char*, kInertiaModels> kInertiaModelNames = {
@@ -64,7 +64,7 @@ inline constexpr std::array<const char*, kInertiaModels> kInertiaModelNames = {
 // How well a model predicts blocks of time that were left out of its fit.
 struct ModelScore {
   double held_out = 0;  // rms torque error [N·m]
-  // Mean robust loss per row minus that of the regularised model, and its standard error.
+  // The mean robust loss per row minus that of the regularised model, and its standard error.
   double excess = 0, excess_error = 0;
 };
 
@@ -74,14 +74,14 @@ struct Identification {
   InertiaModel model = InertiaModel::kRegularised;  // selected by the scores
   std::array<ModelScore, kInertiaModels> scores;
   int base_parameters = 0;  // number of parameters of links and load that the motion separates
-  // Distance of the links from their model in standard deviations of the prior (rms over the base
-  // parameters), and whether it is larger than chance explains.
+  // The distance of the links from their model in standard deviations of the prior (rms over the
+  // base parameters), and whether it is larger than chance explains.
   double strain = 0;
   bool strained = false;
   double condition = 0;  // condition number of the base regressor with friction, for unit columns
   double duration = 0;   // duration of the data used [s]
-  // Ticks that were skipped because they contain a number that is not finite; the recording is
-  // damaged.
+  // The number of ticks that were skipped because they contain a number that is not finite. The
+  // recording is then damaged.
   std::uint64_t not_finite = 0;
   bool complete() const;  // no joint was refused
 };
@@ -89,15 +89,15 @@ struct Identification {
 // Collects the ticks of a run one by one. Memory grows by 6 MB per minute for seven joints.
 class Identifier {
  public:
-  // nominal: scenario with the recording's nominal cobot and load. Throws InputError.
+  // nominal: the scenario with the recording's nominal cobot and load. Throws InputError.
   explicit Identifier(const Scenario& nominal, const IdentifyOptions& options = {});
   ~Identifier();
 
   // Adds ticks in order. Ticks that are not in RUN or are next to a gap are skipped.
   void Add(const TickRecord& record);
 
-  // Throws InputError if the data are not sufficient: less than ten seconds, or a cobot with a
-  // different number of joints.
+  // Throws InputError if the data are not sufficient, because they cover less than ten seconds or a
+  // cobot with a different number of joints.
   Identification Finish() const;
 
   struct Impl;
@@ -106,7 +106,7 @@ class Identifier {
   std::unique_ptr<Impl> impl_;
 };
 
-// The scenario with the identified friction. A refused joint keeps its previous friction.
+// Returns the scenario with the identified friction. A refused joint keeps its previous friction.
 Scenario WithFriction(const Scenario& scenario, const Identification& identification);
 
 std::string IdentificationText(const Identification& identification);  // for the user

@@ -51,7 +51,7 @@ std::vector<FidelitySignals> RunsOf(const Scenario& scenario, std::uint64_t firs
   return runs;
 }
 
-// For all channels: item i of `a` compared with item (i + shift) of `b`, cyclically.
+// For all channels, compares item i of `a` with item (i + shift) of `b`, cyclically.
 struct Compared {
   std::vector<ChannelFidelity> first;  // of the first pair, for names and units
   std::vector<Statistics> rmse, correlation, range;
@@ -103,7 +103,7 @@ Series SeriesOf(const std::vector<FidelitySignals>& runs, std::size_t channel, s
   return series;
 }
 
-// For each channel, tests whether the runs are of the same kind.
+// Tests for each channel whether the runs are of the same kind.
 std::vector<SameKindTest> TestSameKinds(const std::vector<FidelitySignals>& a,
                                         const std::vector<FidelitySignals>& b) {
   std::size_t cycles = SIZE_MAX, length = SIZE_MAX;

@@ -1,4 +1,4 @@
-// The effect of identified joint friction on the fidelity of an emulation.
+// Measures the effect of identified joint friction on the fidelity of an emulation.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct IdentifyLoopOptions {
   std::function<void(double share)> progress = {};
 };
 
-// Mean over pairs of runs.
+// The agreement as a mean over pairs of runs.
 struct Agreement {
   double rmse = 0, rmse_deviation = 0;  // mean and standard deviation over the pairs [unit]
   double correlation = 0;               // mean of Pearson's correlation
@@ -39,7 +39,7 @@ struct AxisAgreement {
   // The real runs compared with the emulated runs; whole runs are aligned by the phase of the
   // cycle.
   SameKindTest same_before, same_after;
-  // True if there are enough runs to distinguish the kinds and they do not differ.
+  // Returns whether there are enough runs to distinguish the kinds and they do not differ.
   bool indistinguishable_before() const {
     return same_before.can_distinguish() && !same_before.distinguished();
   }
@@ -59,7 +59,7 @@ struct IdentifyLoopResult {
 
 // Excites the real cobot and identifies its friction. Before and after the identification, compares
 // `seeds` real runs of `task` with the same number of emulated runs that use different random draws
-// for the operator. Both scenarios describe the same nominal cobot. Throws InputError, and
+// for the operator. Both scenarios describe the same nominal cobot. Throws InputError, or
 // std::runtime_error if a run was stopped.
 IdentifyLoopResult IdentifyLoop(const Scenario& excitation, const Scenario& task,
                                 const IdentifyLoopOptions& options);

@@ -50,7 +50,8 @@ void AddJoint(const UrdfModel& urdf, const UrdfJoint& joint, std::string* text) 
   AppendLine(text, "  </joint>");
 }
 
-// The URDF's links and joints without shapes, which the simulation of a cobot does not need.
+// Returns the URDF's links and joints without shapes, which the simulation of a cobot does not
+// need.
 std::string DynamicsText(const UrdfModel& urdf) {
   std::string text;
   AppendLine(&text, "<?xml version=\"1.0\"?>");

@@ -18,7 +18,7 @@ int TicksOf(double window, double dt) {
   return std::max(4, 2 * static_cast<int>(std::lround(window / dt / 2)));
 }
 
-// Matrix L(w) with I w = L(w) (xx xy yy xz yz zz).
+// Returns the matrix L(w) with I w = L(w) (xx xy yy xz yz zz).
 Eigen::Matrix<double, 3, 6> InertiaTimes(const Vector3& w) {
   Eigen::Matrix<double, 3, 6> L;
   L << w.x(), w.y(), 0, w.z(), 0, 0,  //
@@ -27,7 +27,8 @@ Eigen::Matrix<double, 3, 6> InertiaTimes(const Vector3& w) {
   return L;
 }
 
-// Wrench about O, axes of W, that moves a body with parameters π (in O): its columns.
+// Returns the columns of the wrench about O, in axes of W, that moves a body with parameters π (in
+// O).
 Eigen::Matrix<double, 6, 10> BodyRegressor(const Matrix3& R_WO, const Vector3& a, const Vector3& w,
                                            const Vector3& dw) {
   Eigen::Matrix<double, 6, 10> Y = Eigen::Matrix<double, 6, 10>::Zero();
@@ -57,8 +58,8 @@ void Transmit(JointType joint, const Vector3& axis_W, Eigen::Ref<Eigen::MatrixXd
   }
 }
 
-// The wrench about A that the damping of the attachment's joint exerts on the load while it moves
-// relative to the cobot with the twist V.
+// Returns the wrench about A that the damping of the attachment's joint exerts on the load while it
+// moves relative to the cobot with the twist V.
 Wrench AttachmentDamping(const AttachmentSpec& spec, const Vector3& axis_W, const Twist& V) {
   Wrench F = Wrench::Zero();
   switch (spec.joint) {

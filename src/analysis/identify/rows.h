@@ -1,4 +1,4 @@
-// Equations of motion of a cobot's joints, averaged over windows of a run.
+// Collects the equations of motion of a cobot's joints, averaged over windows of a run.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@
 
 namespace predictor {
 
-// The equations of one joint. Each row is y = x · parameters, averaged over a window. Columns:
-// speed [rad/s], its sign, then 10 inertial parameters of each body and of the load.
+// The equations of one joint. Each row is y = x · parameters, averaged over a window. The columns
+// are the speed [rad/s], its sign, and then 10 inertial parameters of each body and of the load.
 struct JointRows {
   std::vector<long> window;  // number of the window in the run; windows overlap by half
   std::vector<double> y;     // [N·m]
@@ -30,10 +30,10 @@ inline constexpr double kTurning = 0.02;
 
 class RowBuilder {
  public:
-  // window: [s].
+  // window is in [s].
   RowBuilder(const Scenario& nominal, double window);
 
-  // Ticks that are not finite or are out of order are skipped.
+  // Adds a tick. Ticks that are not finite or are out of order are skipped.
   void Add(const TickRecord& record);
 
   const RobotModel& robot() const { return *robot_; }
@@ -41,7 +41,7 @@ class RowBuilder {
   const Eigen::VectorXd& link_parameters() const { return regressor_.parameters(); }
   int columns() const { return kFrictionColumns + 10 * robot_->dof() + 10; }
   const std::vector<JointRows>& rows() const { return rows_; }
-  // duration of the ticks used [s]
+  // Returns the duration of the ticks used [s].
   double duration() const { return static_cast<double>(used_) * dt_; }
   std::uint64_t not_finite() const { return not_finite_; }  // number of skipped ticks
   int recorded_joints() const { return recorded_joints_; }  // joints of the last tick; 0: none yet

@@ -1,4 +1,4 @@
-// The result of an identification as text for the user, and as JSON.
+// Writes the result of an identification as text for the user, and as JSON.
 #include <nlohmann/json.hpp>
 
 #include "analysis/identify/identify.h"

@@ -1,5 +1,5 @@
-// The page of a population study: for each quantity, every person as a dot, the differences person
-// by person, and the curve over the height of the handles.
+// Writes the page of a population study. For each quantity, it shows every person as a dot, the
+// differences person by person, and the curve over the height of the handles.
 #include "report/page.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ bool Counts(const PopulationRun& run, std::size_t quantity) {
          std::isfinite(run.values[quantity]);
 }
 
-// Places dots of equal height side by side: values are grouped into rows, and the dots of a row
+// Places dots of equal height side by side. Values are grouped into rows, and the dots of a row are
 // spread about the middle `at`.
 void AddCloud(double at, std::vector<double> values, Points* points) {
   if (values.empty()) return;
@@ -81,7 +81,7 @@ PlotAxis DesignAxis(std::vector<std::string> names) {
   return axis;
 }
 
-// Every person as a dot, with the median and the range of 90 % of the people.
+// Shows every person as a dot, with the median and the range of 90 % of the people.
 PlotPanel PeoplePanel(const PopulationStudy& study, std::size_t quantity) {
   const StudyQuantity& kind = StudyQuantities()[quantity];
   const double factor = kind.unit.factor;
@@ -112,7 +112,7 @@ Plot PeoplePlot(const PopulationStudy& study, std::size_t quantity) {
   return plot;
 }
 
-// The differences from the first design, person by person.
+// Shows the differences from the first design, person by person.
 Plot DifferencePlot(const PopulationStudy& study, std::size_t quantity) {
   const StudyQuantity& kind = StudyQuantities()[quantity];
   const double factor = kind.unit.factor;
@@ -150,7 +150,7 @@ Plot DifferencePlot(const PopulationStudy& study, std::size_t quantity) {
   return plot;
 }
 
-// The designs of one scenario, by height.
+// Returns the designs of one scenario, by height.
 std::vector<std::size_t> ByHeight(const PopulationStudy& study, const std::string& scenario) {
   std::vector<std::size_t> designs;
   for (std::size_t i = 0; i < study.designs.size(); ++i)
@@ -192,8 +192,8 @@ Plot HeightPlot(const PopulationStudy& study, std::size_t quantity) {
   return plot;
 }
 
-// Bars for "this score or more", drawn over each other from the lowest score, so that the visible
-// part of each colour is the share of its own score.
+// The bars show "this score or more" and are drawn over each other from the lowest score, so that
+// the visible part of each colour is the share of its own score.
 Plot RulaPlot(const PopulationStudy& study) {
   Plot plot;
   plot.id = "rula-shares";

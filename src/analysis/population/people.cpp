@@ -15,7 +15,7 @@ class Draws {
   double Normal(double mean, double deviation, double low, double high) {
     return std::clamp(mean + deviation * random_.Normal(), low, high);
   }
-  // `deviation`: standard deviation of the logarithm.
+  // `deviation` is the standard deviation of the logarithm.
   double LogNormal(double median, double deviation, double low, double high) {
     return std::clamp(median * std::exp(deviation * random_.Normal()), low, high);
   }

@@ -1,8 +1,9 @@
-// A population of simulated operators: different people, not one person whose posture is unknown.
+// A population of simulated operators. They are different people, not one person whose posture is
+// unknown.
 //
-// person::PostureSampler draws 64 persons who could have given the same measurements; its spread
-// expresses ignorance about one person. Here, the spread is that between people, whose bodies are
-// known.
+// person::PostureSampler draws 64 persons who could have given the same measurements, and its
+// spread expresses ignorance about one person. Here, the spread is that between people, whose
+// bodies are known.
 #pragma once
 
 #include <cstdint>

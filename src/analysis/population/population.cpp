@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kShortRun = 0.05;  // long enough for one sample of the person [s]
 
-// A design and what its runs need.
+// A design and the data that its runs need.
 struct Prepared {
   PopulationDesign design;
   Scenario scenario;
@@ -31,7 +31,7 @@ struct Prepared {
   PopulationRun first;  // of person 1
 };
 
-// Height of the point midway between the handles at the start of a run, in W [m].
+// Returns the height of the point midway between the handles at the start of a run, in W [m].
 double StartHeight(const Scenario& scenario) {
   assessment::SampleCollector samples(scenario);
   Emulator emulator(scenario);

@@ -1,5 +1,5 @@
-// The population study: the same simulated people, each with a body of their own, perform every
-// design, and the effects of the designs are compared person by person.
+// In the population study, the same simulated people, each with their own body, perform every
+// design. The effects of the designs are compared person by person.
 #pragma once
 
 #include <array>
@@ -71,8 +71,8 @@ struct DesignSummary {
   Share beyond;  // the limit
 };
 
-// One quantity in two designs, over the people whose run was stopped in neither. Positive: design a
-// has larger values.
+// One quantity in two designs, over the people whose run was stopped in neither. It is positive if
+// design a has larger values.
 struct PairedDifference {
   std::size_t a = 0, b = 0;  // designs
   std::size_t quantity = 0;
@@ -99,12 +99,12 @@ struct PopulationOptions {
   std::uint64_t seed = 1;       // seed of the population
   int workers = 0;              // 0: the number of cores
   std::string program_version;  // shown on the page
-  // Called only from the caller's thread.
+  // Only the caller's thread calls this.
   std::function<void(double share)> progress = [](double) {};
 };
 
 // Executes the runs that the folder's runs.jsonl does not contain yet: all designs for one person,
-// then for the next one, so that an interrupted study contains fewer people but all designs. Each
+// then for the next one. An interrupted study therefore contains fewer people but all designs. Each
 // finished run is appended to the file. Writes persons.csv, designs.csv, differences.csv and
 // population.html. Throws InputError.
 PopulationStudy MakePopulationStudy(const PopulationOptions& options);
@@ -116,7 +116,7 @@ std::string PersonsCsv(const PopulationStudy& study);
 std::string DesignsCsv(const PopulationStudy& study);
 std::string DifferencesCsv(const PopulationStudy& study);
 std::string PopulationJson(const PopulationStudy& study);
-// JSON Schema (draft-07) of PopulationJson.
+// Returns the JSON Schema (draft-07) of PopulationJson.
 std::string PopulationSchema();
 std::string PopulationText(const PopulationStudy& study);
 std::string PopulationPage(const PopulationStudy& study, const std::string& program_version);

@@ -21,14 +21,14 @@ constexpr Unit kFineShares = {"", "%", 100, 2};
 constexpr Unit kScore = {"", "", 1, 0};
 constexpr Unit kLength = {"m", "cm", 100, 1};
 
-// The tail over time of one of the assessment's quantities.
+// Returns the tail over time of one of the assessment's quantities.
 double Tail(const Assessment& a, std::string_view path) {
   for (const assessment::QuantityResult& q : a.quantities)
     if (path == q.kind->path) return q.tail();
   return kMissing;
 }
 
-// The larger value of the two hands, or the value of the only hand.
+// Returns the larger value of the two hands, or the value of the only hand.
 double Larger(const Assessment& a, std::string_view left, std::string_view right) {
   return std::fmax(Tail(a, left), Tail(a, right));
 }

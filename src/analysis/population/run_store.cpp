@@ -14,7 +14,7 @@ std::string PlaceOf(const std::string& key, int person) {
   return key + "/" + std::to_string(person);
 }
 
-// Reads a number; null stands for a value that is not finite.
+// Reads a number. null stands for a value that is not finite.
 double NumberOf(const Json& json) { return json.is_null() ? std::nan("") : json.get<double>(); }
 
 bool ReadRun(const Json& json, PopulationRun* run) {

@@ -1,4 +1,4 @@
-// The finished runs of a population study, so that they survive an interruption.
+// Stores the finished runs of a population study, so that they survive an interruption.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,15 @@
 
 namespace predictor::population {
 
-// One line of JSON per run, identified by the key of its design and the number of its person.
-// Unreadable lines (such as the last line of a killed study) are skipped. Any thread may call Add.
+// The file has one line of JSON per run, which the key of its design and the number of its person
+// identify. Unreadable lines (such as the last line of a killed study) are skipped. Any thread may
+// call Add.
 class PopulationRunStore {
  public:
   // Reads the file. Throws InputError if it cannot be written.
   explicit PopulationRunStore(const std::filesystem::path& file);
 
-  // Loads the run; false if it is not stored.
+  // Loads the run. Returns false if it is not stored.
   bool Find(const std::string& key, PopulationRun* run) const;
   // Throws InputError if the file cannot be written.
   void Add(const std::string& key, const PopulationRun& run);
@@ -32,7 +33,7 @@ class PopulationRunStore {
   std::mutex mutex_;
 };
 
-// The results of a run as JSON.
+// Returns the results of a run as JSON.
 std::string TextOf(const PopulationRun& run);
 
 }  // namespace predictor::population

@@ -1,4 +1,4 @@
-// The JSON Schema of a population study, from an example of it and the meaning of each key.
+// Makes the JSON Schema of a population study from an example of it and the meaning of each key.
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -72,7 +72,7 @@ Json SchemaOf(const Json& example, const std::string& key) {
   return schema;
 }
 
-// A study with one person and two designs.
+// Returns a study with one person and two designs.
 PopulationStudy Example() {
   PopulationStudy study;
   study.people = SamplePopulation(1, 1);

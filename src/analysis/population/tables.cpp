@@ -1,4 +1,4 @@
-// The results of a population study as CSV, JSON and text.
+// Writes the results of a population study as CSV, JSON and text.
 #include <cmath>
 #include <nlohmann/json.hpp>
 

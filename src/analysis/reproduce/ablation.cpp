@@ -1,5 +1,5 @@
-// The effect of each repair of the paper's formulation. In three tasks, the repairs are added to
-// the paper's equations in turn, and removed one by one from ours.
+// Shows the effect of each repair of the paper's formulation. In three tasks, the repairs are added
+// to the paper's equations in turn, and removed one by one from ours.
 #include <cmath>
 
 #include "analysis/reproduce/runs.h"
@@ -11,10 +11,10 @@
 namespace predictor {
 namespace {
 
-// The order in which the repairs are added one by one. The others are then added together.
+// The repairs are added one by one in this order. The others are then added together.
 constexpr Repair kInTurn[] = {Repair::kPredictedJacobian, Repair::kRelativeTarget, Repair::kLead,
                               Repair::kSoftRows, Repair::kCoupling};
-// A loop like the paper's: its rate and computing time, without our formulation.
+// This is a loop like the paper's: its rate and computing time, without our formulation.
 const std::vector<std::string> kPaperLoop = {"rate=" + std::to_string(kAssumedPaperRate),
                                              "rig.computation_delay=0.01"};
 constexpr const char* kWithoutMonitor = "safety.oscillation.enabled=false";
@@ -25,8 +25,8 @@ struct Task {
   std::vector<std::string> set = {};
 };
 
-// The paper's tasks, and two in which rarely used repairs act: arms that are almost stretched, and
-// motions that exceed the cap on the handles' speed.
+// Returns the paper's tasks, and two in which rarely used repairs act: arms that are almost
+// stretched, and motions that exceed the cap on the handles' speed.
 std::vector<Task> Tasks() {
   return {
       {"box_9kg", "9 kg"},
@@ -106,7 +106,7 @@ StepRuns RunStep(const Task& task, const Step& step, ReproduceRuns* runs) {
   ReproducedRun monitored = runs->RunToEitherEnd(setting);
   const std::optional<StopSummary> stop = StopOf(monitored);
   if (!stop || stop->cause != StopCause::kOscillation) {
-    // The monitor can only stop a run, so this run is the same without it.
+    // The monitor can only stop a run, and it did not, so this run is the same without it.
     result.run = std::move(monitored);
     return result;
   }
@@ -116,7 +116,7 @@ StepRuns RunStep(const Task& task, const Step& step, ReproduceRuns* runs) {
   return result;
 }
 
-// Time of the earliest stop, rounded down to 0.1 s; the whole run if none stops [s].
+// Returns the time of the earliest stop, rounded down to 0.1 s, or the whole run if none stops [s].
 std::optional<double> EarliestStop(const std::vector<StepRuns>& all) {
   std::optional<double> earliest;
   for (const StepRuns& step : all)
@@ -145,7 +145,7 @@ std::string StopText(const ReproducedRun& run) {
   return std::string(Name(stop->cause)) + " at " + Significant(stop->time, 3) + " s";
 }
 
-// Numbers for tables with a row per step and a column per quantity of a task.
+// Adds numbers for tables with a row per step and a column per quantity of a task.
 void AddNumbers(const Task& task, const Step& step, const StepRuns& ran,
                 std::optional<double> until, std::vector<ReproducedNumber>* numbers) {
   const auto add = [&](ReproducedNumber n, const std::string& column) {

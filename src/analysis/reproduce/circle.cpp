@@ -1,4 +1,5 @@
-// Section 4.2: the circle with the bar, the comparison of real and emulated runs, and Fig. 12.
+// Reproduces section 4.2: the circle with the bar, the comparison of real and emulated runs, and
+// Fig. 12.
 
 #include "analysis/identify/loop.h"
 #include "analysis/reproduce/runs.h"
@@ -18,7 +19,7 @@ std::string Agreed(const Agreement& a, double scale) {
          Significant(a.correlation, 3) + ")";
 }
 
-// The probability p of the test that distinguishes emulated from real runs, as text.
+// Formats the probability p of the test that distinguishes emulated from real runs.
 std::string DistinguishingP(const SameKindTest& test) {
   if (!test.can_distinguish()) return "too few runs";
   return test.p < 1e-3 ? "< 0.001" : Significant(test.p, 2);
@@ -84,7 +85,7 @@ void AddNumbers(const IdentifyLoopResult& loop, std::vector<ReproducedNumber>* n
   }
 }
 
-// One run of each kind: the first of each in the table.
+// Returns one run of each kind, the first of each in the table.
 Runs Examples(const IdentifyLoopResult& loop, const Scenario& task, ReproduceRuns* runs,
               std::vector<ReproducedRun>* kept) {
   const std::filesystem::path folder = runs->options().folder / "real_cobot";

@@ -1,4 +1,4 @@
-// The page of a reproduction, its files and its numbers as text.
+// Writes the page of a reproduction, its files, and its numbers as text.
 #include "report/page.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Empty if the value is undefined.
+// Returns "" if the value is undefined.
 std::string Cell(double x) { return std::isfinite(x) ? FormatNumber(x) : ""; }
 
 std::string Comparable() {
@@ -42,14 +42,14 @@ std::string CommandList(const ReproducedExperiment& experiment) {
   return text;
 }
 
-// Converts "box_9kg" to "9 kg: "; empty for experiments whose rows are unambiguous.
+// Converts "box_9kg" to "9 kg: ". Returns "" for experiments whose rows are unambiguous.
 std::string ShortName(const std::string& experiment) {
   if (experiment == "box_9kg") return "9 kg: ";
   if (experiment == "box_18kg") return "18 kg: ";
   return "";
 }
 
-// The results that the paper prints as well, from all experiments without people.
+// Shows the results that the paper prints as well, from all experiments without people.
 std::string Overview(const Reproduction& reproduction) {
   std::vector<ReproducedNumber> numbers;
   for (const ReproducedExperiment& e : reproduction.experiments)

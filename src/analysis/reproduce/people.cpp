@@ -1,4 +1,4 @@
-// Section 4.2: the answers of the participants (Table 1, Fig. 11), and responsiveness.
+// Reproduces section 4.2: the answers of the participants (Table 1, Fig. 11), and responsiveness.
 #include <cmath>
 
 #include "analysis/reproduce/paper.h"
@@ -83,7 +83,7 @@ ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs) {
     ReproducedNumber n = NumberOf(run, quantity, us, 1e-3, "ms");
     n.paper = kPaperDelay;
     Add(n, "section 4.2.2", &e.numbers);
-    // Other load on the computer affects the mean and the deviation, but hardly affects the median.
+    // Other load on the computer affects the mean and the deviation, but hardly the median.
     n.quantity += ", median";
     n.mean = 1e-3 * run.data.summary
                         .Get<Quantiles>(std::string("timing_us.") +

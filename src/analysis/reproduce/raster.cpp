@@ -38,7 +38,7 @@ std::string Deflated(const std::string& bytes) {
   return packed;
 }
 
-// Twice the signed area of a triangle.
+// Returns twice the signed area of a triangle.
 template <class Point>
 double Area(const Point& a, const Point& b, double x, double y) {
   return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
@@ -74,7 +74,7 @@ Raster::Point Raster::Project(const Vector3& p_W) const {
 }
 
 Vector3 Raster::Shade(const Vector3& normal, const Vector3& from, const Vector3& color) const {
-  // Orient the normal towards the viewer.
+  // The normal must point towards the viewer.
   const Vector3 n = normal.dot(eye_ - from) < 0 ? Vector3(-normal) : normal;
   const double light =
       kAmbient + kSky * (0.5 + 0.5 * n.z()) + (1 - kAmbient - kSky) * std::max(0.0, n.dot(kLight));

@@ -1,5 +1,5 @@
-// Draws triangles without a display: perspective, one light, flat shading, a depth buffer. The
-// picture is identical on every computer.
+// Draws triangles without a display, with perspective, one light, flat shading and a depth buffer.
+// The picture is identical on every computer.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,12 @@ struct RasterCamera {
 
 class Raster {
  public:
-  // Size of the picture [px]. It is drawn at a higher resolution and averaged.
+  // The arguments give the size of the picture [px]. It is drawn at a higher resolution and
+  // averaged.
   Raster(int width, int height, const RasterCamera& camera);
 
-  // Corners in W [m]; color: red, green, blue from 0 to 1. `lit` false: the colour is not shaded. A
-  // triangle that is not completely in front of the camera is omitted.
+  // The corners are in W [m], and color is red, green, blue from 0 to 1. If `lit` is false, the
+  // colour is not shaded. A triangle that is not completely in front of the camera is omitted.
   void Triangle(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& color,
                 bool lit = true);
   // Everything drawn after this call is in front of everything drawn before.

@@ -55,7 +55,7 @@ struct ReproducedExperiment {
 
   void Add(std::string html) { blocks.push_back({std::move(html), {}}); }
   void AddParagraph(const std::string& text);
-  // The plot with another ID, title and caption; empty arguments keep the current ones.
+  // Adds the plot with another ID, title and caption. Empty arguments keep the current ones.
   void Add(Plot plot, const std::string& id, const std::string& heading,
            const std::string& caption = "");
   void Add(const std::vector<ReproducedNumber>& more) {
@@ -73,7 +73,7 @@ struct ReproduceOptions {
   std::function<void(double share, const std::string& what)> progress = {};
 };
 
-// Names of the experiments, in order.
+// Returns the names of the experiments, in order.
 std::vector<std::string> ReproducibleExperiments();
 
 struct Reproduction {
@@ -90,7 +90,7 @@ Reproduction Reproduce(const ReproduceOptions& options);
 // Writes index.html, figures as SVG and PNG, numbers.json and numbers.csv. Throws InputError.
 void WriteReproduction(const Reproduction& reproduction, const std::filesystem::path& folder);
 
-// The numbers as text for the terminal.
+// Returns the numbers as text for the terminal.
 std::string ReproductionText(const Reproduction& reproduction);
 std::string ReproductionJson(const Reproduction& reproduction);
 std::string ReproductionCsv(const Reproduction& reproduction);

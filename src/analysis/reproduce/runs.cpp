@@ -16,11 +16,11 @@
 namespace predictor {
 namespace {
 
-// Time for which every tick of a run is kept [s]: around stops and worst errors. A page with all
-// ticks would have tens of megabytes.
+// The time for which every tick of a run is kept [s], around stops and worst errors. A page with
+// all ticks would have tens of megabytes.
 constexpr double kDetail = 8;
 
-// Intervals in which no hand holds a handle: from a release to the end of the next grip.
+// Finds the intervals in which no hand holds a handle, from a release to the end of the next grip.
 class Released {
  public:
   explicit Released(const OperatorSpec& person) {
@@ -194,7 +194,8 @@ void Add(ReproducedNumber number, const char* place, std::vector<ReproducedNumbe
 
 // ---- words -------------------------------------------------------------------------------------
 
-// Digits after the decimal point: two digits of the smaller of deviation and mean.
+// Returns the number of digits after the decimal point: two digits of the smaller of deviation and
+// mean.
 static int DecimalsOf(double mean, double deviation) {
   double least = std::abs(mean);
   if (std::isfinite(deviation) && deviation > 0) least = std::min(least, deviation);

@@ -1,4 +1,4 @@
-// Runs of the reproduction, and their stored results.
+// Performs the runs of the reproduction and stores their results.
 #pragma once
 
 #include <array>
@@ -29,8 +29,8 @@ struct ReproducedRun {
   RunEnd end = RunEnd::kNotStarted;
   std::array<Statistics, kStages> timing;  // [µs]
   std::vector<TickRecord> moments;
-  // Errors from the release until the script has gripped again [m]: of the left handle, and of the
-  // distance between the handles.
+  // The errors from the release until the script has gripped again [m]: of the left handle, and of
+  // the distance between the handles.
   Statistics released_error, released_distance;
   std::string command;  // repeats the run
 };
@@ -40,10 +40,10 @@ class ReproduceRuns {
   ReproduceRuns(const ReproduceOptions& options, const std::string& experiment, int runs);
 
   Scenario Load(const ReproducedSetting& setting) const;
-  // Throws std::runtime_error unless it ends as `expected`.
+  // Performs a run. Throws std::runtime_error unless it ends as `expected`.
   ReproducedRun Run(const ReproducedSetting& setting, RunEnd expected = RunEnd::kFinished);
   ReproducedRun Run(const ReproducedSetting& setting, const Scenario& scenario, RunEnd expected);
-  // For a run whose end is itself a result: it runs to the end of the script or to a safety stop.
+  // For a run whose end is itself a result. It runs to the end of the script or to a safety stop.
   ReproducedRun RunToEitherEnd(const ReproducedSetting& setting);
   // Reports progress of the experiment that Run does not report.
   void ReportProgress(double share) const;
@@ -56,18 +56,18 @@ class ReproduceRuns {
   int runs_, done_ = 0;
 };
 
-// `predictor simulate scenarios/NAME.yaml --set ...`.
+// Returns `predictor simulate scenarios/NAME.yaml --set ...`.
 std::string SimulateCommandOf(const ReproducedSetting& setting);
 
-// A loop like the paper's: 10 ms of computing time and no lead. The oscillation monitor, which the
-// paper does not have, is off. The paper gives no rate; we assume that each computation starts when
-// the previous one ends [Hz].
+// These conditions resemble the paper's loop: 10 ms of computing time and no lead. The oscillation
+// monitor, which the paper does not have, is off. The paper gives no rate, so we assume that each
+// computation starts when the previous one ends [Hz].
 inline constexpr int kAssumedPaperRate = 100;
 std::vector<std::string> PaperConditions(int rate = kAssumedPaperRate);
-// The same without the coupling of real and virtual handles, which the paper does not have either.
+// As above, without the coupling of real and virtual handles, which the paper does not have either.
 std::vector<std::string> PaperConditionsWithoutCoupling();
 
-// Names of the conditions in tables and in the numbers file.
+// The names of the conditions in tables and in the numbers file.
 inline constexpr const char* kOurs = "our defaults";
 inline constexpr const char* kPapers = "the paper's conditions, our coupling";
 inline constexpr const char* kPapersUncoupled = "the paper's conditions, no coupling";
@@ -87,16 +87,17 @@ ReproducedExperiment ReproduceArms(ReproduceRuns* runs);
 ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs);
 ReproducedExperiment ReproduceQuestionnaire(ReproduceRuns* runs);
 
-// Pictures of the scene at the kept times, as PNG. `prefix`: prefix of their IDs.
+// Draws pictures of the scene at the kept times, as PNG. `prefix` is the prefix of their IDs.
 std::vector<ReproducedImage> ReproduceSnapshots(const ReproducedRun& run,
                                                 const std::string& prefix);
 
 // ---- numbers -----------------------------------------------------------------------------------
 
-// A number of the run, with the run's name. `scale`: factor from SI to `unit`.
+// Returns a number of the run, with the run's name. `scale` is the factor from SI to `unit`.
 ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity,
                           const Statistics& values, double scale, const char* unit);
-// The statistics of a metric, by their path in the summary. `quantity`: "" for the row's label.
+// Returns the statistics of a metric by their path in the summary. `quantity` is "" for the row's
+// label.
 ReproducedNumber NumberOfMetric(const ReproducedRun& run, const std::string& path,
                                 const std::string& quantity = "");
 ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity, double value,
@@ -106,11 +107,11 @@ void Add(ReproducedNumber number, const char* place, std::vector<ReproducedNumbe
 
 // ---- words -------------------------------------------------------------------------------------
 
-// "4.1 ± 3.8", with digits that suit the deviation.
+// Returns "4.1 ± 3.8", for example, with digits that suit the deviation.
 std::string PlusMinus(double mean, double deviation);
-// The number as printed in the paper.
+// Returns the number as printed in the paper.
 std::string Printed(const PrintedValue& value);
-// One row per quantity: the paper's number, ours for each condition, "mean ± deviation (largest)",
-// and the ratio of each to the paper's.
+// Returns one row per quantity: the paper's number, ours for each condition, "mean ± deviation
+// (largest)", and the ratio of each to the paper's.
 std::string NumbersTable(const std::vector<ReproducedNumber>& numbers);
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// The two safety experiments, section 4.1.2 and Fig. 9.
+// Reproduces the two safety experiments, section 4.1.2 and Fig. 9.
 #include "analysis/reproduce/runs.h"
 #include "core/text.h"
 #include "report/report_words.h"

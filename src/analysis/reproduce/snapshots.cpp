@@ -28,7 +28,7 @@ constexpr double kOrange = 0.5, kRed = 0.8;  // share of the threshold from whic
 
 const Vector3 kCobot(0.33, 0.45, 0.62), kArms(0.90, 0.905, 0.92), kHandle(0.20, 0.42, 0.85);
 
-// Triangles, three corners each [m].
+// Triangles, with three corners each [m].
 using Corners = std::vector<Vector3>;
 
 void AddQuad(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d, Corners* to) {
@@ -51,7 +51,8 @@ Corners BoxCorners(const Vector3& size) {
   return corners;
 }
 
-// A truncated cone about z, from z0 with radius r0 to z1 with radius r1, including both ends.
+// Returns a truncated cone about z, from z0 with radius r0 to z1 with radius r1, including both
+// ends.
 Corners ConeCorners(double r0, double z0, double r1, double z1) {
   Corners corners;
   for (int i = 0; i < kSlices; ++i) {
@@ -81,7 +82,8 @@ Corners SphereCorners(double radius) {
   return corners;
 }
 
-// The triangles of a binary STL file, scaled; empty for other formats and truncated files.
+// Returns the triangles of a binary STL file, scaled, or nothing for other formats and truncated
+// files.
 Corners StlCorners(const std::filesystem::path& file, const Vector3& scale) {
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
@@ -141,7 +143,7 @@ class Figure {
     for (const Part& part : parts_)
       Draw(part.corners, data_.FramePose(*model_, part.frame), color, raster);
   }
-  // Pose of a link; call after Show.
+  // Returns the pose of a link. Call Show first.
   Pose LinkPose(const std::string& link) const {
     return data_.FramePose(*model_, model_->Frame(link));
   }
@@ -157,7 +159,7 @@ class Figure {
   std::vector<Part> parts_;
 };
 
-// A pose at `from` whose z-axis points to `to`.
+// Returns a pose at `from` whose z-axis points to `to`.
 Pose Along(const Vector3& from, const Vector3& to) {
   return {from, Quaternion::FromTwoVectors(Vector3::UnitZ(), to - from)};
 }
@@ -247,7 +249,7 @@ class Scenery {
   std::array<std::unique_ptr<Figure>, kHands> arms_;
 };
 
-// A camera above the operator's side, directed at the load of the cobot.
+// Returns a camera above the operator's side, directed at the load of the cobot.
 RasterCamera CameraOf(const Scenario& scenario) {
   const Vector3 base = scenario.cobot.base.xyz;
   return {base + Vector3(2.3, -1.55, 1.15), base + Vector3(0.33, 0.03, 0.14), 0.5};

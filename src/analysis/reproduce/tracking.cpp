@@ -1,4 +1,4 @@
-// Scenarios 1 and 2 (Figs 5 to 8), and the demonstration in Fig. 4.
+// Reproduces scenarios 1 and 2 (Figs 5 to 8), and the demonstration in Fig. 4.
 
 #include "analysis/reproduce/paper.h"
 #include "analysis/reproduce/runs.h"
@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// The twelve error values are six per scenario. `paper`: null if the paper prints none.
+// There are twelve error values, six per scenario. `paper` is null if the paper prints none.
 struct ErrorFigures {
   const PaperTracking* paper;
   const char* translation;  // place of the translational errors in the paper
@@ -106,7 +106,7 @@ struct BoxExperiment {
   std::vector<double> moments;
 };
 
-// Errors from the release until the end of the next grip.
+// Adds the errors from the release until the end of the next grip.
 void AddRelease(const ErrorFigures& figures, const ReproducedRun& run,
                 std::vector<ReproducedNumber>* numbers) {
   const auto add = [&](const char* quantity, const Statistics& values) {

@@ -58,7 +58,7 @@ void AddTask(const char* scenario, const ReproducedVariant& variant, const char*
   Add(NumberOf(run, "largest force of a hand", LargestForce(run), "N"), place, numbers);
 }
 
-// The Panda's own joint limits are not sufficient for 18 kg. Returns the message of that refusal.
+// The Panda's own effort limits are not sufficient for 18 kg. Returns the message of that refusal.
 std::string RefusalOfOwnEfforts(ReproduceRuns* runs) {
   const ReproducedSetting setting{"box_18kg", {"cobot.effort_limit=[]"}, ""};
   const std::string command = "<code>" + EscapeMarkup(SimulateCommandOf(setting)) + "</code>";

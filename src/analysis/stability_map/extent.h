@@ -1,4 +1,5 @@
-// Determines the hands for which a haptic loop is stable, by the linearised loop and by simulation.
+// Determines the hands for which a haptic loop is stable, with the linearised loop and by
+// simulation.
 #pragma once
 
 #include <functional>
@@ -10,7 +11,7 @@
 
 namespace predictor {
 
-// A hand's stiffness is given by its largest component [N/m]; the rotational stiffness changes in
+// A hand's stiffness is given by its largest component [N/m]. The rotational stiffness changes in
 // proportion (Varied).
 struct StiffnessRange {
   double softest = 20, stiffest = 10000;  // [N/m]
@@ -30,26 +31,27 @@ struct StableExtent {
 
   bool StableAt(double stiffness) const;
   // critical: the lowest stiffness above which the loop becomes unstable. least: the lowest
-  // boundary of a loop that is unstable at the softest hand. Null if there is no such boundary.
+  // boundary of a loop that is unstable with the softest hand. They return null if there is no such
+  // boundary.
   const Boundary* critical() const;
   const Boundary* least() const;
   bool nothing_stable() const { return !stable_at_softest && boundaries.empty(); }
   bool everything_stable() const { return stable_at_softest && boundaries.empty(); }
 };
 
-// Predicts with the linearised loop and the scenario's hand at other stiffnesses. Boundaries are
-// accurate to 1 %.
+// Predicts the extent with the linearised loop and the scenario's hand at other stiffnesses.
+// Boundaries are accurate to 1 %.
 StableExtent PredictExtent(const HapticLoop& loop, const HandSpec& hand, double lead,
                            const StiffnessRange& range);
 
-// Result of the simulation at one stiffness.
+// The result of the simulation at one stiffness.
 struct GrowthAt {
   double stiffness = 0;  // [N/m]
   Growth growth;
 };
-// Finds boundaries by simulation: the sign of the growth rate on a grid over the range and near
-// `hints` [N/m], then bisection to 4 % wherever the sign changes. `samples`: all simulated
-// stiffnesses, ascending.
+// Finds boundaries by simulation. It evaluates the sign of the growth rate on a grid over the range
+// and near `hints` [N/m], and then bisects to 4 % wherever the sign changes. `samples` are all
+// simulated stiffnesses, ascending.
 struct FoundExtent {
   StableExtent extent;
   std::vector<GrowthAt> samples;

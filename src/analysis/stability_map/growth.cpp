@@ -31,7 +31,7 @@ constexpr double kFaded = 0.02;  // as a share of the initial difference; below 
 // of first-order stages.
 constexpr double kFast = 15;
 constexpr int kFastOrder = 4;
-// Factors by which fast modes must rise above their minimum; larger than the effect of
+// Fast modes must rise above their minimum by these factors, which are larger than the effect of
 // quantisation.
 constexpr double kRisen = 5;
 constexpr double kLimitedBin = 0.2;  // largest share of limited ticks in a bin that counts
@@ -99,7 +99,7 @@ class LimitWatch {
   }
 
  private:
-  // True if a joint's command changed by the maximum that its limit allows per tick.
+  // Returns whether a joint's command changed by the maximum that its limit allows per tick.
   bool IsAccelerating(int hand, const HandRecord& h) {
     auto& last = last_[static_cast<std::size_t>(hand)];
     bool accelerating = false;
@@ -120,7 +120,7 @@ class LimitWatch {
 // handles [m/s].
 using Difference = Eigen::Matrix<double, 6 * kHands, 1>;
 
-// High-pass filter of kFastOrder identical stages.
+// A high-pass filter of kFastOrder identical stages.
 class FastPart {
  public:
   explicit FastPart(double dt) : keep_(1 / (1 + 2 * kPi * kFast * dt)) {
@@ -141,7 +141,7 @@ class FastPart {
   std::array<Difference, kFastOrder> in_, out_;
 };
 
-// Sums over one bin.
+// The sums over one bin.
 struct Bin {
   double squares = 0;  // sum over ticks
   double fast = 0;     // the same for the fast part
@@ -149,7 +149,7 @@ struct Bin {
   std::vector<Difference> series;  // means over kMeanTime
 };
 
-// Frequency of the strongest line in the spectrum of a series sampled every dt [s].
+// Returns the frequency of the strongest line in the spectrum of a series sampled every dt [s].
 double StrongestFrequency(const std::vector<Difference>& series, double dt, double lowest) {
   double best = 0, strongest = 0;
   for (double f = lowest; f < std::min(kHighest, 0.45 / dt); f *= kSpacing) {
@@ -168,7 +168,7 @@ double StrongestFrequency(const std::vector<Difference>& series, double dt, doub
   return best;
 }
 
-// The two runs, executed in step.
+// The two runs, which are executed in step.
 class Twins {
  public:
   explicit Twins(const Scenario& s, double lead)
@@ -248,8 +248,8 @@ class Twins {
     bin.series.back() += now / decimation_;
   }
 
-  // Sign and rate of the growth, from a straight line through the logarithm of the difference. The
-  // first third is ignored, because it still contains modes that decay quickly.
+  // Returns sign and rate of the growth, from a straight line through the logarithm of the
+  // difference. The first third is ignored, because it still contains modes that decay quickly.
   Growth Judge(double time) {
     if (!bins_.empty() && bins_.back().ticks * plain_.dt() < kBin - 1e-9) bins_.pop_back();
     const int n = static_cast<int>(bins_.size());

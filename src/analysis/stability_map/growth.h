@@ -1,6 +1,6 @@
 // Measures in simulation whether a small disturbance of a scenario's haptic loop grows.
 //
-// The scenario is simulated twice with the same noise: in both runs the hands grip and hold, and in
+// The scenario is simulated twice with the same noise. In both runs the hands grip and hold, and in
 // one of them they also tap the handles. The effect of the tap is the difference of the two
 // motions. It follows the loop's linear dynamics without noise, so it either decays or grows.
 #pragma once
@@ -14,7 +14,7 @@
 
 namespace predictor {
 
-// Effects that make the loop nonlinear. While one of them acts, the prediction is not valid.
+// The effects that make the loop nonlinear. While one of them acts, the prediction is not valid.
 enum class Limiting : int {
   kCoupling,      // the real handles lag by more than the coupling's dead band
   kSpeed,         // a handle at its speed cap
@@ -33,19 +33,19 @@ struct Growth {
                                // start
   double frequency = 0;        // of the strongest line in its spectrum [Hz]; 0: unknown
   double time = 0;             // simulated time after the tap [s]
-  // Share of the ticks in which each limit acts, without a tap and after it.
+  // The share of the ticks in which each limit acts, without a tap and after it.
   std::array<double, kLimitings> limited = {};
   std::string stopped;  // cause of a stop, if any
 };
 
 inline constexpr double kGrowthTime = 11;  // time simulated after the tap has faded [s]
 
-// The scenario for a measurement: hands that grip and hold (and tap, if `tap`) and the simulated
-// rig. Every threshold of `safety` that would stop the run has the highest value that a scenario
-// may have. `lead` [s] replaces `auto`.
+// Returns the scenario for a measurement: hands that grip and hold (and tap, if `tap`) and the
+// simulated rig. Every threshold of `safety` that would stop the run has the highest value that a
+// scenario may have. `lead` [s] replaces `auto`.
 Scenario HoldScenario(const Scenario& scenario, double lead, bool tap);
 
-// Throws InputError (models, or a start out of reach).
+// Throws InputError because of models or a start out of reach.
 Growth MeasureGrowth(const Scenario& scenario, double lead, double time = kGrowthTime);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// The page and the text of a stability map.
+// Writes the page and the text of a stability map.
 #include "report/page.h"
 
 #include <string>
@@ -14,7 +14,7 @@ std::string Shown(const MapAxisText& text, double value) {
   return Formatted("%.3g %s", text.per_si * value, text.unit);
 }
 
-// One or two sentences about the agreement.
+// Describes the agreement in one or two sentences.
 std::string Verdict(const StabilityMap& map) {
   const MapAgreement a = AgreementOf(map);
   std::string text;
@@ -46,7 +46,7 @@ std::string HandInWords(const StabilityMap& map) {
       h.damping_ratio, h.reflex_gain, 1e3 * h.reflex_delay);
 }
 
-// Text about a picture, for example if nothing or everything is stable.
+// Describes a picture, for example if nothing or everything is stable.
 std::string Caption(const StabilityMap& map, const MapPicture& picture) {
   const MapAxisText& text = TextOf(picture.axis);
   std::string nothing, found_nothing, everything, impossible;
@@ -111,7 +111,7 @@ Cells Row(const StabilityMap& map, const std::string& at, const MapPoint& point,
           pair.departures.empty() ? "hold" : Joined(pair.departures)};
 }
 
-// Text for a point without a boundary.
+// Describes a point without a boundary.
 std::string WithoutBoundary(const MapPoint& point) {
   if (!point.impossible.empty()) return EscapeMarkup(point.impossible);
   return point.predicted.nothing_stable() ? "predicted and simulated: nothing is stable"

@@ -1,4 +1,4 @@
-// One plot of a stability map.
+// Draws one plot of a stability map.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +14,7 @@ namespace {
 constexpr int kPredictedColor = 0, kFoundColor = 1, kOwnColor = 7;  // indices into kPlotColors
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
-// Points of a series under construction: a line, a set of markers or, with `base`, an area.
+// The points of a series under construction: a line, a set of markers or, with `base`, an area.
 struct Curve {
   std::vector<double> x, y, base;
 
@@ -80,9 +80,9 @@ class MapDrawing {
     return p.impossible.empty() ? p.predicted.least() : nullptr;
   }
 
-  // The area in which the loop is predicted to be unstable, and the band in which a found boundary
-  // agrees. They connect neighbouring points if both have a boundary; otherwise each point covers
-  // half the distance.
+  // Draws the area in which the loop is predicted to be unstable, and the band in which a found
+  // boundary agrees. They connect neighbouring points if both have a boundary. Otherwise each point
+  // covers half the distance.
   void Areas() {
     const auto& points = picture_.points;
     for (std::size_t k = 0; k + 1 < points.size(); ++k) {
@@ -169,7 +169,7 @@ class MapDrawing {
     markers("simulated: all stable up to here", PlotSymbol::kTriangle, std::move(everything));
   }
 
-  // The unchanged scenario: a line at its value and one at the stiffness of its hand.
+  // Marks the unchanged scenario by a line at its value and one at the stiffness of its hand.
   void Own() {
     Curve own;
     const double x = text_.per_si * OwnValue(map_.base, picture_.axis);

@@ -34,8 +34,8 @@ constexpr double kFingerprintTime = 1;  // [s]
 
 std::string Exactly(double x) { return Formatted("%a ", x); }
 
-// Identifies the behaviour of this program for a scenario: one simulated second with a tap, and the
-// predicted growth, bit for bit. Programs or models that differ in this must not share points.
+// Identifies the behaviour of this program for a scenario by one simulated second with a tap and by
+// the predicted growth, bit for bit. Programs or models that differ in this must not share points.
 std::string FingerprintOf(const MapBase& base) {
   std::string text = kFormat;
   const Scenario hold = HoldScenario(base.scenario, base.lead, true);
@@ -162,7 +162,7 @@ class Work {
   std::atomic<int> done_ = 0, kept_ = 0;
 };
 
-// The simulated values, and predicted values between them.
+// Returns the simulated values, and predicted values between them.
 std::vector<MapPoint> PointsOf(const MapBase& base, MapAxis axis) {
   std::vector<MapPoint> points;
   for (const double value : MapValues(base, axis)) {
@@ -182,7 +182,7 @@ std::vector<MapPoint> PointsOf(const MapBase& base, MapAxis axis) {
 
 }  // namespace
 
-// Effects that the linearised loop does not model at all.
+// Returns effects that the linearised loop does not model at all.
 std::vector<std::string> DeparturesOf(const Scenario& s) {
   std::vector<std::string> departures;
   const auto& coulomb = s.cobot.joint_friction.coulomb;
@@ -233,7 +233,7 @@ std::optional<double> UncertaintyOf(const FoundExtent& found, const Boundary& bo
 
 namespace {
 
-// The sample closest to a boundary, on the growing or the other side of it.
+// Returns the sample closest to a boundary, on the growing or the other side of it.
 const Growth* NearestTo(const FoundExtent& found, const Boundary& boundary, bool grows) {
   const GrowthAt* nearest = nullptr;
   const auto far = [&](const GrowthAt& g) {
@@ -247,7 +247,7 @@ const Growth* NearestTo(const FoundExtent& found, const Boundary& boundary, bool
   return nearest ? &nearest->growth : nullptr;
 }
 
-// The limit that acts most.
+// Returns the limit that acts most.
 const char* WorstLimit(const Growth& growth) {
   const auto worst = std::max_element(growth.limited.begin(), growth.limited.end());
   return Name(static_cast<Limiting>(worst - growth.limited.begin()));

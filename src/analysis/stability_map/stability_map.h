@@ -1,6 +1,6 @@
-// The stability map of a scenario: the stiffness up to which the haptic loop does not oscillate, as
-// a function of masses, delay, bandwidth and lead. It is predicted by the linearised loop and found
-// by simulation.
+// The stability map of a scenario shows the stiffness up to which the haptic loop does not
+// oscillate, as a function of masses, delay, bandwidth and lead. The linearised loop predicts it,
+// and simulation finds it.
 #pragma once
 
 #include <array>
@@ -22,11 +22,12 @@ inline constexpr double kAgreement = 0.2;  // relative difference up to which fo
 // does not model limits, so boundaries beyond this share are not compared with it.
 inline constexpr double kLimitedShare = 0.01;
 
-// Smallest rate of the loop and of its readings at which the continuous prediction is compared with
-// the simulation [Hz].
+// The smallest rate of the loop and of its readings at which the continuous prediction is compared
+// with the simulation [Hz].
 inline constexpr double kMinMapRate = 500;
 
-// Uncertainty of a found boundary beyond which it cannot be judged: half of kAgreement.
+// If the uncertainty of a found boundary exceeds this, which is half of kAgreement, the boundary
+// cannot be judged.
 inline constexpr double kMaxUncertainty = 0.1;
 
 struct MapPoint {
@@ -57,7 +58,7 @@ struct MapOptions {
   StiffnessRange range;
   double growth_time = kGrowthTime;  // [s]
   int workers = 0;                   // 0: the number of cores
-  // Called only from the caller's thread.
+  // Only the caller's thread calls this.
   std::function<void(double share, const std::string& what)> progress = [](double,
                                                                            const std::string&) {};
 };
@@ -67,20 +68,20 @@ struct MapOptions {
 // therefore be continued, and no outdated point is reused. Throws InputError.
 StabilityMap MakeStabilityMap(const Scenario& scenario, const MapOptions& options);
 
-// Reasons why the prediction may be wrong for the whole scenario, as sentences. If empty, the
-// prediction must be correct.
+// Returns reasons why the prediction may be wrong for the whole scenario, as sentences. Without any,
+// the prediction must be correct.
 std::vector<std::string> DeparturesOf(const Scenario& scenario);
 
-// Reasons why the prediction may be wrong for a found boundary, as text. If empty, the prediction
-// must be correct. The reasons are derived only from the simulations near the boundary, never from
-// the difference between prediction and simulation: limits that act on the stable side, limits that
-// noise alone reaches on the other side, and a growth rate that depends too weakly on the
-// stiffness.
+// Returns reasons why the prediction may be wrong for a found boundary, as text. If there are none,
+// the prediction must be correct. The reasons are derived only from the simulations near the
+// boundary, never from the difference between prediction and simulation: limits that act on the
+// stable side, limits that noise alone reaches on the other side, and a growth rate that depends
+// too weakly on the stiffness.
 std::vector<std::string> DeparturesAt(const FoundExtent& found, const Boundary& boundary);
-// The same if no stable stiffness was found.
+// As above, for the case that no stable stiffness was found.
 std::vector<std::string> DeparturesEverywhere(const FoundExtent& found);
-// Relative uncertainty of a found boundary (two standard errors), derived from the deviations of
-// the nearby growth rates from a straight line; empty for fewer than three.
+// Returns the relative uncertainty of a found boundary (two standard errors), derived from the
+// deviations of the nearby growth rates from a straight line, or no value for fewer than three.
 std::optional<double> UncertaintyOf(const FoundExtent& found, const Boundary& boundary);
 
 // A boundary that was predicted or found, or both.
@@ -95,8 +96,8 @@ struct BoundaryPair {
 };
 std::vector<BoundaryPair> PairsOf(const MapPoint& point);
 
-// Agreement of prediction and simulation over all boundaries of a map. Each boundary counts only
-// once, although the scenario's own values are in every picture.
+// The agreement of prediction and simulation over all boundaries of a map. Each boundary counts
+// only once, although the scenario's own values are in every picture.
 struct MapAgreement {
   int held = 0, held_agree = 0;    // boundaries for which the assumptions hold
   int other = 0, other_agree = 0;  // boundaries for which they do not hold
@@ -105,7 +106,8 @@ struct MapAgreement {
 };
 MapAgreement AgreementOf(const StabilityMap& map);
 
-// One plot, the page with all plots (a single HTML file), and a few lines for the terminal.
+// These functions return one plot, the page with all plots (a single HTML file), and a few lines
+// for the terminal.
 Plot MapPlot(const StabilityMap& map, const MapPicture& picture);
 std::string MapPage(const StabilityMap& map);
 std::string MapText(const StabilityMap& map);

@@ -12,14 +12,14 @@
 
 namespace predictor {
 
-// One line of JSON per point, appended and flushed as soon as the point is finished. Unreadable
-// lines (such as the last line of a killed run) are skipped. Any thread may call Add.
+// The file has one line of JSON per point, appended and flushed as soon as the point is finished.
+// Unreadable lines (such as the last line of a killed run) are skipped. Any thread may call Add.
 class MapStore {
  public:
   // Reads the file. Throws InputError if it cannot be written.
   explicit MapStore(const std::filesystem::path& file);
 
-  // Loads the point with this key; false if it is not stored.
+  // Loads the point with this key. Returns false if it is not stored.
   bool Find(const std::string& key, MapPoint* point) const;
   // Throws InputError if it cannot be written.
   void Add(const std::string& key, const MapPoint& point);
@@ -34,8 +34,8 @@ class MapStore {
   std::mutex mutex_;
 };
 
-// A 64-bit hash of the text as hexadecimal digits (FNV-1a). It distinguishes contents but does not
-// protect secrets.
+// Returns a 64-bit hash of the text as hexadecimal digits (FNV-1a). It distinguishes contents but
+// does not protect secrets.
 std::string HashOf(const std::string& text);
 
 }  // namespace predictor

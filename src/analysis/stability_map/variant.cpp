@@ -23,8 +23,8 @@ void ForEachLoop(Scenario* s, F f) {
 
 const VelocityLoopSpec& OwnLoop(const Scenario& s) { return s.arm(s.Has(0) ? 0 : 1).loop; }
 
-// The object as a primitive in the scenario with another mass: same shape and centre of mass,
-// inertia in proportion.
+// Returns the object as a primitive in the scenario with another mass: the same shape and centre of
+// mass, with the inertia in proportion.
 PrimitiveSpec ScaledObject(const Scenario& s, double mass) {
   const ObjectModel object = LoadObject(s.object, s.folder());
   const Matrix3 off = object.inertia - Matrix3(object.inertia.diagonal().asDiagonal());

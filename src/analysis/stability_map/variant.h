@@ -1,4 +1,4 @@
-// The quantities of a scenario that the stability map varies, one at a time.
+// Varies the quantities of a scenario for the stability map, one at a time.
 #pragma once
 
 #include <array>
@@ -31,16 +31,17 @@ struct MapBase {
 // Throws InputError for a scenario that cannot be run or has no arms (mode: direct).
 MapBase BaseOf(const Scenario& scenario);
 
-// The scenario's own value along an axis, SI.
+// Returns the scenario's own value along an axis, in SI units.
 double OwnValue(const MapBase& base, MapAxis axis);
 bool IsOwn(const MapBase& base, MapAxis axis, double value);
 
-// The values to be mapped along an axis, ascending, SI. The scenario's own value is one of them.
+// Returns the values to be mapped along an axis, ascending, in SI units. The scenario's own value
+// is one of them.
 std::vector<double> MapValues(const MapBase& base, MapAxis axis);
 
 // The scenario with another value, and the corresponding lead [s]. An object with another mass
 // keeps its shape, and its inertia changes in proportion. Its sag changes, and the arms' bases
-// follow its handles. Throws InputError, also if the cobot cannot carry the object.
+// follow its handles. Throws InputError, for example if the cobot cannot carry the object.
 struct Variant {
   Scenario scenario;
   double lead = 0;  // [s]

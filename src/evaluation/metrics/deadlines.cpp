@@ -1,4 +1,4 @@
-// Deadlines that the control loop missed.
+// Counts the deadlines that the control loop missed.
 #include <algorithm>
 
 #include "evaluation/metrics/registry.h"

@@ -1,4 +1,4 @@
-// Simulated time.
+// Measures simulated time.
 #include "evaluation/metrics/registry.h"
 
 namespace predictor::metrics {

@@ -1,4 +1,4 @@
-// Energy that the hands exchange with the real handles in RUN and while stopping.
+// Measures the energy that the hands exchange with the real handles in RUN and STOPPING.
 #include <cstdint>
 
 #include "evaluation/metrics/registry.h"

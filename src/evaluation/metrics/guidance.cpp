@@ -1,4 +1,4 @@
-// Distance of the object from the guidance path.
+// Measures the distance of the object from the guidance path.
 #include "evaluation/guidance_distance.h"
 #include "evaluation/metrics/registry.h"
 

@@ -1,4 +1,4 @@
-// Distance between the links that the program keeps apart.
+// Measures the distance between the links that the program keeps apart.
 #include <algorithm>
 #include <limits>
 

@@ -1,4 +1,4 @@
-// Height of the object.
+// Measures the height of the object.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Oscillation of the hands' forces from 3 to 10 Hz.
+// Measures the oscillation of the hands' forces from 3 to 10 Hz.
 #include <algorithm>
 #include <cmath>
 

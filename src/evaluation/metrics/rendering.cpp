@@ -1,4 +1,4 @@
-// Quadratic programs of haptic rendering.
+// Counts the quadratic programs of haptic rendering.
 #include "evaluation/metrics/registry.h"
 
 namespace predictor::metrics {

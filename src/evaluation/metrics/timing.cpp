@@ -1,4 +1,4 @@
-// Computing time of the stages of a tick.
+// Measures the computing time of the stages of a tick.
 #include "evaluation/metrics/registry.h"
 
 namespace predictor::metrics {

@@ -1,4 +1,4 @@
-// Forces and torques of the hands.
+// Measures the forces and torques of the hands.
 #include "evaluation/metrics/registry.h"
 
 namespace predictor::metrics {
