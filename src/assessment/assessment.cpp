@@ -25,7 +25,7 @@ int ScoreExceededRarely(const std::vector<double>& share) {
 // Values of one quantity: values[time][person].
 using Table = std::vector<std::vector<double>>;
 
-// One value for each person, from that person's values over time.
+// Returns one value for each person, from that person's values over time.
 std::vector<double> OfEachPerson(const Table& table,
                                  double (*of_time)(const std::vector<double>&)) {
   std::vector<double> results;
@@ -60,7 +60,7 @@ void AddIntervals(const SampledChain& sampled, std::span<const PersonSample> sam
   result->tail_interval = person::IntervalOf(sorted);
 }
 
-// Uses only the times that have a value; without any, the results are not a number.
+// Uses only the times that have a value. Without any, the results are not a number.
 void SummariseOverTime(QuantityResult* result) {
   std::vector<double> values;
   for (const double x : result->values)
@@ -127,7 +127,7 @@ std::vector<double> SeriesOf(const NominalChain& nominal, double (*of)(const Fra
   return values;
 }
 
-// The load over the whole run. While no hand holds a handle, the arms hang down and rest.
+// Returns the load over the whole run. While no hand holds a handle, the arms hang down and rest.
 std::vector<double> OverRun(const std::vector<double>& held, std::span<const PersonSample> all) {
   std::vector<double> load;
   std::size_t next = 0;

@@ -20,9 +20,9 @@ struct DamageResult {
   double probability = 0;  // of the tool's outcome for that shift
 };
 
-// `moment` [N·m]: over a run, at 100 Hz, 0 at rest. It is low-passed at kDamageCutoff in both
+// `moment` [N·m] covers a run at 100 Hz and is 0 at rest. It is low-passed at kDamageCutoff in both
 // directions. Ranges smaller than kMinRange or than kMinRangeShare of the largest range are
-// ignored: in this method, each cycle causes some damage even without a load, so tremor and noise
+// ignored. In this method, each cycle causes some damage even without a load, so tremor and noise
 // would count as lifts.
 DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
                             std::span<const double> moment, double (*per_cycle)(double),
@@ -59,7 +59,7 @@ struct FatigueResult {
                              // [s]; infinite: not within 8 h
 };
 
-// `load`: share of strength at 100 Hz.
+// `load` is a share of strength at 100 Hz.
 FatigueResult FatigueOfLoad(const std::string& joint, ergonomics::FatigueJoint kind,
                             std::span<const double> load);
 

@@ -37,7 +37,7 @@ ergonomics::ArmPosture ArmOf(const person::ArmAngles& a) {
   return arm;
 }
 
-// What both hands exert together: a squeeze between them is not a load.
+// Returns what both hands exert together. A squeeze between them is not a load.
 ergonomics::Exertion ExertionOf(const FrameInput& input, const WorkPattern& work) {
   ergonomics::Exertion exertion;
   Vector3 force = Vector3::Zero();

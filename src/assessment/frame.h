@@ -34,7 +34,7 @@ struct Frame {
   // the person's sex times WorkPattern::strength.
   std::array<double, kHands> elbow_use = {}, shoulder_use = {};
   bool reached = false;  // in this posture, the hands reach the handles
-  // Computed for the nominal person only; has no values for the other persons.
+  // These are computed for the nominal person only and have no values for the other persons.
   std::array<ArmMuscleUse, kHands> muscles;
 };
 
@@ -46,7 +46,8 @@ struct FrameInput {
 Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,
               const person::BodyLoads& loads, bool reached, Sex sex, const WorkPattern& work);
 
-// The moment of the hands' forces about the lower back, without the weight of the trunk [N·m].
+// Returns the moment of the hands' forces about the lower back, without the weight of the trunk
+// [N·m].
 double LiftMoment(const Frame& frame);
 
 // In RULA and REBA, a force that rises faster than this counts as a shock (design choice) [N/s].

@@ -14,7 +14,7 @@
 namespace predictor::assessment {
 
 inline constexpr double kSampleRate = 100;  // [Hz]
-// Ticks per sample for the given tick rate [Hz]; at least 1.
+// Returns the number of ticks per sample for the given tick rate [Hz], which is at least 1.
 std::size_t TicksPerSample(double rate);
 
 struct PersonSample {
@@ -30,13 +30,13 @@ struct PersonSample {
 // the middle tick. A hand is present if it grips in most of the ticks.
 PersonSample SampleOf(std::span<const TickRecord> ticks);
 
-// Builds a sample from every 10 ms of ticks (see SampleOf). Only ticks in RUN count.
+// Builds a sample from every 10 ms of ticks (see SampleOf). It uses only ticks in RUN.
 class SampleBuilder {
  public:
   explicit SampleBuilder(const Scenario& scenario);
   // Returns the sample that this tick completes, if any.
   std::optional<PersonSample> Add(const TickRecord& record);
-  // The record of the first tick in RUN; its `tick` is 0 until then.
+  // Returns the record of the first tick in RUN. Its `tick` is 0 until then.
   const TickRecord& first() const { return first_; }
 
  private:
@@ -62,7 +62,7 @@ class SampleCollector {
   }
   const TickRecord& first() const { return builder_.first(); }
   const std::vector<PersonSample>& samples() const { return samples_; }
-  // The cause that first stopped the run; kNone if it was not stopped.
+  // Returns the cause that first stopped the run, or kNone if it was not stopped.
   StopCause stopped() const { return stopped_; }
 
  private:

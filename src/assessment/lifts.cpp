@@ -9,7 +9,7 @@
 namespace predictor::assessment {
 namespace {
 
-// The point midway between the gripping hands, in S.
+// Returns the point midway between the gripping hands, in S.
 std::optional<Vector3> MiddleOf(const PersonSample& sample, const person::Stance& stance) {
   Vector3 sum = Vector3::Zero();
   int n = 0;

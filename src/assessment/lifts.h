@@ -27,8 +27,8 @@ struct Lift {
 inline constexpr double kMinLift = 0.05;
 inline constexpr double kReversal = 0.02;
 
-// The lifts during which at least one hand gripped all the time. `object_mass` [kg]. The frequency
-// of lifting is that of this run.
+// Returns the lifts during which at least one hand gripped all the time. `object_mass` is in [kg].
+// The frequency of lifting is that of this run.
 std::vector<Lift> LiftsOf(std::span<const PersonSample> samples, const person::Stance& stance,
                           double object_mass, Sex sex);
 

@@ -33,7 +33,7 @@ class LiveChain {
 
   // Takes the next sample in which a hand holds a handle.
   void Add(const PersonSample& sample);
-  // The posture of the newest sample.
+  // Returns the posture of the newest sample.
   const person::Posture& newest() const { return postures_.back(); }
   // Gets the next sample that can be judged. `all`: no later sample continues the known ones, so
   // all of them can be judged. Returns false if no sample can be judged yet.

@@ -15,10 +15,10 @@ namespace predictor::assessment {
 class LiveExposure {
  public:
   explicit LiveExposure(const Scenario& scenario);
-  // Adds the next sample; null: no hand holds a handle, so the arms rest.
+  // Adds the next sample. null means that no hand holds a handle, so the arms rest.
   void Add(const Frame* frame);
-  // Writes damage and capacity into `state`. To bound the cost, the damage is recomputed only when
-  // the number of samples has grown by 2 % and by at least 1 s; with `now`, at once.
+  // Writes damage and capacity into `state`. To bound the cost, the damage is computed again only
+  // when the number of samples has grown by 2 % and by at least 1 s, or immediately with `now`.
   void Write(bool now, PersonState* state);
 
  private:

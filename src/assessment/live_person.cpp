@@ -80,7 +80,7 @@ void LivePerson::Begin() {
   intervals_.emplace(*setup_, work_);
 }
 
-// The initial places of the handles stay known.
+// The initial places of the handles remain known.
 void LivePerson::BeginAgain() {
   builder_ = SampleBuilder(scenario_);
   held_ = {};
@@ -131,7 +131,7 @@ void LivePerson::Judge(bool all) {
   }
 }
 
-// Judges the samples that are left; from then on, the posture is unknown.
+// Judges the remaining samples. From then on, the posture is unknown.
 void LivePerson::Rest(PersonStatus status) {
   if (state_.status != status) {
     Judge(true);

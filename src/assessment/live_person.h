@@ -18,7 +18,7 @@ class LivePerson {
   LivePerson(const Scenario& scenario, const WorkPattern& work);
 
   // Takes the next tick of a run or of a replay. Returns whether state() is new. A repeated tick is
-  // ignored; if an earlier tick follows, damage and fatigue start again. Throws InputError if
+  // ignored. If an earlier tick follows, damage and fatigue start again. Throws InputError if
   // place, grips and handles contradict one another.
   bool Add(const TickRecord& record);
   const PersonState& state() const { return state_; }

@@ -49,7 +49,7 @@ constexpr int HandOf(std::size_t gauge) {
   return static_cast<int>(gauge - static_cast<std::size_t>(PersonGauge::kLeftShoulderUse)) % 2;
 }
 
-// True for −1 as well.
+// Returns true for −1 as well.
 bool IsPresent(int hand, const PersonSample& sample) {
   return hand < 0 || sample.body.hands[static_cast<std::size_t>(hand)].present;
 }

@@ -1,4 +1,4 @@
-// From frames to the numbers of the person's state: gauges, scores, intervals, warnings.
+// Converts frames to the numbers of the person's state: gauges, scores, intervals, warnings.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace predictor::assessment {
 
-// Writes gauges, scores and loads of the nominal person into `state`; the intervals are kept.
+// Writes gauges, scores and loads of the nominal person into `state` and keeps its intervals.
 void WriteFrame(const JudgedSample& judged, PersonState* state);
 
 // Writes intervals and probabilities from the frames of all possible persons.

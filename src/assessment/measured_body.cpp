@@ -115,7 +115,7 @@ void AddSignals(const tracks::BodyTrack& track, const UsedTrack& used,
   }
 }
 
-// The offset from the hand whose speeds agree better.
+// Returns the offset from the hand whose speeds agree better.
 tracks::ClockOffset Estimate(const tracks::BodyTrack& track,
                              const std::vector<PersonSample>& samples) {
   std::vector<double> times;

@@ -1,4 +1,4 @@
-// Measurements of the person beside the hands: head, elbows, and other signals.
+// Measurements of the person in addition to the hands: head, elbows, and other signals.
 #pragma once
 
 #include <optional>
@@ -25,11 +25,11 @@ struct MeasuredPart {
   std::string what;    // "head", "head rotation", "left elbow", "right elbow"
   std::string source;  // file
   double share = 0;    // of the judged time in which it was measured
-  // Median distance of the nominal posture from the measurement; not for a rotation [m].
+  // The median distance of the nominal posture from the measurement [m]. A rotation has none.
   std::optional<double> misfit;
 };
 
-// Not used in any score.
+// No score uses these signals.
 struct MeasuredSignal {
   std::string name, unit, source;
   double share = 0;            // of the judged time
@@ -59,10 +59,10 @@ void AddMisfit(std::span<const person::Posture> postures, MeasuredBody* measured
                std::vector<std::string>* warnings);
 inline constexpr double kMaxMisfit = 0.08;
 
-// "Measured were the hands, the head (98 % of the time), ...: the rest of the posture follows from
-// comfort."
+// Returns "Measured were the hands, the head (98 % of the time), ...: the rest of the posture
+// follows from comfort."
 std::string MeasuredSentence(const MeasuredBody& measured);
-// One sentence each.
+// Each of these functions returns one sentence.
 std::string Sentence(const UsedTrack& track);
 std::string Sentence(const MeasuredPart& part);
 std::string Sentence(const MeasuredSignal& signal);

@@ -39,9 +39,9 @@ enum MuscleValue : int {
 inline constexpr double kReserveLimit = 0.5;   // (design choice) [N·m]
 inline constexpr double kReserveShare = 0.05;  // (design choice)
 
-// Not a number if the arm holds no handle. If the upper arm is raised above 90°, the model of the
-// shoulder disagrees with measurements (Bergmann et al. 2011), so only the groups of elbow and
-// forearm have values.
+// The values are not a number if the arm holds no handle. If the upper arm is raised above 90°, the
+// model of the shoulder disagrees with measurements (Bergmann et al. 2011), so only the groups of
+// elbow and forearm have values.
 struct ArmMuscleUse {
   std::array<double, kMuscleValues> values;
   bool raised = false;

@@ -12,7 +12,7 @@ namespace {
 using person::InOpenSim;
 using person::kBodyJoints;
 
-// First sample and number of samples of the longest part without interruption.
+// Returns the first sample and the number of samples of the longest part without interruption.
 std::pair<std::size_t, std::size_t> LongestPart(std::span<const PersonSample> samples) {
   std::pair<std::size_t, std::size_t> longest = {0, 0};
   for (std::size_t begin = 0, end = 0; begin < samples.size(); begin = end) {

@@ -61,7 +61,7 @@ void AddCurve(const Assessment& a, const QuantityResult& q, int color, PlotPanel
 constexpr double kSmallestRange = 4;  // smallest range of a panel, in steps of the last digit that
                                       // tables show
 
-// The quantities of one group, with one panel for each unit and left-right pair.
+// Plots the quantities of one group, with one panel for each unit and left-right pair.
 Plot GroupPlot(const Assessment& a, const std::string& group, const std::string& id) {
   Plot plot;
   plot.id = id;
@@ -151,8 +151,8 @@ std::string QuantityTable(const Assessment& a) {
 
 std::string Percent(double share) { return Formatted("%.1f %%", 100 * share); }
 
-// A bar of a worksheet's scores; its segments are as wide as the scores' shares and have the colour
-// of the advised action.
+// Draws a bar of a worksheet's scores. Its segments are as wide as the scores' shares and have the
+// colour of the advised action.
 std::string ScoreBar(const WorksheetResult& w, const std::vector<double>& shares) {
   const int levels = w.kind->action(w.kind->most).level;
   std::string html = "<div class=\"shares\">";

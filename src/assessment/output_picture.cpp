@@ -20,7 +20,7 @@ struct View {
   Vector3 right, away;
   double left_edge, right_edge;  // [m]
 };
-// From the person's right side, and from the front.
+// The body is drawn from the person's right side, and from the front.
 const View kSide = {"from the side", Vector3::UnitX(), Vector3::UnitY(), -0.6, 0.95};
 const View kFront = {"from the front", Vector3::UnitY(), -Vector3::UnitX(), -0.72, 0.72};
 
@@ -37,7 +37,7 @@ constexpr double kThigh = 0.13, kShank = 0.09, kFoot = 0.06, kUpperArm = 0.085, 
 
 class Drawing {
  public:
-  // top: the person's height [m].
+  // `top` is the person's height [m].
   Drawing(const View& view, double height, double scale = kScale)
       : view_(view), top_(height + kAbove), scale_(scale) {}
 
@@ -54,7 +54,7 @@ class Drawing {
     Line(from, to, Formatted("class=\"rim\" stroke-width=\"%.1f\"", width + 2).c_str());
     Line(from, to, Formatted("stroke=\"%s\" stroke-width=\"%.1f\"", color.c_str(), width).c_str());
   }
-  // The same for a closed polygon.
+  // As above, for a closed polygon.
   void Block(const std::vector<Vector3>& corners, double breadth, const std::string& color) {
     std::string points;
     for (const Vector3& p : corners) Append(&points, "%.1f,%.1f ", X(p), Y(p));
@@ -177,7 +177,7 @@ void DrawThin(const Skeleton& s, Drawing* d) {
   }
 }
 
-// The forces of the hands on the handles, as arrows.
+// Draws the forces of the hands on the handles as arrows.
 void DrawForces(const BodyPicture& picture, Drawing* d) {
   constexpr double kLength = 0.3, kMinForce = 1;  // length of the largest force [m]; smallest force
                                                   // with an arrow [N]
@@ -194,7 +194,7 @@ void DrawForces(const BodyPicture& picture, Drawing* d) {
 
 std::string WholePercent(double share) { return Formatted("%.0f %%", 100 * share); }
 
-// Writes the loads beside the parts, seen from the front.
+// Writes the loads next to the parts, seen from the front.
 void DrawWords(const Assessment& a, const BodyPicture& picture, Drawing* d) {
   const auto beside = [&](const Vector3& from, const Vector3& to, std::size_t hand, double least) {
     const double sign = hand == 0 ? 1 : -1;  // the person's left is on the right

@@ -7,12 +7,12 @@
 
 namespace predictor::assessment {
 
-// Colour "#rrggbb" of a load: light green at 0, amber, dark red at 1 and above. The colours become
-// steadily darker, so that colour-blind people can distinguish them, too.
+// Returns the colour "#rrggbb" of a load: light green at 0, then amber, and dark red at 1 and
+// above. The colours become steadily darker, so that colour-blind people can distinguish them too.
 std::string LoadColor(double share);
 
-// The body at the worst moment from the side and from the front, its loads as a table, and small
-// pictures over the course of the run.
+// Shows the body at the worst time from the side and from the front, its loads as a table, and
+// small pictures over the course of the run.
 std::string PicturesHtml(const Assessment& a);
 
 }  // namespace predictor::assessment

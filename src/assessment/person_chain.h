@@ -21,9 +21,9 @@ namespace predictor::assessment {
 class NominalPerson {
  public:
   NominalPerson(const PersonSetup& setup, const WorkPattern& work);
-  // The posture of the next sample; the solver starts from the previous one.
+  // Returns the posture of the next sample. The solver starts from the previous one.
   person::Posture Solve(const PersonSample& sample);
-  // `motion`: smoothed motion of the sample's posture.
+  // `motion` is the smoothed motion of the sample's posture.
   Frame Judge(const FrameInput& input, const person::BodyMotion& motion, bool reached) const;
   const person::BodyModel& model() const { return solver_.model(); }
   const PersonSetup& setup() const { return setup_; }
@@ -36,9 +36,9 @@ class NominalPerson {
   std::optional<person::BodyVector> last_;
 };
 
-// The motions of the postures of an uninterrupted part. Trunk and head count as being at rest at
-// each time: the posture model assumes that they follow the hands immediately, but the resulting
-// acceleration was not observed.
+// Returns the motions of the postures of an uninterrupted part. Trunk and head count as being at
+// rest at each time. The posture model assumes that they follow the hands immediately, but the
+// resulting acceleration was not observed.
 std::vector<person::BodyMotion> MotionsOfPart(std::span<const person::BodyVector> postures);
 
 // The rate at which each hand's force changed before sample i, averaged over 0.1 s, so that noise
@@ -54,11 +54,11 @@ struct NominalChain {
 NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> samples,
                         const WorkPattern& work, const std::function<void(double)>& progress);
 
-// The frame of one possible person.
+// Returns the frame of one possible person.
 Frame FrameOfPerson(const person::SampledPosture& person, const FrameInput& input, Sex sex,
                     const WorkPattern& work);
 
-// Samples between two evaluations of all possible persons, which gives 5 Hz.
+// The number of samples between two evaluations of all possible persons, which gives 5 Hz.
 inline constexpr std::size_t kSampledStride = 20;
 
 // All possible persons at every `stride`-th sample: frames[time][person].

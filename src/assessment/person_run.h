@@ -21,8 +21,8 @@ PersonRun RunOf(const SampleCollector& ticks);
 // A row in which a hand is not measured or does not hold counts as not holding.
 PersonRun RunOf(const tracks::PersonFile& file);
 
-// What such a file says of person, place and grips. The type of the operator is `virtual` if it was
-// simulated, otherwise `imported`.
+// Converts the statements of such a file about person, place and grips. The type of the operator is
+// `virtual` if it was simulated, and otherwise `imported`.
 Scenario ScenarioOf(const tracks::PersonHeader& header, const tracks::BodyTrack& track);
 
 }  // namespace predictor::assessment

@@ -16,8 +16,8 @@ struct NotEvaluable {
   std::string what, why;
 };
 
-// What must be added to the scenario before a posture can be judged, as sentences that say what to
-// do. Empty if nothing is missing.
+// Returns what must be added to the scenario before a posture can be judged, as sentences that say
+// what to do. If nothing is missing, there are no sentences.
 std::vector<std::string> MissingForPosture(const Scenario& scenario);
 
 struct PersonSetup {
@@ -26,10 +26,10 @@ struct PersonSetup {
   std::array<person::Grip, kHands> grips;
 };
 
-// `handles`: X_WD at the start; the wrists are on the person's side of the handles. Throws
+// `handles` is X_WD at the start. The wrists are on the person's side of the handles. Throws
 // InputError if something is missing or no adult has such a body.
 PersonSetup SetupOf(const Scenario& scenario, const std::array<Pose, kHands>& handles);
-// `first`: a record with the initial places of the handles.
+// `first` is a record with the initial places of the handles.
 PersonSetup SetupOf(const Scenario& scenario, const TickRecord& first);
 
 }  // namespace predictor::assessment

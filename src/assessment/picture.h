@@ -19,8 +19,9 @@ struct PartKind {
 };
 const PartKind& KindOf(BodyPart part);
 
-// Loads as shares of a reference: for the compression of the lower back, kCompressionLimit; for the
-// torques of shoulder and elbow, the mean strength for the person's sex.
+// The loads as shares of a reference. For the compression of the lower back, this is
+// kCompressionLimit. For the torques of shoulder and elbow, it is the mean strength for the
+// person's sex.
 using PartLoads = std::array<double, kBodyParts>;
 PartLoads LoadsOf(const Frame& frame);
 
@@ -34,10 +35,10 @@ struct BodyPicture {
   std::array<std::optional<person::Interval>, kBodyParts> intervals;
 };
 
-// The sample with the highest load of any of these parts.
+// Returns the sample with the highest load of any of these parts.
 std::size_t WorstSample(const NominalChain& nominal);
 
-// The picture at one sample. `possible`: include all possible persons.
+// Returns the picture at one sample. `possible`: whether to include all possible persons.
 BodyPicture PictureAt(const PersonSetup& setup, std::span<const PersonSample> samples,
                       const NominalChain& nominal, std::size_t i, bool possible);
 

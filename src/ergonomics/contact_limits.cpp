@@ -37,7 +37,7 @@ std::vector<std::string> CellsOfLine(std::string_view line) {
   return cells;
 }
 
-// Parses the number in a cell; `least` is its smallest allowed value.
+// Parses the number in a cell. `least` is its smallest allowed value.
 double NumberIn(const std::string& cell, std::size_t column, double least, bool or_equal,
                 const std::string& place) {
   double x = 0;

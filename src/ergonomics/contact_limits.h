@@ -46,17 +46,18 @@ enum class ContactKind {
   kQuasiStatic,  // it is clamped, for example against a fixture
 };
 
-// Limits at this point; 0 if the point must not be hit.
+// These functions return the limits at this point, or 0 if the point must not be hit.
 double ForceLimit(const ContactLimit& limit, ContactKind kind);     // [N]
 double PressureLimit(const ContactLimit& limit, ContactKind kind);  // [Pa]
 
-// [kg] m_R = M/2 + m_L: half of the moving mass of the robot, plus its load including the object.
+// Returns m_R = M/2 + m_L [kg]: half of the moving mass of the robot, plus its load including the
+// object.
 double EffectiveRobotMass(double moving_mass, double load);
-// [kg] 1 / (1/m_H + 1/m_R). With a heavy load, it hardly depends on the robot.
+// Returns 1 / (1/m_H + 1/m_R) [kg]. With a heavy load, it hardly depends on the robot.
 double ReducedMass(double body_mass, double robot_mass);
 
-// A transient or clamping contact. `area`: of the contact [m²]; 0: unknown, so only the force
-// counts.
+// A transient or clamping contact. `area` is that of the contact [m²]. If it is 0, it is unknown,
+// and only the force counts.
 struct Contact {
   ContactKind kind = ContactKind::kTransient;
   double robot_mass = 0;  // [kg] effective

@@ -11,8 +11,8 @@ namespace {
 constexpr double kArmWeight = 8.6 * kPoundForce;                 // [N]
 constexpr double kShoulderStrength = 681 * kInch * kPoundForce;  // [N·m]
 
-// Damage per cycle of a tendon at `stress`, in % of its ultimate stress (Schechtman & Bader 1997;
-// verified in a public copy).
+// Returns the damage per cycle of a tendon at `stress`, in % of its ultimate stress (Schechtman &
+// Bader 1997; verified in a public copy).
 double TendonDamage(double stress) { return std::pow(10, (stress - 101.25) / 14.83); }
 
 }  // namespace

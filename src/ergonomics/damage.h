@@ -27,46 +27,46 @@ namespace predictor::ergonomics {
 struct DamageRisk {
   double constant = 0, slope = 0;
   double Probability(double daily_damage) const;  // 0 … 1; 0 without damage
-  // The inverse: the daily damage with this probability, 0 < probability < 1.
+  // Inverts the above: returns the daily damage with this probability, 0 < probability < 1.
   double DailyDamage(double probability) const;
 };
 
 // ---- Back: LiFFT (Gallagher et al. 2017, as printed by Zelik et al. 2022; verified) ----
 // Outcome: a job with at least 12 low back injuries per 200 000 h.
 inline constexpr DamageRisk kLiftRisk = {1.72, 1.03};
-// `load_moment` [N·m]: moment of the handled load alone about the lower back, that is, load times
-// its horizontal distance, without the weight of the trunk. Interpret results above 100 N·m with
-// care.
+// `load_moment` [N·m] is the moment of the handled load alone about the lower back, that is, load
+// times its horizontal distance, without the weight of the trunk. Interpret results above 100 N·m
+// with care.
 double LiftDamage(double load_moment);
 
 // ---- Hand and forearm: DUET (Gallagher et al. 2018; verified against its table and examples) ----
 // Outcome: injury, or pain in the last year.
 inline constexpr DamageRisk kHandRisk = {0.573, 0.747};
-// `effort`: 0 … 10 on the OMNI-RES scale (0 extremely easy, 10 extremely hard).
+// `effort` is 0 … 10 on the OMNI-RES scale (0 extremely easy, 10 extremely hard).
 double HandDamage(double effort);
 
 // ---- Shoulder Tool (Bani Hani et al. 2021; verified against published examples) ----
 // Outcome: first visit to the plant's clinic because of the shoulder.
 inline constexpr DamageRisk kShoulderRisk = {0.870, 0.932};
-// `moment` [N·m]: of the shoulder. 76.9 N·m (681 in·lb) is the strength of the median man.
+// `moment` [N·m] is that of the shoulder. 76.9 N·m (681 in·lb) is the strength of the median man.
 double ShoulderDamage(double moment);
-// [N·m] Moment due to holding `force` [N] with one hand at the horizontal distance `lever` [m] from
-// the shoulder, with an arm of 8.6 lb at half the distance. For pushes and pulls, use force ·
-// lever.
+// Returns the moment [N·m] due to holding `force` [N] with one hand at the horizontal distance
+// `lever` [m] from the shoulder, with an arm of 8.6 lb at half the distance. For pushes and pulls,
+// use force · lever.
 double ShoulderMoment(double force, double lever);
 
 // ---- A run, and a shift ----
 
-// The damage of a run: the sum over its rainflow cycles. A cycle counts with its range, so a
-// constant moment, or the mean of a cycle, causes no damage (design choice: the tools only consider
-// loads that begin and end at zero).
+// Returns the damage of a run, which is the sum over its rainflow cycles. A cycle counts with its
+// range, so a constant moment, or the mean of a cycle, causes no damage (design choice: the tools
+// only consider loads that begin and end at zero).
 double DamageOf(std::span<const LoadCycle> cycles, double (*damage_per_cycle)(double));
 
 // The reference day (design choice): the day whose damage has a probability of one half on the
 // tool's own curve. A lift that causes 0.1 % of this damage may be done 1000 times before the job
 // is as likely as not to be one with the outcome.
 inline constexpr double kReferenceProbability = 0.5;
-// `damage` as a share of the reference day: 0.001 is 0.1 %.
+// Returns `damage` as a share of the reference day. 0.001 is 0.1 %.
 double ShareOfReferenceDay(double damage, const DamageRisk& risk);
 
 // The damage of a shift in which the run is repeated without a break. Both durations are above 0.

@@ -1,8 +1,8 @@
 // Models of muscle fatigue by joint. All of them take the load as a share of strength, u = torque /
-// strength in that direction, 0 … 1, and have no memory beyond their state. No allocation.
+// strength in that direction, 0 … 1. They have no memory beyond their state and do not allocate.
 //
-// Not for: a person's own endurance without a trial (people differ by a factor of two or more),
-// eccentric or fast movement, or pain.
+// They are not for a person's own endurance without a trial (people differ by a factor of two or
+// more), for eccentric or fast movement, or for pain.
 #pragma once
 
 #include <string_view>
@@ -12,7 +12,7 @@ namespace predictor::ergonomics {
 enum class FatigueJoint { kAnkle, kKnee, kTrunk, kShoulder, kElbow, kGrip, kGeneral };
 inline constexpr int kFatigueJoints = 7;
 
-// "shoulder", …
+// Returns "shoulder", …
 std::string_view NameOf(FatigueJoint joint);
 
 // ---- Three compartments with rest recovery, 3CC-r (Xia & Frey-Law 2008; Looft et al. 2018) ----
@@ -24,57 +24,60 @@ struct FatigueRates {
   double rest_multiplier = 1;  // r: the recovery rate is r R while the load is 0
 };
 
-// F and R: Frey-Law, Looft & Heitsman 2012 (verified in MyoSuite's test; the extremes also in the
-// paper's abstract). r = 15: Looft & Frey-Law 2020 for the shoulder (verified), used for the other
-// joints as well (design choice), except 30 for the grip (recalled, not re-checked).
+// F and R are from Frey-Law, Looft & Heitsman 2012 (verified in MyoSuite's test; the extremes also
+// in the paper's abstract). r = 15 is from Looft & Frey-Law 2020 for the shoulder (verified) and is
+// used for the other joints as well (design choice), except for 30 for the grip (quoted from
+// memory, not verified).
 FatigueRates FatigueRatesOf(FatigueJoint joint);
 
 // Shares of the muscle; their sum is 1.
 struct Compartments {
   double active = 0, resting = 1, fatigued = 0;
-  // The remaining strength, as a share of full strength.
+  // Returns the remaining strength, as a share of full strength.
   double capacity() const { return active + resting; }
 };
 
-// The state after `dt` [s] at constant load 0 … 1. Uses Runge-Kutta steps of at most 0.05 s, which
-// are stable for the development rate of 10 1/s.
+// Returns the state after `dt` [s] at constant load 0 … 1. Uses Runge-Kutta steps of at most 0.05
+// s, which are stable for the development rate of 10 1/s.
 Compartments Fatigued(const Compartments& state, double load, double dt, const FatigueRates& rates);
 
-// The same in closed form, for an initially rested person who holds a load from the start: the
-// fatigued share after `time` [s], valid until the endurance time.
+// Computes the same in closed form, for an initially rested person who holds a load from the start.
+// Returns the fatigued share after `time` [s], which is valid until the endurance time.
 double FatiguedShareUnderConstantLoad(double load, double time, const FatigueRates& rates);
 
-// [s] The time for which a rested person can hold the load in this model; infinite if there is no
-// limit.
+// Returns the time [s] for which a rested person can hold the load in this model, or infinity if
+// there is no limit.
 double EnduranceTime(double load, const FatigueRates& rates);
 
 // ---- Endurance from experiments ----
 
-// [s] Power law b0 · load^b1 of Frey-Law & Avin 2010 (194 publications; coefficients verified in
-// MyoSuite's test). Infinite at 0.
+// Returns the power law b0 · load^b1 [s] of Frey-Law & Avin 2010 (194 publications; coefficients
+// verified in MyoSuite's test), which is infinite at 0.
 double MeasuredEnduranceTime(double load, FatigueJoint joint);
 
-// [s] Rohmert 1960, for 0.15 < load ≤ 1; infinite below (recalled, not re-checked).
+// Returns the time [s] of Rohmert 1960 for 0.15 < load ≤ 1, or infinity below (quoted from memory,
+// not verified).
 double RohmertEnduranceTime(double load);
 
 // ---- One state: Ma et al. 2009 ----
 
 struct CapacityRates {
-  // k [1/s]: 1 per minute (recalled). In the elbows of 30 people, a later study found a mean of
-  // 0.96 and a standard deviation of 0.29 per minute (Ergonomics 61, 806, abstract; verified).
+  // k [1/s] is 1 per minute (quoted from memory). In the elbows of 30 people, a later study found a
+  // mean of 0.96 and a standard deviation of 0.29 per minute (Ergonomics 61, 806, abstract;
+  // verified).
   double fatigue = 1.0 / 60;
   double recovery = 2.4 / 60;  // [1/s] 2.4 per minute (recalled, not re-checked)
 };
-// The remaining share of strength after `dt` [s] at constant load. Exact for any dt: under load it
-// is c exp(−k load dt); at rest it returns to 1 exponentially (form verified).
+// Returns the remaining share of strength after `dt` [s] at constant load. It is exact for any dt:
+// under load it is c exp(−k load dt), and at rest it returns to 1 exponentially (form verified).
 double Capacity(double capacity, double load, double dt, const CapacityRates& rates = {});
-// [s] −ln(load) / (k load).
+// Returns −ln(load) / (k load) [s].
 double CapacityEnduranceTime(double load, const CapacityRates& rates = {});
 
 // ---- One state: Peternel et al. 2018 ----
 
-// Parameters from one trial in which a reference load was held until exhaustion (form and constants
-// recalled, not re-checked).
+// The parameters from one trial in which a reference load was held until exhaustion (form and
+// constants quoted from memory, not verified).
 struct TrialFatigue {
   double reference_load = 0.5;  // 0 … 1
   double reference_time = 60;   // [s]
@@ -82,7 +85,7 @@ struct TrialFatigue {
   double recovery = 0.5;        // R, as a share of the reference effort
   double Effort() const;        // C [s]: −load · time / ln(1 − 0.993)
 };
-// The fatigue 0 … 1 after `dt` [s] at constant load. Exact for any dt.
+// Returns the fatigue 0 … 1 after `dt` [s] at constant load, which is exact for any dt.
 double TrialFatigueAfter(double fatigue, double load, double dt, const TrialFatigue& trial);
 
 }  // namespace predictor::ergonomics

@@ -15,20 +15,20 @@ constexpr int Cell(std::string_view row, int column) {
   return cell >= 'A' ? cell - 'A' + 10 : cell - '0';
 }
 
-// 1 … 4: within 20° of hanging; up to 45°, or stretched backwards; up to 90°; above.
+// Returns 1 within 20° of hanging, 2 up to 45° or stretched backwards, 3 up to 90°, and 4 above.
 inline int UpperArmFlexionScore(double flexion) {
   if (flexion > Degrees(90)) return 4;
   if (flexion > Degrees(45)) return 3;
   return std::abs(flexion) > Degrees(20) ? 2 : 1;
 }
 
-// 1 between 60° and 100°, otherwise 2.
+// Returns 1 between 60° and 100°, and otherwise 2.
 inline int ElbowScore(double flexion) {
   return flexion >= Degrees(60) && flexion <= Degrees(100) ? 1 : 2;
 }
 
-// 1 upright; 2 up to 20° either way; 3 up to 60°, or bent backwards by more than 20°; 4 above.
-// RULA's worksheet has no extension; it is scored as in REBA (design choice).
+// Returns 1 upright, 2 up to 20° either way, 3 up to 60° or bent backwards by more than 20°, and 4
+// above. RULA's worksheet has no extension, which is scored as in REBA (design choice).
 inline int TrunkFlexionScore(double flexion, const PostureThresholds& thresholds) {
   if (std::abs(flexion) <= thresholds.neutral) return 1;
   if (flexion > Degrees(60)) return 4;

@@ -14,7 +14,7 @@ constexpr double kMaxStudiedFrequency = 20;         // [1/min]
 constexpr double kMinStudiedTravel = 0.25;          // [m]
 constexpr double kMinStudiedDistance = 2.1;         // [m]
 
-// A factor: constant + x / linear + x² / square. A divisor of 0 stands for an absent term.
+// A factor: constant + x / linear + x² / square. A divisor of 0 means that the term is absent.
 struct Factor {
   double constant, linear, square = 0;
   double At(double x) const { return constant + x / linear + (square == 0 ? 0 : x * x / square); }
@@ -57,7 +57,7 @@ double LogRate(double frequency, bool* outside) {
   return std::log(Limited(frequency, kMinStudiedFrequency, kMaxStudiedFrequency, outside));
 }
 
-// Lift and lower differ in the reference, the variation and the men's frequency factor.
+// Lifting and lowering differ in the reference, the variation and the men's frequency factor.
 Acceptable Vertical(const VerticalHandling& task, Sex sex, double reference, double variation,
                     const Factor& rate) {
   const bool male = sex == Sex::kMale;
@@ -93,7 +93,7 @@ Acceptable Horizontal(const HorizontalHandling& task, const HorizontalEquation& 
   return a;
 }
 
-// Push and pull of women differ only in the variation.
+// Pushing and pulling by women differ only in the variation.
 HorizontalEquation ForceEquation(bool push, ForcePhase phase, Sex sex) {
   const bool initial = phase == ForcePhase::kInitial;
   if (sex == Sex::kFemale) {

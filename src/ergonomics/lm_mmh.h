@@ -20,10 +20,10 @@ struct Acceptable {
   double variation = 0;  // standard deviation / mean
   bool outside = false;  // an input was outside the range of the study and was limited to it
 
-  // The load that this share of people accepts, at least 0. ForShare(0.75) is the usual design
-  // limit.
+  // Returns the load that this share of people accepts, at least 0. ForShare(0.75) is the usual
+  // design limit.
   double ForShare(double share) const;
-  // The share of people, 0 … 1, who accept this load.
+  // Returns the share of people, 0 … 1, who accept this load.
   double ShareThatAccepts(double load) const;
 };
 

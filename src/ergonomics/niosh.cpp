@@ -77,7 +77,7 @@ RatedTask Rate(const LiftTask& task) {
           Ratio(task.mean_load, lift.limit)};
 }
 
-// The lowest multiplier of these tasks at the sum of their frequencies.
+// Returns the lowest multiplier of these tasks at the sum of their frequencies.
 double CombinedMultiplier(std::span<const RatedTask> tasks) {
   double frequency = 0, lowest = 1;
   for (const RatedTask& rated : tasks) frequency += rated.task->frequency;

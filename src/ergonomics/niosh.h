@@ -1,14 +1,14 @@
 // The revised NIOSH lifting equation: recommended weight limit, lifting index and composite lifting
 // index of manual lifts with two hands.
 //
-// Source: Waters, Putz-Anderson & Garg, Applications Manual for the Revised NIOSH Lifting Equation,
-// publication 94-110 (1994, revised 2021; public domain). Formulas, limits and the whole frequency
-// table are verified. Metric form only: the manual's form in inches and pounds gives slightly
-// different limits for the same lift.
+// The source is Waters, Putz-Anderson & Garg, Applications Manual for the Revised NIOSH Lifting
+// Equation, publication 94-110 (1994, revised 2021; public domain). Formulas, limits and the whole
+// frequency table are verified. Only the metric form is implemented. The manual's form in inches
+// and pounds gives slightly different limits for the same lift.
 //
-// Not for: one hand, sitting, kneeling, carrying, pushing, unstable loads, motion faster than about
-// 0.75 m/s, slippery floors, heat, or more than 8 h. It is defined for lifts "without mechanical
-// assistance"; see AssistedLift.
+// The equation is not for one hand, sitting, kneeling, carrying, pushing, unstable loads, motion
+// faster than about 0.75 m/s, slippery floors, heat, or more than 8 h. It is defined for lifts
+// "without mechanical assistance"; see AssistedLift.
 #pragma once
 
 #include <span>
@@ -50,7 +50,7 @@ struct LiftTask {
 // and that no load is recommended.
 struct LiftMultipliers {
   double horizontal = 0, vertical = 0, distance = 0, asymmetry = 0, frequency = 0, coupling = 0;
-  // [kg] The limit for a single lift, without the frequency.
+  // Returns the limit for a single lift, without the frequency [kg].
   double FrequencyIndependentLimit() const {
     return kLoadConstant * horizontal * vertical * distance * asymmetry * coupling;
   }
@@ -64,17 +64,17 @@ struct LiftAssessment {
   bool by_destination = false;  // the destination determines the limit
 };
 
-// No allocation.
+// This does not allocate.
 LiftAssessment AssessLift(const LiftTask& task);
 
-// The manual's table 5. The height is that at the origin, also for the limit at the destination.
-// Linear between the rows; 0 above the last row that is not 0 (the manual does not say how to
-// interpolate towards a 0). Frequencies below 0.2 count as 0.2.
+// Returns a value of the manual's table 5. The height is that at the origin, even for the limit at
+// the destination. It is linear between the rows, and 0 above the last row that is not 0 (the
+// manual does not say how to interpolate towards a 0). Frequencies below 0.2 count as 0.2.
 double FrequencyMultiplier(double per_minute, LiftDuration duration, double height_at_origin);
 
-// CLI of a job with several tasks. The frequencies of the tasks add up; for the sum, the lowest
-// multiplier among the heights and durations of these tasks is used (the manual does not specify
-// this; design choice). Infinite if a limit is 0, and 0 without tasks.
+// Returns the CLI of a job with several tasks. The frequencies of the tasks add up. For the sum,
+// the lowest multiplier among the heights and durations of these tasks is used (the manual does not
+// specify this; design choice). It is infinite if a limit is 0, and 0 without tasks.
 double CompositeLiftingIndex(std::span<const LiftTask> tasks);
 
 // A lift that a cobot assists. NIOSH's equation assumes that the person carries the whole load. The
@@ -86,7 +86,7 @@ struct AssistedLift {
   static constexpr const char* kCarriedLabel = "adapted, not NIOSH";
 };
 
-// `whole` describes the lift without help; mean_vertical_force [N] is the vertical force that both
+// `whole` describes the lift without help. mean_vertical_force [N] is the vertical force that both
 // hands exert on the load, averaged over the lift, positive upwards.
 AssistedLift AssessAssistedLift(const LiftTask& whole, double mean_vertical_force);
 

@@ -34,13 +34,14 @@ struct OwasScore {
   Action action;           // level = category
 };
 
-// The action for a category of 1 … 4.
+// Returns the action for a category of 1 … 4.
 Action OwasAction(int category);
 
 OwasScore AssessOwas(OwasBack back, OwasArms arms, OwasLegs legs, OwasLoad load);
 
-// The classes of a measured posture. Kneeling and walking cannot be detected from it: pass them to
-// the function above. A knee counts as bent beyond 30° (design choice). No allocation.
+// Returns the classes of a measured posture. Kneeling and walking cannot be detected from it, so
+// pass them to the function above. A knee counts as bent beyond 30° (design choice). Does not
+// allocate.
 OwasScore AssessOwas(const BodyPosture& body, const ArmPosture& left, const ArmPosture& right,
                      double load,  // [kg]
                      const PostureThresholds& thresholds = kDeclaredThresholds);

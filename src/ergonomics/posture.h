@@ -1,8 +1,8 @@
-// What RULA, REBA and OWAS assess: a person's posture and exertion.
+// RULA, REBA and OWAS assess this: a person's posture and exertion.
 //
-// All angles are in radians and finite; the assessments do not check this. Signs give the direction
-// in which a joint bends, as stated for each member; side bend and twist count equally in both
-// directions.
+// All angles are in radians and finite, which the assessments do not check. Signs give the
+// direction in which a joint bends, as stated for each member. Side bend and twist count equally in
+// both directions.
 #pragma once
 
 #include <numbers>
@@ -53,8 +53,8 @@ struct Exertion {
 };
 
 // The worksheets were made for observers who see "neutral", "twisted" or "abducted". A measured
-// angle is never exactly zero, so these limits are needed. They are a design choice: no source
-// gives them, and a report must state them beside its scores.
+// angle is never exactly zero, so these limits are needed. They are a design choice, because no
+// source gives them. A report must state them with its scores.
 struct PostureThresholds {
   double neutral = Degrees(5);             // |wrist| flexion, trunk upright, neck not in extension
   double side_or_twist = Degrees(10);      // of neck, trunk; deviation of the wrist

@@ -6,7 +6,8 @@
 namespace predictor::ergonomics {
 namespace {
 
-// The first sample, all peaks and valleys, and the last sample. Equal neighbours count once.
+// Returns the first sample, all peaks and valleys, and the last sample. Equal neighbours count
+// once.
 std::vector<double> Reversals(std::span<const double> signal) {
   std::vector<double> points;
   for (const double x : signal) {

@@ -14,8 +14,9 @@ struct LoadCycle {
   double count = 1;  // 1, or 0.5 for a half cycle at the beginning or end of the signal
 };
 
-// The cycles in the order in which they close. A cycle with a range below `min_range` (in the
-// signal's unit) does not count; otherwise, noise alone would add a cycle for each pair of samples.
+// Returns the cycles in the order in which they close. A cycle with a range below `min_range` (in
+// the signal's unit) does not count. Otherwise noise alone would add a cycle for each pair of
+// samples.
 std::vector<LoadCycle> CountRainflow(std::span<const double> signal, double min_range = 0);
 
 }  // namespace predictor::ergonomics

@@ -35,17 +35,17 @@ struct RebaScores {
   Action action;     // level 1 … 5
 };
 
-// The scores of the posture with this arm. No allocation. A person's score is the worse of the two
-// arms' scores.
+// Returns the scores of the posture with this arm. A person's score is the worse of the two arms'
+// scores. Does not allocate.
 RebaScores AssessReba(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion,
                       const PostureThresholds& thresholds = kDeclaredThresholds);
 
-// The printed tables, for values within their axes.
+// These functions return the printed tables, for values within their axes.
 int RebaTableA(int neck, int trunk, int legs);
 int RebaTableB(int upper_arm, int lower_arm, int wrist);
 int RebaTableC(int score_a, int score_b);
 
-// The action for a REBA score of 1 … 15.
+// Returns the action for a REBA score of 1 … 15.
 Action RebaAction(int reba);
 
 }  // namespace predictor::ergonomics

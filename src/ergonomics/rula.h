@@ -1,14 +1,15 @@
 // RULA, Rapid Upper Limb Assessment (McAtamney & Corlett 1993), for one arm.
 //
-// Sources: the tables agree cell by cell with public copies (tested) and with our recollection, and
-// increase monotonically with every score (verified). Some copies differ in one cell of table A. An
-// older worksheet that is also in circulation prints smaller values in some cells of table A, and
-// limits of 15° for the upper arm. The force score follows the text of the paper (verified in a
-// stored copy): a common worksheet assigns 3 instead of 2 to an intermittent load above 10 kg.
-// "Static" means one minute, as in the paper; a common worksheet says ten. Thresholds of measured
-// angles are a design choice (posture.h).
+// The tables agree cell by cell with public copies (tested) and with our recollection, and increase
+// monotonically with every score (verified). Some copies differ in one cell of table A. An older
+// worksheet that is also in circulation prints smaller values in some cells of table A, and limits
+// of 15° for the upper arm. The force score follows the text of the paper (verified in a stored
+// copy), while a common worksheet assigns 3 instead of 2 to an intermittent load above 10 kg.
+// "Static" means one minute, as in the paper, while a common worksheet says ten. Thresholds of
+// measured angles are a design choice (posture.h).
 //
-// Not for: the risk of a person, loads that differ within a posture, or the trend over a shift.
+// RULA is not for the risk of a person, for loads that differ within a posture, or for the trend
+// over a shift.
 #pragma once
 
 #include "ergonomics/posture.h"
@@ -37,18 +38,18 @@ struct RulaScores {
   Action action;  // level 1 … 4
 };
 
-// The scores of the posture with this arm. No allocation. A person's score is the worse of the two
-// arms' scores.
+// Returns the scores of the posture with this arm. A person's score is the worse of the two arms'
+// scores. Does not allocate.
 RulaScores AssessRula(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion,
                       const PostureThresholds& thresholds = kDeclaredThresholds);
 
-// The printed tables, for values within their axes.
+// These functions return the printed tables, for values within their axes.
 int RulaTableA(int upper_arm, int lower_arm, int wrist, int wrist_twist);
 int RulaTableB(int neck, int trunk, int legs);
 // Larger values count as the last row (8) or column (7).
 int RulaTableC(int wrist_and_arm, int neck_trunk_legs);
 
-// The action for a grand score of 1 … 7.
+// Returns the action for a grand score of 1 … 7.
 Action RulaAction(int grand);
 
 }  // namespace predictor::ergonomics

@@ -1,11 +1,12 @@
 // The joint strengths of a population, and the share of it that can exert a torque.
 //
-// Source: mean strengths of elbow and shoulder by joint angle after Stobbe, in Chaffin & Andersson,
-// Occupational Biomechanics. Recalled, not re-checked: no public copy of the equations was found.
-// The elbow flexion at 90° agrees with the book's table of means (men 77, women 41 N·m; recalled).
-// Static, isometric exertions of US industrial workers.
+// The source is the mean strengths of elbow and shoulder by joint angle after Stobbe, in Chaffin &
+// Andersson, Occupational Biomechanics. They are quoted from memory and were not verified, because
+// no public copy of the equations was found. The elbow flexion at 90° agrees with the book's table
+// of means (men 77, women 41 N·m; quoted from memory). They apply to static, isometric exertions of
+// US industrial workers.
 //
-// Not for: a particular person, fast movement, other joints, or the grip of the hand.
+// They are not for a particular person, fast movement, other joints, or the grip of the hand.
 #pragma once
 
 #include <array>
@@ -23,26 +24,28 @@ enum class StrengthDirection {
 };
 inline constexpr int kStrengthDirections = 4;
 
-// Standard deviation / mean, the same for all joints (recalled).
+// The standard deviation divided by the mean, which is the same for all joints (quoted from
+// memory).
 inline constexpr double kStrengthVariation = 0.3;
-// Correlation between the strengths of two joints of a person (recalled, about 0.7).
+// The correlation between the strengths of two joints of a person (quoted from memory, about 0.7).
 inline constexpr double kStrengthCorrelation = 0.7;
 // No sampled person is weaker than this share of the mean: with a normal distribution, one person
 // in 2000 would have a negative strength (design choice).
 inline constexpr double kMinStrengthShare = 0.1;
 
-// [N·m] Mean strength of one arm, at least 0. `elbow` [rad]: included angle, π is straight.
-// `shoulder` [rad]: angle between trunk and upper arm, 0 hangs, positive forward.
+// Returns the mean strength of one arm, at least 0 [N·m]. `elbow` [rad] is the included angle, with
+// π for a straight arm. `shoulder` [rad] is the angle between trunk and upper arm, 0 when hanging
+// and positive forward.
 double MeanStrength(StrengthDirection direction, Sex sex, double elbow, double shoulder);
 
-// Share of the population, 0 … 1, whose strength is at least this torque [N·m].
+// Returns the share of the population, 0 … 1, whose strength is at least this torque [N·m].
 double ShareCapable(double torque, double mean_strength);
 
 // A person's strength as a multiple of the mean, by direction.
 using StrengthShares = std::array<double, kStrengthDirections>;
 
-// Samples a person's strength: normal, with the variation and correlation above. Draws one number
-// more than there are directions. No allocation.
+// Samples a person's strength from a normal distribution with the variation and correlation above.
+// Draws one number more than there are directions. Does not allocate.
 StrengthShares SampleStrength(RandomStream* random);
 
 }  // namespace predictor::ergonomics

@@ -23,8 +23,8 @@ class HandExposure {
   explicit HandExposure(const Scenario& scenario);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // The results so far: first those of each existing hand, then those of both hands. The meaning of
-  // each result states its filter and rate.
+  // Returns the results so far: first those of each existing hand, then those of both hands. The
+  // meaning of each result states its filter and rate.
   std::vector<Result> results() const;
 
  private:

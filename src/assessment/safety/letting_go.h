@@ -43,10 +43,10 @@ class SceneMotion {
   bool empty() const { return !any_; }
   const Sample& fastest() const { return fastest_; }
   const Sample& highest() const { return highest_; }  // of the object
-  // The moments of greatest speed after each release by a simulated operator's hand, until the
-  // hands hold again.
+  // Returns the times of greatest speed after each release by a simulated operator's hand, until
+  // the hands hold again.
   const std::vector<Sample>& releases() const { return releases_; }
-  // The smallest upward force of a hand while it held [N]; infinite if it never held.
+  // Returns the smallest upward force of a hand while it held [N], or infinity if it never held.
   double min_lift(int hand) const { return min_lift_[static_cast<std::size_t>(hand)]; }
 
  private:
@@ -99,8 +99,8 @@ struct UnintendedContact {
   double speed = 0;                  // largest speed in the run [m/s]
   double time = 0;                   // run time of that speed [s]
   std::vector<RegionCheck> regions;  // transient contact, each region once
-  // Largest force with which the cobot can clamp a part of the body; empty if the scenario sets no
-  // bound.
+  // The largest force with which the cobot can clamp a part of the body, or no value if the
+  // scenario sets no bound.
   std::optional<double> clamping_force;  // [N]
   std::vector<RegionCheck> clamped;      // `share`: clamping force / quasi-static limit
 };

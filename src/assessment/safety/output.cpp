@@ -105,7 +105,7 @@ Json ToJson(const RigLimit& limit) {
           {"censored", limit.censored()}};
 }
 
-// Meaning of a key, which is the same wherever the key occurs.
+// Returns the meaning of a key, which is the same wherever the key occurs.
 std::string MeaningOf(const std::string& key) {
   static const std::map<std::string, std::string> kMeanings = {
       {"unit", "SI unit"},
@@ -148,7 +148,7 @@ std::string MeaningOf(const std::string& key) {
   return kMeanings.at(key);
 }
 
-// Type and meaning of each value in an example.
+// Returns the type and the meaning of each value in an example.
 Json TypesOf(const Json& example) {
   Json properties = Json::object();
   for (const auto& [key, value] : example.items()) {

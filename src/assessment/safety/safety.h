@@ -23,8 +23,8 @@ class SafetyCollector {
   const StopWindows& stops() const { return stops_; }
   const SceneMotion& scene() const { return scene_; }
 
-  // Largest values of both hands in RUN: force [N] and torque [N·m], and the speeds of the virtual
-  // handles [m/s], [rad/s].
+  // The largest values of both hands in RUN: force [N] and torque [N·m], and the speeds of the
+  // virtual handles [m/s], [rad/s].
   struct Largest {
     double force = 0, torque = 0, speed = 0, rotation_speed = 0;
   };

@@ -23,7 +23,7 @@ std::string LabelOf(int joint) {
   return label;
 }
 
-// Largest magnitude of the joint's torque, and of its change, since the decision.
+// The largest magnitude of the joint's torque, and of its change, since the decision.
 struct Peaks {
   double torque = 0, change = 0;
 };

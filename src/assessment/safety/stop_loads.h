@@ -16,8 +16,8 @@ namespace predictor::assessment {
 
 // A stop, and the samples from kBefore before its decision until kAfter after the arms come to
 // rest. Hands that held a handle when the stop was decided count as still holding it, because a
-// person cannot let go that quickly. (The simulated operator lets go: the force then fades, but the
-// posture stays.)
+// person cannot let go that quickly. The simulated operator lets go: the force then fades, but the
+// posture stays.
 struct StopWindow {
   StopSummary stop;
   std::vector<PersonSample> samples;  // at kSampleRate
@@ -35,7 +35,7 @@ class StopWindows {
   explicit StopWindows(const Scenario& scenario);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // All stops so far; their windows are complete or end with the run.
+  // Returns all stops so far. Their windows are complete or end with the run.
   std::vector<StopWindow> windows() const;
 
  private:

@@ -21,14 +21,14 @@ std::string PercentText(double share) {
   return std::isfinite(share) ? Formatted("%.0f %%", 100 * share) : "must not be hit";
 }
 
-// The hand that the result belongs to, from its path ("hands.left.…"); −1 for neither.
+// Returns the hand to which the result belongs, from its path ("hands.left.…"), or −1 for neither.
 int HandOf(const Result& result) {
   for (int hand = 0; hand < kHands; ++hand)
     if (result.path.find(std::string(".") + HandName(hand) + ".") != std::string::npos) return hand;
   return -1;
 }
 
-// "largest index of the left hand" without the hand.
+// Returns "largest index of the left hand", for example, without the hand.
 std::string LabelOf(const Result& result, int hand) {
   std::string label = result.group == "Oscillation" ? "oscillation, " + result.label : result.label;
   const std::string end = std::string(" of the ") + HandName(hand) + " hand";
@@ -36,7 +36,7 @@ std::string LabelOf(const Result& result, int hand) {
   return WithUnit(label, result.unit);
 }
 
-// The results of each hand side by side, then those of the whole run.
+// Returns the results of each hand side by side, followed by those of the whole run.
 SafetyTable HandTable(const std::vector<Result>& results) {
   SafetyTable table{.title = "What the hands felt", .origin = "measured"};
   table.rows.push_back({"", "left", "right", "how it was computed"});
