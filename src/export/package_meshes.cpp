@@ -50,7 +50,7 @@ std::string Trim(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
-// COLLADA: image file names are in <init_from> (version 1.4) or in its <ref> (version 1.5).
+// In COLLADA, image file names are in <init_from> (version 1.4) or in its <ref> (version 1.5).
 std::string RewriteCollada(const std::string& text, const Rename& rename) {
   std::string out;
   std::size_t at = 0;
@@ -71,8 +71,8 @@ std::string RewriteCollada(const std::string& text, const Rename& rename) {
   return out.append(text, std::min(at, text.size()));
 }
 
-// The file name at the end of a line of an OBJ file or of its material library; "" if there is
-// none.
+// Returns the file name at the end of a line of an OBJ file or of its material library, or "" if
+// there is none.
 std::string FileOfLine(const std::string& line, bool is_library) {
   std::istringstream words(line);
   std::string word;
@@ -146,7 +146,7 @@ std::string PackageMeshes::AddReferring(const fs::path& file, const std::string&
   return name;
 }
 
-// A file that cannot be copied only causes a wrong colour, so the scene is exported anyway.
+// A file that cannot be copied only causes a wrong colour, so the scene is exported nevertheless.
 std::string PackageMeshes::AddReferred(const std::string& uri, const fs::path& by) {
   try {
     const fs::path file = ResolveModelPath(uri, by.parent_path(), scenario_folder_);

@@ -17,7 +17,7 @@ namespace predictor::scene_export {
 // file name without its extension.
 class PackageMeshes {
  public:
-  // `scenario_folder`: the scenario's folder. Textures must be in a place that the scenario may
+  // `scenario_folder` is the scenario's folder. Textures must be in a place that the scenario may
   // read (scenario/paths.h).
   explicit PackageMeshes(std::filesystem::path scenario_folder)
       : scenario_folder_(std::move(scenario_folder)) {}
@@ -27,7 +27,7 @@ class PackageMeshes {
   // added too. Throws InputError if URDF-Importer does not read the format or if the file cannot be
   // read.
   std::string Add(const ModelShape& shape, const std::string& role);
-  // The same for a texture that a URDF refers to.
+  // As above, for a texture that a URDF refers to.
   std::string AddTexture(const std::filesystem::path& file);
 
   const std::map<std::string, PackageFile>& files() const { return files_; }

@@ -34,8 +34,9 @@ std::string Text(const std::array<double, 4>& x) {
   return Text(x[0]) + " " + Text(x[1]) + " " + Text(x[2]) + " " + Text(x[3]);
 }
 
-// Roll, pitch and yaw [rad]. Roll is computed last, from the rotation that remains after yaw. The
-// three angles are therefore consistent at a vertical pitch, where roll and yaw are not unique.
+// Returns roll, pitch and yaw [rad]. Roll is computed last, from the rotation that remains after
+// yaw. The three angles are therefore consistent at a vertical pitch, where roll and yaw are not
+// unique.
 Vector3 RollPitchYaw(const Matrix3& R) {
   const double yaw = std::atan2(R(1, 0), R(0, 0));
   const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
@@ -154,8 +155,8 @@ void AddJoint(XmlElement* robot, const SceneJoint& joint) {
   Set(dynamics, "friction", Text(joint.friction));
 }
 
-// Without this element MuJoCo merges fixed links, loses the mass of links that are fixed to the
-// world, and looks for meshes beside the URDF.
+// Without this element, MuJoCo merges fixed links, loses the mass of links that are fixed to the
+// world, and looks for meshes next to the URDF.
 void AddMujoco(XmlElement* robot, double gravity) {
   XmlElement* mujoco = Add(robot, "mujoco");
   XmlElement* compiler = Add(mujoco, "compiler");

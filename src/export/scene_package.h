@@ -24,16 +24,16 @@ struct ScenePackage {
 
 inline constexpr const char* kSceneUrdf = "scene.urdf";  // path in the package
 
-// The package: scene.urdf, meshes/…, package.xml and README.txt. The URDF is beside the folder of
-// meshes and refers to them by relative paths. This is the only form that URDF-Importer (which
-// looks for package:// and ../ below the URDF's own folder), MuJoCo and plain readers all resolve.
-// The same scenario always gives the same bytes. Throws InputError if loading a model does, or if
-// URDF-Importer does not read a mesh format.
+// Makes the package: scene.urdf, meshes/…, package.xml and README.txt. The URDF is next to the
+// folder of meshes and refers to them by relative paths. This is the only form that URDF-Importer
+// (which looks for package:// and ../ below the URDF's own folder), MuJoCo and plain readers all
+// resolve. The same scenario always gives the same bytes. Throws InputError if loading a model
+// does, or if URDF-Importer does not read a mesh format.
 ScenePackage MakeScenePackage(const Scenario& scenario);
 
 // Writes the package into `folder`, which is created if necessary. A folder that is not empty is
 // refused unless `force` is set. With `force`, files of an earlier export are replaced, or removed
-// if the package no longer contains them. Other files stay; if one of them is in the way, the
+// if the package no longer contains them. Other files stay. If one of them is in the way, the
 // export is refused. Throws InputError.
 void WriteScenePackage(const ScenePackage& package, const std::filesystem::path& folder,
                        bool force);

@@ -17,8 +17,8 @@
 namespace predictor::scene_export {
 namespace {
 
-// The robot's material of the same name. It supplies the values that the visual's own material
-// omits.
+// Returns the robot's material of the same name. It supplies the values that the visual's own
+// material omits.
 const XmlElement* GlobalMaterial(const XmlElement& robot, const XmlElement& material) {
   const char* name = material.Attribute("name");
   for (const XmlElement* global = robot.FirstChildElement("material");
@@ -163,8 +163,8 @@ class Composer {
   }
 
  private:
-  // A name for a joint that the scene adds. It avoids the names of the cobot's joints, which the
-  // topics use.
+  // Returns a name for a joint that the scene adds. It avoids the names of the cobot's joints,
+  // which the topics use.
   std::string JointName(std::string name) {
     while (!joint_names_.insert(name).second) name += '_';
     return name;
@@ -254,7 +254,7 @@ class Composer {
     tree_.joints.push_back(joint);
   }
 
-  // A moving joint of the attachment. It has no drive; only `range` bounds it.
+  // Adds a moving joint of the attachment. It has no drive, and only `range` bounds it.
   void AddAxis(const std::string& name, const std::string& parent, const std::string& child,
                const Pose& X_PJ, const Vector3& axis) {
     const AttachmentSpec& spec = scenario_.object.attachment;
@@ -317,7 +317,7 @@ class Composer {
     Join("object_joint", parent, link, spec.attachment.on_object.ToPose().Inverse());
   }
 
-  // The shapes of the merged links, in order, with the materials of the object's file.
+  // Returns the shapes of the merged links in order, with the materials of the object's file.
   std::vector<SceneShape> ObjectVisuals(const ObjectModel& model) const {
     const UrdfModel urdf = ReadUrdf(ResolveModelPath(scenario_.object.model, scenario_.folder()),
                                     {}, scenario_.folder());

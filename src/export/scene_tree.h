@@ -13,10 +13,11 @@
 
 namespace predictor::scene_export {
 
-// Mass [kg] and principal moments [kg·m²] of links that have none or only connect others. URDF has
-// no joint with three axes, so three single-axis joints need two links between them. MuJoCo and our
-// own reader refuse a moving link without mass. Unity's URDF-Importer would give it 0.1 kg, or 1 kg
-// if it has no <inertial>. All of them accept these values, which change any sum by less than 1e-9.
+// The mass [kg] and principal moments [kg·m²] of links that have none or only connect others. URDF
+// has no joint with three axes, so three single-axis joints need two links between them. MuJoCo and
+// our own reader refuse a moving link without mass. Unity's URDF-Importer would give it 0.1 kg, or
+// 1 kg if it has no <inertial>. All of them accept these values, which change any sum by less than
+// 1e-9.
 inline constexpr double kTinyMass = 1e-10;
 inline constexpr double kTinyInertia = 1e-11;
 
@@ -48,7 +49,7 @@ struct SceneJoint {
   double friction = 0;              // Coulomb [N·m] or [N]
 };
 
-// Parents come before children; the first link is the root, "world".
+// Parents come before children, and the first link is the root, "world".
 struct SceneTree {
   std::vector<SceneLink> links;
   std::vector<SceneJoint> joints;

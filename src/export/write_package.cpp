@@ -24,13 +24,13 @@ constexpr const char* kManifestHeader = "# What predictor export scene wrote her
                    (error ? ": " + error.message() : std::string()) + ". Give a writable folder.");
 }
 
-// True if a relative path stays within its starting folder.
+// Returns whether a relative path stays within its starting folder.
 bool IsInside(const fs::path& path) {
   return !path.empty() && path.is_relative() &&
          std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; });
 }
 
-// The paths that an earlier export wrote; empty without an earlier export.
+// Returns the paths that an earlier export wrote, or nothing without an earlier export.
 std::set<std::string> ReadManifest(const fs::path& folder) {
   std::set<std::string> mine;
   std::ifstream stream(folder / kManifest);
@@ -64,7 +64,7 @@ void CheckFolder(const fs::path& folder, bool force) {
       " is not empty. Give another folder, or use --force to replace an earlier export.");
 }
 
-// True if no symbolic link leads the path out of the folder.
+// Returns whether no symbolic link leads the path out of the folder.
 bool IsBelow(const fs::path& folder, const std::string& path) {
   std::error_code error;
   const fs::path parent = fs::weakly_canonical((folder / path).parent_path(), error);

@@ -44,7 +44,8 @@ FoxgloveChannel JointStates(const Scenario& scenario) {
           }};
 }
 
-// Wrench that the hand exerts on the handle, in W [N], [N·m], with the active thresholds.
+// Publishes the wrench that the hand exerts on the handle, in W [N], [N·m], with the active
+// thresholds.
 FoxgloveChannel WrenchOf(std::size_t h) {
   return {std::string("/wrench_") + kHandNames[h], "predictor.Wrench",
           Message("predictor.Wrench", {{"timestamp", TimeSchema()},

@@ -21,11 +21,11 @@ struct FoxgloveChannel {
   std::function<Json(const TickRecord& record, std::uint64_t unix_ns)> message;
 };
 
-// All topics. object_start: position of O in W at the start [m]. Throws InputError.
+// Returns all topics. object_start: the position of O in W at the start [m]. Throws InputError.
 std::vector<FoxgloveChannel> FoxgloveChannels(const Scenario& scenario,
                                               const Vector3& object_start);
 
-// The topics that show poses and shapes: "/tf" and "/scene". Parameters as above.
+// Returns the topics that show poses and shapes, "/tf" and "/scene". The parameters are as above.
 std::vector<FoxgloveChannel> FoxgloveSceneChannels(const Scenario& scenario,
                                                    const Vector3& object_start);
 

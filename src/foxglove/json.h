@@ -1,4 +1,4 @@
-// Values and schemas of Foxglove's channels. Used in this folder only.
+// Makes values and schemas of Foxglove's channels. Only this folder uses it.
 #pragma once
 
 #include <cstdint>
@@ -29,15 +29,15 @@ Json Number();
 Json Integer();
 Json Text();
 Json ListOf(const Json& items);
-// An unnamed object whose fields are all required.
+// Returns an unnamed object whose fields are all required.
 Json Object(Fields fields);
 Json Numbers(std::initializer_list<const char*> names);
-// A message named `title`. All fields are required except those in `optional`.
+// Returns a message named `title`. All fields are required except those in `optional`.
 Json Message(const char* title, Fields fields, std::initializer_list<const char*> optional = {});
 Json TimeSchema();
 Json XyzSchema();
 
-// Foxglove's well-known messages, including fields that are never filled in here.
+// These are Foxglove's well-known messages, including fields that are never filled in here.
 Json FrameTransformsSchema();
 Json SceneUpdateSchema();
 Json JointStatesSchema();
@@ -45,10 +45,10 @@ Json JointStatesSchema();
 // ---- channels
 // ------------------------------------------------------------------------------------
 
-// A channel for each group of recorded quantities (core/tick_fields.h) except the inputs.
+// Returns a channel for each group of recorded quantities (core/tick_fields.h) except the inputs.
 std::vector<FoxgloveChannel> QuantityChannels();
 FoxgloveChannel TransformsChannel(const Scenario& scenario);
-// object_start: position of O in W at the start [m].
+// object_start is the position of O in W at the start [m].
 FoxgloveChannel SceneChannel(const Scenario& scenario, const Vector3& object_start);
 
 }  // namespace predictor::foxglove

@@ -20,7 +20,7 @@ constexpr int kCirclePoints = 72;
 
 Json Xyzw(const Quaternion& q) { return {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}; }
 
-// Green below half of the limit, orange up to 80 %, then red, as on the page.
+// Returns green below half of the limit, orange up to 80 %, and then red, as on the page.
 Json WarningColor(double share) {
   if (share < 0.5) return Color(0.2, 0.7, 0.3, 1);
   if (share <= 0.8) return Color(0.95, 0.6, 0.1, 1);
@@ -78,7 +78,7 @@ Json TransformJson(const std::string& child, const Pose& X, std::uint64_t ns) {
           {"rotation", Xyzw(X.q)}};
 }
 
-// An empty entity. Each kind of primitive is a list.
+// Returns an empty entity. Each kind of primitive is a list.
 Json Entity(const std::string& id, const std::string& frame, std::uint64_t ns) {
   Json entity = {{"timestamp", Time(ns)}, {"frame_id", frame},    {"id", id},
                  {"lifetime", Time(0)},   {"frame_locked", true}, {"metadata", Json::array()}};
@@ -179,8 +179,8 @@ Json FloorEntity(std::uint64_t ns) {
   return entity;
 }
 
-// The joints and the segments between them. Meshes are too large for a message sent 50 times per
-// second.
+// Draws the joints and the segments between them. Meshes are too large for a message sent 50 times
+// per second.
 Json CobotEntity(const std::vector<Vector3>& points, std::uint64_t ns) {
   Json entity = Entity("cobot", "world", ns);
   ModelShape shape;

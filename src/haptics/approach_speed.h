@@ -5,9 +5,10 @@
 
 namespace predictor {
 
-// Largest speed [1/s] at which a distance [·] may shrink so that it never falls below zero when
-// deceleration is at most `acceleration`: proportional near zero (velocity damper, slope
-// `gain` [1/s]), a parabola beyond, joined smoothly; zero where the distance is negative.
+// Returns the largest speed [1/s] at which a distance [·] may shrink so that it never falls below
+// zero when deceleration is at most `acceleration`. It is proportional near zero (velocity damper
+// with slope `gain` [1/s]) and a parabola beyond, joined smoothly. It is zero where the distance is
+// negative.
 double ApproachSpeed(double distance, double gain, double acceleration) noexcept;
 
 // The velocity damper of a limit, as printed in the paper or with our repairs.
@@ -20,7 +21,8 @@ struct VelocityDamper {
 
   VelocityDamper() = default;
   VelocityDamper(double gain, double influence, double acceleration, const RepairSet& repairs);
-  // Largest speed [·/s] at which the distance may shrink; kUnlimited if it is not limited.
+  // Returns the largest speed [·/s] at which the distance may shrink, or kUnlimited if it is not
+  // limited.
   double Speed(double distance) const noexcept;
   static constexpr double kUnlimited = 1e30;
 };

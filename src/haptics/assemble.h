@@ -11,7 +11,7 @@
 
 namespace predictor {
 
-// Weight of a limit row's slack; tracking has weight 1.
+// The weight of a limit row's slack. Tracking has weight 1.
 inline constexpr double kLimitSlackWeight = 1e9;
 inline constexpr double kSingularDamping = 1e-2;  // damping of joints at a singularity
 
@@ -33,9 +33,9 @@ class Assembler {
 
   // Makes an empty problem of the right size.
   Qp MakeQp(Precedence form) const;
-  // Updates the tasks; call once per tick.
+  // Updates the tasks. Call this once per tick.
   void Update(const RenderContext& context) noexcept;
-  // Writes the whole problem. Call after Update, any number of times.
+  // Writes the whole problem. Call this after Update, any number of times.
   void Assemble(const RenderContext& context, Precedence form, Qp* qp) noexcept;
 
   // Writes the values that tasks and limits publish. `x`: the solution, or null if none was found.
@@ -43,7 +43,7 @@ class Assembler {
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept;
 
-  // False for the paper's formulation, which must be assembled as kHard.
+  // Returns false for the paper's formulation, which must be assembled as kHard.
   bool is_soft() const { return soft_; }
   int joints() const { return joints_; }
   int limit_rows() const { return limit_rows_; }

@@ -15,7 +15,8 @@ namespace predictor {
 
 // Constant during a run. Tasks and limits are created from it.
 struct RenderSetup {
-  // `models` have a handle frame each; absent sides are null. lead, dt [s]. Throws InputError.
+  // `models` have a handle frame each, and absent sides are null. lead and dt are in [s]. Throws
+  // InputError.
   RenderSetup(const Scenario& scenario,
               const std::array<std::shared_ptr<const RobotModel>, kHands>& models, double lead,
               double dt);
@@ -32,7 +33,7 @@ struct RenderSetup {
 // State of one tick. The joints of both arms, left before right, are the variables x of the QP.
 struct RenderContext {
   RenderContext() = default;
-  // `last`: joint velocities last sent [rad/s]. No heap, no exception.
+  // `last` contains the joint velocities last sent [rad/s]. Does not use the heap or throw.
   RenderContext(const std::array<RenderArm, kHands>& arms, const RenderTarget& target,
                 const std::array<JointVector, kHands>& last, double dt) noexcept;
 

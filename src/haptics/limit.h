@@ -18,7 +18,7 @@ class LimitRows {
  public:
   using Matrix = Eigen::Map<Qp::RowMajor, 0, Eigen::OuterStride<>>;
 
-  // `count` rows starting at `first`, over `joints` variables.
+  // There are `count` rows starting at `first`, over `joints` variables.
   LimitRows(Qp* qp, int joints, int first, int count)
       : lower_(qp->lower().data()),
         upper_(qp->upper().data()),
@@ -43,11 +43,11 @@ class LimitRows {
 class Limit {
  public:
   virtual ~Limit() = default;
-  // Number of rows that the limit needs. Each row has its own slack, so the problem stays solvable.
-  // RenderResult::slack_by_limit publishes the largest slack.
+  // Returns the number of rows that the limit needs. Each row has its own slack, so the problem
+  // stays solvable. RenderResult::slack_by_limit publishes the largest slack.
   virtual int rows() const { return 0; }
-  // Narrows the bounds and fills the limit's rows. Called at least once per tick. No heap, no
-  // exception.
+  // Narrows the bounds and fills the limit's rows. It is called at least once per tick. It must not
+  // use the heap or throw.
   virtual void AddTo(const RenderContext& context, LimitRows* out) noexcept = 0;
   // Writes the values that the limit publishes per tick.
   virtual void Publish(RenderResult*) const noexcept {}

@@ -22,7 +22,7 @@ NamedLink ParseLink(const std::string& name, int side) {
   return {side, name};
 }
 
-// `key`: key of the pair.
+// `key` is the key of the pair.
 FrameId FrameOf(const NamedLink& link,
                 const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
                 const std::string& key) {

@@ -20,7 +20,7 @@ struct LinkPair {
   std::string name;  // as written in the scenario: "LINK and LINK"
 };
 
-// Vector from b's origin to a's, in W [m].
+// Returns the vector from b's origin to a's, in W [m].
 Vector3 Between(const std::array<RenderArm, kHands>& arms, const LinkPair& pair) noexcept;
 
 // The pairs that a scenario keeps apart: rendering.link_pairs, or the two elbows if that is not

@@ -109,7 +109,7 @@ bool Recovery::LinksApart(const std::array<RenderArm, kHands>& arms,
   return true;
 }
 
-// v = Jᵀ F · c. Then Fᵀ J v = c |Jᵀ F|² ≥ 0, so the handle yields to the hand in any posture.
+// Sets v = Jᵀ F · c. Then Fᵀ J v = c |Jᵀ F|² ≥ 0, so the handle yields to the hand in any posture.
 void Recovery::WithTheHands(const std::array<RenderArm, kHands>& arms,
                             const std::array<HandWrench, kHands>& wrench, bool goes_back,
                             std::array<JointVector, kHands>* v) noexcept {

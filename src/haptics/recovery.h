@@ -28,8 +28,8 @@ struct BeyondPlace {
 
 class Recovery {
  public:
-  // Maximum speed of a point of a handle [m/s]. With the overshoot of the arms it stays below 50
-  // mm/s.
+  // The maximum speed of a point of a handle [m/s]. With the overshoot of the arms, it stays below
+  // 50 mm/s.
   static constexpr double kHandleSpeed = 0.049;
   static constexpr double kLength = 0.2;      // weight of rotation relative to translation [m]
   static constexpr double kJointSpeed = 0.2;  // maximum speed of a joint [rad/s]
@@ -39,19 +39,20 @@ class Recovery {
   static constexpr double kJointMargin = 0.001;
   static constexpr double kForce = 5;  // smaller forces of the hand are ignored [N]
 
-  // `models`: null for absent sides. Throws InputError.
+  // `models` are null for absent sides. Throws InputError.
   Recovery(const Scenario& scenario,
            const std::array<std::shared_ptr<const RobotModel>, kHands>& models);
 
-  // The first violation found: a joint nearer to its limit than rendering.joint_security, or a pair
-  // of links nearer than rendering.security_distance. Rendering never moves the arms there and
-  // could not move them back. No heap, no exception.
+  // Returns the first violation found: a joint nearer to its limit than rendering.joint_security,
+  // or a pair of links nearer than rendering.security_distance. Rendering never moves the arms
+  // there and could not move them back. Does not use the heap or throw.
   BeyondPlace Where(const std::array<RenderArm, kHands>& arms) const noexcept;
   Beyond Find(const std::array<RenderArm, kHands>& arms) const noexcept { return Where(arms).what; }
 
-  // Joint velocities [rad/s] that reduce the violation found by Where. Without a violation, each
-  // handle yields to a hand that presses on it: the power of the motion with the hand's wrench is
-  // never negative. Zero if there is nothing to do. No heap, no exception.
+  // Computes joint velocities [rad/s] that reduce the violation found by Where. Without a
+  // violation, each handle yields to a hand that presses on it, so the power of the motion with the
+  // hand's wrench is never negative. They are zero if there is nothing to do. Does not use the heap
+  // or throw.
   void Step(const std::array<RenderArm, kHands>& arms, const std::array<HandWrench, kHands>& wrench,
             std::array<JointVector, kHands>* v) const noexcept;
 

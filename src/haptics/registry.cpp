@@ -15,7 +15,7 @@ constexpr const ParameterKind* kParts[] = {PREDICTOR_TASKS(PREDICTOR_TASK)
 #undef PREDICTOR_LIMIT
 static_assert(std::size(kLimits) <= kMaxLimits, "RenderResult::slack_by_limit has no room");
 
-// When the program starts, so that every scenario is read with their parameters.
+// This runs when the program starts, so that every scenario is read with their parameters.
 [[maybe_unused]] const bool kDeclared = (DeclareRenderingParts(kParts), true);
 
 }  // namespace

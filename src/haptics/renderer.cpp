@@ -96,7 +96,7 @@ void Renderer::Impl::PublishActive(const Qp& solved, RenderResult* result) const
     if (multiplier(solved.n() + r) != 0) result->rows |= bit(r);
 }
 
-// Within the solver's tolerance the solution may violate a bound; the command must not.
+// Within the solver's tolerance, the solution may violate a bound, but the command must not.
 void Renderer::Impl::PublishCommand(RenderResult* result) const noexcept {
   for (int i = 0; i < kHands; ++i) {
     if (!context.Has(i)) continue;

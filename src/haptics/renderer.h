@@ -23,22 +23,24 @@ class Qp;
 
 class Renderer {
  public:
-  // `models` have a handle frame each; absent sides are null. lead: the scenario's, resolved from
-  // `auto` [s]. dt: tick [s]. Throws InputError (link pair of an unknown link, too many pairs).
+  // `models` have a handle frame each, and absent sides are null. lead: the scenario's, resolved
+  // from `auto` [s]. dt: duration of a tick [s]. Throws InputError (link pair of an unknown link,
+  // too many pairs).
   Renderer(const Scenario& scenario,
            const std::array<std::shared_ptr<const RobotModel>, kHands>& models, double lead,
            double dt);
   ~Renderer();
 
-  // Computes joint velocities for this tick. `last`: the command last sent. Returns kQp after three
-  // consecutive ticks without a verified solution, and kTracking when the relative slack has
-  // exceeded its limit for longer than the safety settings allow. No heap, lock or exception.
+  // Computes joint velocities for this tick. `last` is the command last sent. Returns kQp after
+  // three consecutive ticks without a verified solution, and kTracking when the relative slack has
+  // exceeded its limit for longer than the safety settings allow. Does not use the heap or a lock,
+  // and does not throw.
   Status Render(const std::array<RenderArm, kHands>& arms, const RenderTarget& target,
                 const std::array<JointVector, kHands>& last, RenderResult* result) noexcept;
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept;
 
-  // The problem of the last Render, for benchmarks and tests.
+  // Returns the problem of the last Render, for benchmarks and tests.
   const Qp& qp() const;
   const Assembler& assembler() const;
 

@@ -22,13 +22,14 @@ struct AllPass {
   double b, c;
 };
 
-// Identical first-order sections, (1 − sT/2n)ⁿ/(1 + sT/2n)ⁿ.
+// Returns identical first-order sections, (1 − sT/2n)ⁿ/(1 + sT/2n)ⁿ.
 std::vector<AllPass> EqualSections(int order) {
   return std::vector<AllPass>(static_cast<std::size_t>(order), {2.0 * order, 0});
 }
 
-// Padé approximation of e^−sT of an even order n, exact to 0.01 rad up to |sT| = 3.7 (n = 4), 6.4
-// (6) and 12 (10). Its denominator is Σ c_k (sT)^k with c_k = (2n − k)! n! / ((2n)! k! (n − k)!).
+// Returns the Padé approximation of e^−sT of an even order n, exact to 0.01 rad up to |sT| = 3.7 (n
+// = 4), 6.4 (6) and 12 (10). Its denominator is Σ c_k (sT)^k with c_k = (2n − k)! n! / ((2n)! k! (n
+// − k)!).
 std::vector<AllPass> PadeSections(int order) {
   const double scale = order;  // scale of the roots, so that the matrix entries have similar
                                // magnitudes
@@ -59,14 +60,15 @@ class System {
   void SetDerivative(int state, const Signal& value) { A_.row(state) = value; }
   void AddDerivative(int state, const Signal& value) { A_.row(state) += value; }
 
-  // First-order low-pass with this cutoff [rad/s].
+  // Applies a first-order low-pass with this cutoff [rad/s].
   Signal LowPass(const Signal& input, double cutoff) {
     const int z = AddState();
     SetDerivative(z, cutoff * (input - State(z)));
     return State(z);
   }
 
-  // Delay [s] by all-pass sections. Adds as many states as the total order of the sections.
+  // Applies a delay [s] by all-pass sections. Adds as many states as the total order of the
+  // sections.
   Signal Delay(Signal input, double delay, const std::vector<AllPass>& sections) {
     if (delay <= 0) return input;
     for (const AllPass& section : sections) {
@@ -125,13 +127,13 @@ struct HandleAxis {
   System::Signal position, velocity, acceleration;
 };
 
-// Cutoff of the filter of the lead's acceleration [rad/s]. Without a filter, the acceleration is
-// the change over one tick, which is late by half a tick.
+// Returns the cutoff of the filter of the lead's acceleration [rad/s]. Without a filter, the
+// acceleration is the change over one tick, which is late by half a tick.
 double LeadCutoff(const RenderingSpec& rendering, double dt) {
   return rendering.lead_cutoff > 0 ? 2 * kPi * rendering.lead_cutoff : 2 / dt;
 }
 
-// The real handle, which follows the motion of the virtual one.
+// Adds the real handle, which follows the motion of the virtual one.
 HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
                   const LoopDelays& delays, double lead, bool turn, double dt,
                   const System::Signal& x_d, const System::Signal& v_d) {
@@ -140,8 +142,8 @@ HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
   const System::Signal a_d = lead_cutoff * (v_d - s->LowPass(v_d, lead_cutoff));
   const double gain = turn ? rendering.ko / 2 : rendering.kp;  // (9) uses half the angle
   const System::Signal command = v_d + lead * a_d + gain * (x_d - s->State(h));
-  // Sum of all pure delays of the chain. The hold of the force adds half a tick, and the virtual
-  // handles are half a tick ahead of the sample, so these cancel.
+  // This is the sum of all pure delays of the chain. The hold of the force adds half a tick, and
+  // the virtual handles are half a tick ahead of the sample, so these cancel.
   const double delay = arm.loop.delay + arm.sensor.delay + delays.reserve * dt;
   const System::Signal u = s->Delay(command, delay, delays.arm);
   const int v = s->AddState();
@@ -153,8 +155,8 @@ HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
   return {s->State(h), s->State(v), s->State(a)};
 }
 
-// The hand's reaction to the handle's motion along one axis (0–2 translation, 3–5 rotation).
-// `seen`: displacement of the object along this axis, which the hand corrects by sight.
+// Adds the hand's reaction to the handle's motion along one axis (0–2 translation, 3–5 rotation).
+// `seen` is the displacement of the object along this axis, which the hand corrects by sight.
 System::Signal AddHand(System* s, const HandSpec& hand, const LoopDelays& delays, int axis,
                        const HandleAxis& handle, const System::Signal& seen) {
   const bool turn = axis >= 3;

@@ -15,9 +15,9 @@
 namespace predictor {
 
 struct StabilityMargin {
-  // Factor by which the hands' impedance may grow before the loop becomes unstable. Below 1 the
-  // loop is unstable with the nominal impedance; at 0 it is unstable even with soft and light
-  // hands. At most HapticLoop::kLargestGain.
+  // The factor by which the hands' impedance may grow before the loop becomes unstable. Below 1,
+  // the loop is unstable with the nominal impedance. At 0, it is unstable even with soft and light
+  // hands. It is at most HapticLoop::kLargestGain.
   double gain = 0;
   double frequency = 0;  // frequency of the oscillation at that gain [Hz]
 };
@@ -34,21 +34,21 @@ class HapticLoop {
  public:
   static constexpr double kLargestGain = 8;
 
-  // `world`: linear model without hands. dt: tick [s].
+  // `world` is a linear model without hands. dt is the duration of a tick [s].
   HapticLoop(const LinearModel& world, const Scenario& scenario, double dt,
              LoopModel model = LoopModel::kWithReserve);
 
-  // Largest real part [1/s] of the loop's eigenvalues with the hands' impedance multiplied by
-  // `gain` and the reference's lead [s]: the growth rate of a disturbance. `frequency`: of that
-  // mode [Hz].
+  // Returns the largest real part [1/s] of the loop's eigenvalues with the hands' impedance
+  // multiplied by `gain` and the reference's lead [s]. This is the growth rate of a disturbance.
+  // `frequency` is that of the mode [Hz].
   double GrowthRate(const HandSpec& hand, double lead, double gain,
                     double* frequency = nullptr) const;
 
-  // Stability margin for a hand and a lead [s], to 2 %.
+  // Returns the stability margin for a hand and a lead [s], to 2 %.
   StabilityMargin Margin(const HandSpec& hand, double lead) const;
 
-  // Lag of an arm's velocity loop at low frequency [s]: 2ζ/ω plus delay, minus the half tick by
-  // which the reference is ahead.
+  // Returns the lag of an arm's velocity loop at low frequency [s]: 2ζ/ω plus delay, minus the half
+  // tick by which the reference is ahead.
   static double Lag(const VelocityLoopSpec& loop, double dt);
 
  private:
@@ -61,7 +61,8 @@ class HapticLoop {
 };
 
 // The scenario's lead. For `auto`, it is the longest of six steps, from the device's lag down to
-// zero, whose margin is at least `margin`; if there is none, the step with the largest margin.
+// zero, whose margin is at least `margin`. If no step has this margin, it is the one with the
+// largest margin.
 struct LeadChoice {
   double lead = 0;  // [s]
   StabilityMargin margin;

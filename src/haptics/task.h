@@ -20,7 +20,7 @@ struct TaskTerm {
   Vector6 rate = Vector6::Zero();    // desired J x: error times gain [m/s], [rad/s]
   Vector6 weight = Vector6::Zero();  // tracking's translation has weight 1
 
-  // J x − rate [m/s], [rad/s]; zero if the term is inactive.
+  // Returns J x − rate [m/s], [rad/s], or zero if the term is inactive.
   Vector6 Slack(const double* x) const noexcept;
 };
 
@@ -33,12 +33,13 @@ class Task {
  public:
   virtual ~Task() = default;
 
-  // Called once per tick: updates terms() and adds to the objective of single joints. No heap, no
-  // exception.
+  // Updates terms() and adds to the objective of single joints. It is called once per tick and must
+  // not use the heap or throw.
   virtual void Update(const RenderContext& context, JointObjective* joints) noexcept = 0;
   std::span<const TaskTerm> terms() const { return terms_; }
-  // True if the terms far outweigh those of ordinary tasks, so that they yield only to limits. If
-  // the solver finds no precise solution with such weights, the terms become rows with slack.
+  // Returns whether the terms far outweigh those of ordinary tasks, so that they yield only to
+  // limits. If the solver finds no precise solution with such weights, the terms become rows with
+  // slack.
   virtual bool has_precedence() const { return false; }
 
   // Writes the values that the task publishes per tick. `x`: the solution, or null if none was
@@ -52,16 +53,16 @@ class Task {
   std::vector<TaskTerm> terms_;
 };
 
-// Vector part of the quaternion that rotates `from` into `to` by the shorter path: half the angle
-// for small rotations. Equals η ε^d − η^d ε − S(ε^d) ε of (9).
-// nearer: false takes the path that the quaternions' signs decide, as (9) does.
+// Returns the vector part of the quaternion that rotates `from` into `to` by the shorter path,
+// which is half the angle for small rotations. It equals η ε^d − η^d ε − S(ε^d) ε of (9). If
+// `nearer` is false, it takes the path that the quaternions' signs determine, as (9) does.
 Vector3 QuaternionError(const Quaternion& to, const Quaternion& from, bool nearer = true) noexcept;
 
-// Weights of a handle's twist: 1 for translation, the square of `rendering.characteristic_length`
-// for rotation; 1 in the paper's (7).
+// Returns the weights of a handle's twist: 1 for translation, and the square of
+// `rendering.characteristic_length` for rotation, or 1 in the paper's (7).
 Vector6 TwistWeight(const RenderSetup& setup);
 
-// Factor in (0, 1] that reduces a twist to the caps of a handle.
+// Returns a factor in (0, 1] that reduces a twist to the caps of a handle.
 double ScaleToCaps(const Twist& V, const RenderTarget& target) noexcept;
 
 }  // namespace predictor

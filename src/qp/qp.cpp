@@ -68,7 +68,7 @@ struct QpSolver::Impl {
     // The setup solves nothing. It allocates the memory for these sizes and types of constraint.
     problem.H().setIdentity();
     if (variables > 1)
-      // Otherwise the solver would assume a diagonal matrix.
+      // Without this, the solver would assume a diagonal matrix.
       problem.H()(0, 1) = problem.H()(1, 0) = 0.5;
     sense.fill(0);
     Point();

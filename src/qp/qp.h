@@ -63,10 +63,10 @@ struct QpSolution {
   int iterations = 0;
 };
 
-// Largest violation of the optimality conditions of (qp, solution): stationarity relative to max(1,
-// |f|∞, |multipliers|∞); primal feasibility [unit of x]; and signs and complementarity of the
-// multipliers, also relative. Returns +inf if the solver found no solution. Independent of the
-// solver.
+// Returns the largest violation of the optimality conditions of (qp, solution): stationarity
+// relative to max(1, |f|∞, |multipliers|∞); primal feasibility [unit of x]; and signs and
+// complementarity of the multipliers, also relative. Returns +inf if the solver found no solution.
+// It is independent of the solver.
 double KktResidual(const Qp& qp, const QpSolution& solution) noexcept;
 
 class QpSolver {
@@ -74,8 +74,8 @@ class QpSolver {
   // Allocates all memory for problems of this size.
   QpSolver(int variables, int rows);
   ~QpSolver();
-  // Solves from scratch: previously solved problems change the result at most by rounding. No heap,
-  // no exception.
+  // Solves from scratch, so previously solved problems change the result at most by rounding. Does
+  // not use the heap or throw.
   void Solve(const Qp& qp, QpSolution* solution) noexcept;
 
  private:

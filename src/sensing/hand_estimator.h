@@ -20,16 +20,17 @@ namespace predictor {
 // delayed by the difference instead, which is at most half a tick.
 class HandEstimator {
  public:
-  // X_EH: handle in the end-effector frame. dt: tick [s], at least 1 ms. gravity [m/s²].
-  // acceleration_lag: age of the acceleration that is passed to Update [s]. Throws InputError.
+  // X_EH: the handle in the end-effector frame. dt: duration of a tick [s], at least 1 ms. gravity
+  // is in [m/s²]. acceleration_lag: the age of the acceleration that is passed to Update [s].
+  // Throws InputError.
   HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload, const Pose& X_EH,
                 double gravity, double dt, double acceleration_lag);
-  // The same, with the acceleration lag of MotionDifferentiator at that tick.
+  // As above, with the acceleration lag of MotionDifferentiator at that tick.
   HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload, const Pose& X_EH,
                 double gravity, double dt);
 
-  // Begins averaging readings into the bias. Needs free handles at rest; call Tare in each tick
-  // until FinishTare.
+  // Begins to average readings into the bias. The handles must be free and at rest. Call Tare in
+  // each tick until FinishTare.
   void BeginTare() noexcept;
   Status Tare(const ArmSample& sample, const Pose& X_WE) noexcept;
   // Takes the mean as the bias. Returns kSensor and keeps the previous bias if there are fewer than
@@ -38,16 +39,17 @@ class HandEstimator {
   // allowed standard deviation of the worst axis.
   Status FinishTare() noexcept;
   const Wrench& bias() const { return bias_; }
-  // Standard deviation of the readings that sensor noise and a quiet room explain [N], [N·m].
+  // Returns the standard deviation of the readings that sensor noise and a quiet room explain [N],
+  // [N·m].
   static Wrench QuietDeviation(const SensorSpec& sensor) noexcept;
 
-  // Wrench of the hand at H. `end_effector` is E's motion including A_W (measured acceleration).
-  // Returns kSensor and sets `out` to zero if the reading is not finite, is saturated, or exceeds
-  // the sensor's range along any axis. Saturation and an exceeded range also request a stop without
-  // power.
+  // Computes the wrench of the hand at H. `end_effector` is E's motion including A_W (measured
+  // acceleration). Returns kSensor and sets `out` to zero if the reading is not finite, is
+  // saturated, or exceeds the sensor's range along any axis. Saturation and an exceeded range also
+  // request a stop without power.
   Status Update(const ArmSample& sample, const FrameMotion& end_effector, HandWrench* out) noexcept;
 
-  // Clears the signals in the filters and delays; keeps the bias.
+  // Clears the signals in the filters and delays but keeps the bias.
   void Reset() noexcept;
 
   static constexpr int kTareSamples = 50;

@@ -11,14 +11,15 @@ namespace predictor {
 // the noise, and compensates for its lag.
 class MotionDifferentiator {
  public:
-  // dt: tick [s].
+  // dt is the duration of a tick [s].
   explicit MotionDifferentiator(double dt, int joints = 0)
       : dt_(dt), v_(JointVector::Zero(joints)), a_(JointVector::Zero(joints)) {}
 
-  // Age of the acceleration [s] if the arm is sampled in every tick: half the time between samples.
+  // Returns the age of the acceleration [s] if the arm is sampled in every tick, which is half the
+  // time between samples.
   static double Lag(double dt) { return dt / 2; }
 
-  // Call once per tick. Returns the joint accelerations [rad/s²]. A repeated sample (same
+  // Call this once per tick. Returns the joint accelerations [rad/s²]. A repeated sample (same
   // arm_sequence) leaves them unchanged.
   const JointVector& Update(const ArmSample& sample) noexcept;
   void Reset() noexcept;

@@ -27,7 +27,8 @@ constexpr std::array<ServedFile, 3> kFiles = {{
     {"/survey.js", "survey.js", "text/javascript; charset=utf-8"},
 }};
 
-// The reply that rejects a request regardless of its target; status 200 if it is acceptable.
+// Returns the reply that rejects a request regardless of its target, or status 200 if it is
+// acceptable.
 viewer::HttpReply WhyRefused(const viewer::HttpRequest& request,
                              const std::vector<std::string>& hosts) {
   if (const viewer::HttpReply wrong = viewer::CheckHost(request, hosts); wrong.status != 200)

@@ -1,5 +1,5 @@
-// The questionnaire as a page. A person who has the code consents, answers, and receives a
-// pseudonym. It uses the viewer's server and follows its rules; docs/how-to/questionnaire.md
+// Provides the questionnaire as a page. A person who has the code consents, answers, and receives a
+// pseudonym. It uses the viewer's server and follows its rules. docs/how-to/questionnaire.md
 // describes the texts.
 #pragma once
 
@@ -18,12 +18,13 @@
 namespace predictor::survey {
 
 inline constexpr const char* kSurveySubprotocol = "predictor.survey.v1";
-// "index.html", "survey.css" or "survey.js", compiled in; empty for any other name.
+// Returns "index.html", "survey.css" or "survey.js", which are compiled in, or nothing for any
+// other name.
 std::string_view SurveyPageFile(std::string_view name);
 
 struct SurveySetup {
   std::vector<std::string> hosts;  // host names of this server, without port
-  // The condition that the person used before answering; empty: the page asks.
+  // The condition that the person used before answering. If it is empty, the page asks for it.
   std::optional<Condition> condition;
   // Stores an answer, which has a pseudonym by then. May throw InputError, which is shown to the
   // person.
@@ -48,7 +49,7 @@ class SurveyApp : public viewer::Application {
 
   // Admits one browser, which then uses a token to reconnect.
   const std::string& code() const { return admission_.code(); }
-  // How the survey ended.
+  // Returns how the survey ended.
   SurveyEnd end() const { return end_; }
   // `over` is called once, after the page has shown the end or its connection is closed.
   void OnOver(std::function<void()> over) { over_ = std::move(over); }

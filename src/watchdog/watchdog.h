@@ -12,9 +12,9 @@ class Watchdog {
   // The loop counts as hanging if no tick occurs for this time while the arms may move [ns].
   static constexpr std::uint64_t kPatience = 10'000'000;
 
-  // Call at least every millisecond. ticks: number of ticks published so far; state: the state in
-  // the latest one; now: monotonic clock [ns]. Returns true once each time the loop hangs: the arms
-  // must be stopped.
+  // Call this at least every millisecond. ticks: the number of ticks published so far. state: the
+  // state in the latest one. now: the monotonic clock [ns]. Returns true once each time the loop
+  // hangs, and the arms must then be stopped.
   bool Look(std::uint64_t ticks, RunState state, std::uint64_t now) noexcept;
 
  private:

@@ -122,9 +122,9 @@ class Channels {
   std::vector<Channel> channels_;
 };
 
-// Whether this process must restart to open a new channel, because it has given up the right to
-// connect. It does not restart as long as another arm has a channel and may move. It also waits a
-// moment, so that it does not retry continuously if the connection is refused.
+// Returns whether this process must restart to open a new channel, because it has given up the
+// right to connect. It does not restart as long as another arm has a channel and may move. It also
+// waits a moment, so that it does not retry continuously if the connection is refused.
 bool MustStartAgain(const Channels& channels, RunState state, std::uint64_t age) {
   constexpr std::uint64_t kPause = 2'000'000'000;  // [ns]
   return channels.AnyLost() && (channels.AllLost() || !MayMove(state)) && age > kPause;

@@ -14,7 +14,7 @@
 
 namespace predictor::watchdog {
 
-// The internal subcommand that turns this program into the watchdog; only WatchdogProcess uses it.
+// The internal subcommand that turns this program into the watchdog. Only WatchdogProcess uses it.
 inline constexpr const char* kWatchdogSubcommand = "watchdog-process";
 int WatchdogMain();
 
@@ -30,10 +30,11 @@ class WatchdogProcess {
   WatchdogProcess(const Machine& machine, const std::array<bool, kHands>& hands,
                   const Shared<RunBoard>& board, const Notify& notify);
   int pid() const { return process_.pid(); }  // 0 while no process is running
-  // Heartbeat counter. If it stops, motion must end, because a hanging loop would not be detected.
+  // Returns the heartbeat counter. If it stops, motion must end, because a hanging loop would not
+  // be detected.
   const std::atomic<std::uint32_t>& beats() const { return (*mailbox_).beats; }
 
-  // Which arms the watchdog can stop, and which arms stop only by themselves.
+  // Describes which arms the watchdog can stop, and which arms stop only by themselves.
   const std::string& Describe() const { return description_; }
 
  private:

@@ -1,5 +1,6 @@
-// (13)–(15): joint positions, velocities and accelerations, as bounds. Position and velocity limits
-// always hold. If the acceleration limit conflicts with them in one tick, it is exceeded.
+// Implements (13)–(15): joint positions, velocities and accelerations, as bounds. Position and
+// velocity limits always hold. If the acceleration limit conflicts with them in one tick, it is
+// exceeded.
 #include <algorithm>
 
 #include "haptics/approach_speed.h"
@@ -8,7 +9,7 @@
 namespace predictor {
 namespace {
 
-// Share of a joint's velocity limit that rendering uses. The rest is reserved for a stop, which
+// The share of a joint's velocity limit that rendering uses. The rest is reserved for a stop, which
 // speeds up single joints slightly to keep the handles on their path.
 constexpr double kShareOfVelocity = 0.98;
 

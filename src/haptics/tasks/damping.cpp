@@ -15,7 +15,7 @@ namespace {
 constexpr double kRegularDamping = 1e-5;  // ε away from singularities
 constexpr double kSingularValue = 0.05;   // smallest singular value below which ε grows
 
-// tr(A⁻¹) = ‖L⁻ᵀ‖² (Frobenius) for A = L Lᵀ.
+// Returns tr(A⁻¹) = ‖L⁻ᵀ‖² (Frobenius) for A = L Lᵀ.
 double TraceOfInverse(const Matrix6& A) {
   const Eigen::LLT<Matrix6> factor(A);
   Matrix6 inverse_transpose = Matrix6::Identity();

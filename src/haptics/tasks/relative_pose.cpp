@@ -57,7 +57,7 @@ class RelativePose final : public Task {
   }
 
  private:
-  // Goal of the right handle, and the vector from the left handle to it [m].
+  // Sets the goal of the right handle, and the vector from the left handle to it [m].
   void SetGoal(const RenderContext& context, Pose* goal, Vector3* lever) const noexcept {
     const auto& D = context.target.handle;
     if (relative_) {
