@@ -32,7 +32,7 @@ constexpr double kSensor = 1.0;    // possible mass of a sensor [kg]
 constexpr double kReach = 0.1;     // distance of its centre of gravity from the flange [m]
 constexpr double kMoment = 0.01;   // limit for mass times distance [kg·m]: 0.1 N·m
 
-// Centre of mass of the handle, in E.
+// Returns the centre of mass of the handle, in E.
 Vector3 CentreOf(const ArmSpec& arm) {
   return arm.sensor.pose.ToPose() * arm.payload.center_of_mass;
 }

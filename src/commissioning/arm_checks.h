@@ -14,18 +14,18 @@ namespace predictor::commissioning {
 inline constexpr double kFlangeSlack = 0.005;    // [m]
 inline constexpr double kFlangeRotation = 0.02;  // [rad]
 
-// Describes a difference and the remedy; "" if the poses agree or the arm does not report its pose.
-// A model's base may be turned by half a turn about z from the manufacturer's, as in UR models. The
-// flange is the link with the manufacturer's name for it; in a model without such a link it is
-// end_effector.
+// Describes a difference and the remedy. Returns "" if the poses agree or the arm does not report
+// its pose. A model's base may be rotated by half a turn about z from the manufacturer's, as in UR
+// models. The flange is the link with the manufacturer's name for it, or end_effector in a model
+// without such a link.
 std::string KinematicsRefusal(const DeviceFacts& facts, const ArmSpec& arm,
                               const RobotModel& model);
 
-// Describes a difference and the values to enter at the pendant; "" if the payloads agree or the
-// arm does not report its payload. The flange carries the handle of the machine file and possibly a
-// separate sensor of unknown mass. The payload may therefore be heavier by up to a sensor's weight,
-// with its centre shifted accordingly towards the flange. If the arm subtracts that payload from
-// its own wrench, only one of the two may have a weight.
+// Describes a difference and the values to enter at the pendant. Returns "" if the payloads agree
+// or the arm does not report its payload. The flange carries the handle of the machine file and
+// possibly a separate sensor of unknown mass. The payload may therefore be heavier by up to a
+// sensor's weight, with its centre shifted accordingly towards the flange. If the arm subtracts
+// that payload from its own wrench, only one of the two may have a weight.
 std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& arm);
 
 }  // namespace predictor::commissioning

@@ -15,7 +15,7 @@ namespace {
 // If the points are closer to a line than this, they determine the rotation about it too poorly:
 // rms distance [m].
 constexpr double kMinSpread = 0.05;
-// Largest residual of touched points: a person places a tip to within about 1 mm [m].
+// The largest residual of touched points, because a person places a tip to within about 1 mm [m].
 constexpr double kMaxResidual = 0.005;
 
 using Points = std::span<const TouchedPoint>;

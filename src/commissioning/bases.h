@@ -29,13 +29,13 @@ struct BaseCalibration {
 
 inline constexpr int kMinBasePoints = 3;
 
-// The rigid motion that best maps the p_B onto the p_A (least squares; Horn 1987, by the largest
-// eigenvector of a 4 × 4 matrix, so never a reflection), with a covariance from the residuals.
-// Throws InputError if there are too few points, if they are on a line or too close together, or if
-// they do not fit.
+// Returns the rigid motion that best maps the p_B onto the p_A (least squares; Horn 1987, by the
+// largest eigenvector of a 4 × 4 matrix, so never a reflection), with a covariance from the
+// residuals. Throws InputError if there are too few points, if they are on a line or too close
+// together, or if they do not fit.
 BaseCalibration CalibrateBases(std::span<const TouchedPoint> points);
 
-// The result as a table. `before`: the nominal X_AB.
+// Returns the result as a table. `before` is the nominal X_AB.
 std::string BasesText(const BaseCalibration& found, const Pose& before);
 
 }  // namespace predictor::commissioning

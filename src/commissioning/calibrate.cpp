@@ -28,7 +28,7 @@ std::string TakePose(Session* session, const Station& station, PoseRecorder* rec
   return recorder->Refusal();
 }
 
-// Text about a pose that helps the person to choose the next pose.
+// Describes a pose in a way that helps the person to choose the next pose.
 std::string PoseText(std::size_t number, const RestingPose& pose) {
   const Vector3 down = pose.g_S.normalized();
   return Formatted("Pose %zu taken. Down is (%+.2f, %+.2f, %+.2f) in the sensor's frame.", number,
@@ -58,7 +58,7 @@ Vector3 TakePoint(Session* session, const Station& station, const Vector3& tip) 
   }
 }
 
-// Collects points of one arm. count: number of points; 0: the person decides.
+// Collects points of one arm. count: the number of points, or 0 if the person decides.
 std::vector<Vector3> TakePoints(Session* session, const Station& station, const Vector3& tip,
                                 std::size_t count) {
   std::vector<Vector3> points;
@@ -99,7 +99,7 @@ Wrench Feel(Feeler* feeler, const Station& station) {
   return hand.F_H_W;
 }
 
-// One misread push shows that there is an error; all three together show which error.
+// One misread push shows that there is an error, but only all three together show which error.
 void ShowReading(Session* session, const PushTest& test, int axis) {
   session->Show(Formatted("  reads %s.", Name(test.readings()[static_cast<std::size_t>(axis)])));
   if (const std::string wrong = test.Wrong(axis); !wrong.empty())

@@ -1,6 +1,6 @@
-// Measurements in which a person beside the arms takes part: handle, bases, velocity loop, and the
-// push test. Each instructs the person and returns its result; the caller writes the machine file.
-// Errors: InputError (a refusal, or the person gives up), DeviceError.
+// Measurements in which a person next to the arms takes part: handle, bases, velocity loop, and the
+// push test. Each instructs the person and returns its result, and the caller writes the machine
+// file. The errors are InputError (a refusal, or the person gives up) and DeviceError.
 #pragma once
 
 #include <optional>
@@ -20,8 +20,8 @@ namespace predictor::commissioning {
 HandleCalibration MeasureHandle(Session* session, const Station& station);
 
 // The person touches points with the tip of arm A and then, in the same order, with the tip of arm
-// B. `tip`: its position in E [m], for both arms. Without a tip, the person is asked whether E's
-// origin touches the points.
+// B. `tip` is its position in E [m], for both arms. Without a tip, the program asks the person
+// whether E's origin touches the points.
 BaseCalibration MeasureBases(Session* session, const Station& a, const Station& b,
                              const std::optional<Vector3>& tip);
 
@@ -42,8 +42,9 @@ void SwingJoints(Session* session, Station* station, const SwingOptions& options
 // Fits the loop to the swings, and shows each joint's own result.
 LoopFit FitSwings(Session* session, const std::vector<LoopRecord>& records);
 
-// The person pushes the handle along the axes of the world. `other`: station of the other hand, or
-// null. Returns if every push is read correctly; otherwise throws with the pattern of the readings.
+// The person pushes the handle along the axes of the world. `other` is the station of the other
+// hand, or null. Returns if every push is read correctly. Otherwise throws with the pattern of the
+// readings.
 void TestPushes(Session* session, const Station& pushed, const Station* other);
 
 }  // namespace predictor::commissioning

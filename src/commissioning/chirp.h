@@ -21,9 +21,10 @@ class Chirp {
 
   double duration() const { return 2 * options_.time; }          // [s]
   double acceleration() const { return options_.acceleration; }  // maximum [rad/s²]
-  // Velocity at t after the start [rad/s]; 0 outside the duration. No heap.
+  // Returns the velocity at t after the start [rad/s], or 0 outside the duration. Does not use the
+  // heap.
   double v(double t) const noexcept;
-  // Largest distance from the start [rad].
+  // Returns the largest distance from the start [rad].
   double reach() const { return reach_; }
 
  private:

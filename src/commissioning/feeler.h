@@ -12,7 +12,8 @@ class Feeler {
   // Asks the person to take the hands off, and tares the sensor. Throws DeviceError if the sensor
   // is beyond its range.
   void Tare(Session* session);
-  // Uses the station's last reading. Returns kSensor if it cannot be used; the wrench is then zero.
+  // Uses the station's last reading. Returns kSensor if it cannot be used, in which case the wrench
+  // is zero.
   Status Feel(HandWrench* hand) noexcept;
 
  private:

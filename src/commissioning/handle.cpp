@@ -54,7 +54,7 @@ struct HandleFit {
 
   double mass() const { return force.value[6]; }
   Vector3 moment() const { return torque.value.segment<3>(6); }
-  // The unexplained part of a pose [N], [N·m].
+  // Returns the unexplained part of a pose [N], [N·m].
   double ForceError(std::size_t pose) const { return ErrorOf(force, pose); }
   double TorqueError(std::size_t pose) const { return ErrorOf(torque, pose); }
 
@@ -72,7 +72,7 @@ struct Allowed {
               kResidualPart * 9.81 * std::abs(fit.mass())),
         torque(kResidualTorque + sensor.torque_resolution +
                kResidualPart * 9.81 * fit.moment().norm()) {}
-  // The larger ratio of an error to its allowed value; above 1 the pose does not fit.
+  // Returns the larger ratio of an error to its allowed value. Above 1, the pose does not fit.
   double Share(const HandleFit& fit, std::size_t pose) const {
     return std::max(fit.ForceError(pose) / force, fit.TorqueError(pose) / torque);
   }
@@ -83,7 +83,7 @@ struct Allowed {
   }
 };
 
-// How strongly the poses tilt the handle: see kMinTilt.
+// Returns how strongly the poses tilt the handle (see kMinTilt).
 double TiltOf(Poses poses) {
   Vector3 mean = Vector3::Zero();
   for (const RestingPose& pose : poses)
@@ -97,8 +97,8 @@ double TiltOf(Poses poses) {
   return std::sqrt(std::max(0.0, modes.eigenvalues[1]));
 }
 
-// The pose whose removal gives the best fit of the others, and the worst ratio to the allowed value
-// in that fit.
+// Returns the pose whose removal gives the best fit of the others, and the worst ratio to the
+// allowed value in that fit.
 std::pair<std::size_t, double> OddOne(Poses poses, const Allowed& allowed) {
   std::pair<std::size_t, double> odd{0, HUGE_VAL};
   for (std::size_t i = 0; i < poses.size(); ++i) {

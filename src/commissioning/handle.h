@@ -35,10 +35,10 @@ class PoseRecorder {
   explicit PoseRecorder(const SensorSpec& sensor);
 
   void Begin();
-  // A new reading F_S, with the joints [rad] and the gravity [m/s²] in S at that time.
+  // Adds a new reading F_S, with the joints [rad] and the gravity [m/s²] in S at that time.
   void Add(const JointVector& q, const Vector3& g_S, const Wrench& F_S, double time);
   bool complete() const { return count_ >= kReadings; }
-  // Why the pose cannot be used and the remedy; "" if it can be used.
+  // Returns why the pose cannot be used, with the remedy, or "" if it can be used.
   std::string Refusal() const;
   RestingPose pose() const;
 
@@ -67,11 +67,12 @@ inline constexpr int kMinHandlePoses = 6;
 // that does not fit the others (the handle was touched), or readings that no handle explains.
 HandleCalibration CalibrateHandle(std::span<const RestingPose> poses, const SensorSpec& sensor);
 
-// The result as a table. `before`: the nominal payload.
+// Returns the result as a table. `before` is the nominal payload.
 std::string HandleText(const HandleCalibration& found, const HandlePayloadSpec& before);
 
-// The payload with the identified values. The inertia is scaled with the mass, because it is not
-// measured. If the handle has no weight (the arm subtracts it), the centre of mass is unchanged.
+// Returns the payload with the identified values. The inertia is scaled with the mass, because it
+// is not measured. If the handle has no weight (the arm subtracts it), the centre of mass is
+// unchanged.
 HandlePayloadSpec WithCalibration(const HandlePayloadSpec& before, const HandleCalibration& found);
 
 }  // namespace predictor::commissioning

@@ -35,7 +35,7 @@ constexpr std::size_t kMinBlock = 8;  // samples per block
 
 using Records = std::span<const LoopRecord>;
 
-// Response of a loop without delay to a record's commands; interpolated by Hermite cubics.
+// The response of a loop without delay to a record's commands, interpolated by Hermite cubics.
 class Response {
  public:
   Response(const LoopRecord& record, double bandwidth, double damping_ratio)
@@ -61,7 +61,7 @@ class Response {
   }
 
  private:
-  // Index of the step before t, and the position of t within the step.
+  // Returns the index of the step before t, and the position of t within the step.
   std::size_t Before(double t, double* x) const {
     const double steps = std::clamp(t / LoopRecord::kStep, 0.0, static_cast<double>(q_.size() - 1));
     const double k = std::min(std::floor(steps), static_cast<double>(q_.size() - 2));
@@ -161,7 +161,7 @@ class Fitter {
     return best;
   }
 
-  // Computed from the derivatives at the solution: (JᵀJ)⁻¹.
+  // Computes (JᵀJ)⁻¹ from the derivatives at the solution.
   Eigen::MatrixXd Spread() const {
     return Solve(H_, Eigen::MatrixXd::Identity(H_.rows(), H_.cols()));
   }
@@ -182,7 +182,7 @@ class Fitter {
     return cost;
   }
 
-  // The best of several initial loops.
+  // Returns the best of several initial loops.
   Parameters Start() const {
     Parameters best;
     double least = HUGE_VAL;
@@ -213,8 +213,8 @@ class Fitter {
   Eigen::VectorXd g_;
 };
 
-// Factor by which the variance of a mean of residuals exceeds the variance for the same number of
-// independent residuals.
+// Returns the factor by which the variance of a mean of residuals exceeds the variance for the same
+// number of independent residuals.
 double Excess(const std::vector<Eigen::VectorXd>& residuals) {
   double own = 0, excess = 1;
   for (const Eigen::VectorXd& r : residuals) own += r.squaredNorm();
@@ -227,7 +227,7 @@ double Excess(const std::vector<Eigen::VectorXd>& residuals) {
   return std::max(1.0, excess);
 }
 
-// Sum of squares about the best-fitting line.
+// Returns the sum of squares about the best-fitting line.
 double SquaresAboutLine(const Eigen::VectorXd& y) {
   const auto n = static_cast<double>(y.size());
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(y.size(), -1, 1);
@@ -248,7 +248,7 @@ long CountBlocks(const LoopRecord& record) {
   return blocks;
 }
 
-// The blocks whose motion exceeds the noise.
+// Returns the blocks whose motion exceeds the noise.
 LoopRecord FittableBlocks(const LoopRecord& record, double noise) {
   LoopRecord fittable{record.joint, record.u, {}, {}};
   ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
@@ -259,11 +259,11 @@ LoopRecord FittableBlocks(const LoopRecord& record, double noise) {
   return fittable;
 }
 
-// The unexplained share of the motion in the worst block. Blocks correspond to frequencies of the
-// chirp. An arm may apply each command one cycle earlier or later. Within a block, the accumulated
-// offset can be as large as the smallest motion of the fastest swings: some hundredths of a
-// milliradian, which contain no information about the loop. Therefore only blocks with a sufficient
-// share of the largest block's motion are evaluated.
+// Returns the unexplained share of the motion in the worst block. Blocks correspond to frequencies
+// of the chirp. An arm may apply each command one cycle earlier or later. Within a block, the
+// accumulated offset can be as large as the smallest motion of the fastest swings: some hundredths
+// of a milliradian, which contain no information about the loop. Therefore only blocks with a
+// sufficient share of the largest block's motion are evaluated.
 double Misfit(const LoopRecord& record, const Eigen::VectorXd& residual, double noise) {
   double largest = 0;
   ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {

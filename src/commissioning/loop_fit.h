@@ -23,13 +23,13 @@ struct LoopFit {
   double misfit = 0;    // unexplained share of the motion in the worst quarter of a second
   Gaps gaps;            // gaps of all records
   VelocityLoopSpec spec() const;
-  // Lag of slow motion: delay + 2ζ/ω [s].
+  // Returns the lag of slow motion, delay + 2ζ/ω [s].
   double lag() const;
 };
 
-// One loop for all records. Throws InputError if too much of the measurement is missing, if there
-// is too little motion, or if no such loop explains the motion (a hand on the handle, a limit of
-// speed or acceleration, or missing samples).
+// Fits one loop to all records. Throws InputError if too much of the measurement is missing, if
+// there is too little motion, or if no such loop explains the motion (because of a hand on the
+// handle, a limit of speed or acceleration, or missing samples).
 LoopFit FitLoop(std::span<const LoopRecord> records);
 
 std::string LoopText(const LoopFit& fit, const VelocityLoopSpec& before);

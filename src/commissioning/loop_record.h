@@ -22,7 +22,7 @@ struct Gaps {
     return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
   }
 };
-// "31 of 62104 ticks were late (0.0 %; longest interval 5.1 ms), 12 of 31052 samples ..."
+// Returns "31 of 62104 ticks were late (0.0 %; longest interval 5.1 ms), 12 of 31052 samples ...".
 std::string GapsText(const Gaps& gaps);
 
 // The record of one swing of one joint.
@@ -38,7 +38,7 @@ struct LoopRecord {
   Gaps gaps;
 };
 
-// The swings of an arm's joints, starting with the first joint; the last joints may be missing.
+// The swings of an arm's joints, starting with the first joint. The last joints may be missing.
 struct Swings {
   int joints = 0;  // number of joints of the arm; 0: not known yet
   std::vector<LoopRecord> records;
@@ -49,11 +49,12 @@ struct Swings {
 // Makes a record from ticks at arbitrary times: a command holds until the next.
 class LoopRecorder {
  public:
-  // period: sample period of the arm [s].
+  // period is the sample period of the arm [s].
   LoopRecorder(int joint, double period) : period_(period) { record_.joint = joint; }
-  // due: scheduled time in the session. time: time of the command [s]. Both ascend. u [rad/s].
+  // due: the scheduled time in the session. time: the time of the command [s]. Both ascend. u is in
+  // [rad/s].
   void AddCommand(double due, double time, double u);
-  // A new sample measured at `time` [s].
+  // Adds a new sample measured at `time` [s].
   void AddSample(double time, double q) { record_.samples.push_back({time, q}); }
   // Times are relative to the first command.
   LoopRecord Finish() &&;
@@ -66,7 +67,8 @@ class LoopRecorder {
   std::vector<double> dues_, times_, commands_;
 };
 
-// Noise of a sample [rad]: of the joint at rest before its first command, or its resolution.
+// Returns the noise of a sample [rad]: that of the joint at rest before its first command, or its
+// resolution.
 double NoiseOf(const LoopRecord& record);
 
 }  // namespace predictor::commissioning

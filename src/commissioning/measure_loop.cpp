@@ -34,8 +34,9 @@ class Swing {
     watch->Begin();
   }
 
-  // The record; empty if the key was released or the swing was interrupted. In every case the arm
-  // is brought to rest, and the person is notified if the swing did not end as planned.
+  // Returns the record, or no value if the key was released or the swing was interrupted. In every
+  // case, the arm is brought to rest, and the person is notified if the swing did not end as
+  // planned.
   std::optional<LoopRecord> Run() try {
     const double begin = session_->Now();
     for (double now = begin; now - begin < chirp_.duration() + 2 * kRest; now = session_->Now()) {
@@ -132,7 +133,8 @@ bool Consents(Consent* consent, Session* session, double until) {
   return false;
 }
 
-// continues: the previous joint was measured to its end, so the person may still be consenting.
+// If `continues`, the previous joint was measured to its end, so the person may still be
+// consenting.
 void Await(Consent* consent, Session* session, const std::string& joint, bool continues) {
   if (continues && Consents(consent, session, session->Now() + kHeldOn)) {
     session->Show(joint + " starts immediately, because the key or device is still held.");

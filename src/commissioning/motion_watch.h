@@ -25,12 +25,12 @@ struct EnablingContact {
 class Consent {
  public:
   Consent(char key, const EnablingContact& contact) : key_(key), held_(key), contact_(contact) {}
-  // Call in each step. key: a newly received key, or 0. now [s].
+  // Call this in each step. key: a newly received key, or 0. now is in [s].
   bool Update(char key, double now);
-  // From now [s] there is no consent until the key has been silent and the device has been
+  // From `now` [s] on, there is no consent until the key has been silent and the device has been
   // released.
   void Revoke(double now);
-  // What the person must do to consent, according to the last Update: "hold s".
+  // Returns what the person must do to consent, according to the last Update, such as "hold s".
   std::string Wanted() const;
 
  private:
@@ -65,13 +65,13 @@ class MotionWatch {
 
   // Asks the person to take the hands off.
   void Tare(Session* session) { feeler_.Tare(session); }
-  // Call at rest. Throws InputError if something presses on the handle.
+  // Call this at rest. Throws InputError if something presses on the handle.
   void Begin();
-  // Call in each step after reading the arm. due [s]: scheduled time of the session. If something
-  // would stop a run, throws an error with a sentence for the person: InputError for people's
-  // actions, DeviceError for devices, HeldUp.
+  // Call this in each step after reading the arm. due [s] is the scheduled time of the session. If
+  // something would stop a run, throws an error with a sentence for the person: InputError for
+  // people's actions, DeviceError for devices, or HeldUp.
   void Check(double due);
-  // The permitted part of a command [rad/s].
+  // Returns the permitted part of a command [rad/s].
   JointVector Bounded(const JointVector& v);
 
  private:

@@ -26,7 +26,7 @@ double Quantile(std::vector<double> x, double part) {
 // Collects the arrivals of one stream of samples.
 class Arrivals {
  public:
-  // now [s]. Returns true for a new sample.
+  // now is in [s]. Returns true for a new sample.
   bool Look(std::uint64_t sequence, double age, double now) {
     if (std::isfinite(age)) ages_.push_back(age);
     if (any_ && sequence == last_) return false;
@@ -41,7 +41,7 @@ class Arrivals {
     time_ = now;
     return true;
   }
-  // Time since the last new sample, or since `start` [s].
+  // Returns the time since the last new sample, or since `start` [s].
   double Silence(double now, double start) const { return now - (any_ ? time_ : start); }
 
   SampleTimes Finish() const {
@@ -66,7 +66,7 @@ class Arrivals {
   bool any_ = false;
 };
 
-// Mean and standard deviation of the new readings.
+// The mean and the standard deviation of the new readings.
 class WrenchMean {
  public:
   void Add(const Wrench& F) {
@@ -173,12 +173,12 @@ class Prober {
   const ProbeOptions& options_;
 };
 
-// Compares measured rates; 0: not measured.
+// Compares measured rates, of which 0 means not measured.
 bool DiffersMuch(double rate, double said) {
   return rate > 0 && std::abs(rate - said) > kRatePart * said;
 }
 
-// `rate`: the rate of the device's version or, if the version does not determine it, the measured
+// `rate` is the rate of the device's version or, if the version does not determine it, the measured
 // rate.
 void CompareRate(double rate, double said, const std::string& key, Probed* probed) {
   if (!DiffersMuch(rate, said)) return;

@@ -13,8 +13,8 @@
 
 namespace predictor::commissioning {
 
-// Functions that connect to arms and sensors (devices/connect.h; tests use other functions). Each
-// throws DeviceError. The sensor is null if the arm has its own.
+// The functions that connect to arms and sensors (devices/connect.h, but tests use other
+// functions). Each throws DeviceError. The sensor is null if the arm has its own.
 struct Connector {
   std::function<std::unique_ptr<Arm>(const MachineArm&, Network*)> arm;
   std::function<std::unique_ptr<WrenchSensor>(const MachineArm&, Network*)> sensor;
@@ -56,7 +56,7 @@ std::vector<Probed> ProbeMachine(const Machine& machine, const Connector& connec
                                  Network* network, const ProbeOptions& options = {});
 
 bool AllAnswer(const std::vector<Probed>& probed);
-// True if all devices that answer match the machine file.
+// Returns whether all devices that answer match the machine file.
 bool AllMatch(const std::vector<Probed>& probed);
 
 std::string ProbeText(const std::vector<Probed>& probed);

@@ -14,7 +14,7 @@ constexpr double kNoOne = 1;  // limit for the pushed handle when the other hand
 
 using Readings = std::array<AxisReading, PushTest::kAxes>;
 
-// The axis along which a force clearly points, or none.
+// Returns the axis along which a force clearly points, or none.
 AxisReading DirectionOf(const Vector3& force) noexcept {
   int axis = 0;
   const double most = force.cwiseAbs().maxCoeff(&axis);
@@ -23,7 +23,7 @@ AxisReading DirectionOf(const Vector3& force) noexcept {
   return {static_cast<std::int8_t>(axis), force[axis] < 0, false};
 }
 
-// R such that reading = R · push. Each column is one of W's axes, possibly negative.
+// Returns R such that reading = R · push. Each column is one of W's axes, possibly negative.
 Matrix3 MatrixOf(const Readings& readings) {
   Matrix3 R = Matrix3::Zero();
   for (int i = 0; i < 3; ++i) {

@@ -19,8 +19,8 @@ struct AxisReading {
   bool operator==(const AxisReading&) const = default;
 };
 
-// Test of one handle: the person pushes along +x, +y and +z of W, one after the other. It receives
-// the estimated wrenches of the hands. No heap, no exception.
+// The test of one handle: the person pushes along +x, +y and +z of W, one after the other. It
+// receives the estimated wrenches of the hands. Does not use the heap or throw.
 class PushTest {
  public:
   static constexpr double kMinForce = 5,
@@ -32,23 +32,23 @@ class PushTest {
 
   enum class Hint : std::uint8_t { kNone, kPush, kSofter, kStraighter, kLetGo };
 
-  // pushed, other: wrenches F_H_W of the pushed handle and of the other one (zero if there is
-  // none). dt: time since the last call [s].
+  // pushed, other: the wrenches F_H_W of the pushed handle and of the other one (zero if there is
+  // none). dt: the time since the last call [s].
   void Update(const Wrench& pushed, const Wrench& other, double dt) noexcept;
 
-  // The current axis, to be pushed in its + direction; kAxes when done.
+  // Returns the current axis, to be pushed in its + direction, or kAxes when done.
   int axis() const noexcept { return axis_; }
   bool done() const noexcept { return axis_ == kAxes; }
-  // True if every push was read correctly. Only valid when done.
+  // Returns whether every push was read correctly. It is valid only when done.
   bool passed() const noexcept;
   const std::array<AxisReading, kAxes>& readings() const noexcept { return readings_; }
   Hint hint() const noexcept { return hint_; }  // the person's next action
 
-  // Not for the tick: how the push along this axis, 0 … 2, was misread; "" if it was read correctly
-  // or has not been made yet.
+  // Returns how the push along this axis, 0 … 2, was misread, or "" if it was read correctly or has
+  // not been made yet. It must not be called in a tick.
   std::string Wrong(int axis) const;
-  // Not for the tick: the pattern of the readings and the remedy; "" if the test passed or is not
-  // done.
+  // Returns the pattern of the readings and the remedy, or "" if the test passed or is not done. It
+  // must not be called in a tick.
   std::string Refusal() const;
 
  private:
@@ -62,9 +62,9 @@ class PushTest {
   Hint hint_ = Hint::kLetGo;
 };
 
-// "+x", "−y".
+// Returns "+x" or "−y", for example.
 const char* Name(const AxisReading& reading) noexcept;
-// The current instruction to the person.
+// Returns the current instruction to the person.
 const char* Sentence(PushTest::Hint hint) noexcept;
 
 }  // namespace predictor::commissioning

@@ -1,4 +1,5 @@
-// The dialogue with a person at a terminal beside the arms, and the timing of a session.
+// Conducts the dialogue with a person at a terminal next to the arms, and determines the timing of
+// a session.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +18,8 @@ class Person {
  public:
   virtual ~Person() = default;
   virtual void Show(const std::string& line) = 0;
-  // A key that was pressed since the last call; 0: none. Never waits. Buffered keys are returned
-  // one per step, which is too fast for a HeldKey.
+  // Returns a key that was pressed since the last call, or 0 for none. It never waits. Buffered
+  // keys are returned one per step, which is too fast for a HeldKey.
   virtual char Key() = 0;
 };
 
@@ -29,32 +30,33 @@ class Session {
  public:
   static constexpr double kStep = 0.001;  // [s]
 
-  // All outlive the session.
+  // All arguments must outlive the session.
   Session(Network* network, Person* person, std::vector<Station*> stations)
       : network_(network), person_(person), stations_(std::move(stations)) {}
 
-  // Called in each step before the arms are read. moves: one of the arms moves. Returns why no arm
-  // may continue to move, or "". Used for a watchdog.
+  // Sets a function that is called in each step before the arms are read, for a watchdog. moves:
+  // whether one of the arms moves. The function returns why no arm may continue to move, or "".
   void OnStep(std::function<std::string(bool moves)> step) { on_step_ = std::move(step); }
 
   double Now() const { return 1e-9 * static_cast<double>(network_->Now()); }
-  // Scheduled time of the last step, a whole number of steps even if the step was late [s].
+  // Returns the scheduled time of the last step, a whole number of steps even if the step was late
+  // [s].
   double due() const { return 1e-9 * static_cast<double>(due_); }
   void Show(const std::string& line) { person_->Show(line); }
 
-  // The next millisecond of the clock, in which all arms stand still and are read. This and the
+  // Waits for the next millisecond of the clock, in which all arms rest and are read. This and the
   // functions below throw DeviceError, and InputError if the person gives up.
   void Step();
-  // The same, but one arm receives the joint velocities [rad/s] that `command` computes from the
-  // latest reading; its exceptions are passed on. A caller that moves an arm must always bring it
-  // to rest by BringToRest.
+  // As above, but one arm receives the joint velocities [rad/s] that `command` computes from the
+  // latest reading. Exceptions of `command` are passed on. A caller that moves an arm must always
+  // bring it to rest with BringToRest.
   void Step(Station* moving, const std::function<JointVector()>& command);
-  // Brings the arm to rest from its last commanded velocities: the fastest joint decelerates by
-  // `deceleration` [rad/s²], the others in proportion. Waits until the joints stand still, and ends
+  // Brings the arm to rest from its last commanded velocities. The fastest joint decelerates by
+  // `deceleration` [rad/s²], and the others in proportion. Waits until the joints rest, and ends
   // the motion. Does not ask the person anything, and does not throw. Returns the outcome as text
   // for the person.
   std::string BringToRest(Station* moving, double deceleration);
-  // The key of the last step; 0: none.
+  // Returns the key of the last step, or 0 for none.
   char key() const { return key_; }
 
   // Waits for one of the keys.

@@ -16,19 +16,20 @@ class Station {
   static constexpr double kGravity = kStandardGravity;  // [m/s²]
   static constexpr double kOld = 0.2;                   // a sample this old cannot be used [s]
 
-  // sensor: null if the arm has its own. Throws DeviceError if there is no wrench or the arm's
+  // sensor is null if the arm has its own. Throws DeviceError if there is no wrench or the arm's
   // flange differs from the model, and InputError for an invalid model or a different number of
   // joints.
   Station(int hand, const MachineArm& spec, std::unique_ptr<Arm> arm,
           std::unique_ptr<WrenchSensor> sensor);
 
-  // Call once per millisecond: reads the arm and commands it to stand still. An arm that a person
+  // Call this once per millisecond. It reads the arm and commands it to rest. An arm that a person
   // guides reports that it cannot move. This is accepted as long as its samples are new. Throws
   // DeviceError.
   void Watch();
   // Reads an arm that is about to move. Here every fault of the arm is a DeviceError.
   void Sense() { Read(true); }
-  // Sends a command [rad/s]; call after Sense. Throws DeviceError if the arm does not accept it.
+  // Sends a command [rad/s]. Call this after Sense. Throws DeviceError if the arm does not accept
+  // it.
   void Move(const JointVector& v);
   // Brings the arm to rest in spite of any other fault. motion: false ends its motion. Returns
   // false if the arm does not accept it or its samples are old.
@@ -40,17 +41,17 @@ class Station {
   const DeviceFacts& facts() const { return arm_->facts(); }
   const RobotModel& model() const { return *model_; }
 
-  // The reading of the last Watch or Sense.
+  // Returns the reading of the last Watch or Sense.
   const ArmReading& reading() const { return reading_; }
   const WrenchReading& wrench() const { return wrench_; }
   bool fresh_joints() const { return fresh_joints_; }
   bool fresh_wrench() const { return fresh_wrench_; }
-  // The sample as in a run, at rest.
+  // Returns the sample as the devices of a run would return it for an arm at rest.
   ArmSample sample() const;
   Pose EndEffectorPose() const;
   Pose HandlePose() const;
   Vector3 GravityInSensor() const;  // gravity in axes of S [m/s²]
-  // Speed of the handle per speed of a joint [m].
+  // Returns the speed of the handle per speed of a joint [m].
   double Lever(int joint) const;
 
  private:

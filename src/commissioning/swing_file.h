@@ -1,4 +1,4 @@
-// Measured swings, kept beside the machine file until its loop is written, so that an interrupted
+// Stores measured swings next to the machine file until its loop is written, so that an interrupted
 // session need not be repeated. Only `calibrate loop` reads them.
 #pragma once
 
@@ -11,8 +11,8 @@ namespace predictor::commissioning {
 
 class SwingFile {
  public:
-  // MACHINE.swings-left or MACHINE.swings-right. `of` is a hash of the arm; swings recorded for a
-  // different arm are ignored.
+  // The file is MACHINE.swings-left or MACHINE.swings-right. `of` is a hash of the arm. Swings
+  // recorded for a different arm are ignored.
   SwingFile(const std::filesystem::path& machine, const std::string& hand, std::string of)
       : path_(machine.string() + ".swings-" + hand), of_(std::move(of)) {}
 
@@ -25,7 +25,7 @@ class SwingFile {
   };
   // Does not throw: a file that cannot be read counts as absent.
   Kept Load() const;
-  // date: one word. Throws InputError; the old file is then unchanged.
+  // date is one word. Throws InputError, in which case the old file is unchanged.
   void Save(const Swings& swings, const std::string& date) const;
   void Remove() const noexcept;
 

@@ -18,15 +18,16 @@ inline constexpr const char* kOutlivesTheRun = "outlives_the_run";
 // at most 15 characters, as shown by `ps`.
 int ChildMain(const char* name, const std::function<void(const Json& start)>& serve);
 
-// Call before any foreign data is read. Enters the first stage of the sandbox (process/sandbox.h);
-// GiveUpRights continues with the second stage and reports the protections that this system lacks.
+// Call this before any data from elsewhere is read. Enters the first stage of the sandbox
+// (process/sandbox.h). GiveUpRights continues with the second stage and reports the protections
+// that this system lacks.
 void Prepare(const Preparation& may);
 
-// Call when everything is read and the port is open. From then on the process cannot open files,
-// start processes, make connections, or affect other processes. If the user was root, it becomes
-// "nobody". The process ends with the run, except with kOutlivesTheRun. Restrictions that this
-// system does not support are reported to the run. `who`: "The viewer". Throws std::runtime_error
-// if root's rights cannot be given up.
+// Call this when everything has been read and the port is open. From then on, the process cannot
+// open files, start processes, make connections, or affect other processes. If the user was root,
+// it becomes "nobody". The process ends with the run, except with kOutlivesTheRun. Restrictions
+// that this system does not support are reported to the run. `who` is "The viewer", for example.
+// Throws std::runtime_error if root's rights cannot be given up.
 void GiveUpRights(const Json& start, const std::string& who);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// Lines of JSON between the run and a process beside it.
+// Sends lines of JSON between the run and a process alongside it.
 #pragma once
 
 #include <sys/socket.h>
@@ -15,9 +15,9 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr std::size_t kLongestControlLine = 4u << 20;  // a scenario is at most 1 MiB
 
-// Writes a line. With `wait`, blocks until all is written; otherwise writes only what fits without
-// blocking. Returns false if the other side has closed the channel or, without `wait`, if part of
-// the line was not written.
+// Writes a line. With `wait`, it blocks until everything is written. Otherwise it writes only what
+// fits without blocking. Returns false if the other side has closed the channel or, without `wait`,
+// if part of the line was not written.
 inline bool SendLine(int descriptor, const Json& line, bool wait) {
   const std::string text = line.dump() + "\n";
   for (std::size_t sent = 0; sent < text.size();) {

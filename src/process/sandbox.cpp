@@ -23,7 +23,7 @@ namespace {
 
 // ---- Landlock: restricts what a process may access in the file system and on the network
 
-// The numbers are the same on every architecture; older headers lack them.
+// The numbers are the same on every architecture, but older headers lack them.
 constexpr long kCreateRuleset = 444, kAddRule = 445, kRestrictSelf = 446;
 constexpr std::uint32_t kAskVersion = 1;
 constexpr int kPathBeneath = 1;
@@ -44,7 +44,7 @@ struct [[gnu::packed]] PathRule {
   std::int32_t folder = -1;
 };
 
-// All rights that a version of Landlock can refuse.
+// Returns all rights that a version of Landlock can refuse.
 Ruleset EverythingOf(long version) {
   Ruleset all;
   all.files = Bit(13) - 1;
@@ -73,7 +73,7 @@ bool Allow(int rules, const std::filesystem::path& path, std::uint64_t access) {
   return added;
 }
 
-// Allows only what `may` lists; everything else that this kernel's Landlock can refuse is refused.
+// Allows only what `may` lists. Everything else that this kernel's Landlock can refuse is refused.
 // Returns false if the kernel has no Landlock.
 bool EnterLandlock(const Preparation& may) {
   const long version = syscall(kCreateRuleset, nullptr, 0, kAskVersion);
@@ -147,7 +147,7 @@ class List {
   bool good_ = false;
 };
 
-// Argument `index`, an int, has the value `bits` in the bits of `mask`.
+// Requires that argument `index`, an int, has the value `bits` in the bits of `mask`.
 scmp_arg_cmp Has(unsigned index, std::uint32_t mask, std::uint32_t bits) {
   return {index, SCMP_CMP_MASKED_EQ, mask, bits};
 }
@@ -159,8 +159,8 @@ void AllowPartly(List* list) {
   for (const std::uint32_t command : {F_GETFD, F_SETFD, F_GETFL, F_SETFL})
     for (const char* name : {"fcntl", "fcntl64"}) list->Allow(name, {Is(1, command)});
   for (const std::uint32_t command : {FIONBIO, FIONREAD}) list->Allow("ioctl", {Is(1, command)});
-  // Only to the peer to which the socket is connected. Without this rule, sending on a TCP socket
-  // could also open a connection.
+  // Data may be sent only to the peer to which the socket is connected. Without this rule, sending
+  // on a TCP socket could also open a connection.
   list->Allow("sendto", {Has(3, MSG_FASTOPEN, 0), {4, SCMP_CMP_EQ, 0, 0}});
   list->Allow("sendmsg", {Has(2, MSG_FASTOPEN, 0)});
   // abort() signals its own thread.

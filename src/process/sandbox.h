@@ -34,8 +34,8 @@ struct Preparation {
 //
 // First stage, entered before any foreign data is read. Paths that do not exist are ignored.
 std::string EnterPreparation(const Preparation& may);
-// Second stage: files and sockets that are open remain usable (reading, writing, accepting). No
-// file or port can be opened, and no file can be looked up.
+// In the second stage, files and sockets that are open remain usable (reading, writing, accepting).
+// No file or port can be opened, and no file can be looked up.
 std::string EnterSandbox();
 
 }  // namespace predictor

@@ -115,7 +115,7 @@ class Child {
     }
   }
 
-  // The child's status as returned by waitpid.
+  // Returns the child's status as waitpid returns it.
   int Wait() {
     int status = 0;
     while (waitpid(id_, &status, 0) < 0 && errno == EINTR) {

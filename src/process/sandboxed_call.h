@@ -26,7 +26,8 @@ struct SandboxedLimits {
 // sandbox (process/sandbox.h), may read only `readable`, and inherits no descriptors. It is killed
 // when it exceeds a limit, so the caller waits at most `max_time`. Throws SandboxedFailure if the
 // child crashes or exceeds a limit, or with the message of an exception that `produce` threw. The
-// caller must check the bytes, because the file's author may control the child. Not for the tick.
+// caller must check the bytes, because the file's author may control the child. It must not be
+// called in a tick.
 std::vector<std::byte> CallSandboxed(const std::vector<std::filesystem::path>& readable,
                                      const SandboxedLimits& limits,
                                      const std::function<std::vector<std::byte>()>& produce);

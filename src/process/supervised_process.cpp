@@ -69,7 +69,7 @@ std::vector<std::string> Environment() {
   return variables;
 }
 
-// Starts this program again with these descriptors, numbered from kBoardDescriptor (negative:
+// Starts this program again with these descriptors, numbered from kBoardDescriptor (negative for
 // none). Throws std::runtime_error.
 pid_t Spawn(std::string subcommand, const std::array<int, 4>& descriptors) {
   posix_spawn_file_actions_t actions;
@@ -93,7 +93,7 @@ pid_t Spawn(std::string subcommand, const std::array<int, 4>& descriptors) {
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
-  // Ctrl-C at the terminal is meant for the run, which then ends the process itself.
+  // Ctrl-C at the terminal is meant for the run, which then ends the process by itself.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
 
   std::string program = "predictor";
@@ -313,7 +313,7 @@ int SupervisedProcess::Impl::Reap() {
   return status;
 }
 
-// The messages are only shown to the user; nothing else depends on them.
+// The messages are only shown to the user, and nothing else depends on them.
 void SupervisedProcess::Impl::Hear(const Json& line) {
   if (line.contains("error")) {
     error = SaidFilter::Shortened(Text(line, "error"));

@@ -29,8 +29,8 @@ struct ChildSetup {
   std::function<void(const Json& line)> hear;
   // Longest pause before a restart. The pause grows after each short-lived start.
   std::chrono::milliseconds longest_pause{60'000};
-  // Counts the process's signs of life, in shared memory; null if it gives none. A short silence is
-  // reported; a longer one ends the process.
+  // Counts the process's signs of life in shared memory, or null if it gives none. A short silence
+  // is reported, and a longer one ends the process.
   const std::atomic<std::uint32_t>* beats = nullptr;
   std::string without = "the run continues";  // describes the state of the run while there is no
                                               // such process
@@ -53,7 +53,7 @@ class SupervisedProcess {
   // or if it does not read. In the latter case part of the line may have been sent, so no further
   // lines should be sent.
   bool Ask(const Json& line);
-  // Ends the process immediately; it is then started again.
+  // Ends the process immediately. It is then started again.
   void Kill();
   // Sets `key` of ChildSetup::start to `value`, so the process receives it if it is started again.
   void Remember(const std::string& key, const Json& value);

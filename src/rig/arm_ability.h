@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// The largest share, 0 to 1, of a load for which at_rest + share · load stays within lower ...
-// upper. If at_rest is outside: 1 if the load brings the value back, otherwise 0.
+// Returns the largest share, 0 to 1, of a load for which at_rest + share · load stays within lower
+// ... upper. If at_rest is outside, returns 1 if the load brings the value back, and otherwise 0.
 inline double LargestShare(double at_rest, double load, double lower, double upper) {
   if (load == 0) return 1;
   return std::clamp(((load > 0 ? upper : lower) - at_rest) / load, 0.0, 1.0);

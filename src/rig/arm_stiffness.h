@@ -1,6 +1,7 @@
-// Stiffness of the hand from that of the arm's joints, by posture.
+// Computes the stiffness of the hand from that of the arm's joints, by posture.
 //
-// Marks of the figures: V, checked against a copy; R, recalled from the literature; D, our choice.
+// Marks at the figures state their origin. V: checked against a copy. R: quoted from memory of the
+// literature. D: our choice.
 #pragma once
 
 #include "core/types.h"
@@ -12,36 +13,35 @@ struct ArmPoints {
   Vector3 shoulder, elbow, hand;
 };
 
-// An arm as three joints that together move the hand in all directions: the shoulder and the elbow
-// turn about the normal of the plane through the three points, and the shoulder turns about an axis
-// in that plane, perpendicular to the line to the hand. A rotation about that line itself (the
-// swivel) does not move the hand. In the order of the rows and columns below: lateral, shoulder,
+// An arm as three joints that together move the hand in all directions. The shoulder and the elbow
+// rotate about the normal of the plane through the three points, and the shoulder rotates about an
+// axis in that plane, perpendicular to the line to the hand. A rotation about that line itself (the
+// swivel) does not move the hand. The order of the rows and columns below is lateral, shoulder,
 // elbow.
 struct ArmAxes {
   Vector3 lateral, normal;  // unit vectors; of a straight arm, any normal
 };
 ArmAxes AxesOf(const ArmPoints& arm);
-// dx = J dq of the hand [m/rad].
+// Returns J with dx = J dq of the hand [m/rad].
 Matrix3 HandJacobian(const ArmPoints& arm, const ArmAxes& axes);
 
-// K_J = -∂τ/∂q [N·m/rad] of muscles that produce the torques τ [N·m], in the order above.
-// Shoulder and elbow: Tee, Burdet, Chew & Milner, Biol. Cybern. 90 (2004) 368, after Gomi & Osu
-// 1998 (R), its symmetric part. It was measured in the horizontal plane with a supported arm; that
-// the lateral joint is as stiff as the shoulder is D.
-// Reflexes are part of what was measured.
+// Returns K_J = -∂τ/∂q [N·m/rad] of muscles that produce the torques τ [N·m], in the order above.
+// Shoulder and elbow are the symmetric part of Tee, Burdet, Chew & Milner, Biol. Cybern. 90 (2004)
+// 368, after Gomi & Osu 1998 (R). It was measured in the horizontal plane with a supported arm, and
+// includes reflexes. That the lateral joint is as stiff as the shoulder is D.
 Matrix3 JointStiffness(const Vector3& torque);
 
-// Symmetric part of K_x = J⁻ᵀ (K_J - ∂Jᵀ/∂q F) J⁻¹ [N/m], computed as the inverse of the compliance
-// J (K_J - ∂Jᵀ/∂q F)⁻¹ Jᵀ, so that a straight arm needs no special case. F: force of the handle on
-// the hand [N]. The joints' part is at least kMinJointStiffness, and the hand's eigenvalues are
-// within kMinHandStiffness to kMaxHandStiffness: 50 to 600 in relaxed and 1000 in co-contracted
-// arms (Mussa-Ivaldi 1985; Tsuji 1995; R).
+// Returns the symmetric part of K_x = J⁻ᵀ (K_J - ∂Jᵀ/∂q F) J⁻¹ [N/m], computed as the inverse of
+// the compliance J (K_J - ∂Jᵀ/∂q F)⁻¹ Jᵀ, so that a straight arm needs no special case. F is the
+// force of the handle on the hand [N]. The joints' part is at least kMinJointStiffness, and the
+// hand's eigenvalues are within kMinHandStiffness to kMaxHandStiffness: 50 to 600 in relaxed and
+// 1000 in co-contracted arms (Mussa-Ivaldi 1985; Tsuji 1995; R).
 Matrix3 HandStiffness(const ArmPoints& arm, const Matrix3& joint_stiffness, const Vector3& F);
 inline constexpr double kMinJointStiffness = 1;                            // [N·m/rad] (D)
 inline constexpr double kMinHandStiffness = 50, kMaxHandStiffness = 1000;  // [N/m]
 
-// D = 2 ζ √M √K [N·s/m], with matrix square roots: the damping ratio is ζ along each principal
-// direction.
+// Returns D = 2 ζ √M √K [N·s/m] with matrix square roots, so that the damping ratio is ζ along each
+// principal direction.
 Matrix3 HandDamping(const Matrix3& stiffness, double mass, double damping_ratio);
 
 }  // namespace predictor

@@ -12,7 +12,7 @@
 namespace predictor {
 namespace {
 
-// Time without a message from a page after which its hands let go [s].
+// After this time without a message from a page, its hands let go [s].
 constexpr double kSilence = 0.250;
 constexpr double kMaxForce = 25;          // maximum force of a hand [N]
 constexpr double kMaxTorque = 2;          // [N·m]
@@ -39,14 +39,14 @@ HandSpec HandOf(const Scenario& scenario) {
   return hand;
 }
 
-// Follows a pose that arrives in steps; its velocity is continuous.
+// Follows a pose that arrives in steps, with a continuous velocity.
 class SmoothPose {
  public:
   void Reset(const Pose& X) noexcept { X_ = X, V_.setZero(); }
   void Step(const Pose& goal, double dt) noexcept {
     const double w = 2 * 3.14159265358979323846 * kSmoothing;
     const Vector6 error = PoseError(goal, X_);
-    // Implicit in the velocity, and therefore stable for any step.
+    // The step is implicit in the velocity, and therefore stable for any step size.
     V_ = (V_ + dt * w * w * error) / (1 + 2 * w * dt + w * w * dt * dt);
     X_.p += dt * V_.head<3>();
     X_.q = (RotationFromVector(dt * V_.tail<3>()) * X_.q).normalized();

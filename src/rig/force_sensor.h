@@ -9,8 +9,9 @@
 
 namespace predictor {
 
-// Wrench that the rigid handle itself exerts on the sensor: its weight minus its rate of change of
-// momentum, about S, in axes of S. `sensor` is the motion of S. gravity [m/s²] acts along −z of W.
+// Returns the wrench that the rigid handle itself exerts on the sensor: its weight minus its rate
+// of change of momentum, about S, in axes of S. `sensor` is the motion of S. gravity [m/s²] acts
+// along −z of W.
 Wrench HandleLoad(const HandlePayloadSpec& handle, const FrameMotion& sensor, double gravity);
 
 // reading = quantum[ delay(low-pass(true wrench)) + bias + white noise ], clipped at the range.
@@ -18,7 +19,7 @@ class ForceSensor {
  public:
   static constexpr double kMaxDelay = 0.05;  // [s]
 
-  // dt: sampling time [s], at least 1 ms. `random` draws the noise.
+  // dt is the sampling time [s], at least 1 ms. `random` draws the noise.
   ForceSensor(const SensorSpec& spec, const Wrench& bias, double dt, RandomStream random);
 
   // Resets to the steady state under the wrench F_S.

@@ -38,7 +38,7 @@ class HandModel {
   // `name` identifies the hand's random streams.
   HandModel(const HandSpec& spec, HandInertia inertia, std::uint64_t seed, const std::string& name);
 
-  // Resets to a free hand; dt is the step time [s].
+  // Resets to a free hand. dt is the step time [s].
   void Reset(double dt) noexcept;
   // Advances by one step and returns the wrench F_H_W on the handle, which moves as `handle` says.
   Wrench Step(const HandGoal& goal, const FrameMotion& handle) noexcept {
@@ -57,7 +57,7 @@ class HandModel {
 
  private:
   void StepGrip(bool hold, double grip_time) noexcept;
-  // K e + D de/dt, with e and its rate in W.
+  // Returns K e + D de/dt, with e and its rate in W.
   Vector3 Impedance(const Vector3& error, const Vector3& rate,
                     const ArmAbility* arm) const noexcept;
 

@@ -26,7 +26,8 @@ enum class AfterRelease {
 std::vector<IntendedSample> IntendedPath(const Scenario& scenario, const Pose& X_WO,
                                          AfterRelease after, double step);
 
-// Whether a hand grips again after all hands let go. Only then does the motion in between matter.
+// Returns whether a hand grips again after all hands have let go. Only then does the motion in
+// between matter.
 bool GripsAgain(const Scenario& scenario);
 
 }  // namespace predictor

@@ -28,7 +28,7 @@ struct OperatorInput {
 };
 
 struct OperatorOutput {
-  // Wrench of each hand on its handle, including the hand's inertia.
+  // The wrench of each hand on its handle, including the hand's inertia.
   std::array<Wrench, kHands> F_H_W = {Wrench::Zero(), Wrench::Zero()};
   std::array<double, kHands> grip = {0, 0};  // s(t) in [0, 1]
   // Effective mass that holds the handle: s · M_h [kg]
@@ -44,7 +44,7 @@ struct OperatorOutput {
 class Operator {
  public:
   virtual ~Operator() = default;
-  // Uses no heap and no lock, and throws no exception.
+  // Does not use the heap or a lock, and does not throw.
   virtual void Step(const OperatorInput& input, OperatorOutput* output) noexcept = 0;
   virtual void Reset() noexcept = 0;
   virtual void Archive(StateArchive& a) noexcept = 0;

@@ -26,7 +26,7 @@ class OperatorBody {
   // The scenario has a body and a stance. Throws InputError if no adult has such a body.
   explicit OperatorBody(const Scenario& scenario);
 
-  // A rested person (except for body.fatigue) in a comfortable posture.
+  // Returns to a rested person (except for body.fatigue) in a comfortable posture.
   void Reset() noexcept;
   // Advances by dt [s]. `holds`: the hands that hold their handles.
   void Step(const std::array<FrameMotion, kHands>& handle, const std::array<bool, kHands>& holds,
@@ -41,7 +41,7 @@ class OperatorBody {
   // direction.
   void LimitForces(const std::array<FrameMotion, kHands>& handle,
                    std::array<Vector3, kHands>* forces) const noexcept;
-  // The wrenches that the hands exert, by which muscles stiffen and tire.
+  // Takes the wrenches that the hands exert, with which muscles stiffen and tire.
   void Feel(const std::array<Wrench, kHands>& F_H_W) noexcept;
 
   void Archive(StateArchive& a) {
@@ -61,7 +61,7 @@ class OperatorBody {
   void UpdateStanding() noexcept;
   void Tire(double time) noexcept;
   void Smooth(double dt) noexcept;
-  // Strength of a joint in both directions in the present posture, rested [N·m].
+  // Returns the strength of a joint in both directions in the present posture, when rested [N·m].
   JointAbility StrengthOf(int hand, int joint, const person::ArmAngles& angles) const noexcept;
   Vector3 GripOf(int hand, const person::Placement& at) const noexcept;  // in S
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLongestStep = 0.001;  // [s]
 
-// The longest step of at most 1 ms that divides a tick evenly.
+// Returns the longest step of at most 1 ms that divides a tick evenly.
 double StepTime(double rate) {
   const double tick = 1 / rate;
   return tick / std::max(1.0, std::ceil(tick / kLongestStep - 1e-9));

@@ -17,25 +17,27 @@ class Rig {
   static constexpr double kWatchdog =
       0.020;  // an arm without a command for longer comes to rest [s]
 
-  // `start`: initial joint positions of each arm [rad]. An arm exists if the scenario has its
-  // handle. `person`: nullptr if no person holds the handles. Throws InputError.
+  // `start` contains the initial joint positions of each arm [rad]. An arm exists if the scenario
+  // has its handle. `person` is nullptr if no person holds the handles. Throws InputError.
   Rig(const Scenario& scenario, const std::array<JointVector, kHands>& start,
       std::unique_ptr<Operator> person);
   ~Rig();
 
-  // What the controllers of the arms and sensors report now. An arm reports a fault if its last
-  // command was not finite or had the wrong number of joints. Uses no heap or lock; does not throw.
+  // Reads what the controllers of the arms and sensors report now. An arm reports a fault if its
+  // last command was not finite or had the wrong number of joints. Does not use the heap or a lock,
+  // and does not throw.
   void Read(DeviceSample* sample) noexcept;
   // Takes the command and advances by dt [s] in steps of 1 ms (shorter if the tick is shorter). An
-  // arm without values in the command is commanded to stand still.
+  // arm without values in the command is commanded to rest. Does not use the heap or a lock, and
+  // does not throw.
   void Step(const DeviceCommand& command, double dt) noexcept;
   // Advances by dt [s] without a command. After kWatchdog, the arms come to rest by themselves.
   void Pass(double dt) noexcept;
 
   void Archive(StateArchive& a) noexcept;
 
-  // Ground truth, for tests and evaluation only: the handles' motion, the hands' wrench F_H_W (the
-  // reading of a perfect sensor at the grip), the grip, and the script's action.
+  // The ground truth, for tests and evaluation only: the handles' motion, the hands' wrench F_H_W
+  // (the reading of a perfect sensor at the grip), the grip, and the script's action.
   const std::array<FrameMotion, kHands>& true_handles() const;
   const OperatorOutput& true_operator() const;
 

@@ -17,10 +17,11 @@ class Script {
   void Reset() noexcept;
   // Begins all actions that are due at `run_time` [s] and have not begun yet.
   void Begin(double run_time, Intent* intent) noexcept;
-  // Advances all active actions by dt [s]; `pace` as in Action::Advance. Actions that need a hold
-  // are abandoned when no hand holds the object.
+  // Advances all active actions by dt [s]. `pace` is as in Action::Advance. Actions that need a
+  // hold are abandoned when no hand holds the object.
   void Advance(double dt, double pace, Intent* intent) noexcept;
-  // Index in the scenario's script of the active action that began last; -1: none.
+  // Returns the index in the scenario's script of the active action that began last, or -1 for
+  // none.
   int current() const noexcept;
   void Archive(StateArchive& a) noexcept { a(entries_); }
 

@@ -23,9 +23,11 @@ class FrameReader {
   static constexpr std::uint32_t kLongestPayload = 64 * 1024;
 
   void Feed(std::string_view bytes) { buffer_.append(bytes); }
-  // The next complete frame; empty while it is incomplete, or once the stream is unrecoverable.
+  // Returns the next complete frame, or nothing while it is incomplete or once the stream is
+  // unrecoverable.
   std::optional<RosFrame> Next();
-  // A frame announced an invalid length, so the rest of the stream cannot be parsed.
+  // Returns whether a frame announced an invalid length, so that the rest of the stream cannot be
+  // parsed.
   bool broken() const { return broken_; }
 
  private:

@@ -16,7 +16,7 @@ std::string Say(const char* level, const std::string& text) {
   return Command(level, {{"text", text}});
 }
 
-// A string member of a command's JSON; empty if the member is missing or not a string.
+// Returns a string member of a command's JSON, or "" if the member is missing or not a string.
 std::string Text(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_string() ? found->get<std::string>() : "";
@@ -83,7 +83,7 @@ std::string RosSession::Subscribe(const std::string& topic, const std::string& t
   return Say("__warn", "There is no topic " + topic.substr(0, 100) + ". Request the topic list.");
 }
 
-// A std_msgs/Bool: one byte, which in ROS 2 follows a header of four bytes.
+// The message is a std_msgs/Bool: one byte, which in ROS 2 follows a header of four bytes.
 std::string RosSession::OnMessage(const RosFrame& frame) {
   if (frame.destination != RosTopics::kStop) return "";
   const std::size_t header = dialect_ == RosDialect::kRos2 ? 4 : 0;

@@ -1,4 +1,4 @@
-// The protocol state of one ROS-TCP client: its messages and the answers to it. Uses no sockets.
+// The protocol state of one ROS-TCP client: its messages and the answers to it. It uses no sockets.
 #pragma once
 
 #include <functional>
@@ -15,16 +15,16 @@ class RosSession {
  public:
   static constexpr std::size_t kMaxTopics = 64;  // limit of the topics subscribed to or announced
 
-  // on_stop is called when a client requests a stop. `topics` is borrowed.
+  // The session calls on_stop when a client requests a stop. `topics` is borrowed.
   RosSession(const RosTopics* topics, RosDialect dialect, std::function<void()> on_stop);
 
-  // The first frame that the server sends.
+  // Returns the first frame that the server sends.
   std::string Greeting() const;
-  // The answers to a frame, encoded; empty if there are none.
+  // Returns the encoded answers to a frame, or "" without any.
   std::string OnFrame(const RosFrame& frame);
-  // The encoded frames of the publications that this client subscribed to.
+  // Returns the encoded frames of the publications to which this client has subscribed.
   std::string Select(const std::vector<RosPublication>& publications) const;
-  // Whether the client has neither subscribed to a topic nor announced or sent a stop.
+  // Returns whether the client has neither subscribed to a topic nor announced or sent a stop.
   bool idle() const { return subscribed_.empty() && !may_stop_; }
 
  private:

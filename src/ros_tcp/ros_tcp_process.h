@@ -13,13 +13,13 @@
 
 namespace predictor::ros_tcp {
 
-// The internal subcommand that turns this program into the server; only RosTcpProcess uses it.
+// The internal subcommand that turns this program into the server. Only RosTcpProcess uses it.
 inline constexpr const char* kRosTcpSubcommand = "ros-tcp-process";
 int RosTcpMain();
 
 class RosTcpProcess {
  public:
-  // Shows a message to the user; called from a separate thread.
+  // Shows a message to the user. It is called from a separate thread.
   using Notify = std::function<void(const std::string& text)>;
 
   // Starts the server with the same privileges as the viewer's process and waits until it accepts

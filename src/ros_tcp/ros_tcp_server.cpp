@@ -48,7 +48,7 @@ std::string Everybody(const std::string& text) {
          "machine's address.";
 }
 
-// Parses "192.0.2.0/24"; text without a slash is a single address.
+// Parses "192.0.2.0/24". A text without a slash is a single address.
 Network ParseNetwork(const std::string& text) {
   const std::size_t slash = text.find('/');
   in_addr address{};
@@ -128,7 +128,7 @@ struct RosTcpServer::Impl {
   Socket listener, wake;
   std::uint16_t port = 0;
   std::list<Client> clients;
-  // Offset from the records' monotonic clock to Unix time [ns].
+  // The offset from the records' monotonic clock to Unix time [ns].
   std::uint64_t to_unix_ns = UnixNow() - NanosecondsOf(Clock::now().time_since_epoch());
   std::uint64_t shown = 0;
   std::atomic<bool> stop{false};
@@ -151,7 +151,7 @@ void RosTcpServer::Impl::Open() {
   port = ntohs(address.sin_port);
 }
 
-// Whether a new client gets a seat; an idle client may lose its seat to it.
+// Returns whether a new client gets a seat. An idle client may lose its seat to it.
 bool RosTcpServer::Impl::MakeRoom(std::uint32_t address) {
   std::vector<Seat> taken;
   for (const Client& client : clients) taken.push_back({client.address, client.session.idle()});
@@ -173,7 +173,7 @@ void RosTcpServer::Impl::Accept() {
   if (!allowed || !MakeRoom(address)) return;
   const int yes = 1;  // send each frame at once: the connector pauses for 10 ms between reads
   setsockopt(accepted.fd(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  // Do not wait for acknowledgements from a machine that has disappeared.
+  // The server must not wait for acknowledgements from a machine that has disappeared.
   setsockopt(accepted.fd(), SOL_SOCKET, SO_KEEPALIVE, &yes, sizeof yes);
   const auto patience = static_cast<unsigned>(options.silence.count());
   setsockopt(accepted.fd(), IPPROTO_TCP, TCP_USER_TIMEOUT, &patience, sizeof patience);

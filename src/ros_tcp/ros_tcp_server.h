@@ -1,5 +1,5 @@
-// ROS-TCP server for Unity's ROS-TCP-Connector 0.7.0; needs no ROS. Its clients may read and may
-// stop the run.
+// A ROS-TCP server for Unity's ROS-TCP-Connector 0.7.0, which needs no ROS. Its clients may read
+// and may stop the run.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@ namespace predictor::ros_tcp {
 
 struct RosTcpOptions {
   std::uint16_t port = 10000;  // 0: any free port
-  // Networks such as 192.0.2.0/24 (/8 or narrower); loopback is always allowed.
+  // Networks such as 192.0.2.0/24 (/8 or narrower). Loopback is always allowed.
   std::vector<std::string> allow;
   RosDialect dialect = RosDialect::kRos1;
   double rate = 60;  // maximum [Hz]; the connector's queue is unbounded
@@ -36,7 +36,7 @@ class RosTcpServer {
   ~RosTcpServer();
   std::uint16_t port() const;
   // Serves in this thread until Stop, which any thread may call, or until the other end of the
-  // descriptor `lifeline` (-1: none) is closed.
+  // descriptor `lifeline` (-1 for none) is closed.
   void Run(int lifeline = -1);
   void Stop();
 

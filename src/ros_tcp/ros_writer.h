@@ -13,7 +13,7 @@ enum class RosDialect {
   kRos2,  // CDR, little-endian: each number is aligned to its size
 };
 
-// "ROS1", "ROS2"
+// Returns "ROS1" or "ROS2".
 const char* Name(RosDialect dialect);
 
 class RosWriter {

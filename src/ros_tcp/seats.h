@@ -23,7 +23,7 @@ struct Seating {
   std::size_t victim = 0;  // the client that loses its seat, for kReplace
 };
 
-// Finds a seat for a new client from `address`; `taken` is in order of arrival. The idle client
+// Finds a seat for a new client from `address`. `taken` is in order of arrival. The idle client
 // that connected first loses its seat. An address that already holds its share of the seats gets
 // another seat only from one of its own idle clients. A client that is not idle never loses its
 // seat.

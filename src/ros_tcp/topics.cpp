@@ -66,7 +66,7 @@ std::size_t RosTopics::Index(const std::string& name) const {
   return i;
 }
 
-// Arrow from the handle along the force or the torque's axis, coloured by its share of the
+// Draws an arrow from the handle along the force or the torque's axis, coloured by its share of the
 // threshold.
 RosMarker RosTopics::Arrow(const TickRecord& r, std::size_t hand, bool torque) const {
   const HandRecord& h = r.hands[hand];

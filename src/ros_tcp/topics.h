@@ -29,11 +29,12 @@ struct RosPublication {
 //   tracking                         [left, right] distances of real and virtual handles [m]
 class RosTopics {
  public:
-  // joints: names of the cobot's joints. object_start: start of the guidance path, in W [m].
+  // joints: the names of the cobot's joints. object_start: the start of the guidance path, in W
+  // [m].
   RosTopics(const Scenario& scenario, std::vector<std::string> joints, const Vector3& object_start);
 
   const std::vector<RosTopic>& list() const { return list_; }
-  // All messages of this record. `sec` and `nanosec` are its time on the system's clock.
+  // Returns all messages of this record. `sec` and `nanosec` are its time on the system's clock.
   std::vector<RosPublication> Publish(const TickRecord& record, RosDialect dialect,
                                       std::uint32_t sec, std::uint32_t nanosec) const;
 
@@ -51,7 +52,7 @@ class RosTopics {
   std::vector<RosTopic> list_;
 };
 
-// Green below half of the threshold, orange up to 80 % of it, red above.
+// Returns green below half of the threshold, orange up to 80 % of it, and red above.
 std::array<float, 4> WarningColor(double share);
 
 }  // namespace predictor::ros_tcp

@@ -11,13 +11,14 @@ namespace predictor {
 class ArmBrake {
  public:
   ArmBrake() = default;
-  // hold: delay before the arm begins to brake [s].
+  // hold: the delay before the arm begins to brake [s].
   ArmBrake(const StopProfile& begun, double hold, double dt);
   // Returns the factor for the next tick. common: the profile's factor in that tick. rate: the
   // profile's rate in that tick [m/s²]. behind: share of the initial speed by which this arm must
   // exceed the profile's speed in order to keep up with the other arm.
   double Next(double common, double rate, double behind) noexcept;
-  // Distance from now to rest if the arm brakes as hard as the profile's bounds allow [m].
+  // Returns the distance from now to rest if the arm brakes as hard as the profile's bounds allow
+  // [m].
   double RemainingDistance() const noexcept;
   bool done() const noexcept { return factor_ == 0; }
   double factor() const noexcept { return factor_; }  // factor of the last tick

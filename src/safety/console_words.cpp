@@ -24,7 +24,7 @@ bool Asks(const TickRecord& record, RunEvent event) {
   return (record.requests >> static_cast<int>(event) & 1U) != 0;
 }
 
-// "left handle 12.0 N, 0.10 N·m; right ..."
+// Returns "left handle 12.0 N, 0.10 N·m; right ...", for example.
 std::string Loads(const TickRecord& record) {
   std::string text;
   for (std::size_t i = 0; i < kHands; ++i) {
@@ -80,7 +80,7 @@ void ConsoleWords::AddFaults(const TickRecord& record,
   }
 }
 
-// A held key repeats its request; one message is shown until the key is released.
+// A held key repeats its request. One message is shown until the key is released.
 bool ConsoleWords::Again(RunEvent event, std::uint64_t tick) {
   std::uint64_t& reported = reported_[static_cast<std::size_t>(event)];
   const bool again = reported != 0 && tick - reported < again_;
@@ -106,7 +106,7 @@ void ConsoleWords::AddRefusal(const TickRecord& record,
   lines_.push_back(text);
 }
 
-// The state does not allow the request; while the arms follow a task, the request stops them.
+// The state does not allow the request. While the arms follow a task, the request stops them.
 void ConsoleWords::AddWrongTime(const TickRecord& record) {
   const bool begins = record.state == RunState::kStopping && state_ != RunState::kStopping;
   const bool stops = begins && FollowsTask(state_);
@@ -145,7 +145,7 @@ std::string ConsoleWords::Possible(const TickRecord& record) const {
   return fault ? text + " " + Message("console.arm_fault_free") : text;
 }
 
-// Danger first, then the cause, the advice and the keys.
+// The danger comes first, then the cause, the advice and the keys.
 void ConsoleWords::AddState(const TickRecord& record, const std::function<std::string()>& trouble) {
   const MessageValue state{"state", Name(record.state)};
   if (record.state == RunState::kSelfTest || record.state == RunState::kIdle ||

@@ -1,4 +1,4 @@
-// Messages for the operator at the console of real arms, derived from the records. Not for the
+// Derives messages for the operator at the console of real arms from the records. It is not for the
 // tick.
 #pragma once
 
@@ -23,13 +23,14 @@ class ConsoleWords {
     std::array<RunState, 2> granted;
   };
 
-  // enabling_device: the operator holds a device instead of a key. rate: tick rate [Hz].
+  // enabling_device: whether the operator holds a device instead of a key. rate: the tick rate
+  // [Hz].
   ConsoleWords(bool enabling_device, double rate)
       : enabling_device_(enabling_device), again_(static_cast<std::uint64_t>(0.6 * rate)) {}
 
-  // Call once per record, in order; returns lines to print (usually none). trouble: returns the
-  // devices' own description of their present fault, or "" if there is none; called only if it is
-  // printed.
+  // Call this once per record, in order. Returns lines to print (usually none). trouble: returns
+  // the devices' own description of their present fault, or "" if there is none. It is called only
+  // if the description is printed.
   std::vector<std::string> See(const TickRecord& record,
                                const std::function<std::string()>& trouble);
 

@@ -50,8 +50,8 @@ bool Guard::Trusted(const std::array<JointVector, kHands>& q,
   return true;
 }
 
-// Smallest factor by which the last command of both arms can be scaled in one tick without any
-// joint exceeding its acceleration bound.
+// Returns the smallest factor by which the last command of both arms can be scaled in one tick
+// without any joint exceeding its acceleration bound.
 double Guard::BrakingFactor() const noexcept {
   double relative = 1;
   for (std::size_t arm = 0; arm < kHands; ++arm) {
@@ -70,7 +70,7 @@ double Guard::Bound(int arm, int joint, double q, double v, int ticks) const noe
   const double a = bounds.acceleration[joint];
   const double slower = std::min(ticks * a * dt_, std::max(a * dt_, std::abs(last)));
   v = std::clamp(v, last - (last > 0 ? slower : a * dt_), last + (last < 0 ? slower : a * dt_));
-  // If a position is unknown, only the velocity bound applies; the command then brakes anyway.
+  // If a position is unknown, only the velocity bound applies. The command then brakes in any case.
   const double cap = bounds.velocity[joint];
   if (!std::isfinite(q)) return std::clamp(v, -cap, cap);
   const double up = std::min(cap, BrakingSpeed(bounds.upper[joint] - q, a, reaction_, dt_));

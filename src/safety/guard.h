@@ -9,50 +9,52 @@
 
 namespace predictor {
 
-// Hard bounds of one arm's joints; all vectors are empty for an absent arm.
+// The hard bounds of one arm's joints. All vectors are empty for an absent arm.
 struct JointBounds {
   JointVector lower, upper;  // [rad]
   JointVector velocity;      // [rad/s], > 0
   JointVector acceleration;  // [rad/s²], > 0
 };
 
-// Largest speed [rad/s] towards a limit at `distance` [rad] from which a joint, commanded every dt
-// [s], can stop before the limit with `acceleration` [rad/s²] and a reaction time of `reaction`
-// [s]. Until the joint reacts, it follows earlier commands, which are faster by at most
-// acceleration · reaction. 0 beyond the limit.
+// Returns the largest speed [rad/s] towards a limit at `distance` [rad] from which a joint,
+// commanded every dt [s], can stop before the limit with `acceleration` [rad/s²] and a reaction
+// time of `reaction` [s]. Until the joint reacts, it follows earlier commands, which are faster by
+// at most acceleration · reaction. Beyond the limit, the result is 0.
 double BrakingSpeed(double distance, double acceleration, double reaction, double dt) noexcept;
 
-// Reaction time [s] of a joint's velocity loop: the root mean square delay of its impulse response.
-// A joint that brakes at a constant rate overruns as far as a joint with this pure delay. With a
-// damping ratio below 0.8, the joint may still overshoot its limit by up to 1 mrad.
+// Returns the reaction time [s] of a joint's velocity loop, which is the root mean square delay of
+// its impulse response. A joint that brakes at a constant rate overruns as far as a joint with this
+// pure delay. With a damping ratio below 0.8, the joint may still overshoot its limit by up to 1
+// mrad.
 double ReactionTime(const VelocityLoopSpec& loop) noexcept;
 
 // Clamps a command so that it is finite, stays within the velocity bounds, differs from the last
 // command by at most one tick's acceleration, and always allows each joint to stop before its
 // limit. Beyond a limit, only motion back is allowed. If these conflict, the acceleration bound
 // yields. The guard computes with the nominal tick, so that a late or early tick cannot widen the
-// bounds; only braking after missed ticks may use more. If a tick may be late by x, increase the
+// bounds. Only braking after missed ticks may use more. If a tick may be late by x, increase the
 // reaction time by x.
 class Guard {
  public:
   Guard() = default;
-  // dt: nominal tick [s]. reaction: time from measuring a position until the joint reaches the
-  // resulting velocity [s], for the slower arm (ReactionTime plus other delays).
+  // dt: the nominal tick [s]. reaction: the time from measuring a position until the joint reaches
+  // the resulting velocity [s], for the slower arm (ReactionTime plus other delays).
   Guard(const std::array<JointBounds, kHands>& bounds, double dt, double reaction = 0);
-  // Bounds `v` at the measured q; both have one number per joint. Returns the number of altered
+  // Bounds `v` at the measured q. Both have one number per joint. Returns the number of altered
   // joints (0 in normal operation). If any number is missing or not finite, the whole command is
-  // discarded: both arms brake along the last command by one common factor. ticks: number of ticks
-  // since the last command; braking may use the acceleration of all of them. Uses no heap; does not
-  // throw.
+  // discarded, and both arms brake along the last command by one common factor. ticks: the number
+  // of ticks since the last command. Braking may use the acceleration of all of them. Does not use
+  // the heap or throw.
   int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
   // Scales `v` by `factor`. Both arms move from the last command towards the scaled command by one
   // common share: fully, unless a joint would exceed its acceleration bound. If the handles stay
   // below their speed cap at both ends, they stay below it in between. Returns the number of
-  // altered joints; 0 if a number is missing. Call before Apply. Uses no heap; does not throw.
+  // altered joints, or 0 if a number is missing. Call this before Apply. Does not use the heap or
+  // throw.
   int Slow(double factor, std::array<JointVector, kHands>* v) const noexcept;
   const std::array<JointVector, kHands>& last() const noexcept { return last_; }
-  // Whether the last command is so slow that the next one may be zero.
+  // Returns whether the last command is so slow that the next one may be zero.
   bool MayRestNext() const noexcept;
   void Reset() noexcept;  // the last command then counts as zero
   void Archive(StateArchive& a) noexcept { a(last_); }

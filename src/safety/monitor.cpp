@@ -16,7 +16,7 @@ class Worst {
   Worst(StopCause cause, double limit) : Worst(cause, limit, UsualQuantity(cause)) {}
   Worst(StopCause cause, double limit, Quantity quantity) : worst_{cause, -1, 0, limit, quantity} {}
   void Add(int hand, double value) noexcept { Add(hand, value, worst_.limit); }
-  // limit: the limit of this hand.
+  // limit is the limit of this hand.
   void Add(int hand, double value, double limit) noexcept {
     if (value <= limit) return;  // false if the value is not a number
     if (found_ && !(value - limit > worst_.value - worst_.limit)) return;
@@ -107,8 +107,9 @@ Status Monitor::Check(const MonitorInput& input) noexcept {
   return status;
 }
 
-// The first fault that requires power-off (S1). The most severe fault decides how a stop ends, even
-// if another fault is reported. If no task is being followed, this fault is the reported one.
+// Returns the first fault that requires power-off (S1). The most severe fault determines how a stop
+// ends, even if another fault is reported. If no task is being followed, this fault is the reported
+// one.
 Status Monitor::PowerOffFault(const MonitorInput& input, const Status& jump) const noexcept {
   if (jump.power_off) return jump;
   for (const Status* stage : {&input.device, &input.sensing, &input.simulation, &input.haptics})
@@ -127,7 +128,7 @@ Status Monitor::PowerOffFault(const MonitorInput& input, const Status& jump) con
   return Status::Ok();
 }
 
-// Only fresh readings count: a repeated packet contains no information about the sensor.
+// Only fresh readings count, because a repeated packet contains no information about the sensor.
 void Monitor::FollowSensors(const MonitorInput& input) noexcept {
   if (!input.sample) return;
   for (const int hand : input.present) {
@@ -281,7 +282,7 @@ Status Monitor::CheckWrenches(const MonitorInput& input) const noexcept {
   return force.status().ok() ? torque.status() : force.status();
 }
 
-// The sample that exceeds its age limit most.
+// Reports the sample that exceeds its age limit most.
 Status Monitor::CheckAge(const MonitorInput& input) const noexcept {
   Status worst;
   for (const int hand : input.present) {

@@ -15,7 +15,7 @@
 
 namespace predictor {
 
-// Everything the monitor checks. Written by the supervisor.
+// Everything that the monitor checks. The supervisor writes it.
 struct MonitorInput {
   Hands present;
   const DeviceSample* sample = nullptr;            // null in direct mode
@@ -34,7 +34,7 @@ struct MonitorInput {
   int missed_deadlines = 0;  // number of consecutive missed deadlines
 };
 
-// Time between samples of a device [s]; 0: it provides a sample in each tick.
+// The time between samples of a device [s], or 0 if it provides a sample in each tick.
 struct SamplePeriods {
   double arm = 0, sensor = 0;
 };
@@ -77,22 +77,22 @@ class Monitor {
   // commanded motion, plus this tolerance for the encoder [rad].
   static constexpr double kJumpFactor = 2.5, kJumpSlack = 0.002;
   // In RECOVERY, a hand's force may reach safety.force, or its smallest force since RECOVERY began
-  // plus this share of safety.force, whichever is higher; the torque likewise.
+  // plus this share of safety.force, whichever is higher. The same applies to the torque.
   static constexpr double kRecoveryRise = 1.0 / 3;
   // A sample is stale if its age exceeds this many periods of its device and also safety.max_age.
   // Losing one sample is acceptable, losing two is not.
   static constexpr double kMaxPeriods = 2.5;
 
-  // dt: tick [s]. detects_runaway: true if a sensor may be mounted or wired in the wrong
-  // orientation.
+  // dt: duration of a tick [s]. detects_runaway: whether a sensor may be mounted or wired in the
+  // wrong orientation.
   Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
           const std::array<bool, kHands>& sensor_has_noise, double dt,
           const std::array<SamplePeriods, kHands>& periods = {}, bool detects_runaway = false);
 
-  // The first fault of this tick in the order above; ok if there is none. Uses no heap; does not
-  // throw.
+  // Returns the first fault of this tick in the order above, or ok if there is none. Does not use
+  // the heap or throw.
   Status Check(const MonitorInput& input) noexcept;
-  // Whether joints jumped in the last Check, regardless of the fault that it returned.
+  // Returns whether joints jumped in the last Check, regardless of the fault that it returned.
   bool jumped() const noexcept { return jumped_; }
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept {
@@ -122,7 +122,7 @@ class Monitor {
     void Archive(StateArchive& a) noexcept { a(q, sequence, age, known); }
   };
 
-  // Smallest load of a hand since RECOVERY began [N], [N·m].
+  // The smallest load of a hand since RECOVERY began [N], [N·m].
   struct Load {
     double force = HUGE_VAL, torque = HUGE_VAL;
     void Archive(StateArchive& a) noexcept { a(force, torque); }

@@ -61,8 +61,9 @@ double OscillationDetector::UpdateAxis(double force, Axis* axis) const noexcept 
   return found;
 }
 
-// Whether y has passed −h, which completes the peak that began when it passed +h. The peak lies in
-// the middle of the time above +h. By symmetry, half of the sums over that time belong to it.
+// Returns whether y has passed −h, which completes the peak that began when it passed +h. The peak
+// lies in the middle of the time above +h. By symmetry, half of the sums over that time belong to
+// it.
 bool OscillationDetector::FindPeak(double y, Axis* axis) const noexcept {
   if (y > hysteresis_) {
     if (!axis->above) axis->at_rise = axis->now;

@@ -31,10 +31,11 @@ class OscillationDetector {
   static constexpr double kPeriodRatio = 1.5;  // longest over shortest of two successive periods
 
   OscillationDetector() = default;
-  // dt: time between calls of Update [s].
+  // dt is the time between calls of Update [s].
   OscillationDetector(const OscillationSpec& spec, double dt);
-  // force [N]: finite, axes of W. In the tick that completes a growing cycle, returns its amplitude
-  // [N], or the largest one if several axes complete a cycle. Otherwise returns 0. Uses no heap.
+  // force [N] is finite and in axes of W. In the tick that completes a growing cycle, returns its
+  // amplitude [N], or the largest one if several axes complete a cycle. Otherwise returns 0. Does
+  // not use the heap.
   double Update(const Vector3& force) noexcept;
   // The filter starts from the next force as if that force had always acted.
   void Reset() noexcept;

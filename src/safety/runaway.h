@@ -29,10 +29,10 @@ class RunawayDetector {
   static constexpr double kGrowing = 0.180, kTime = 0.080;  // [s]
 
   RunawayDetector() = default;
-  // cap: limit of a handle's speed [m/s]. dt: time between calls of Update [s].
+  // cap: the limit of a handle's speed [m/s]. dt: the time between calls of Update [s].
   RunawayDetector(double cap, double dt) : cap_(cap), dt_(dt) {}
-  // force: of the hand on its handle; velocity: of the handle; in W, finite. Returns whether the
-  // handle runs away. Uses no heap.
+  // force: that of the hand on its handle. velocity: that of the handle. Both are in W and finite.
+  // Returns whether the handle runs away. Does not use the heap.
   bool Update(const Vector3& force, const Vector3& velocity) noexcept;
   double speed() const noexcept { return speed_.fast; }        // after the low-pass filter [m/s]
   double threshold() const noexcept { return kSpeed * cap_; }  // [m/s]
@@ -53,8 +53,8 @@ class RunawayDetector {
 
   double cap_ = 0.25, dt_ = 0.001;
   Trend force_, speed_;
-  // Time for which both have grown, and the part of it above the thresholds; each decreases twice
-  // as fast as it increases [s].
+  // The time for which both have grown, and the part of it above the thresholds. Each decreases
+  // twice as fast as it increases [s].
   double growing_ = 0, time_ = 0;
 };
 

@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// Events of a run, and who may cause them. The receiver of a request checks that the sender may
-// make it; the table only contains the next state.
+// The events of a run, and who may cause them. The receiver of a request checks that the sender may
+// make it, while the table only contains the next state.
 enum class RunEvent : std::uint8_t {
   kStarted,           // program: process up, device answers
   kSelfTestPassed,    // program: sensors tared, samples fresh
@@ -26,7 +26,7 @@ enum class RunEvent : std::uint8_t {
 };
 inline constexpr int kRunEvents = 11;
 
-// "started", "self-test passed", ... as in docs/concepts/states.md.
+// Returns "started", "self-test passed", ... as in docs/concepts/states.md.
 const char* Name(RunEvent event);
 
 // Severity of the present or completed stop. The levels are ordered, and the most severe one wins.
@@ -39,7 +39,7 @@ struct RunCondition {
   bool operator==(const RunCondition&) const = default;
 };
 
-// "RUN", "STOPPING", "STOPPING (power off)", ...
+// Returns "RUN", "STOPPING", "STOPPING (power off)", ...
 const char* Name(RunCondition condition);
 
 struct Transition {
@@ -125,9 +125,9 @@ inline constexpr std::array kTransitions = {
     Transition{internal::kUnpowered, RunEvent::kReset, internal::kSelfTest},
 };
 
-// The next condition. If the table does not contain the event, the program has lost track of the
-// run. While the arms follow a task, such an event stops them and requests power-off; in any other
-// state it changes nothing.
+// Returns the next condition. If the table does not contain the event, the program has lost track
+// of the run. While the arms follow a task, such an event stops them and requests power-off. In any
+// other state, it changes nothing.
 constexpr RunCondition Next(RunCondition from, RunEvent event) noexcept {
   for (const Transition& t : kTransitions) {
     if (t.from == from && t.event == event) return t.to;
@@ -138,7 +138,7 @@ constexpr RunCondition Next(RunCondition from, RunEvent event) noexcept {
 class StateMachine {
  public:
   RunState state() const noexcept { return condition_.state; }
-  // Of the present or completed stop; otherwise kNone. Only kReset lowers it.
+  // Returns the level of the present or completed stop, and otherwise kNone. Only kReset lowers it.
   StopLevel level() const noexcept { return condition_.level; }
   // Applies Next. Returns whether state or level changed.
   bool Handle(RunEvent event) noexcept {

@@ -52,9 +52,9 @@ void StopController::Reset() noexcept {
   active_ = done_ = timed_out_ = seen_ = twists_known_ = twists_split_ = false;
 }
 
-// Bound of the handles' speed or acceleration, at most `max`, that keeps each joint within `share`
-// of its own bound. Joints and handles move in proportion to the commands that caused
-// `handle_speed` [m/s].
+// Returns a bound of the handles' speed or acceleration, at most `max`, that keeps each joint
+// within `share` of its own bound. Joints and handles move in proportion to the commands that
+// caused `handle_speed` [m/s].
 double StopController::Allowance(JointVector JointBounds::*bound, double share, double handle_speed,
                                  double max) const noexcept {
   for (std::size_t arm = 0; arm < kHands; ++arm) {
@@ -106,7 +106,8 @@ void StopController::Begin(const Status& cause, double time,
     brakes_[arm] = ArmBrake(profile_, both ? longest - overruns_[arm] : 0, dt_);
 }
 
-// Share of its initial speed by which each arm must speed up to keep up with the other arm.
+// Returns the share of its initial speed by which each arm must speed up to keep up with the other
+// arm.
 std::array<double, kHands> StopController::Behind(const StopGeometry& geometry,
                                                   int ticks) noexcept {
   std::array<double, kHands> behind = {}, speed = {};
@@ -135,7 +136,7 @@ std::array<double, kHands> StopController::Behind(const StopGeometry& geometry,
   return behind;
 }
 
-// geometry may be null.
+// `geometry` may be null.
 std::array<double, kHands> StopController::NextFactors(const StopGeometry* geometry,
                                                        int ticks) noexcept {
   std::array<double, kHands> factors{}, behind{};
@@ -169,7 +170,7 @@ Twist TwistOf(const Jacobian& J, const JointVector& v) noexcept {
   return V;
 }
 
-// Joint velocities that add `V` to the handle's twist, by damped least squares.
+// Returns joint velocities that add `V` to the handle's twist, by damped least squares.
 JointVector JointsFor(const Twist& V, const Jacobian& J) noexcept {
   constexpr double kDamping = 0.03;  // singular values below this are hardly used
   Vector6 weight;

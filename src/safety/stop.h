@@ -19,12 +19,13 @@ struct StopReport {
   double duration = 0;  // time from the decision until the handles rest, or until now [s]
 };
 
-// State of the handles where the arms will be when they obey the next command. Written by the
-// pipeline.
+// The state of the handles where the arms will be when they follow the next command. The pipeline
+// writes it.
 struct StopGeometry {
   std::array<Jacobian, kHands> J;  // Jacobian of each handle, axes of W; without columns: unknown
   std::array<Vector3, kHands> p_WH = {Vector3::Zero(), Vector3::Zero()};  // [m]
-  // Measured twists of the handles; valid only while both arms' samples can be trusted.
+  // The measured twists of the handles. They are valid only while both arms' samples can be
+  // trusted.
   bool measured = false;
   std::array<Twist, kHands> V_W = {Twist::Zero(), Twist::Zero()};
 };
@@ -40,9 +41,10 @@ struct StopGeometry {
 class StopController {
  public:
   // bounds: joint bounds, which a stop respects as well. If the handles' deceleration would need
-  // more than a joint's acceleration, both arms brake more gently instead of separating. lags:
-  // times by which the arms lag behind their commands [s]. overruns: distance that each arm travels
-  // after its command reaches zero, divided by its speed before [s]; defaults to the lags.
+  // more than a joint's acceleration, both arms brake more gently and do not separate. lags: the
+  // times by which the arms lag behind their commands [s]. overruns: the distance that each arm
+  // travels after its command reaches zero, divided by its speed before [s]. They default to the
+  // lags.
   StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
                  const std::array<double, kHands>& lags = {});
   StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
@@ -50,33 +52,35 @@ class StopController {
                  const std::array<double, kHands>& overruns);
 
   // Latches the fault and begins to brake. Until Reset, a further call only adds a fault to a stop
-  // that has none, because the operator must be shown the first fault. time: of the decision [s].
-  // last_command: last command that was sent [rad/s]. handle_speed [m/s], handle_rate [m/s²]: of
-  // the faster handle, as for StopProfile::Begin; a speed that is not finite counts as the cap.
-  // handle_twists: twists of the handles due to the last command; if omitted, computed from the
-  // first geometry. Uses no heap; does not throw.
+  // that has none, because the operator must be shown the first fault. time: that of the decision
+  // [s]. last_command: the last command that was sent [rad/s]. handle_speed [m/s], handle_rate
+  // [m/s²]: those of the faster handle, as for StopProfile::Begin. A speed that is not finite
+  // counts as the cap. handle_twists: the twists of the handles due to the last command. If
+  // omitted, they are computed from the first geometry. Does not use the heap or throw.
   void Begin(const Status& cause, double time, const std::array<JointVector, kHands>& last_command,
              double handle_speed, double handle_rate,
              const std::array<Twist, kHands>* handle_twists = nullptr) noexcept;
-  // Next command: the last command before the stop, scaled; zero once the profile is done. ticks:
-  // ticks since the last command; more than 1 after missed deadlines, since a stop follows elapsed
-  // time. Keeps the corrections made for earlier geometries. Uses no heap; does not throw.
+  // Computes the next command: the last command before the stop, scaled, or zero once the profile
+  // is done. ticks: the number of ticks since the last command, which is more than 1 after missed
+  // deadlines, since a stop follows elapsed time. Keeps the corrections made for earlier
+  // geometries. Does not use the heap or throw.
   void Next(std::array<JointVector, kHands>* v, int ticks = 1) noexcept;
-  // The same, corrected for the change of the arms' geometry. The twists of the handles are scaled
+  // As above, corrected for the change of the arms' geometry. The twists of the handles are scaled
   // like those of one rigid body, so that the handles keep their relative pose. The correction is
   // small (second order in the distance so far) and bounded.
   void Next(const StopGeometry& geometry, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
-  // X_WH: poses of the handles in W; those of absent ones are constant. in_motion: a driver still
-  // moves its arm. The handles are at rest once the commands are zero and no handle has moved
-  // (RestDetector) for kRestTime. The stop is done at that time, or at the latest kPatience after
-  // the commands became zero: an arm that still moves then does not obey.
+  // X_WH: the poses of the handles in W, which are constant for absent handles. in_motion: whether
+  // a driver still moves its arm. The handles are at rest once the commands are zero and no handle
+  // has moved (RestDetector) for kRestTime. The stop is done at that time, or at the latest
+  // kPatience after the commands became zero. An arm that still moves then does not follow its
+  // commands.
   void Observe(const std::array<Pose, kHands>& X_WH, bool in_motion = false) noexcept;
   void Reset() noexcept;
 
   bool active() const noexcept { return active_; }  // true from Begin until Reset
   bool done() const noexcept { return done_; }  // the handles are at rest, or the stop timed out
-  // Whether the stop timed out while an arm still moved.
+  // Returns whether the stop timed out while an arm still moved.
   bool timed_out() const noexcept { return done_ && timed_out_; }
   int mover() const noexcept { return rest_.mover(); }  // hand that moved last; −1: none
   bool commands_rest() const noexcept;
@@ -85,15 +89,15 @@ class StopController {
 
   static constexpr double kRestTime = 0.02;  // [s]
   static constexpr double kPatience = 0.5;   // [s]
-  // Largest speed of a handle that counts as at rest [m/s].
+  // The largest speed of a handle that counts as at rest [m/s].
   static constexpr double kMaxRestSpeed = RestDetector::kMaxMotion / kRestTime;
 
   static constexpr double kMaxCorrection = 0.5;  // share of the scaled command's size
-  // Share of the joints' acceleration that scaling uses; the rest is for the correction.
+  // The share of the joints' acceleration that scaling uses. The rest is for the correction.
   static constexpr double kShareOfJoints = 0.75;
-  // Largest extra distance that an arm travels compared with stopping alone, expressed as time at
-  // the speed at which the stop began [s] (7.5 mm at 0.25 m/s); and the time for which it follows
-  // after the profile ends [s].
+  // The largest extra distance that an arm travels compared with stopping alone, expressed as time
+  // at the speed at which the stop began [s] (7.5 mm at 0.25 m/s), and the time for which it
+  // follows after the profile ends [s].
   static constexpr double kMaxFollowing = 0.030, kMaxFollowingTime = 0.100;
 
  private:
@@ -102,7 +106,7 @@ class StopController {
   void BeginTwists(const StopGeometry& geometry) noexcept;
   std::array<double, kHands> Behind(const StopGeometry& geometry, int ticks) noexcept;
   std::array<double, kHands> NextFactors(const StopGeometry* geometry, int ticks) noexcept;
-  // Whether the arm follows a position: it then overruns less than it lags.
+  // Returns whether the arm follows a position. It then overruns less than it lags.
   bool MakesUp(std::size_t arm) const noexcept { return overruns_[arm] < lags_[arm]; }
 
   SafetySpec safety_;

@@ -46,7 +46,7 @@ double StopProfile::RateAt(double t) const noexcept {
 double StopProfile::Next() noexcept {
   if (done_) return 0;
   const double speed = SpeedAt(++tick_ * dt_);
-  // Otherwise, rounding could leave a residual speed of 1e-20 m/s.
+  // Without this, rounding could leave a residual speed of 1e-20 m/s.
   done_ = speed < 1e-12 * speed_ || tick_ * dt_ >= duration();
   return done_ ? 0 : speed / speed_;
 }

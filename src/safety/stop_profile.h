@@ -23,23 +23,24 @@ class StopProfile {
   static constexpr double kOvershoot = 1.25;  // largest factor
 
   StopProfile() = default;
-  // acceleration [m/s²], jerk [m/s³], cap of the speed [m/s], all at the handles; dt [s].
+  // acceleration [m/s²], jerk [m/s³] and cap of the speed [m/s] are all at the handles. dt is in
+  // [s].
   StopProfile(double acceleration, double jerk, double dt,
               double speed_cap = std::numeric_limits<double>::infinity());
-  // Begins from the handles' present speed and acceleration along their motion. speed [m/s]: of the
-  // faster handle (rotation counted at 0.2 m); rate [m/s²]: its derivative. If the speed is zero or
-  // not finite, the profile is at rest at once.
+  // Begins from the handles' present speed and acceleration along their motion. speed [m/s] is that
+  // of the faster handle (rotation counts at 0.2 m), and rate [m/s²] is its derivative. If the
+  // speed is zero or not finite, the profile is at rest at once.
   void Begin(double speed, double rate) noexcept;
-  // The factor for the next tick, in [0, kOvershoot]; 0 once at rest.
+  // Returns the factor for the next tick, in [0, kOvershoot], or 0 once at rest.
   double Next() noexcept;
-  // Speed [m/s] and rate [m/s²] of the curve at a time t [s] after Begin.
+  // Returns the speed [m/s] and the rate [m/s²] of the curve at a time t [s] after Begin.
   double SpeedAt(double t) const noexcept;
   double RateAt(double t) const noexcept;
-  // Whether the profile is at rest: the last factor was 0.
+  // Returns whether the profile is at rest, because the last factor was 0.
   bool done() const noexcept { return done_; }
-  // Time from Begin to rest [s].
+  // Returns the time from Begin to rest [s].
   double duration() const noexcept { return ramp_in_ + hold_ + ramp_out_; }
-  // Distance from Begin to rest [m].
+  // Returns the distance from Begin to rest [m].
   double Distance() const noexcept;
   double speed() const noexcept { return speed_; }  // speed at the beginning [m/s]
   double rate() const noexcept { return rate_; }    // [m/s²]

@@ -16,7 +16,7 @@ constexpr std::array<double, 2> kButterworth = {1.847759065022573, 0.76536686473
 }  // namespace
 
 void VibrationDetector::Section::Step(const Vector3& x, Vector3* high, Vector3* low) noexcept {
-  // The same filter section as in the detector of growing oscillations (oscillation.cpp).
+  // This is the same filter section as in the detector of growing oscillations (oscillation.cpp).
   *high = (x - (k + g) * s1 - s2) / (1 + g * (k + g));
   const Vector3 band = g * *high + s1;
   *low = g * band + s2;

@@ -9,7 +9,7 @@
 
 namespace predictor {
 
-// Input of the warnings. Written by the supervisor.
+// The input of the warnings. The supervisor writes it.
 struct WarningInput {
   Hands present;
   const DeviceSample* sample = nullptr;
@@ -32,12 +32,13 @@ class Warnings {
   static constexpr double kMaxDrift = 2;      // [N/min]
   static constexpr double kDriftTime = 5;     // [s]
 
-  // quiet: largest standard deviation of the force on a free handle [N]. dt: tick [s].
+  // quiet: the largest standard deviation of the force on a free handle [N]. dt: duration of a tick
+  // [s].
   Warnings(const std::array<double, kHands>& quiet, double dt) : quiet_(quiet), dt_(dt) {}
 
-  // Uses no heap; does not throw.
+  // Does not use the heap or throw.
   void Update(const WarningInput& input) noexcept;
-  // bits: one bit per Warning; values as in HandRecord.
+  // bits has one bit per Warning. The values are as in HandRecord.
   std::uint8_t bits(std::size_t hand) const noexcept { return bits_[hand]; }
   const std::array<double, kWarningValues>& values(std::size_t hand) const noexcept {
     return values_[hand];
@@ -45,7 +46,7 @@ class Warnings {
   void Archive(StateArchive& a) noexcept { a(arm_, sensor_, lines_, bits_, values_); }
 
  private:
-  // Counts over about the last second; older ones fade.
+  // Counts over about the last second. Older counts fade.
   struct Link {
     LinkCounts last;
     double known = 0;  // time since the first count [s]
