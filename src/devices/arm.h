@@ -30,9 +30,9 @@ struct ArmReading {
   std::uint64_t sequence = 0;  // counts the arm's samples
   double age = 1e9;            // age of q and v [s]
   bool fault = false;  // the arm cannot move: no power, protective stop, emergency stop, …
-  // True while the arm is being brought to rest in its own way: its driver still moves it, or it
-  // reports motion. A command to stand still would not be sent immediately. Always false for an arm
-  // that executes commands directly.
+  // Whether the arm is being brought to rest in its own way: its driver still moves it, or it
+  // reports motion. A command to rest would not be sent immediately. This is always false for an
+  // arm that executes commands directly.
   bool in_motion = false;
   // True if it does not obey commands yet: its controller either has not started the requested
   // motion or has not received the request. Always false for an arm that needs no request.
@@ -66,7 +66,7 @@ struct DeviceFacts {
   double rate = 0;          // rate of its samples [Hz]
   bool own_wrench = false;  // an arm that measures a wrench itself
   double watchdog = 0;      // the arm stops by itself after this time without commands [s]
-  // Limits of each joint that the driver enforces [rad/s], [rad/s²]; may be empty.
+  // The limits of each joint that the driver enforces [rad/s], [rad/s²]. They may be empty.
   std::vector<double> velocity = {}, acceleration = {};
   std::optional<ReportedPayload> payload = std::nullopt;  // set if the arm reports it
   std::optional<ReportedFlange> flange = std::nullopt;    // set if the arm reports it
@@ -80,19 +80,20 @@ class Arm {
  public:
   virtual ~Arm() = default;
   virtual const DeviceFacts& facts() const = 0;
-  // The newest sample. Returns kDevice if the connection is lost or the arm reports that it cannot
-  // move; the sample is then the last one, with its age.
+  // Reads the newest sample. Returns kDevice if the connection is lost or the arm reports that it
+  // cannot move. The sample is then the last one, with its age.
   virtual Status Read(ArmReading* reading) noexcept = 0;
-  // Joint velocities [rad/s], one set per tick; finite and limited by the guard. `motion`: the arm
-  // may move in this state. Otherwise v is zero, and the arm need not be in its motion mode.
+  // Sends joint velocities [rad/s], one set per tick, which are finite and limited by the guard.
+  // `motion`: whether the arm may move in this state. If not, v is zero, and the arm need not be in
+  // its motion mode.
   virtual Status Write(const JointVector& v, bool motion) noexcept = 0;
-  // Call in each tick. `wanted`: the run is UNPOWERED. When `wanted` becomes true, the robot is
-  // requested to cut its power. If it still reports power, ArmReading::keeps_power is set. A robot
-  // without such a request (a Franka) holds its position with power until its own enabling device
-  // or emergency stop is used.
+  // Call this in each tick. `wanted`: whether the run is UNPOWERED. When `wanted` becomes true, the
+  // robot is requested to cut its power. If it still reports power, ArmReading::keeps_power is set.
+  // A robot without such a request (a Franka) holds its position with power until someone uses its
+  // own enabling device or emergency stop.
   virtual void PowerOff(bool wanted) noexcept { static_cast<void>(wanted); }
-  // Text of the last fault for the user ("protective stop"); "" if there was no fault. Not for the
-  // tick.
+  // Describes the last fault for the user ("protective stop"), or returns "" if there was no fault.
+  // It must not be called in a tick.
   virtual std::string Trouble() const = 0;
 };
 

@@ -6,7 +6,7 @@
 namespace predictor {
 namespace {
 
-// The operator of a simulated rig, as specified by the scenario.
+// Makes the operator of a simulated rig, as specified by the scenario.
 std::unique_ptr<Operator> MakePerson(const Scenario& scenario) {
   if (scenario.operator_.type == "virtual" || scenario.operator_.type == "browser")
     return MakeOperator(scenario, HandInertia::kInWrench);

@@ -26,30 +26,32 @@ class Device {
  public:
   virtual ~Device() = default;
 
-  // Newest sample of each arm and sensor. Never blocks, allocates or throws. kDevice on a fault.
+  // Reads the newest sample of each arm and sensor. Returns kDevice on a fault. Never blocks,
+  // allocates or throws.
   virtual Status Read(DeviceSample* sample) noexcept = 0;
 
   // Sends joint velocities. Never blocks, allocates or throws. If no command arrives within the
   // device's own time-out, the arms stop by themselves.
   virtual Status Write(const DeviceCommand& command) noexcept = 0;
 
-  // State of its enabling device at the last Read. No heap, no exception.
+  // Returns the state of its enabling device at the last Read. Does not use the heap or throw.
   virtual Enabling enabling() const noexcept { return Enabling::kNone; }
 
-  // The current state of the simulated operator, for the record; null if a person holds the
-  // handles.
+  // Returns the current state of the simulated operator, for the record, or null if a person holds
+  // the handles.
   virtual const OperatorOutput* truth() const noexcept { return nullptr; }
 
   // Saves or loads the state of a simulated device. A real device has no state that could be
   // restored.
   virtual void Archive(StateArchive&) noexcept {}
 
-  // One line for the user: name, rates, versions.
+  // Returns one line for the user: name, rates, versions.
   virtual std::string Describe() const = 0;
 };
 
-// The simulated rig of a scenario. Throws InputError if the scenario is for real arms or lacks data
-// for the rig. `start`: joints at which its arms are parked (absent sides empty).
+// Makes the simulated rig of a scenario. Throws InputError if the scenario is for real arms or
+// lacks data for the rig. `start` contains the joints at which its arms are parked (absent sides
+// empty).
 std::unique_ptr<Device> MakeSimulatedDevice(const Scenario& scenario,
                                             const std::array<JointVector, kHands>& start);
 

@@ -14,8 +14,8 @@ class FaultLatch {
   Fault first() const noexcept { return first_.load(std::memory_order_acquire); }
   Fault worse() const noexcept { return worse_.load(std::memory_order_acquire); }
   bool any() const noexcept { return first() != Fault(); }
-  // True if the state of the arm is unknown or it was stopped by its own button: it must not be
-  // left holding.
+  // Returns whether the state of the arm is unknown or its own button stopped it, so that it must
+  // not remain powered.
   bool ends_without_power() const noexcept {
     return EndsWithoutPower(first()) || worse() != Fault();
   }

@@ -25,34 +25,35 @@ struct EnablingSource {
   int digital_input = 0;
 };
 
-// State of an enabling device that is wired to a digital input of the arm with this reading.
+// Returns the state of an enabling device that is wired to a digital input of the arm with this
+// reading.
 Enabling EnablingOf(const ArmReading& reading, int digital_input) noexcept;
 // An input counts as silent if its last report is older than this [s].
 inline constexpr double kInputAge = 0.025;
 
 // A tick is shorter than the period of most devices. Between two samples of an arm, its joints are
-// extrapolated by the last command as long as the sample is fresh; a wrench is held.
+// extrapolated by the last command as long as the sample is fresh, while a wrench is held.
 class RealDevice final : public Device {
  public:
-  // A sample is extrapolated for at most this time [s]; beyond it, the sample's age stops the run.
+  // A sample is extrapolated for at most this time [s]. Beyond it, the sample's age stops the run.
   static constexpr double kMaxExtrapolation = 0.010;
 
-  // Absent sides have no arm. `network`: connects to the devices. Throws DeviceError if an arm has
+  // Absent sides have no arm. `network` connects to the devices. Throws DeviceError if an arm has
   // no wrench or an enabling device is wired to an absent arm.
   RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kHands> sides,
              std::optional<EnablingSource> enabling = std::nullopt);
   ~RealDevice() override;
 
-  // Returns the first fault, kDevice or kSensor, with the hand; power_off is set if any fault
+  // Returns the first fault, kDevice or kSensor, with the hand. power_off is set if any fault
   // requires it.
   Status Read(DeviceSample* sample) noexcept override;
   Status Write(const DeviceCommand& command) noexcept override;
   Enabling enabling() const noexcept override;
   std::string Describe() const override;
-  // Facts of a hand's arm; null if the arm is absent.
+  // Returns the facts of a hand's arm, or null if the arm is absent.
   const DeviceFacts* arm_facts(int hand) const;
-  // Text of the faults that arms and sensors report, and the name of a silent device; "" without
-  // faults. Not for the tick.
+  // Describes the faults that arms and sensors report, and names a silent device. Returns ""
+  // without faults. It must not be called in a tick.
   std::string Trouble() const;
 
  private:

@@ -17,8 +17,8 @@ struct Standstill {
 
 // Our program on the controller: its watchdog (ur_script.h) and its stopj command.
 inline constexpr Standstill kUrStandstill{0.020, 10, 0.060};
-// 20 lost commands of one millisecond each, during which the arm continues with its last
-// acceleration. It then brakes by itself; the manufacturer publishes no deceleration, so this one
+// The arm loses 20 commands of one millisecond each, during which it continues with its last
+// acceleration. It then brakes by itself. The manufacturer publishes no deceleration, so this one
 // is assumed.
 inline constexpr Standstill kFrankaStandstill{0.020, 7, 0.060};
 

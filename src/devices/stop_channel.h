@@ -16,16 +16,16 @@ class StopChannel {
   enum class Link { kTalks, kSilent, kLost };
 
   virtual ~StopChannel() = default;
-  // Keeps the connection alive. Call at least ten times per second.
+  // Keeps the connection alive. Call this at least ten times per second.
   virtual Link Tend() noexcept = 0;
   // Returns false if the connection is lost.
   virtual bool Stop() noexcept = 0;
 };
 
 // Opens a stop channel to a UR at its program port. The channel sends a program that only brakes
-// and replaces the running one. Returns null for a robot that accepts only one client (Franka); it
-// stops by itself when that client is silent. Throws DeviceError. `network` must outlive the
-// channel.
+// and replaces the running one. Returns null for a robot that accepts only one client (Franka),
+// because it stops by itself when that client is silent. Throws DeviceError. `network` must outlive
+// the channel.
 std::unique_ptr<StopChannel> OpenStopChannel(const ArmConnection& arm, Network* network);
 
 }  // namespace predictor

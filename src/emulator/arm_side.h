@@ -16,8 +16,8 @@ class ArmSide {
   // Loads the arm of hand `i`. Throws InputError.
   ArmSide(const Scenario& scenario, int i, double dt);
 
-  // Computes kinematics and wrench from a sample. Returns kSensor if the reading cannot be used;
-  // the wrench is zero then. No heap, no throw.
+  // Computes kinematics and wrench from a sample. Returns kSensor if the reading cannot be used, in
+  // which case the wrench is zero. Does not use the heap or throw.
   Status Update(const ArmSample& sample) noexcept;
 
   // Predicts the kinematics at which the arm will obey the next command. An arm obeys a velocity

@@ -25,7 +25,7 @@ struct Emulator::Impl {
   void Write() noexcept;
   void Advance(const TickPlan& plan) noexcept;
   SavedState State() noexcept { return {pipeline, supervisor, data, device.get(), record.tick}; }
-  // Null: a person holds the handles.
+  // Returns null if a person holds the handles.
   const OperatorOutput* SimulatedOperator() const noexcept {
     return device ? device->truth() : &data.person;
   }

@@ -41,32 +41,33 @@ class Emulator {
   explicit Emulator(const Scenario& scenario, std::unique_ptr<Device> device = nullptr);
   ~Emulator();
 
-  // One tick of dt = 1/scenario.rate. `wall_ns`: monotonic clock at its start, 0 in virtual time;
-  // `missed`: number of consecutive deadlines that the loop missed. No heap, lock, blocking call,
-  // exception or logging. record() returns the record of the tick until the next tick.
+  // Executes one tick of dt = 1/scenario.rate. `wall_ns` is the monotonic clock at its start, or 0
+  // in virtual time. `missed` is the number of consecutive deadlines that the loop missed. Does not
+  // use the heap, a lock or a blocking call, and does not throw or log. record() returns the record
+  // of the tick until the next tick.
   void Tick(std::uint64_t wall_ns = 0, int missed = 0) noexcept;
 
-  // For a replay: what a controller outside the program answered in the tick that follows.
+  // Sets, for a replay, the answer of a controller outside the program in the tick that follows.
   void Play(const TickRecord& record) noexcept;
 
-  // Accepts an input for the next tick; at most kInputsPerTick between two ticks. Call only from
-  // the tick's thread. Returns false if the input is out of range or the operating rules refuse it.
-  // With real arms, align, start and reset are refused: a person at the rig requests them by
+  // Accepts an input for the next tick, at most kInputsPerTick between two ticks. Only the tick's
+  // thread may call this. Returns false if the input is out of range or the operating rules refuse
+  // it. With real arms, align, start and reset are refused: a person at the rig requests them by
   // Request, and must keep enabling (kEnable) while the arms may move.
   bool Submit(const RunInput& input) noexcept;
-  // True if the next tick accepts another input.
+  // Returns whether the next tick accepts another input.
   bool HasRoomForInput() const noexcept;
 
-  // Requests an event for the next tick; from any thread, without waiting. The record shows whether
-  // it was refused, and why.
+  // Requests an event for the next tick. Any thread may call this, and it does not wait. The record
+  // shows whether the request was refused, and why.
   void Request(RunEvent event) noexcept;
   // Brings the arms to rest as a stop does, but without a fault. May be called from any thread.
   void RequestEnd() noexcept;
 
   // Saves the complete state between two ticks. An emulator of the same scenario that loads it
   // continues identically bit for bit, given the same inputs and, with a real device, the same
-  // samples. Returns the size, at most kStateBytes; 0 if `to` is too small. No heap. Call only from
-  // the tick's thread.
+  // samples. Returns the size, at most kStateBytes, or 0 if `to` is too small. Does not use the
+  // heap. Only the tick's thread may call this.
   std::size_t SaveState(std::span<std::byte> to) noexcept;
   // Throws InputError if the bytes are not a state of this scenario and version.
   void LoadState(std::span<const std::byte> from);
@@ -76,8 +77,9 @@ class Emulator {
   StopLevel level() const;         // level of the current or last stop
   double run_time() const;         // [s]
   const StopReport& stop() const;  // report of the last stop
-  // Why ALIGN was refused in the last tick: the two parts that are too near to each other, the key
-  // in the scenario's file, and the remedy; "" if it was not refused. Not for the tick.
+  // Describes why ALIGN was refused in the last tick: the two parts that are too near to each
+  // other, the key in the scenario's file, and the remedy. Returns "" if it was not refused. It
+  // must not be called in a tick.
   std::string WhyNotAligned() const;
   const EmulatorSetup& setup() const;
   const Scenario& scenario() const;

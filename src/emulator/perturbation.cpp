@@ -17,8 +17,8 @@ constexpr double kSmoothing = 2;  // cutoff of that smoothing [Hz]
 
 }  // namespace
 
-// With s = time/T: the polynomials that carry a unit of initial position, velocity and acceleration
-// to zero, and 10 s³ − 15 s⁴ + 6 s⁵ towards the goal.
+// With s = time/T, these are the polynomials that carry a unit of initial position, velocity and
+// acceleration to zero, and 10 s³ − 15 s⁴ + 6 s⁵ towards the goal.
 QuinticMotion::Point QuinticMotion::At(double time) const noexcept {
   const double T = duration_;
   const double s = std::clamp(time / T, 0.0, 1.0);

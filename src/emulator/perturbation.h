@@ -46,18 +46,19 @@ struct PerturbationInput {
 
 class Perturbation {
  public:
-  // `margin`: predicted stability margin of the run. dt: tick [s]. Throws InputError if the margin
-  // is smaller than the scenario requires.
+  // `margin` is the predicted stability margin of the run. dt is the duration of a tick [s]. Throws
+  // InputError if the margin is smaller than the scenario requires.
   Perturbation(const Scenario& scenario, double margin, double dt);
 
-  // One tick of RUN. No heap, lock or exception.
+  // Performs one tick of RUN. Does not use the heap or a lock, or throw.
   void Step(const PerturbationInput& input) noexcept;
   // The handles are where the virtual ones are. Directions and times are drawn again, since a
   // person may remember those of the last run.
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept;
 
-  // Displacement of the real handles from the virtual ones, in W [m], and its derivatives.
+  // Returns the displacement of the real handles from the virtual ones, in W [m], and its
+  // derivatives.
   Vector3 displacement() const noexcept { return now_.position * direction_; }
   Vector3 velocity() const noexcept { return now_.velocity * direction_; }
   Vector3 acceleration() const noexcept { return now_.acceleration * direction_; }
@@ -75,7 +76,7 @@ class Perturbation {
   std::array<Vector3, 2> plane_ = {Vector3::UnitX(), Vector3::UnitY()};  // axes of the plane
 
   RandomStream random_;
-  // The numbers of the directions; the last `left_` of them have not been used in this round.
+  // The numbers of the directions, of which the last `left_` have not been used in this round.
   std::array<std::uint8_t, 16> order_{};
   int left_ = 0;
   Phase phase_ = Phase::kWait;

@@ -147,7 +147,7 @@ std::array<RenderArm, kHands> Pipeline::View() const noexcept {
   return view;
 }
 
-// Outside RUN there is no displacement: only a stop or the alignment moves the arms.
+// Outside RUN there is no displacement, because only a stop or the alignment moves the arms.
 void Pipeline::Perturb(const TickPlan& plan, TickData* data) noexcept {
   data->perturbation.setZero();
   if (!perturbation_ || plan.state != RunState::kRun || !plan.time_passes) return;
@@ -172,8 +172,8 @@ void Pipeline::Render(const TickPlan& plan, TickData* data) noexcept {
   const WorldState& after = world_.state();
   for (const int i : hands_) {
     arms_[i]->LookAhead(guard_.last()[i]);
-    // Poses at the time of the sample, so that their difference is the error; velocities and
-    // accelerations after the step.
+    // Poses are those at the time of the sample, so that their difference is the error. Velocities
+    // and accelerations are those after the step.
     target.handle[i] = data->before.handle[i];
     target.handle[i].V_W = target.aligning ? Twist(Twist::Zero()) : after.handle[i].V_W;
     target.handle[i].A_W = after.handle[i].A_W;
@@ -240,8 +240,8 @@ void Pipeline::ApplyGuard(const MotionOrder& order, TickData* data) noexcept {
   // Joint positions of the last valid sample. An invalid sample has already stopped the arms and
   // must not replace the stop's profile with the guard's own braking.
   std::array<JointVector, kHands> q;
-  // The Jacobians at the time when the command will be obeyed; rendering and braking use the same
-  // prediction.
+  // These are the Jacobians at the time when the command will take effect. Rendering and braking
+  // use the same prediction.
   std::array<Jacobian, kHands> J;
   for (int i = 0; i < kHands; ++i) {
     if (!arms_[i]) continue;

@@ -1,5 +1,5 @@
 // The physical part of a tick: from the device's sample to joint velocities that may be sent. Its
-// only state is that of its models; all other data are passed as values.
+// only state is that of its models, and all other data are passed as values.
 #pragma once
 
 #include <array>
@@ -29,27 +29,28 @@ class Pipeline {
   // Loads the models, finds the world's equilibrium and prepares rendering. Throws InputError.
   explicit Pipeline(const Scenario& scenario);
 
-  // -- Stages of a tick, in this order. No heap, lock or exception. --
+  // -- Stages of a tick, in this order. They do not use the heap or a lock, and do not throw. --
 
   // Computes the handles and the hands' wrenches from the sample. In direct mode the operator acts
   // on the virtual handles instead.
   void Sense(const TickPlan& plan, TickData* data) noexcept;
-  // One step of the virtual world, if simulated time passes.
+  // Performs one step of the virtual world if simulated time passes.
   void Simulate(const TickPlan& plan, TickData* data) noexcept;
-  // Joint velocities from the QP, if the plan requires rendering.
+  // Computes joint velocities by the QP if the plan requires rendering.
   void Render(const TickPlan& plan, TickData* data) noexcept;
-  // Joint velocities for all orders except braking.
+  // Computes joint velocities for all orders except braking.
   void Command(const MotionOrder& order, TickData* data) noexcept;
-  // The handles at the time when the arms will obey a stop's next command.
+  // Returns the handles at the time when the arms will follow a stop's next command.
   StopGeometry GeometryForStop(const MotionOrder& order, const TickData& data) noexcept;
   // Limits the command for the handles and for each joint. Updates data->sent.
   void ApplyGuard(const MotionOrder& order, TickData* data) noexcept;
 
-  // -- Between the stages. No heap, lock or exception. --
+  // -- Between the stages. These do not use the heap or a lock, and do not throw. --
 
-  // The condition that prevents the arms from starting at their current position.
+  // Returns the condition that prevents the arms from starting at their current position.
   Beyond FindBeyond() const noexcept;
-  // Describes for the user the place of that condition and the remedy. Not for the tick.
+  // Describes for the user the place of that condition and the remedy. It must not be called in a
+  // tick.
   std::string DescribeBeyond(Refusal refusal) const;
   void BeginTare() noexcept;
   // Returns kSensor with the hand if a sensor was not quiet.
@@ -64,9 +65,9 @@ class Pipeline {
   World& world() { return world_; }
   const ArmsSpec& arms() const { return spec_; }
   const LeadChoice& lead() const { return lead_; }
-  // Joint positions at which the real handles coincide with the virtual ones [rad].
+  // Returns the joint positions at which the real handles coincide with the virtual ones [rad].
   const std::array<JointVector, kHands>& start() const { return start_; }
-  // The same with the handles `offset` [m] above and behind the virtual ones. Throws InputError.
+  // As above, with the handles `offset` [m] above and behind the virtual ones. Throws InputError.
   std::array<JointVector, kHands> StartJoints(double offset) const;
 
  private:

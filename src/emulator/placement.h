@@ -9,15 +9,16 @@
 
 namespace predictor {
 
-// Joint positions of each arm (empty for absent sides) that bring handle H to X_WD, `offset` [m]
-// above and behind it. Throws InputError that names the arm that cannot reach it and the remedy.
+// Returns the joint positions of each arm (empty for absent sides) that bring handle H to X_WD,
+// `offset` [m] above and behind it. Throws InputError that names the arm that cannot reach it and
+// the remedy.
 std::array<JointVector, kHands> PlaceArms(
     const Scenario& scenario, const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
     const std::array<FrameId, kHands>& handles, const std::array<Pose, kHands>& X_WD,
     double offset);
 
-// The same for one arm, starting from the arm's posture. Returns false if the arm cannot reach the
-// pose; q is then the nearest solution found.
+// As above for one arm, starting from the arm's posture. Returns false if the arm cannot reach the
+// pose, in which case q is the nearest solution found.
 bool PlaceArm(const ArmSpec& spec, const RobotModel& model, const FrameId& handle, const Pose& X_WD,
               double offset, JointVector* q);
 
@@ -25,8 +26,8 @@ bool PlaceArm(const ArmSpec& spec, const RobotModel& model, const FrameId& handl
 // do not fit the model.
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, int hand);
 
-// Joint positions from a list in a scenario. If the list is empty: zero, or the middle of the
-// range.
+// Returns joint positions from a list in a scenario. If the list is empty, they are zero, or the
+// middle of the range.
 JointVector StartingJoints(const ArmSpec& spec, const RobotModel& model);
 
 }  // namespace predictor

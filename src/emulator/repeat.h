@@ -24,13 +24,13 @@ class RecordedDevice final : public Device {
   const TickRecord* record_ = nullptr;
 };
 
-// Submits the inputs and requests of `record` to the emulator and executes the tick. `emulator`: of
-// the same scenario, after the previous tick (or with that state loaded). `device`: the emulator's
-// device for a run on real arms; otherwise null.
+// Submits the inputs and requests of `record` to the emulator and executes the tick. `emulator` has
+// the same scenario and is in the state after the previous tick. `device` is the emulator's device
+// for a run on real arms, and otherwise null.
 void Repeat(const TickRecord& record, Emulator* emulator,
             RecordedDevice* device = nullptr) noexcept;
 
-// True if two records of the same tick agree bit for bit, except for wall-clock times.
+// Returns whether two records of the same tick agree bit for bit, except for wall-clock times.
 bool SameTick(const TickRecord& a, const TickRecord& b) noexcept;
 
 }  // namespace predictor

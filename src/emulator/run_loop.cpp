@@ -43,7 +43,7 @@ bool AtRest(const Emulator& e) {
   return e.state() == RunState::kHeld || e.state() == RunState::kUnpowered;
 }
 
-// began: the run reached RUN, even if it was reset later.
+// began: whether the run reached RUN, even if it was reset later.
 RunEnd EndOf(const Emulator& e, bool began) {
   if (e.record().cause != StopCause::kNone) return RunEnd::kStopped;
   return began ? RunEnd::kFinished : RunEnd::kNotStarted;
@@ -63,8 +63,8 @@ void TakeStop(const std::atomic<std::uint32_t>& asked, const std::atomic<std::ui
   if (emulator->Submit(input)) *seen = now;
 }
 
-// Inputs that do not fit into this tick wait in the mailbox; a stop never waits. `scenario`: null
-// if no scenario may be selected.
+// Inputs that do not fit into this tick wait in the mailbox, but a stop request never waits.
+// `scenario` is null if no scenario may be selected.
 void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator,
                 std::optional<std::size_t>* scenario) noexcept {
   TakeStop(mailbox->stops, &mailbox->stop_client, stops, emulator);
@@ -113,7 +113,7 @@ void WatchForSuspend(std::uint64_t now, SuspendWatch* watch, Emulator* emulator)
   if (input.value > 0) emulator->Submit(input);
 }
 
-// `seen`: number of signs already processed.
+// `seen` is the number of signs already processed.
 void TakeEnabling(const std::atomic<std::uint32_t>& enabling, std::uint32_t* seen,
                   Emulator* emulator) noexcept {
   const std::uint32_t now = enabling.load(std::memory_order_acquire);
@@ -202,7 +202,7 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
       if (StartIsRefused(*emulator)) break;
       AutoStart(emulator);
     }
-    // The last record must show the arms at rest; otherwise a viewer would mistake the end for a
+    // The last record must show the arms at rest. Otherwise a viewer would mistake the end for a
     // hang.
     const bool may_move = MayMove(emulator->state()) || MayMove(emulator->record().state);
     const bool asked_to_end = quit.load(std::memory_order_relaxed);

@@ -17,18 +17,18 @@ namespace predictor {
 enum class RunEnd { kFinished, kStopped, kNotStarted };
 
 // Requests the steps from IDLE to RUN if the operating rules allow the program to do so. With real
-// arms, only a person may request them. Call after each tick.
+// arms, only a person may request them. Call this after each tick.
 void AutoStart(Emulator* emulator) noexcept;
 
-// True if a request of AutoStart was refused in the last tick. Because the arms do not move, it
-// would be refused every time.
+// Returns whether a request of AutoStart was refused in the last tick. Because the arms do not
+// move, it would be refused every time.
 bool StartIsRefused(const Emulator& emulator) noexcept;
 
-// True if `duration` [s] of run time has passed in RUN; 0: never. RECOVERY may still free a hand
-// afterwards.
+// Returns whether `duration` [s] of run time has passed in RUN, or false if it is 0. RECOVERY may
+// still free a hand afterwards.
 bool IsOver(const Emulator& emulator, double duration) noexcept;
 
-// Virtual time: executes ticks until `duration` [s] of run time has passed, until a stop is at
+// Executes ticks in virtual time until `duration` [s] of run time has passed, until a stop is at
 // rest, or until the start is refused. `on_record` receives every record. Throws InputError if
 // `duration` is 0.
 RunEnd Simulate(Emulator* emulator, double duration,
@@ -43,14 +43,15 @@ struct RealTimeReport {
                                         // in a list
 };
 
-// Receives snapshots of the emulator's complete state. Called between two ticks by the tick's
-// thread: no heap, lock or exception.
+// Receives snapshots of the emulator's complete state. The tick's thread calls it between two
+// ticks, so it must not use the heap or a lock, or throw.
 class SnapshotSink {
  public:
   virtual ~SnapshotSink() = default;
-  // Buffer for the next snapshot; empty if none is due.
+  // Returns a buffer for the next snapshot, or nothing if none is due.
   virtual std::span<std::byte> AcquireBuffer() noexcept = 0;
-  // The buffer contains `bytes` of the state after `tick`; 0: the state did not fit.
+  // Reports that the buffer contains `bytes` of the state after `tick`, or 0 if the state did not
+  // fit.
   virtual void Commit(std::uint64_t tick, std::size_t bytes) noexcept = 0;
 };
 
@@ -61,20 +62,20 @@ struct RealTimeOptions {
   bool auto_start = true;             // call AutoStart until RUN is reached for the first time
   bool watch_headsets = false;        // a silent headset stops the run
   SnapshotSink* snapshots = nullptr;  // null without a recording
-  // Counts the signs of a held enabling key; null without real arms.
+  // Counts the signs of a held enabling key, or is null without real arms.
   const std::atomic<std::uint32_t>* enabling = nullptr;
   const StopMailbox* stops = nullptr;  // stop requests of ROS-TCP clients; null without the server
-  // Counts the watchdog's signs of life; null without real arms.
+  // Counts the watchdog's signs of life, or is null without real arms.
   const std::atomic<std::uint32_t>* watchdog = nullptr;
   bool allow_scenario_switch = false;  // a page may select the next scenario while the arms are at
                                        // rest
 };
 
-// Real time: one tick per period of the monotonic clock, in the calling thread, with real-time
-// scheduling and locked memory if permitted. Publishes each record to `ring`. Returns when the arms
-// are at rest after `duration` or a stop (with keep_running: only after `duration`, and only with
-// allow_scenario_switch), when `quit` is set, when a page has selected the next scenario, or when
-// an automatic start is refused.
+// Executes ticks in real time, one per period of the monotonic clock, in the calling thread, with
+// real-time scheduling and locked memory if permitted. Publishes each record to `ring`. Returns
+// when the arms are at rest after `duration` or a stop (with keep_running: only after `duration`,
+// and only with allow_scenario_switch), when `quit` is set, when a page has selected the next
+// scenario, or when an automatic start is refused.
 RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
                    const std::atomic<bool>& quit, RecordRing* ring, RealTimeReport* report);
 

@@ -20,7 +20,7 @@ struct SavedState {
   std::uint64_t& tick;
 };
 
-// Saves or loads the state, in the order of the bytes. No heap, no exception.
+// Saves or loads the state, in the order of the bytes. Does not use the heap or throw.
 void ArchiveState(StateArchive& a, const SavedState& state) noexcept;
 
 }  // namespace predictor

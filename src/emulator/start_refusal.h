@@ -1,4 +1,5 @@
-// Explains to the user why the arms cannot start from their current position. Not for the tick.
+// Explains to the user why the arms cannot start from their current position. It is not for the
+// tick.
 #pragma once
 
 #include <array>

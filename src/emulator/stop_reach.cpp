@@ -13,8 +13,8 @@
 namespace predictor {
 namespace {
 
-// Gain of the position loop of an arm that follows positions [1/s]. This is an assumption; no
-// manufacturer publishes the gain.
+// The gain of the position loop of an arm that follows positions [1/s]. This is an assumption,
+// because no manufacturer publishes the gain.
 constexpr double kPositionGain = 20;
 constexpr double kMaxRestSpeed = 5e-3;  // [m/s]
 constexpr double kSettlingTime = 2;     // time for the loop to settle before the stop begins [s]
@@ -29,7 +29,7 @@ class Handle {
               std::numeric_limits<double>::infinity()),
         gain_(arm.follows_position ? kPositionGain : 0),
         dt_(dt) {}
-  // Distance travelled in one tick with the command `v` [m].
+  // Returns the distance travelled in one tick with the command `v` [m].
   double Step(double v) noexcept {
     const double before = loop_.q();
     loop_.Step(v + gain_ * (led_ - before));
@@ -43,7 +43,7 @@ class Handle {
   double led_ = 0;  // integral of the commands [m]
 };
 
-// hold: delay before it brakes [s].
+// hold: the delay before it brakes [s].
 StopBudget StopOf(const ArmSpec& arm, const StopProfile& profile, double hold, double dt) {
   Handle handle(arm, dt);
   for (double t = -kSettlingTime; t < 0; t += dt)
@@ -77,7 +77,7 @@ StopBudget StopOfArms(const Scenario& s, double acceleration) {
   const double dt = 1 / s.rate, speed = s.safety.handle_speed, jerk = s.safety.stop_jerk;
   double latest = 0;
   for (const int hand : s.hands()) latest = std::max(latest, Overrun(s.arm(hand), dt));
-  // Constant speed, or acceleration to this speed as in WorstStop.
+  // The handles move at constant speed, or accelerate to this speed as in WorstStop.
   const double rate = std::min(acceleration, std::sqrt(0.4 * jerk * speed));
   StopBudget worst{0, 0};
   for (const double up : {0.0, rate}) {

@@ -1,5 +1,5 @@
-// Time and distance that the handles move after the decision to stop, including the response of the
-// arms.
+// Computes the time and the distance that the handles move after the decision to stop, including
+// the response of the arms.
 #pragma once
 
 #include "scenario/scenario.h"
@@ -7,9 +7,9 @@
 
 namespace predictor {
 
-// Overrun of an arm [s]: distance travelled after the command reaches zero, divided by the speed
-// before. It equals the lag of the arm's loop, or one tick if the arm follows positions. dt: tick
-// [s].
+// Returns the overrun of an arm [s]: the distance travelled after the command reaches zero, divided
+// by the speed before. It equals the lag of the arm's loop, or one tick if the arm follows
+// positions. dt is the duration of a tick [s].
 double Overrun(const ArmSpec& arm, double dt);
 
 // The longest time and distance of a stop from `safety.handle_speed`, from the decision until no
@@ -17,13 +17,13 @@ double Overrun(const ArmSpec& arm, double dt);
 // arms (`arm.loop`, and the position loop of an arm that follows positions), including the time
 // that one arm waits for the other. `acceleration`: deceleration of the handles [m/s²].
 StopBudget StopOfArms(const Scenario& scenario, double acceleration);
-// The same with `safety.stop_acceleration`, provided that no joint exceeds its acceleration limit.
+// As above, with `safety.stop_acceleration`, provided that no joint exceeds its acceleration limit.
 inline StopBudget StopOfArms(const Scenario& scenario) {
   return StopOfArms(scenario, scenario.safety.stop_acceleration);
 }
-// Smallest deceleration of the handles in a stop [m/s²], reached if a joint at its velocity limit
-// brakes with its share (StopController::kShareOfJoints) of its acceleration limit. Throws
-// InputError as LoadArm does.
+// Returns the smallest deceleration of the handles in a stop [m/s²]. It is reached if a joint at
+// its velocity limit brakes with its share (StopController::kShareOfJoints) of its acceleration
+// limit. Throws InputError as LoadArm does.
 double MinStopAcceleration(const Scenario& scenario);
 
 }  // namespace predictor

@@ -177,7 +177,7 @@ void Supervisor::EscalateToPowerOff(const Status& fault) noexcept {
   cause.power_off = true;
 }
 
-// A stop in progress continues. Its cause may become known later, and its level may rise.
+// A stop that is in progress continues. Its cause may become known later, and its level may rise.
 void Supervisor::BeginStop(const Status& cause, RunEvent stop, const SentMotion& sent) noexcept {
   if (states_.Handle(stop)) state_time_ = 0;
   if (states_.state() != RunState::kStopping) return;
@@ -288,8 +288,8 @@ bool Supervisor::Advance(const TickData& data, Beyond beyond,
   return state == RunState::kInit;
 }
 
-// True if no handle is further from its virtual one than this [m], [rad]. Valid only in states in
-// which the virtual world is paused.
+// Returns whether no handle is further from its virtual one than this [m], [rad]. It is valid only
+// in states in which the virtual world is paused.
 bool Supervisor::Within(double position, double rotation, const TickData& data) const noexcept {
   for (const int i : hands_) {
     const Pose &goal = data.after->handle[i].X_W, &real = data.real[i].X_W;
@@ -299,7 +299,7 @@ bool Supervisor::Within(double position, double rotation, const TickData& data) 
   return true;
 }
 
-// True if the handles are in place. Once their errors were small, they may move within the
+// Returns whether the handles are in place. Once their errors were small, they may move within the
 // tolerance while the arms come to rest.
 bool Supervisor::Aligned(const TickData& data) const noexcept {
   if (!Within(safety_.align_tolerance, safety_.align_tolerance_rotation, data)) return false;
@@ -309,9 +309,9 @@ bool Supervisor::Aligned(const TickData& data) const noexcept {
   return data.sent.may_rest_next;  // in ARMED nothing moves, not even to brake
 }
 
-// True if the key is released (with a simulated rig: if there is nothing left to do), the arms are
-// at rest, and no part is beyond its limit. After a stop, RECOVERY may end earlier, because the
-// reset checks this again.
+// Returns whether the key is released (with a simulated rig: whether there is nothing left to do),
+// the arms are at rest, and no part is beyond its limit. After a stop, RECOVERY may end earlier,
+// because the reset checks this again.
 bool Supervisor::Recovered(const TickData& data, Beyond beyond) const noexcept {
   for (const JointVector& v : data.sent.v)
     if ((v.array() != 0).any()) return false;

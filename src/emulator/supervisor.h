@@ -41,26 +41,26 @@ class Supervisor {
  public:
   Supervisor(const Scenario& scenario, const ArmsSpec& arms);
 
-  // -- Between ticks; as in Emulator --
+  // -- Between ticks, as in Emulator --
   bool Submit(const RunInput& input) noexcept;  // only from the tick's thread
   bool HasRoomForInput() const noexcept { return input_count_ < kInputsPerTick; }
   void Request(RunEvent event) noexcept;  // from any thread
   void RequestEnd() noexcept;             // from any thread
 
-  // -- Steps of a tick, in this order. No heap, lock or exception. --
+  // -- Steps of a tick, in this order. They do not use the heap or a lock, and do not throw. --
 
   RunRequests TakeRequests() noexcept;
-  // Grants or refuses the requests. data: of the previous tick. beyond: condition that prevents the
-  // arms from starting, if ALIGN is requested. Returns true if the run was reset; the pipeline must
-  // then be reset too.
+  // Grants or refuses the requests. data: that of the previous tick. beyond: the condition that
+  // prevents the arms from starting, if ALIGN is requested. Returns true if the run was reset, in
+  // which case the pipeline must be reset too.
   bool HandleRequests(const TickData& data, Beyond beyond) noexcept;
-  // The pipeline's work in this tick.
+  // Returns the pipeline's work in this tick.
   TickPlan Plan(const DeviceSample& sample) noexcept;
   // Runs the safety monitor, checks enabling, and updates the warnings. A fault starts a stop.
   void Check(const TickPlan& plan, const TickData& data) noexcept;
-  // The motion of the arms in this tick.
+  // Returns the motion of the arms in this tick.
   MotionOrder Order(const TickPlan& plan, const TickData& data) const noexcept;
-  // The next command of a stop.
+  // Computes the next command of a stop.
   void Brake(const MotionOrder& order, const StopGeometry& geometry,
              std::array<JointVector, kHands>* v) noexcept;
   void ObserveStop(const TickData& data) noexcept;
@@ -71,9 +71,9 @@ class Supervisor {
   void EndTick(const TickPlan& plan) noexcept;
   // The self-test ends in this tick: the pipeline must finish taring.
   bool SelfTestEnds() const noexcept;
-  // Makes the transitions that need no person. beyond: as above, in RECOVERY. self_test: result of
-  // taring, if the self-test ends. Returns true if the self-test begins; the pipeline must then
-  // start taring.
+  // Makes the transitions that need no person. beyond: as above, in RECOVERY. self_test: the result
+  // of taring, if the self-test ends. Returns true if the self-test begins, in which case the
+  // pipeline must start taring.
   bool Advance(const TickData& data, Beyond beyond,
                const std::optional<Status>& self_test) noexcept;
   void FollowEnablingDevice(Enabling now) noexcept;

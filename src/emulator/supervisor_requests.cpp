@@ -198,7 +198,7 @@ bool Supervisor::Grant(RunEvent event, const TickData& data, Beyond beyond) noex
   return false;
 }
 
-// Returns to the scenario's start; nothing moves.
+// Returns to the scenario's start without any motion.
 void Supervisor::ResetRun() noexcept {
   fault_ = power_off_cause_ = Status::Ok();
   run_time_ = state_time_ = healthy_time_ = 0;

@@ -33,12 +33,12 @@ struct SentMotion {
   double handle_rate = 0;   // derivative of handle_speed [m/s²]
 };
 
-// Largest speed [m/s] and angular speed [rad/s] of a handle.
+// The largest speed [m/s] and angular speed [rad/s] of a handle.
 struct HandleCap {
   double speed = HUGE_VAL, rotation = HUGE_VAL;
 };
 
-// The pipeline's work in this tick. Written by the supervisor before sensing.
+// The pipeline's work in this tick. The supervisor writes it before sensing.
 struct TickPlan {
   RunState state = RunState::kInit;
   bool wrench_known = false;  // the tared sensors measure the wrenches of the hands
@@ -58,7 +58,7 @@ enum class Motion : std::uint8_t {
   kRecover,  // RECOVERY
 };
 
-// The motion of the arms in this tick. Written by the supervisor after its checks.
+// The motion of the arms in this tick. The supervisor writes it after its checks.
 struct MotionOrder {
   Motion motion = Motion::kNone;
   bool holds = false;  // following or recovering, but with zero velocity commanded

@@ -27,7 +27,7 @@ void Fill(void* to, std::size_t bytes) {
     throw std::runtime_error("The system does not provide random numbers.");
 }
 
-// Takes the same time regardless of where the texts differ; it may reveal only their lengths.
+// Takes the same time regardless of where the texts differ, so it reveals at most their lengths.
 bool Same(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
@@ -68,7 +68,7 @@ Admission::Admission(bool code_once, std::string secret, Generations generations
       code_(code_once ? RandomText(kCodeBytes) : SharedCode()),
       code_once_(code_once) {}
 
-// The same code in each process of a run, until a client that may know it is removed.
+// The code is the same in each process of a run, until a client that may know it is removed.
 std::string Admission::SharedCode() const {
   return Sign("code" + std::to_string(generations_.pages)).substr(0, kTextOf16);
 }
@@ -143,8 +143,8 @@ std::optional<Admission::Grant> Admission::ByToken(std::string_view token) const
 bool Admission::MayWatch(std::string_view token) const { return PurposeOf(token) == kWatch; }
 
 std::string Admission::IssuePin(Role role, std::uint64_t now_ns) {
-  // Redraw if the number lies in the last, incomplete block of 32-bit numbers; otherwise, small
-  // pins would be more likely.
+  // A number in the last, incomplete block of 32-bit numbers is drawn again. Otherwise small pins
+  // would be more likely.
   std::uint32_t random = 0;
   do Fill(&random, sizeof random);
   while (random >= UINT32_MAX / kPins * kPins);

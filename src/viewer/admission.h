@@ -1,4 +1,4 @@
-// Admission of clients by codes, typed pins, and tokens. Uses no sockets; the caller passes the
+// Admits clients by codes, typed pins, and tokens. It uses no sockets, and the caller passes the
 // time.
 #pragma once
 
@@ -18,11 +18,12 @@ inline constexpr int kRoles = 3;
 const char* Name(Role role);  // "look", "operator", "control"
 std::optional<Role> RoleNamed(std::string_view name);
 
-// Uniform random bytes from the system's generator, as base64url. Throws std::runtime_error.
+// Returns uniform random bytes from the system's generator, as base64url. Throws
+// std::runtime_error.
 std::string RandomText(std::size_t bytes);
 
-// State that a run keeps for its viewer so that admitted clients stay admitted if the viewer
-// restarts.
+// Returns a state that a run keeps for its viewer, so that admitted clients stay admitted if the
+// viewer restarts.
 inline std::string NewAdmissionSecret() { return RandomText(32); }
 
 // Tokens are valid only in the generation in which they were issued. The run keeps both numbers, so
@@ -38,32 +39,33 @@ class Admission {
   static constexpr int kPinTries = 5;                         // wrong guesses allowed per address
   static constexpr std::size_t kMaxGuessers = 256;            // addresses with wrong guesses
 
-  // `secret`: NewAdmissionSecret(). code_once: the code admits only one client, as with real arms,
-  // and it changes with each start.
+  // `secret` is a NewAdmissionSecret(). code_once: whether the code admits only one client, as with
+  // real arms, and changes with each start.
   Admission(bool code_once, std::string secret, Generations generations = {});
 
   struct Grant {
     Role role = Role::kLook;
     std::string token;
   };
-  // Exchanges the code, a pin or a token for a grant; empty if it is wrong, used or expired.
+  // These functions exchange the code, a pin or a token for a grant. They return no value if it is
+  // wrong, used or expired.
   std::optional<Grant> ByCode(std::string_view code);
-  // `address`: the client's numeric address.
+  // `address` is the client's numeric address.
   std::optional<Grant> ByPin(std::string_view pin, const std::string& address,
                              std::uint64_t now_ns);
   std::optional<Grant> ByToken(std::string_view token) const;
 
-  // 128 bits as base64url; grants the role control.
+  // Returns 128 bits as base64url, which grant the role control.
   const std::string& code() const { return code_; }
-  // Six digits that grant `role` to the first client that enters them. The role's previous pin
-  // becomes invalid. An address that guessed wrongly kPinTries times cannot use this pin any more;
-  // the pin stays valid for all other addresses. Once kMaxGuessers addresses have guessed wrongly,
-  // no further address can use a pin, so that many addresses do not allow many guesses.
+  // Returns six digits that grant `role` to the first client that enters them. The role's previous
+  // pin becomes invalid. An address that guessed wrongly kPinTries times can no longer use this
+  // pin, but the pin stays valid for all other addresses. Once kMaxGuessers addresses have guessed
+  // wrongly, no further address can use a pin, so that many addresses do not allow many guesses.
   std::string IssuePin(Role role, std::uint64_t now_ns);
-  // A random number and the role, signed with the secret: 256 bits of HMAC-SHA-256.
+  // Returns a random number and the role, signed with the secret: 256 bits of HMAC-SHA-256.
   std::string IssueToken(Role role) const;
-  // A token for an address that other programs store (Foxglove's). It only opens their data stream:
-  // no page, no model, and not even a stop. ByToken does not accept it.
+  // Returns a token for an address that other programs store (Foxglove's). It only opens their data
+  // stream: no page, no model, and not even a stop. ByToken does not accept it.
   std::string IssueWatchToken() const;
   bool MayWatch(std::string_view token) const;
   // Ends all generations before these. A new generation of pages invalidates all page tokens and
@@ -71,8 +73,8 @@ class Admission {
   // one has no effect.
   void Renew(const Generations& generations);
   const Generations& generations() const { return generations_; }
-  // The address that has used its last guess since the previous call; empty if there was no such
-  // address.
+  // Returns the address that has used its last guess since the previous call, or "" if there was
+  // none.
   std::string TakeLockedOut() { return std::exchange(locked_out_, {}); }
 
  private:
@@ -86,8 +88,8 @@ class Admission {
   std::string SignFor(int purpose, std::string_view what) const;
   std::string SignedToken(int purpose) const;
   void CountWrongGuess(const std::string& source, std::uint64_t now_ns);
-  // Purpose of a token that this object issued: a role's number, or kWatch. −1: the token is
-  // unknown or expired.
+  // Returns the purpose of a token that this object issued: a role's number, or kWatch, or −1 if
+  // the token is unknown or expired.
   int PurposeOf(std::string_view token) const;
   std::string SharedCode() const;
 

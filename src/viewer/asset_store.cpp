@@ -65,16 +65,16 @@ std::string Unescape(std::string_view text) {
   return plain;
 }
 
-// Whether the attribute at `at` belongs to an element that names a file of the model. Plugins of
-// simulators have file names, too.
+// Returns whether the attribute at `at` belongs to an element that names a file of the model.
+// Plugins of simulators have file names too.
 bool IsOfModel(const std::string& urdf, std::size_t at) {
   const std::size_t element = urdf.rfind('<', at);
   return element != std::string::npos &&
          (urdf.compare(element, 6, "<mesh ") == 0 || urdf.compare(element, 9, "<texture ") == 0);
 }
 
-// The text without comments. Each `filename` of a mesh or texture is replaced by the result of
-// `rename`.
+// Returns the text without comments. The result of `rename` replaces each `filename` of a mesh or
+// texture.
 std::string RewriteFileNames(const std::string& urdf,
                              const std::function<std::string(const std::string&)>& rename) {
   static constexpr std::string_view kComment = "<!--", kCommentEnd = "-->";

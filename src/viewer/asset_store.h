@@ -22,19 +22,19 @@ class AssetStore {
 
   explicit AssetStore(std::size_t max_bytes = kMaxBytes) : max_bytes_(max_bytes) {}
 
-  // Adds the page's three files as "/", "/app.js" and "/app.css"; they need no token.
+  // Adds the page's three files as "/", "/app.js" and "/app.css", which need no token.
   void AddPage();
 
   // Reads the URDF of a robot or object with its meshes. Replaces its file names by served names
-  // ("0.dae") and removes comments. Returns the URDF's path, "/models/N/model.urdf"; the same model
-  // always gets the same N. Throws InputError if a mesh cannot be read, or if the assets would
-  // exceed the limit.
+  // ("0.dae") and removes comments. Returns the URDF's path, "/models/N/model.urdf", where the same
+  // model always gets the same N. Throws InputError if a mesh cannot be read, or if the assets
+  // would exceed the limit.
   std::string AddModel(const UrdfModel& urdf);
 
   // Throws InputError if the assets would exceed the limit.
   void Add(const std::string& path, Asset asset);
 
-  // Finds exact matches without decoding; returns nullptr for any other path.
+  // Finds exact matches without decoding. Returns nullptr for any other path.
   const Asset* Find(std::string_view path) const;
   std::size_t bytes() const { return bytes_; }
 

@@ -23,9 +23,9 @@ void InitialiseTls();
 // Throws InputError if the folder cannot be created, or if other users may change its contents.
 void MakeCertificateFolder(const std::filesystem::path& folder);
 
-// A self-signed certificate (P-256, two years) for `names`, kept in `folder` as viewer.pem and
-// viewer.key. Only the owner can read these files. An existing certificate is used if it covers all
-// names and is valid for at least 30 more days; otherwise, a new one is made. Throws InputError
+// Returns a self-signed certificate (P-256, two years) for `names`, kept in `folder` as viewer.pem
+// and viewer.key. Only the owner can read these files. An existing certificate is used if it covers
+// all names and is valid for at least 30 more days. Otherwise a new one is made. Throws InputError
 // with the file's name.
 Certificate SelfSignedCertificate(const std::filesystem::path& folder,
                                   const std::vector<std::string>& names);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kClientRate = 100;  // messages per client and second
 constexpr std::uint8_t kMessageData = 1;
 
-// Format: 01 | u32 subscription | u64 log time | payload.
+// The format is 01 | u32 subscription | u64 log time | payload.
 std::string DataMessage(std::uint32_t subscription, std::uint64_t time_ns,
                         const std::string& payload) {
   std::string message(1, static_cast<char>(kMessageData));
@@ -27,7 +27,7 @@ std::uint64_t UnixNow() {
                                         .count());
 }
 
-// A 32-bit number; empty if the value is not one.
+// Returns a 32-bit number, or no value if the JSON value is not one.
 std::optional<std::uint32_t> Id(const Json& value) {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > UINT32_MAX) return {};
   return value.get<std::uint32_t>();

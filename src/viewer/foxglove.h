@@ -26,11 +26,11 @@ class Foxglove {
   Foxglove(const Scenario& scenario, const Vector3& object_start, MonotonicClock clock);
   ~Foxglove();
 
-  // The subprotocol to answer with; empty if none of the offered ones is supported.
+  // Returns the subprotocol to answer with, or "" if none of the offered ones is supported.
   static std::string Choose(const std::vector<std::string>& offered);
 
   std::unique_ptr<Session> Open(Connection* connection);
-  // Sends the newest state to its subscribers; skips states that follow too soon.
+  // Sends the newest state to its subscribers, and skips states that follow too soon.
   void Publish(const TickRecord& record);
   std::size_t clients() const { return clients_.size(); }
   // Disconnects all clients and returns their number.

@@ -30,22 +30,22 @@ struct FrameField {
 const std::vector<FrameField>& FrameFields();
 std::size_t FrameBytes();
 
-// Largest force [N] and torque [N·m] of each hand on its handle over several ticks, so that the
+// The largest force [N] and torque [N·m] of each hand on its handle over several ticks, so that the
 // page also shows peaks between two messages.
 struct Peaks {
   void See(const TickRecord& record);
   std::array<std::array<float, 2>, kHands> hands = {};
 };
 
-// The record as a binary message. peaks: since the previous message. sent_ns: monotonic clock [ns].
-// `recording`: whether the run is being recorded.
+// Returns the record as a binary message. peaks: those since the previous message. sent_ns: the
+// monotonic clock [ns]. `recording`: whether the run is being recorded.
 std::string PackFrame(const TickRecord& record, const Peaks& peaks, std::uint64_t sent_ns,
                       bool recording);
 
-// The text of web/src/quantities.ts: names of states, causes and quantities, and the fields as
-// TypeScript types.
+// Returns the text of web/src/quantities.ts: names of states, causes and quantities, and the fields
+// as TypeScript types.
 std::string PageQuantities();
-// The text of web/src/person_state.ts: the type of a person's state, and its tables.
+// Returns the text of web/src/person_state.ts: the type of a person's state, and its tables.
 std::string PagePerson();
 
 }  // namespace predictor::viewer

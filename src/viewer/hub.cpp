@@ -84,7 +84,7 @@ class Hub::Client : public Session {
     input.client = id_;
     if (!hub_->mailbox_->inputs.Push(input)) Deny(what, "The run does not accept inputs now.");
   }
-  // Whether this client has control; if not, it is sent a hint.
+  // Returns whether this client has control. If not, the client gets a hint.
   bool Commands(const char* what);
 
   void On(const HelloRequest&) {
@@ -92,7 +92,7 @@ class Hub::Client : public Session {
   }
   void On(const HeartbeatRequest&) { hub_->leases_.Heartbeat(id_, hub_->clock_()); }
   void On(const LeaseRequest& request);
-  // Never waits: has its own counter beside the queue of inputs.
+  // A stop request never waits, because it has its own counter in addition to the queue of inputs.
   void On(const StopRequest&) {
     hub_->mailbox_->stop_client.store(id_, std::memory_order_relaxed);
     hub_->mailbox_->stops.fetch_add(1, std::memory_order_release);
@@ -362,8 +362,8 @@ void Hub::Tick() {
   PublishHeadsets();
 }
 
-// Why no seat is available, or null. Neither a single client nor all clients that only look can
-// keep the others out.
+// Returns why no seat is available, or null. Neither a single client nor all clients that only look
+// can keep the others out.
 const char* Hub::NoSeatFor(const Admission::Grant& grant) const {
   const auto same = [&](const Client* c) { return c->admitted() && c->token() == grant.token; };
   if (static_cast<std::size_t>(std::count_if(sessions_.begin(), sessions_.end(), same)) >=
@@ -427,8 +427,8 @@ void Hub::SendLeases() {
   SendToAll(LeasesText(leases_, clients()));
 }
 
-// Called before any query of the leases. A client that lost a lease through silence is notified,
-// and so are the clients that may now take it.
+// This is called before any query of the leases. A client that lost a lease through silence is
+// notified, and so are the clients that may now take it.
 void Hub::ExpireLeases() {
   if (leases_.Expire(clock_())) SendLeases();
 }
@@ -461,8 +461,8 @@ void Hub::See(std::uint32_t client, const ImmersiveRequest& request) {
   PublishHeadsets();
 }
 
-// The run stops real arms when a headset falls silent. The headset with the oldest picture
-// therefore counts, and a headset whose page has disconnected is kept for a while.
+// The run stops real arms when a headset falls silent. Therefore the headset with the oldest
+// picture counts, and a headset whose page has disconnected is kept for a while.
 void Hub::PublishHeadsets() {
   const std::uint64_t now = clock_();
   std::erase_if(headsets_, [now](const Headset& h) {

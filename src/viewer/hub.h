@@ -1,5 +1,5 @@
 // The connected pages: their admission and leases, their inputs to the run, and the data that they
-// all receive. Uses no sockets; the caller passes the clock.
+// all receive. It uses no sockets, and the caller passes the clock.
 #pragma once
 
 #include <array>
@@ -59,11 +59,11 @@ class Hub {
   void Publish(std::shared_ptr<const std::string> frame, RunState state);
   // Sends the newest state of the person, as text, to all clients.
   void PublishPerson(std::shared_ptr<const std::string> text);
-  // Ends expired leases and waiting times. Call at least ten times per second.
+  // Ends expired leases and waiting times. Call this at least ten times per second.
   void Tick();
-  // For the operator at the console.
+  // The operator at the console uses this.
   void Revoke(LeaseKind kind);
-  // Disconnects a client and all clients with the same token; returns false if there is no such
+  // Disconnects a client and all clients with the same token. Returns false if there is no such
   // client. In both cases, begins the new generations (Admission::Renew) and gives the remaining
   // clients new tokens.
   bool Kick(std::uint32_t client, const Generations& generations);

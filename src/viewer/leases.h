@@ -1,4 +1,4 @@
-// The leases for control and for acting as operator; each is held by at most one client.
+// The leases for control and for acting as operator. At most one client holds each.
 #pragma once
 
 #include <array>
@@ -19,10 +19,10 @@ std::optional<LeaseKind> LeaseNamed(std::string_view name);
 // The caller passes the time: monotonic clock [ns].
 class Leases {
  public:
-  // Time after the holder's last heartbeat [ns]
+  // The lease lives for this time after the holder's last heartbeat [ns].
   static constexpr std::uint64_t kLife = 3'000'000'000;
 
-  // Whether a role is allowed to hold this lease.
+  // Returns whether a role is allowed to hold this lease.
   static bool MayHold(Role role, LeaseKind kind) {
     return kind == LeaseKind::kControl ? role == Role::kControl : role != Role::kLook;
   }
@@ -37,12 +37,12 @@ class Leases {
   void Leave(std::uint32_t client, const std::string& token);
   // Returns true if a lease was transferred to the client that reconnected with `token`.
   bool Return(std::uint32_t client, const std::string& token, std::uint64_t now_ns);
-  // Ends expired leases; returns true if there were any.
+  // Ends expired leases. Returns true if there were any.
   bool Expire(std::uint64_t now_ns);
-  // For the operator at the console: frees the lease, regardless of its holder.
+  // Frees the lease, regardless of its holder. The operator at the console uses this.
   void Revoke(LeaseKind kind) { lease(kind) = {}; }
 
-  // 0: no holder.
+  // Returns 0 if there is no holder.
   std::uint32_t Holder(LeaseKind kind) const {
     return leases_[static_cast<std::size_t>(kind)].client;
   }

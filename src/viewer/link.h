@@ -33,7 +33,7 @@ inline constexpr auto kPongWithin = std::chrono::milliseconds(250);
 inline constexpr auto kClosing = std::chrono::milliseconds(3000);
 // Maximum time for the rest of a refused request.
 inline constexpr auto kLinger = std::chrono::milliseconds(1000);
-// Pause before a connection requests a turn again.
+// The pause before a connection requests a turn again.
 inline constexpr auto kHandshakePause = std::chrono::milliseconds(20);
 
 // One connection: first HTTP requests, then perhaps a WebSocket. Its pending operations keep it
@@ -159,7 +159,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
                       });
   }
 
-  // Reads the remaining input; otherwise, it would cause a reset that discards the answer.
+  // Reads the remaining input, which would otherwise cause a reset that discards the answer.
   void Linger() {
     lowest().socket().shutdown(tcp::socket::shutdown_send, ignored_);
     lowest().expires_after(kLinger);
@@ -243,7 +243,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     });
   }
 
-  // Called during a read: this function must not send or close anything.
+  // This is called during a read, so it must not send or close anything.
   void OnControl(websocket::frame_type kind, beast::string_view payload) {
     if (kind == websocket::frame_type::close) return;
     const bool awaited =

@@ -8,7 +8,7 @@
 namespace predictor::viewer {
 namespace {
 
-// "cause_hand" -> "causeHand".
+// Converts "cause_hand" to "causeHand".
 std::string CamelCase(const std::string& name) {
   std::string text;
   for (const char c : name) {

@@ -18,7 +18,7 @@ constexpr double kMaxReplaySteps = 1e6;  // maximum number of steps in one reque
 constexpr double kMaxReplaySpeed = 64;   // maximum speed of a replay
 constexpr double kLargestClock = 9e18;   // [ns]
 
-// Reads the members of a message; `good` becomes false once one is missing or invalid.
+// Reads the members of a message. `good` becomes false once one is missing or invalid.
 class Reader {
  public:
   explicit Reader(const Json& message) : message_(message) {}
@@ -35,7 +35,7 @@ class Reader {
     const Json* value = Find(name);
     return value ? Number(*value, largest) : Bad();
   }
-  // A monotonic clock's time [ns], given as a number or as a string of digits.
+  // Reads a monotonic clock's time [ns], given as a number or as a string of digits.
   std::uint64_t Clock(const char* name) {
     const Json* value = Find(name);
     if (value && value->is_number_unsigned()) return value->get<std::uint64_t>();
@@ -125,7 +125,7 @@ HelloRequest ReadHello(Reader* r) {
   return {Kind::kCode, r->Text("code")};
 }
 
-// A pose in W from `p` and `q`; normalises `q`.
+// Reads a pose in W from `p` and `q`, and normalises `q`.
 template <class Request>
 void ReadPose(Reader* r, Request* request) {
   request->p = r->Numbers<3>("p", kFarthest);

@@ -63,7 +63,7 @@ struct LatencyRequest {
 struct ImmersiveRequest {
   bool active = false;
   std::uint64_t drawn_ns = 0;  // TickRecord::wall_ns of the newest drawn state; 0: none yet
-  // Pose of the head, if the page sends it.
+  // The pose of the head, if the page sends it.
   bool has_head = false;
   std::array<double, 3> p = {};            // position in W [m]
   std::array<double, 4> q = {1, 0, 0, 0};  // unit, scalar first
@@ -83,11 +83,12 @@ std::string RefusedText(std::string_view reason);
 std::string PongText(double page_ms, std::uint64_t server_ns);
 std::string DeniedText(std::string_view what, std::string_view reason);
 std::string NoticeText(std::string_view text);
-// results_follow: a server with the results replaces this one, and the page should reconnect.
+// results_follow: whether a server with the results replaces this one, so that the page should
+// reconnect.
 std::string EndedText(std::string_view text, bool results_follow);
 std::string TokenText(std::string_view token);
 std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset);
-// {"control": 3 | null, ...}, as in `leases` and `welcome`.
+// Returns {"control": 3 | null, ...}, as in `leases` and `welcome`.
 Json LeasesJson(const Leases& leases, std::size_t clients);
 std::string LeasesText(const Leases& leases, std::size_t clients);
 Json FrameJson();  // FrameFields() as JSON

@@ -88,7 +88,8 @@ Json DescribeScript(const Scenario& scenario, double facing) {
   return json;
 }
 
-// Where the page's camera and the headset's view begin, and the ground under the operator's feet.
+// Describes where the page's camera and the headset's view begin, and the ground under the
+// operator's feet.
 Json DescribeViewpoint(const Scenario& scenario, const Viewpoint& viewpoint) {
   const auto& stance = scenario.operator_.stance;
   return {{"eye", ToJson(viewpoint.eye)},
@@ -98,8 +99,8 @@ Json DescribeViewpoint(const Scenario& scenario, const Viewpoint& viewpoint) {
           {"feet", stance.value_or(StanceSpec()).feet_apart}};
 }
 
-// What each hazard does. Those of this scenario's events are not part of the description, since a
-// subject's page also receives it.
+// Describes what each hazard does. Those of this scenario's events are not part of the description,
+// since a subject's page also receives it.
 Json DescribeHazards() {
   Json json = Json::array();
   for (const ParameterKind* kind : Hazards()) json.push_back(kind->doc);

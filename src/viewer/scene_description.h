@@ -15,8 +15,8 @@ namespace predictor::viewer {
 nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
                                      AssetStore* assets);
 
-// Thresholds that a reset kept tighter than those of the scenario, as a sentence; empty if there
-// are no such thresholds. `record`: one after the reset.
+// Describes in a sentence the thresholds that a reset kept tighter than those of the scenario, or
+// returns "" if there are no such thresholds. `record` is one after the reset.
 std::string KeptThresholds(const Scenario& scenario, const TickRecord& record);
 
 }  // namespace predictor::viewer

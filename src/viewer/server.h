@@ -21,11 +21,11 @@ struct ServerOptions {
   std::chrono::milliseconds message_time{1000};  // limit from a message's first byte to its last
   std::chrono::milliseconds idle_time{20000};    // time limit without any data on a WebSocket
   std::size_t longest_head = 8192;               // [bytes]
-  // Maximum number of connections before admission; one more drops the oldest.
+  // The maximum number of connections before admission. One more drops the oldest.
   std::size_t max_guests = 256;
   std::size_t max_guests_per_address = 128;  // the same limit for each address
-  // Maximum number of TLS handshakes that begin per second; further ones wait within head_time.
-  // Handshakes cost the single thread most, and a stop has to wait for them.
+  // The maximum number of TLS handshakes that begin per second. Further ones wait within head_time.
+  // Handshakes cost the single thread most, and a stop request has to wait for them.
   double handshake_rate = 100;
   double handshake_rate_per_address = 40;
   std::size_t max_waiting_text = 256 * 1024;  // limit for one client [bytes]
@@ -42,20 +42,21 @@ class Server {
   std::uint16_t port() const;
 
   // Reads lines from a descriptor (a socket or pipe, which the server then owns), each at most
-  // `longest` bytes. Calls on_end at the end of the input. Call before Run.
+  // `longest` bytes. Calls on_end at the end of the input. Call this before Run.
   void Watch(int descriptor, std::size_t longest, std::function<void(const std::string&)> on_line,
              std::function<void()> on_end);
 
   // Serves in this thread until Stop.
   void Run();
   // Accepts no new connections, and stops when the last one has ended or after `patience`.
-  // Connections that are being closed still receive the reason. Call in the server's thread.
+  // Connections that are being closed still receive the reason. Call this in the server's thread.
   void Finish(std::chrono::milliseconds patience);
-  // Stop and Post may be called from any thread. Post runs `what` in the server's thread.
+  // Any thread may call Stop and Post. Post runs `what` in the server's thread.
   void Stop();
   void Post(std::function<void()> what);
 
-  // Number of connections, including those not admitted. Call in the server's thread.
+  // Returns the number of connections, including those not admitted. Call this in the server's
+  // thread.
   std::size_t connections() const;
 
   struct Impl;

@@ -63,7 +63,7 @@ struct Server::Impl {
   }
   void Forget(Member* member) { guests.remove(member); }
 
-  // Whether a connection from this address may begin its handshake now.
+  // Returns whether a connection from this address may begin its handshake now.
   bool MayShakeHands(const asio::ip::address& from) {
     const auto now = static_cast<std::uint64_t>(Clock::now().time_since_epoch().count());
     if (handshakes_from.size() > kMaxAddresses) handshakes_from.clear();

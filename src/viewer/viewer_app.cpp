@@ -31,7 +31,7 @@ HubSetup HubSetupOf(const Scenario& scenario, Json scene) {
   return setup;
 }
 
-// The value of `name` in "a=1&b=2"; empty if it is missing.
+// Returns the value of `name` in "a=1&b=2", or "" if it is missing.
 std::string_view QueryValue(std::string_view query, std::string_view name) {
   while (!query.empty()) {
     const std::size_t end = std::min(query.find('&'), query.size());
@@ -49,7 +49,7 @@ struct HostAndPort {
   std::string_view name, port;  // IPv6 address without brackets; port: digits, or empty
 };
 
-// Parses "name", "name:8080" and "[::1]:8080"; returns nothing for any other text.
+// Parses "name", "name:8080" and "[::1]:8080". Returns nothing for any other text.
 std::optional<HostAndPort> ParseHost(std::string_view text) {
   const bool bracketed = text.starts_with('[');
   const std::size_t end = bracketed ? text.find(']') : std::min(text.find(':'), text.size());
@@ -196,7 +196,7 @@ void ViewerApp::Tick() {
   ShowPerson();
   const std::uint64_t written = board_->records.written();
   TickRecord record;
-  // If this process was delayed, the newest record may be overwritten while it is read; the next
+  // If this process was delayed, the newest record may be overwritten while it is read. The next
   // tick then tries again.
   if (written == shown_ || !board_->records.Get(written - 1, &record)) return;
   const Peaks peaks = SeeRecords(std::exchange(shown_, written), written);
@@ -209,7 +209,7 @@ void ViewerApp::Tick() {
   foxglove_->Publish(record);
 }
 
-// Another process writes the states; nothing in them is trusted.
+// Another process writes the states, so nothing in them is trusted.
 void ViewerApp::ShowPerson() {
   if (!setup_.states) return;
   const std::uint64_t written = setup_.states->states.written();
@@ -219,8 +219,8 @@ void ViewerApp::ShowPerson() {
   hub_->PublishPerson(std::make_shared<const std::string>(PersonJson(state)));
 }
 
-// Peaks of the records from `first` up to, but excluding, `end`; if there are too many, of the
-// newest ones only.
+// Returns the peaks of the records from `first` up to, but excluding, `end`, or of the newest ones
+// only if there are too many.
 Peaks ViewerApp::SeeRecords(std::uint64_t first, std::uint64_t end) {
   Peaks peaks;
   TickRecord record;

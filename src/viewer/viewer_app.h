@@ -44,8 +44,8 @@ struct AppSetup {
 // Host, it is not a name with or without a port, or the port is not this server's. Status 421: it
 // names none of `hosts`. Status 200: it is valid.
 HttpReply CheckHost(const HttpRequest& request, const std::vector<std::string>& hosts);
-// Whether an Origin belongs to a page that this server delivered under `host`. Browsers always send
-// it with a WebSocket request; a client without an Origin is not a page.
+// Returns whether an Origin belongs to a page that this server delivered under `host`. Browsers
+// always send it with a WebSocket request. A client without an Origin is not a page.
 bool IsOwnOrigin(std::string_view origin, std::string_view host, bool tls);
 
 class ViewerApp : public Application {
@@ -94,7 +94,7 @@ class ViewerApp : public Application {
   std::uint64_t shown_person_ = 0;  // number of the person's states when one was last shown
 };
 
-// The monotonic clock, as in TickRecord::wall_ns [ns].
+// Returns the monotonic clock, as in TickRecord::wall_ns [ns].
 std::uint64_t MonotonicNow();
 
 }  // namespace predictor::viewer

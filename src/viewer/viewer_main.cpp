@@ -26,7 +26,7 @@ constexpr std::chrono::milliseconds kFarewell{300};
 
 // Names and addresses of the server, from the run's start message.
 struct Site {
-  // machine_names: result of MachineNames().
+  // machine_names is the result of MachineNames().
   Site(const Json& start, const std::vector<std::string>& machine_names)
       : tls(start["tls"]), address(start["address"].get<std::string>()), names(machine_names) {
     // One certificate with all names of this machine, regardless of how the server is reached, so
@@ -103,7 +103,7 @@ std::string PinText(const std::string& role, ViewerApp* app) {
   return "Pin " + pin + " (" + role + "), valid for two minutes and for one client.";
 }
 
-// The address at which a page is opened; the code in the fragment admits the client.
+// Returns the address at which a page is opened. The code in the fragment admits the client.
 std::string UrlOf(const Site& site, const std::string& host, ViewerApp* app) {
   return std::string(site.tls ? "https://" : "http://") + host +
          "/#code=" + app->admission().code();
@@ -139,7 +139,7 @@ std::string Revoke(const std::string& name, ViewerApp* app) {
   return std::string("No one holds the lease ") + Name(*lease) + " now.";
 }
 
-// Carries out a command of the console; the answer is meant for a person.
+// Executes a command of the console. The answer is meant for a person.
 std::string Obey(const std::string& text, const Site& site, const std::string& host,
                  ViewerApp* app) {
   const Json line = Json::parse(text, nullptr, false);
@@ -178,7 +178,7 @@ Preparation PreparationOf(const Json& start) {
   return may;
 }
 
-// Empty if there is no report: then the page does not offer one.
+// Returns "" if there is no report. Then the page does not offer one.
 std::string ReadReport(const std::string& file) {
   if (file.empty()) return "";
   std::ifstream in(file, std::ios::binary);

@@ -39,7 +39,7 @@ void Check(const ViewerOptions& options) {
     throw InputError("A certificate needs its key, and vice versa. Give both or neither.");
 }
 
-// The folder of the certificate; empty if no certificate is needed.
+// Returns the folder of the certificate, or "" if no certificate is needed.
 std::filesystem::path StateFolderOf(const ViewerOptions& o) {
   if (!o.state_folder.empty() || !o.certificate.empty() || !(o.tls || o.expose))
     return o.state_folder;

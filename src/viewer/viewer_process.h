@@ -39,36 +39,38 @@ struct ViewerOptions {
   std::vector<ScenarioTitle> scenarios;       // scenarios that a page may choose
   std::string notice;                         // shown to every client; empty: no notice
   ReplaySpan replay;
-  // Results of a run that has ended, as JSON (the page's `scene.results`); empty during a run.
+  // The results of a run that has ended, as JSON (the page's `scene.results`). They are empty
+  // during a run.
   std::string results;
   std::filesystem::path report;            // report of that run, an HTML page; empty: no report
   Vector3 object_start = Vector3::Zero();  // O in W at the start of the run [m]
   std::string why_not_judged;  // why the person is not judged: a sentence for when no states come
 };
 
-// $XDG_STATE_HOME/predictor, or ~/.local/state/predictor. Throws InputError if the user has no home
-// folder.
+// Returns $XDG_STATE_HOME/predictor, or ~/.local/state/predictor. Throws InputError if the user has
+// no home folder.
 std::filesystem::path StateFolder();
 
-// The internal subcommand that turns this program into the viewer (`predictor viewer-process`);
-// only ViewerProcess uses it. The process gets all its data by descriptors 3 to 5.
+// The internal subcommand that turns this program into the viewer (`predictor viewer-process`).
+// Only ViewerProcess uses it. The process gets all its data through descriptors 3 to 5.
 inline constexpr const char* kViewerSubcommand = "viewer-process";
 int ViewerMain();
 
 class ViewerProcess {
  public:
-  // Shows a message of one or several lines to the user; called in the viewer's own thread.
+  // Shows a message of one or several lines to the user. It is called in the viewer's own thread.
   using Notify = std::function<void(const std::string& text)>;
 
   // Starts the process and waits until it accepts clients. Throws InputError, for instance if the
   // port is in use, the certificate cannot be read, or the address needs `expose`. The descriptors
-  // of `board`, `mailbox` and `states` are borrowed. states: of the person; null: the person is not
-  // judged.
+  // of `board`, `mailbox` and `states` are borrowed. states: those of the person, or null if the
+  // person is not judged.
   ViewerProcess(const Scenario& scenario, const ViewerOptions& options,
                 const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Notify notify,
                 const Shared<EvaluationBoard>* states = nullptr);
 
-  // The page's address with the access code; with real arms, it changes when the viewer restarts.
+  // Returns the page's address with the access code. With real arms, it changes when the viewer
+  // restarts.
   std::string url() const;
   std::uint16_t port() const { return process_.port(); }
   std::string fingerprint() const;            // fingerprint of the certificate; "" without TLS
@@ -81,9 +83,9 @@ class ViewerProcess {
   void Revoke(const std::string& lease);  // "control", "operator"
   // Removes client N permanently. All tokens so far become invalid, and with simulated arms, the
   // address gets a new code. Pages that stay connected get new tokens. This process keeps the
-  // tokens' generation, so this also works while the viewer is restarting; then all clients are
-  // disconnected. If the viewer has not answered a request when the next one is made at least 2 s
-  // later, it is killed and restarted.
+  // tokens' generation, so this also works while the viewer is restarting, in which case all
+  // clients are disconnected. If the viewer has not answered a request when the next one is made at
+  // least 2 s later, it is killed and restarted.
   void Kick(std::uint32_t client);
   // Does the same for all addresses that were given to Foxglove.
   void KickFoxglove();

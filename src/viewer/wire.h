@@ -28,7 +28,7 @@ class Wire {
   using executor_type = beast::tcp_stream::executor_type;
   using next_layer_type = beast::tcp_stream;  // closed by Beast after a time-out
 
-  // `tls`: nullptr for a connection without TLS.
+  // `tls` is nullptr for a connection without TLS.
   Wire(tcp::socket socket, asio::ssl::context* tls) : tcp_(std::move(socket)) {
     if (tls) tls_.emplace(tcp_, *tls);
   }

@@ -5,7 +5,7 @@
 namespace predictor::fci {
 namespace {
 
-// Why that version of the interface is unsuitable, and the remedy.
+// Returns why that version of the interface is unsuitable, with the remedy.
 std::string VersionRefusal(std::uint16_t answered) {
   return "answers FCI version " + std::to_string(answered) +
          ", but version 10 (Franka Research 3, system 5.9 and newer) or 5 (Panda, libfranka 0.8 "

@@ -30,7 +30,7 @@ struct FaultAndDetail {
 };
 bool EndsWithoutPower(const FaultAndDetail& what) noexcept;
 
-// The tick writes it; the reporting code reads it.
+// The tick writes the record, and the reporting code reads it.
 class FaultRecord {
  public:
   bool any() const noexcept { return latch_.any(); }
@@ -38,14 +38,14 @@ class FaultRecord {
   void Set(Fault fault, int detail = 0) noexcept {
     latch_.Set({fault, static_cast<std::int8_t>(detail)});
   }
-  // Names the errors that stopped the robot. A first report may show only that it was a reflex; a
+  // Names the errors that stopped the robot. A first report may show only that it was a reflex. A
   // later state gives the errors.
   void Name(const Errors& errors) noexcept {
     if (errors_.load(std::memory_order_relaxed) == 0)
       errors_.store(errors.to_ullong(), std::memory_order_relaxed);
   }
 
-  // Text for the user: the arm, the fault, and the remedy.
+  // Describes the arm, the fault, and the remedy for the user.
   std::string Describe(const Address& who) const;
 
  private:

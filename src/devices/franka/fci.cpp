@@ -54,7 +54,7 @@ constexpr std::array<const char*, kErrors> kErrorNames = {
     "base_acceleration_invalid_reading",
 };
 
-// Far beyond the range of these arms' joints: 5.26 rad/s, 20 rad/s², two turns.
+// These values are far beyond the range of these arms' joints: 5.26 rad/s, 20 rad/s², two turns.
 constexpr double kMaxAngle = 7;           // [rad]
 constexpr double kMaxSpeed = 30;          // [rad/s]
 constexpr double kMaxAcceleration = 300;  // [rad/s²]
@@ -299,7 +299,7 @@ std::span<const std::byte> EncodeConnect(std::uint16_t version, std::uint32_t id
 
 std::span<const std::byte> EncodeMove(std::uint16_t version, std::uint32_t id,
                                       RequestBuffer* buffer) noexcept {
-  // Used only for Cartesian motions; same values as in libfranka.
+  // These are used only for Cartesian motions and have the same values as in libfranka.
   constexpr Deviation kAny{10, 3.12, 2 * std::numbers::pi};
   Research3Move move{};
   move.controller = MoveController::kJointImpedance;

@@ -27,7 +27,8 @@ enum class Command {
   kGetRobotModel,
 };
 
-// The number of a command in `version`; empty if that version does not have the command.
+// Returns the number of a command in `version`, or no value if that version does not have the
+// command.
 std::optional<std::uint32_t> Number(Command command, std::uint16_t version);
 
 enum class MoveStatus {
@@ -48,13 +49,13 @@ enum class MoveStatus {
 
 MoveStatus MoveStatusOf(std::uint8_t byte, std::uint16_t version) noexcept;
 
-// Text of the robot's reaction, such as "stopped by a reflex".
+// Describes the robot's reaction, such as "stopped by a reflex".
 const char* Words(MoveStatus status);
 const char* Words(RobotMode mode);
 
 // Names of errors as in libfranka ("joint_velocity_violation"), by their index in a state's list.
 const char* ErrorName(int error);
-// "joint velocity violation, cartesian reflex"; "" without errors.
+// Returns "joint velocity violation, cartesian reflex", for example, or "" without errors.
 std::string ErrorWords(const Errors& errors);
 
 // The fields of a robot state that are used.
@@ -78,20 +79,20 @@ struct RobotState {
 // a pose gives a wrench of zero. A wrench that is not finite is passed on.
 bool Decode(std::uint16_t version, std::span<const std::byte> bytes, RobotState* state) noexcept;
 
-// True if a state of this version may have this size.
+// Returns whether a state of this version may have this size.
 bool IsStateSize(std::uint16_t version, std::size_t size) noexcept;
 
-// A joint velocity command. `buffer` stores the returned bytes.
+// Encodes a joint velocity command. `buffer` stores the returned bytes.
 using CommandBuffer = std::array<std::byte, sizeof(Research3Command)>;
 std::span<const std::byte> EncodeVelocity(std::uint16_t version, std::uint64_t message_id,
                                           const Joints& v, bool finished,
                                           CommandBuffer* buffer) noexcept;
 
-// Requests, including the header. `buffer` stores the returned bytes.
+// These functions encode requests with their header. `buffer` stores the returned bytes.
 using RequestBuffer = std::array<std::byte, sizeof(Header) + sizeof(CollisionRequest)>;
 std::span<const std::byte> EncodeConnect(std::uint16_t version, std::uint32_t id,
                                          std::uint16_t udp_port, RequestBuffer* buffer) noexcept;
-// Joint velocities, joint impedance.
+// Requests joint velocities with joint impedance.
 std::span<const std::byte> EncodeMove(std::uint16_t version, std::uint32_t id,
                                       RequestBuffer* buffer) noexcept;
 // Uses the same thresholds for contact and collision, with and without acceleration.
@@ -110,13 +111,13 @@ struct Answer {
 // Assembles answers from pieces of a stream, split anywhere.
 class AnswerReader {
  public:
-  // Buffer space for the next piece.
+  // Returns the buffer space for the next piece.
   std::span<std::byte> room() noexcept;
-  // `size` bytes were written to the buffer space.
+  // Reports that `size` bytes were written to the buffer space.
   void Arrived(std::size_t size) noexcept { used_ += size; }
   // Returns the next complete answer. Unused data at the end of an answer are skipped.
   bool Next(Answer* answer) noexcept;
-  // True if a header was invalid; nothing after it can be interpreted.
+  // Returns whether a header was invalid. Nothing after it can be interpreted.
   bool broken() const noexcept { return broken_; }
 
  private:

@@ -27,8 +27,8 @@ constexpr int kMaxDatagrams = 64;
 // Longer than any pause: a quarter of an hour. If a state further ahead were accepted, all later
 // states would count as old.
 constexpr std::int64_t kMaxAhead = 1'000'000;
-// Largest difference between the commanded velocity and the commanded velocity that the arm
-// reports: rounding of floats.
+// The commanded velocity and the one that the arm reports differ at most by this, because floats
+// are rounded.
 constexpr double kSameVelocity = 1e-5;  // [rad/s]
 // Within this number of cycles the arm hardly deviates from its command.
 constexpr std::uint64_t kShortGap = 2;
@@ -285,13 +285,13 @@ void Driver::Fill(ArmReading* reading) const noexcept {
   reading->wrench.age = clock_.Age(wrench_id_, now);
 }
 
-// True if the robot reports motion. After a lost command it would continue that motion.
+// Returns whether the robot reports motion. After a lost command, it would continue that motion.
 bool Driver::Moves() const noexcept {
   const auto& v = state_.dq_d;
   return std::any_of(v.begin(), v.end(), [](double x) { return std::abs(x) > kSameVelocity; });
 }
 
-// True if the last command was not zero or the arm reports motion.
+// Returns whether the last command was not zero or the arm reports motion.
 bool Driver::InMotion() const noexcept {
   return !trouble_.any() && (Moves() || !limiter_.AtRest());
 }
@@ -369,7 +369,7 @@ void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
   ++counts_.commands;
 }
 
-// True if the requested velocity comes to rest before a return path would end.
+// Returns whether the requested velocity comes to rest before a return path would end.
 bool Driver::RestsSoon(const Joints& asked) const noexcept {
   double square = 0, falling = 0;
   for (std::size_t i = 0; i < fci::kJoints; ++i) {
@@ -380,7 +380,7 @@ bool Driver::RestsSoon(const Joints& asked) const noexcept {
 }
 
 // Checks whether states or commands were lost since the last command. If so, the next command must
-// continue from the state that the robot reports. asked: velocity requested by that command.
+// continue from the state that the robot reports. asked: the velocity requested by that command.
 bool Driver::CatchUp(const Joints& asked) noexcept {
   if (!commanded_) return false;
   constexpr double dt = fci::RateLimiter::kDt;
@@ -390,7 +390,7 @@ bool Driver::CatchUp(const Joints& asked) noexcept {
   for (std::size_t i = 0; i < fci::kJoints; ++i)
     differs = differs || std::abs(state_.dq_d[i] - limiter_.v()[i]) > kSameVelocity;
   if (differs) limiter_.Start(state_.dq_d, state_.ddq_d);
-  // It deviated, or it was not accelerated while more commands could have been lost.
+  // The arm deviated, or it was not accelerated while more commands could have been lost.
   const bool waited = waits_ && !differs && !gap && !RestsSoon(asked);
   if ((differs && ticks > kShortGap) || waited) {
     Joints v{}, a{};

@@ -57,7 +57,7 @@ struct FrankaCounts {
 
 class FrankaArm : public Arm {
  public:
-  // Call only from the thread that reads and writes.
+  // Only the thread that reads and writes may call this.
   virtual FrankaCounts counts() const noexcept = 0;
 };
 

@@ -35,12 +35,14 @@ constexpr JointLimits kResearch3 = {{
 
 // Distance kept from the end of a joint's range [rad].
 constexpr double kEnd = 0.001;
-// Share of the acceleration used for braking before the end of a range; the rest is for following.
+// The share of the acceleration used for braking before the end of a range. The rest is for
+// following.
 constexpr double kBraking = 0.8;
 // Assumed delay before a joint brakes: lost commands, and the jerk at the start of braking [s].
 constexpr double kLate = RateLimiter::kCoasting + 0.005;
 
-// Largest speed towards the end of the range at distance d, both now and on the way to it.
+// Returns the largest speed towards the end of the range at distance d, both now and on the way to
+// it.
 double Cap(const JointLimit& limit, double d) noexcept {
   const double D = std::min(limit.deceleration, kBraking * limit.acceleration);
   // Solves v = sqrt(2 D (d − late · v)) − offset.
@@ -49,9 +51,9 @@ double Cap(const JointLimit& limit, double d) noexcept {
   return std::clamp(std::sqrt(std::max(0.0, root)) - b, 0.0, limit.velocity);
 }
 
-// The largest acceleration from which the velocity reaches its target, at a difference of `way`,
-// without overshoot, if the acceleration then falls by jerk · dt per millisecond. From n + r such
-// steps, with r below 1, the velocity still changes by (n + 1)(n / 2 + r) · jerk · dt².
+// Returns the largest acceleration from which the velocity reaches its target, at a difference of
+// `way`, without overshoot, if the acceleration then falls by jerk · dt per millisecond. From n + r
+// such steps, with r below 1, the velocity still changes by (n + 1)(n / 2 + r) · jerk · dt².
 double Reaching(const JointLimit& limit, double way) noexcept {
   const double step = limit.jerk * RateLimiter::kDt;
   const double u = way / (step * RateLimiter::kDt);
@@ -60,8 +62,8 @@ double Reaching(const JointLimit& limit, double way) noexcept {
   return std::min((n + r) * step, limit.acceleration);
 }
 
-// The largest acceleration from which coasting stays below `cap`. a²/2j is at most half a cycle's
-// worth, because the published jerks are 500 times the accelerations.
+// Returns the largest acceleration from which coasting stays below `cap`. a²/2j is at most half a
+// cycle's worth, because the published jerks are 500 times the accelerations.
 double Coasting(double v, double cap) noexcept {
   return std::max(0.0, cap - v) / (RateLimiter::kCoasting + 2 * RateLimiter::kDt);
 }

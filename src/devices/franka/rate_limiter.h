@@ -17,10 +17,10 @@ struct JointLimit {
 };
 using JointLimits = std::array<JointLimit, kJoints>;
 
-// Limits published in Franka's "Robot and interface specifications" (frankaemika/docs,
+// Returns the limits published in Franka's "Robot and interface specifications" (frankaemika/docs,
 // control_parameters.rst) and in rate_limiting.h of libfranka 0.9.2 and 0.21.2. The limits of the
 // Research 3 are those for systems before 5.9, which are stricter. A Panda's velocity limits do not
-// depend on the position; nevertheless the driver brakes before the ends of its ranges.
+// depend on the position. Nevertheless, the driver brakes before the ends of its ranges.
 const JointLimits& PublishedLimits(std::uint16_t version);
 
 // Computes velocities for the next millisecond: as close to the request as the limits of velocity,
@@ -36,15 +36,15 @@ class RateLimiter {
   // time for which the robot continues without commands [s]
   static constexpr double kCoasting = 0.020;
 
-  // fraction: share of the limits to use, above 0 and at most 0.99 (sums are rounded). Throws
+  // fraction: the share of the limits to use, above 0 and at most 0.99 (sums are rounded). Throws
   // std::invalid_argument.
   RateLimiter(const JointLimits& limits, double fraction);
 
   // Starts from a robot that moves at v with acceleration a.
   void Start(const Joints& v, const Joints& a) noexcept;
-  // Returns the next command. asked [rad/s]: a value that is not finite counts as rest. q:
-  // commanded position [rad]. `missed`: states or commands were lost recently, so the robot may
-  // have to coast again and is not accelerated.
+  // Returns the next command. asked [rad/s]: a value that is not finite counts as rest. q: the
+  // commanded position [rad]. `missed`: whether states or commands were lost recently, so that the
+  // robot may have to coast again and is not accelerated.
   const Joints& Next(const Joints& asked, const Joints& q, bool missed) noexcept;
   const Joints& v() const noexcept { return v_; }
   const Joints& a() const noexcept { return a_; }
@@ -61,9 +61,9 @@ class WayBack {
  public:
   static constexpr double kTime = 0.020;  // duration of the return [s]
 
-  // The difference between robot and request: velocity and acceleration.
+  // The difference between robot and request consists of velocity and acceleration.
   void Begin(const Joints& v, const Joints& a) noexcept;
-  // The permitted difference in the next millisecond [rad/s]; zero after the return.
+  // Returns the permitted difference in the next millisecond [rad/s], or zero after the return.
   Joints Next() noexcept;
   bool active() const noexcept { return time_ < kTime; }
 

@@ -10,7 +10,7 @@ namespace predictor::fci {
 // already old when it arrives.
 class RobotClock {
  public:
-  // A state with this ID (one per millisecond) arrived at `now` [ns].
+  // Reports that a state with this ID (one per millisecond) arrived at `now` [ns].
   void Heard(std::uint64_t id, std::uint64_t now) noexcept {
     if (heard_ == 0) {
       first_id_ = id;
@@ -21,7 +21,7 @@ class RobotClock {
     offset_ = std::min(Offset(id, now), offset_ + drift);
     heard_ = now;
   }
-  // Age of the state with this ID at `now` [ns]; at least 0 [s].
+  // Returns the age of the state with this ID at `now` [ns], which is at least 0 [s].
   double Age(std::uint64_t id, std::uint64_t now) const noexcept {
     return std::max(0.0, 1e-9 * (Offset(id, now) - offset_));
   }
@@ -30,8 +30,8 @@ class RobotClock {
   // Allowed drift between the clocks per second [s].
   static constexpr double kDrift = 5e-4;
 
-  // Offset of our clock relative to the robot's since the first state [ns]. It is exact for a
-  // hundred days, and finite whatever ID a state claims.
+  // Returns the offset of our clock relative to the robot's since the first state [ns]. It is exact
+  // for a hundred days, and finite whatever ID a state claims.
   double Offset(std::uint64_t id, std::uint64_t now) const noexcept {
     return static_cast<double>(now - first_) -
            1e6 * static_cast<double>(static_cast<std::int64_t>(id - first_id_));

@@ -18,8 +18,8 @@ constexpr double kAgain = 0.1;     // time after which a lost request is repeate
 constexpr double kObey = 0.005;    // time in which an OnRobot sensor executes a request [s]
 constexpr double kRateTime = 2;    // time over which a rate is measured [s]
 constexpr double kMaxRate = 7000;  // maximum rate of a Net F/T [Hz]
-// Maximum number of datagrams that are read in one tick: a sensor of 7 kHz sends seven; more are a
-// flood.
+// The maximum number of datagrams that are read in one tick. A sensor of 7 kHz sends seven, and
+// more are a flood.
 constexpr int kMaxAtOnce = 32;
 // After this long without reading [s], for example while other devices are being connected, old
 // records are buffered. All of them are read, and records that did not fit into the buffer do not
@@ -33,8 +33,8 @@ constexpr int kRestarted = 16;
 // since then, times a margin for a rate that differs from the file's, plus this time [s].
 constexpr double kRateRoom = 2, kMaxClockLead = 0.010;
 
-// The interval between records to which an OnRobot sensor is set [ms]; 0 if no interval gives this
-// rate.
+// Returns the interval between records to which an OnRobot sensor is set [ms], or 0 if no interval
+// gives this rate.
 std::uint32_t PeriodOf(double rate) {
   const double period = std::round(1e3 / rate);
   return period >= 1 && std::abs(rate * period / 1e3 - 1) < kRateError
@@ -79,7 +79,7 @@ std::string OnRobotWords(std::uint32_t status) {
   return words;
 }
 
-// "status 0x00000010, Tz beyond its range".
+// Returns "status 0x00000010, Tz beyond its range", for example.
 std::string StatusWords(NetFtMake make, std::uint32_t status) {
   std::string words = Formatted("status 0x%08X", static_cast<unsigned>(status));
   if (make == NetFtMake::kOnRobot) return words + OnRobotWords(status);

@@ -11,7 +11,7 @@ namespace predictor {
 
 enum class NetFtMake { kAti, kOnRobot };
 
-// Largest relative deviation of the rate from its nominal value; clocks deviate less.
+// The largest relative deviation of the rate from its nominal value. Clocks deviate less.
 inline constexpr double kRateError = 2e-3;
 
 struct NetFtOptions {

@@ -42,7 +42,7 @@ struct Record {
 
 std::array<std::byte, kRequestBytes> Encode(const Request& request) noexcept;
 std::array<std::byte, kRecordBytes> Encode(const Record& record) noexcept;
-// Empty if the size (or the header) is wrong.
+// Returns no value if the size (or the header) is wrong.
 std::optional<Request> DecodeRequest(std::span<const std::byte> bytes) noexcept;
 std::optional<Record> DecodeRecord(std::span<const std::byte> bytes) noexcept;
 
@@ -51,8 +51,8 @@ std::optional<Record> DecodeRecord(std::span<const std::byte> bytes) noexcept;
 inline constexpr std::uint32_t kSaturated = 0x00020000;  // force or torque out of range
 inline constexpr std::uint32_t kAnyError = 0x80000000;   // set with every error
 
-// OnRobot's and OptoForce's status, in the lower half (the status word of OptoForce's 6-axis
-// sensors; their own clients treat every value except 0 as an error).
+// The status of OnRobot and OptoForce, in the lower half. It is the status word of OptoForce's
+// 6-axis sensors, whose own clients treat every value except 0 as an error.
 inline constexpr std::uint32_t kOverload = 0x000003F0;  // Tz Ty Tx Fz Fy Fx, from bit 4 upwards
 // Three bits: 1 not detected, 2 failure, 4 temperature.
 inline constexpr int kSensorErrorShift = 10;

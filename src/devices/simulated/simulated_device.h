@@ -12,7 +12,7 @@ namespace predictor {
 
 class SimulatedDevice final : public Device {
  public:
-  // `start`, `person`: as in Rig. Throws InputError.
+  // `start` and `person` are as in Rig. Throws InputError.
   SimulatedDevice(const Scenario& scenario, const std::array<JointVector, kHands>& start,
                   std::unique_ptr<Operator> person);
 
@@ -23,7 +23,7 @@ class SimulatedDevice final : public Device {
   void Archive(StateArchive& a) noexcept override { rig_.Archive(a); }
   std::string Describe() const override;
 
-  // The true state, for evaluation only.
+  // Returns the true state, for evaluation only.
   const OperatorOutput* truth() const noexcept override { return &rig_.true_operator(); }
   const Rig& rig() const { return rig_; }
 

@@ -43,7 +43,8 @@ struct Packet {
 //   while (parser.Next(&packet)) ...;
 class PacketParser {
  public:
-  // Buffer space for the next bytes; never empty after Next has returned false.
+  // Returns the buffer space for the next bytes, which is never empty after Next has returned
+  // false.
   std::span<std::byte> Room() noexcept;
   void Filled(std::size_t bytes) noexcept { end_ += bytes; }
   bool Next(Packet* packet) noexcept;
@@ -55,7 +56,7 @@ class PacketParser {
   bool broken_ = false;
 };
 
-// Writes one packet. No heap.
+// Writes one packet without using the heap.
 class PacketWriter {
  public:
   explicit PacketWriter(PacketType type) noexcept : writer_(buffer_) {
@@ -74,7 +75,7 @@ class PacketWriter {
     writer_.Put(std::as_bytes(std::span(text)));
     return *this;
   }
-  // Returns the packet with its size filled in; empty if the content was too large.
+  // Returns the packet with its size filled in, or nothing if the content was too large.
   std::span<const std::byte> Finish() noexcept;
 
  private:
@@ -88,11 +89,11 @@ struct Field {
   std::string_view type;
 };
 
-// Size of a value of this type in bytes; 0 for an unknown type.
+// Returns the size of a value of this type in bytes, or 0 for an unknown type.
 std::size_t SizeOf(std::string_view type) noexcept;
-// Total size of the recipe's values in bytes.
+// Returns the total size of the recipe's values in bytes.
 std::size_t SizeOf(std::span<const Field> recipe) noexcept;
-// "a,b,c".
+// Returns "a,b,c".
 std::string Names(std::span<const Field> recipe);
 
 // Requests of a client. Answers have the same type.
@@ -110,8 +111,8 @@ struct RecipeAnswer {
 };
 bool Decode(std::span<const std::byte> payload, RecipeAnswer* answer);
 
-// The error in the types with which the controller answered a recipe, as the rest of a sentence
-// that begins with the controller's address; "" without an error.
+// Returns the error in the types with which the controller answered a recipe, as the rest of a
+// sentence that begins with the controller's address, or "" without an error.
 std::string Refusal(std::span<const Field> recipe, const RecipeAnswer& answer);
 
 struct TextMessage {

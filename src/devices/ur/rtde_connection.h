@@ -17,8 +17,8 @@ class Connection {
   // Throws DeviceError.
   Connection(Network* network, const Address& peer);
 
-  // Only before the first tick: sends a request and waits for the payload of the answer of this
-  // type. Throws DeviceError with the messages that the controller sent meanwhile.
+  // Sends a request and waits for the payload of the answer of this type. Call this only before the
+  // first tick. Throws DeviceError with the messages that the controller sent meanwhile.
   std::vector<std::byte> Ask(std::span<const std::byte> request, PacketType answer);
 
   bool Send(std::span<const std::byte> packet) noexcept { return stream_->Write(packet); }

@@ -23,7 +23,7 @@ constexpr int kRestarted =
     3;  // after this many packages with an earlier time, the clock was set back
 constexpr double kFresh = 0.02;  // age up to which a package is recent enough for this [s]
 constexpr double kPowerOff = 1;  // time in which a power-off request is executed, with margin [s]
-// Beyond the range of these arms' sensors; such a value is not a measurement.
+// A value beyond the range of these arms' sensors is not a measurement.
 constexpr double kMaxForce = 500;   // [N]
 constexpr double kMaxTorque = 100;  // [N·m]
 
@@ -185,8 +185,8 @@ class UrArm final : public Arm {
     if (step < kPause && cycles > 1.5) link_.lost += static_cast<std::uint64_t>(cycles - 0.5);
   }
 
-  // True if our program runs, is not braking, and has not received commands that were sent long
-  // ago.
+  // Returns whether our program runs, is not braking, and has not received commands that were sent
+  // long ago.
   bool Deaf() const noexcept {
     const double behind = period_ * (Unsigned(counter_) - Unsigned(state_.echo));
     return behind > kDeaf && clock_.Age(now_) < kFresh &&
@@ -211,7 +211,7 @@ class UrArm final : public Arm {
     wrench.saturated = !Measurement(state_.wrench);
   }
 
-  // v: velocities to follow; nullptr: stand still.
+  // v contains velocities to follow, or nullptr commands the arm to rest.
   bool Send(const JointVector* v) noexcept {
     UrVector qd{};
     if (v != nullptr) std::copy_n(v->data(), kUrJoints, qd.begin());

@@ -26,7 +26,7 @@ struct UrOptions {
   int first_register = 24;
   std::uint16_t rtde_port = 30004;
   std::uint16_t script_port = 30002;  // 30001 … 30003
-  // Used to query Remote Control and for power-off. 0: neither is available.
+  // The port to query Remote Control and for power-off, or 0 if neither is available.
   std::uint16_t dashboard_port = 29999;
 };
 

@@ -40,7 +40,7 @@ void Check(const UrOptions& options) {
                       std::to_string(r) + ". Choose 24, or 0 if another client uses that half.");
 }
 
-// Position [m] and rotation vector [rad].
+// Converts a position [m] and a rotation vector [rad].
 Pose PoseOf(const UrVector& x) {
   return {{x[0], x[1], x[2]}, RotationFromVector({x[3], x[4], x[5]})};
 }
@@ -137,7 +137,7 @@ class Setup {
                     .watchdog = UrWatchdog(cycle_)};
   }
 
-  // True if the controller supports this version of RTDE.
+  // Returns whether the controller supports this version of RTDE.
   bool Accepts(std::uint16_t version) {
     const auto answer = Ask(rtde::AskVersion(version), rtde::PacketType::kVersion);
     return !answer.empty() && answer[0] != std::byte{0};

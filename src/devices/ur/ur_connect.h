@@ -24,7 +24,7 @@ struct UrSetup {
 // Parameters and errors as for ConnectUr.
 UrSetup SetUpUr(const UrOptions& options, Network* network);
 
-// Encodes a package of UrInputs. No heap.
+// Encodes a package of UrInputs without using the heap.
 std::span<const std::byte> UrCommand(rtde::PacketWriter* writer, int recipe, const UrVector& qd,
                                      std::int32_t counter, bool follow) noexcept;
 

@@ -36,7 +36,7 @@ std::string UrScript(const UrScriptOptions& options);
 // Cycles without a new counter after which the program brakes.
 int UrSilentCycles(double cycle);
 
-// Largest time from the arrival of the last counter to the first braking cycle [s].
+// Returns the largest time from the arrival of the last counter to the first braking cycle [s].
 double UrWatchdog(double cycle);
 
 }  // namespace predictor

@@ -8,8 +8,8 @@
 namespace predictor {
 namespace {
 
-// robot_mode. From power-on through idle (brakes closed) to running. Higher values: the firmware is
-// being updated.
+// These are values of robot_mode, from power-on through idle (brakes closed) to running. Higher
+// values mean that the firmware is being updated.
 constexpr std::int32_t kPowerOn = 4;
 constexpr std::int32_t kRunning = 7;                 // powered, brakes released
 constexpr std::uint32_t kFreedriveButton = 1U << 2;  // bit of robot_status_bits
@@ -18,13 +18,13 @@ constexpr std::uint32_t kProtectiveStopBit = 1U << 2;
 constexpr std::uint32_t kSafeguardStopBit = 1U << 4;
 constexpr std::uint32_t kEmergencyStopBits = 1U << 5 | 1U << 6 | 1U << 7;
 constexpr std::uint32_t kSafetyFaultBits = 1U << 3 | 1U << 8 | 1U << 9;
-// Set for any of these stops, or for another reason.
+// This bit is set for any of these stops, or for another reason.
 constexpr std::uint32_t kStoppedBySafetyBit = 1U << 10;
 
 constexpr double kWholeSpeed = 0.995;  // setting of the speed slider
 
-// Time since the controller's start: 30 years. With a larger value, the age of a package could not
-// be computed [s].
+// The largest time since the controller's start is 30 years [s]. With a larger value, the age of a
+// package could not be computed.
 constexpr double kMaxTime = 1e9;
 constexpr double kMaxAngle = 100;  // limit of an angle, also for an endless joint [rad]
 constexpr double kMaxSpeed = 20;   // five times the speed of an arm [rad/s]

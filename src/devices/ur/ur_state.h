@@ -30,8 +30,8 @@ struct UrState {
   std::int32_t script = 0;
   double payload = 0;                   // configured at the pendant; zero if unknown [kg]
   std::array<double, 3> payload_cog{};  // centre of mass in the flange [m]
-  // Position [m] and rotation vector [rad] of the tool in the base, and on the flange. The latter
-  // is zero if it is unknown.
+  // The position [m] and rotation vector [rad] of the tool in the base, and on the flange. The
+  // latter is zero if it is unknown.
   UrVector tool{}, tool_offset{};
 };
 
@@ -42,9 +42,9 @@ struct UrExtras {
   bool tool_offset = false;  // tcp_offset
 };
 
-// The requested fields, in order of arrival.
+// Returns the requested fields, in order of arrival.
 std::vector<rtde::Field> UrOutputs(int first_register, const UrExtras& extras);
-// The sent fields: six velocities, the counter, the command (ur_script.h).
+// Returns the sent fields: six velocities, the counter, the command (ur_script.h).
 std::vector<rtde::Field> UrInputs(int first_register);
 
 // Decodes the payload of a data package. Returns false for another size or another recipe.
@@ -69,7 +69,7 @@ enum class UrFault : std::uint8_t {
   kCommand,         // the velocities to be sent are not six finite numbers
 };
 
-// Text for the user: the fault and the remedy. "" for kNone.
+// Describes the fault and the remedy for the user, or returns "" for kNone.
 const char* Sentence(UrFault fault);
 
 // True if the state of the arm is unknown: it must not be left holding.
@@ -78,15 +78,16 @@ constexpr bool EndsWithoutPower(UrFault fault) noexcept {
          fault == UrFault::kEmergencyStop || fault == UrFault::kSafetyFault;
 }
 
-// The fault that prevents the arm from moving, whatever program runs; kNone without a fault.
+// Returns the fault that prevents the arm from moving, whatever program runs, or kNone without a
+// fault.
 UrFault ArmFault(const UrState& state) noexcept;
-// The same while our program should run at full speed.
+// As above, while our program should run at full speed.
 UrFault RunFault(const UrState& state) noexcept;
-// True if the motors have power, with brakes released or not.
+// Returns whether the motors have power, with brakes released or not.
 bool Powered(const UrState& state) noexcept;
-// True if the speed slider is below 100 %.
+// Returns whether the speed slider is below 100 %.
 bool SlowedDown(const UrState& state) noexcept;
-// True if all numbers are finite and possible for an arm.
+// Returns whether all numbers are finite and possible for an arm.
 bool Plausible(const UrState& state) noexcept;
 
 // runtime_state

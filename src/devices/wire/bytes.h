@@ -48,7 +48,7 @@ class ByteReader {
 
   std::span<const std::byte> rest() const noexcept { return rest_; }
   bool ok() const noexcept { return ok_; }
-  // True if all values were present and no bytes remain.
+  // Returns whether all values were present and no bytes remain.
   bool exactly() const noexcept { return ok_ && rest_.empty(); }
 
  private:

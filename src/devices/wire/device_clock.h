@@ -16,7 +16,7 @@ class DeviceClock {
 
   explicit DeviceClock(double drift = kDrift) : drift_(drift) {}
 
-  // A package with this time-stamp [s] arrives at `now` [ns]. Time-stamps ascend.
+  // Reports that a package with this time-stamp [s] arrives at `now` [ns]. Time-stamps ascend.
   void Arrived(double stamp, std::uint64_t now) noexcept {
     if (start_ == 0) start_ = now;
     const double offset = Seconds(now) - stamp;
@@ -24,7 +24,7 @@ class DeviceClock {
     stamp_ = stamp;
     known_ = true;
   }
-  // Age of that package [s].
+  // Returns the age of that package [s].
   double Age(std::uint64_t now) const noexcept {
     return known_ ? std::max(0.0, Seconds(now) - stamp_ - offset_) : 1e9;
   }

@@ -14,7 +14,7 @@ namespace predictor {
 struct Address {
   std::string host;
   std::uint16_t port = 0;
-  // "192.0.2.10:30004".
+  // Returns "192.0.2.10:30004", for example.
   std::string ToString() const { return host + ":" + std::to_string(port); }
 };
 
@@ -47,11 +47,11 @@ class Datagrams {
  public:
   virtual ~Datagrams() = default;
   // Copies the next datagram to `to` and returns its size, which exceeds the size of `to` if it was
-  // truncated; 0: none at present.
+  // truncated, or 0 if there is none at present.
   virtual int Receive(std::span<std::byte> to) noexcept = 0;
   virtual bool Send(std::span<const std::byte> from) noexcept = 0;
   virtual std::uint16_t port() const noexcept = 0;  // our port number
-  // number of dropped datagrams from other senders
+  // Returns the number of dropped datagrams from other senders.
   virtual std::uint64_t strangers() const noexcept = 0;
 };
 
@@ -60,16 +60,17 @@ class Network {
   virtual ~Network() = default;
   // Throws DeviceError if there is no answer within `timeout` [s] or the connection is refused.
   virtual std::unique_ptr<Stream> Connect(const Address& peer, double timeout) = 0;
-  // port: our port; 0: any. peer.port 0: the port from which the peer's first datagram arrives.
-  // Throws DeviceError.
+  // port: our port, or 0 for any. If peer.port is 0, it is the port from which the peer's first
+  // datagram arrives. Throws DeviceError.
   virtual std::unique_ptr<Datagrams> Open(const Address& peer, std::uint16_t port) = 0;
-  // Monotonic clock [ns].
+  // Returns the monotonic clock [ns].
   virtual std::uint64_t Now() const noexcept = 0;
-  // Lets time pass [s]. Only before the first tick.
+  // Lets time pass [s]. Call this only before the first tick.
   virtual void Wait(double time) = 0;
 };
 
-// This computer's sockets and clock. TCP without delay; each peer is identified by its address.
+// Returns this computer's sockets and clock. TCP has no delay, and each peer is identified by its
+// address.
 std::unique_ptr<Network> SocketNetwork();
 
 // Only before the first tick: waits until `done()` is true, polling every millisecond. Returns

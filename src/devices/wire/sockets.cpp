@@ -178,7 +178,7 @@ class Sockets final : public Network {
   }
 
  private:
-  // Our address as the peer sees it. Connecting a datagram socket sends no packet.
+  // Returns our address as the peer sees it. Connecting a datagram socket sends no packet.
   static in_addr OwnAddress(sockaddr_in peer) {
     const Socket probe(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
     if (peer.sin_port == 0) peer.sin_port = htons(9);  // any port
