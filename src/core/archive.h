@@ -27,20 +27,20 @@ namespace predictor {
 class StateArchive {
  public:
   static StateArchive ToSave(std::span<std::byte> to) { return {to.data(), to.size(), true}; }
-  // Only reads from `from`.
+  // Returns an archive that only reads from `from`.
   static StateArchive ToLoad(std::span<const std::byte> from) {
     return {const_cast<std::byte*>(from.data()), from.size(), false};
   }
 
-  // Saves or loads each field in turn. No heap, no throw.
+  // Saves or loads each field in turn. It does not use the heap and does not throw.
   template <class... T>
   void operator()(T&... fields) noexcept {
     (Field(fields), ...);
   }
 
   bool saves() const noexcept { return saves_; }
-  // False if the bytes were too few or did not describe this state; the loaded state is then
-  // invalid.
+  // Returns false if the bytes were too few or did not describe this state. The loaded state is
+  // then invalid.
   bool ok() const noexcept { return ok_; }
   void Fail() noexcept { ok_ = false; }
   std::size_t used() const noexcept { return used_; }

@@ -14,14 +14,14 @@ class InputError : public std::runtime_error {
   InputError(const std::string& place, const std::string& sentence)
       : std::runtime_error(place.empty() ? sentence : place + ": " + sentence) {}
 
-  // An error in the value at `key` of a scenario ("device.arms.left.elbow"). Its place in the file
-  // is not known yet: Located (scenario/located.h) adds it. `sentence` begins with the key.
+  // Returns an error in the value at `key` of a scenario ("device.arms.left.elbow"). Located
+  // (scenario/located.h) adds its place in the file. `sentence` begins with the key.
   static InputError At(const std::string& key, const std::string& sentence) {
     InputError error(sentence);
     error.key_ = key;
     return error;
   }
-  // The same error with its key placed within a group: "velocity_limit" within "device.arms.left".
+  // Returns this error with its key placed within a group: "velocity_limit" in "device.arms.left".
   // If the error has no key (an error in a model file, for example), it is attributed to `group`,
   // and the sentence then names the group.
   InputError Within(const std::string& group) const {
@@ -29,7 +29,7 @@ class InputError : public std::runtime_error {
     return At(group + "." + key_, group + "." + what());
   }
 
-  // Key in the scenario; "" if the error has no key or its message already gives the place.
+  // The key in the scenario, or "" if the error has none or its message already gives the place.
   const std::string& key() const { return key_; }
 
  private:

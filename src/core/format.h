@@ -1,4 +1,4 @@
-// printf into strings of any length. Not for use in the tick.
+// printf into strings of any length. It is not for use in the tick.
 #pragma once
 
 #include <ctime>
@@ -12,10 +12,10 @@ __attribute__((format(printf, 1, 2))) std::string Formatted(const char* format, 
 
 // Appends to `text`.
 __attribute__((format(printf, 2, 3))) void Append(std::string* text, const char* format, ...);
-// The same, followed by a newline.
+// Appends like Append, followed by a newline.
 __attribute__((format(printf, 2, 3))) void AppendLine(std::string* text, const char* format, ...);
 
-// Local time in the format of strftime.
+// Returns the local time in the format of strftime.
 std::string LocalTime(const char* format, std::time_t time);
 
 // Formats SI values in the unit that people read: "30.5 N, limit 30 N". Uses three digits, or as

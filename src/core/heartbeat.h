@@ -7,8 +7,8 @@ namespace predictor {
 
 class Heartbeat {
  public:
-  // beats: heartbeats counted so far. now: monotonic clock [ns]. Returns the time since the count
-  // last changed [s]. The sender's own clock and count are not trusted.
+  // Returns the time since the count of heartbeats last changed [s]. `beats` is the count so far
+  // and `now` the monotonic clock [ns]. The sender's own clock and count are not trusted.
   double Silence(std::uint32_t beats, std::uint64_t now) noexcept {
     if (!known_ || beats != beats_) {
       known_ = true;

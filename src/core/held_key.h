@@ -33,9 +33,9 @@ class HeldKey {
 
   explicit HeldKey(char key) : key_(key) {}
 
-  // Call at least every kTogether, and with each key received; `key` is 0 if there was none. Any
-  // other key releases the held one. now [s]: time at which the key was read; keys read together
-  // have the same time.
+  // Call this at least every kTogether, and with each key received; `key` is 0 if there was none.
+  // Any other key releases the held one. `now` is the time at which the key was read [s]; keys read
+  // together have the same time.
   KeySign Update(char key, double now);
   bool held() const { return letters_ >= 2; }
   char key() const { return key_; }

@@ -17,7 +17,7 @@ class Histogram {
     const double b = std::log(std::max(kLowest, x) / kLowest) / kWidth;  // NaN counts as kLowest
     ++counts_[static_cast<std::size_t>(std::min(b, kBuckets - 1.0))];
   }
-  // Value below which a fraction p of the samples lies.
+  // Returns the value below which a fraction p of the samples lies.
   double Quantile(double p) const {
     if (n_ == 0) return 0;
     const double rank = p * static_cast<double>(n_);

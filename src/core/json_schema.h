@@ -1,4 +1,4 @@
-// Parts of a JSON Schema (draft-07), and numbers that can be missing. Not for the tick.
+// Parts of a JSON Schema (draft-07), and numbers that can be missing. They are not for the tick.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace predictor {
 
-// JSON has no infinity and no NaN: such a number is missing, and becomes null.
+// JSON has no infinity and no NaN. Such a number is missing and becomes null.
 inline nlohmann::ordered_json NumberOrNull(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr);
 }
@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr const char* kDraft = "http://json-schema.org/draft-07/schema#";
 
-// A value of a type (or of one of several), with its meaning for the reader.
+// Returns a value of a type (or of one of several), with its meaning for the reader.
 inline Json Value(Json type, const std::string& meaning) {
   return {{"type", std::move(type)}, {"description", meaning}};
 }
@@ -28,7 +28,7 @@ inline Json ValueOrNull(const char* type, const std::string& meaning) {
   return Value({type, "null"}, meaning);
 }
 
-// An object that has all these properties.
+// Returns an object that has all these properties.
 inline Json Object(Json properties, const std::string& meaning) {
   Json required = Json::array();
   for (const auto& [key, value] : properties.items()) required.push_back(key);

@@ -1,4 +1,4 @@
-// Least-squares fits and the uncertainty of their results. They allocate: not for the tick.
+// Least-squares fits and the uncertainty of their results. They allocate and are not for the tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@ struct Estimate {
   double half_width = 0;
 };
 
-// Two-sided 95 % quantile of Student's t.
+// Returns the two-sided 95 % quantile of Student's t.
 double StudentQuantile95(double degrees_of_freedom);
 
 // x that minimises |A x − b|. The errors of b must be independent and have equal variance.

@@ -1,5 +1,5 @@
 // Decompositions of matrices of any size. They are compiled only here because each costs seconds of
-// compile time in every file that uses it. They allocate: not for the tick.
+// compile time in every file that uses it. They allocate and are not for the tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +25,7 @@ SymmetricModes SymmetricModesOf(const Eigen::MatrixXd& K, const Eigen::MatrixXd&
 // Solves A X = B for X. A is square and regular.
 Eigen::MatrixXd Solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
-// x that minimises |A x − b|; the x of smallest norm if there are several.
+// Returns the x that minimises |A x − b|. Among several, it is the x of smallest norm.
 Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// Detects hands on which the arms still press after a stop. Not for the tick.
+// Detects hands on which the arms still press after a stop. It is not for the tick.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace predictor {
 
-// True if this hand's arm reports a fault; without a hand, if any arm does. Only a restart of the
-// program clears the fault, and nothing moves the arm until then.
+// Returns whether this hand's arm or, without a hand, any arm reports a fault. Only a restart of
+// the program clears the fault, and nothing moves the arm until then.
 bool ArmAtFault(const HandRecord& hand);
 bool ArmAtFault(const TickRecord& record);
 
-// True after a stop if the power is off or an arm has had a fault: RECOVERY then moves nothing.
+// Returns whether RECOVERY moves nothing after a stop: the power is off or an arm had a fault.
 bool NothingMovesAnyMore(const TickRecord& record);
 
 // A stopped arm is held stiffly, and an arm without power is heavy, so a hand may be trapped at any
@@ -25,11 +25,11 @@ class LoadedHands {
  public:
   static constexpr double kPatience = 0.5;  // [s]
 
-  // force: threshold above which a hand is loaded [N]. rate: tick rate [Hz]. enabling_device: the
-  // person holds an enabling device instead of a key.
+  // A hand is loaded above `force` [N]. `rate` is the tick rate [Hz]. With an `enabling_device`,
+  // the person holds one instead of a key.
   LoadedHands(double force, double rate, bool enabling_device = false)
       : force_(force), patience_(kPatience * rate), enabling_device_(enabling_device) {}
-  // Call with each record, in order. Returns sentences for the operator; usually none.
+  // Call this with each record, in order. Returns sentences for the operator, usually none.
   std::vector<std::string> See(const TickRecord& record);
 
  private:

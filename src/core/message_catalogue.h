@@ -1,5 +1,5 @@
 // Texts shown at the console, on the page, in the headset and in reports. Each has an ID in
-// message_catalogue.json; the page imports the same file. Not for the tick.
+// message_catalogue.json, which the page imports too. They are not for the tick.
 #pragma once
 
 #include <initializer_list>
@@ -16,14 +16,14 @@ inline constexpr CatalogueEntry kMessageCatalogue[] = {
 #include "message_table.inc"
 };
 
-// Text of an ID; empty if the catalogue does not contain it.
+// Returns the text of an ID, or "" if the catalogue does not contain it.
 constexpr std::string_view FindMessage(std::string_view id) {
   for (const CatalogueEntry& entry : kMessageCatalogue)
     if (entry.id == id) return entry.text;
   return {};
 }
 
-// Declared only: a constant expression cannot call it, so the compiler rejects an unknown ID.
+// This is only declared. A constant expression cannot call it, so an unknown ID does not compile.
 void RejectUnknownMessageId();
 
 // The ID of a text in the catalogue: an unknown literal does not compile.
@@ -48,8 +48,8 @@ std::string FillIn(std::string_view text, std::initializer_list<MessageValue> va
 inline std::string Message(MessageId id, std::initializer_list<MessageValue> values = {}) {
   return FillIn(id.text(), values);
 }
-// Text of an ID that is composed at run time. Returns the ID itself if the catalogue does not
-// contain it.
+// Returns the text of an ID that is composed at run time, or the ID itself if the catalogue does
+// not contain it.
 std::string MessageOf(std::string_view id, std::initializer_list<MessageValue> values = {});
 
 }  // namespace predictor

@@ -18,7 +18,7 @@ struct LinkCounts {
   std::uint64_t refused = 0;  // of the wrong size, unreadable, or from another sender
 };
 
-// One arm and its force/torque sensor as read from the device. Written by devices.
+// One arm and its force/torque sensor as read from the device. Devices write it.
 struct ArmSample {
   bool present = false;
   JointVector q;                      // joint positions [rad]
@@ -42,14 +42,14 @@ struct DeviceSample {
   std::array<ArmSample, kHands> arms;
 };
 
-// An operator's hand as a page sends it. Written by the emulator, for a simulated rig only.
+// An operator's hand as a page sends it. The emulator writes it, for a simulated rig only.
 struct HandInput {
   bool grip = false;
   Pose X_WH;         // set-point of the handle
   double age = 1e9;  // time since the page sent it [s]
 };
 
-// Written by the guard, the last stage before the device.
+// The command to a device. The guard writes it, as the last stage before the device.
 struct DeviceCommand {
   RunState state = RunState::kInit;     // as shown on the page
   double run_time = 0;                  // time since RUN began [s]; constant while stopped
@@ -57,20 +57,20 @@ struct DeviceCommand {
   std::array<HandInput, kHands> hands;  // simulated rig: the operator's hands, if a page moves them
 };
 
-// Motion of one frame in the world. Written by the modules that compute kinematics.
+// Motion of one frame in the world. The modules that compute kinematics write it.
 struct FrameMotion {
   Pose X_W;                       // pose in W
   Twist V_W = Twist::Zero();      // twist in W, about the frame's origin
   Vector6 A_W = Vector6::Zero();  // its time derivative (classical acceleration, not spatial)
 };
 
-// Wrench of one hand, estimated from the raw reading. Written by sensing.
+// Wrench of one hand, estimated from the raw reading. Sensing writes it.
 struct HandWrench {
   bool present = false;
   Wrench F_H_W = Wrench::Zero();  // exerted by the hand on the handle, about H, axes of W
 };
 
-// Inputs of one simulation step. Written by the emulator.
+// Inputs of one simulation step. The emulator writes them.
 struct WorldInput {
   Hands present;                                                        // which handles exist
   std::array<Wrench, kHands> F_H_W = {Wrench::Zero(), Wrench::Zero()};  // of the hands
@@ -79,8 +79,8 @@ struct WorldInput {
   std::array<double, kHands> hand_mass = {};  // direct mode: mass of the hand on D [kg]
 };
 
-// Live tuning of the virtual cobot's controller: factors of the scenario's values. Written by the
-// emulator.
+// Live tuning of the virtual cobot's controller: factors of the scenario's values. The emulator
+// writes it.
 struct ControllerTuning {
   double stiffness_translation = 1;
   double stiffness_rotation = 1;
@@ -88,7 +88,7 @@ struct ControllerTuning {
   bool operator==(const ControllerTuning&) const = default;
 };
 
-// The virtual world after a step. Written by simulation.
+// The virtual world after a step. The simulation writes it.
 struct WorldState {
   double time = 0;  // simulated time [s]
   int cobot_dof = 0;
@@ -105,7 +105,7 @@ struct WorldState {
   std::uint8_t cobot_stop = 0;    // protective stop of the cobot itself: CobotStop
 };
 
-// What a controller outside the program answered in a tick, taken from its record. For a replay.
+// The answer of a controller outside the program in a tick, from its record, for a replay.
 struct ControllerAnswer {
   JointVector torque;  // torque that was applied [N·m]
   double energy = 0;   // energy of the virtual world [J]
@@ -115,7 +115,7 @@ struct ControllerAnswer {
 
 inline constexpr int kMaxLimits = 8;  // number of limits registered with rendering
 
-// Result of haptic rendering. Written by haptics.
+// Result of haptic rendering. Haptics writes it.
 struct RenderResult {
   std::array<JointVector, kHands> v;                   // joint velocities [rad/s]
   Vector6 relative_slack = Vector6::Zero();            // of the relative-pose task [m/s, rad/s]

@@ -5,13 +5,13 @@
 
 namespace predictor {
 
-// Path s(x) = 10x³ − 15x⁴ + 6x⁵ from 0 to 1 over x in [0, 1], constant outside.
+// Returns s(x) = 10x³ − 15x⁴ + 6x⁵, from 0 to 1 over x in [0, 1] and constant outside.
 inline double MinimumJerk(double x) noexcept {
   x = std::clamp(x, 0.0, 1.0);
   return x * x * x * (10 + x * (-15 + 6 * x));
 }
 
-// ds/dx, at most 1.875.
+// Returns ds/dx, which is at most 1.875.
 inline double MinimumJerkRate(double x) noexcept {
   x = std::clamp(x, 0.0, 1.0);
   return 30 * x * x * (1 - x) * (1 - x);

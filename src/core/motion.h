@@ -14,7 +14,7 @@ inline constexpr double kStandstillSpeed = 0.01;
 // Lever arm at which a handle's rotation counts as motion [m]. A rotation about the handle's own
 // axis would otherwise not be detected.
 inline constexpr double kHandleLength = 0.1;
-// The larger of a handle's translational speed and its angular speed times `length` [m/s].
+// Returns the larger of a handle's speed and its angular speed times `length` [m/s].
 inline double HandleSpeed(const Twist& V, double length = kHandleLength) {
   return std::max(V.head<3>().norm(), length * V.tail<3>().norm());
 }
@@ -22,10 +22,10 @@ inline double HandleSpeed(const Twist& V, double length = kHandleLength) {
 // Lever arm at which rotation counts towards the speed that a stop must brake [m]. A scenario
 // cannot change it: a longer lever arm would make stops longer.
 inline constexpr double kStopLength = 0.2;
-// Speed of a handle as used for a stop [m/s].
+// Returns the speed of a handle as used for a stop [m/s].
 inline double StopSpeed(const Twist& V) { return HandleSpeed(V, kStopLength); }
 
-// Motion of B, fixed to A at X_AB, from the motion of A: twist and classical acceleration about B.
+// Returns the twist and classical acceleration of B, fixed to A at X_AB, from the motion of A.
 inline FrameMotion MotionOfFixed(const FrameMotion& A, const Pose& X_AB) {
   const Vector3 r_AB_W = A.X_W.q * X_AB.p;
   const Vector3 w = A.V_W.tail<3>();

@@ -1,4 +1,4 @@
-// A person's state as JSON, for pages and recordings. Not for the tick.
+// A person's state as JSON, for pages and recordings. It is not for the tick.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace predictor {
 
-// {"type": "person", "tick": …, …}, on one line, with five digits (times: nine). The state may come
-// from another process: whatever it contains, the text is valid JSON.
+// Returns {"type": "person", "tick": …, …} on one line, with five digits (nine for times). The
+// state may come from another process: whatever it contains, the text is valid JSON.
 std::string PersonJson(const PersonState& state);
-// JSON Schema (draft-07) of PersonJson.
+// Returns the JSON Schema (draft-07) of PersonJson.
 std::string PersonSchema();
 
 }  // namespace predictor

@@ -19,8 +19,8 @@ enum class PersonStatus : std::uint8_t {
 inline constexpr std::array kPersonStatusNames = {"judged", "waiting", "no_hand", "below_ground"};
 inline constexpr std::size_t kPersonStatuses = kPersonStatusNames.size();
 
-// Points of the body, for drawing. All are joints, except: eyes and head, their centres; hand, the
-// knuckles; toes, the front of the foot on the ground.
+// Points of the body, for drawing. Most are joints. Eyes and head are their centres, the hand is at
+// the knuckles, and the toes are at the front of the foot on the ground.
 enum class BodyPoint : std::uint8_t {
   kPelvis,  // middle of the hip joints
   kL5S1,
@@ -164,8 +164,8 @@ struct PersonWarningRow {
   double on, off;  // if on < off, low values are bad
   const char* words;
 };
-// For a joint's use, half of the mean strength: with a standard deviation of 0.3 of the mean, one
-// person in twenty is no stronger than that. For a worksheet, the highest action level.
+// A joint's use warns at half of the mean strength. With a standard deviation of 0.3 of the mean,
+// one person in twenty is no stronger than that. A worksheet warns at its highest action level.
 inline constexpr double kUseWarning = 0.5, kUseCalm = 0.4;
 inline constexpr std::array kPersonWarningRows = {
     PersonWarningRow{"lower_back_compression", kCompressionLimit, 3100,

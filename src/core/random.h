@@ -10,7 +10,7 @@
 namespace predictor {
 
 // One stream of random numbers (xoshiro256++, Blackman & Vigna 2019). Each stream is named after
-// its use, so additional draws from one stream do not change the others. No allocation.
+// its use, so more draws from one do not change the others. It does not allocate.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::string_view use) {
@@ -31,10 +31,10 @@ class RandomStream {
     return result;
   }
 
-  // Uniform in [0, 1).
+  // Returns a number uniform in [0, 1).
   double Uniform() { return static_cast<double>(Next() >> 11) * 0x1.0p-53; }
 
-  // Normal, mean 0, standard deviation 1 (Box-Muller; both values used).
+  // Returns a normal number with mean 0 and standard deviation 1 (Box-Muller; both values used).
   double Normal() {
     if (has_spare_) {
       has_spare_ = false;

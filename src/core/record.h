@@ -1,4 +1,4 @@
-// The record of one tick, read by recorder, viewer, evaluation and terminal. core/tick_fields.h
+// The record of one tick, which recorder, viewer, evaluation and terminal read. core/tick_fields.h
 // describes each field; add new fields there too.
 #pragma once
 
@@ -61,7 +61,7 @@ struct HandRecord {
   std::array<double, kWarningValues> warning_values;
 };
 
-// True if the warning is active.
+// Returns whether the warning is active.
 inline bool Has(const HandRecord& hand, Warning warning) noexcept {
   return (hand.warnings >> static_cast<unsigned>(warning) & 1U) != 0;
 }

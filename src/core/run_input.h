@@ -40,7 +40,7 @@ enum class Parameter : std::uint8_t {
   kTorqueThreshold,       // [N·m]
 };
 inline constexpr int kParameters = 5;
-// "stiffness_translation", "stiffness_rotation", "damping_ratio", "force", "torque"
+// Returns "stiffness_translation", "stiffness_rotation", "damping_ratio", "force" or "torque".
 const char* Name(Parameter parameter);
 
 struct RunInput {
@@ -50,8 +50,8 @@ struct RunInput {
   std::uint8_t grip = 0;     // the hand is closed
   std::uint32_t client = 0;  // the sender, as numbered by the viewer
   double value = 0;
-  // Position of the hand in W [m]. In a kLatency input [ms]: server clock minus page clock; time
-  // from a tick's start to its reception; and time from the tick's start to the display.
+  // Position of the hand in W [m]. A kLatency input contains three times [ms]: server clock minus
+  // page clock, from a tick's start to its reception, and from the tick's start to the display.
   std::array<double, 3> p = {};
   std::array<double, 4> q = {1, 0, 0, 0};  // orientation of the hand, scalar first
 };
@@ -63,7 +63,7 @@ class InputQueue {
  public:
   static constexpr std::uint32_t kCapacity = 256;
 
-  // For the writer. Returns false if the queue is full.
+  // This function is for the writer. It returns false if the queue is full.
   bool Push(const RunInput& input) noexcept {
     const std::uint32_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_.load(std::memory_order_acquire) >= kCapacity) return false;
@@ -71,8 +71,8 @@ class InputQueue {
     head_.store(head + 1, std::memory_order_release);
     return true;
   }
-  // For the reader. Returns false if the queue is empty. A dead or hostile writer cannot make it
-  // run for more than the queue's capacity: an impossible count empties the queue.
+  // This function is for the reader. It returns false if the queue is empty. Even if the writer is
+  // dead or hostile, it ends: an impossible count empties the queue.
   bool Pop(RunInput* input) noexcept {
     const std::uint32_t tail = tail_.load(std::memory_order_relaxed);
     const std::uint32_t waiting = head_.load(std::memory_order_acquire) - tail;

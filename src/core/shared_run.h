@@ -15,7 +15,7 @@ namespace predictor {
 inline constexpr std::size_t kRecordRing = 8192;  // about eight seconds
 using RecordRing = RingStorage<TickRecord, kRecordRing>;
 
-// Written by the run and read by every process; the others map it read-only.
+// The run writes the board, and every process reads it. The others map it read-only.
 struct RunBoard {
   static constexpr std::uint64_t kMagic = 0x3352'4f54'4349'4450;  // identifies this layout
   std::uint64_t magic = kMagic;
@@ -24,7 +24,7 @@ struct RunBoard {
   RecordRing records;
 };
 
-// Written by the viewer's process. The run validates everything it reads from it.
+// The viewer's process writes the mailbox. The run validates everything it reads from it.
 struct RunMailbox {
   InputQueue inputs;
   // Counts stop requests. It is separate from the queue, so a stop never waits behind other inputs.
@@ -37,20 +37,20 @@ struct RunMailbox {
   std::atomic<std::uint64_t> immersive_frame_ns{0};  // monotonic clock at the headsets' last report
 };
 
-// Written by the ROS-TCP server's process and read by the run. Its clients may only request a stop.
+// The ROS-TCP server's process writes it, the run reads it. Its clients may only request a stop.
 struct StopMailbox {
   std::atomic<std::uint32_t> stops{0};  // counts stop requests
 };
 
-// Written by the watchdog's process, read by the run.
+// The watchdog's process writes it, and the run reads it.
 struct WatchdogMailbox {
   std::atomic<std::uint32_t> beats{0};  // counts its signs of life, 1000 per second
 };
 
 inline constexpr std::size_t kPersonRing = 256;  // two and a half seconds
 
-// Written by the evaluator's process; the run's recorder and the viewer read it and trust nothing
-// in it.
+// The evaluator's process writes this board. The run's recorder and the viewer read it and trust
+// nothing in it.
 struct EvaluationBoard {
   RingStorage<PersonState, kPersonRing> states;
 };
@@ -72,7 +72,7 @@ class Shared {
   T& operator*() { return *memory_; }
   const T& operator*() const { return *memory_; }
   int descriptor() const { return descriptor_; }
-  // A descriptor that cannot map the memory for writing. Throws std::runtime_error.
+  // Returns a descriptor that cannot map the memory for writing. Throws std::runtime_error.
   int read_only_descriptor() const;
 
  private:

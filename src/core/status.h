@@ -30,7 +30,7 @@ enum class StopCause : std::uint8_t {
 };
 inline constexpr int kStopCauses = 19;
 
-// Name as in the summary ("force", "torque", ...); "none" for kNone.
+// Returns the name as in the summary ("force", "torque", ...), or "none" for kNone.
 const char* Name(StopCause cause);
 
 // Quantity that a value and its limit measure.
@@ -134,10 +134,10 @@ enum class RunState : std::uint8_t {
 };
 inline constexpr int kRunStates = 10;
 
-// "INIT", "SELFTEST", ...
+// Returns "INIT", "SELFTEST", ...
 const char* Name(RunState state);
 
-// States in which the arms follow a task; STOPPING moves too, but only towards rest.
+// Returns whether arms follow a task in a state. STOPPING moves too, but only towards rest.
 constexpr bool FollowsTask(RunState state) noexcept {
   return state == RunState::kAlign || state == RunState::kRun || state == RunState::kRecovery;
 }
@@ -159,7 +159,7 @@ enum class Refusal : std::uint8_t {
   kNotAligned,    // a handle has moved away from its aligned pose
 };
 inline constexpr int kRefusals = 9;
-// A sentence for the operator that says what to do; "" for kNone.
+// Returns a sentence that says what the operator must do, or "" for kNone.
 const char* Sentence(Refusal refusal);
 
 }  // namespace predictor

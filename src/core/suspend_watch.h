@@ -9,9 +9,9 @@ namespace predictor {
 
 class SuspendWatch {
  public:
-  // before, after: CLOCK_MONOTONIC, read before and after `boot`, which is CLOCK_BOOTTIME [ns].
-  // Returns a lower bound on how long the computer was suspended since the last call [ns]; 0 if it
-  // was not suspended. The difference of the clocks lies between boot − after and boot − before,
+  // Returns a lower bound on how long the computer was suspended since the last call [ns], or 0 if
+  // it was not. `before` and `after` are CLOCK_MONOTONIC, read before and after `boot`, which is
+  // CLOCK_BOOTTIME [ns]. The difference of the clocks lies between boot − after and boot − before,
   // even if the thread was delayed between the readings.
   std::int64_t Look(std::int64_t before, std::int64_t boot, std::int64_t after) noexcept {
     constexpr std::int64_t kRounding = 1'000'000;  // shorter than any suspend [ns]

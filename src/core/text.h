@@ -1,4 +1,4 @@
-// Text for people: numbers, lists, quotations, and the closest match among names. Not for the tick.
+// Text for people: numbers, lists, quotations and the closest names. It is not for the tick.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,14 @@ namespace predictor {
 // would have to change. Among equals, the first one wins.
 std::string Nearest(const std::string& word, const std::vector<std::string>& candidates);
 
-// "Did you mean X?", or "The known names are: a, b, c." if no candidate is close.
+// Returns "Did you mean X?", or "The known names are: a, b, c." if no candidate is close.
 std::string Suggestion(const std::string& word, const std::vector<std::string>& candidates);
 
-// The shortest decimal number that reads back as exactly `x` ("0.1", "1e-05", "inf").
+// Returns the shortest decimal that reads back as exactly `x` ("0.1", "1e-05", "inf").
 std::string FormatNumber(double x);
 
-// Text to append to the message that refuses an angle `x` [rad] outside low … high [rad]. If `x`,
-// read as degrees, would be within these limits, it is a sentence that says so; otherwise "".
+// Returns text to append to the message that refuses an angle `x` [rad] outside low … high [rad]: a
+// sentence if `x`, read as degrees, would be within these limits, otherwise "".
 std::string DegreesHint(double x, double low, double high);
 
 // The first character of a UTF-8 text. If it has zero bytes, the text does not begin with a valid
@@ -45,22 +45,22 @@ constexpr std::uint64_t Fnv1a(std::string_view text, std::uint64_t hash = 0xcbf2
 enum class Lines { kOne, kMany };
 std::string Printable(std::string_view text, Lines lines = Lines::kOne);
 
-// `x` in quotation marks for a message: made printable and truncated to 60 bytes.
+// Returns `x` in quotation marks for a message, made printable and truncated to 60 bytes.
 std::string Quote(std::string_view x);
 
-// "a, b, c".
+// Returns "a, b, c".
 std::string Join(const std::vector<std::string>& words, std::string_view separator = ", ");
 
-// Escapes text for HTML and XML, including quoted attributes; characters that XML forbids become
+// Escapes text for HTML and XML, including quoted attributes. Characters that XML forbids become
 // spaces.
 std::string EscapeMarkup(std::string_view text);
 
-// The same JSON, safe inside an HTML script element: without "<" and line separators.
+// Returns the same JSON, safe in an HTML script element: without "<" and line separators.
 std::string JsonInScript(std::string_view json);
 
-// One cell of a CSV table (RFC 4180), quoted if necessary. A leading =, +, -, @, tab or carriage
-// return gets an apostrophe in front of it, so spreadsheets do not treat the text as a formula. Not
-// for numbers.
+// Returns one cell of a CSV table (RFC 4180), quoted if necessary. A leading =, +, -, @, tab or
+// carriage return gets an apostrophe in front of it, so spreadsheets do not treat the text as a
+// formula. It is not for numbers.
 std::string CsvCell(std::string_view text);
 
 }  // namespace predictor

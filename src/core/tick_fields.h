@@ -32,8 +32,8 @@ struct TickField {
   const char* unit = "";   // "" for counts, ratios, flags and enumerations
   const char* frame = "";  // frame whose axes the components refer to
   const char* meaning = "";
-  // Name in the states sent to pages, appended to the names of its group and message. Null: not
-  // sent.
+  // Name in the states sent to pages, appended to the names of its group and message. If it is
+  // null, the field is not sent.
   const char* page = nullptr;
   bool of_clock = false;  // measured by the computer's clock, so a replay does not reproduce it
 };

@@ -51,29 +51,29 @@ struct Pose {
   Vector3 operator*(const Vector3& p_B) const { return p + q * p_B; }
 };
 
-// Pose from a position [m] and roll, pitch, yaw [rad] about the fixed axes x, y, z (as in URDF).
+// Returns a pose from a position [m] and roll, pitch, yaw [rad] about the fixed x, y, z (as URDF).
 Pose PoseFromXyzRpy(const Vector3& xyz, const Vector3& rpy);
 
-// Roll, pitch and yaw [rad] of a rotation, in the convention of PoseFromXyzRpy. Roll is 0 if the
-// pitch is ±90°.
+// Returns roll, pitch and yaw [rad] of a rotation, in the convention of PoseFromXyzRpy. Roll is 0
+// if the pitch is ±90°.
 Vector3 RpyOf(const Quaternion& q);
 
-// Rotation vector [rad], in A, that rotates `from` into `to` (both R_A·) by the shortest path.
+// Returns the rotation vector [rad], in A, that rotates `from` into `to` by the shortest path.
 Vector3 RotationError(const Quaternion& to, const Quaternion& from);
 
-// Quaternion of a rotation vector [rad].
+// Returns the quaternion of a rotation vector [rad].
 Quaternion RotationFromVector(const Vector3& w);
 
-// Set-point minus pose: position [m], then rotation vector [rad], both in W (impedance error).
+// Returns set-point minus pose, in W: position [m], then rotation vector [rad] (impedance error).
 Vector6 PoseError(const Pose& X_Wset, const Pose& X_W);
 
-// Matrix S(a) with S(a) b = a × b.
+// Returns the matrix S(a) with S(a) b = a × b.
 Matrix3 Skew(const Vector3& a);
 
-// Twist of C, rigidly fixed to B, from the twist of B. r_BC_W is the lever arm in W [m].
+// Returns the twist of C, fixed to B, from the twist of B. r_BC_W is the lever arm in W [m].
 Twist ShiftTwist(const Twist& V_WB, const Vector3& r_BC_W);
 
-// Wrench about B's origin from the wrench about C's origin; r_BC_W = p_C − p_B in W [m].
+// Returns the wrench about B's origin from that about C's origin; r_BC_W = p_C − p_B in W [m].
 Wrench ShiftWrench(const Wrench& F_C_W, const Vector3& r_BC_W);
 
 bool IsFinite(const Pose& X);

@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// Name of the stop in the catalogue, which may depend on the quantity as well as the cause.
+// Returns the name of the stop in the catalogue, which may depend on the cause and the quantity.
 std::string StopId(StopCause cause, Quantity quantity) {
   if (cause == StopCause::kStale && quantity == Quantity::kArmAge) return "stop.arm_stale";
   if (cause == StopCause::kStale && quantity == Quantity::kSensorAge) return "stop.sensor_stale";

@@ -7,7 +7,7 @@
 
 namespace predictor {
 
-// From an action's start to its end, at an average pace [s]; 0 if it is unknown.
+// Returns the time that an action takes at an average pace [s], or 0 if it is unknown.
 double ActionTime(const ActionSpec& spec);
 
 // The times of an action in a run, at an average pace [s].
@@ -16,8 +16,8 @@ struct ActionSpan {
 };
 std::vector<ActionSpan> SpansOf(const std::vector<ActionSpec>& script);
 
-// Index in the script of the action in progress at `run_time` [s], which is the last one that has
-// started; −1: none. A person at the handles follows it.
+// Returns the index in the script of the action in progress at `run_time` [s], or −1 if there is
+// none. It is the last action that has started. A person at the handles follows it.
 int ActionAt(const std::vector<ActionSpan>& script, double run_time) noexcept;
 
 }  // namespace predictor

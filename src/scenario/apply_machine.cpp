@@ -70,8 +70,8 @@ void RefuseLooser(const Machine& machine, const Scenario& s) {
   throw Located(InputError::At(key, key + " " + sentence), s);
 }
 
-// Lateness of samples and of ticks is measured in ticks; the watchdog trips only after several late
-// ticks. With slower ticks a stop would start later than its budget allows.
+// The lateness of samples and of ticks is measured in ticks, and the watchdog trips only after
+// several late ticks. With slower ticks, a stop would start later than its budget allows.
 void RequireRate(const Scenario& s) {
   constexpr double kRate = 1000;  // [Hz]
   if (s.rate != kRate)
@@ -129,8 +129,8 @@ void RememberMachine(const Machine& machine, Scenario* scenario) {
   scenario->tree = std::make_shared<const YamlNode>(std::move(tree));
 }
 
-// One line for each arm of the scenario for which `is_done` returns false: its name, `not_done`,
-// and the remedy.
+// Returns one line for each arm of the scenario for which `is_done` returns false: its name,
+// `not_done`, and the remedy.
 std::vector<std::string> LeftToDo(const Machine& machine, const Scenario& scenario,
                                   const char* step, bool (*is_done)(const MachineArm&),
                                   std::string (*not_done)(const std::string&, const MachineArm&)) {

@@ -12,7 +12,7 @@ struct ScenarioTitle {
   std::string title;  // the name in the scenario
 };
 
-// The loadable scenarios in `folder`, sorted by name; at most a hundred.
+// Returns the loadable scenarios in `folder`, sorted by name, but at most a hundred.
 std::vector<ScenarioTitle> ScenariosIn(const std::filesystem::path& folder);
 
 }  // namespace predictor

@@ -68,7 +68,7 @@ class Checker {
   Problems* problems_;
 };
 
-// Distance of a point in O from a primitive's body; 0 if it is inside [m].
+// Returns the distance of a point in O from a primitive's body, or 0 if it is inside [m].
 double DistanceFrom(const PrimitiveSpec& body, const Vector3& p) {
   if (body.shape == Shape::kSphere) return std::max(0.0, p.norm() - body.size.x());
   if (body.shape == Shape::kBox) {

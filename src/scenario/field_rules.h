@@ -23,7 +23,7 @@ inline Range From(double low, double high) { return {low, high, false}; }
 inline Range Above(double low, double high) { return {low, high, true}; }
 inline Range Within(double most) { return {-most, most, false}; }
 
-// Unit of the position of a joint that may turn or slide.
+// The unit of the position of a joint that may turn or slide.
 inline constexpr const char* kAngleOrLength = "rad or m";
 
 inline constexpr double kFullTurn = 6.2832;  // [rad], rounded up

@@ -22,15 +22,15 @@ std::string WithUnit(const std::string& text, const std::string& unit) {
   return unit.empty() ? text : text + " " + unit;
 }
 
-// Text of an end of a range. The largest 64-bit integer is not a double; the nearest double
-// replaces it.
+// Returns the text of an end of a range. The largest 64-bit integer is not a double, so the nearest
+// double replaces it.
 std::string End(double x) { return x == 0x1p64 ? std::to_string(UINT64_MAX) : FormatNumber(x); }
 
-// Whether a value of this unit may be an angle.
+// Returns whether a value of this unit may be an angle.
 bool TakesAngles(const Rule& rule) { return rule.unit == "rad" || rule.unit == kAngleOrLength; }
 
-// The number of a scalar in the rule's unit. An angle may be given in degrees ("30 deg"), and where
-// a joint may turn or slide, a length may be marked as such ("0.3 m").
+// Reads the number of a scalar in the rule's unit. An angle may be given in degrees ("30 deg").
+// Where a joint may turn or slide, a length may be marked as such ("0.3 m").
 bool ReadInUnit(const YamlNode& node, const Rule& rule, double* number) {
   if (node.kind != Kind::kScalar) return false;
   const auto before = [&node](std::string_view suffix) {
@@ -93,7 +93,7 @@ YamlNode ListNode() {
   return node;
 }
 
-// True for words that every YAML reader treats as a string, also within a list.
+// Returns whether every YAML reader treats this word as a string, also within a list.
 bool IsPlain(const std::string& text) {
   static const std::vector<std::string> kNotStrings = {"null", "true", "false", "yes", "no", "on",
                                                        "off",  "y",    "n",     "inf", "nan"};

@@ -24,11 +24,11 @@ struct PathNode {
 // ---- sentences
 // -----------------------------------------------------------------------------------
 
-// "above 0 and at most 500 N".
+// Returns, for example, "above 0 and at most 500 N".
 std::string Allowed(const Rule& rule);
 // Describes the content of a node in a message: 5, "word", a list of 2, a group, nothing.
 std::string Describe(const YamlNode& node);
-// "safety.force is -3 N; it must be <must>.<hint>"
+// Reports "safety.force is -3 N; it must be <must>.<hint>".
 void Complain(const PathNode& at, const Rule& rule, const std::string& must, Problems* problems,
               const std::string& hint = "");
 

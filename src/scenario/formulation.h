@@ -52,7 +52,7 @@ class RepairSet {
   std::bitset<kRepairs> set_;
 };
 
-// The repairs that `rendering.formulation` and `rendering.formulation_except` select.
+// Returns the repairs that `rendering.formulation` and `rendering.formulation_except` select.
 RepairSet RepairsOf(const RenderingSpec& rendering);
 
 // Sets the lead and the coupling to zero if their repairs are not selected.

@@ -8,8 +8,8 @@
 
 namespace predictor {
 
-// The groups that exist in the tree of a scenario: the cobot's controller, the entries of the
-// operator's script. They point into `root`.
+// Returns the groups that exist in the tree of a scenario: the cobot's controller and the entries
+// of the operator's script. They point into `root`.
 std::vector<KindGroup> KindGroups(YamlNode* root);
 
 }  // namespace predictor

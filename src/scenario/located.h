@@ -13,13 +13,13 @@ namespace predictor {
 // key or if the scenario was not read from text.
 InputError Located(const InputError& error, const Scenario& scenario);
 
-// The key of a hand's arm in a scenario: "device.arms.left".
+// Returns the key of a hand's arm in a scenario: "device.arms.left".
 std::string DeviceArmKey(int hand);
-// The name of a hand's arm for the user: "device.arms.left" of the scenario or, on a machine,
-// "arms.left.arm".
+// Returns the name of a hand's arm for the user: "device.arms.left" of the scenario or, on a
+// machine, "arms.left.arm".
 std::string ArmKey(const Scenario& scenario, int hand);
-// What changes the places that a hand's arm reaches: "move device.arms.left.base" or, if the arms
-// are fixed, "change environment.shift".
+// Returns what changes the places that a hand's arm reaches: "move device.arms.left.base" or, if
+// the arms are fixed, "change environment.shift".
 std::string PlacementRemedy(const Scenario& scenario, int hand);
 
 // For a scenario on a machine: the key in its tree under which the machine's tree is stored. No

@@ -18,8 +18,8 @@ namespace predictor {
 
 namespace {
 
-// True for an invalid address, such as 300.1.1.1, 192.0.2 or one with a port. Host names are
-// resolved.
+// Returns whether an address is invalid, such as 300.1.1.1, 192.0.2 or one with a port. Host names
+// are resolved.
 bool IsNoAddress(const std::string& host) {
   in_addr address{};
   if (host.find_first_of(":/ ") != std::string::npos) return true;
@@ -76,7 +76,7 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
         "is " + std::to_string(arm.connection.first_register) + "; it must be 0 or 24.");
 }
 
-// The error in the enabling input, as a sentence that follows its key; "" without an error.
+// Returns the error in the enabling input as a sentence that follows its key, or "".
 std::string EnablingRefusal(const EnablingInput& enabling, const Machine& machine) {
   const std::optional<MachineArm>& arm = machine.arm(enabling.arm == kHandNames[0] ? 0 : 1);
   if (!arm) return " is the " + enabling.arm + " arm, but the machine has no such arm.";

@@ -111,28 +111,28 @@ struct Machine {
 // package://.
 Machine LoadMachine(const std::filesystem::path& file);
 Machine ParseMachine(const std::string& text, const std::string& name);
-// The whole machine as YAML, including every default.
+// Returns the whole machine as YAML, including every default.
 std::string SaveMachine(const Machine& machine);
-// JSON Schema (draft-07) of machine files: every key with its unit, meaning, range and default.
+// Returns the JSON Schema (draft-07) of machine files: keys, units, meanings, ranges, defaults.
 std::string MachineSchema();
 
-// The `error` of a key of the machine ("arms.left.arm.elbow"), preceded by its place in the file.
+// Returns the `error` of a key ("arms.left.arm.elbow"), preceded by its place in the file.
 InputError Located(const InputError& error, const Machine& machine);
 
-// Hash of the whole entry of an arm except `commissioned`, independent of order and comments: 16
+// Returns a hash of the entry of an arm except `commissioned`, whatever its order and comments: 16
 // hexadecimal digits (FNV-1a). It protects against oversight, not against malice.
 std::string HashOf(const MachineArm& arm);
-// True if the arm has not changed since its push test.
+// Returns whether the arm has not changed since its push test.
 bool IsPushTested(const MachineArm& arm);
-// Hash of everything on which a measured velocity loop depends: the loop, and the arm on which it
-// was measured.
+// Returns a hash of everything on which a measured velocity loop depends: the loop and the arm on
+// which it was measured.
 std::string HashOfLoop(const MachineArm& arm);
-// True if `arm.loop` was measured on this arm.
+// Returns whether `arm.loop` was measured on this arm.
 bool IsLoopMeasured(const MachineArm& arm);
 // The arms of `scenario` whose velocity loop was not measured, with the remedy, one line each. For
 // these arms ApplyMachine removes the lead, which would be a guess.
 std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario);
-// The arms of `scenario` without a push test in their current form, with the remedy, one line each.
+// Returns one line with the remedy for each arm of `scenario` without a current push test.
 std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& scenario);
 // Throws InputError with the first of these lines, if any.
 void RequirePushTests(const Machine& machine, const Scenario& scenario);

@@ -49,7 +49,7 @@ struct OperatingRules {
   bool distrusts_libraries = false;
   // The elbows keep their distance even if the scenario lists other link pairs.
   bool always_separates_elbows = false;
-  // Largest safety.handle_speed that a scenario may set [m/s].
+  // The largest safety.handle_speed that a scenario may set [m/s].
   double max_handle_speed = std::numeric_limits<double>::infinity();
 
   // -- The force sensors --

@@ -114,7 +114,7 @@ std::vector<std::string> OthersWith(const std::string& key, const ParameterKind&
 std::unique_ptr<OwnParameters> ReadParameters(const ParameterKind& kind, const PathNode& at,
                                               Problems* problems);
 YamlNode WriteParameters(OwnParameters* parameters);
-// `given` with every default, or `given` itself if the kind is unknown or a value is invalid.
+// Returns `given` with every default, or unchanged if its kind is unknown or a value is invalid.
 YamlNode CompleteParameters(ParameterKinds kinds, const std::string& type, const YamlNode& given);
 
 // A group of keys in a tree that has the own parameters of a kind.
@@ -131,8 +131,8 @@ bool RemoveForeignParameters(const KindGroup& group);
 // ---- parts that are all present
 // ------------------------------------------------------------------
 
-// Each of several parts has a group with its name in `all` (RenderingSpec::parts). `path`: path of
-// these groups.
+// Returns the parameters of one of several parts that each have a group with its name in `all`
+// (RenderingSpec::parts). `path` is the path of these groups.
 std::unique_ptr<OwnParameters> ParametersOfPart(const ParameterKind& part, const YamlNode& all,
                                                 const std::string& path, Problems* problems);
 void SetPart(const ParameterKind& part, OwnParameters* parameters, YamlNode* all);
@@ -155,8 +155,8 @@ void WalkParts(V& v, ParameterKinds parts, YamlNode* all) {
 // ---- declared by other modules
 // -------------------------------------------------------------------
 
-// The controllers of the virtual cobot. The simulation declares them when the program starts. A
-// program without the simulation has none, and keeps the parameters as given.
+// Returns the controllers of the virtual cobot, which the simulation declares when the program
+// starts. A program without the simulation has none, and keeps the parameters as given.
 ParameterKinds Controllers() noexcept;
 void DeclareControllers(ParameterKinds kinds) noexcept;
 
@@ -164,7 +164,7 @@ void DeclareControllers(ParameterKinds kinds) noexcept;
 ParameterKinds Hazards() noexcept;
 void DeclareHazards(ParameterKinds kinds) noexcept;
 
-// The tasks and limits of rendering, which the haptics module declares.
+// Returns the tasks and limits of rendering, which the haptics module declares.
 ParameterKinds RenderingParts() noexcept;
 void DeclareRenderingParts(ParameterKinds parts) noexcept;
 

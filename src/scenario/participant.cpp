@@ -20,7 +20,7 @@ constexpr const char* kConsentLabel = "consent";
 constexpr const char* kConsentDateLabel = "consent_date";
 constexpr const char* kHandednessLabel = "handedness";
 
-// A day of the calendar as YYYY-MM-DD.
+// Returns whether a text is a day of the calendar as YYYY-MM-DD.
 bool IsDate(const std::string& text) {
   constexpr std::string_view kPattern = "dddd-dd-dd";
   const auto fits = [](char c, char pattern) {

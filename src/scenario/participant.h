@@ -32,7 +32,7 @@ struct ParticipantFile : ParticipantSpec {
 
 // Throws InputError with file:line:column.
 ParticipantFile LoadParticipant(const std::filesystem::path& file);
-// "operator.body=...", for LoadScenario.
+// Returns "operator.body=...", for LoadScenario.
 std::string BodyOverride(const BodySpec& body);
 
 // Reports a pseudonym that IsPseudonym refuses, such as a name, a consent without a version, and a
@@ -43,10 +43,10 @@ void CheckParticipant(const ParticipantSpec& participant, const std::string& pat
 // The labels of a recording that are reserved for the participant, and their values.
 std::map<std::string, std::string> LabelsOf(const ParticipantSpec& participant);
 bool IsParticipantLabel(const std::string& key);
-// Back from all labels of a recording; empty without a pseudonym.
+// Returns the participant from all labels of a recording, or nothing without a pseudonym.
 std::optional<ParticipantSpec> ParticipantIn(const std::map<std::string, std::string>& labels);
 
-// "participant K7QM2XPX, consent study-2 of 2026-11-20, left-handed".
+// Returns "participant K7QM2XPX, consent study-2 of 2026-11-20, left-handed" and the like.
 std::string ParticipantWords(const ParticipantSpec& participant);
 
 }  // namespace predictor

@@ -18,7 +18,8 @@ constexpr std::size_t kMaxNames = 1000;  // maximum number of names in a folder 
                                          // for a suggestion
 constexpr std::size_t kLongestUri = 4096;
 
-// share/predictor beside the folder of the running program; "" if it does not exist, as in a build.
+// Returns share/predictor beside the folder of the running program, or "" if it does not exist, as
+// in a build.
 fs::path InstalledData() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -26,13 +27,13 @@ fs::path InstalledData() {
   return !error && fs::is_directory(data, error) ? Canonical(data) : fs::path();
 }
 
-// Set by UseDataFolder; otherwise found on the first call.
+// UseDataFolder sets this folder. Otherwise the first call finds it.
 fs::path& Data() {
   static fs::path data = InstalledData();
   return data;
 }
 
-// The readable folders: see ResolveModelPath.
+// Returns the readable folders; see ResolveModelPath.
 std::vector<fs::path> AllowedRoots(const fs::path& scenario_folder,
                                    const std::vector<fs::path>& packages) {
   const fs::path folder = Canonical(scenario_folder.empty() ? fs::path(".") : scenario_folder);
@@ -84,7 +85,7 @@ void CheckFile(const std::string& uri, const fs::path& file) {
   }
 }
 
-// The file for package://name/rest in one of the roots.
+// Returns the file for package://name/rest in one of the roots.
 fs::path FindInPackages(const std::string& uri, const std::vector<fs::path>& roots) {
   const std::string path = uri.substr(std::string("package://").size());
   const std::string name = path.substr(0, path.find('/'));
@@ -107,7 +108,7 @@ fs::path FindInPackages(const std::string& uri, const std::vector<fs::path>& roo
                    " Set PREDICTOR_PACKAGE_PATH to the folder that contains it.");
 }
 
-// The unchecked path in `uri`.
+// Returns the unchecked path in `uri`.
 fs::path Locate(const std::string& uri, const fs::path& base_folder,
                 const std::vector<fs::path>& roots) {
   const bool is_control = std::any_of(uri.begin(), uri.end(),

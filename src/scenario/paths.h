@@ -13,22 +13,22 @@ namespace predictor {
 // "package://panda_description/..." both refer to them).
 std::vector<std::filesystem::path> PackageRoots();
 
-// The folder of the robot descriptions that come with the program, with symlinks resolved: those in
-// the data folder, otherwise those that the build pinned. They are identical on all computers with
-// the same version. Empty if there are none.
+// Returns the folder of the robot descriptions that come with the program, with symlinks resolved:
+// those in the data folder, otherwise those that the build pinned. They are identical on all
+// computers with the same version. Returns "" if there are none.
 std::filesystem::path PinnedRobots();
 
-// The folder with the scenarios, assets and robot descriptions of an installed program
-// (share/predictor beside its bin), or the folder given to UseDataFolder. Empty in a build folder.
+// Returns the folder with the scenarios, assets and robot descriptions of an installed program
+// (share/predictor beside its bin), or the folder given to UseDataFolder; "" in a build folder.
 std::filesystem::path DataFolder();
 
-// Sets the location of the installed data, for programs that embed the emulator. Not thread-safe;
-// call it before loading a scenario.
+// Sets the location of the installed data, for programs that embed the emulator. It is not
+// thread-safe; call it before loading a scenario.
 void UseDataFolder(const std::filesystem::path& folder);
 
-// `path` with symlinks resolved, as far as it exists.
+// Returns `path` with symlinks resolved, as far as it exists.
 std::filesystem::path Canonical(const std::filesystem::path& path);
-// Whether `path` is `root` or below it; both canonical.
+// Returns whether `path` is `root` or below it. Both must be canonical.
 bool IsInside(const std::filesystem::path& path, const std::filesystem::path& root);
 
 // Returns `path` if it exists. Otherwise returns the file with this path in the data folder
@@ -36,12 +36,12 @@ bool IsInside(const std::filesystem::path& path, const std::filesystem::path& ro
 // `path`, for use in an error message.
 std::filesystem::path FindShipped(const std::filesystem::path& path);
 
-// The readable folders for a scenario in this folder: see ResolveModelPath.
+// Returns the readable folders for a scenario in this folder; see ResolveModelPath.
 std::vector<std::filesystem::path> ModelFolders(const std::filesystem::path& scenario_folder);
 
-// The file for `uri` (package://..., file-relative, or relative to `base_folder`), with symlinks
-// resolved. Apart from the package roots, only files in `scenario_folder` or in the folder "assets"
-// beside it (a real folder, not a symlink) may be read. If `scenario_folder` is empty,
+// Returns the file for `uri` (package://..., file-relative, or relative to `base_folder`), with
+// symlinks resolved. Apart from the package roots, only files in `scenario_folder` or in the folder
+// "assets" beside it (a real folder, not a symlink) may be read. If `scenario_folder` is empty,
 // `base_folder` replaces it. Throws InputError that names `uri`, the searched places and the remedy
 // if the file does not exist, is not a regular file, is larger than 64 MiB, or is outside these
 // places.

@@ -1,4 +1,4 @@
-// A scenario: all data that define an emulation, as plain structs. One YAML file contains one
+// A scenario is all data that define an emulation, as plain structs. One YAML file contains one
 // scenario; scenario_io.h reads and writes it. Every member has a default and a unit (SI).
 #pragma once
 
@@ -187,8 +187,8 @@ struct EnvironmentSpec {
   bool floor = true;      // plane z = 0 with contact
   std::optional<TableSpec> table;
   double friction = 0.8;  // coefficient of sliding friction in contacts
-  // X_RW, pose of the virtual world in the frame of the arms' bases; roll and pitch are 0, so that
-  // gravity points down in both. Absent: W is R, and the arms' bases may be chosen freely.
+  // X_RW, pose of the virtual world in the frame of the arms' bases. Roll and pitch are 0, so
+  // gravity points down in both. If it is absent, W is R and the arms' bases may be chosen freely.
   std::optional<PoseSpec> shift;
 };
 
@@ -246,8 +246,8 @@ struct ArmSpec {
   std::vector<double> acceleration_limit = {10};  // one for all, or one per joint [rad/s²]
   double sample_rate = 1000;  // rate at which the device reports its joints [Hz]
   VelocityLoopSpec loop;
-  // True for a real arm that also corrects position errors: its joints reach the positions to which
-  // the commanded velocities lead. A machine's Franka always does, whatever this value is.
+  // A real arm that follows positions also corrects position errors: its joints reach the positions
+  // to which the commanded velocities lead. A machine's Franka always does, whatever this value is.
   bool follows_position = false;
   HandlePayloadSpec payload;
   SensorSpec sensor;
@@ -371,8 +371,8 @@ struct RenderingSpec {
   double joint_influence = 0.3;        // q_i [rad]
   double joint_security = 0.02;        // q_s [rad]
   double joint_gain = 1.0;             // ξ_q [rad/s]
-  // Pairs of links that are kept apart. A pair names a link of the left arm and one of the right
-  // arm. A link of a specific arm is given as left:LINK or right:LINK. Empty: the two elbows.
+  // Pairs of links that are kept apart, each with a link of the left arm and one of the right arm.
+  // A link of a specific arm is given as left:LINK or right:LINK. If empty: the two elbows.
   std::vector<std::array<std::string, 2>> link_pairs;
   // Own parameters of tasks and limits, each part in a group with its name (own_parameters.h).
   // Missing ones have their defaults.
@@ -475,20 +475,20 @@ struct Scenario {
     return hand == 0 ? left_handle.has_value() : right_handle.has_value();
   }
   Hands hands() const { return {left_handle.has_value(), right_handle.has_value()}; }
-  // True if a person holds arms that can cause injury.
+  // Returns whether a person holds arms that can cause injury.
   bool HasRealArms() const { return mode == Mode::kEmulate && device.type != "simulated"; }
   const HandleSpec& handle(int hand) const { return hand == 0 ? *left_handle : *right_handle; }
   const ArmSpec& arm(int hand) const { return hand == 0 ? *device.left : *device.right; }
-  // Pose of an arm's base in the virtual world.
+  // Returns the pose of an arm's base in the virtual world.
   Pose X_WB(int hand) const {  // NOLINT(readability-identifier-naming)
     const Pose X_RB = arm(hand).base.X_RB();
     return environment.shift ? environment.shift->ToPose().Inverse() * X_RB : X_RB;
   }
-  // True if the arms' bases are given and the virtual world is placed around them.
+  // Returns whether the arms' bases are given and the virtual world is placed around them.
   bool HasFixedArms() const { return device.type != "simulated" || environment.shift.has_value(); }
 };
 
-// Element `i` of `values`, or the only value for all.
+// Returns element `i` of `values`, or the only value for all.
 inline double OneOrEach(const std::vector<double>& values, int i) {
   return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(i)];
 }

@@ -18,22 +18,22 @@ namespace predictor {
 Scenario LoadScenario(const std::filesystem::path& file,
                       const std::vector<std::string>& overrides = {});
 
-// The same from text, which cannot extend a file. `name` replaces the file name in errors; relative
-// model paths start at `folder`.
+// Loads a scenario from text, which cannot extend a file. `name` replaces the file name in errors;
+// relative model paths start at `folder`.
 Scenario ParseScenario(const std::string& text, const std::string& name,
                        const std::filesystem::path& folder,
                        const std::vector<std::string>& overrides = {});
 
-// The whole scenario as YAML, including every default. ParseScenario(SaveScenario(s)) equals s.
+// Returns the whole scenario as YAML, with every default. ParseScenario(SaveScenario(s)) equals s.
 std::string SaveScenario(const Scenario& scenario);
 
 // Reads every field of a group of keys and reports invalid values. A member with a missing or
 // invalid value keeps its default.
 Scenario ReadFields(const YamlNode& root, Problems* problems);
-// The tree to be saved, with every default and a comment for each key.
+// Returns the tree to be saved, with every default and a comment for each key.
 YamlNode ScenarioTree(const Scenario& scenario);
 
-// JSON Schema (draft-07) of scenarios, from the same field tables that loading uses.
+// Returns the JSON Schema (draft-07) of scenarios, from the field tables that loading uses.
 std::string ScenarioSchema();
 
 }  // namespace predictor

@@ -6,7 +6,7 @@
 
 namespace predictor {
 
-// Height of the eyes, as a share of the body's height (Drillis & Contini 1966, recalled).
+// Height of the eyes as a share of body height (Drillis & Contini 1966, quoted from memory).
 inline constexpr double kEyeHeight = 0.936;
 
 // The place of the operator's head at the start, in W.
@@ -16,9 +16,9 @@ struct Viewpoint {
   bool is_a_guess;  // the scenario does not say where the operator stands, or how tall a body is
 };
 
-// From the scenario's stance and body. Without them, a guess that is good enough for a camera: the
-// operator stands behind the object with the left handle on the left, or, with one handle, faces
-// the cobot. `object_start`: O in W at the start [m].
+// Returns the viewpoint from the scenario's stance and body. Without them it guesses well enough
+// for a camera: the operator stands behind the object with the left handle on the left, or faces
+// the cobot if there is one handle. `object_start` is O in W at the start [m].
 Viewpoint ViewpointOf(const Scenario& scenario, const Vector3& object_start);
 
 }  // namespace predictor

@@ -12,8 +12,8 @@ struct StopBudget {
 };
 StopBudget WorstStop(double speed, double acceleration, double jerk);
 
-// The error in a stop with these limits [m/s²], [m/s³] if real handles move at up to `fastest`
-// [m/s], as a sentence that follows their keys; "" without an error.
+// Returns the error in a stop with these limits [m/s²], [m/s³] if real handles move at up to
+// `fastest` [m/s], as a sentence that follows their keys, or "" without an error.
 std::string StopRefusal(double acceleration, double jerk, double fastest);
 
 }  // namespace predictor

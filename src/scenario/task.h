@@ -8,8 +8,8 @@
 
 namespace predictor {
 
-// The parts in which the tasks of two scenarios differ, as text ("the object"). Empty: the tasks
-// are the same.
+// Returns the parts in which the tasks of two scenarios differ, as text ("the object"). If the
+// tasks are the same, the list is empty.
 std::vector<std::string> TaskDifferences(const Scenario& a, const Scenario& b);
 
 }  // namespace predictor

@@ -29,7 +29,7 @@ YamlNode NodeAt(Kind kind, const Place& place, std::string key = "") {
   return node;
 }
 
-// The cells of a line, without spaces around them.
+// Returns the cells of a line, without spaces around them.
 std::vector<YamlNode> CellsOf(std::string_view line, Place place) {
   std::vector<YamlNode> cells;
   for (std::size_t begin = 0; begin <= line.size();) {

@@ -12,8 +12,8 @@ namespace predictor {
 
 inline constexpr std::size_t kMaxWaypoints = 1000;
 
-// The list of waypoints in a text with the header time,x,y,z or time,x,y,z,roll,pitch,yaw. Each
-// value has its place in the file `name`, so that messages about it show this place. Throws
+// Returns the list of waypoints in a text with the header time,x,y,z or time,x,y,z,roll,pitch,yaw.
+// Each value has its place in the file `name`, so that messages about it show this place. Throws
 // InputError.
 YamlNode ParseWaypoints(const std::string& text, const std::string& name);
 

@@ -10,17 +10,17 @@ namespace predictor {
 
 enum class ScalarKind { kString, kBool, kNumber };
 
-// Kind of a scalar node. "inf" and "nan" in any spelling count as numbers, so errors name them.
+// Returns a scalar's kind. "inf" and "nan" in any spelling count as numbers, so errors name them.
 ScalarKind KindOf(const YamlNode& scalar);
 
-// The number that the whole text (decimal) represents; may be infinite or NaN. Returns false if the
-// text is not a number.
+// Reads the number that the whole text (decimal) represents, which may be infinite or NaN. Returns
+// false if the text is not a number.
 bool ReadNumber(const std::string& text, double* number);
 
-// The number as YAML that every reader interprets as a floating-point or whole number.
+// Returns the number as YAML that every reader interprets as a floating-point or whole number.
 std::string WriteNumber(double number);
 
-// The text as a double-quoted scalar.
+// Returns the text as a double-quoted scalar.
 std::string QuoteYaml(const std::string& text);
 
 }  // namespace predictor

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t kCommentColumn = 48;
 
-// One step along a path: a key of a map or an index of a list. Null if it does not exist.
+// Takes one step along a path: a key of a map or an index of a list. Returns null if it does not
+// exist.
 const YamlNode* Step(const std::string& step, const YamlNode& node) {
   if (node.kind != YamlNode::Kind::kList) return node.Find(step);
   std::size_t i = 0;
@@ -24,7 +25,7 @@ const YamlNode* Step(const std::string& step, const YamlNode& node) {
   return is_number && i < node.items.size() ? &node.items[i] : nullptr;
 }
 
-// The same for the path of an override, but creates missing keys.
+// Follows the path of an override and creates missing keys.
 YamlNode* Descend(const std::string& step, const Place& place, YamlNode* node) {
   if (node->kind == YamlNode::Kind::kList) {
     if (const YamlNode* entry = Step(step, *node)) return const_cast<YamlNode*>(entry);
@@ -73,7 +74,7 @@ void AppendComment(const std::string& comment, std::size_t line_start, std::stri
   *out += " # " + comment;
 }
 
-// `indented`: the indentation of the first line has already been written ("- " of a list).
+// If `indented`, the indentation of the first line has already been written ("- " of a list).
 void WriteBlock(const YamlNode& node, std::size_t indent, bool indented, std::string* out) {
   for (const YamlNode& item : node.items) {
     const std::size_t line_start = indented ? out->rfind('\n') + 1 : out->size();

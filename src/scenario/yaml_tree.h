@@ -36,8 +36,8 @@ inline constexpr std::size_t kMaxYamlBytes = 1u << 20;
 inline constexpr int kMaxYamlDepth = 32;
 inline constexpr int kMaxYamlNodes = 50000;
 
-// The text of a file, at most one byte more than permitted. `what`: expected content, such as "a
-// scenario". Throws InputError.
+// Returns the text of a file, at most one byte more than permitted. `what` is the expected content,
+// such as "a scenario". Throws InputError.
 std::string ReadYamlText(const std::filesystem::path& file, const std::string& what);
 
 // Reads one document of at most kMaxYamlBytes. Throws InputError for invalid UTF-8, anchors and
@@ -45,10 +45,10 @@ std::string ReadYamlText(const std::filesystem::path& file, const std::string& w
 // or nodes than the limits above. It does so before a larger tree exists.
 YamlNode ParseYaml(const std::string& text, const std::string& source);
 
-// The value at "path.to.key" (list entries by index from 0); null if it does not exist.
+// Returns the value at "path.to.key" (list entries by index from 0), or null without one.
 const YamlNode* NodeAt(const std::string& path, const YamlNode& root);
 
-// The place of the value at "path.to.key", or of the innermost existing group around it.
+// Returns the place of the value at "path.to.key", or of the innermost existing group around it.
 Place PlaceOf(const std::string& path, const YamlNode& root);
 
 // Applies `path.to.key=value` (list entries by index from 0). The value is YAML. Throws InputError.

@@ -16,13 +16,13 @@ namespace predictor {
 class Action {
  public:
   virtual ~Action() = default;
-  // Called at its start, and when the script starts again. No heap and no exception, here and in
-  // the functions below.
+  // The operator calls this when the action starts, and when the script starts again. It does not
+  // use the heap and does not throw, and nor do the functions below.
   virtual void Begin(Intent* intent) noexcept = 0;
-  // One step of dt [s]. `pace`: speed of the operator, 1 on average. Returns false when the action
-  // ends.
+  // Advances by dt [s]. `pace` is the speed of the operator, 1 on average. Returns false when the
+  // action ends.
   virtual bool Advance(double dt, double pace, Intent* intent) noexcept = 0;
-  // True if the action moves the object. It then ends as soon as no hand holds the object.
+  // Returns whether the action moves the object. It then ends as soon as no hand holds the object.
   virtual bool NeedsHold() const noexcept { return false; }
   // Saves or loads its progress.
   virtual void Archive(StateArchive& a) noexcept = 0;
@@ -34,15 +34,15 @@ enum class ActionMotion { kNone, kMoves, kTurns };
 // The registry's description of an action.
 struct ActionKind : ParameterKind {
   ActionMotion motion;  // motion of the object
-  // The instruction to a person. `facing`: direction of view, about z of W from its x axis [rad].
+  // The instruction to a person. `facing` is the direction of view, about z of W from x [rad].
   std::string (*sentence)(const OwnParameters&, double facing);
   double (*time)(const OwnParameters&);                   // duration at an average pace [s]
   std::unique_ptr<Action> (*make)(const OwnParameters&);  // throws InputError
 };
 
-// The kind of an action A whose constructor takes its parameters P. `name`: operator.script:
-// {action: NAME}. A::Sentence(P, facing) is the instruction. A::Time(P) is the time; an action
-// without this function takes P::duration.
+// Returns the kind of an action A whose constructor takes its parameters P. `name` is the word in
+// operator.script: {action: NAME}. A::Sentence(P, facing) is the instruction. A::Time(P) is the
+// time; an action without this function takes P::duration.
 template <class A, class P>
 constexpr ActionKind ActionKindOf(const char* name, const char* doc,
                                   ActionMotion motion = ActionMotion::kNone) {
@@ -71,22 +71,22 @@ inline Rule DurationRule(const char* doc = "duration of the action") {
 inline Rule HandRule() { return Word("hand or hands that act", {"left", "right", "both"}); }
 // The value of a parameter without which the action does nothing. Throws InputError if it is zero.
 Vector3 NotZero(const char* key, const Vector3& value);
-// True if "left", "right" or "both" concerns this hand.
+// Returns whether "left", "right" or "both" concerns this hand.
 bool Concerns(const std::string& which, std::size_t hand);
 
-// All actions, sorted by name.
+// Returns all actions, sorted by name.
 ParameterKinds Actions() noexcept;
 // Returns null for an unknown name.
 const ActionKind* FindAction(const std::string& name) noexcept;
 
-// The action of entry number `index` of a script. Throws InputError that names the entry and the
-// error in it.
+// Returns the action of entry number `index` of a script. Throws InputError that names the entry
+// and the error in it.
 std::unique_ptr<Action> MakeAction(const ActionSpec& spec, int index);
 
-// The parameters of an entry of this kind; an invalid one has its default.
+// Returns the parameters of an entry of this kind. An invalid one has its default.
 std::unique_ptr<OwnParameters> ParametersIn(const ActionSpec& spec, const ActionKind& kind);
 
-// The instruction to a person at the handles, for example "Grip the handles."
+// Returns the instruction to a person at the handles, for example "Grip the handles."
 std::string Instruction(const ActionSpec& spec, double facing);
 
 }  // namespace predictor

@@ -36,7 +36,7 @@ class Circle final : public Action {
         rate_(2 * std::numbers::pi / p.period),
         ramp_(Ramp(p)),
         duration_(Time(p)) {}
-  // The cycles plus one ramp, because the speed rises and falls.
+  // The path takes one ramp longer than the cycles, because the speed rises and falls.
   static double Time(const CircleParameters& p) { return p.cycles * p.period + Ramp(p); }
   static std::string Sentence(const CircleParameters& p, double) {
     return "Follow the circle of " + InCentimetres(p.radius) + " radius, " +
@@ -58,8 +58,8 @@ class Circle final : public Action {
   void Archive(StateArchive& a) noexcept override { a(time_); }
 
  private:
-  // Integral of MinimumJerk: while ramping up for x · ramp_, the angle changes by rate_ · ramp_
-  // times this value.
+  // Returns the integral of MinimumJerk. While the speed ramps up for x · ramp_, the angle changes
+  // by rate_ · ramp_ times this value.
   static double RampAngle(double x) { return x * x * x * x * (2.5 + x * (-3 + x)); }
   double Rate(double t) const {
     return rate_ * MinimumJerk(t / ramp_) * MinimumJerk((duration_ - t) / ramp_);

@@ -7,7 +7,8 @@
 
 namespace predictor {
 
-// Written by actions and read by the hands. Both hands share one reference for the object.
+// What the operator intends. Actions write it and the hands read it. Both hands share one reference
+// for the object.
 struct Intent {
   Pose X_WO;                   // set-point of the object
   Twist V_WO = Twist::Zero();  // velocity of the object, the sum over all actions [m/s], [rad/s]

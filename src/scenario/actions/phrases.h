@@ -11,7 +11,7 @@ std::string InCentimetres(double length);              // [m] → "30 cm"
 std::string InDegrees(double angle);                   // [rad] → "20°"
 std::string WithUnit(double value, const char* unit);  // three digits: "8 s"
 std::string HandlesOf(const std::string& hand);        // "the handles", "the left handle"
-// "Lift the object by 10 cm and move it 30 cm to the left." `by` in W [m].
+// Returns "Lift the object by 10 cm and move it 30 cm to the left." `by` is in W [m].
 std::string MoveSentence(const Vector3& by, double facing);
 
 }  // namespace predictor

@@ -8,7 +8,7 @@ namespace predictor {
 
 class Transport : public Action {
  public:
-  // `by` [m] and `rotate_by` [rad] in W, within `duration` [s].
+  // The object moves by `by` [m] and `rotate_by` [rad] in W, within `duration` [s].
   Transport(double duration, const Vector3& by, const Vector3& rotate_by)
       : duration_(duration), by_(by), rotate_by_(rotate_by) {}
   void Begin(Intent*) noexcept override { phase_ = 0; }
