@@ -32,15 +32,15 @@
 namespace predictor {
 namespace {
 
-// "2026-11-22T14-03-59" in local time.
+// Returns "2026-11-22T14-03-59" in local time.
 std::string Date() { return LocalTime("%Y-%m-%dT%H-%M-%S", std::time(nullptr)); }
 
 using Json = nlohmann::ordered_json;
 
-// The terminal as the interface of a person beside the arms: prints lines, reads single keys.
-// Reads keys without Enter and does not show them; the destructor restores the terminal. Throws
-// InputError if standard input is not a terminal. Key also throws it after Ctrl-C or if the
-// terminal was closed.
+// The terminal as the interface of a person beside the arms.
+// It prints lines, and reads keys without Enter and without showing them. The destructor restores
+// the terminal. The constructor throws InputError if standard input is not a terminal. Key also
+// throws it after Ctrl-C or if the terminal was closed.
 class Terminal final : public commissioning::Person {
  public:
   Terminal();
@@ -180,7 +180,7 @@ class Commissioner {
     return *arm;
   }
 
-  // The hand that --arm names, or the machine's only hand; with two hands and no --arm, `usual`.
+  // Returns the hand of --arm, or the only hand, or `usual` if there are two and no --arm.
   int OneHand(int usual = -1) const {
     if (options_.arm == kHandNames[0]) return 0;
     if (options_.arm == kHandNames[1]) return 1;
@@ -224,8 +224,8 @@ class Commissioner {
     return {network_.get(), &person_, all};
   }
 
-  // The contact of the enabling device, if the machine has one; connects to the arm to which it is
-  // wired.
+  // Returns the contact of the enabling device, if the machine has one. Connects to the arm to
+  // which it is wired.
   commissioning::EnablingContact Contact() {
     if (!machine_.enabling) return {};
     const int hand = machine_.enabling->arm == kHandNames[0] ? 0 : 1;
@@ -234,7 +234,7 @@ class Commissioner {
     return {stations_[i].get(), machine_.enabling->digital_input};
   }
 
-  // Measurements of an earlier, incomplete session, if the person wants to continue it.
+  // Returns measurements of an earlier, incomplete session if the person wants to continue it.
   commissioning::SwingFile::Kept Kept(commissioning::Session* alone,
                                       const commissioning::SwingFile& file, int hand) {
     commissioning::SwingFile::Kept kept = file.Load();
@@ -266,8 +266,8 @@ class Commissioner {
     throw Located(error, machine_);
   }
 
-  // Called however the session ended. before: number of swings from earlier sessions; their date is
-  // kept if this session added none.
+  // Runs however the session ended. `before` is the number of swings from earlier sessions. Their
+  // date is kept if this session added none.
   void KeepSwings(const commissioning::SwingFile& file, int before,
                   commissioning::SwingFile::Kept* kept) {
     const commissioning::Swings& swings = kept->swings;

@@ -11,7 +11,7 @@
 namespace predictor {
 
 nlohmann::ordered_json ToJson(const commissioning::HandleCalibration& found);
-// `X_WB`: the new pose of the base.
+// `X_WB` is the new pose of the base.
 nlohmann::ordered_json ToJson(const commissioning::BaseCalibration& found, const Pose& X_WB);
 nlohmann::ordered_json ToJson(const commissioning::LoopFit& found);
 

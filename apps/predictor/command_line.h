@@ -41,13 +41,13 @@ struct Request {
   std::function<int()> command;
 };
 
-// Each function adds some commands. `r` must outlive `app`.
+// Each of these functions adds some commands. `r` must outlive `app`.
 void AddRunCommands(CLI::App* app, Request* r);
 void AddAnalysisCommands(CLI::App* app, Request* r);
 void AddRigCommands(CLI::App* app, Request* r);
 void AddToolCommands(CLI::App* app, Request* r);
 
-// Adds a command; `run` executes it.
+// Adds a command, which `run` executes.
 CLI::App* AddCommand(CLI::App* app, const char* group, const char* name, const char* what,
                      Request* r, std::function<int()> run);
 // Adds an option. type: name of its value in the help.
@@ -59,11 +59,11 @@ CLI::Option* AddOption(CLI::App* app, const char* group, const char* name, T* va
 
 // Options that several commands share.
 void AddPersonOverrides(CLI::App* app, std::vector<std::string>* set);
-// --set and --track of the person in a recording.
+// Adds --set and --track of the person in a recording.
 void AddPerson(CLI::App* app, PersonOptions* o);
 void AddScenario(CLI::App* app, ScenarioOptions* o);
 void AddRecording(CLI::App* app, std::string* recording);
-// --json, --force and --quiet.
+// Adds --json, --force and --quiet.
 void AddOutput(CLI::App* app, OutputOptions* o);
 void AddJson(CLI::App* app, OutputOptions* o);
 void AddQuiet(CLI::App* app, OutputOptions* o);
@@ -80,25 +80,25 @@ class HelpFormatter : public CLI::FormatterBase {
                         CLI::AppFormatMode mode) const override;
 };
 
-// The same help for man(1), in groff.
+// Returns the same help for man(1), in groff.
 std::string ManPage(const CLI::App& app);
-// A script that completes commands and options in bash.
+// Returns a script that completes commands and options in bash.
 std::string BashCompletion(const CLI::App& app);
 
-// "predictor survey ask".
+// Returns "predictor survey ask" and the like.
 std::string PathOf(const CLI::App& app);
-// The commands that the help shows.
+// Returns the commands that the help shows.
 std::vector<const CLI::App*> CommandsOf(const CLI::App& app);
 std::vector<std::string> CommandNames(const CLI::App& app);
-// Long names of an option as shown in the help: "--json", "--[no-]viewer".
+// Returns long names of an option as shown in the help: "--json", "--[no-]viewer".
 std::string LongNameOf(const CLI::Option& option);
 
-// "predictor: error: ..." and "hint: ..." for a command that `app` does not have.
+// Returns "predictor: error: ..." and "hint: ..." for a command that `app` does not have.
 std::string UnknownCommand(const CLI::App& app, const std::string& word);
-// The same for a command line that cannot be parsed.
+// Returns the error and hint for a command line that cannot be parsed.
 std::string UsageError(const CLI::App& app, const CLI::ParseError& error);
 
-// "predictor 0.1.0 (a1b2c3d), recording format 2".
+// Returns "predictor 0.1.0 (a1b2c3d), recording format 2" and the like.
 std::string VersionText();
 
 }  // namespace predictor

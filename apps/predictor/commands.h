@@ -46,7 +46,7 @@ struct OutputOptions {
   void Print(const std::string& text) const;
   // Writes a command's result to `json`.
   void WriteJson(const std::string& result) const;
-  // Both.
+  // Writes both the text and the result.
   void Write(const std::string& text, const std::string& result) const;
 };
 
@@ -68,8 +68,8 @@ struct ScenarioOptions : OutputOptions {
 // The servers that `run` starts alongside the loop.
 struct ServeOptions {
   bool viewer = true;
-  // Whether the program continues at rest until it is asked to end. Default: at a terminal, and
-  // while a page shows the results.
+  // Whether the program continues at rest until it is asked to end. By default it does at a
+  // terminal, and while a page shows the results.
   std::optional<bool> stay;
   viewer::ViewerOptions page;
   bool evaluation = true;  // the person is judged live, if the scenario describes the person
@@ -231,7 +231,7 @@ void ShowProblem(const std::string& problem);
 // All commands throw InputError.
 int RunCommand(const ScenarioOptions& options, ServeOptions serve, RecordOptions record);
 int SimulateCommand(const ScenarioOptions& options, const RecordOptions& record);
-// `map`: folder for a stability map; empty: none.
+// `map` is the folder for a stability map; if it is empty, there is none.
 int CheckCommand(const ScenarioOptions& options, bool search, const std::string& map);
 int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to);
 // Returns the exit code kUnfit if the scenario that it wrote does not pass its check.

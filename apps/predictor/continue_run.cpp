@@ -14,7 +14,7 @@
 namespace predictor {
 namespace {
 
-// folder: for the recorded models, which the continuation needs as well.
+// `folder` is for the recorded models, which the continuation needs as well.
 StoppedRun ReadStop(const ContinueCommandOptions& options, const TemporaryFolder& folder) {
   RecordingReader reader(options.recording);
   ShowProblem(reader.problem());

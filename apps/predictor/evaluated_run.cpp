@@ -14,7 +14,7 @@
 namespace predictor {
 namespace {
 
-// Empty if the recorded models cannot be read; the reason is printed.
+// Returns no masses if the recorded models cannot be read, and prints the reason.
 std::optional<assessment::SceneMasses> MassesOf(const RecordingHeader& header) {
   try {
     const TemporaryFolder folder;

@@ -52,7 +52,7 @@ class Table {
   File file_;
 };
 
-// The reader's first record. Throws InputError if the recording is empty.
+// Returns the reader's first record. Throws InputError if the recording is empty.
 TickRecord FirstRecord(const RecordingOptions& options, RecordingReader* reader) {
   ShowProblem(reader->problem());
   TickRecord record;
@@ -79,8 +79,8 @@ std::string Row(const std::vector<Column>& columns, const TickRecord& record) {
   return line + "\n";
 }
 
-// The columns that match the patterns. Columns of inputs are included only if a pattern names them
-// explicitly.
+// Returns the columns that match the patterns. Columns of inputs are included only if a pattern
+// names them explicitly.
 std::vector<Column> Chosen(const std::vector<std::string>& channels, const TickRecord& record) {
   if (channels.empty()) return ColumnsOf(record);
   const bool inputs = std::any_of(channels.begin(), channels.end(), [](const std::string& pattern) {
@@ -92,7 +92,7 @@ std::vector<Column> Chosen(const std::vector<std::string>& channels, const TickR
                 patterns);
 }
 
-// Returns false at the end and at damage; `damage` then describes the damage.
+// Returns false at the end and at damage, which `damage` then describes.
 bool NextOrDamage(RecordingReader* reader, TickRecord* record, std::string* damage) {
   try {
     return reader->Next(record);

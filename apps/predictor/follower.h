@@ -24,19 +24,19 @@ struct FollowerOptions {
   bool quiet = false;
   std::string held;                   // printed when the arms have come to rest; may be empty
   RunRecording* recording = nullptr;  // may be null
-  // May be null. With real arms, the person at the console, who holds a key or an enabling device,
-  // gets a message for each step.
+  // This may be null. With real arms, the person at the console, who holds a key or an enabling
+  // device, gets a message for each step.
   const RealDevice* device = nullptr;
   bool enabling_device = false;
 };
 
 class Follower {
  public:
-  // quit: set if the run can no longer be followed, which ends it. All arguments are borrowed.
+  // `quit` is set if the run can no longer be followed, which ends it. All arguments are borrowed.
   Follower(const RecordRing& ring, const Scenario& scenario, const FollowerOptions& options,
            std::atomic<bool>* quit);
 
-  // Whether the run was ended for that reason; the summary is then incomplete.
+  // Returns whether the run ended for that reason. The summary is then incomplete.
   bool failed() const { return failed_; }
   Summary Finish();
   const ResultCurves& curves() const { return curves_; }  // complete after Finish

@@ -47,7 +47,7 @@ PersonSearch Search(const ForgetOptions& options) {
   return result;
 }
 
-// Neither the names of the files nor the pseudonym: the result must not keep it.
+// The result keeps neither the names of the files nor the pseudonym.
 void WriteResult(const ForgetOptions& options, std::size_t deleted, const PersonSearch& after) {
   const std::size_t left = after.found.size();
   std::string text = Formatted("Files deleted: %zu. ", deleted);

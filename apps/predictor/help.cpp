@@ -18,7 +18,7 @@ std::size_t Width() {
   return std::clamp<std::size_t>(size.ws_col, kMinWidth, kMaxWidth);
 }
 
-// Breaks a paragraph into lines of at most `width` columns; all lines but the first are indented.
+// Breaks a paragraph into lines of at most `width` columns, and indents all but the first.
 std::string Wrapped(const std::string& paragraph, std::size_t indent, std::size_t width) {
   std::istringstream words(paragraph);
   std::string text, line(indent, ' ');
@@ -32,7 +32,7 @@ std::string Wrapped(const std::string& paragraph, std::size_t indent, std::size_
   return text + line + "\n";
 }
 
-// Wraps paragraphs; indented lines remain unchanged.
+// Wraps paragraphs but leaves indented lines unchanged.
 std::string WrappedText(const std::string& text, std::size_t width) {
   std::istringstream lines(text);
   std::string out;
@@ -124,7 +124,7 @@ std::string ManCommand(const CLI::App& app) {
   return text;
 }
 
-// Shell patterns of all commands below `app`: 'predictor run'|'predictor survey'|...
+// Returns shell patterns of all commands below `app`: 'predictor run'|'predictor survey'|...
 std::string Paths(const CLI::App& app) {
   std::string paths;
   for (const CLI::App* command : CommandsOf(app)) {

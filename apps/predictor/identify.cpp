@@ -23,7 +23,7 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-// The scenario that receives the friction; its paths are unchanged.
+// Returns the scenario that receives the friction, with its paths unchanged.
 Scenario CopyOf(const IdentifyCommandOptions& options, const RecordingHeader& header) {
   if (!options.scenario.empty()) return LoadScenario(FindShipped(options.scenario));
   return RecordedScenario(header, options.recording, FolderOf(options.output));

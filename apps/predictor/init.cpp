@@ -1,5 +1,5 @@
 // predictor init: writes a commented scenario that passes its check and runs unchanged, for one or
-// two arms, a given cobot and an object. Places the object and the arms at the cobot's
+// two arms, a given cobot and an object. It places the object and the arms at the cobot's
 // end-effector.
 #include <algorithm>
 #include <filesystem>
@@ -57,7 +57,7 @@ std::string List(const std::vector<double>& values) {
 }
 std::string List(const Vector3& p) { return List(std::vector<double>{p.x(), p.y(), p.z()}); }
 
-// The text of one arm with its base at `base` in the world [m].
+// Returns the text of one arm with its base at `base` in the world [m].
 std::string ArmText(const char* side, const Vector3& base) {
   return Formatted(
       "    %s:\n"
@@ -169,7 +169,7 @@ std::vector<std::string> ProblemsOf(const std::string& text, const fs::path& fil
   }
 }
 
-// The first draft that passes its check; otherwise the first draft, with its problems.
+// Returns the first draft that passes its check, or else the first draft with its problems.
 Draft Choose(const InitOptions& o, const fs::path& file) {
   std::optional<Draft> first;
   for (const double mass : kMasses) {

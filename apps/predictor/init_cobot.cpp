@@ -25,8 +25,8 @@ struct Posture {
   Pose X_WE;
 };
 
-// The largest joint torque that holds the robot and an object of `mass` [kg] at rest, relative to
-// its limit. `data` must be after UpdateDynamics.
+// Returns the largest joint torque, relative to its limit, that holds the robot and an object of
+// `mass` [kg] at rest. `data` must be after UpdateDynamics.
 double LoadOf(const RobotModel& model, const RobotData& data, const Jacobian& J, double mass) {
   double load = 0;
   for (int j = 0; j < model.dof(); ++j) {
@@ -36,9 +36,9 @@ double LoadOf(const RobotModel& model, const RobotData& data, const Jacobian& J,
   return load;
 }
 
-// How well a posture suits carrying. Good postures have the end-effector in front of the base,
-// pointing down, far from singular configurations. Negative if the posture is unsuitable.
-// `relaxed`: the end-effector may be anywhere above the base.
+// Returns how well a posture suits carrying, or a negative number if it is unsuitable. Good
+// postures have the end-effector in front of the base, pointing down, far from singular
+// configurations. If `relaxed`, the end-effector may be anywhere above the base.
 double Suitability(const Pose& X_WE, const Jacobian& J, bool relaxed) {
   const Vector3 tool = X_WE.q * Vector3::UnitZ();
   const Vector3& p = X_WE.p;
@@ -48,7 +48,7 @@ double Suitability(const Pose& X_WE, const Jacobian& J, bool relaxed) {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(Eigen::MatrixXd(J)).singularValues().minCoeff();
 }
 
-// The most suitable of many random postures, best first.
+// Returns the most suitable of many random postures, best first.
 std::vector<Posture> Candidates(const RobotModel& model, const FrameId& tip, double mass,
                                 bool relaxed) {
   std::mt19937 random(relaxed ? 2 : 1);

@@ -24,9 +24,9 @@ struct InitCobot {
 
 InitCobot PandaCobot();
 
-// The robot of a URDF in several postures, the most suitable one first, in which it can carry
-// `mass` [kg]. Empty if no posture was found. The result is the same in each call. `urdf`: a file,
-// or package://...; it must be in a folder from which the scenario may read it. `end_effector`: see
+// Returns the robot of a URDF in postures in which it can carry `mass` [kg], the most suitable one
+// first, or nothing if no posture was found. The result is the same in each call. `urdf` is a file
+// or package://..., in a folder from which the scenario may read it. For `end_effector`, see
 // FindArm. Throws InputError.
 std::vector<InitCobot> OwnCobots(const std::string& urdf, const std::string& end_effector,
                                  const std::filesystem::path& scenario, double mass);

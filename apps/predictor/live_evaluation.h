@@ -18,7 +18,7 @@ class LiveEvaluation {
   LiveEvaluation(bool wanted, const Scenario& scenario, const Shared<RunBoard>& board,
                  const std::function<void(const std::string&)>& show);
 
-  // Null: the person is not judged.
+  // Returns null if the person is not judged.
   const Shared<EvaluationBoard>* states() const { return process_ ? &*states_ : nullptr; }
   const EvaluationBoard* board() const { return process_ ? &**states_ : nullptr; }
   const std::string& why_not() const { return why_not_; }

@@ -34,7 +34,7 @@ constexpr const char* kFooter =
     "No command replaces an existing file without --force.\n";
 
 // Runs the processes that a run starts for its page, for Unity, as its watchdog and to judge the
-// person; users do not start them. Returns a negative value if the command line names none of them.
+// person. Users do not start them. Returns a negative value if the command line names none of them.
 int RunHelperProcess(int argc, char** argv) {
   if (argc != 2) return -1;
   const std::string name = argv[1];

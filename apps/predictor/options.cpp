@@ -28,7 +28,7 @@ void RefuseToSetDevice(const std::string& assignment, const std::string& machine
                        "arms.left.arm and arms.right.arm), or omit --set.");
 }
 
-// The scenario's error about an option, with the option's name as the user typed it.
+// Returns the scenario's error about an option, with the option's name as the user typed it.
 InputError NamedAsTyped(std::string text, const std::string& key) {
   const std::string name = "--set " + key;
   if (const std::size_t at = text.find(name); at != std::string::npos)

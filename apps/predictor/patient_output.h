@@ -3,7 +3,7 @@
 
 namespace predictor {
 
-// From now on, output to standard error and standard output waits for a reader for at most one
+// After this call, output to standard error and standard output waits for a reader for at most one
 // second. Further output is dropped until the reader continues, and a message reports this. A pager
 // that is not scrolled or a stopped terminal (Ctrl-S) must not prevent a run from ending. If this
 // is not possible for a stream, its behaviour does not change.

@@ -9,7 +9,7 @@
 namespace predictor {
 namespace {
 
-// Whether the terminal's character set is UTF-8.
+// Returns whether the terminal's character set is UTF-8.
 bool HasUtf8() {
   for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
     const char* value = std::getenv(name);

@@ -6,17 +6,17 @@
 
 namespace predictor {
 
-// "12 min left" after `elapsed` [s] for the completed share of the work, from 0 to 1; "" while it
-// is unknown.
+// Returns "12 min left" after `elapsed` [s] for the completed share of the work (0 to 1), or ""
+// while it is unknown.
 std::string RemainingText(double share, double elapsed);
 
 class Progress {
  public:
-  // total: the value of Update at the end. quiet: prints nothing.
+  // `total` is the value of Update at the end. If `quiet`, nothing is printed.
   Progress(std::string title, double total, bool quiet);
   ~Progress();
   // Redraws at most ten times per second. Without a terminal, prints a line for each tenth of the
-  // work. `note`: a few words after the bar.
+  // work. `note` is a few words after the bar.
   void Update(double done, const std::string& note = "");
   void Finish();
 

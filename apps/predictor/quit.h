@@ -9,7 +9,7 @@ namespace predictor {
 
 inline std::atomic<bool> quit{false};  // a signal requested the end
 
-// Ignores a lost reader of the output, without which arms must still come to rest.
+// A lost reader of the output is ignored, because arms must still come to rest.
 inline void QuitOn(std::initializer_list<int> signals) {
   for (const int signal : signals) std::signal(signal, [](int) { quit.store(true); });
   std::signal(SIGPIPE, SIG_IGN);

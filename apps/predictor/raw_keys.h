@@ -6,12 +6,12 @@
 
 namespace predictor {
 
-// During its lifetime, standard input returns each key at once without showing it; Ctrl-C still
-// raises its signal. The destructor restores the terminal. Standard input must be a terminal, and
-// this program must be in its foreground.
+// While this object exists, standard input returns each key at once without showing it. Ctrl-C
+// still raises its signal. The destructor restores the terminal. Standard input must be a terminal,
+// and this program must be in its foreground.
 class RawKeys {
  public:
-  // every: reads all keys, including those that normally stop the output or suspend the program
+  // `every` reads all keys, including those that normally stop the output or suspend the program
   // (Ctrl-S, Ctrl-Z), because arms may be moving.
   explicit RawKeys(bool every) {
     tcgetattr(STDIN_FILENO, &before_);

@@ -25,7 +25,7 @@ bool IsLoopback(const std::string& host) {
          (host.starts_with("127.") && inet_pton(AF_INET, host.c_str(), &address) == 1);
 }
 
-// Whether all addresses of the machine belong to this computer, so that all its devices are fakes.
+// Returns whether all addresses are this computer's, so that all its devices are fakes.
 bool OnThisComputer(const Machine& machine) {
   for (const std::optional<MachineArm>* arm : {&machine.left, &machine.right}) {
     if (!*arm) continue;

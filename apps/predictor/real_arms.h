@@ -16,8 +16,8 @@ using ArmModels = std::array<std::shared_ptr<const RobotModel>, kHands>;
 // the program does so while no arm obeys it. Throws InputError with the machine file's line.
 ArmModels LoadArmModels(const Machine& machine);
 
-// A loop that any other program may delay must not move real arms: throws DeviceError if the system
-// grants no real-time scheduling. For fakes on this computer, only prints a warning.
+// Throws DeviceError if the system grants no real-time scheduling, because a loop that other
+// programs may delay must not move real arms. For fakes on this computer, only prints a warning.
 void RequireRealTime(const Machine& machine);
 
 // A haptic loop for which a growing oscillation in the scenario's hands is predicted must not move

@@ -27,14 +27,15 @@ struct RecordOptions {
   std::string participant;          // file of the person in a study; empty: none
   std::string machine;              // machine file of real arms, as YAML
 
-  // Of the participant, too. Throws InputError.
+  // Returns all labels, including those of the participant. Throws InputError.
   std::map<std::string, std::string> Labels() const;
 };
 
 // The header for a recording of `emulator`'s run that begins now.
 RecordingHeader HeaderOf(const Emulator& emulator, const RecordOptions& options);
 
-// "runs/box_9kg_2026-01-31_14-05-09.mcap", with a number if that file exists. Creates the folder.
+// Returns "runs/box_9kg_2026-01-31_14-05-09.mcap", with a number if that file exists. Creates the
+// folder.
 std::string NewRecordingName(const Scenario& scenario);
 
 // Reads the remaining ticks in another thread, because unpacking and checking take twice as long as
@@ -48,7 +49,7 @@ class VirtualRecording {
  public:
   // Throws InputError if the file cannot be created.
   VirtualRecording(Emulator* emulator, const RecordOptions& options);
-  // Call after each tick. Throws RecordingError.
+  // Call this after each tick. Throws RecordingError.
   void Add(const TickRecord& record);
   void Close() { writer_.Close(); }
   std::string Summary() const;  // summary of the written file, as a sentence
@@ -65,8 +66,8 @@ class VirtualRecording {
 class RunRecording final : public SnapshotSink {
  public:
   // Records everything that is published on the board from now on to `options.file`, or to the file
-  // of NewRecordingName. Shows on the board whether it is recording. person: board of the
-  // evaluator's states, which are recorded as well; null: none. Both boards are borrowed. Throws
+  // of NewRecordingName, and shows on the board whether it is recording. `person` is the board of
+  // the evaluator's states, which are recorded as well, or null. Both boards are borrowed. Throws
   // InputError.
   RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board,
                const EvaluationBoard* person);
@@ -75,7 +76,7 @@ class RunRecording final : public SnapshotSink {
   void Commit(std::uint64_t tick, std::size_t bytes) noexcept override {
     recorder_.SnapshotTaken(tick, bytes);
   }
-  // Call regularly, but not in the tick's thread: updates the board's recording state.
+  // Updates the board's recording state. Call this regularly, but not in the tick's thread.
   void Look();
   // Adds a marker for people who evaluate the recording.
   void Mark(const std::string& text) { recorder_.Mark(text); }

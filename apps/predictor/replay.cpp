@@ -34,7 +34,7 @@ std::uint64_t Nanoseconds(std::chrono::steady_clock::time_point t) {
       std::chrono::duration_cast<std::chrono::nanoseconds>(t.time_since_epoch()).count());
 }
 
-// Number of the last tick of a recording, which may have gaps.
+// Returns the number of the last tick of a recording, which may have gaps.
 std::uint64_t LastTick(RecordingReader* reader, const TickRecord& first) {
   TickRecord last = first;
   reader->Seek(first.tick + std::max<std::uint64_t>(reader->count(), 1) - 1);

@@ -23,7 +23,7 @@ constexpr std::size_t kMaxRecordings = 8;  // the number of available colours
 // MB.
 constexpr double kDetail = 120;
 
-// Which joints of the recorded cobot are prismatic; none if its model is lost.
+// Returns which joints of the recorded cobot are prismatic, or none if its model is lost.
 std::vector<bool> RecordedPrismaticJoints(const RecordingHeader& header) {
   const TemporaryFolder folder;
   try {

@@ -17,7 +17,7 @@ constexpr double kMaxReported = 600;  // reading longer recordings would delay t
 
 double Norm(const double* v) { return std::hypot(v[0], v[1], v[2]); }
 
-// Three digits are sufficient on a screen and keep the message short.
+// Three digits are enough on a screen and keep the message short.
 double Rounded(double x) {
   if (x == 0 || !std::isfinite(x)) return 0;
   const double scale = std::pow(10, 2 - std::floor(std::log10(std::abs(x))));

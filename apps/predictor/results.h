@@ -18,9 +18,9 @@ namespace predictor {
 class ResultCurves {
  public:
   explicit ResultCurves(const Scenario& scenario);
-  // Call in order; ticks outside RUN are ignored. After a reset, the curves start again.
+  // Call this in order. Ticks outside RUN are ignored. After a reset, the curves start again.
   void Add(const TickRecord& record);
-  // [{"title", "unit", "limit", "step": s, "left": [...] | null, "right": ...}, ...]
+  // Returns [{"title", "unit", "limit", "step": s, "left": [...] | null, "right": ...}, ...].
   nlohmann::ordered_json ToJson() const;
 
  private:
@@ -37,15 +37,15 @@ class ResultCurves {
   std::vector<Piece> pieces_;
 };
 
-// The page's `scene.results`. how: a sentence about how the run ended. recording: its file; empty:
-// no recording. remark: why there is no report, or empty.
+// Returns the page's `scene.results`. `how` is a sentence about how the run ended. `recording` is
+// its file, or empty. `remark` is why there is no report, or empty.
 nlohmann::ordered_json ResultsJson(const Summary& summary, const ResultCurves& curves,
                                    const std::string& how, const std::string& recording,
                                    const std::string& remark);
 
 // Writes the report of a recording beside it. Returns the report's file, or an empty path and the
-// reason in `remark`. duration: of the run [s]; reports of long runs must be made by `predictor
-// report`.
+// reason in `remark`. `duration` is that of the run [s]; reports of long runs must be made by
+// `predictor report`.
 std::filesystem::path WriteRunReport(const std::string& recording, double duration,
                                      std::string* remark);
 

@@ -25,16 +25,16 @@ namespace predictor {
 //   any other key: stop; while a command is typed, any key that is not text (Esc)
 class RigConsole {
  public:
-  // request: requests an event of the run; called from this object's thread. line: called with each
-  // typed command. Standard input must be a terminal; the destructor restores it. enabling_device:
-  // the operator holds an enabling device instead of a key.
+  // `request` requests an event of the run, from this object's thread. `line` is called with each
+  // typed command. With an `enabling_device`, the operator holds one instead of a key. Standard
+  // input must be a terminal, which the destructor restores.
   RigConsole(std::function<void(RunEvent)> request, std::function<void(const std::string&)> line,
              bool enabling_device);
   ~RigConsole();
   RigConsole(const RigConsole&) = delete;
   RigConsole& operator=(const RigConsole&) = delete;
 
-  // Number of signs of a held key so far.
+  // Returns the number of signs of a held key so far.
   const std::atomic<std::uint32_t>& enabling() const { return enabling_; }
 
   const char* Help() const;

@@ -55,7 +55,7 @@ void PrintLoop(const RealTimeReport& report) {
 // The commands that the user may type at the console during a run.
 class Commands {
  public:
-  // Either may be null.
+  // Either argument may be null.
   Commands(viewer::ViewerProcess* viewer, RunRecording* recording)
       : viewer_(viewer), recording_(recording) {}
 
@@ -94,7 +94,7 @@ class Commands {
     else
       TheScreen().Print("This run is not recorded.");
   }
-  // N of "kick N"; 0 for any other text.
+  // Returns N of "kick N", or 0 for any other text.
   static unsigned long ClientOf(const std::string& line) {
     const std::string kick = "kick ";
     if (!line.starts_with(kick) || line.size() == kick.size() || line.size() > kick.size() + 9 ||
@@ -111,7 +111,7 @@ class Commands {
 class Console {
  public:
   explicit Console(Commands* commands) : commands_(commands) {
-    // −1: standard input is not this process's controlling terminal.
+    // The result is −1 if standard input is not this process's controlling terminal.
     const pid_t in_front = tcgetpgrp(STDIN_FILENO);
     if (in_front != -1 && in_front != getpgrp()) return;
     keys_.emplace(false);
@@ -146,7 +146,7 @@ class Console {
   std::thread thread_;
 };
 
-// The text for the pages.
+// Returns the text for the pages.
 std::string HowItEnded(RunEnd end, const Summary& summary) {
   if (quit) return "The run was ended from the console.";
   if (summary.stop_count > 0) return "The run was stopped before its planned end.";
@@ -162,7 +162,7 @@ struct NextRun {
 // The run of one scenario, from its first tick to its table.
 class Run {
  public:
-  // device, machine: the real arms, or null.
+  // `device` and `machine` are the real arms, or null.
   Run(const Scenario& scenario, const ScenarioOptions& options, const ServeOptions& serve,
       const RecordOptions& record, std::unique_ptr<RealDevice> device = nullptr,
       const Machine* machine = nullptr)
@@ -268,8 +268,8 @@ class Run {
   }
 
  private:
-  // Whether results may be shown: with simulated arms, while a page is connected or the program
-  // should stay.
+  // Returns whether results may be shown: with simulated arms, while a page is connected or the
+  // program should stay.
   bool MayShowResults() {
     return viewer_ && emulator_.setup().rules.may_switch_scenario && !quit &&
            serve_.stay.value_or(mailbox_->clients.load(std::memory_order_relaxed) > 0);
@@ -334,8 +334,8 @@ class Run {
   std::optional<viewer::ViewerProcess> viewer_;
 };
 
-// "out.json", "out-2.json", ... for the first run, the second, ...; standard output gets the
-// results of all runs.
+// Returns "out.json", "out-2.json", ... for the first run, the second, .... Standard output gets
+// the results of all runs.
 std::string SummaryOf(const std::string& file, int run) {
   if (file.empty() || file == "-" || run == 1) return file;
   const std::filesystem::path path(file);
@@ -345,8 +345,8 @@ std::string SummaryOf(const std::string& file, int run) {
   return (path.parent_path() / name).string();
 }
 
-// The options for a scenario that a page chose. Values for the first scenario's keys are omitted,
-// because the other scenario may not have these keys.
+// Returns the options for a scenario that a page chose. Values for the first scenario's keys are
+// omitted, because the other scenario may not have these keys.
 ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOptions& first,
                            int run) {
   ScenarioOptions options = first;
@@ -363,7 +363,7 @@ ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOpti
 }
 
 // Loads the scenario for a run in real time. The detectors of oscillation and vibration stay on,
-// because a person may hold the handles; so do all repairs of the paper's formulation.
+// because a person may hold the handles. All repairs of the paper's formulation stay on too.
 Scenario LoadForRealTime(const ScenarioOptions& options) {
   Scenario scenario = options.Load();
   if (!scenario.safety.oscillation.enabled)
@@ -379,7 +379,7 @@ Scenario LoadForRealTime(const ScenarioOptions& options) {
   return scenario;
 }
 
-// Prints the known settings of the arms; throws DeviceError if they contradict the machine file.
+// Prints the known settings of the arms. Throws DeviceError if they contradict the machine file.
 void CheckArms(const Machine& machine, const ArmModels& models, const RealDevice& device) {
   for (int hand = 0; hand < kHands; ++hand) {
     const DeviceFacts* facts = device.arm_facts(hand);

@@ -7,16 +7,17 @@
 
 namespace predictor {
 
-// Thread-safe. Without a terminal, or with TERM=dumb, only the permanent lines are printed. All
-// text is made printable first, because some of it comes from files, other processes and robots.
+// The terminal of the operator, for all threads. Without a terminal, or with TERM=dumb, it prints
+// only the permanent lines. It makes all text printable first, because some of it comes from files,
+// other processes and robots.
 class Screen {
  public:
   Screen();
-  // Prints a permanent line; `line` has no newline.
+  // Prints a permanent line. `line` has no newline.
   void Print(const std::string& line);
-  // Shows progress; "" hides it. Hidden while a command is being typed.
+  // Shows progress, or hides it if `bar` is "". It is hidden while a command is being typed.
   void Bar(const std::string& bar);
-  // Shows the command being typed; "" when typing has ended.
+  // Shows the command being typed, or "" when typing has ended.
   void Typed(const std::string& text);
 
   bool terminal() const { return terminal_; }
@@ -29,7 +30,7 @@ class Screen {
   std::string bar_, typed_;
 };
 
-// The only instance.
+// Returns the only instance.
 Screen& TheScreen();
 
 // A command that is typed letter by letter and shown at the bottom of the screen.

@@ -62,7 +62,7 @@ Destination DestinationOf(const SurveyOptions& options) {
   return to;
 }
 
-// The condition in the recording; empty if the file is not a recording of this version.
+// Returns the condition in the recording, or nothing if the file is no recording of this version.
 std::optional<Condition> RecordedCondition(const Destination& to) {
   if (to.recording.empty()) return {};
   const fs::path file = to.folder / to.recording;
@@ -208,7 +208,7 @@ int SurveyRemoveCommand(const SurveyOptions& options) {
     throw InputError("There is no answer by " + options.pseudonym + " in " +
                      PlacesOf(options)[0].string() +
                      (options.places.size() > 1 ? " or the other folders." : "."));
-  // Not the names of the files: they contain the pseudonym, which the result must not keep.
+  // The result keeps no names of files, because they contain the pseudonym.
   options.Write(
       Formatted("Removed %zu %s by %s. Copies in other places were not removed.\n", removed.size(),
                 removed.size() == 1 ? "answer" : "answers", options.pseudonym.c_str()),

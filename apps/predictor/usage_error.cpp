@@ -9,7 +9,7 @@
 namespace predictor {
 namespace {
 
-// The innermost command on the command line.
+// Returns the innermost command on the command line.
 const CLI::App* Innermost(const CLI::App* app) {
   const auto parsed = app->get_subcommands();
   return parsed.empty() ? app : Innermost(parsed.back());
@@ -26,7 +26,8 @@ std::string Text(const std::string& error, const std::string& hint) {
   return "predictor: error: " + error + "\nhint: " + hint;
 }
 
-// The parser's message in this program's wording. Arguments are named as in the help: SCENARIO.
+// Returns the parser's message in this program's wording. Arguments are named as in the help:
+// SCENARIO.
 std::string Rephrased(std::string message) {
   static const std::array<std::pair<std::regex, const char*>, 6> kSentences = {{
       {std::regex("(.*) is required"), "$1 is missing."},
