@@ -21,11 +21,11 @@ struct RunTimes {
 };
 RunTimes TimeRuns(const std::string& scenario, int runs);
 
-// Prints the time per tick of the drivers, monitor and guard of real arms. quick: fewer ticks and
-// no sockets.
+// Prints the time per tick of the drivers, monitor and guard of real arms. If `quick`, it uses
+// fewer ticks and no sockets.
 void TimeDriversAndSupervisor(bool quick);
 
-// Prints the time of the evaluation of the person. quick: fewer samples.
+// Prints the time of the evaluation of the person. If `quick`, it uses fewer samples.
 void TimePerson(bool quick);
 
 // Returns the results of isolated benchmarks of the stages' parts by google-benchmark, as name →

@@ -61,7 +61,7 @@ struct ScenarioOptions : OutputOptions {
   std::string machine;  // machine file of the real arms; empty: the scenario's own device
 
   // Loads the scenario. Throws InputError if the scenario is invalid or the JSON file could not be
-  // written later. `on`: a machine whose arms replace the scenario's.
+  // written later. `on` is a machine whose arms replace the scenario's.
   Scenario Load(const Machine* on = nullptr) const;
 };
 

@@ -20,8 +20,8 @@ ArmModels LoadArmModels(const Machine& machine);
 // programs may delay must not move real arms. For fakes on this computer, only prints a warning.
 void RequireRealTime(const Machine& machine);
 
-// A haptic loop for which a growing oscillation in the scenario's hands is predicted must not move
-// real arms: throws InputError. `scenario`: with the machine's arms.
+// Throws InputError if a growing oscillation in the scenario's hands is predicted, because such a
+// haptic loop must not move real arms. `scenario` has the machine's arms.
 void RequireStability(const Machine& machine, const Scenario& scenario);
 
 // Before real arms displace a person's handles (`perturbation`), the person at the console must

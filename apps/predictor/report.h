@@ -18,7 +18,7 @@ void PrintSetup(const Emulator& emulator, bool quiet);
 std::optional<PredictedLoop> PredictedLoopOf(const Emulator& emulator);
 
 // Adds the measurements of the run to the summary, prints and writes it, and returns the exit code.
-// wall: time from the first to the last tick [s].
+// `wall` is the time from the first to the last tick [s].
 int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOptions& options,
            Summary* summary);
 

@@ -201,7 +201,7 @@ class Run {
     viewer_.emplace(scenario, page, board_, mailbox_, show, evaluation_->states());
   }
 
-  // Returns an exit code. `next`: the scenario that a page chose to run after this one.
+  // Returns an exit code. `next` is the scenario that a page chose to run after this one.
   int Go(bool by_itself, std::optional<NextRun>* next) {
     Commands commands(viewer_ ? &*viewer_ : nullptr, recording_ ? &*recording_ : nullptr);
     std::optional<Console> console;

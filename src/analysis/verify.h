@@ -31,7 +31,7 @@ struct Verification {
 // Computes the run again from the start and, after lost ticks, from the next saved state. With real
 // arms, each tick receives the recorded samples of arms and sensors. Everything else is computed,
 // except the warnings about losses on the connections to the arms. Stops at the first difference.
-// `scenario` comes from RestoreScenario. progress: receives the number of ticks so far. Throws
+// `scenario` comes from RestoreScenario. `progress` receives the number of ticks so far. Throws
 // InputError if the recording cannot be read.
 Verification Verify(RecordingReader* reader, const Scenario& scenario,
                     const std::function<void(std::uint64_t)>& progress);

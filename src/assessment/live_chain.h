@@ -35,8 +35,8 @@ class LiveChain {
   void Add(const PersonSample& sample);
   // Returns the posture of the newest sample.
   const person::Posture& newest() const { return postures_.back(); }
-  // Gets the next sample that can be judged. `all`: no later sample continues the known ones, so
-  // all of them can be judged. Returns false if no sample can be judged yet.
+  // Gets the next sample that can be judged. `all` states that no later sample continues the known
+  // ones, so all of them can be judged. Returns false if no sample can be judged yet.
   bool Next(bool all, JudgedSample* judged);
 
   const person::BodyModel& model() const { return person_.model(); }

@@ -43,8 +43,9 @@ struct MeasuredBody {
   std::vector<std::string> warnings;
 };
 
-// Adds the measured head and elbows to the samples, as far as they were measured at these times:
-// nothing is extrapolated, and interpolated only over 0.05 s. `start_unix`: of the recording [s].
+// Adds the measured head and elbows to the samples, as far as they were measured at these times. It
+// extrapolates nothing, and interpolates only over 0.05 s. `start_unix` is the start of the
+// recording [s].
 //
 // Throws InputError with the file if two tracks measure the same part, a track has no measurement
 // during the run, its clock's offset cannot be estimated, or most of its positions are impossible

@@ -38,7 +38,7 @@ struct BodyPicture {
 // Returns the sample with the highest load of any of these parts.
 std::size_t WorstSample(const NominalChain& nominal);
 
-// Returns the picture at one sample. `possible`: whether to include all possible persons.
+// Returns the picture at one sample. `possible` states whether to include all possible persons.
 BodyPicture PictureAt(const PersonSetup& setup, std::span<const PersonSample> samples,
                       const NominalChain& nominal, std::size_t i, bool possible);
 

@@ -58,7 +58,7 @@ Vector3 TakePoint(Session* session, const Station& station, const Vector3& tip) 
   }
 }
 
-// Collects points of one arm. count: the number of points, or 0 if the person decides.
+// Collects points of one arm. `count` is the number of points, or 0 if the person decides.
 std::vector<Vector3> TakePoints(Session* session, const Station& station, const Vector3& tip,
                                 std::size_t count) {
   std::vector<Vector3> points;

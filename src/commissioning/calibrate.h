@@ -35,8 +35,8 @@ struct SwingOptions {
 // the handle. No joint is so fast that the handle exceeds `limits.align_speed`. Releasing the key
 // brings the joint to rest, and it is measured again. Anything that would stop a run is an error,
 // and so is a joint that leaves its path. In every case the arm is brought to rest first, and the
-// person is notified. swings: only joints that it does not contain yet are measured. Finished
-// joints are added to it even if the function throws.
+// person is notified. Only joints that `swings` does not contain yet are measured. Finished joints
+// are added to it even if the function throws.
 inline constexpr char kSwingKey = 's';
 void SwingJoints(Session* session, Station* station, const SwingOptions& options, Swings* swings);
 // Fits the loop to the swings, and shows each joint's own result.

@@ -91,7 +91,8 @@ void ForBlocks(const std::vector<LoopRecord::Sample>& samples, const Use& use) {
 
 // An arm applies each command in its own cycle, slightly earlier or later, and the resulting
 // position offset persists. Over a swing it drifts by up to the amplitude of the fast motion.
-// Positions are therefore compared with one another within a block only. rows: one for each sample.
+// Positions are therefore compared with one another within a block only. `rows` has one row for
+// each sample.
 template <class Rows>
 void Centre(const LoopRecord& record, Rows* rows) {
   ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {

@@ -51,8 +51,8 @@ class LoopRecorder {
  public:
   // period is the sample period of the arm [s].
   LoopRecorder(int joint, double period) : period_(period) { record_.joint = joint; }
-  // due: the scheduled time in the session. time: the time of the command [s]. Both ascend. u is in
-  // [rad/s].
+  // `due` is the scheduled time in the session. `time` is the time of the command [s]. Both ascend.
+  // u is in [rad/s].
   void AddCommand(double due, double time, double u);
   // Adds a new sample measured at `time` [s].
   void AddSample(double time, double q) { record_.samples.push_back({time, q}); }

@@ -25,7 +25,7 @@ struct EnablingContact {
 class Consent {
  public:
   Consent(char key, const EnablingContact& contact) : key_(key), held_(key), contact_(contact) {}
-  // Call this in each step. key: a newly received key, or 0. now is in [s].
+  // Call this in each step. `key` is a newly received key, or 0. `now` is in [s].
   bool Update(char key, double now);
   // From `now` [s] on, there is no consent until the key has been silent and the device has been
   // released.

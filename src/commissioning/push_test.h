@@ -32,8 +32,8 @@ class PushTest {
 
   enum class Hint : std::uint8_t { kNone, kPush, kSofter, kStraighter, kLetGo };
 
-  // pushed, other: the wrenches F_H_W of the pushed handle and of the other one (zero if there is
-  // none). dt: the time since the last call [s].
+  // `pushed` and `other` are the wrenches F_H_W of the pushed handle and of the other one (zero if
+  // there is none). `dt` is the time since the last call [s].
   void Update(const Wrench& pushed, const Wrench& other, double dt) noexcept;
 
   // Returns the current axis, to be pushed in its + direction, or kAxes when done.

@@ -34,8 +34,9 @@ class Session {
   Session(Network* network, Person* person, std::vector<Station*> stations)
       : network_(network), person_(person), stations_(std::move(stations)) {}
 
-  // Sets a function that is called in each step before the arms are read, for a watchdog. moves:
-  // whether one of the arms moves. The function returns why no arm may continue to move, or "".
+  // Sets a function that is called in each step before the arms are read, for a watchdog. `moves`
+  // states whether one of the arms moves. The function returns why no arm may continue to move, or
+  // "".
   void OnStep(std::function<std::string(bool moves)> step) { on_step_ = std::move(step); }
 
   double Now() const { return 1e-9 * static_cast<double>(network_->Now()); }

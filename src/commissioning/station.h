@@ -31,8 +31,8 @@ class Station {
   // Sends a command [rad/s]. Call this after Sense. Throws DeviceError if the arm does not accept
   // it.
   void Move(const JointVector& v);
-  // Brings the arm to rest in spite of any other fault. motion: false ends its motion. Returns
-  // false if the arm does not accept it or its samples are old.
+  // Brings the arm to rest in spite of any other fault. If `motion` is false, its motion ends.
+  // Returns false if the arm does not accept it or its samples are old.
   bool Slow(const JointVector& v, bool motion) noexcept;
 
   int hand() const { return hand_; }

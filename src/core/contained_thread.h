@@ -26,8 +26,8 @@ void Contain(const Work& work, const Failed& failed) noexcept {
   }
 }
 
-// A thread that contains every exception of its body. name: at most 15 characters, as shown by `ps
-// -L`.
+// A thread that contains every exception of its body. `name` has at most 15 characters, and `ps -L`
+// shows it.
 template <class Work, class Failed>
 std::thread ContainedThread(const char* name, Work work, Failed failed) {
   return std::thread([name, work = std::move(work), failed = std::move(failed)] {

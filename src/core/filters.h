@@ -78,7 +78,7 @@ class Delay {
 template <class T, int N>
 class FractionalDelay {
  public:
-  // samples: delay divided by the sampling time, at least 0.
+  // `samples` is the delay divided by the sampling time, at least 0.
   void Reset(double samples, const T& value) {
     const double whole = std::floor(samples);
     fraction_ = samples - whole;

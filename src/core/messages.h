@@ -132,11 +132,11 @@ struct RenderResult {
   std::array<double, kHands> manipulability = {};  // sqrt(det(J Jᵀ)), translational
 };
 
-// Linear model of the virtual world about a state at rest: dx/dt = A x + B u, y = C x. x: positions
-// (tangent space), then velocities, then the states of the wrist sensor, of the controller's memory
-// and of its delay, if there are any. The displacement of the handles is the velocity part of C
-// times the positions. u: wrenches on the handles (left, right; 12). y: twists of the handles (12).
-// Entries of an absent side are zero.
+// Linear model of the virtual world about a state at rest: dx/dt = A x + B u, y = C x. x contains
+// positions (tangent space), then velocities, then the states of the wrist sensor, of the
+// controller's memory and of its delay, if there are any. The displacement of the handles is the
+// velocity part of C times the positions. u contains the wrenches on the handles (left, right; 12),
+// y their twists (12). Entries of an absent side are zero.
 struct LinearModel {
   Eigen::MatrixXd A, B, C;
   int dof = 0;  // number of positions, which is also that of velocities

@@ -20,7 +20,7 @@ class RestDetector {
     still_ = X_WH;
     mover_ = -1;
   }
-  // Returns whether a handle has moved. in_motion: a driver reports that its arm still moves.
+  // Returns whether a handle moved. `in_motion`: whether a driver reports that its arm still moves.
   bool Update(const std::array<Pose, kHands>& X_WH, bool in_motion) noexcept {
     bool moved = in_motion;
     for (std::size_t i = 0; i < kHands; ++i) {

@@ -84,13 +84,13 @@ class Arm {
   // cannot move. The sample is then the last one, with its age.
   virtual Status Read(ArmReading* reading) noexcept = 0;
   // Sends joint velocities [rad/s], one set per tick, which are finite and limited by the guard.
-  // `motion`: whether the arm may move in this state. If not, v is zero, and the arm need not be in
-  // its motion mode.
+  // `motion` states whether the arm may move in this state. If not, v is zero, and the arm need not
+  // be in its motion mode.
   virtual Status Write(const JointVector& v, bool motion) noexcept = 0;
-  // Call this in each tick. `wanted`: whether the run is UNPOWERED. When `wanted` becomes true, the
-  // robot is requested to cut its power. If it still reports power, ArmReading::keeps_power is set.
-  // A robot without such a request (a Franka) holds its position with power until someone uses its
-  // own enabling device or emergency stop.
+  // Call this in each tick. `wanted` states whether the run is UNPOWERED. When `wanted` becomes
+  // true, the robot is requested to cut its power. If it still reports power,
+  // ArmReading::keeps_power is set. A robot without such a request (a Franka) holds its position
+  // with power until someone uses its own enabling device or emergency stop.
   virtual void PowerOff(bool wanted) noexcept { static_cast<void>(wanted); }
   // Describes the last fault for the user ("protective stop"), or returns "" if there was no fault.
   // It must not be called in a tick.

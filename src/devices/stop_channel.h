@@ -11,8 +11,8 @@ namespace predictor {
 
 class StopChannel {
  public:
-  // kSilent: the peer has stopped sending, but it may still receive. kLost: the connection is
-  // permanently lost.
+  // kSilent means that the peer has stopped sending, although it may still receive. kLost means
+  // that the connection is permanently lost.
   enum class Link { kTalks, kSilent, kLost };
 
   virtual ~StopChannel() = default;

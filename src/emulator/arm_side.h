@@ -21,7 +21,7 @@ class ArmSide {
   Status Update(const ArmSample& sample) noexcept;
 
   // Predicts the kinematics at which the arm will obey the next command. An arm obeys a velocity
-  // after a lag, during which the joints continue to move. `last`: command last sent [rad/s].
+  // after a lag, during which the joints continue to move. `last` is the command last sent [rad/s].
   void LookAhead(const JointVector& last) noexcept;
   // Advances the prediction by `time` [s] when the latest joint sample is stale.
   void Extrapolate(const JointVector& last, double time) noexcept;

@@ -36,8 +36,8 @@ struct EmulatorSetup {
 
 class Emulator {
  public:
-  // Loads models, finds the world's equilibrium, and places the arms. `device`: the real arms, or
-  // null for the simulated rig. Throws InputError that states the remedy.
+  // Loads models, finds the world's equilibrium, and places the arms. `device` contains the real
+  // arms, or null for the simulated rig. Throws InputError that states the remedy.
   explicit Emulator(const Scenario& scenario, std::unique_ptr<Device> device = nullptr);
   ~Emulator();
 

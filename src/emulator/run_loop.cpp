@@ -43,7 +43,7 @@ bool AtRest(const Emulator& e) {
   return e.state() == RunState::kHeld || e.state() == RunState::kUnpowered;
 }
 
-// began: whether the run reached RUN, even if it was reset later.
+// `began` states whether the run reached RUN, even if it was reset later.
 RunEnd EndOf(const Emulator& e, bool began) {
   if (e.record().cause != StopCause::kNone) return RunEnd::kStopped;
   return began ? RunEnd::kFinished : RunEnd::kNotStarted;
@@ -51,8 +51,8 @@ RunEnd EndOf(const Emulator& e, bool began) {
 
 constexpr double kMaxScenarios = 1e6;  // maximum length of a list of scenarios
 
-// Submits a stop if the count `asked` has changed since `seen`. client: the page that requested it
-// last.
+// Submits a stop if the count `asked` has changed since `seen`. `client` is the page that requested
+// it last.
 void TakeStop(const std::atomic<std::uint32_t>& asked, const std::atomic<std::uint32_t>* client,
               std::uint32_t* seen, Emulator* emulator) noexcept {
   const std::uint32_t now = asked.load(std::memory_order_acquire);
@@ -80,7 +80,7 @@ void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator,
   }
 }
 
-// Stops the arms if a headset's wearer no longer sees them move. `now`: [ns].
+// Stops the arms if a headset's wearer no longer sees them move. `now` is in [ns].
 void WatchHeadsets(const RunMailbox& mailbox, std::uint64_t now, Emulator* emulator) noexcept {
   if (mailbox.immersive.load(std::memory_order_acquire) == 0) return;
   const std::uint64_t frame = mailbox.immersive_frame_ns.load(std::memory_order_relaxed);
@@ -92,7 +92,7 @@ void WatchHeadsets(const RunMailbox& mailbox, std::uint64_t now, Emulator* emula
   emulator->Submit(input);
 }
 
-// Stops the arms if the watchdog is silent. `now`: [ns].
+// Stops the arms if the watchdog is silent. `now` is in [ns].
 void WatchTheWatchdog(const std::atomic<std::uint32_t>& beats, std::uint64_t now,
                       Heartbeat* heartbeat, Emulator* emulator) noexcept {
   RunInput input;
@@ -101,8 +101,8 @@ void WatchTheWatchdog(const std::atomic<std::uint32_t>& beats, std::uint64_t now
   if (input.value > kWatchdogSilence && MayMove(emulator->state())) emulator->Submit(input);
 }
 
-// Stops the arms after a suspend, because all data about arms and people are then stale. `now`:
-// [ns].
+// Stops the arms after a suspend, because all data about arms and people are then stale. `now` is
+// in [ns].
 void WatchForSuspend(std::uint64_t now, SuspendWatch* watch, Emulator* emulator) noexcept {
   const std::uint64_t boot = TimeOf(CLOCK_BOOTTIME);
   RunInput input;

@@ -43,7 +43,7 @@ class Handle {
   double led_ = 0;  // integral of the commands [m]
 };
 
-// hold: the delay before it brakes [s].
+// `hold` is the delay before it brakes [s].
 StopBudget StopOf(const ArmSpec& arm, const StopProfile& profile, double hold, double dt) {
   Handle handle(arm, dt);
   for (double t = -kSettlingTime; t < 0; t += dt)

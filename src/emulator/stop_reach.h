@@ -12,10 +12,11 @@ namespace predictor {
 // positions. dt is the duration of a tick [s].
 double Overrun(const ArmSpec& arm, double dt);
 
-// The longest time and distance of a stop from `safety.handle_speed`, from the decision until no
-// handle is faster than 5 mm/s. It is WorstStop executed by the velocity loops of the scenario's
-// arms (`arm.loop`, and the position loop of an arm that follows positions), including the time
-// that one arm waits for the other. `acceleration`: deceleration of the handles [m/s²].
+// Returns the longest time and distance of a stop from `safety.handle_speed`, from the decision
+// until no handle is faster than 5 mm/s. It is WorstStop executed by the velocity loops of the
+// scenario's arms (`arm.loop`, and the position loop of an arm that follows positions), including
+// the time that one arm waits for the other. `acceleration` is the deceleration of the handles
+// [m/s²].
 StopBudget StopOfArms(const Scenario& scenario, double acceleration);
 // As above, with `safety.stop_acceleration`, provided that no joint exceeds its acceleration limit.
 inline StopBudget StopOfArms(const Scenario& scenario) {

@@ -50,9 +50,9 @@ class Supervisor {
   // -- Steps of a tick, in this order. They do not use the heap or a lock, and do not throw. --
 
   RunRequests TakeRequests() noexcept;
-  // Grants or refuses the requests. data: that of the previous tick. beyond: the condition that
-  // prevents the arms from starting, if ALIGN is requested. Returns true if the run was reset, in
-  // which case the pipeline must be reset too.
+  // Grants or refuses the requests. `data` is that of the previous tick. `beyond` is the condition
+  // that prevents the arms from starting, if ALIGN is requested. Returns true if the run was reset,
+  // in which case the pipeline must be reset too.
   bool HandleRequests(const TickData& data, Beyond beyond) noexcept;
   // Returns the pipeline's work in this tick.
   TickPlan Plan(const DeviceSample& sample) noexcept;
@@ -71,9 +71,9 @@ class Supervisor {
   void EndTick(const TickPlan& plan) noexcept;
   // The self-test ends in this tick: the pipeline must finish taring.
   bool SelfTestEnds() const noexcept;
-  // Makes the transitions that need no person. beyond: as above, in RECOVERY. self_test: the result
-  // of taring, if the self-test ends. Returns true if the self-test begins, in which case the
-  // pipeline must start taring.
+  // Makes the transitions that need no person. `beyond` is as above, in RECOVERY. `self_test` is
+  // the result of taring, if the self-test ends. Returns true if the self-test begins, in which
+  // case the pipeline must start taring.
   bool Advance(const TickData& data, Beyond beyond,
                const std::optional<Status>& self_test) noexcept;
   void FollowEnablingDevice(Enabling now) noexcept;

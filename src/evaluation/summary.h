@@ -62,8 +62,8 @@ class SummaryBuilder {
   EventLog events_;
 };
 
-// Returns JSON for scripts, which depend on its format. `timing`: whether to include the values
-// that depend on the computer's speed.
+// Returns JSON for scripts, which depend on its format. `timing` states whether to include the
+// values that depend on the computer's speed.
 std::string SummaryJson(const Summary& summary, bool timing = true);
 
 // Returns the JSON Schema of SummaryJson.

@@ -66,7 +66,8 @@ void AddQuantiles(const ResultGroup& group, std::string* text) {
   }
 }
 
-// timing: adds only the results that depend on the computer's speed, or only the others if false.
+// Adds only the results that depend on the computer's speed, or only the others if `timing` is
+// false.
 void AddResults(const std::vector<ResultGroup>& groups, bool timing, std::string* text) {
   const ResultGroup* above = nullptr;
   for (const ResultGroup& group : groups) {

@@ -51,9 +51,9 @@ SceneShape Read(const XmlElement& robot, const XmlElement& visual, const ModelSh
   return out;
 }
 
-// Shapes of the <visual> elements of each link of a URDF, and whether they have their own material.
-// A mesh without one shows the colours of its file. `scenario_folder`: folder of the scenario that
-// refers to the URDF.
+// Returns the shapes of the <visual> elements of each link of a URDF, and whether they have their
+// own material. A mesh without one shows the colours of its file. `scenario_folder` is the folder
+// of the scenario that refers to the URDF.
 std::vector<std::vector<SceneShape>> VisualsOf(const UrdfModel& urdf,
                                                const std::filesystem::path& scenario_folder) {
   std::vector<std::vector<SceneShape>> visuals(urdf.links.size());

@@ -21,7 +21,7 @@ struct FoxgloveChannel {
   std::function<Json(const TickRecord& record, std::uint64_t unix_ns)> message;
 };
 
-// Returns all topics. object_start: the position of O in W at the start [m]. Throws InputError.
+// Returns all topics. `object_start` is the position of O in W at the start [m]. Throws InputError.
 std::vector<FoxgloveChannel> FoxgloveChannels(const Scenario& scenario,
                                               const Vector3& object_start);
 

@@ -38,7 +38,8 @@ class Assembler {
   // Writes the whole problem. Call this after Update, any number of times.
   void Assemble(const RenderContext& context, Precedence form, Qp* qp) noexcept;
 
-  // Writes the values that tasks and limits publish. `x`: the solution, or null if none was found.
+  // Writes the values that tasks and limits publish. `x` is the solution, or null if none was
+  // found.
   void Publish(const double* x, RenderResult* result) const noexcept;
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept;

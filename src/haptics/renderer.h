@@ -23,9 +23,9 @@ class Qp;
 
 class Renderer {
  public:
-  // `models` have a handle frame each, and absent sides are null. lead: the scenario's, resolved
-  // from `auto` [s]. dt: duration of a tick [s]. Throws InputError (link pair of an unknown link,
-  // too many pairs).
+  // `models` have a handle frame each, and absent sides are null. `lead` is that of the scenario,
+  // resolved from `auto` [s]. `dt` is the duration of a tick [s]. Throws InputError (link pair of
+  // an unknown link, too many pairs).
   Renderer(const Scenario& scenario,
            const std::array<std::shared_ptr<const RobotModel>, kHands>& models, double lead,
            double dt);

@@ -42,7 +42,7 @@ class Task {
   // slack.
   virtual bool has_precedence() const { return false; }
 
-  // Writes the values that the task publishes per tick. `x`: the solution, or null if none was
+  // Writes the values that the task publishes per tick. `x` is the solution, or null if none was
   // found.
   virtual void Publish(const double*, RenderResult*) const noexcept {}
   virtual void Reset() noexcept {}

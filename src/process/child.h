@@ -14,8 +14,8 @@ namespace predictor {
 inline constexpr const char* kOutlivesTheRun = "outlives_the_run";
 
 // Runs such a process from start to end: limits its resources, reads the first line from the run,
-// and serves. Exceptions thrown by `serve` are reported to the run. Returns an exit code. `name`:
-// at most 15 characters, as shown by `ps`.
+// and serves. Exceptions thrown by `serve` are reported to the run. Returns an exit code. `name`
+// has at most 15 characters, and `ps` shows it.
 int ChildMain(const char* name, const std::function<void(const Json& start)>& serve);
 
 // Call this before any data from elsewhere is read. Enters the first stage of the sandbox

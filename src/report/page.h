@@ -21,8 +21,8 @@ std::string Base64(const std::string& bytes);
 // The columns of a page. Each distinct column is stored once.
 class PageData {
  public:
-  // Returns the column's number. step: the rounding step of the values, or 0 for 1/50000 of their
-  // range.
+  // Returns the column's number. `step` is the rounding step of the values, or 0 for 1/50000 of
+  // their range.
   int Add(const Samples& values, double step);
   // Returns the columns as HTML elements of the page.
   std::string Html() const { return html_; }

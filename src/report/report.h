@@ -20,7 +20,7 @@ class ReportPage;
 // A function that adds chapters of another module to the page.
 using AddChapters = std::function<void(ReportPage*)>;
 
-// `runs` contains at least one run. program_version: the version of the program that makes the
+// `runs` contains at least one run. `program_version` is the version of the program that makes the
 // report. `chapters` are placed after the forces.
 ReportDocument MakeReport(
     const std::vector<RunData>& runs, const std::string& program_version,

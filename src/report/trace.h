@@ -26,8 +26,8 @@ class Trace {
   static constexpr int kBinsPerBlock = 20;  // parts are kept or discarded in blocks of one second
   static constexpr double kBefore = 10;     // longest `before` of an interest [s]
 
-  // dt: duration of a tick [s]. detail: the longest time for which every tick is kept [s]. A run
-  // that is not longer is kept completely.
+  // `dt` is the duration of a tick [s]. `detail` is the longest time for which every tick is kept
+  // [s]. A run that is not longer is kept completely.
   Trace(std::size_t channels, double dt, double detail);
 
   // Adds a tick with a value of each channel (NaN if there is none). Ticks must ascend, and missing

@@ -44,8 +44,8 @@ class HandModel {
   Wrench Step(const HandGoal& goal, const FrameMotion& handle) noexcept {
     return Deliver(Intend(goal, handle, nullptr), handle);
   }
-  // The same in two parts, so that a body can limit the muscles' wrench between them. `arm`: null
-  // if the stiffness does not depend on a posture.
+  // These functions are the two parts of Step, so that a body can limit the muscles' wrench between
+  // them. `arm` is null if the stiffness does not depend on a posture.
   Wrench Intend(const HandGoal& goal, const FrameMotion& handle, const ArmAbility* arm) noexcept;
   Wrench Deliver(const Wrench& muscles, const FrameMotion& handle) const noexcept;
 

@@ -28,7 +28,7 @@ class OperatorBody {
 
   // Returns to a rested person (except for body.fatigue) in a comfortable posture.
   void Reset() noexcept;
-  // Advances by dt [s]. `holds`: the hands that hold their handles.
+  // Advances by dt [s]. `holds` are the hands that hold their handles.
   void Step(const std::array<FrameMotion, kHands>& handle, const std::array<bool, kHands>& holds,
             double dt) noexcept;
 

@@ -13,7 +13,7 @@ class VelocityLoop {
  public:
   static constexpr double kMaxDelay = 0.25;  // [s]
 
-  // delay: the loop's own delay plus any delay before it [s]. dt is in [s] and at least 1 ms.
+  // `delay` is the loop's own delay plus any delay before it [s]. `dt` is in [s] and at least 1 ms.
   VelocityLoop(const VelocityLoopSpec& spec, double delay, double dt, double velocity_limit,
                double acceleration_limit);
 

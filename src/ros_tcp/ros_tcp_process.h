@@ -24,9 +24,9 @@ class RosTcpProcess {
 
   // Starts the server with the same privileges as the viewer's process and waits until it accepts
   // clients. If the server dies, a message reports this and the server restarts on the same port.
-  // joints, object_start: as for RosTopics. The descriptors of `board` and `mailbox` are borrowed.
-  // Throws InputError with the server's error message, or std::runtime_error if no process can be
-  // started.
+  // `joints` and `object_start` are as for RosTopics. The descriptors of `board` and `mailbox` are
+  // borrowed. Throws InputError with the server's error message, or std::runtime_error if no
+  // process can be started.
   RosTcpProcess(const RosTcpOptions& options, const Scenario& scenario,
                 const std::vector<std::string>& joints, const Vector3& object_start,
                 const Shared<RunBoard>& board, const Shared<StopMailbox>& mailbox, Notify notify);

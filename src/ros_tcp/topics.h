@@ -29,8 +29,8 @@ struct RosPublication {
 //   tracking                         [left, right] distances of real and virtual handles [m]
 class RosTopics {
  public:
-  // joints: the names of the cobot's joints. object_start: the start of the guidance path, in W
-  // [m].
+  // `joints` are the names of the cobot's joints. `object_start` is the start of the guidance path,
+  // in W [m].
   RosTopics(const Scenario& scenario, std::vector<std::string> joints, const Vector3& object_start);
 
   const std::vector<RosTopic>& list() const { return list_; }

@@ -11,11 +11,11 @@ namespace predictor {
 class ArmBrake {
  public:
   ArmBrake() = default;
-  // hold: the delay before the arm begins to brake [s].
+  // `hold` is the delay before the arm begins to brake [s].
   ArmBrake(const StopProfile& begun, double hold, double dt);
-  // Returns the factor for the next tick. common: the profile's factor in that tick. rate: the
-  // profile's rate in that tick [m/s²]. behind: share of the initial speed by which this arm must
-  // exceed the profile's speed in order to keep up with the other arm.
+  // Returns the factor for the next tick. `common` is the profile's factor in that tick. `rate` is
+  // the profile's rate in that tick [m/s²]. `behind` is the share of the initial speed by which
+  // this arm must exceed the profile's speed in order to keep up with the other arm.
   double Next(double common, double rate, double behind) noexcept;
   // Returns the distance from now to rest if the arm brakes as hard as the profile's bounds allow
   // [m].

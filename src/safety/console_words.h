@@ -23,12 +23,12 @@ class ConsoleWords {
     std::array<RunState, 2> granted;
   };
 
-  // enabling_device: whether the operator holds a device instead of a key. rate: the tick rate
-  // [Hz].
+  // `enabling_device` states whether the operator holds a device instead of a key. `rate` is the
+  // tick rate [Hz].
   ConsoleWords(bool enabling_device, double rate)
       : enabling_device_(enabling_device), again_(static_cast<std::uint64_t>(0.6 * rate)) {}
 
-  // Call this once per record, in order. Returns lines to print (usually none). trouble: returns
+  // Call this once per record, in order. Returns lines to print (usually none). `trouble` returns
   // the devices' own description of their present fault, or "" if there is none. It is called only
   // if the description is printed.
   std::vector<std::string> See(const TickRecord& record,

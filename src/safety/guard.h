@@ -37,14 +37,14 @@ double ReactionTime(const VelocityLoopSpec& loop) noexcept;
 class Guard {
  public:
   Guard() = default;
-  // dt: the nominal tick [s]. reaction: the time from measuring a position until the joint reaches
-  // the resulting velocity [s], for the slower arm (ReactionTime plus other delays).
+  // `dt` is the nominal tick [s]. `reaction` is the time from measuring a position until the joint
+  // reaches the resulting velocity [s], for the slower arm (ReactionTime plus other delays).
   Guard(const std::array<JointBounds, kHands>& bounds, double dt, double reaction = 0);
   // Bounds `v` at the measured q. Both have one number per joint. Returns the number of altered
   // joints (0 in normal operation). If any number is missing or not finite, the whole command is
-  // discarded, and both arms brake along the last command by one common factor. ticks: the number
-  // of ticks since the last command. Braking may use the acceleration of all of them. Does not use
-  // the heap or throw.
+  // discarded, and both arms brake along the last command by one common factor. `ticks` is the
+  // number of ticks since the last command. Braking may use the acceleration of all of them. Does
+  // not use the heap or throw.
   int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
   // Scales `v` by `factor`. Both arms move from the last command towards the scaled command by one

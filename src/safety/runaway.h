@@ -29,10 +29,10 @@ class RunawayDetector {
   static constexpr double kGrowing = 0.180, kTime = 0.080;  // [s]
 
   RunawayDetector() = default;
-  // cap: the limit of a handle's speed [m/s]. dt: the time between calls of Update [s].
+  // `cap` is the limit of a handle's speed [m/s]. `dt` is the time between calls of Update [s].
   RunawayDetector(double cap, double dt) : cap_(cap), dt_(dt) {}
-  // force: that of the hand on its handle. velocity: that of the handle. Both are in W and finite.
-  // Returns whether the handle runs away. Does not use the heap.
+  // `force` is that of the hand on its handle. `velocity` is that of the handle. Both are in W and
+  // finite. Returns whether the handle runs away. Does not use the heap.
   bool Update(const Vector3& force, const Vector3& velocity) noexcept;
   double speed() const noexcept { return speed_.fast; }        // after the low-pass filter [m/s]
   double threshold() const noexcept { return kSpeed * cap_; }  // [m/s]

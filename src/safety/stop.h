@@ -40,11 +40,11 @@ struct StopGeometry {
 // additional distance that an arm may travel for this.
 class StopController {
  public:
-  // bounds: joint bounds, which a stop respects as well. If the handles' deceleration would need
-  // more than a joint's acceleration, both arms brake more gently and do not separate. lags: the
-  // times by which the arms lag behind their commands [s]. overruns: the distance that each arm
-  // travels after its command reaches zero, divided by its speed before [s]. They default to the
-  // lags.
+  // `bounds` are joint bounds, which a stop respects as well. If the handles' deceleration would
+  // need more than a joint's acceleration, both arms brake more gently and do not separate. `lags`
+  // are the times by which the arms lag behind their commands [s]. `overruns` are the distances
+  // that the arms travel after their commands reach zero, divided by their speeds before [s]. They
+  // default to the lags.
   StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
                  const std::array<double, kHands>& lags = {});
   StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
@@ -52,17 +52,18 @@ class StopController {
                  const std::array<double, kHands>& overruns);
 
   // Latches the fault and begins to brake. Until Reset, a further call only adds a fault to a stop
-  // that has none, because the operator must be shown the first fault. time: that of the decision
-  // [s]. last_command: the last command that was sent [rad/s]. handle_speed [m/s], handle_rate
-  // [m/s²]: those of the faster handle, as for StopProfile::Begin. A speed that is not finite
-  // counts as the cap. handle_twists: the twists of the handles due to the last command. If
-  // omitted, they are computed from the first geometry. Does not use the heap or throw.
+  // that has none, because the operator must be shown the first fault. `time` is that of the
+  // decision [s]. `last_command` is the last command that was sent [rad/s]. `handle_speed` [m/s]
+  // and `handle_rate` [m/s²] are those of the faster handle, as for StopProfile::Begin. A speed
+  // that is not finite counts as the cap. `handle_twists` are the twists of the handles due to the
+  // last command. If omitted, they are computed from the first geometry. Does not use the heap or
+  // throw.
   void Begin(const Status& cause, double time, const std::array<JointVector, kHands>& last_command,
              double handle_speed, double handle_rate,
              const std::array<Twist, kHands>* handle_twists = nullptr) noexcept;
   // Computes the next command: the last command before the stop, scaled, or zero once the profile
-  // is done. ticks: the number of ticks since the last command, which is more than 1 after missed
-  // deadlines, since a stop follows elapsed time. Keeps the corrections made for earlier
+  // is done. `ticks` is the number of ticks since the last command, which is more than 1 after
+  // missed deadlines, since a stop follows elapsed time. Keeps the corrections made for earlier
   // geometries. Does not use the heap or throw.
   void Next(std::array<JointVector, kHands>* v, int ticks = 1) noexcept;
   // As above, corrected for the change of the arms' geometry. The twists of the handles are scaled
@@ -70,11 +71,11 @@ class StopController {
   // small (second order in the distance so far) and bounded.
   void Next(const StopGeometry& geometry, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
-  // X_WH: the poses of the handles in W, which are constant for absent handles. in_motion: whether
-  // a driver still moves its arm. The handles are at rest once the commands are zero and no handle
-  // has moved (RestDetector) for kRestTime. The stop is done at that time, or at the latest
-  // kPatience after the commands became zero. An arm that still moves then does not follow its
-  // commands.
+  // `X_WH` are the poses of the handles in W, which are constant for absent handles. `in_motion`
+  // states whether a driver still moves its arm. The handles are at rest once the commands are zero
+  // and no handle has moved (RestDetector) for kRestTime. The stop is done at that time, or at the
+  // latest kPatience after the commands became zero. An arm that still moves then does not follow
+  // its commands.
   void Observe(const std::array<Pose, kHands>& X_WH, bool in_motion = false) noexcept;
   void Reset() noexcept;
 

@@ -32,8 +32,8 @@ class Warnings {
   static constexpr double kMaxDrift = 2;      // [N/min]
   static constexpr double kDriftTime = 5;     // [s]
 
-  // quiet: the largest standard deviation of the force on a free handle [N]. dt: duration of a tick
-  // [s].
+  // `quiet` is the largest standard deviation of the force on a free handle [N]. `dt` is the
+  // duration of a tick [s].
   Warnings(const std::array<double, kHands>& quiet, double dt) : quiet_(quiet), dt_(dt) {}
 
   // Does not use the heap or throw.

@@ -36,7 +36,7 @@ ParticipantFile LoadParticipant(const std::filesystem::path& file);
 std::string BodyOverride(const BodySpec& body);
 
 // Reports a pseudonym that IsPseudonym refuses, such as a name, a consent without a version, and a
-// day that does not exist. `path`: of the participant in the tree `root`, with its dot, or empty.
+// day that does not exist. `path` ends with a dot, or is empty.
 void CheckParticipant(const ParticipantSpec& participant, const std::string& path,
                       const YamlNode& root, Problems* problems);
 

@@ -20,9 +20,9 @@ namespace predictor {
 // delayed by the difference instead, which is at most half a tick.
 class HandEstimator {
  public:
-  // X_EH: the handle in the end-effector frame. dt: duration of a tick [s], at least 1 ms. gravity
-  // is in [m/s²]. acceleration_lag: the age of the acceleration that is passed to Update [s].
-  // Throws InputError.
+  // `X_EH` is the handle in the end-effector frame. `dt` is the duration of a tick [s], at least 1
+  // ms. `gravity` is in [m/s²]. `acceleration_lag` is the age of the acceleration that is passed to
+  // Update [s]. Throws InputError.
   HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload, const Pose& X_EH,
                 double gravity, double dt, double acceleration_lag);
   // As above, with the acceleration lag of MotionDifferentiator at that tick.

@@ -12,8 +12,8 @@ namespace predictor {
 // A zero-order hold with a delay, in sub-steps of the simulation.
 class ControlTiming {
  public:
-  // step: duration of a sub-step [s]. max_added: the largest delay that AddDelay adds [s]. Throws
-  // InputError if period or delay is not a whole number of sub-steps.
+  // `step` is the duration of a sub-step [s]. `max_added` is the largest delay that AddDelay adds
+  // [s]. Throws InputError if period or delay is not a whole number of sub-steps.
   ControlTiming(const ControlSpec& spec, double step, double max_added = 0);
 
   // These functions return the controller's period [sub-steps, s], and the delay of its torques

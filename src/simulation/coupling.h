@@ -30,7 +30,7 @@ HandleMobility MobilityAt(double mass, const Matrix3& inertia, const Vector3& le
 class Coupling {
  public:
   Coupling() = default;
-  // Speed caps in [m/s] and [rad/s]; dt: integration step; `mobility` at D.
+  // The speed caps are in [m/s] and [rad/s], `dt` is the integration step, `mobility` is at D.
   Coupling(const CouplingSpec& spec, double speed_cap, double rotation_speed_cap,
            const HandleMobility& mobility, double dt);
 

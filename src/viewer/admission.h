@@ -39,8 +39,8 @@ class Admission {
   static constexpr int kPinTries = 5;                         // wrong guesses allowed per address
   static constexpr std::size_t kMaxGuessers = 256;            // addresses with wrong guesses
 
-  // `secret` is a NewAdmissionSecret(). code_once: whether the code admits only one client, as with
-  // real arms, and changes with each start.
+  // `secret` is a NewAdmissionSecret(). `code_once` states whether the code admits only one client,
+  // as with real arms, and changes with each start.
   Admission(bool code_once, std::string secret, Generations generations = {});
 
   struct Grant {

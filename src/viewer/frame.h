@@ -37,8 +37,8 @@ struct Peaks {
   std::array<std::array<float, 2>, kHands> hands = {};
 };
 
-// Returns the record as a binary message. peaks: those since the previous message. sent_ns: the
-// monotonic clock [ns]. `recording`: whether the run is being recorded.
+// Returns the record as a binary message. `peaks` are those since the previous message. `sent_ns`
+// is the time of the monotonic clock [ns]. `recording` states whether the run is being recorded.
 std::string PackFrame(const TickRecord& record, const Peaks& peaks, std::uint64_t sent_ns,
                       bool recording);
 

@@ -71,8 +71,8 @@ class Hub {
   void KickAll(const Generations& generations);
   // Sends a message to all clients.
   void Notify(const std::string& text);
-  // The run has ended. All present and later clients get the newest state and a sentence about how
-  // the run ended, and are disconnected. results_follow: see EndedText.
+  // Ends the run for the pages. All present and later clients get the newest state and a sentence
+  // about how the run ended, and are disconnected. For `results_follow`, see EndedText.
   void EndRun(const std::string& text, bool results_follow);
 
   std::size_t clients() const;  // number of admitted clients

@@ -83,8 +83,8 @@ std::string RefusedText(std::string_view reason);
 std::string PongText(double page_ms, std::uint64_t server_ns);
 std::string DeniedText(std::string_view what, std::string_view reason);
 std::string NoticeText(std::string_view text);
-// results_follow: whether a server with the results replaces this one, so that the page should
-// reconnect.
+// `results_follow` states whether a server with the results replaces this one, so that the page
+// should reconnect.
 std::string EndedText(std::string_view text, bool results_follow);
 std::string TokenText(std::string_view token);
 std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset);

@@ -10,8 +10,8 @@
 
 namespace predictor::viewer {
 
-// Reads the scenario's models into `assets` and describes the scene. object_start: position of the
-// object's frame O in W at the start of the run [m]. Throws InputError.
+// Reads the scenario's models into `assets` and describes the scene. `object_start` is the position
+// of the object's frame O in W at the start of the run [m]. Throws InputError.
 nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
                                      AssetStore* assets);
 

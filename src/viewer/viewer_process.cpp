@@ -139,8 +139,8 @@ void ViewerProcess::Hear(const Json& line) {
   notify_(where);
 }
 
-// Sends a request that must not be lost. if_absent: message about the situation if no process is
-// running.
+// Sends a request that must not be lost. `if_absent` is the message about the situation if no
+// process is running.
 void ViewerProcess::Ask(const Json& line, const std::string& if_absent) {
   bool hangs = false;
   {

@@ -63,8 +63,8 @@ class ViewerProcess {
 
   // Starts the process and waits until it accepts clients. Throws InputError, for instance if the
   // port is in use, the certificate cannot be read, or the address needs `expose`. The descriptors
-  // of `board`, `mailbox` and `states` are borrowed. states: those of the person, or null if the
-  // person is not judged.
+  // of `board`, `mailbox` and `states` are borrowed. `states` are those of the person, or null if
+  // the person is not judged.
   ViewerProcess(const Scenario& scenario, const ViewerOptions& options,
                 const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Notify notify,
                 const Shared<EvaluationBoard>* states = nullptr);
@@ -89,8 +89,8 @@ class ViewerProcess {
   void Kick(std::uint32_t client);
   // Does the same for all addresses that were given to Foxglove.
   void KickFoxglove();
-  // Informs all pages that the run has ended, and how, in a sentence. results_follow: another
-  // viewer, with the run's results, is about to replace this one.
+  // Informs all pages that the run has ended, and how, in a sentence. `results_follow` states
+  // whether another viewer, with the run's results, is about to replace this one.
   void EndRun(const std::string& how, bool results_follow = false);
   void AskFoxglove();  // requests an address with which Foxglove may look
   void AskStatus();    // requests the list of clients, their leases, and their delays

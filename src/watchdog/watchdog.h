@@ -12,9 +12,9 @@ class Watchdog {
   // The loop counts as hanging if no tick occurs for this time while the arms may move [ns].
   static constexpr std::uint64_t kPatience = 10'000'000;
 
-  // Call this at least every millisecond. ticks: the number of ticks published so far. state: the
-  // state in the latest one. now: the monotonic clock [ns]. Returns true once each time the loop
-  // hangs, and the arms must then be stopped.
+  // Call this at least every millisecond. `ticks` is the number of ticks published so far. `state`
+  // is the state in the latest one. `now` is the monotonic clock [ns]. Returns true once each time
+  // the loop hangs, and the arms must then be stopped.
   bool Look(std::uint64_t ticks, RunState state, std::uint64_t now) noexcept;
 
  private:

@@ -69,8 +69,8 @@ bool WaitAMillisecond() {
 // The channels to the arms, and the messages about them.
 class Channels {
  public:
-  // again: whether the arms were watched before. At first, an arm without a channel is an error
-  // (throws DeviceError). Later, the other arms are still watched.
+  // `again` states whether the arms were watched before. At first, an arm without a channel is an
+  // error (throws DeviceError). Later, the other arms are still watched.
   Channels(const Json& hosts, bool again, Network* network) {
     for (const Json& host : hosts) {
       channels_.push_back({host, nullptr});

@@ -23,10 +23,10 @@ class WatchdogProcess {
   using Notify = std::function<void(const std::string& text)>;
 
   // Starts the watchdog and waits until it has its channels. If it dies, hangs or is stopped, a
-  // message reports this, and it is restarted until that succeeds. hands: whose arms move. The
-  // watchdog follows the ticks on the board and the states in them. It stops the arms if the ticks
-  // cease, or this process ends, in a state in which arms may move. Throws InputError with the
-  // watchdog's error message, or std::runtime_error if no process can be started.
+  // message reports this, and it is restarted until that succeeds. `hands` are those whose arms
+  // move. The watchdog follows the ticks on the board and the states in them. It stops the arms if
+  // the ticks cease, or this process ends, in a state in which arms may move. Throws InputError
+  // with the watchdog's error message, or std::runtime_error if no process can be started.
   WatchdogProcess(const Machine& machine, const std::array<bool, kHands>& hands,
                   const Shared<RunBoard>& board, const Notify& notify);
   int pid() const { return process_.pid(); }  // 0 while no process is running

@@ -12,7 +12,7 @@ namespace predictor {
 inline const std::filesystem::path kScenarios =
     std::filesystem::path(PREDICTOR_SOURCE_DIR) / "scenarios";
 
-// name: the name of the scenario's file.
+// `name` is the name of the scenario's file.
 inline Scenario Load(const std::string& name, const std::vector<std::string>& overrides = {}) {
   return LoadScenario(kScenarios / name, overrides);
 }

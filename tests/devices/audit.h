@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// Appends a run: data about the arms and the stop, and the bytes that the bench recorded. name: a
-// label for messages.
+// Appends a run: data about the arms and the stop, and the bytes that the bench recorded. `name` is
+// a label for messages.
 void AppendForAudit(const std::string& file, const std::string& name, const FaultRig& rig,
                     const Bench& bench, const BenchStop& stop);
 

@@ -8,7 +8,7 @@
 
 namespace predictor {
 
-// audit: the file to which the commands to the arms are appended.
+// `audit` is the file to which the commands to the arms are appended.
 FaultOutcome Bring(Bench& bench, const Fault& fault, const FaultRig& rig, std::uint64_t seed,
                    const std::string& audit);
 // The second fault occurs up to 100 ms after the first.

@@ -76,7 +76,7 @@ struct Fault {
   std::function<void(Bench&, int hand)> before = nullptr;
   // Replaces both the injection and the judgement.
   std::function<void(Bench&, int hand, FaultOutcome*)> upon = nullptr;
-  // Performs everything for a fault that shares no run with others. audit: the file for the
+  // Performs everything for a fault that shares no run with others. `audit` is the file for the
   // commands.
   std::function<void(const FaultRig&, std::uint64_t seed, const std::string& audit, FaultOutcome*)>
       alone = nullptr;

@@ -1,5 +1,6 @@
 // Tests properties of the command under any sequence of requests and inputs (RapidCheck):
-//   - It never changes by more than the acceleration limit allows in a tick, or in the elapsed ticks
+//   - It never changes by more than the acceleration limit allows in a tick, or in the elapsed
+//   ticks
 //     of a stop. It is zero in states without motion.
 //   - Both arms share one stop.
 #include <gtest/gtest.h>
@@ -181,7 +182,7 @@ class Watched {
     kept_.push_back(std::move(kept));
   }
 
-  // passed: number of ticks since the last command.
+  // `passed` is the number of ticks since the last command.
   void Look(int passed) {
     const TickRecord& record = emulator_->record();
     const Arms now = CommandOf(record);

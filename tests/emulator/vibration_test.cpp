@@ -64,7 +64,7 @@ struct Outcome {
   bool by_another() const { return stopped() && !vibrated; }
 };
 
-// margin: the loop runs only if its predicted margin is at least this.
+// The loop runs only if its predicted margin is at least `margin`.
 Outcome RunLoop(const std::string& scenario_name, const Settings& set, double margin = 0) {
   const Scenario scenario = LoadTestScenario(scenario_name, set);
   Emulator emulator(scenario);

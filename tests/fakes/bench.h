@@ -70,7 +70,7 @@ class Bench {
   // Throws the same exceptions as ConnectMachine.
   explicit Bench(const BenchOptions& options);
 
-  // Performs one tick. `missed`: number of ticks that the loop missed immediately before.
+  // Performs one tick. `missed` is the number of ticks that the loop missed immediately before.
   void Tick(int missed = 0);
   void Pass(double time);
   // Lets time pass for the devices while the loop hangs [s].

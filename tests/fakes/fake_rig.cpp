@@ -93,7 +93,7 @@ class FarEnd {
     fakes_.push_back(std::move(fake));
   }
 
-  // due: scheduled start of this step [ns].
+  // `due` is the scheduled start of this step [ns].
   void Step(std::uint64_t due) {
     const std::uint64_t now = MonotonicNow();
     late_.Add(now, Milliseconds(due, now));

@@ -25,7 +25,7 @@ struct Delay {
 // Records delays with the time at which each one ended. It forgets the oldest ones.
 class DelayLog {
  public:
-  // end: time [ns]; length: duration [ms].
+  // `end` is a time [ns], and `length` is a duration [ms].
   void Add(std::uint64_t end, double length);
   // Combines the delays that overlap the interval from `from` to `to` [ns]. A stop can be reported
   // before its cause has ended.

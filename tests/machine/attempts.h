@@ -25,7 +25,7 @@ inline constexpr double kLateOnce = 2, kLateInSum = 6;  // [ms]
 inline constexpr double kLetterLate = 30;                                            // [ms]
 inline constexpr std::uint64_t kJustBefore = 500'000'000, kASecond = 1'500'000'000;  // [ns]
 
-// once: the lateness within kJustBefore of the stop. sum: the lateness within kASecond.
+// `once` is the lateness within kJustBefore of the stop. `sum` is the lateness within kASecond.
 inline Late Judge(const std::string& screen, bool letter_was_late, const RigLateness& once,
                   double sum) {
   if (screen.find("the stop 'enabling'") != std::string::npos)

@@ -380,8 +380,8 @@ TEST_F(PushTests, DoNotSufficeWhereTheLoopIsPredictedToSwing) {
 class RigsConsole : public testing::Test {
  protected:
   RigsConsole() : folder_({"ur", "ur"}) { folder_.NotePushTests(); }
-  // act: the person's actions from IDLE on. It sets the text that is expected on the screen. The
-  // run ends with Ctrl-C.
+  // `act` performs the person's actions from IDLE on. It sets the text that is expected on the
+  // screen. The run ends with Ctrl-C.
   void InIdle(const std::function<void(Terminal*, bool* expected)>& act) const {
     Attempts attempts;
     while (attempts.Next()) {

@@ -28,7 +28,7 @@
 
 namespace predictor {
 
-// Returns an address of this machine that no other test process uses. last: 1 … 254.
+// Returns an address of this machine that no other test process uses. `last` is from 1 to 254.
 inline std::string HostOf(int last) {
   constexpr int kNumbers = 250;
   const int pid = getpid();
@@ -307,7 +307,7 @@ class Terminal {
   std::thread person_;
 };
 
-// sensor: the host of a Net F/T that sends at 1000 Hz, or "" for the arm's own sensor.
+// `sensor` is the host of a Net F/T that sends at 1000 Hz, or "" for the arm's own sensor.
 inline std::string ArmText(const std::string& make, const std::string& host,
                            const std::string& sensor, bool left) {
   const bool ur = make == "ur";
@@ -338,7 +338,7 @@ inline std::string ArmText(const std::string& make, const std::string& host,
 // folder.
 class MachineFolder {
  public:
-  // sensors: "net_ft", or "" for the arm's own sensor.
+  // `sensors` contains "net_ft", or "" for the arm's own sensor.
   explicit MachineFolder(const std::array<std::string, 2>& makes,
                          const std::array<std::string, 2>& sensors = {})
       : folder_(std::filesystem::temp_directory_path() /

@@ -129,8 +129,8 @@ TEST(StopController, FollowsAnArmThatDoesNotStopForAWhileOnly) {
 
 // Stops two arms and returns their distance at rest [m]. The first arm follows its commands with a
 // lag and coasts for that time. The second arm reaches the position to which its commands lead, but
-// with a lag of `lag` [s] and a delay of `late` [ms]. hindered: an additional delay of the first
-// arm that it does not report [ms].
+// with a lag of `lag` [s] and a delay of `late` [ms]. `hindered` is an additional delay of the
+// first arm that it does not report [ms].
 double ApartAtRest(const std::array<double, kHands>& coasting, std::size_t late, double lag = 0.006,
                    std::size_t hindered = 0) {
   constexpr double kSpeed = 0.2, kGain = 15;

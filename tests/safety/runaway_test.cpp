@@ -21,7 +21,7 @@ class Hand {
   Hand(double stiffness, double mass, double spring, std::uint64_t seed)
       : stiffness_(stiffness), mass_(mass), spring_(spring), random_(seed, "hand") {}
   // Returns the delay of the alarm [s] after both thresholds are exceeded, or −1 without an alarm.
-  // intent: the hand's target position [m].
+  // `intent` is the hand's target position [m].
   template <class Intent>
   double Run(double sign, double duration, const Intent& intent) {
     RunawayDetector detector(kCap, kDt);

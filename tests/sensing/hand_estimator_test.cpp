@@ -21,7 +21,8 @@ namespace {
 // An arm of the rig, with the emulator's steps that estimate the hand's wrench.
 class Bench {
  public:
-  // assumed: the sensor and the handle that the estimator assumes, or nullptr for the true ones.
+  // `assumed` is the sensor and the handle that the estimator assumes, or nullptr for the true
+  // ones.
   explicit Bench(const Scenario& scenario, std::unique_ptr<Operator> person = nullptr,
                  const ArmSpec* assumed = nullptr)
       : dt_(1 / scenario.rate),

@@ -28,7 +28,7 @@ ClockGettime Real() {
   return real;
 }
 
-// Returns the current error of a clock [s]. text: the value of FAULTY_CLOCK.
+// Returns the current error of a clock [s]. `text` is the value of FAULTY_CLOCK.
 long Jump(const char* text) {
   if (text == nullptr) return 0;
   timespec now{};

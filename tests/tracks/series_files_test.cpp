@@ -116,7 +116,7 @@ TEST_F(Trc, SeesAClockThatJumps) {
 
 // ---- C3D --------------------------------------------------------------------------------------
 
-// Returns a parameter or group as it is stored. link: the offset to the next one.
+// Returns a parameter or group as it is stored. `link` is the offset to the next one.
 std::string Entry(int id, const std::string& name, const std::string& content) {
   std::string entry;
   entry += static_cast<char>(name.size());

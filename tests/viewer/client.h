@@ -23,7 +23,7 @@ class Transport {
 // A TCP connection to a port of the loopback address. Each read fails after ten seconds.
 class Socket {
  public:
-  // source: the local address of the connection, or nullptr for any address.
+  // `source` is the local address of the connection, or nullptr for any address.
   explicit Socket(std::uint16_t port, int receive_buffer = 0, const char* source = nullptr);
   ~Socket();
   Socket(Socket&& other) noexcept;
@@ -60,7 +60,8 @@ struct Message {
 // A WebSocket. The client answers pings while it reads messages.
 class WebSocket {
  public:
-  // head: additional header lines. If the server refuses the connection, status() is not 101.
+  // `head` contains additional header lines. If the server refuses the connection, status() is not
+  // 101.
   WebSocket(std::uint16_t port, const std::string& target = "/ws",
             const std::string& subprotocol = "predictor.v1", const std::string& head = "",
             int receive_buffer = 0);

@@ -66,8 +66,8 @@ void EstimatedHand::Prepare(const HandRecord& first, double dt, const OperatorDr
   sight_.Reset(draw.sight_delay / dt, Vector3::Zero());
 }
 
-// Returns the wrench with which the arm resists a motion, without its inertia. force: the force of
-// the hand, with which the arm stiffens.
+// Returns the wrench with which the arm resists a motion, without its inertia. `force` is the force
+// of the hand, with which the arm stiffens.
 Vector6 EstimatedHand::Resist(const Pose& X_W, const Twist& V_W, double force) noexcept {
   const double stiffer = 1 + draw_.stiffening * force / kStiffeningForce;
   const Vector6 stretch = PoseError(X_W, origin_);

@@ -68,8 +68,8 @@ OperatorDraw DrawOperator(const ArmDistribution& arms, const HandSpec& hand,
 // 2002 (quoted from memory).
 class EstimatedHand {
  public:
-  // past: consecutive records up to the tick in which the stop was decided. record_step: their
-  // interval [s]. dt: the step of the operator [s].
+  // `past` contains consecutive records up to the tick in which the stop was decided. `record_step`
+  // is their interval [s]. `dt` is the step of the operator [s].
   void Begin(std::span<const TickRecord> past, std::size_t hand, double record_step, double dt,
              const IntentModel& intent, const OperatorDraw& draw);
   // Advances by dt and returns the wrench F_H_W on the handle.
@@ -114,7 +114,7 @@ class EstimatedHand {
 // operator's state.
 class EstimatedOperator final : public Operator {
  public:
-  // recorded: the operator whose state the saved states contain, or null if they contain none.
+  // `recorded` is the operator whose state the saved states contain, or null if they contain none.
   explicit EstimatedOperator(std::unique_ptr<Operator> recorded) : recorded_(std::move(recorded)) {}
 
   // From the next step on, the estimate replaces the recorded operator.

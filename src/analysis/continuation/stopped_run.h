@@ -51,7 +51,7 @@ class StopFinder {
 };
 
 // Finds the stop in a recording, and computes the run up to the stop again from the last saved
-// state (or from the start). `scenario` comes from RestoreScenario. progress: receives the number
+// state (or from the start). `scenario` comes from RestoreScenario. `progress` receives the number
 // of ticks so far. Throws InputError if there is no stop by a limit, ticks before it are lost, the
 // computed run differs from the recorded one, or the run cannot be continued.
 StoppedRun FindStop(RecordingReader* reader, const Scenario& scenario,

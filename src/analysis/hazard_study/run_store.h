@@ -20,7 +20,7 @@ class HazardRunStore {
 
   // Loads the run. Returns false if it is not stored.
   bool Find(const std::string& key, std::uint64_t seed, HazardRun* run) const;
-  // key: a hash of the cell's scenario and of the program's behaviour. Throws InputError if the
+  // `key` is a hash of the cell's scenario and of the program's behaviour. Throws InputError if the
   // file cannot be written.
   void Add(const std::string& key, const HazardCell& cell, const HazardRun& run);
 

@@ -89,7 +89,7 @@ struct Identification {
 // Collects the ticks of a run one by one. Memory grows by 6 MB per minute for seven joints.
 class Identifier {
  public:
-  // nominal: the scenario with the recording's nominal cobot and load. Throws InputError.
+  // `nominal` is the scenario with the recording's nominal cobot and load. Throws InputError.
   explicit Identifier(const Scenario& nominal, const IdentifyOptions& options = {});
   ~Identifier();
 

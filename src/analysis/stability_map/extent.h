@@ -30,7 +30,7 @@ struct StableExtent {
   std::vector<Boundary> boundaries;  // ascending
 
   bool StableAt(double stiffness) const;
-  // critical: the lowest stiffness above which the loop becomes unstable. least: the lowest
+  // `critical` is the lowest stiffness above which the loop becomes unstable. `least` is the lowest
   // boundary of a loop that is unstable with the softest hand. They return null if there is no such
   // boundary.
   const Boundary* critical() const;

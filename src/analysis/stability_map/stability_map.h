@@ -68,8 +68,8 @@ struct MapOptions {
 // therefore be continued, and no outdated point is reused. Throws InputError.
 StabilityMap MakeStabilityMap(const Scenario& scenario, const MapOptions& options);
 
-// Returns reasons why the prediction may be wrong for the whole scenario, as sentences. Without any,
-// the prediction must be correct.
+// Returns reasons why the prediction may be wrong for the whole scenario, as sentences. Without
+// any, the prediction must be correct.
 std::vector<std::string> DeparturesOf(const Scenario& scenario);
 
 // Returns reasons why the prediction may be wrong for a found boundary, as text. If there are none,

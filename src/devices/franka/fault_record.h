@@ -22,7 +22,7 @@ enum class Fault : std::uint8_t {
   kNoEnd,
 };
 
-// detail: its mode or its answer.
+// `detail` is its mode or its answer.
 struct FaultAndDetail {
   Fault fault = Fault::kNone;
   std::int8_t detail = 0;

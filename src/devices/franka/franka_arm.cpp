@@ -380,7 +380,8 @@ bool Driver::RestsSoon(const Joints& asked) const noexcept {
 }
 
 // Checks whether states or commands were lost since the last command. If so, the next command must
-// continue from the state that the robot reports. asked: the velocity requested by that command.
+// continue from the state that the robot reports. `asked` is the velocity requested by that
+// command.
 bool Driver::CatchUp(const Joints& asked) noexcept {
   if (!commanded_) return false;
   constexpr double dt = fci::RateLimiter::kDt;

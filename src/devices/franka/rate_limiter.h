@@ -36,15 +36,15 @@ class RateLimiter {
   // time for which the robot continues without commands [s]
   static constexpr double kCoasting = 0.020;
 
-  // fraction: the share of the limits to use, above 0 and at most 0.99 (sums are rounded). Throws
-  // std::invalid_argument.
+  // `fraction` is the share of the limits to use, above 0 and at most 0.99 (sums are rounded).
+  // Throws std::invalid_argument.
   RateLimiter(const JointLimits& limits, double fraction);
 
   // Starts from a robot that moves at v with acceleration a.
   void Start(const Joints& v, const Joints& a) noexcept;
-  // Returns the next command. asked [rad/s]: a value that is not finite counts as rest. q: the
-  // commanded position [rad]. `missed`: whether states or commands were lost recently, so that the
-  // robot may have to coast again and is not accelerated.
+  // Returns the next command. `asked` is in [rad/s], and a value that is not finite counts as rest.
+  // `q` is the commanded position [rad]. `missed` states whether states or commands were lost
+  // recently, so that the robot may have to coast again and is not accelerated.
   const Joints& Next(const Joints& asked, const Joints& q, bool missed) noexcept;
   const Joints& v() const noexcept { return v_; }
   const Joints& a() const noexcept { return a_; }

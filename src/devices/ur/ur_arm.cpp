@@ -107,8 +107,8 @@ class UrArm final : public Arm {
   }
 
  private:
-  // kUnwanted: power-off was requested. The robot then reports that its power is off or, after a
-  // long time, that it still is on.
+  // kUnwanted means that power-off was requested. The robot then reports that its power is off or,
+  // after a long time, that it still is on.
   enum class Power : std::uint8_t { kWanted, kUnwanted, kCut, kKept };
   static constexpr int kMaxReads = 16;
 

@@ -33,8 +33,8 @@ class Stream {
   static constexpr int kClosed = -1;
 
   virtual ~Stream() = default;
-  // Copies received data to `to` and returns the size. 0: no data at present. kClosed: the peer has
-  // closed the connection, or it is permanently broken.
+  // Copies received data to `to` and returns the size, which is 0 if there is no data at present.
+  // kClosed means that the peer has closed the connection, or that it is permanently broken.
   virtual int Read(std::span<std::byte> to) noexcept = 0;
   // Writes all bytes. Returns false if the peer has gone or reads so slowly that the buffer is
   // full. A stream that accepts only a part is useless, so it is closed.
@@ -60,7 +60,7 @@ class Network {
   virtual ~Network() = default;
   // Throws DeviceError if there is no answer within `timeout` [s] or the connection is refused.
   virtual std::unique_ptr<Stream> Connect(const Address& peer, double timeout) = 0;
-  // port: our port, or 0 for any. If peer.port is 0, it is the port from which the peer's first
+  // `port` is our port, or 0 for any. If peer.port is 0, it is the port from which the peer's first
   // datagram arrives. Throws DeviceError.
   virtual std::unique_ptr<Datagrams> Open(const Address& peer, std::uint16_t port) = 0;
   // Returns the monotonic clock [ns].

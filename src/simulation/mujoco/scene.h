@@ -29,8 +29,8 @@ struct Scene {
 // end-effector's, so that only contacts need the constraint solver. Object, floor and table collide
 // with each other if at least one of the two can move, while the cobot's links collide with
 // nothing. In direct mode, each handle has a body without weight whose mass is set at run time.
-// Throws InputError. wrist_sensor: whether a sensor measures the wrench between the end-effector
-// and the object that it carries.
+// Throws InputError. `wrist_sensor` states whether a sensor measures the wrench between the
+// end-effector and the object that it carries.
 Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor = false,
                    Holding holding = Holding::kJoint);
 
