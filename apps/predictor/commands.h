@@ -228,7 +228,7 @@ void WriteOut(const std::string& text);
 // Prints a problem of a recording to standard error, unless it is empty.
 void ShowProblem(const std::string& problem);
 
-// All commands throw InputError.
+// Every command throws InputError.
 int RunCommand(const ScenarioOptions& options, ServeOptions serve, RecordOptions record);
 int SimulateCommand(const ScenarioOptions& options, const RecordOptions& record);
 // `map` is the folder for a stability map; if it is empty, there is none.

@@ -31,7 +31,7 @@ struct RecordOptions {
   std::map<std::string, std::string> Labels() const;
 };
 
-// The header for a recording of `emulator`'s run that begins now.
+// Returns the header for a recording of `emulator`'s run that begins now.
 RecordingHeader HeaderOf(const Emulator& emulator, const RecordOptions& options);
 
 // Returns "runs/box_9kg_2026-01-31_14-05-09.mcap", with a number if that file exists. Creates the

@@ -259,7 +259,7 @@ class Run {
     return code == kFinished && (!recorded || follower.failed()) ? kDeviceFailure : code;
   }
 
-  // Values that the program's next run takes over: ports, and which clients were removed.
+  // Hands on what the program's next run takes over: ports, and which clients were removed.
   void HandOn(ServeOptions* next) const {
     if (ros_) next->ros.port = ros_->port();
     if (!viewer_) return;

@@ -3,7 +3,8 @@
 namespace predictor {
 namespace {
 
-// An origin as browsers send it: scheme and host, optionally a port, and nothing after them.
+// Returns why a text is not an origin as browsers send it: scheme and host, optionally a port, and
+// nothing after them.
 std::string NoOrigin(const std::string& text) {
   const std::size_t scheme = text.find("://");
   const bool web = text.starts_with("http://") || text.starts_with("https://");

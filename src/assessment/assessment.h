@@ -31,8 +31,8 @@ struct QuantityResult {
   std::vector<double> values;       // at Assessment::times
   std::vector<double> low, high;    // 90 % interval at Assessment::sampled_times
 
-  // The value that is exceeded (in the bad direction) for 5 % of the time: p95, or p5 if low values
-  // are bad.
+  // Returns the value that is exceeded (in the bad direction) for 5 % of the time: p95, or p5 if
+  // low values are bad.
   double tail() const { return kind->bad == Bad::kHigh ? p95 : p5; }
   double worst() const { return kind->bad == Bad::kHigh ? max : min; }
 };

@@ -28,8 +28,8 @@ ergonomics::HandPlace PlaceOf(const Vector3& middle) {
           .asymmetry = std::abs(std::atan2(middle.y(), middle.x()))};
 }
 
-// The first sample at which the height is close to its maximum: the object may then move at this
-// height for a long time.
+// Returns the first sample at which the height is close to its maximum, because the object may then
+// move at this height for a long time.
 std::size_t ArrivalAt(const std::vector<std::optional<Vector3>>& middle, std::size_t low,
                       std::size_t high) {
   while (low < high && middle[low]->z() < middle[high]->z() - kReversal / 2) ++low;

@@ -43,7 +43,7 @@ constexpr std::array<double (*)(const Frame&), kPersonWarnings> kWarningValues =
     [](const Frame& f) { return f.reached ? 0.0 : 1.0; },
 };
 
-// The hand that the gauge belongs to: 0, 1, or −1 for none.
+// Returns the hand that the gauge belongs to: 0, 1, or −1 for none.
 constexpr int HandOf(std::size_t gauge) {
   if (gauge < static_cast<std::size_t>(PersonGauge::kLeftShoulderUse)) return -1;
   return static_cast<int>(gauge - static_cast<std::size_t>(PersonGauge::kLeftShoulderUse)) % 2;

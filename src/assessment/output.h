@@ -34,7 +34,7 @@ struct PersonOfRun {
 // table.
 void AddPersonChapter(std::span<const PersonOfRun> runs, ReportPage* page);
 
-// A value as a number in the unit that is displayed, without the unit.
+// Returns a value as a number in the unit that is displayed, without the unit.
 std::string NumberText(const Unit& unit, double x);
 std::string ValueText(const QuantityKind& kind, double x);
 // Returns "low … high" in the same unit, or "" if there is no interval.

@@ -48,13 +48,13 @@ class Drawing {
     Append(&svg_, "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" %s/>", X(from), Y(from),
            X(to), Y(to), attributes);
   }
-  // A body part with round ends and an outline.
+  // Draws a body part with round ends and an outline.
   void Limb(const Vector3& from, const Vector3& to, double breadth, const std::string& color) {
     const double width = scale_ * breadth;
     Line(from, to, Formatted("class=\"rim\" stroke-width=\"%.1f\"", width + 2).c_str());
     Line(from, to, Formatted("stroke=\"%s\" stroke-width=\"%.1f\"", color.c_str(), width).c_str());
   }
-  // As above, for a closed polygon.
+  // Draws a closed polygon in the same way.
   void Block(const std::vector<Vector3>& corners, double breadth, const std::string& color) {
     std::string points;
     for (const Vector3& p : corners) Append(&points, "%.1f,%.1f ", X(p), Y(p));

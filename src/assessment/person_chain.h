@@ -41,8 +41,8 @@ class NominalPerson {
 // resulting acceleration was not observed.
 std::vector<person::BodyMotion> MotionsOfPart(std::span<const person::BodyVector> postures);
 
-// The rate at which each hand's force changed before sample i, averaged over 0.1 s, so that noise
-// and tremor do not count [N/s]. It is 0 if the samples are interrupted there.
+// Returns the rate at which each hand's force changed before sample i, averaged over 0.1 s, so that
+// noise and tremor do not count [N/s]. It is 0 if the samples are interrupted there.
 std::array<double, kHands> ForceRates(std::span<const PersonSample> samples, std::size_t i);
 
 // The nominal person at each sample.

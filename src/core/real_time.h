@@ -16,7 +16,7 @@ class RealTimeScheduling {
   RealTimeScheduling& operator=(const RealTimeScheduling&) = delete;
 
   bool prior() const { return prior_; }  // real-time scheduling was granted
-  // What the system granted, as text to follow "Real-time scheduling: ".
+  // Returns what the system granted, as text to follow "Real-time scheduling: ".
   const std::string& got() const { return got_; }
 
  private:

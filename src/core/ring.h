@@ -20,7 +20,7 @@ class RingStorage {
   static constexpr std::size_t kWords = (sizeof(T) + 7) / 8;
 
  public:
-  // Wait-free. Only one thread may publish.
+  // Publishes an item without waiting. Only one thread may publish.
   void Publish(const T& value) noexcept {
     const std::uint64_t index = written_.load(std::memory_order_relaxed);
     Slot& slot = slots_[index & (N - 1)];

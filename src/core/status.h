@@ -50,7 +50,7 @@ enum class Quantity : std::uint8_t {
 };
 inline constexpr int kQuantities = 12;
 
-// Quantity that measures a cause, unless its Status names another one.
+// Returns the quantity that measures a cause, unless its Status names another one.
 constexpr Quantity UsualQuantity(StopCause cause) {
   switch (cause) {
     case StopCause::kForce:
@@ -141,7 +141,7 @@ const char* Name(RunState state);
 constexpr bool FollowsTask(RunState state) noexcept {
   return state == RunState::kAlign || state == RunState::kRun || state == RunState::kRecovery;
 }
-// States in which velocities other than zero may be sent.
+// Returns whether velocities other than zero may be sent in a state.
 constexpr bool MayMove(RunState state) noexcept {
   return FollowsTask(state) || state == RunState::kStopping;
 }

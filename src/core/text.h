@@ -32,7 +32,7 @@ struct Character {
 };
 Character FirstCharacter(std::string_view text);
 
-// FNV-1a hash of a text, continued from `hash`. It does not protect against malice.
+// Returns the FNV-1a hash of a text, continued from `hash`. It does not protect against malice.
 constexpr std::uint64_t Fnv1a(std::string_view text, std::uint64_t hash = 0xcbf29ce484222325ULL) {
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
   return hash;

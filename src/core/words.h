@@ -23,9 +23,9 @@ std::string HowToHold(char key, bool enabling_device);
 // Returns the text of the cause alone: "the force exceeded its threshold".
 std::string StopCauseText(StopCause cause, Quantity quantity = Quantity::kNone);
 
-// The cause, without a full stop ("Left hand: no new sample from the arm arrived in time (12.4 ms,
-// limit 5 ms)"), and the advice, as sentences ("Check the arm, its cable and its network.").
-// "force", "joint torque": the quantity by which the virtual cobot stopped itself.
+// Returns the cause, without a full stop ("Left hand: no new sample from the arm arrived in time
+// (12.4 ms, limit 5 ms)"), and the advice, as sentences ("Check the arm, its cable and its
+// network."). "force" or "joint torque" is the quantity by which the virtual cobot stopped itself.
 std::string CobotStopWords(CobotStop stop);
 
 std::string CauseWords(const Status& status);

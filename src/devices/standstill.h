@@ -11,7 +11,7 @@ struct Standstill {
   double silence;       // time without commands after which the robot brakes [s]
   double deceleration;  // deceleration of its fastest joint while braking [rad/s²]
   double settling;      // time until the joints have followed their own controller to rest [s]
-  // The largest time to rest if the fastest joint moves at `speed` [rad/s].
+  // Returns the longest time to rest if the fastest joint moves at `speed` [rad/s].
   constexpr double Within(double speed) const { return silence + speed / deceleration + settling; }
 };
 

@@ -67,7 +67,8 @@ class Pipeline {
   const LeadChoice& lead() const { return lead_; }
   // Returns the joint positions at which the real handles coincide with the virtual ones [rad].
   const std::array<JointVector, kHands>& start() const { return start_; }
-  // As above, with the handles `offset` [m] above and behind the virtual ones. Throws InputError.
+  // Returns those that place the handles `offset` [m] above and behind the virtual ones. Throws
+  // InputError.
   std::array<JointVector, kHands> StartJoints(double offset) const;
 
  private:

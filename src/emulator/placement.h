@@ -17,8 +17,8 @@ std::array<JointVector, kHands> PlaceArms(
     const std::array<FrameId, kHands>& handles, const std::array<Pose, kHands>& X_WD,
     double offset);
 
-// As above for one arm, starting from the arm's posture. Returns false if the arm cannot reach the
-// pose, in which case q is the nearest solution found.
+// Places one arm, starting from the arm's posture. Returns false if the arm cannot reach the pose,
+// in which case q is the nearest solution found.
 bool PlaceArm(const ArmSpec& spec, const RobotModel& model, const FrameId& handle, const Pose& X_WD,
               double offset, JointVector* q);
 

@@ -18,7 +18,7 @@ double Overrun(const ArmSpec& arm, double dt);
 // the time that one arm waits for the other. `acceleration` is the deceleration of the handles
 // [m/s²].
 StopBudget StopOfArms(const Scenario& scenario, double acceleration);
-// As above, with `safety.stop_acceleration`, provided that no joint exceeds its acceleration limit.
+// Uses `safety.stop_acceleration`, provided that no joint exceeds its acceleration limit.
 inline StopBudget StopOfArms(const Scenario& scenario) {
   return StopOfArms(scenario, scenario.safety.stop_acceleration);
 }

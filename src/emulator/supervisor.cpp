@@ -185,9 +185,9 @@ void Supervisor::BeginStop(const Status& cause, RunEvent stop, const SentMotion&
   stopper_.Begin(cause, run_time_, sent.v, sent.handle_speed, sent.handle_rate, &sent.handle_twist);
 }
 
-// The fault of an arm that still moves after the stop timed out: the arm that was last seen moving,
-// otherwise the arm whose driver reports motion. The speed is included if it is the only evidence
-// of motion.
+// Returns the fault of an arm that still moves after the stop timed out: the arm that was last seen
+// moving, otherwise the arm whose driver reports motion. The speed is included if it is the only
+// evidence of motion.
 Status Supervisor::StillMoving(const TickData& data) const noexcept {
   const int hand = stopper_.mover() >= 0 ? stopper_.mover() : data.sample.arms[0].in_motion ? 0 : 1;
   const double speed = HandleSpeed(data.real[hand].V_W);

@@ -69,7 +69,8 @@ inline constexpr double kReferenceProbability = 0.5;
 // Returns `damage` as a share of the reference day. 0.001 is 0.1 %.
 double ShareOfReferenceDay(double damage, const DamageRisk& risk);
 
-// The damage of a shift in which the run is repeated without a break. Both durations are above 0.
+// Returns the damage of a shift in which the run is repeated without a break. Both durations are
+// above 0.
 double DamageOfShift(double damage_of_run, double run_duration,  // [s]
                      double shift_duration = 8 * 3600.0);        // [s]
 

@@ -9,7 +9,7 @@
 
 namespace predictor::ergonomics {
 
-// A cell of a printed table that is stored as text: 0 … 9, then A = 10, B = 11, C = 12.
+// Returns a cell of a printed table that is stored as text: 0 … 9, then A = 10, B = 11, C = 12.
 constexpr int Cell(std::string_view row, int column) {
   const char cell = row[static_cast<std::size_t>(column)];
   return cell >= 'A' ? cell - 'A' + 10 : cell - '0';

@@ -14,7 +14,7 @@ namespace {
 double Shown(double value, const std::string& unit) { return unit == "m" ? 1e3 * value : value; }
 const char* ShownUnit(const std::string& unit) { return unit == "m" ? "mm" : unit.c_str(); }
 
-// Right-aligns in `width`, and writes a dash for an undefined value.
+// Aligns a value to the right in `width`, and writes a dash for an undefined value.
 std::string Figure(const char* format, double value, std::size_t width) {
   char buffer[48] = "-";
   if (value == value) std::snprintf(buffer, sizeof buffer, format, value);

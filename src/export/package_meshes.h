@@ -27,11 +27,12 @@ class PackageMeshes {
   // added too. Throws InputError if URDF-Importer does not read the format or if the file cannot be
   // read.
   std::string Add(const ModelShape& shape, const std::string& role);
-  // As above, for a texture that a URDF refers to.
+  // Adds a texture that a URDF refers to in the same way.
   std::string AddTexture(const std::filesystem::path& file);
 
   const std::map<std::string, PackageFile>& files() const { return files_; }
-  // Files that could not be added, such as "lost.png of box.dae", and sentences with the reasons.
+  // Returns files that could not be added, such as "lost.png of box.dae", and sentences with the
+  // reasons.
   const std::vector<std::string>& left_out() const { return left_out_; }
   const std::vector<std::string>& notes() const { return notes_; }
 

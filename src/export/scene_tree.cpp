@@ -82,7 +82,7 @@ constexpr std::array<std::array<double, 4>, kHands> kHandleColors = {
 constexpr std::array<double, 4> kFloorColor = {0.6, 0.6, 0.6, 1};
 constexpr std::array<double, 4> kTableColor = {0.61, 0.48, 0.34, 1};
 
-// Names of the scene's own links.
+// Returns the names of the scene's own links.
 const std::set<std::string>& OwnLinks() {
   static const std::set<std::string> names = {"world",
                                               "floor",

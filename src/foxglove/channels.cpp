@@ -69,8 +69,8 @@ FoxgloveChannel WrenchOf(std::size_t h) {
           }};
 }
 
-// Errors of the real handles and distance of the nearest link pair. Absent hands and pairs are
-// omitted.
+// Returns the errors of the real handles and the distance of the nearest link pair. Absent hands
+// and pairs are omitted.
 FoxgloveChannel Tracking(const Scenario& scenario) {
   const Json hand = Numbers({"translation_m", "rotation_rad"});
   const double threshold = scenario.safety.tracking;

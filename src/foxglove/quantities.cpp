@@ -93,7 +93,7 @@ Json SchemaOf(const Json& value) {
   return {{"type", "object"}, {"properties", members}};
 }
 
-// A record in which every optional group is present.
+// Returns a record in which every optional group is present.
 TickRecord Full() {
   TickRecord record = {};
   record.cobot_dof = kMaxCobotJoints;

@@ -23,8 +23,8 @@ struct LinkPair {
 // Returns the vector from b's origin to a's, in W [m].
 Vector3 Between(const std::array<RenderArm, kHands>& arms, const LinkPair& pair) noexcept;
 
-// The pairs that a scenario keeps apart: rendering.link_pairs, or the two elbows if that is not
-// set. For real arms the elbows are always included. Throws InputError (unknown link, too many
+// Returns the pairs that a scenario keeps apart: rendering.link_pairs, or the two elbows if that is
+// not set. For real arms the elbows are always included. Throws InputError (unknown link, too many
 // pairs).
 std::vector<LinkPair> LinkPairs(
     const Scenario& scenario, const std::array<std::shared_ptr<const RobotModel>, kHands>& models);

@@ -66,7 +66,7 @@ PREDICTOR_LIMITS(PREDICTOR_DECLARE)
 }  // namespace limits
 
 std::span<const TaskKind* const> RegisteredTasks();
-// In the order of their rows in the QP and of RenderResult::slack_by_limit.
+// Returns the limits in the order of their rows in the QP and of RenderResult::slack_by_limit.
 std::span<const LimitKind* const> RegisteredLimits();
 
 }  // namespace predictor

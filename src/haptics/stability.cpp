@@ -106,8 +106,8 @@ struct LoopDelays {
   std::vector<AllPass> reflex, sight;
   double reserve;  // [ticks]
 
-  // States per axis of one hand: handle position, lead filter, loop delay, arm loop, reflex, sight,
-  // sensor.
+  // Returns the states per axis of one hand: handle position, lead filter, loop delay, arm loop,
+  // reflex, sight, sensor.
   int StatesPerAxis() const {
     return 1 + 1 + OrderOf(arm) + 2 + OrderOf(reflex) + OrderOf(sight) + 1;
   }

@@ -84,7 +84,7 @@ UrdfModel ReadUrdf(const std::filesystem::path& file,
                    const std::vector<std::string>& remove_links = {},
                    const std::filesystem::path& scenario_folder = {});
 
-// As above, from text. `name` replaces the file name in errors. Relative mesh paths start at
+// Parses a URDF from text. `name` replaces the file name in errors. Relative mesh paths start at
 // `folder`.
 UrdfModel ParseUrdf(const std::string& text, const std::string& name,
                     const std::filesystem::path& folder,

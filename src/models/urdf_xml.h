@@ -38,7 +38,7 @@ struct UrdfSource {
   Pose Origin(const XmlElement& element) const;
   // Returns the only child of this name, or nullptr. Throws if there are several.
   const XmlElement* Child(const XmlElement& element, const char* name) const;
-  // As above, but throws if there is none.
+  // Returns the only child of this name. Throws if there is none, or if there are several.
   const XmlElement& Required(const XmlElement& element, const char* name) const;
 
   static constexpr double kLargest = 1e6;  // larger than any length, mass, ... of a robot, in SI

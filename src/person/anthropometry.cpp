@@ -95,7 +95,7 @@ Segment Make(const Row& row, double mass, double length) {
   return s;
 }
 
-// As above, for a centre of mass that the table measures from the distal end.
+// Makes a segment whose centre of mass the table measures from the distal end.
 Segment FromFarEnd(const Row& row, double mass, double length) {
   Segment s = Make(row, mass, length);
   s.com = length - s.com;

@@ -72,7 +72,7 @@ class PostureSampler {
   // accelerations. Their postures are solved for this time alone, starting from the nominal
   // posture.
   SampledBody Evaluate(const BodySample& sample, const BodyMotion& nominal) const;
-  // As above, for one of the kPostureSamples persons.
+  // Evaluates one of the kPostureSamples persons.
   SampledPosture EvaluatePerson(std::size_t i, const BodySample& sample,
                                 const BodyMotion& nominal) const;
 

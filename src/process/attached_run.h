@@ -16,8 +16,8 @@ enum : int {
   kEvaluationDescriptor = 6
 };
 
-// The first line sent to every such process: the scenario, and the position of its object at the
-// start [m in W].
+// Returns the first line sent to every such process: the scenario, and the position of its object
+// at the start [m in W].
 Json RunLine(const Scenario& scenario, const Vector3& object_start);
 
 // The run as seen by a process alongside it, built from the board and that first line.

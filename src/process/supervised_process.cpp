@@ -59,7 +59,7 @@ class Descriptor {
   int descriptor_;
 };
 
-// The few environment variables that such a process needs.
+// Returns the few environment variables that such a process needs.
 std::vector<std::string> Environment() {
   std::vector<std::string> variables;
   // A library that replaces the clocks (tests/support/slow_clock.cpp) must do so in all processes.

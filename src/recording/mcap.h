@@ -62,7 +62,7 @@ class Bytes {
   std::string text;
 };
 
-// A complete record.
+// Returns a complete record.
 std::string Record(Op op, std::string_view content);
 
 // Parses untrusted bytes. ok is false from the first missing byte on, and no memory is allocated

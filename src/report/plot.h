@@ -114,7 +114,7 @@ std::string AxisTitle(const PlotAxis& axis);
 // Formats `x` with `digits` significant digits and at most `decimals` digits after the decimal
 // point, without an exponent ("0.0123", "12.3").
 std::string Significant(double x, int digits = 3, int decimals = 6);
-// As above, without trailing zeros, for values chosen by people ("30", "0.3").
+// Formats `x` without trailing zeros, for values chosen by people ("30", "0.3").
 std::string Round(double x, int digits = 4);
 
 }  // namespace predictor

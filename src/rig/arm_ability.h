@@ -44,7 +44,7 @@ struct ArmAbility {
   }
 };
 
-// The share of the force for which the joints are strong enough.
+// Returns the share of the force for which the joints are strong enough.
 inline double StrengthShare(const ArmAbility& arm, const Vector3& F) {
   double share = 1;
   for (const JointAbility& joint : arm.joints)
@@ -53,7 +53,8 @@ inline double StrengthShare(const ArmAbility& arm, const Vector3& F) {
   return share;
 }
 
-// The point nearest to p whose distance from the shoulder is between `shortest` and `longest` [m].
+// Returns the point nearest to p whose distance from the shoulder is between `shortest` and
+// `longest` [m].
 inline Vector3 WithinReach(const Vector3& p, const Vector3& shoulder, double shortest,
                            double longest) {
   const Vector3 arm = p - shoulder;

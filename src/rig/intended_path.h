@@ -21,8 +21,8 @@ enum class AfterRelease {
   kReturns,  // returns smoothly to its start until a hand grips it again or the run ends
 };
 
-// The object's intended motion from X_WO (its start) at the script's average pace, sampled every
-// `step` [s] for the scenario's duration. Throws InputError if the script is invalid.
+// Returns the object's intended motion from X_WO (its start) at the script's average pace, sampled
+// every `step` [s] for the scenario's duration. Throws InputError if the script is invalid.
 std::vector<IntendedSample> IntendedPath(const Scenario& scenario, const Pose& X_WO,
                                          AfterRelease after, double step);
 

@@ -34,7 +34,8 @@ class OperatorBody {
 
   const ArmAbility& arm(int hand) const { return arms_[static_cast<std::size_t>(hand)]; }
   const Standing& standing() const { return standing_; }
-  // The point nearest to p that the hand can reach from the present position of the shoulder.
+  // Returns the point nearest to p that the hand can reach from the present position of the
+  // shoulder.
   Vector3 Reachable(int hand, const Vector3& p) const noexcept;
   // Reduces each hand's force on its handle at p, in W, to what the joints can exert, then the
   // parts ahead and sideways of all forces to what the person can exert without falling in that

@@ -36,8 +36,9 @@ class Rig {
 
   void Archive(StateArchive& a) noexcept;
 
-  // The ground truth, for tests and evaluation only: the handles' motion, the hands' wrench F_H_W
-  // (the reading of a perfect sensor at the grip), the grip, and the script's action.
+  // These functions return the ground truth, for tests and evaluation only: the handles' motion,
+  // the hands' wrench F_H_W (the reading of a perfect sensor at the grip), the grip, and the
+  // script's action.
   const std::array<FrameMotion, kHands>& true_handles() const;
   const OperatorOutput& true_operator() const;
 

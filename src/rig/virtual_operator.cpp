@@ -26,7 +26,7 @@ class VirtualOperator final : public Operator {
 
  private:
   void BeginRun() noexcept;
-  // The object's pose, computed from the handles that exist: it is rigidly attached to them.
+  // Returns the object's pose from the handles that exist, because it is rigidly attached to them.
   Pose SeenObject(const OperatorInput& input) const noexcept;
   void RunScript(const OperatorInput& input, const Pose& X_WO) noexcept;
   void Anchor(const OperatorInput& input, const Pose& X_WO) noexcept;

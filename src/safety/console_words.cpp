@@ -36,7 +36,7 @@ std::string Loads(const TickRecord& record) {
   return text;
 }
 
-// The present fault if it is known, otherwise the cause of the stop. Begins with a space.
+// Returns the present fault if it is known, otherwise the cause of the stop, after a space.
 std::string PresentCause(const TickRecord& record, const std::string& trouble) {
   std::string now = trouble;
   for (const StatusRecord& status : {record.read, record.written})

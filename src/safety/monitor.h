@@ -83,8 +83,8 @@ class Monitor {
   // Losing one sample is acceptable, losing two is not.
   static constexpr double kMaxPeriods = 2.5;
 
-  // dt: duration of a tick [s]. detects_runaway: whether a sensor may be mounted or wired in the
-  // wrong orientation.
+  // `dt` is the duration of a tick [s]. `detects_runaway` states whether a sensor may be mounted or
+  // wired in the wrong orientation.
   Monitor(const SafetySpec& safety, const RenderingSpec& rendering,
           const std::array<bool, kHands>& sensor_has_noise, double dt,
           const std::array<SamplePeriods, kHands>& periods = {}, bool detects_runaway = false);

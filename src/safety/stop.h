@@ -66,9 +66,9 @@ class StopController {
   // missed deadlines, since a stop follows elapsed time. Keeps the corrections made for earlier
   // geometries. Does not use the heap or throw.
   void Next(std::array<JointVector, kHands>* v, int ticks = 1) noexcept;
-  // As above, corrected for the change of the arms' geometry. The twists of the handles are scaled
-  // like those of one rigid body, so that the handles keep their relative pose. The correction is
-  // small (second order in the distance so far) and bounded.
+  // Computes the next command, corrected for the change of the arms' geometry. The twists of the
+  // handles are scaled like those of one rigid body, so that the handles keep their relative pose.
+  // The correction is small (second order in the distance so far) and bounded.
   void Next(const StopGeometry& geometry, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
   // `X_WH` are the poses of the handles in W, which are constant for absent handles. `in_motion`

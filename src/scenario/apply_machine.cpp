@@ -38,7 +38,7 @@ std::vector<Numbers::Number> NumbersOf(Spec spec) {
   return numbers.list;
 }
 
-// The message that a scenario's value `key` is looser than the machine's limit.
+// Returns the message that a scenario's value `key` is looser than the machine's limit.
 std::string LooserThan(const Numbers::Number& limit, const std::string& key, double value,
                        bool least, const std::filesystem::path& machine) {
   const std::string unit = limit.unit.empty() ? "" : " " + limit.unit;

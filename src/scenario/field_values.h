@@ -57,8 +57,8 @@ void Read(const PathNode& at, const Rule& rule, Problems* problems, std::array<d
   ReadNumbers(at, rule, N, problems, value->data());
 }
 
-// The entries of the list, or null after reporting that the node is not a list with a permitted
-// number of entries.
+// Returns the entries of the list, or null after reporting that the node is not a list with a
+// permitted number of entries.
 const std::vector<YamlNode>* Entries(const PathNode& at, const Rule& rule, Problems* problems);
 
 YamlNode Write(const Rule& rule, double value);

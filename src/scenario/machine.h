@@ -129,8 +129,8 @@ bool IsPushTested(const MachineArm& arm);
 std::string HashOfLoop(const MachineArm& arm);
 // Returns whether `arm.loop` was measured on this arm.
 bool IsLoopMeasured(const MachineArm& arm);
-// The arms of `scenario` whose velocity loop was not measured, with the remedy, one line each. For
-// these arms ApplyMachine removes the lead, which would be a guess.
+// Returns one line with the remedy for each arm of `scenario` whose velocity loop was not measured.
+// For these arms ApplyMachine removes the lead, which would be a guess.
 std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario);
 // Returns one line with the remedy for each arm of `scenario` without a current push test.
 std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& scenario);

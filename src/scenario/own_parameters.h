@@ -105,7 +105,7 @@ using ParameterKinds = std::span<const ParameterKind* const>;
 std::vector<std::string> NamesOf(ParameterKinds kinds);
 // Returns null for an unknown name.
 const ParameterKind* FindKind(ParameterKinds kinds, const std::string& name) noexcept;
-// The kinds except `kind` that have a parameter `key`.
+// Returns the kinds except `kind` that have a parameter `key`.
 std::vector<std::string> OthersWith(const std::string& key, const ParameterKind& kind,
                                     ParameterKinds kinds);
 
@@ -160,7 +160,7 @@ void WalkParts(V& v, ParameterKinds parts, YamlNode* all) {
 ParameterKinds Controllers() noexcept;
 void DeclareControllers(ParameterKinds kinds) noexcept;
 
-// The hazards that an event may bring about, which the simulation declares.
+// Returns the hazards that an event may bring about, which the simulation declares.
 ParameterKinds Hazards() noexcept;
 void DeclareHazards(ParameterKinds kinds) noexcept;
 

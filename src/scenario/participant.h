@@ -40,7 +40,7 @@ std::string BodyOverride(const BodySpec& body);
 void CheckParticipant(const ParticipantSpec& participant, const std::string& path,
                       const YamlNode& root, Problems* problems);
 
-// The labels of a recording that are reserved for the participant, and their values.
+// Returns the labels of a recording that are reserved for the participant, and their values.
 std::map<std::string, std::string> LabelsOf(const ParticipantSpec& participant);
 bool IsParticipantLabel(const std::string& key);
 // Returns the participant from all labels of a recording, or nothing without a pseudonym.

@@ -304,7 +304,7 @@ struct ActionSpec {
   void Set(const std::string& assignment) { ApplyOverride(assignment, &parameters); }
 };
 
-// MakeActionSpec("move", 1, {"duration=4", "by=[0, 0, 0.1]"}).
+// An example is MakeActionSpec("move", 1, {"duration=4", "by=[0, 0, 0.1]"}).
 inline ActionSpec MakeActionSpec(const std::string& action, double start,
                                  const std::vector<std::string>& assignments = {}) {
   ActionSpec spec = {action, start, {}};

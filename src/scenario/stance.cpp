@@ -9,7 +9,7 @@ namespace {
 constexpr double kDistance = 0.62;         // horizontal distance of eyes and object, a guess [m]
 constexpr double kEyesAboveObject = 0.55;  // a guess [m]
 
-// The direction for which the left handle is on the left.
+// Returns the direction for which the left handle is on the left.
 double FacingOf(const Scenario& scenario, const Vector3& object_start) {
   Vector3 forward = scenario.cobot.base.xyz - object_start;
   if (scenario.Has(0) && scenario.Has(1))

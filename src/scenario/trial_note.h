@@ -8,7 +8,7 @@
 namespace predictor {
 
 std::filesystem::path TrialNoteFile(const std::filesystem::path& library);
-// The content of the note for the library as it is now. Throws InputError if it cannot be read.
+// Returns the note for the library as it is now. Throws InputError if it cannot be read.
 std::string TrialNote(const std::filesystem::path& library);
 // Returns whether the note exists and is about the library as it is now.
 bool HasPassedTrial(const std::filesystem::path& library);

@@ -54,7 +54,7 @@ Place PlaceOf(const std::string& path, const YamlNode& root);
 // Applies `path.to.key=value` (list entries by index from 0). The value is YAML. Throws InputError.
 void ApplyOverride(const std::string& assignment, YamlNode* root);
 
-// The tree as text that ParseYaml can read: maps as blocks, lists of scalars in one line.
+// Returns the tree as text that ParseYaml can read: blocks of maps, lists of scalars in a line.
 std::string WriteYaml(const YamlNode& root);
 
 }  // namespace predictor

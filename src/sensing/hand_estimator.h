@@ -25,7 +25,7 @@ class HandEstimator {
   // Update [s]. Throws InputError.
   HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload, const Pose& X_EH,
                 double gravity, double dt, double acceleration_lag);
-  // As above, with the acceleration lag of MotionDifferentiator at that tick.
+  // Uses the acceleration lag of MotionDifferentiator at that tick.
   HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload, const Pose& X_EH,
                 double gravity, double dt);
 

@@ -26,8 +26,8 @@ class ControllerProcess {
   // ends, or does not answer within `limit` [s].
   bool AskAndWait(int kind, double limit) noexcept;
 
-  // For the tick in real time, without system calls and locks. Sends a request unless the last one
-  // is still unanswered, and watches until `deadline` [s] has passed.
+  // Works for the tick in real time, without system calls and locks. Sends a request unless the
+  // last one is still unanswered, and watches until `deadline` [s] has passed.
   bool AskAndWatch(int kind, double deadline) noexcept;
 
   // Returns true while an answer to an earlier request may still arrive. `shared` then belongs to

@@ -9,8 +9,8 @@ bool IsAddress(const std::string& text);  // numeric IPv4 or IPv6
 // Returns whether a numeric IPv4 or IPv6 address can be reached only from this machine, or false
 // for any other text.
 bool IsLoopback(const std::string& address);
-// The address under which a machine's attempts are counted. Loopback addresses count as one. An
-// IPv4 address mapped into IPv6 counts as the IPv4 address. A zone ("%eth0") is removed.
+// Returns the address under which a machine's attempts are counted. Loopback addresses count as
+// one. An IPv4 address mapped into IPv6 counts as the IPv4 address. A zone ("%eth0") is removed.
 std::string SourceOf(const std::string& address);
 
 }  // namespace predictor::viewer

@@ -25,8 +25,8 @@ struct FrameField {
   std::string comment = {};  // unit, frame and meaning
 };
 
-// The fields that PackFrame writes: those of core/tick_fields.h that have a name for the page, and
-// the viewer's additions.
+// Returns the fields that PackFrame writes: those of core/tick_fields.h that have a name for the
+// page, and the viewer's additions.
 const std::vector<FrameField>& FrameFields();
 std::size_t FrameBytes();
 

@@ -41,7 +41,7 @@ class TypeVisitor {
     Add(name, inner.Type(), "", meaning);
   }
 
-  // Of members with one type, a record.
+  // Returns a record if all members have one type, otherwise an object.
   std::string Type() const {
     std::string names, all;
     bool same = true;

@@ -54,7 +54,7 @@ std::string Words(const char* list, const char* type, int count, Name&& name) {
   return text + "\n";
 }
 
-// The fields whose names begin with `prefix`, as an interface, and their kinds.
+// Returns the fields whose names begin with `prefix`, as an interface, and their kinds.
 std::string Fields(const char* name, const char* kinds, const std::string& prefix) {
   std::string types = std::string("export interface ") + name + " {\n";
   std::string table = std::string("export const ") + kinds + " = {\n";

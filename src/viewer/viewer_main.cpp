@@ -52,7 +52,7 @@ struct Site {
     for (const std::string& name : more)
       if (std::find(to->begin(), to->end(), name) == to->end()) to->push_back(name);
   }
-  // The host that a person opens: this machine's address as seen from others, if others may
+  // Returns the host that a person opens: this machine's address as seen from others, if others may
   // connect.
   std::string Host(std::uint16_t port) const {
     std::string host = "localhost";
@@ -161,7 +161,7 @@ std::string Obey(const std::string& text, const Site& site, const std::string& h
   return "This request is not supported.";
 }
 
-// The files that are read or made before the server starts: models, and the certificate.
+// Returns the files that are read or made before the server starts: models, and the certificate.
 Preparation PreparationOf(const Json& start) {
   Preparation may;
   may.listen = true;

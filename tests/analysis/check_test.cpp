@@ -199,7 +199,7 @@ TEST(Check, ReportsTheDurationOfAStopIncludingTheArmsLag) {
   EXPECT_FALSE(Check(Load("box_9kg.yaml", {"mode=direct"}), {}).stop);
 }
 
-// A machine file for the arms of `dual_ur5`, which have not been commissioned.
+// Returns a machine file for the arms of `dual_ur5`, which have not been commissioned.
 std::string MachineText() {
   std::string text = "predictor_machine: 1\narms:\n";
   for (const bool left : {true, false})

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRounding = 1e-3;  // growth rate that rounding alone can cause [1/s]
 
-// A hand that consists of a spring along x and a delayed reflex.
+// Returns a hand that consists of a spring along x and a delayed reflex.
 HandSpec SpringWithReflex(double stiffness, double reflex_gain, double reflex_delay) {
   HandSpec hand = Spring(stiffness);
   hand.reflex_gain = reflex_gain;
@@ -20,7 +20,7 @@ HandSpec SpringWithReflex(double stiffness, double reflex_gain, double reflex_de
   return hand;
 }
 
-// One arm whose only dynamics are a delay [s] from the virtual to the real handle and back.
+// Returns one arm whose only dynamics are a delay [s] from the virtual to the real handle and back.
 Scenario PureDelay(double delay) {
   Scenario s;
   s.left_handle.emplace();

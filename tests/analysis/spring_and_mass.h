@@ -6,7 +6,7 @@
 
 namespace predictor {
 
-// One handle on a mass [kg] with a damper [N·s/m] that can move along x only.
+// Returns one handle on a mass [kg] with a damper [N·s/m] that can move along x only.
 inline LinearModel Mass(double mass, double damper) {
   LinearModel world;
   world.dof = 1;
@@ -20,7 +20,7 @@ inline LinearModel Mass(double mass, double damper) {
   return world;
 }
 
-// A hand that consists only of a spring along x.
+// Returns a hand that consists only of a spring along x.
 inline HandSpec Spring(double stiffness) {
   HandSpec hand;
   hand.stiffness = {stiffness, 0, 0};

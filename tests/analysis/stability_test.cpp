@@ -14,7 +14,7 @@
 namespace predictor {
 namespace {
 
-// One arm whose only dynamics are a delay [s] from the virtual to the real handle and back.
+// Returns one arm whose only dynamics are a delay [s] from the virtual to the real handle and back.
 Scenario PureLoopDelay(double delay) {
   Scenario s;
   s.left_handle.emplace();

@@ -70,7 +70,7 @@ class Child {
     if (error_ >= 0) close(error_);
     out_ = error_ = -1;
   }
-  // Exit code, or −signal if a signal killed the process.
+  // Returns the exit code, or −signal if a signal killed the process.
   int Wait() {
     while (out_ >= 0 && ReadSome()) {
     }

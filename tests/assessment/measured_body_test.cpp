@@ -43,7 +43,8 @@ Truth TruthOf(const SampleCollector& run) {
   return truth;
 }
 
-// A point that rests. It is sampled at 100 Hz during the run by a clock that is ahead by `shift`.
+// Returns a point that rests. It is sampled at 100 Hz during the run by a clock that is ahead by
+// `shift`.
 tracks::PartTrack Resting(const Vector3& p, double shift = 0) {
   tracks::PartTrack part;
   for (double t = -0.5; t < kDuration + 0.5; t += 0.01) {

@@ -16,7 +16,7 @@ Pose RandomPose(RandomStream* random) {
   return {{random->Normal(), random->Normal(), random->Normal()}, RotationFromVector(2 * w)};
 }
 
-// Points on and above a table. Both arms touch each point with an error of `noise` [m].
+// Returns points on and above a table. Both arms touch each point with an error of `noise` [m].
 std::vector<TouchedPoint> Points(const Pose& X_AB, int count, double noise, RandomStream* random) {
   const std::vector<Vector3> places = {{0.3, -0.2, 0},  {0.3, 0.25, 0},   {0.7, 0, 0.02},
                                        {0.5, 0.1, 0.3}, {0.6, -0.2, 0.1}, {0.4, 0.2, 0.2}};

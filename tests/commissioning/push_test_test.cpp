@@ -44,7 +44,7 @@ class Pusher {
   RandomStream random_;
 };
 
-// All mountings with permuted and inverted axes.
+// Returns all mountings with permuted and inverted axes.
 std::vector<Matrix3> AllMountings() {
   std::vector<Matrix3> all;
   std::array<int, 3> order = {0, 1, 2};

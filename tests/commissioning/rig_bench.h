@@ -72,7 +72,7 @@ class Holder {
   double begin_ = -1, next_ = 0;
 };
 
-// A chirp that is short enough for a test.
+// Returns a chirp that is short enough for a test.
 inline SwingOptions Short() {
   SwingOptions options;
   options.chirp.time = 2.5;

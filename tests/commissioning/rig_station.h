@@ -62,7 +62,8 @@ class RigHand {
     command_ = v;
     motion_ = motion;
   }
-  // The last command [rad/s], and the largest rate at which commands changed so far [rad/s²].
+  // These functions return the last command [rad/s], and the largest rate at which commands have
+  // changed so far [rad/s²].
   const JointVector& command() const { return command_; }
   bool motion() const { return motion_; }
   double hardest() const { return hardest_; }

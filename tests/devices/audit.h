@@ -14,7 +14,7 @@ namespace predictor {
 void AppendForAudit(const std::string& file, const std::string& name, const FaultRig& rig,
                     const Bench& bench, const BenchStop& stop);
 
-// As above, with the fault and the seed as the label.
+// Appends a run with the fault and the seed as the label.
 void AppendForAudit(const std::string& file, const Fault& fault, std::uint64_t seed,
                     const FaultRig& rig, const Bench& bench, const BenchStop& stop);
 

@@ -1,7 +1,6 @@
 // Tests properties of the command under any sequence of requests and inputs (RapidCheck):
 //   - It never changes by more than the acceleration limit allows in a tick, or in the elapsed
-//   ticks
-//     of a stop. It is zero in states without motion.
+//     ticks of a stop. It is zero in states without motion.
 //   - Both arms share one stop.
 #include <gtest/gtest.h>
 

@@ -29,7 +29,8 @@ double TimeOfStop(World* world, const WorldInput& input, double longest) {
   return -1;
 }
 
-// As above, under a force that grows slowly to `force` [N] within 2 s, so that nothing swings.
+// Returns the time of the stop under a force that grows slowly to `force` [N] within 2 s, so that
+// nothing swings.
 double TimeOfStopUnderRamp(const Scenario& s, const Vector3& force, CobotStop* stop) {
   World world(s);
   for (int k = 0; k < 3000; ++k) {

@@ -18,7 +18,7 @@ struct StudyChoice {
   std::string name;
   std::vector<std::string> set;
 };
-// The controllers and the hazards of the study.
+// These functions return the controllers and the hazards of the study.
 std::vector<StudyChoice> StudiedControllers();
 std::vector<StudyChoice> StudiedHazards();
 

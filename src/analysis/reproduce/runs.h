@@ -43,7 +43,7 @@ class ReproduceRuns {
   // Performs a run. Throws std::runtime_error unless it ends as `expected`.
   ReproducedRun Run(const ReproducedSetting& setting, RunEnd expected = RunEnd::kFinished);
   ReproducedRun Run(const ReproducedSetting& setting, const Scenario& scenario, RunEnd expected);
-  // For a run whose end is itself a result. It runs to the end of the script or to a safety stop.
+  // Runs a setting whose end is itself a result, to the end of the script or to a safety stop.
   ReproducedRun RunToEitherEnd(const ReproducedSetting& setting);
   // Reports progress of the experiment that Run does not report.
   void ReportProgress(double share) const;
@@ -64,7 +64,8 @@ std::string SimulateCommandOf(const ReproducedSetting& setting);
 // computation starts when the previous one ends [Hz].
 inline constexpr int kAssumedPaperRate = 100;
 std::vector<std::string> PaperConditions(int rate = kAssumedPaperRate);
-// As above, without the coupling of real and virtual handles, which the paper does not have either.
+// Returns these conditions without the coupling of real and virtual handles, which the paper does
+// not have either.
 std::vector<std::string> PaperConditionsWithoutCoupling();
 
 // The names of the conditions in tables and in the numbers file.

@@ -78,7 +78,7 @@ std::vector<std::string> DeparturesOf(const Scenario& scenario);
 // stable side, limits that noise alone reaches on the other side, and a growth rate that depends
 // too weakly on the stiffness.
 std::vector<std::string> DeparturesAt(const FoundExtent& found, const Boundary& boundary);
-// As above, for the case that no stable stiffness was found.
+// Returns such reasons for the case that no stable stiffness was found.
 std::vector<std::string> DeparturesEverywhere(const FoundExtent& found);
 // Returns the relative uncertainty of a found boundary (two standard errors), derived from the
 // deviations of the nearby growth rates from a straight line, or no value for fewer than three.

@@ -107,8 +107,8 @@ struct UnintendedContact {
 
 Drop DropOf(const SceneMotion& motion, const SceneMasses& masses, const PersonSetup& setup,
             const Scenario& scenario);
-// For the release at which the distance is most insufficient or, without a release, for the fastest
-// moment.
+// Returns the separation for the release at which the distance is most insufficient or, without a
+// release, for the fastest moment.
 Separation SeparationOf(const SceneMotion& motion, const PersonSetup& setup);
 UnintendedContact ContactOf(const SceneMotion& motion, const SceneMasses& masses,
                             const ergonomics::ContactLimits& limits, const Scenario& scenario);

@@ -53,7 +53,8 @@ MoveStatus MoveStatusOf(std::uint8_t byte, std::uint16_t version) noexcept;
 const char* Words(MoveStatus status);
 const char* Words(RobotMode mode);
 
-// Names of errors as in libfranka ("joint_velocity_violation"), by their index in a state's list.
+// Returns an error's name as in libfranka ("joint_velocity_violation"), by its index in the list of
+// a state.
 const char* ErrorName(int error);
 // Returns "joint velocity violation, cartesian reflex", for example, or "" without errors.
 std::string ErrorWords(const Errors& errors);

@@ -124,7 +124,7 @@ void WayBack::Begin(const Joints& v, const Joints& a) noexcept {
   time_ = 0;
 }
 
-// The cubic that starts with v and a and ends with both zero.
+// Follows the cubic that starts with v and a and ends with both zero.
 Joints WayBack::Next() noexcept {
   Joints left{};
   time_ += RateLimiter::kDt;

@@ -21,7 +21,7 @@ struct UrSetup {
   UrState state;                // the last state
 };
 
-// Parameters and errors as for ConnectUr.
+// Takes the parameters of ConnectUr and throws its errors.
 UrSetup SetUpUr(const UrOptions& options, Network* network);
 
 // Encodes a package of UrInputs without using the heap.

@@ -72,7 +72,7 @@ enum class UrFault : std::uint8_t {
 // Describes the fault and the remedy for the user, or returns "" for kNone.
 const char* Sentence(UrFault fault);
 
-// True if the state of the arm is unknown: it must not be left holding.
+// Returns whether the arm must not be left holding, because its state is unknown.
 constexpr bool EndsWithoutPower(UrFault fault) noexcept {
   return fault == UrFault::kClosed || fault == UrFault::kMalformed || fault == UrFault::kDeaf ||
          fault == UrFault::kEmergencyStop || fault == UrFault::kSafetyFault;
@@ -81,7 +81,7 @@ constexpr bool EndsWithoutPower(UrFault fault) noexcept {
 // Returns the fault that prevents the arm from moving, whatever program runs, or kNone without a
 // fault.
 UrFault ArmFault(const UrState& state) noexcept;
-// As above, while our program should run at full speed.
+// Returns the same while our program should run at full speed.
 UrFault RunFault(const UrState& state) noexcept;
 // Returns whether the motors have power, with brakes released or not.
 bool Powered(const UrState& state) noexcept;

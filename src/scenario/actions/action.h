@@ -69,7 +69,7 @@ inline Rule DurationRule(const char* doc = "duration of the action") {
   return Number("s", doc, Above(0, 86400));
 }
 inline Rule HandRule() { return Word("hand or hands that act", {"left", "right", "both"}); }
-// The value of a parameter without which the action does nothing. Throws InputError if it is zero.
+// Returns a parameter without which the action does nothing. Throws InputError if it is zero.
 Vector3 NotZero(const char* key, const Vector3& value);
 // Returns whether "left", "right" or "both" concerns this hand.
 bool Concerns(const std::string& which, std::size_t hand);

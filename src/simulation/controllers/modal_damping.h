@@ -14,7 +14,7 @@ namespace predictor {
 template <class Vector, class Matrix>
 class ModalDamping {
  public:
-  // For vectors with `size` elements.
+  // `size` is the number of elements of the vectors.
   explicit ModalDamping(Eigen::Index size) : eigen_(size), H_(size, size), damping_(size) {}
 
   // `L_inverse_transposed` is L⁻ᵀ, `K` the diagonal of the stiffness, and `ratio` the ζ of each
