@@ -12,8 +12,8 @@ namespace predictor {
 // The models of a machine's arms; null for an arm that it does not have.
 using ArmModels = std::array<std::shared_ptr<const RobotModel>, kHands>;
 
-// Reads the models from their files. Call before a device is connected, so that a file that stops
-// the program does so while no arm obeys it. Throws InputError with the machine file's line.
+// Reads the models from their files. Call this before a device is connected, so that a file that
+// stops the program does so while no arm obeys it. Throws InputError with the machine file's line.
 ArmModels LoadArmModels(const Machine& machine);
 
 // Throws DeviceError if the system grants no real-time scheduling, because a loop that other

@@ -18,7 +18,7 @@ struct PersonRun {
 };
 
 PersonRun RunOf(const SampleCollector& ticks);
-// A row in which a hand is not measured or does not hold counts as not holding.
+// In a row, a hand counts as not holding if it is not measured or does not hold.
 PersonRun RunOf(const tracks::PersonFile& file);
 
 // Converts the statements of such a file about person, place and grips. The type of the operator is

@@ -28,7 +28,7 @@ constexpr double kMaxCenterError = 0.005;       // [m]
 
 using Poses = std::span<const RestingPose>;
 
-// Rows b + d t + x for each pose, where x is the effect of gravity per parameter.
+// Fits rows b + d t + x for each pose, where x is the effect of gravity per parameter.
 template <int kColumns, class Gravity>
 LinearFit FitPart(Poses poses, double last, Eigen::Index first_axis, const Gravity& by_gravity) {
   const auto rows = static_cast<Eigen::Index>(3 * poses.size());

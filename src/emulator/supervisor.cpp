@@ -42,7 +42,7 @@ std::array<SamplePeriods, kHands> PeriodsOf(const Scenario& s) {
   return periods;
 }
 
-// A driver still moves its arm, whatever was commanded.
+// Returns whether a driver still moves its arm, whatever was commanded.
 bool InMotion(const DeviceSample& sample) {
   return sample.arms[0].in_motion || sample.arms[1].in_motion;
 }

@@ -1,4 +1,4 @@
-// The tasks and limits of rendering: one line each. To add one, see docs/developer/add-a-limit.md.
+// The list of the tasks and limits of rendering. To add one, see docs/developer/add-a-limit.md.
 #pragma once
 
 #include <memory>

@@ -18,10 +18,10 @@ struct ArmChain {
 
 // `end_effector` is the link that is to carry the object. If it is empty, the link that most joints
 // of an arm carry is chosen. Two kinds of joints do not count as joints of an arm. The first are
-// the joints of grippers: those with such a name, and those that are coupled by mimic, if no joint
-// of an arm follows. The second are all joints after a branch that is carried by kMinArmJoints
-// joints or more (the fingers of a hand; a branch closer to the base leads to several arms). Throws
-// InputError if there is no such link, or no joint moves it.
+// the joints of grippers: joints with such a name, and joints that are coupled by mimic, if no
+// joint of an arm follows. The second are all joints after a branch that is carried by
+// kMinArmJoints joints or more (the fingers of a hand; a branch closer to the base leads to several
+// arms). Throws InputError if there is no such link, or no joint moves it.
 inline constexpr int kMinArmJoints = 4;
 ArmChain FindArm(const UrdfModel& urdf, const std::string& end_effector = "");
 

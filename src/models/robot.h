@@ -94,8 +94,8 @@ class RobotData {
 
   // Computes the gradient with respect to the joints of a frame's translational manipulability m =
   // sqrt(det(J_v J_vᵀ)), from the kinematic Hessian (Haviland & Corke 2021): dm/dq_i = m tr((J_v
-  // J_vᵀ)^-1 H_i J_vᵀ). Also writes m. At a singularity (m < 1e-9), the gradient is zero. Refers to
-  // the last Update.
+  // J_vᵀ)^-1 H_i J_vᵀ). Also writes m. At a singularity (m < 1e-9), the gradient is zero. This
+  // function uses the last Update.
   void ManipulabilityGradient(const RobotModel& model, const FrameId& frame, double* m,
                               JointVector* gradient) const;
 

@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// A key of the first line. With it the process does not end with the run, because it must react to
-// the run's end. It then ends by itself.
+// This key of the first line keeps the process running after the run, because it must react to the
+// run's end. It then ends by itself.
 inline constexpr const char* kOutlivesTheRun = "outlives_the_run";
 
 // Runs such a process from start to end: limits its resources, reads the first line from the run,

@@ -59,7 +59,7 @@ inline Vector3 WithinReach(const Vector3& p, const Vector3& shoulder, double sho
                            double longest) {
   const Vector3 arm = p - shoulder;
   const double length = arm.norm();
-  // Exactly p, because callers compare the result with it.
+  // The result is exactly p, because callers compare it with p.
   if ((length >= shortest && length <= longest) || !(length > 1e-9)) return p;
   return shoulder + arm * (std::clamp(length, shortest, longest) / length);
 }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kStraight = 1e-6;  // sine of the elbow angle below which an arm counts as straight
 
-// V f(d) Vᵀ of a symmetric matrix.
+// Returns V f(d) Vᵀ of a symmetric matrix with the eigenvectors V and the eigenvalues d.
 template <class F>
 Matrix3 OfEigenvalues(const Matrix3& symmetric, F f) {
   Eigen::SelfAdjointEigenSolver<Matrix3> solver;

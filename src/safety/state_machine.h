@@ -48,7 +48,7 @@ struct Transition {
   RunCondition to;
 };
 
-// All conditions of a run. STOPPING occurs twice, once for each way to end. RECOVERY occurs twice,
+// The conditions of a run. STOPPING occurs twice, once for each way to end. RECOVERY occurs twice,
 // too, because after a stop it leads back to HELD.
 inline constexpr std::array<RunCondition, kRunStates + 2> kRunConditions = {{
     {RunState::kInit, StopLevel::kNone},

@@ -19,7 +19,7 @@ struct StopReport {
   double duration = 0;  // time from the decision until the handles rest, or until now [s]
 };
 
-// The state of the handles where the arms will be when they follow the next command. The pipeline
+// The state of the handles at the time when the arms will follow the next command. The pipeline
 // writes it.
 struct StopGeometry {
   std::array<Jacobian, kHands> J;  // Jacobian of each handle, axes of W; without columns: unknown

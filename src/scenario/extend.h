@@ -10,7 +10,7 @@ namespace predictor {
 inline constexpr const char* kExtendsKey = "extends";
 inline constexpr int kMaxExtends = 8;  // maximum number of files that extend one another
 
-// Adds to `root` the tree of the file that it extends, and recursively the files that this file
+// Adds to `root` the tree of the file that it extends, and recursively the trees that this file
 // extends. `file` is the file from which `root` was read. Groups are joined key by key; a list or a
 // value replaces the extended one. A group with a different `type` replaces the whole group,
 // because the parameters of another type do not apply to it. Every node keeps its original place.

@@ -102,7 +102,7 @@ class Describer {
     Add(key, std::move(schema), false);
   }
 
-  // One alternative per kind, each with only its own parameters.
+  // Writes one alternative per kind, each with only its own parameters.
   template <class Walk>
   void Own(const char* key, std::string& type, YamlNode&, const Rule& rule, ParameterKinds kinds,
            Walk common) {

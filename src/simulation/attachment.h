@@ -39,7 +39,7 @@ class Attachment {
   // Uses the state of the last Prepare. Returns false on an error of the engine. Does not use the
   // heap.
   bool Hold() noexcept;
-  // Moves the place of the grip as far as the object slid, in the state after the step.
+  // Moves the place of the grip by the distance that the object slid, in the state after the step.
   void Follow() noexcept;
 
   // Returns the wrench of the object on the end-effector in the last Hold, about E, in axes of W

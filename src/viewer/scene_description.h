@@ -16,7 +16,7 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
                                      AssetStore* assets);
 
 // Describes in a sentence the thresholds that a reset kept tighter than those of the scenario, or
-// returns "" if there are no such thresholds. `record` is one after the reset.
+// returns "" if there are no such thresholds. `record` is a record after the reset.
 std::string KeptThresholds(const Scenario& scenario, const TickRecord& record);
 
 }  // namespace predictor::viewer

@@ -40,9 +40,9 @@ struct AppSetup {
   std::string why_not_judged;  // shown if there are no states; a sentence
 };
 
-// Checks a request's Host header by RFC 9112, section 3.2. Status 400: there is not exactly one
-// Host, it is not a name with or without a port, or the port is not this server's. Status 421: it
-// names none of `hosts`. Status 200: it is valid.
+// Checks a request's Host header by RFC 9112, section 3.2. The status is 400 if there is not
+// exactly one Host, if it is not a name with or without a port, or if the port is not this
+// server's. It is 421 if the Host names none of `hosts`, and 200 if it is valid.
 HttpReply CheckHost(const HttpRequest& request, const std::vector<std::string>& hosts);
 // Returns whether an Origin belongs to a page that this server delivered under `host`. Browsers
 // always send it with a WebSocket request. A client without an Origin is not a page.

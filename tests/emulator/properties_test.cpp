@@ -211,8 +211,8 @@ class Watched {
   }
 
   // The arms share one stop: each command is the last one before the stop, times a factor in [0,
-  // kOvershoot]. The factors may differ only by as much as the faster arm follows the slower one,
-  // and only within the promised distance. The change of the arms' geometry has little effect.
+  // kOvershoot]. The factors differ only because the faster arm waits for the slower one, and only
+  // within the promised distance. The change of the arms' geometry has little effect.
   void LookAtFactors(const Arms& start, const Arms& now, int ticks) {
     std::array<double, kHands> factor;
     for (std::size_t i = 0; i < kHands; ++i) {

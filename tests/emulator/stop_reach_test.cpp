@@ -77,7 +77,7 @@ TEST(StopOfArms, IsOfTheSlowerArmAndTheOneThatWaits) {
 }
 
 // If joints move at 2 rad/s and may decelerate at three quarters of 4 rad/s², they take two thirds
-// of a second to stop. The handles take as long.
+// of a second to stop, and so do the handles.
 TEST(StopOfArms, IsLongerWhereJointsTurnAsFastAsTheyMay) {
   Scenario s = LoadTestScenario("box_9kg");
   s.safety.handle_speed = 0.25;

@@ -42,8 +42,8 @@ export class Chart {
   private chart: ECharts | null = null;
   private waiting = false;
 
-  // zoomed: called when this plot's view changes. pointed: called with the cursor's position, for
-  // the other plots of the group.
+  // `zoomed` is called when this plot's view changes. `pointed` is called with the cursor's
+  // position, for the other plots of the group.
   constructor(readonly spec: PlotSpec, private readonly zoomed: (view: Range | null) => void,
               private readonly pointed: (x: number | null) => void) {
     this.series = spec.panels.map((panel) => panel.series.map(readSeries));

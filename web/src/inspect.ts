@@ -23,10 +23,10 @@ export function inspection(app: App) {
     // The newest state as received, and the drawn (interpolated) state.
     state: (): State | null => app.player.latest,
     shown: (): State | null => app.shown,
-    // The drawn pose in W of a link of the cobot, of 'object', of 'left:LINK' (an arm), or of
-    // 'left:handle'.
+    // Returns the drawn pose in W of a link of the cobot, of 'object', of 'left:LINK' (an arm), or
+    // of 'left:handle'.
     linkPose: (name: string): Pose | null => stage.linkPose(name),
-    // The bounding box in W of the visuals of a link of the cobot, or of 'object' [m].
+    // Returns the bounding box in W of the visuals of a link of the cobot, or of 'object' [m].
     meshBox: (name: string) => stage.meshBox(name),
     placeholders: () => stage.placeholders,
     arrowColour: (side: Side, of: 'force' | 'torque' = 'force') => stage.arrows[side][of].level,

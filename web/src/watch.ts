@@ -63,7 +63,7 @@ export class RunWatch {
 export class AlarmBell {
   private known: string[] = [];
 
-  // Call this often. state: the newest state, or null before the first. Returns whether one of
+  // Call this often. `state` is the newest state, or null before the first. Returns whether one of
   // these events has occurred since the last call.
   rings(state: State | null, trouble: boolean): boolean {
     const now = state ? [] : this.known.filter((it) => it !== 'trouble');

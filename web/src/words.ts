@@ -97,7 +97,8 @@ export function fixed(value: number, decimals: number): string {
   return /^-[0.]*$/.test(text) ? text.slice(1) : text;
 }
 
-// Formats a value in readable units: millimetres and degrees. more: additional digits.
+// Formats a value in readable units: millimetres and degrees. `more` is the number of additional
+// digits.
 export function readable(value: number, quantity: Quantity, more = 0): string {
   const degrees = (value * 180) / Math.PI;
   const d = 1 + more;
@@ -144,7 +145,7 @@ function advice(why: Reason): string {
   return id ? message(`stop.${id}.advice`) : '';
 }
 
-// Returns null unless a stop occurred. over: the run has ended, so there is nothing to reset.
+// Returns null unless a stop occurred. If the run is `over`, there is nothing to reset.
 export function stopWords(state: State, simulated: boolean, over = false): StopWords | null {
   if (state.stop.cause === 'none') return null;
   // Without power, or if the program must be restarted, a reset is not enough.

@@ -68,8 +68,8 @@ function gauges(t, lean, wrenches) {
   };
 }
 
-// Returns the message `person` at the run time t [s]. status: 'judged', or the reason why nothing
-// is judged.
+// Returns the message `person` at the run time t [s]. `status` is 'judged', or the reason why
+// nothing is judged.
 export function personMessage(spec, t, tick, hands, wrenches, status = 'judged') {
   const judged = status === 'judged';
   const {points, lean} = pointsOf(spec.viewpoint, hands);

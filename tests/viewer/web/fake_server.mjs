@@ -59,10 +59,10 @@ const now = () => Number(process.hrtime.bigint());
 const bearer = (request) => (request.headers.authorization ?? '').replace('Bearer ', '');
 
 export class FakeServer {
-  // Options: scene 'box' | 'circle', operator, simulated, state, table, light. object: the files of
-  // the object's model {name: text}, which must include model.urdf. ground: where the operator
-  // stands in W. person: why nothing about the person is judged. older: a server that does not know
-  // the person.
+  // The options are `scene` ('box' | 'circle'), `operator`, `simulated`, `state`, `table` and
+  // `light`. `object` contains the files of the object's model {name: text}, which must include
+  // model.urdf. `ground` is where the operator stands in W. `person` is why nothing about the
+  // person is judged. An `older` server does not know the person.
   constructor(options = {}) {
     this.options = {scene: 'box', operator: 'virtual', simulated: true, state: 'RUN', ground: [1, 0, 0], ...options};
     this.preset = kScenes[this.options.scene];
@@ -342,7 +342,7 @@ export class FakeServer {
     }
   }
 
-  // Ends the run. `results`: a server with these results replaces this one, or none does if null.
+  // Ends the run. `results` is a server with these results that replaces this one, or null.
   async finish(how, results = null) {
     this.state = 'HELD';
     this.recording = false;

@@ -21,9 +21,9 @@ export const shotsWanted = kShots !== null;
 // The limit of every wait, long enough for a busy machine.
 const kPatienceMs = Number(process.env.PREDICTOR_PATIENCE ?? 150) * 1000;
 
-// unpainted: for tests that check neither pixels of the scene nor frame times. Without a graphics
-// card, painting and compositing take nearly all of a frame's time. Screenshots are painted in any
-// case.
+// `unpainted` is for tests that check neither pixels of the scene nor frame times. Without a
+// graphics card, painting and compositing take nearly all of a frame's time. Screenshots are
+// painted in any case.
 export async function launch({unpainted = false} = {}) {
   if (!existsSync(kChromium)) {
     console.log(`${required ? 'FAILED' : 'SKIPPED'}: no browser at ${kChromium}; PREDICTOR_CHROMIUM may name one, and ` +

@@ -84,7 +84,7 @@ class Gauge {
                      h('div', {class: 'gauge-bar'}, this.bar));
   }
 
-  // force, limit: [N]. x, y: the position of the handle in the scene [px].
+  // `force` and `limit` are in [N]. `x` and `y` are the position of the handle in the scene [px].
   show(force: number, limit: number, x: number, y: number) {
     setText(this.text, `${force.toFixed(0)} N of ${limit.toFixed(0)} N`);
     this.bar.style.width = `${100 * Math.min(force / limit, 1)}%`;

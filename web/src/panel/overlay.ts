@@ -136,7 +136,7 @@ export class Overlay {
     }));
   }
 
-  // calm: whether there is no problem.
+  // `calm` states whether there is no problem.
   showBanner(text: string, calm: boolean) {
     setText(this.banner, text);
     this.banner.classList.toggle('calm', calm);
@@ -180,7 +180,7 @@ export class Overlay {
     this.bothButton.hidden = !isOperator;
   }
 
-  // stops: whether leaving the headset stops the real arms.
+  // `stops` states whether leaving the headset stops the real arms.
   showVr(immersive: boolean, stops: boolean) {
     setText(this.vrButton,
             !immersive ? 'Enter VR' : stops ? 'Leave VR (stops the arms)' : 'Leave VR');

@@ -177,8 +177,8 @@ export class PersonCard {
     this.show(null, false, Infinity);
   }
 
-  // person: the newest state, or null if there is none yet. silent: whether none has arrived for
-  // too long.
+  // `person` is the newest state, or null if there is none yet. `silent` states whether none has
+  // arrived for too long.
   show(person: PersonState | null, silent: boolean, nowMs: number) {
     const judged = this.spec?.person?.judged ?? false;
     const why = !judged ? `Not judged: ${this.spec?.person?.why ?? 'the body or its place is not known.'}` :

@@ -98,7 +98,7 @@ export class Plot {
   private readonly values: HTMLElement[];
   private shown: [number, number] = [0, 0];  // times [s]
 
-  // title: the element of the title before the values.
+  // `title` is the element of the title before the values.
   constructor(readonly spec: PlotSpec, title: HTMLElement,
               onZoom: (min: number, max: number) => void,
               private readonly onCursor: (time: number | null) => void) {

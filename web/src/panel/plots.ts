@@ -144,7 +144,7 @@ export class Plots {
     if (blob) save('plots.png', blob);
   }
 
-  // Builds a group of plots of which one is visible. Buttons with their names show the others.
+  // Builds a group of plots of which one is visible. A button for each plot shows it.
   private buildGroup(specs: PlotSpec[]): HTMLElement {
     const plots: Plot[] = [];
     const show = (seen: number) => plots.forEach(({element}, i) => (element.hidden = i !== seen));

@@ -65,8 +65,9 @@ export class ResultsCard {
     this.curves.replaceChildren(...results.curves.map((curve) => this.figure(curve)));
   }
 
-  // stopped, cause: whether and why the run was stopped. may: whether this page may choose the next
-  // scenario. alive: whether the program is still running and can start it.
+  // `stopped` and `cause` state whether and why the run was stopped. `may` states whether this page
+  // may choose the next scenario. `alive` states whether the program is still running and can start
+  // it.
   update(title: string, stopped: boolean, cause: string, may: boolean, alive: boolean) {
     if (!this.spec?.results) return;
     setText(this.title, title);

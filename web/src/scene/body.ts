@@ -85,7 +85,7 @@ export class Body {
   private readonly nose: Mesh;
   private readonly neck: Mesh;
 
-  // scale: the size of a small figure, whose radii are smaller as well.
+  // `scale` is the size of a small figure, whose radii are smaller as well.
   constructor(private readonly scale = 1) {
     const sphere = new SphereGeometry(1, 20, 14);
     this.limbs = kLimbs.map((limb) => new LimbMesh(limb, sphere));
@@ -115,7 +115,7 @@ export class Body {
     this.placeHead(at('neck'), at('head'), at('eyes'), left);
   }
 
-  // parts: those of the state of the person, or null if nothing is judged.
+  // `parts` are those of the state of the person, or null if nothing is judged.
   paint(parts: PersonState['parts'] | null) {
     const color = (part: PartName) => loadColor(parts?.[part].load ?? null);
     this.trunkMaterial.color.copy(new Color(color('lower_back')));

@@ -97,7 +97,7 @@ export class Handle {
     return kRingRadius * this.rings.scale.x;
   }
 
-  // pixelsPerMetre: the scale at the handle. If infinite, the handle has its true size.
+  // `pixelsPerMetre` is the scale at the handle. If infinite, the handle has its true size.
   setScreenScale(pixelsPerMetre: number) {
     const scale = kMinRingRadius / (kRingRadius * pixelsPerMetre);
     this.rings.scale.setScalar(Math.min(Math.max(scale, 1), kMaxScale));

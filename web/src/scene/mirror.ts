@@ -41,7 +41,7 @@ export class Mirror {
     this.glass.rotation.z = Math.atan2(toward[1], toward[0]) - Math.PI / 2;
   }
 
-  // points: the body's points in W, or null if the body is not known.
+  // `points` are the body's points in W, or null if the body is not known.
   set(points: BodyPoints | null, parts: PersonState['parts'] | null) {
     const ground = this.spec?.viewpoint.ground;
     this.body.group.visible = points !== null && !!ground;

@@ -119,7 +119,7 @@ export class Stage {
   private slowMs = 0;
   private lastFrameMs = 0;
 
-  // complain: reports in words which parts of a model are not shown.
+  // `complain` reports in words which parts of a model are not shown.
   constructor(private readonly container: HTMLElement, private readonly complain: Complaint) {
     const software = drawnBySoftware();
     this.renderer = new WebGLRenderer(
@@ -248,8 +248,8 @@ export class Stage {
     this.settled = this.modelsLoaded;
   }
 
-  // points: the body of the person, or null if it is not known. The wearer of a headset sees it
-  // only in the mirror. The operator's view is from the head of this body.
+  // `points` are the body of the person, or null if it is not known. The wearer of a headset sees
+  // it only in the mirror. The operator's view is from the head of this body.
   applyPerson(points: BodyPoints | null, parts: PersonState['parts'] | null) {
     const {body, mirror} = this;
     body.group.visible = points !== null && this.bodyWanted && !this.renderer.xr.isPresenting;
