@@ -1,4 +1,4 @@
-// predictor forget: delete everything of one person.
+// predictor forget: deletes everything of one person.
 #include "recording/forget.h"
 
 #include <unistd.h>
