@@ -1,4 +1,4 @@
-// The person in a recording, for other commands.
+// Evaluates the person in a recording, for other commands.
 #pragma once
 
 #include <string>

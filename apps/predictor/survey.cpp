@@ -55,7 +55,7 @@ Destination DestinationOf(const SurveyOptions& options) {
     to.folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
     to.recording = place.filename().string();
   }
-  // Checked before the person answers.
+  // The person must not answer in vain, so the folder is checked first.
   if (access(to.folder.c_str(), W_OK | X_OK) != 0)
     throw InputError(to.folder.string(),
                      "The answer cannot be stored here: the folder is not writable.");

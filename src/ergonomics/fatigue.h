@@ -76,8 +76,8 @@ double CapacityEnduranceTime(double load, const CapacityRates& rates = {});
 
 // ---- One state: Peternel et al. 2018 ----
 
-// The parameters from one trial in which a reference load was held until exhaustion (form and
-// constants quoted from memory, not verified).
+// The parameters follow from one trial in which a reference load was held until exhaustion. The
+// form and the constants are quoted from memory and were not verified.
 struct TrialFatigue {
   double reference_load = 0.5;  // 0 … 1
   double reference_time = 60;   // [s]

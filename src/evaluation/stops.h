@@ -20,8 +20,8 @@ struct StopSummary {
   double time = 0;      // emulated time until the stop, including the time before resets [s]
   double duration = 0;  // from the decision to rest [s]
   double distance = 0;  // path of the faster handle from the decision to rest [m]
-  // Only for a simulated rig: the time from the true force (torque) crossing its threshold to the
-  // decision.
+  // The time from the moment at which the true force (torque) crosses its threshold to the
+  // decision, for a simulated rig only.
   std::optional<double> detection;  // [s]
   StatusRecord harder = {};  // the fault that removed the power at the end of a stop that would
                              // otherwise have held

@@ -13,11 +13,11 @@
 
 namespace predictor::scene_export {
 
-// The mass [kg] and principal moments [kg·m²] of links that have none or only connect others. URDF
-// has no joint with three axes, so three single-axis joints need two links between them. MuJoCo and
-// our own reader refuse a moving link without mass. Unity's URDF-Importer would give it 0.1 kg, or
-// 1 kg if it has no <inertial>. All of them accept these values, which change any sum by less than
-// 1e-9.
+// The mass [kg] and principal moments [kg·m²] of links that have none, or that only connect others.
+// URDF has no joint with three axes, so three single-axis joints need two links between them.
+// MuJoCo and our own reader refuse a moving link without mass. Unity's URDF-Importer would give it
+// 0.1 kg, or 1 kg if it has no <inertial>. All of them accept these values, which change any sum by
+// less than 1e-9.
 inline constexpr double kTinyMass = 1e-10;
 inline constexpr double kTinyInertia = 1e-11;
 

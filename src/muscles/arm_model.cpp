@@ -204,7 +204,7 @@ MuscleLines ArmModel::LinesAt(const ArmVector& q) const noexcept {
       int level = 0;
       if (const auto contact = ContactOf(arm, node.wrap, node.radius, from.p, to.p, &level)) {
         // The path is a shortest one, so its length does not change to first order when the ends of
-        // the contact slide. They count as points of the obstacle.
+        // the contact slide. These ends count as points of the obstacle.
         AddStraight(arm, from, {contact->begin, level}, &length, &moment_arm);
         length += contact->length;
         from = {contact->end, level};

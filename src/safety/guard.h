@@ -47,11 +47,11 @@ class Guard {
   // not use the heap or throw.
   int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
-  // Scales `v` by `factor`. Both arms move from the last command towards the scaled command by one
-  // common share: fully, unless a joint would exceed its acceleration bound. If the handles stay
-  // below their speed cap at both ends, they stay below it in between. Returns the number of
-  // altered joints, or 0 if a number is missing. Call this before Apply. Does not use the heap or
-  // throw.
+  // Scales `v` by `factor`. Both arms move by the same share of the way from the last command to
+  // the scaled command. This share is 1 unless a joint would exceed its acceleration bound. If the
+  // handles stay below their speed cap at both ends, they stay below it in between. Returns the
+  // number of altered joints, or 0 if a number is missing. Call this before Apply. Does not use the
+  // heap or throw.
   int Slow(double factor, std::array<JointVector, kHands>* v) const noexcept;
   const std::array<JointVector, kHands>& last() const noexcept { return last_; }
   // Returns whether the last command is so slow that the next one may be zero.

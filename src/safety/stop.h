@@ -129,7 +129,7 @@ class StopController {
   bool twists_known_ = false;
   bool twists_split_ = false;  // the right twist is relative to its rigid-body share
 
-  // Waiting for the other arm. Distances are expressed as time at the handle's initial speed [s].
+  // Values for waiting for the other arm. Distances are times at the handle's initial speed [s].
   std::array<double, kHands> gone_ = {};      // distance of each handle
   std::array<double, kHands> followed_ = {};  // distance of each command beyond the profile's
   double after_ = 0;                          // time since the end of the profile [s]

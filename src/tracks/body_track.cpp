@@ -213,7 +213,8 @@ std::optional<Between> Around(const std::vector<double>& times, double time, dou
   return Between{i, (time - times[i - 1]) / (times[i] - times[i - 1])};
 }
 
-// Returns a value between two measurements. Exactly at a measurement, the other one may be missing.
+// Returns a value between two measurements. If `at` is exactly at one of them, the other one may be
+// missing.
 template <class T>
 T Blend(const std::vector<T>& values, const Between& at) {
   if (at.weight == 1) return values[at.after];

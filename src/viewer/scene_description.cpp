@@ -99,8 +99,8 @@ Json DescribeViewpoint(const Scenario& scenario, const Viewpoint& viewpoint) {
           {"feet", stance.value_or(StanceSpec()).feet_apart}};
 }
 
-// Describes what each hazard does. Those of this scenario's events are not part of the description,
-// since a subject's page also receives it.
+// Describes what each hazard does. The description does not list the events of this scenario,
+// because a subject's page also receives it.
 Json DescribeHazards() {
   Json json = Json::array();
   for (const ParameterKind* kind : Hazards()) json.push_back(kind->doc);

@@ -24,8 +24,8 @@ struct ServerOptions {
   // The maximum number of connections before admission. One more drops the oldest.
   std::size_t max_guests = 256;
   std::size_t max_guests_per_address = 128;  // the same limit for each address
-  // The maximum number of TLS handshakes that begin per second. Further ones wait within head_time.
-  // Handshakes cost the single thread most, and a stop request has to wait for them.
+  // The maximum number of TLS handshakes that begin per second. Further handshakes wait within
+  // head_time. Handshakes cost the single thread most, and a stop request has to wait for them.
   double handshake_rate = 100;
   double handshake_rate_per_address = 40;
   std::size_t max_waiting_text = 256 * 1024;  // limit for one client [bytes]

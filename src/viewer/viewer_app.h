@@ -60,7 +60,7 @@ class ViewerApp : public Application {
   // Shows the newest record, if it is new.
   void Tick() override;
 
-  // The run has ended: sends its last state and the text to all clients, and disconnects them.
+  // Sends the last state of the run and the text to all clients, and disconnects them.
   void EndRun(const std::string& text, bool results_follow);
   bool ended() const { return ended_; }
 

@@ -87,7 +87,7 @@ class ViewerProcess {
   // clients are disconnected. If the viewer has not answered a request when the next one is made at
   // least 2 s later, it is killed and restarted.
   void Kick(std::uint32_t client);
-  // Does the same for all addresses that were given to Foxglove.
+  // Does the same for each address that was given to Foxglove.
   void KickFoxglove();
   // Informs all pages that the run has ended, and how, in a sentence. `results_follow` states
   // whether another viewer, with the run's results, is about to replace this one.

@@ -130,7 +130,7 @@ bool MustStartAgain(const Channels& channels, RunState state, std::uint64_t age)
   return channels.AnyLost() && (channels.AllLost() || !MayMove(state)) && age > kPause;
 }
 
-// The run's ticks, and the state in the latest one.
+// Follows the ticks of the run, and the state in the latest one.
 class Ticks {
  public:
   explicit Ticks(const RunBoard& board) : records_(board.records) {}

@@ -36,8 +36,8 @@ struct IntentModel {
   // The arm stiffens with its force: K (1 + c |F| / kStiffeningForce), with c uniform from 0 to
   // this value.
   double max_stiffening = 1;
-  // The visual correction is uniform up to this multiple of the scenario's stiffness, and its delay
-  // has this spread.
+  // The visual correction is drawn uniformly up to this multiple of the scenario's stiffness, and
+  // its delay has this spread.
   double max_sight = 1.5, sight_delay_spread = 0.15;
 };
 inline constexpr double kStiffeningForce = 30;  // [N]
