@@ -40,7 +40,7 @@ struct QuantityKind {
 };
 std::span<const QuantityKind> Quantities();
 
-// A worksheet: computes the score of a frame, and the action for a score.
+// A worksheet computes the score of a frame, and the action for a score.
 struct WorksheetKind {
   const char* name;
   int most;  // highest score

@@ -49,7 +49,7 @@ struct Swings {
 // Makes a record from ticks at arbitrary times: a command holds until the next.
 class LoopRecorder {
  public:
-  // period is the sample period of the arm [s].
+  // `period` is the sample period of the arm [s].
   LoopRecorder(int joint, double period) : period_(period) { record_.joint = joint; }
   // `due` is the scheduled time in the session. `time` is the time of the command [s]. Both ascend.
   // u is in [rad/s].

@@ -26,7 +26,7 @@ double Quantile(std::vector<double> x, double part) {
 // Collects the arrivals of one stream of samples.
 class Arrivals {
  public:
-  // now is in [s]. Returns true for a new sample.
+  // `now` is in [s]. Returns true for a new sample.
   bool Look(std::uint64_t sequence, double age, double now) {
     if (std::isfinite(age)) ages_.push_back(age);
     if (any_ && sequence == last_) return false;

@@ -16,7 +16,7 @@ class Station {
   static constexpr double kGravity = kStandardGravity;  // [m/s²]
   static constexpr double kOld = 0.2;                   // a sample this old cannot be used [s]
 
-  // sensor is null if the arm has its own. Throws DeviceError if there is no wrench or the arm's
+  // `sensor` is null if the arm has its own. Throws DeviceError if there is no wrench or the arm's
   // flange differs from the model, and InputError for an invalid model or a different number of
   // joints.
   Station(int hand, const MachineArm& spec, std::unique_ptr<Arm> arm,

@@ -25,7 +25,7 @@ class SwingFile {
   };
   // Does not throw: a file that cannot be read counts as absent.
   Kept Load() const;
-  // date is one word. Throws InputError, in which case the old file is unchanged.
+  // `date` is one word. Throws InputError, in which case the old file is unchanged.
   void Save(const Swings& swings, const std::string& date) const;
   void Remove() const noexcept;
 

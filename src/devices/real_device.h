@@ -44,7 +44,7 @@ class RealDevice final : public Device {
              std::optional<EnablingSource> enabling = std::nullopt);
   ~RealDevice() override;
 
-  // Returns the first fault, kDevice or kSensor, with the hand. power_off is set if any fault
+  // Returns the first fault, kDevice or kSensor, with the hand. `power_off` is set if any fault
   // requires it.
   Status Read(DeviceSample* sample) noexcept override;
   Status Write(const DeviceCommand& command) noexcept override;

@@ -46,8 +46,8 @@ struct PerturbationInput {
 
 class Perturbation {
  public:
-  // `margin` is the predicted stability margin of the run. dt is the duration of a tick [s]. Throws
-  // InputError if the margin is smaller than the scenario requires.
+  // `margin` is the predicted stability margin of the run. `dt` is the duration of a tick [s].
+  // Throws InputError if the margin is smaller than the scenario requires.
   Perturbation(const Scenario& scenario, double margin, double dt);
 
   // Performs one tick of RUN. Does not use the heap or a lock, or throw.

@@ -9,7 +9,7 @@ namespace predictor {
 
 // Returns the overrun of an arm [s]: the distance travelled after the command reaches zero, divided
 // by the speed before. It equals the lag of the arm's loop, or one tick if the arm follows
-// positions. dt is the duration of a tick [s].
+// positions. `dt` is the duration of a tick [s].
 double Overrun(const ArmSpec& arm, double dt);
 
 // Returns the longest time and distance of a stop from `safety.handle_speed`, from the decision

@@ -7,7 +7,8 @@
 // Only 0.6887 makes that factor 1 under the reference condition, as all other factors are (tested).
 // The paper itself was not available.
 //
-// Not for: injury risk (acceptability was judged by people, not by tissue), one hand, or sitting.
+// The method is not suitable for injury risk, for work with one hand, or for sitting. People judged
+// what is acceptable, and their tissue may not agree.
 #pragma once
 
 #include "core/sex.h"

@@ -4,7 +4,8 @@
 // cell: back 3, arms 3, legs 7, load 3 (recollection 1, stored copy 2). The larger value is used,
 // and `contested` marks it.
 //
-// Not for: arms (only three classes), or necks and wrists, which the method ignores.
+// The method is not suitable for arms, of which it has only three classes, or for necks and wrists,
+// which it ignores.
 #pragma once
 
 #include "ergonomics/posture.h"

@@ -5,7 +5,8 @@
 // invented tables. The definitions of group A were compared with a stored handbook chapter
 // (verified). Thresholds of measured angles are a design choice (posture.h).
 //
-// Not for: the risk of a person, or the choice between designs with the same score.
+// The method is not suitable for judging the risk of an individual, or for choosing between designs
+// with the same score.
 #pragma once
 
 #include "ergonomics/posture.h"

@@ -16,7 +16,7 @@ double Mean(std::span<const double> samples);
 double SampleDeviation(std::span<const double> samples);
 double Median(std::span<const double> samples);
 // Interpolates linearly between the order statistics, with the extremes at 0 and 1 (definition 7 of
-// Hyndman & Fan). probability is from 0 to 1.
+// Hyndman & Fan). `probability` is from 0 to 1.
 double Quantile(std::span<const double> samples, double probability);
 
 // Returns Pearson's correlation, or NaN if either side is constant. Both have the same length.

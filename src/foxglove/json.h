@@ -48,7 +48,7 @@ Json JointStatesSchema();
 // Returns a channel for each group of recorded quantities (core/tick_fields.h) except the inputs.
 std::vector<FoxgloveChannel> QuantityChannels();
 FoxgloveChannel TransformsChannel(const Scenario& scenario);
-// object_start is the position of O in W at the start [m].
+// `object_start` is the position of O in W at the start [m].
 FoxgloveChannel SceneChannel(const Scenario& scenario, const Vector3& object_start);
 
 }  // namespace predictor::foxglove

@@ -34,7 +34,7 @@ class HapticLoop {
  public:
   static constexpr double kLargestGain = 8;
 
-  // `world` is a linear model without hands. dt is the duration of a tick [s].
+  // `world` is a linear model without hands. `dt` is the duration of a tick [s].
   HapticLoop(const LinearModel& world, const Scenario& scenario, double dt,
              LoopModel model = LoopModel::kWithReserve);
 

@@ -40,7 +40,7 @@ double ActivationAt(const ActivationProblem& p, double square, int i, double gai
   return pulled > 0 ? 2 * pulled / (v + root) : pulled / v;
 }
 
-// reserve_scale is r²/c. square is the weight of the activation's square in the cost.
+// `reserve_scale` is r²/c. `square` is the weight of the activation's square in the cost.
 Dual DualAt(const ActivationProblem& p, const ArmVector& reserve_scale, double square,
             const ArmVector& lambda) {
   Dual dual;

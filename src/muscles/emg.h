@@ -21,7 +21,7 @@ struct EmgProcessing {
 std::vector<double> EmgEnvelope(std::span<const double> raw, const EmgProcessing& processing);
 
 // Returns a = (e^(A u) - 1) / (e^A - 1) for an envelope u relative to MVC, limited to 0 ... 1.
-// shape is A, from -3 (curved) to 0 (straight).
+// `shape` is A, from -3 (curved) to 0 (straight).
 double ActivationOfEmg(double u, double shape);
 
 // Returns the activations of a raw signal, one for each sample: the envelope over mvc, shaped by

@@ -19,7 +19,7 @@ class ForceSensor {
  public:
   static constexpr double kMaxDelay = 0.05;  // [s]
 
-  // dt is the sampling time [s], at least 1 ms. `random` draws the noise.
+  // `dt` is the sampling time [s], at least 1 ms. `random` draws the noise.
   ForceSensor(const SensorSpec& spec, const Wrench& bias, double dt, RandomStream random);
 
   // Resets to the steady state under the wrench F_S.

@@ -38,7 +38,7 @@ class HandModel {
   // `name` identifies the hand's random streams.
   HandModel(const HandSpec& spec, HandInertia inertia, std::uint64_t seed, const std::string& name);
 
-  // Resets to a free hand. dt is the step time [s].
+  // Resets to a free hand. `dt` is the step time [s].
   void Reset(double dt) noexcept;
   // Advances by one step and returns the wrench F_H_W on the handle, which moves as `handle` says.
   Wrench Step(const HandGoal& goal, const FrameMotion& handle) noexcept {

@@ -11,7 +11,7 @@ namespace predictor {
 // Ornstein-Uhlenbeck process: white noise through a first-order low-pass, correlation exp(−|t|/τ).
 class OrnsteinUhlenbeck {
  public:
-  // time_constant is in [s], and 0 gives white noise. The process starts in its stationary
+  // `time_constant` is in [s], and 0 gives white noise. The process starts in its stationary
   // distribution.
   OrnsteinUhlenbeck(double time_constant, RandomStream random)
       : time_constant_(time_constant), random_(random), x_(random_.Normal()) {}
@@ -40,7 +40,7 @@ class OrnsteinUhlenbeck {
 // process in a rotating frame, with the correlation exp(−|t|/τ) cos(2π f t).
 class NarrowBandNoise {
  public:
-  // frequency is in [Hz], and time_constant in [s].
+  // `frequency` is in [Hz], and time_constant in [s].
   NarrowBandNoise(double frequency, double time_constant, RandomStream random)
       : frequency_(frequency), time_constant_(time_constant), random_(random) {
     x_ = random_.Normal();

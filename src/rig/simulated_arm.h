@@ -15,7 +15,7 @@ namespace predictor {
 
 class SimulatedArm {
  public:
-  // dt is the step [s]. Throws InputError.
+  // `dt` is the step [s]. Throws InputError.
   SimulatedArm(const Scenario& scenario, int hand, const JointVector& start, double dt);
 
   // Takes a new command [rad/s], unless it is not finite or has the wrong number of joints.

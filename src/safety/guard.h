@@ -1,4 +1,4 @@
-// The output guard: bounds every command before it is sent.
+// The output guard bounds every command before it is sent.
 #pragma once
 
 #include <array>

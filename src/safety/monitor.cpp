@@ -16,7 +16,7 @@ class Worst {
   Worst(StopCause cause, double limit) : Worst(cause, limit, UsualQuantity(cause)) {}
   Worst(StopCause cause, double limit, Quantity quantity) : worst_{cause, -1, 0, limit, quantity} {}
   void Add(int hand, double value) noexcept { Add(hand, value, worst_.limit); }
-  // limit is the limit of this hand.
+  // `limit` is the limit of this hand.
   void Add(int hand, double value, double limit) noexcept {
     if (value <= limit) return;  // false if the value is not a number
     if (found_ && !(value - limit > worst_.value - worst_.limit)) return;

@@ -1,4 +1,4 @@
-// The safety monitor: checks each tick once, after rendering, and reports the first fault.
+// The safety monitor checks each tick once, after rendering, and reports the first fault.
 #pragma once
 
 #include <algorithm>

@@ -31,7 +31,7 @@ class OscillationDetector {
   static constexpr double kPeriodRatio = 1.5;  // longest over shortest of two successive periods
 
   OscillationDetector() = default;
-  // dt is the time between calls of Update [s].
+  // `dt` is the time between calls of Update [s].
   OscillationDetector(const OscillationSpec& spec, double dt);
   // force [N] is finite and in axes of W. In the tick that completes a growing cycle, returns its
   // amplitude [N], or the largest one if several axes complete a cycle. Otherwise returns 0. Does

@@ -23,7 +23,7 @@ class StopProfile {
   static constexpr double kOvershoot = 1.25;  // largest factor
 
   StopProfile() = default;
-  // acceleration [m/s²], jerk [m/s³] and cap of the speed [m/s] are all at the handles. dt is in
+  // acceleration [m/s²], jerk [m/s³] and cap of the speed [m/s] are all at the handles. `dt` is in
   // [s].
   StopProfile(double acceleration, double jerk, double dt,
               double speed_cap = std::numeric_limits<double>::infinity());

@@ -67,7 +67,7 @@ class VibrationDetector {
   };
 
   VibrationDetector() = default;
-  // dt is the time between calls of Update [s].
+  // `dt` is the time between calls of Update [s].
   explicit VibrationDetector(double dt);
   // force [N] is finite and in axes of W. Does not use the heap.
   Finding Update(const Vector3& force) noexcept;

@@ -38,7 +38,7 @@ class Warnings {
 
   // Does not use the heap or throw.
   void Update(const WarningInput& input) noexcept;
-  // bits has one bit per Warning. The values are as in HandRecord.
+  // `bits` has one bit per Warning. The values are as in HandRecord.
   std::uint8_t bits(std::size_t hand) const noexcept { return bits_[hand]; }
   const std::array<double, kWarningValues>& values(std::size_t hand) const noexcept {
     return values_[hand];

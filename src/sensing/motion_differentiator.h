@@ -11,7 +11,7 @@ namespace predictor {
 // the noise, and compensates for its lag.
 class MotionDifferentiator {
  public:
-  // dt is the duration of a tick [s].
+  // `dt` is the duration of a tick [s].
   explicit MotionDifferentiator(double dt, int joints = 0)
       : dt_(dt), v_(JointVector::Zero(joints)), a_(JointVector::Zero(joints)) {}
 

@@ -15,7 +15,7 @@ namespace predictor {
 // Provides the values of the interface at an input of the program.
 class InterfaceInput {
  public:
-  // dt is the period of the controller [s].
+  // `dt` is the period of the controller [s].
   InterfaceInput(double dt, int dof);
   // Writes all values. The result is valid until the next call. Does not use the heap or throw.
   const PredictorControllerInput& Fill(const ControllerInput& input) noexcept;

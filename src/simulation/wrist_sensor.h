@@ -13,7 +13,7 @@ namespace predictor {
 // end-effector, about E, in axes of W.
 class WristSensor {
  public:
-  // dt is the sampling time [s].
+  // `dt` is the sampling time [s].
   WristSensor(const WristSensorSpec& spec, double dt, std::uint64_t seed);
 
   // Settles at the true wrench F_E_W, without noise.

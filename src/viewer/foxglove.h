@@ -35,7 +35,7 @@ class Foxglove {
   std::size_t clients() const { return clients_.size(); }
   // Disconnects all clients and returns their number.
   std::size_t Kick();
-  // The run has ended: sends `text` to all clients and disconnects them.
+  // Sends `text` to all clients and disconnects them when the run has ended.
   void EndRun(const std::string& text);
 
  private:

@@ -37,7 +37,7 @@ class Leases {
   void Leave(std::uint32_t client, const std::string& token);
   // Returns true if a lease was transferred to the client that reconnected with `token`.
   bool Return(std::uint32_t client, const std::string& token, std::uint64_t now_ns);
-  // Ends expired leases. Returns true if there were any.
+  // Ends expired leases. Returns whether any lease had expired.
   bool Expire(std::uint64_t now_ns);
   // Frees the lease, regardless of its holder. The operator at the console uses this.
   void Revoke(LeaseKind kind) { lease(kind) = {}; }

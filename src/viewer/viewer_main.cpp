@@ -26,7 +26,7 @@ constexpr std::chrono::milliseconds kFarewell{300};
 
 // Names and addresses of the server, from the run's start message.
 struct Site {
-  // machine_names is the result of MachineNames().
+  // `machine_names` is the result of MachineNames().
   Site(const Json& start, const std::vector<std::string>& machine_names)
       : tls(start["tls"]), address(start["address"].get<std::string>()), names(machine_names) {
     // One certificate with all names of this machine, regardless of how the server is reached, so

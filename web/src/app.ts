@@ -1,4 +1,4 @@
-// The application: creates and connects all parts of the page.
+// The application creates and connects all parts of the page.
 import {Connection, Phase} from './connection';
 import {h} from './dom';
 import {Hands} from './hands';

@@ -30,7 +30,7 @@ inline constexpr double kTurning = 0.02;
 
 class RowBuilder {
  public:
-  // window is in [s].
+  // `window` is in [s].
   RowBuilder(const Scenario& nominal, double window);
 
   // Adds a tick. Ticks that are not finite or are out of order are skipped.

@@ -14,7 +14,7 @@ namespace {
 // The repairs are added one by one in this order. The others are then added together.
 constexpr Repair kInTurn[] = {Repair::kPredictedJacobian, Repair::kRelativeTarget, Repair::kLead,
                               Repair::kSoftRows, Repair::kCoupling};
-// This is a loop like the paper's: its rate and computing time, without our formulation.
+// This loop has the rate and the computing time of the paper's loop, without our formulation.
 const std::vector<std::string> kPaperLoop = {"rate=" + std::to_string(kAssumedPaperRate),
                                              "rig.computation_delay=0.01"};
 constexpr const char* kWithoutMonitor = "safety.oscillation.enabled=false";
