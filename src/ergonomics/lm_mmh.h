@@ -7,8 +7,9 @@
 // Only 0.6887 makes that factor 1 under the reference condition, as all other factors are (tested).
 // The paper itself was not available.
 //
-// The method is not suitable for injury risk, for work with one hand, or for sitting. People judged
-// what is acceptable, and their tissue may not agree.
+// The method is not suitable for work with one hand or for sitting. It is not suitable for judging
+// injury risk either, because its limits are loads that people found acceptable, and not loads that
+// tissue bears.
 #pragma once
 
 #include "core/sex.h"

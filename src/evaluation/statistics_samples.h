@@ -9,8 +9,8 @@ namespace predictor {
 
 inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-// Each function returns kUndefined if the result is undefined: without samples, and SampleDeviation
-// also with one sample.
+// Without samples, the result is undefined, and each function returns kUndefined. SampleDeviation
+// also returns it for a single sample.
 double Mean(std::span<const double> samples);
 // The denominator is n − 1.
 double SampleDeviation(std::span<const double> samples);

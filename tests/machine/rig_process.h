@@ -125,9 +125,9 @@ class FakeRig {
   int to_ = -1, from_ = -1;
 };
 
-// The time to rest and the deceleration that are advertised for the worse of two makes, if the
-// program dies while the fastest joint moves at `speed` [rad/s]. A thousandth is added to the
-// deceleration for rounding.
+// The time to rest and the deceleration that the documents state for the worse of two makes. They
+// apply if the program dies while the fastest joint moves at `speed` [rad/s]. A thousandth is added
+// to the deceleration for rounding.
 struct Advertised {
   // The program's driver allows this deceleration of a Franka's joints [rad/s²].
   static constexpr double kLetThrough = 0.95 * 10;

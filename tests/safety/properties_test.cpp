@@ -30,8 +30,9 @@ struct JointInput {
   double q, v;
 };
 
-// The input of all joints. `missing` is an arm that provides too few numbers or none. `passed` is
-// the number of ticks since the last command, which exceeds one after missed deadlines.
+// What the guard receives in one tick: the values of all joints. `missing` is an arm that provides
+// too few numbers or none. `passed` is the number of ticks since the last command, which exceeds
+// one after missed deadlines.
 struct Tick {
   std::vector<JointInput> joints;
   int missing;

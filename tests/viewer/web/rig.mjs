@@ -10,11 +10,11 @@ const kLarge = {width: 1280, height: 720};
 export class Rig {
   states = [];  // received by the client, with `state` as a word
 
-  // Sets up the rig before all tests of a file, and ends it after them. Options: set
-  // (['path.to.key=value']), args; light: whether the cobot consists of cylinders and spheres
-  // instead of its meshes (ignored for screenshots); viewport (ignored for screenshots); unpainted:
-  // see launch; page: a function that receives the page before it loads anything; begun: a function
-  // that is called once everything is ready.
+  // Sets up the rig before all tests of a file, and ends it after them. The options are `set`
+  // (['path.to.key=value']) and `args`. With `light` (the default), the cobot consists of cylinders
+  // and spheres instead of its meshes. `viewport` is the size of the page. When screenshots are
+  // taken, these two are ignored. For `unpainted`, see launch. `page` receives the page before it
+  // loads anything. `begun` is called once everything is ready.
   constructor(scenario, options = {}) {
     this.scenario = scenario;
     this.options = options;
