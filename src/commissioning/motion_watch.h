@@ -67,8 +67,8 @@ class MotionWatch {
   void Tare(Session* session) { feeler_.Tare(session); }
   // Call this at rest. Throws InputError if something presses on the handle.
   void Begin();
-  // Call this in each step after reading the arm. due [s] is the scheduled time of the session. If
-  // something would stop a run, throws an error with a sentence for the person: InputError for
+  // Call this in each step after reading the arm. `due` [s] is the scheduled time of the session.
+  // If something would stop a run, throws an error with a sentence for the person: InputError for
   // people's actions, DeviceError for devices, or HeldUp.
   void Check(double due);
   // Returns the permitted part of a command [rad/s].

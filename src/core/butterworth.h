@@ -12,7 +12,7 @@ template <class T>
 class Butterworth {
  public:
   enum class Pass { kLow, kHigh };
-  // cutoff [Hz], below half of the sampling rate; dt [s].
+  // `cutoff` is in [Hz], below half of the sampling rate. `dt` is in [s].
   Butterworth(Pass pass, double cutoff, double dt, const T& start)
       : x1_(start), x2_(start), y1_(start), y2_(start) {
     const double w = std::tan(std::numbers::pi * cutoff * dt);

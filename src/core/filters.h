@@ -21,7 +21,7 @@ template <class T>
 class LowPass {
  public:
   LowPass() = default;
-  // cutoff [Hz]; 0 or below passes everything through. dt [s].
+  // `cutoff` is in [Hz], and 0 or below passes everything through. `dt` is in [s].
   LowPass(double cutoff, double dt, const T& start)
       : gain_(cutoff > 0 ? 1 - std::exp(-2 * 3.14159265358979323846 * cutoff * dt) : 1),
         y_(start) {}
@@ -108,7 +108,7 @@ template <class T>
 class RampLowPass {
  public:
   RampLowPass() = default;
-  // cutoff [Hz]; 0 or below passes everything through. dt [s].
+  // `cutoff` is in [Hz], and 0 or below passes everything through. `dt` is in [s].
   RampLowPass(double cutoff, double dt, const T& start) : x_(start), y_(start) {
     if (cutoff <= 0) return;
     const double samples = 1 / (2 * 3.14159265358979323846 * cutoff * dt);  // time constant

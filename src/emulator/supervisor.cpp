@@ -198,9 +198,9 @@ Status Supervisor::StillMoving(const TickData& data) const noexcept {
           Quantity::kTime};
 }
 
-// Ticks since the last command, so that a stop keeps its timing although the arms moved on
-// meanwhile. A gap longer than the missed deadlines that stop a run is left to the arms' own
-// controllers.
+// Returns the number of ticks since the last command. A stop needs it to keep its timing, because
+// the arms moved on meanwhile. A gap longer than the missed deadlines that stop a run is left to
+// the arms' own controllers.
 int Supervisor::TicksPassed(const TickData& data) const noexcept {
   if (!rules_.arms_move_between_ticks) return 1;
   return 1 + std::min(static_cast<int>(data.missed), Monitor::kMissedDeadlines);

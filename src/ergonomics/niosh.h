@@ -86,8 +86,8 @@ struct AssistedLift {
   static constexpr const char* kCarriedLabel = "adapted, not NIOSH";
 };
 
-// `whole` describes the lift without help. mean_vertical_force [N] is the vertical force that both
-// hands exert on the load, averaged over the lift, positive upwards.
+// `whole` describes the lift without help. `mean_vertical_force` [N] is the vertical force that
+// both hands exert on the load, averaged over the lift, positive upwards.
 AssistedLift AssessAssistedLift(const LiftTask& whole, double mean_vertical_force);
 
 }  // namespace predictor::ergonomics

@@ -32,7 +32,7 @@ class OscillationIndex {
   };
 
   explicit OscillationIndex(double dt);
-  // force [N] is in axes of W, and time is the time of the tick [s]. Returns the window that this
+  // `force` [N] is in axes of W, and `time` is that of the tick [s]. Returns the window that this
   // force completes, or null. Does not use the heap.
   const Window* Add(double time, const Vector3& force) noexcept;
   // Call this if the next force does not immediately follow the last one.

@@ -16,7 +16,7 @@ using InertialParameters = Eigen::Matrix<double, 10, 1>;
 
 class TorqueRegressor {
  public:
-  // `model` must outlive this object. gravity [m/s²] acts along −z of W.
+  // `model` must outlive this object. `gravity` [m/s²] acts along −z of W.
   TorqueRegressor(const RobotModel& model, double gravity);
 
   // Returns Y(q, v, a), dof × 10 dof, of τ = Y π. τ [N·m] moves the arm without friction and with

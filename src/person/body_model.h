@@ -134,7 +134,7 @@ struct JointLoads {
 };
 
 // Computes inverse dynamics, τ = M a + h - Σ Jᵀ F, by the recursive Newton-Euler algorithm (Luh,
-// Walker & Paul 1980), in the axes of S. gravity [m/s²] acts along -z.
+// Walker & Paul 1980), in the axes of S. `gravity` [m/s²] acts along -z.
 JointLoads InverseDynamics(const BodyModel& model, const BodyVector& q, const BodyVector& v,
                            const BodyVector& a, std::span<const ExternalWrench> wrenches,
                            double gravity = kStandardGravity);

@@ -12,8 +12,8 @@
 
 namespace predictor::person {
 
-// The standard deviations of everything that must be assumed (all D; a swivel of ±15° is the
-// reference's).
+// The standard deviations of everything that must be assumed. All of them are our choice (D). The
+// project's reference also gives ±15° for the swivel.
 struct PostureSpread {
   double swivel = 0.262;           // of each elbow (15°); half of it is common to both [rad]
   double pelvis_forward = 0.03;    // [m]

@@ -10,7 +10,7 @@
 namespace predictor {
 
 // Returns the wrench that the rigid handle itself exerts on the sensor: its weight minus its rate
-// of change of momentum, about S, in axes of S. `sensor` is the motion of S. gravity [m/s²] acts
+// of change of momentum, about S, in axes of S. `sensor` is the motion of S. `gravity` [m/s²] acts
 // along −z of W.
 Wrench HandleLoad(const HandlePayloadSpec& handle, const FrameMotion& sensor, double gravity);
 

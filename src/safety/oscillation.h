@@ -33,7 +33,7 @@ class OscillationDetector {
   OscillationDetector() = default;
   // `dt` is the time between calls of Update [s].
   OscillationDetector(const OscillationSpec& spec, double dt);
-  // force [N] is finite and in axes of W. In the tick that completes a growing cycle, returns its
+  // `force` [N] is finite and in axes of W. In the tick that completes a growing cycle, returns its
   // amplitude [N], or the largest one if several axes complete a cycle. Otherwise returns 0. Does
   // not use the heap.
   double Update(const Vector3& force) noexcept;

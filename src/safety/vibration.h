@@ -69,7 +69,7 @@ class VibrationDetector {
   VibrationDetector() = default;
   // `dt` is the time between calls of Update [s].
   explicit VibrationDetector(double dt);
-  // force [N] is finite and in axes of W. Does not use the heap.
+  // `force` [N] is finite and in axes of W. Does not use the heap.
   Finding Update(const Vector3& force) noexcept;
   // The filters start from the next force as if that force had always acted.
   void Reset() noexcept { started_ = false; }
