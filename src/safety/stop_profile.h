@@ -28,8 +28,8 @@ class StopProfile {
   StopProfile(double acceleration, double jerk, double dt,
               double speed_cap = std::numeric_limits<double>::infinity());
   // Begins from the handles' present speed and acceleration along their motion. `speed` [m/s] is
-  // that of the faster handle (rotation counts at 0.2 m), and `rate` [m/s²] is its derivative. If the
-  // speed is zero or not finite, the profile is at rest at once.
+  // that of the faster handle (rotation counts at 0.2 m), and `rate` [m/s²] is its derivative. If
+  // the speed is zero or not finite, the profile is at rest at once.
   void Begin(double speed, double rate) noexcept;
   // Returns the factor for the next tick, in [0, kOvershoot], or 0 once at rest.
   double Next() noexcept;
