@@ -40,7 +40,7 @@ struct Rise {
   std::size_t from = 0, to = 0;  // samples
 };
 
-// The last sample before the object leaves its lowest height: it may have waited there.
+// Returns the last sample before the object leaves its lowest height, where it may have waited.
 std::size_t DepartureAt(const std::vector<std::optional<Vector3>>& middle, std::size_t low,
                         std::size_t high) {
   std::size_t last = low;

@@ -1,4 +1,5 @@
-// The emulator: one tick reads the device, moves the virtual world, renders it and keeps it safe.
+// The emulator reads the device, moves the virtual world, renders it and keeps it safe in each
+// tick.
 #pragma once
 
 #include <array>

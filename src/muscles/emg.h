@@ -15,9 +15,9 @@ struct EmgProcessing {
   double delay = 0.04;  // from the electrical to the mechanical onset, 0.01 to 0.08 [s]
 };
 
-// Applies a band-pass, takes the absolute value, and applies a low-pass. Each filter is a
-// second-order filter, run forward and backward, and therefore without delay. The result is at
-// least 0, in the unit of the input. Throws InputError for an impossible rate or band.
+// Applies a band-pass, takes the absolute value, and applies a low-pass. Each filter is of second
+// order and runs forward and backward, so it has no delay. The result is at least 0, in the unit of
+// the input. Throws InputError for an impossible rate or band.
 std::vector<double> EmgEnvelope(std::span<const double> raw, const EmgProcessing& processing);
 
 // Returns a = (e^(A u) - 1) / (e^A - 1) for an envelope u relative to MVC, limited to 0 ... 1.

@@ -5,8 +5,8 @@
 
 namespace predictor {
 
-// The longest stop from `speed` [m/s] with these limits [m/s²], [m/s³], without the arms' lag. When
-// it begins, the handle still accelerates as hard as possible without exceeding `speed`.
+// The longest stop from `speed` [m/s] within these limits [m/s²], [m/s³], without the arms' lag. At
+// its start, the handle still accelerates as hard as possible without exceeding `speed`.
 struct StopBudget {
   double time, way;  // [s], [m]
 };

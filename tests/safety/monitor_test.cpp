@@ -253,7 +253,7 @@ TEST_F(MonitorTest, MissedDeadlines) {
   ExpectStatus(Check(), StopCause::kDeadline, -1, 3, 2);
 }
 
-// Single deadlines are missed repeatedly, more than ten within about a second.
+// The loop misses single deadlines repeatedly, and more than ten within about a second.
 TEST_F(MonitorTest, DeadlinesThatAreMissedNowAndThen) {
   for (const int period : {50, 200}) {
     Status status = CheckAfterReset();

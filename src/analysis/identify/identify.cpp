@@ -88,8 +88,8 @@ constexpr int kBody = 10;      // number of inertial parameters of a body
 constexpr const char* kHowToExcite =
     "Record a run in which the controller moves all joints, as in scenarios/excite_cobot.yaml.";
 
-// All parameters in order: viscous and Coulomb friction of each joint, then z of each body, of
-// which the load is the last.
+// The order of all parameters is: viscous and Coulomb friction of each joint, and then z of each
+// body, of which the load is the last.
 struct Layout {
   int joints;
   int links() const { return kFrictionColumns * joints; }
