@@ -13,6 +13,7 @@
 #include "core/shared_run.h"
 #include "core/text.h"
 #include "live_evaluation.h"
+#include "patient_output.h"
 #include "progress.h"
 #include "quit.h"
 #include "recorded_run.h"
@@ -185,6 +186,7 @@ std::string JsonOf(const Verification& v) {
 
 int ReplayCommand(const std::string& recording, const ServeOptions& options) {
   QuitOn({SIGINT, SIGTERM});
+  BoundOutput();
   RecordingReader reader(recording);
   ShowProblem(reader.problem());
   const TemporaryFolder folder;

@@ -90,8 +90,7 @@ void AddStop(const StopSummary& stop, std::string* text) {
   AppendLine(text, "Stopped after %.3f s of emulation by cause '%s'%s%s%s", stop.time,
              Name(stop.cause), stop.hand < 0 ? "" : ", hand ",
              stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen.c_str());
-  // The text of any other cause explains itself.
-  if (stop.cause == StopCause::kPhysics && stop.quantity != Quantity::kNone) {
+  if (stop.quantity != Quantity::kNone) {
     const Status status{stop.cause, -1, stop.value, stop.limit, stop.quantity};
     AppendLine(text, "  Explanation: %s. %s", StopCauseText(stop.cause, stop.quantity).c_str(),
                CauseAdvice(status).c_str());

@@ -36,6 +36,7 @@ class Checker {
   void Limits() const;
   void Formulation() const;
   void Controller() const;
+  void Events() const;
   void Perturbation() const;
 
  private:
@@ -300,6 +301,15 @@ void Checker::Controller() const {
              " needs 1000 Hz. Set rate: 1000; cobot.control.rate may be lower.");
 }
 
+// A run stops at safety.force, so an event that waits for more never begins.
+void Checker::Events() const {
+  for (std::size_t i = 0; i < s_.events.size(); ++i)
+    if (const std::optional<double>& force = s_.events[i].trigger.force)
+      Unless(*force < s_.safety.force, "events." + std::to_string(i) + ".trigger.force",
+             "is " + FormatNumber(*force) + " N, but a run stops at safety.force, " +
+                 FormatNumber(s_.safety.force) + " N, so the event would never begin. Reduce it.");
+}
+
 // A displacement's force on a person is predicted from the scenario's hand, which may be wrong: the
 // run measures it too.
 void Checker::Perturbation() const {
@@ -334,6 +344,7 @@ void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* pro
   checker.Limits();
   checker.Formulation();
   checker.Controller();
+  checker.Events();
   checker.Perturbation();
 }
 

@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <array>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 #include "app/child.h"
 #include "support/faulty_system.h"
@@ -105,19 +108,34 @@ TEST(FileSizeLimit, IsAnErrorOfEveryCommand) {
 
 // Standard error accepts no more data. This happens if a pager is not scrolled or a terminal is
 // paused.
+// A pipe that is full and that nobody reads.
+class FullPipe {
+ public:
+  FullPipe() {
+    EXPECT_EQ(pipe2(ends_.data(), O_CLOEXEC), 0);
+    EXPECT_EQ(fcntl(ends_[1], F_SETFL, O_NONBLOCK), 0);
+    std::array<char, 4096> nothing{};
+    while (write(ends_[1], nothing.data(), nothing.size()) > 0) {
+    }
+    EXPECT_EQ(fcntl(ends_[1], F_SETFL, 0), 0);
+  }
+  ~FullPipe() {
+    close(ends_[0]);
+    close(ends_[1]);
+  }
+  int end() const { return ends_[1]; }
+
+ private:
+  std::array<int, 2> ends_{};
+};
+
 TEST(UnreadOutput, DoesNotKeepARunFromEnding) {
   const test::TemporaryFolder folder;
   const std::string recording = folder.path() / "a.mcap";
-  std::array<int, 2> ends{};
-  ASSERT_EQ(pipe2(ends.data(), O_CLOEXEC), 0);
-  ASSERT_EQ(fcntl(ends[1], F_SETFL, O_NONBLOCK), 0);
-  std::array<char, 4096> nothing{};
-  while (write(ends[1], nothing.data(), nothing.size()) > 0) {
-  }
-  ASSERT_EQ(fcntl(ends[1], F_SETFL, 0), 0);
+  const FullPipe unread;
   Child run({"run", Scenario("box_9kg"), "--duration", "3600", "--no-viewer", "--json", "-",
              "--record", recording},
-            "", ends[1]);
+            "", unread.end());
   ASSERT_TRUE(test::Becomes(
       [&] { return fs::exists(recording) && fs::file_size(recording) > (1U << 20U); }));
   const auto begin = std::chrono::steady_clock::now();
@@ -128,10 +146,23 @@ TEST(UnreadOutput, DoesNotKeepARunFromEnding) {
   run.Send(SIGKILL);  // in case it did not end
   EXPECT_EQ(run.Wait(), 0);
   EXPECT_TRUE(nlohmann::json::parse(run.output())["stop"].is_null());
-  close(ends[0]);
-  close(ends[1]);
   Child again({"verify", recording});
   EXPECT_EQ(again.Wait(), 0) << again.output() << again.errors();
+}
+
+TEST(UnreadOutput, DoesNotKeepAReplayFromEnding) {
+  const test::TemporaryFolder folder;
+  const std::string recording = folder.path() / "a.mcap";
+  Child first({"simulate", Scenario("box_9kg"), "--duration", "20", "--record", recording});
+  ASSERT_EQ(first.Wait(), 0);
+  const FullPipe unread;
+  Child replay({"replay", recording, "--port", "0"}, "", unread.end());
+  std::this_thread::sleep_for(std::chrono::seconds(1));  // it waits for its output to be read
+  replay.Send(SIGINT);
+  EXPECT_TRUE(
+      test::Becomes([&] { return test::StatusOf(replay.pid(), "State").starts_with("Z"); }));
+  replay.Send(SIGKILL);  // in case it did not end
+  EXPECT_EQ(replay.Wait(), 0);
 }
 
 TEST(Memory, OfTheFollowerExhaustedEndsTheRun) {
