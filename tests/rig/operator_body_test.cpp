@@ -25,9 +25,13 @@ std::array<FrameMotion, kHands> HandlesAt(const Vector3& middle, double apart = 
   return handles;
 }
 
+// `middle`: of the handles, seen by the person.
 struct StandingBody {
   explicit StandingBody(const Scenario& scenario, const Vector3& middle = {0.4, 0, 1.0})
       : body(scenario), handles(HandlesAt(middle)) {
+    const Eigen::AngleAxisd turn(scenario.operator_.stance->facing, Vector3::UnitZ());
+    for (FrameMotion& handle : handles)
+      handle.X_W = Pose{Vector3::Zero(), Quaternion(turn)} * handle.X_W;
     Run(1, Wrench::Zero());
   }
   void Run(double seconds, const Wrench& each) {
@@ -109,6 +113,25 @@ TEST(OperatorBody, ForcesStayWithinStrengthAndBalance) {
   }
   EXPECT_GT(limited, 50);
   EXPECT_LT(limited, 400);
+}
+
+// Nothing changes for the person if handles and forces turn with the person about the vertical.
+TEST(OperatorBody, LimitsTurnWithThePerson) {
+  constexpr double kTurn = 2;  // [rad]
+  Scenario scenario = Embodied();
+  const StandingBody ahead(scenario);
+  scenario.operator_.stance->facing = kTurn;
+  const StandingBody turned(scenario);
+  const Quaternion turn(Eigen::AngleAxisd(kTurn, Vector3::UnitZ()));
+  RandomStream random(2, "turn");
+  for (int k = 0; k < 50; ++k) {
+    std::array<Vector3, kHands> forces = {RandomForce(&random, 100), RandomForce(&random, 100)};
+    std::array<Vector3, kHands> others = {turn * forces[0], turn * forces[1]};
+    ahead.body.LimitForces(ahead.handles, &forces);
+    turned.body.LimitForces(turned.handles, &others);
+    for (std::size_t hand = 0; hand < kHands; ++hand)
+      EXPECT_NEAR((others[hand] - turn * forces[hand]).norm(), 0, 1e-6);
+  }
 }
 
 TEST(OperatorBody, TheStrengthLimitIsThatOfTheJoints) {
