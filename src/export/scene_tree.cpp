@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "models/fixture_shapes.h"
 #include "models/object_model.h"
 #include "models/robot.h"
 #include "models/urdf.h"
@@ -82,7 +83,9 @@ constexpr std::array<std::array<double, 4>, kHands> kHandleColors = {
 constexpr std::array<double, 4> kFloorColor = {0.6, 0.6, 0.6, 1};
 constexpr std::array<double, 4> kTableColor = {0.61, 0.48, 0.34, 1};
 
-// Returns the names of the scene's own links.
+constexpr const char* kFixturePrefix = "fixture_";
+
+// Names of the scene's own links, but those of fixtures.
 const std::set<std::string>& OwnLinks() {
   static const std::set<std::string> names = {"world",
                                               "floor",
@@ -210,7 +213,7 @@ class Composer {
     for (const UrdfLink& link : urdf.links) taken.insert(link.name);
     for (const UrdfLink& link : urdf.links) {
       std::string name = link.name;
-      if (OwnLinks().count(name) > 0) {
+      if (OwnLinks().count(name) > 0 || name.starts_with(kFixturePrefix)) {
         name.insert(0, "cobot_");
         while (!taken.insert(name).second) name += '_';
       }
@@ -351,6 +354,15 @@ class Composer {
     Join(name + "_joint", "world", link, At(top));
   }
 
+  void AddFixture(const std::string& name, const FixtureSpec& fixture) {
+    SceneLink link;
+    link.name = name;
+    for (const ModelShape& shape : FixtureShapes(fixture))
+      link.visuals.push_back({shape, true, {}});
+    link.collisions = link.visuals;
+    Join(name + "_joint", "world", link, Pose::Identity());
+  }
+
   void AddSurroundings() {
     const EnvironmentSpec& environment = scenario_.environment;
     if (environment.floor) {
@@ -359,6 +371,8 @@ class Composer {
     if (environment.table) {
       AddStatic("table", environment.table->top, environment.table->size, kTableColor);
     }
+    for (std::size_t i = 0; i < environment.fixtures.size(); ++i)
+      AddFixture(kFixturePrefix + std::to_string(i), environment.fixtures[i]);
   }
 
   const Scenario& scenario_;

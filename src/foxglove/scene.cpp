@@ -1,9 +1,12 @@
 // The topics /tf and /scene, which show poses and shapes.
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <numbers>
 
 #include "foxglove/json.h"
+#include "models/fixture_shapes.h"
 #include "models/object_model.h"
 #include "models/robot.h"
 
@@ -179,8 +182,14 @@ Json FloorEntity(std::uint64_t ns) {
   return entity;
 }
 
-// Draws the joints and the segments between them. Meshes are too large for a message sent 50 times
-// per second.
+Json FixturesEntity(const std::vector<ModelShape>& shapes, std::uint64_t ns) {
+  Json entity = Entity("fixtures", "world", ns);
+  for (const ModelShape& shape : shapes) AddShape(shape, &entity);
+  return entity;
+}
+
+// The joints and the segments between them. Meshes are too large for a message sent 50 times per
+// second.
 Json CobotEntity(const std::vector<Vector3>& points, std::uint64_t ns) {
   Json entity = Entity("cobot", "world", ns);
   ModelShape shape;
@@ -230,10 +239,15 @@ FoxgloveChannel SceneChannel(const Scenario& scenario, const Vector3& object_sta
   const Vector3 center = object_start + scenario.guidance.center;
   const double radius = scenario.guidance.radius;
   const bool floor = scenario.environment.floor;
+  std::vector<ModelShape> fixtures;
+  for (const FixtureSpec& fixture : scenario.environment.fixtures)
+    std::ranges::copy(FixtureShapes(fixture), std::back_inserter(fixtures));
   return {"/scene", "foxglove.SceneUpdate", SceneUpdateSchema(),
-          [cobot, object, circle, center, radius, floor](const TickRecord& r, std::uint64_t ns) {
+          [cobot, object, circle, center, radius, floor, fixtures](const TickRecord& r,
+                                                                   std::uint64_t ns) {
             Json entities = Json::array();
             if (floor) entities.push_back(FloorEntity(ns));
+            if (!fixtures.empty()) entities.push_back(FixturesEntity(fixtures, ns));
             if (circle) entities.push_back(GuidanceEntity(center, radius, ns));
             cobot->Update(r);
             entities.push_back(CobotEntity(cobot->Points(), ns));

@@ -28,6 +28,7 @@ class Checker {
 
   void Object() const;
   void Environment() const;
+  void Fixture(std::size_t i) const;
   void Handles() const;
   void Device() const;
   void Operator() const;
@@ -118,8 +119,18 @@ void Checker::Object() const {
   }
 }
 
+void Checker::Fixture(std::size_t i) const {
+  const FixtureSpec& fixture = s_.environment.fixtures[i];
+  const std::string path = "environment.fixtures." + std::to_string(i);
+  const int used = Dimensions(fixture.shape);
+  Unless(fixture.size.head(used).minCoeff() > 0, path + ".size",
+         "has a zero among the first " + std::to_string(used) + " entries, the dimensions of a " +
+             NameOf(fixture.shape) + ". They must be greater than 0.");
+}
+
 // Weight compensation and people assume that gravity points down in the rig too.
 void Checker::Environment() const {
+  for (std::size_t i = 0; i < s_.environment.fixtures.size(); ++i) Fixture(i);
   if (!s_.environment.shift) return;
   const std::string path = "environment.shift.";
   const PoseSpec& shift = *s_.environment.shift;

@@ -13,6 +13,7 @@
 #include "core/hands.h"
 #include "core/sex.h"
 #include "core/types.h"
+#include "scenario/fixture_spec.h"
 #include "scenario/yaml_tree.h"
 
 namespace predictor {
@@ -186,6 +187,7 @@ struct EnvironmentSpec {
   double gravity = 9.81;  // [m/s²]
   bool floor = true;      // plane z = 0 with contact
   std::optional<TableSpec> table;
+  std::vector<FixtureSpec> fixtures;
   double friction = 0.8;  // coefficient of sliding friction in contacts
   // X_RW, pose of the virtual world in the frame of the arms' bases. Roll and pitch are 0, so
   // gravity points down in both. If it is absent, W is R and the arms' bases may be chosen freely.

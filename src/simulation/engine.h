@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "core/archive.h"
 #include "core/messages.h"
@@ -34,6 +35,8 @@ struct Contact {
   Vector3 normal_W = Vector3::Zero();  // unit vector, out of the surroundings
   Vector3 force_W = Vector3::Zero();   // on the object or the cobot [N]
   double depth = 0;                    // of the penetration; negative: a gap [m]
+  int fixture = -1;                    // index in environment.fixtures; −1: floor or table
+  std::string_view link;               // of the cobot; empty: the object
 };
 
 // The positions and velocities are those of the cobot's joints and of the attachment's joint or the
@@ -169,8 +172,9 @@ class Engine {
   Layout layout_;
 };
 
-// Composes the scene of a scenario: cobot, object, handles, floor and table. The object collides
-// with floor and table. `wrist_sensor` states whether LoadWrench will be used. Throws InputError.
+// Composes the scene of a scenario: cobot, object, handles, floor, table and fixtures. The object
+// collides with floor and table, and object and cobot with the fixtures that touch them, but not
+// with each other. `wrist_sensor`: whether LoadWrench will be used. Throws InputError.
 std::unique_ptr<Engine> MakeEngine(const Scenario& scenario, const RobotModel& cobot,
                                    bool wrist_sensor, Holding holding);
 

@@ -20,6 +20,13 @@ constexpr int kIterations = 1000;
 constexpr double kMaxStep = 0.1;      // maximum change of a coordinate in an iteration [rad, m]
 constexpr double kPseudoTime = 0.01;  // first step of the flow, squared [s²]
 constexpr double kDifference = 1e-6;  // step of finite differences [rad, m]
+// While something rests on a fixture: less than the 0.5 µm by which it sinks in.
+constexpr double kContactDifference = 1e-8;
+// An iteration enters a fixture at most this far [m]: deeper, the contact's force is so large that
+// the search would jump in and out.
+constexpr double kMaxDepth = 1e-5;
+constexpr int kHalvings = 30;            // of an iteration that enters a fixture deeper
+constexpr double kDeepestStart = 0.001;  // in a fixture [m]
 constexpr double kUnstable = -0.01;  // eigenvalue of M⁻¹ H below which the scene is unstable [1/s²]
 constexpr double kNudge = 0.01;      // away from an unstable equilibrium [rad, m]
 
@@ -90,11 +97,35 @@ class EquilibriumSearch {
     return M;
   }
 
-  // Moves by dq in the tangent space, limited in each coordinate.
+  // Moves by dq in the tangent space, limited in each coordinate and at fixtures.
   void Move(VectorXd dq) {
     const double largest = dq.lpNorm<Eigen::Infinity>();
     if (largest > kMaxStep) dq *= kMaxStep / largest;
+    const VectorXd start = engine_.positions();
+    const double allowed = std::max(kMaxDepth, Depth());
     engine_.Displace(dq.data(), 1);
+    for (int i = 0; i < kHalvings && Depth() > allowed; ++i) {
+      dq /= 2;
+      engine_.positions() = start;
+      engine_.Displace(dq.data(), 1);
+    }
+  }
+
+  // How deep the object or the cobot is in a fixture [m].
+  double Depth() {
+    engine_.Prepare();
+    double depth = 0;
+    for (int i = 0; i < engine_.contact_count(); ++i) {
+      const Contact contact = engine_.contact(i);
+      if (contact.fixture >= 0) depth = std::max(depth, contact.depth);
+    }
+    return depth;
+  }
+
+  bool TouchesFixture() const {
+    for (int i = 0; i < engine_.contact_count(); ++i)
+      if (engine_.contact(i).fixture >= 0) return true;
+    return false;
   }
 
   // Computes H = −∂r/∂q by central differences.
@@ -102,13 +133,14 @@ class EquilibriumSearch {
     Engine::Values q = engine_.positions();
     const VectorXd start = q;
     MatrixXd H(nv(), nv());
+    const double difference = TouchesFixture() ? kContactDifference : kDifference;
     for (int i = 0; i < nv(); ++i) {
-      const VectorXd step = kDifference * VectorXd::Unit(nv(), i);
+      const VectorXd step = difference * VectorXd::Unit(nv(), i);
       engine_.Displace(step.data(), 1);
       const VectorXd ahead = Force();
       q = start;
       engine_.Displace(step.data(), -1);
-      H.col(i) = (Force() - ahead) / (2 * kDifference);
+      H.col(i) = (Force() - ahead) / (2 * difference);
       q = start;
     }
     Force();
@@ -146,6 +178,24 @@ Obstacle ObstacleIn(const ControlledScene& scene) {
   return {};
 }
 
+// The search would push the bodies out of each other, to another start than the one described.
+void CheckStart(Engine* engine) {
+  engine->Prepare();
+  for (int i = 0; i < engine->contact_count(); ++i) {
+    const Contact contact = engine->contact(i);
+    if (contact.fixture < 0 || contact.depth <= kDeepestStart) continue;
+    const std::string key = "environment.fixtures." + std::to_string(contact.fixture);
+    const bool is_object = contact.link.empty();
+    throw InputError::At(
+        key,
+        key + ": at cobot.posture, " +
+            (is_object ? "the object" : "the cobot's link " + Quote(std::string(contact.link))) +
+            " is " + FormatNumber(std::round(contact.depth * 1e4) / 10) +
+            " mm inside this fixture. Move the fixture, or change cobot.posture" +
+            (is_object ? "." : ", or remove cobot from the fixture's touches."));
+  }
+}
+
 }  // namespace
 
 void FindEquilibrium(ControlledScene* scene) {
@@ -154,6 +204,7 @@ void FindEquilibrium(ControlledScene* scene) {
   Engine::Values q = engine.positions();
   for (int j = 0; j < scene->posture().size(); ++j)
     q[engine.layout().q[static_cast<std::size_t>(j)]] = scene->posture()[j];
+  CheckStart(&engine);
   const double residual = EquilibriumSearch(scene).Run();
   Obstacle obstacle = ObstacleIn(*scene);
   if (residual < kTolerance && obstacle.text.empty()) return;

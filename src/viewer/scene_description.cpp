@@ -107,12 +107,23 @@ Json DescribeHazards() {
   return json;
 }
 
+Json DescribeFixtures(const Scenario& scenario) {
+  Json json = Json::array();
+  for (const FixtureSpec& fixture : scenario.environment.fixtures)
+    json.push_back({{"shape", NameOf(fixture.shape)},
+                    {"size", ToJson(fixture.size)},
+                    {"pose", ToJson(fixture.X_WG())},
+                    {"color", ToJson(fixture.color)}});
+  return json;
+}
+
 Json DescribeSurroundings(const Scenario& scenario, const Vector3& object_start) {
   const auto& table = scenario.environment.table;
   const SafetySpec& safety = scenario.safety;
   return {{"floor", scenario.environment.floor},
           {"table", table ? Json{{"size", ToJson(table->size)}, {"top", ToJson(table->top)}}
                           : Json(nullptr)},
+          {"fixtures", DescribeFixtures(scenario)},
           {"guidance",
            {{"type", scenario.guidance.type},
             {"center", ToJson(object_start + scenario.guidance.center)},

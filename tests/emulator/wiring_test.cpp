@@ -234,5 +234,18 @@ TEST_F(WiringOfModels, TwoShapesMayBeOfOneMesh) {
   EXPECT_EQ(Error(), "");
 }
 
+TEST(Wiring, AFixtureInsideTheObjectIsRefusedAtItsPlace) {
+  const std::string text =
+      Box() + "environment:\n  fixtures:\n    - {shape: box, size: [1, 1, 1], xyz: [0.5, 0, 0]}\n";
+  const std::string error = ErrorOf(text);
+  EXPECT_EQ(error.find(PlaceIn(text, "{shape: box, size: [1, 1, 1]") +
+                       "environment.fixtures.0: at cobot.posture, the object is "),
+            0u)
+      << error;
+  EXPECT_NE(error.find(" mm inside this fixture. Move the fixture, or change cobot.posture."),
+            std::string::npos)
+      << error;
+}
+
 }  // namespace
 }  // namespace predictor

@@ -149,7 +149,12 @@ TEST_F(Package, RenamesOnlyWhatIsCalledLikeTheScenesOwn) {
                                              "object",
                                              "left_handle",
                                              "floor",
-                                             "table"};
+                                             "table",
+                                             "fixture_0",
+                                             "fixture_1",
+                                             "fixture_2",
+                                             "fixture_3",
+                                             "fixture_4"};
   EXPECT_EQ(urdf.LinkNames(), expected);
 }
 

@@ -355,6 +355,38 @@ TEST_P(ExportedScene, HasFloorAndTableWhereTheyAre) {
   EXPECT_NEAR(data->geom_xpos[3 * geom], table->top.x(), kExact);
 }
 
+// The bounding box along a fixture's own axes is that of its shape.
+TEST_P(ExportedScene, HasTheFixturesWhereTheyAre) {
+  mj_forward(mujoco.get(), data.get());
+  for (std::size_t i = 0; i < scenario.environment.fixtures.size(); ++i) {
+    const FixtureSpec& fixture = scenario.environment.fixtures[i];
+    const int body = mj_name2id(mujoco.get(), mjOBJ_BODY, ("fixture_" + std::to_string(i)).c_str());
+    ASSERT_GE(body, 0);
+    Vector3 low = Vector3::Constant(1e9), high = -low;
+    for (int k = 0; k < mujoco->body_geomnum[body]; ++k) {
+      const int geom = mujoco->body_geomadr[body] + k;
+      const Vector3 middle =
+          fixture.X_WG().Inverse() * Vector3(Eigen::Map<Vector3>(data->geom_xpos + 3 * geom));
+      const Vector3 half = Eigen::Map<Vector3>(mujoco->geom_aabb + 6 * geom + 3);
+      low = low.cwiseMin(middle - half);
+      high = high.cwiseMax(middle + half);
+    }
+    const double a = fixture.size.x(), b = fixture.size.y();
+    const bool caps = fixture.shape == FixtureShape::kCapsule;
+    Vector3 extent = fixture.size;  // of a box
+    if (caps || fixture.shape == FixtureShape::kCylinder)
+      extent = {2 * a, 2 * a, caps ? b + 2 * a : b};
+    if (fixture.shape == FixtureShape::kSphere) extent.setConstant(2 * a);
+    if (fixture.shape == FixtureShape::kPlane) {
+      EXPECT_NEAR(high.z(), 0, kExact);
+      extent = {a, b, -low.z()};
+    }
+    EXPECT_LT((high - low - extent).norm(), kExact) << NameOf(fixture.shape);
+    const bool centred = fixture.shape != FixtureShape::kPlane;
+    EXPECT_TRUE(!centred || (high + low).norm() < kExact) << NameOf(fixture.shape);
+  }
+}
+
 // Collects all elements with this name, at any depth.
 void Collect(const tinyxml2::XMLElement* from, const std::string& name,
              std::vector<const tinyxml2::XMLElement*>* found) {
@@ -411,7 +443,8 @@ TEST_P(ExportedScene, HasWhatUrdfImporterNeeds) {
   for (auto* link = scene->FirstChildElement("link"); link != nullptr;
        link = link->NextSiblingElement("link")) {
     EXPECT_EQ(link->FirstChildElement("inertial") == nullptr,
-              still.count(link->Attribute("name")) > 0)
+              still.count(link->Attribute("name")) > 0 ||
+                  std::string(link->Attribute("name")).starts_with("fixture_"))
         << link->Attribute("name");
   }
   std::vector<const tinyxml2::XMLElement*> materials;

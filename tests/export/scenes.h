@@ -66,6 +66,16 @@ inline Scenario OddScene(const std::filesystem::path& folder, JointType joint) {
   s.object.attachment.damping = 0.3;
   s.left_handle = HandleSpec{{{0.1, 0.05, 0.02}, {0.3, -0.2, 0.5}}};
   s.environment.table = TableSpec{{0.8, 1.2, 0.05}, {0.5, 0, 0.2}};
+  for (const FixtureShape shape :
+       {FixtureShape::kBox, FixtureShape::kCylinder, FixtureShape::kCapsule, FixtureShape::kSphere,
+        FixtureShape::kPlane}) {
+    FixtureSpec fixture;
+    fixture.shape = shape;
+    fixture.size = {0.2, 0.3, 0.4};
+    fixture.xyz = {2.0 + static_cast<double>(s.environment.fixtures.size()), -1, 0.5};
+    fixture.rpy = {0.3, -0.4, 1.2};
+    s.environment.fixtures.push_back(fixture);
+  }
   s.environment.gravity = 1.62;
   return s;
 }

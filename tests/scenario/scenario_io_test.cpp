@@ -351,10 +351,10 @@ template <class S>
 class FieldTable : public testing::Test {};
 using Structs =
     testing::Types<PoseSpec, JointFriction, Waypoint, ControllerSpec, CobotSpec, PrimitiveSpec,
-                   AttachmentSpec, ObjectSpec, HandleSpec, TableSpec, EnvironmentSpec, CouplingSpec,
-                   VelocityLoopSpec, HandlePayloadSpec, SensorSpec, ArmSpec, DeviceSpec, RigSpec,
-                   HandSpec, ActionSpec, OperatorSpec, RenderingSpec, OscillationSpec, SafetySpec,
-                   GuidanceSpec, Scenario>;
+                   AttachmentSpec, ObjectSpec, HandleSpec, TableSpec, FixtureSpec, EnvironmentSpec,
+                   CouplingSpec, VelocityLoopSpec, HandlePayloadSpec, SensorSpec, ArmSpec,
+                   DeviceSpec, RigSpec, HandSpec, ActionSpec, OperatorSpec, RenderingSpec,
+                   OscillationSpec, SafetySpec, GuidanceSpec, Scenario>;
 TYPED_TEST_SUITE(FieldTable, Structs);
 
 TYPED_TEST(FieldTable, VisitsEveryMember) { EXPECT_TRUE(VisitsEveryMember<TypeParam>()); }

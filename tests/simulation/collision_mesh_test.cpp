@@ -32,7 +32,7 @@ class CollisionMeshTest : public testing::Test {
   }
   std::string ErrorOf(const ModelShape& shape) const {
     try {
-      ReadCollisionMesh(shape);
+      ReadCollisionMesh(shape, "object.model");
       return "";
     } catch (const InputError& error) {
       return error.what();
@@ -43,7 +43,7 @@ class CollisionMeshTest : public testing::Test {
 };
 
 TEST_F(CollisionMeshTest, GivesTheFilesOwnCoordinatesWithoutTheScale) {
-  const CollisionMesh mesh = ReadCollisionMesh(Write("a.obj", kTetrahedron));
+  const CollisionMesh mesh = ReadCollisionMesh(Write("a.obj", kTetrahedron), "object.model");
   ASSERT_EQ(mesh.vertices.size(), 12u);
   ASSERT_EQ(mesh.faces.size(), 12u);
   const std::array<Vector3, 4> corners = {Vector3(1, 2, 3), Vector3(1.5, 2, 3), Vector3(1, 2.25, 3),
@@ -62,6 +62,15 @@ TEST_F(CollisionMeshTest, AnInvalidMeshIsAnErrorWithPlaceAndRemedy) {
   EXPECT_EQ(error.find("object.model: box.urdf:4: The mesh "), 0u) << error;
   EXPECT_NE(error.find("a.stl cannot be used: "), std::string::npos) << error;
   EXPECT_NE(error.find("Repair it"), std::string::npos) << error;
+}
+
+TEST_F(CollisionMeshTest, AMeshWithoutVolumeIsAnError) {
+  std::string text = kTetrahedron;
+  text.replace(text.find("v 1 2 4"), 7, "v 2 3 3");  // all four in the plane z = 3
+  const std::string error = ErrorOf(Write("a.obj", text));
+  EXPECT_EQ(error.find("object.model: box.urdf:4: The mesh "), 0u) << error;
+  EXPECT_NE(error.find("it is flat, so its hull has no volume"), std::string::npos) << error;
+  EXPECT_NE(error.find("give <collision> a box, cylinder or sphere"), std::string::npos) << error;
 }
 
 TEST_F(CollisionMeshTest, NumbersThatAreNotFiniteAreAnError) {

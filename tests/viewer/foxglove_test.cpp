@@ -259,7 +259,26 @@ TEST(Foxglove, ShowsTheCobotWhereItIs) {
   EXPECT_EQ(found, 2);
 }
 
-// The colours must be green, orange and red as in the page, relative to the current threshold.
+TEST(Foxglove, ShowsTheFixtures) {
+  Scenario scenario = LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
+  scenario.environment.fixtures.resize(2);
+  scenario.environment.fixtures[0].xyz = {1, 2, 3};
+  scenario.environment.fixtures[1].shape = FixtureShape::kCapsule;
+  const auto channels = FoxgloveChannels(scenario, {0.5, 0, 0.3});
+  const Json scene = channels[1].message(TickRecord{}, 1);
+  int found = 0;
+  for (const Json& entity : scene["entities"]) {
+    if (entity["id"] != "fixtures") continue;
+    ++found;
+    ASSERT_EQ(entity["cubes"].size(), 1u);
+    EXPECT_EQ(entity["cubes"][0]["pose"]["position"]["z"], 3.0);
+    EXPECT_EQ(entity["cylinders"].size(), 1u);
+    EXPECT_EQ(entity["spheres"].size(), 2u);
+  }
+  EXPECT_EQ(found, 1);
+}
+
+// The colours are green, orange and red, as in the page, relative to the current threshold.
 TEST(Foxglove, ArrowsWarn) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");

@@ -34,6 +34,15 @@ export interface ArmSpec extends RobotSpec {
 
 export type ObjectSpec = {urdf: string} | {shape: 'box' | 'cylinder' | 'sphere'; size: number[]};
 
+// Box: x, y, z; cylinder, capsule: radius, length (along z, of a capsule without its caps); sphere: radius; plane: x, y,
+// with its normal along z [m]. The colour is red, green, blue, from 0 to 1.
+export interface FixtureSpec {
+  shape: 'box' | 'cylinder' | 'capsule' | 'sphere' | 'plane';
+  size: Vec3;
+  pose: Pose;
+  color: Vec3;
+}
+
 export interface ParameterSpec {
   min: number;
   max: number;
@@ -65,6 +74,7 @@ export interface SceneSpec {
   arms: Record<Side, ArmSpec | null>;
   floor: boolean;
   table: {size: Vec3; top: Vec3} | null;
+  fixtures?: FixtureSpec[];  // older servers omit them
   guidance: {type: 'none' | 'circle'; center: Vec3; radius: number};
   thresholds: {
     force: number;

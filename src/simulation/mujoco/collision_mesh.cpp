@@ -1,5 +1,6 @@
 #include "simulation/mujoco/collision_mesh.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -24,6 +25,7 @@ constexpr std::size_t kMaxVertices = 3 * kMaxCollisionTriangles;
 constexpr std::size_t kMaxBytes =
     sizeof(Header) + 3 * (kMaxVertices * sizeof(float) + kMaxCollisionTriangles * sizeof(int));
 constexpr double kMaxReadTime = 20;  // [s]
+constexpr double kFlat = 1e-6;       // thickness of a flat mesh, in parts of its length
 
 void Append(const void* data, std::size_t size, std::vector<std::byte>* to) {
   const auto* bytes = static_cast<const std::byte*>(data);
@@ -91,16 +93,30 @@ CollisionMesh Checked(const std::vector<std::byte>& bytes) {
   return mesh;
 }
 
+// Whether all vertices are in one plane.
+bool IsFlat(const CollisionMesh& mesh) {
+  if (mesh.vertices.empty()) return true;
+  const auto count = static_cast<Eigen::Index>(mesh.vertices.size() / 3);
+  const Eigen::Map<const Eigen::Matrix3Xf> points(mesh.vertices.data(), 3, count);
+  const Eigen::Matrix3Xd centred =
+      points.cast<double>().colwise() - Vector3(points.cast<double>().rowwise().mean());
+  const Matrix3 spread = centred * centred.transpose();
+  const Vector3 squares = Eigen::SelfAdjointEigenSolver<Matrix3>(spread).eigenvalues();
+  return squares[0] <= kFlat * kFlat * squares[2];
+}
+
 }  // namespace
 
-CollisionMesh ReadCollisionMesh(const ModelShape& shape) {
+CollisionMesh ReadCollisionMesh(const ModelShape& shape, const std::string& key) {
   SilenceMujoco();
   try {
-    return Checked(CallSandboxed({shape.mesh}, {kMaxBytes, kMaxReadTime},
-                                 [&] { return ReadByEngine(shape.mesh); }));
+    CollisionMesh mesh = Checked(CallSandboxed({shape.mesh}, {kMaxBytes, kMaxReadTime},
+                                               [&] { return ReadByEngine(shape.mesh); }));
+    if (IsFlat(mesh)) throw SandboxedFailure("it is flat, so its hull has no volume");
+    return mesh;
   } catch (const SandboxedFailure& failure) {
-    throw InputError::At("object.model",
-                         "object.model: " + shape.place + ": The mesh " + shape.mesh.string() +
+    throw InputError::At(key,
+                         key + ": " + shape.place + ": The mesh " + shape.mesh.string() +
                              " cannot be used: " + failure.what() +
                              ". Repair it, save it as binary STL or OBJ, or give <collision> a "
                              "box, cylinder or sphere.");

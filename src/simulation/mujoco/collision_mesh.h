@@ -1,6 +1,7 @@
 // Reads vertices and triangles of a mesh file in a separate process.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "models/urdf.h"
@@ -14,8 +15,8 @@ struct CollisionMesh {
 
 // Reads the file of a mesh shape (binary STL, OBJ, MSH) with the physics engine's readers. They run
 // in a sandboxed child whose answer is checked: finite numbers, at most kMaxCollisionTriangles
-// triangles, and valid vertex indices. Throws InputError with the place in the URDF, the file, and
-// a remedy. It must not be called in a tick.
-CollisionMesh ReadCollisionMesh(const ModelShape& shape);
+// triangles, valid vertex indices, and a volume. `key`: of the scenario, for errors. Throws
+// InputError with the place in the URDF, the file, and a remedy. Not for the tick.
+CollisionMesh ReadCollisionMesh(const ModelShape& shape, const std::string& key);
 
 }  // namespace predictor

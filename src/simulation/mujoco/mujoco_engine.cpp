@@ -196,6 +196,7 @@ Contact MujocoEngine::contact(int i) const noexcept {
   const mjContact& from = data_->contact[i];
   // The engine's normal points from the first shape to the second.
   const int moving = model_->geom_bodyid[from.geom[1]] > 0 ? 1 : 0;
+  const int body = model_->geom_bodyid[from.geom[moving]];
   const double sign = moving == 1 ? 1 : -1;
   Contact contact;
   contact.p_W = At(from.pos);
@@ -205,6 +206,9 @@ Contact MujocoEngine::contact(int i) const noexcept {
   mj_contactForce(model_, data(), i, force);
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R_CW(from.frame);
   contact.force_W = sign * (R_CW.transpose() * At(force));
+  contact.fixture = scene_->fixture_of[static_cast<std::size_t>(from.geom[1 - moving])];
+  if (body != scene_->object)
+    contact.link = mj_id2name(model_, mjOBJ_BODY, body) + std::string_view(kCobotPrefix).size();
   return contact;
 }
 

@@ -9,7 +9,9 @@
 #include "models/mujoco_urdf.h"
 #include "models/urdf.h"
 #include "scenario/paths.h"
-#include "simulation/mujoco/collision_mesh.h"
+#include "simulation/mujoco/fixtures.h"
+#include "simulation/mujoco/mesh_holes.h"
+#include "simulation/mujoco/shapes.h"
 
 namespace predictor {
 namespace {
@@ -21,22 +23,11 @@ constexpr double kHandleReach = 0.2;  // maximum distance of a handle from the o
 // it creeps fifty times more than with these.
 constexpr double kFrictionTime = 0.004;  // [s]
 constexpr double kFrictionImpedance = 0.99;
-constexpr const char* kCobotPrefix = "cobot/";
 constexpr const char* kObjectName = "object";
 constexpr const char* kObjectJoint = "object_motion";
 constexpr std::array<const char*, kHands> kHandleSites = {"left_handle", "right_handle"};
 constexpr const char* kWristSite = "wrist";
 constexpr std::array<const char*, kHands> kHandBodies = {"left_hand", "right_hand"};
-
-void SetVector(double* to, const Vector3& from) { std::copy_n(from.data(), 3, to); }
-
-void SetPose(double* pos, double* quat, const Pose& X) {
-  SetVector(pos, X.p);
-  quat[0] = X.q.w();
-  quat[1] = X.q.x();
-  quat[2] = X.q.y();
-  quat[3] = X.q.z();
-}
 
 void SetOptions(mjSpec* spec, const EnvironmentSpec& environment) {
   spec->compiler.fusestatic = 0;  // keeps the flange's frames
@@ -50,33 +41,7 @@ void SetOptions(mjSpec* spec, const EnvironmentSpec& environment) {
   SetVector(option.gravity, Vector3(0, 0, -environment.gravity));
 }
 
-// The environment collides with the object, but the object does not collide with itself.
-void SetContact(mjsGeom* geom, bool environment, double friction) {
-  geom->contype = environment ? 1 : 0;
-  geom->conaffinity = environment ? 0 : 1;
-  geom->friction[0] = friction;
-}
-
-void AddEnvironment(mjsBody* world, const EnvironmentSpec& environment) {
-  if (environment.floor) {
-    mjsGeom* floor = mjs_addGeom(world, nullptr);
-    mjs_setName(floor->element, "floor");
-    floor->type = mjGEOM_PLANE;
-    SetVector(floor->size, {0, 0, 0.05});  // unlimited size; spacing of the grid
-    SetContact(floor, true, environment.friction);
-  }
-  if (environment.table) {
-    const TableSpec& spec = *environment.table;
-    mjsGeom* table = mjs_addGeom(world, nullptr);
-    mjs_setName(table->element, "table");
-    table->type = mjGEOM_BOX;
-    SetVector(table->size, spec.size / 2);
-    SetVector(table->pos, spec.top - Vector3(0, 0, spec.size.z() / 2));
-    SetContact(table, true, environment.friction);
-  }
-}
-
-// Returns the cobot alone, as loaded by the engine.
+// The cobot alone, as loaded by the engine.
 SpecPtr CobotSpecOf(const Scenario& scenario) {
   const auto file = ResolveModelPath(scenario.cobot.model, scenario.folder());
   const std::string text =
@@ -136,41 +101,45 @@ mjsBody* AddCobot(mjSpec* spec, const Scenario& scenario, const RobotModel& cobo
   return end_effector;
 }
 
-// Makes `geom` a mesh of this shape. `name` is the mesh's name in the engine's model.
-void AddMesh(mjSpec* spec, const ModelShape& shape, const CollisionMesh& from,
-             const std::string& name, mjsGeom* geom) {
-  mjsMesh* mesh = mjs_addMesh(spec, nullptr);
-  mjs_setName(mesh->element, name.c_str());
-  mjs_setFloat(mesh->uservert, from.vertices.data(), static_cast<int>(from.vertices.size()));
-  mjs_setInt(mesh->userface, from.faces.data(), static_cast<int>(from.faces.size()));
-  SetVector(mesh->scale, shape.size);
-  geom->type = mjGEOM_MESH;
-  mjs_setString(geom->meshname, name.c_str());
+// Adds the collision shapes of the links that the cobot's joints move, for the fixtures that touch
+// them, and returns their names.
+std::vector<std::string> AddCobotShapes(mjSpec* spec, const Scenario& scenario) {
+  const UrdfModel urdf = ReadUrdf(ResolveModelPath(scenario.cobot.model, scenario.folder()),
+                                  scenario.cobot.remove_links, scenario.folder());
+  std::vector<bool> moves(urdf.links.size(), false);
+  std::vector<std::string> names;
+  for (const UrdfJoint& joint : urdf.joints) {  // parents come before children
+    const auto child = static_cast<std::size_t>(joint.child);
+    moves[child] =
+        joint.type != UrdfJointType::kFixed || moves[static_cast<std::size_t>(joint.parent)];
+    const UrdfLink& link = urdf.links[child];
+    mjsBody* body = mjs_findBody(spec, (kCobotPrefix + link.name).c_str());
+    if (!moves[child] || body == nullptr) continue;
+    for (std::size_t i = 0; i < link.collisions.size(); ++i) {
+      names.push_back(kCobotPrefix + link.name + "/" + std::to_string(i));
+      mjsGeom* geom = AddShape(spec, body, link.collisions[i], names.back(), "cobot.model");
+      geom->contype = geom->conaffinity = 0;
+      geom->density = 0;  // the link's inertia is in the file
+    }
+  }
+  return names;
 }
 
-// Adds shape number `index` of the object, which collides with floor and table. For a mesh, its
-// convex hull collides.
-void AddShape(mjSpec* spec, mjsBody* object, const ModelShape& shape, std::size_t index,
-              double friction) {
-  mjsGeom* geom = mjs_addGeom(object, nullptr);
-  SetPose(geom->pos, geom->quat, shape.X_LG);
-  SetContact(geom, false, friction);
-  switch (shape.kind) {
-    case ShapeKind::kBox:
-      geom->type = mjGEOM_BOX;
-      SetVector(geom->size, shape.size / 2);
-      break;
-    case ShapeKind::kCylinder:
-      geom->type = mjGEOM_CYLINDER;
-      SetVector(geom->size, {shape.size.x(), shape.size.y() / 2, 0});
-      break;
-    case ShapeKind::kSphere:
-      geom->type = mjGEOM_SPHERE;
-      SetVector(geom->size, {shape.size.x(), 0, 0});
-      break;
-    case ShapeKind::kMesh:  // named by index, since several shapes may use one file
-      AddMesh(spec, shape, ReadCollisionMesh(shape), "object/" + std::to_string(index), geom);
-      break;
+std::string ObjectShape(std::size_t i) { return "object/" + std::to_string(i); }
+
+// The shapes that fixtures touch are added; now the pairs are.
+void AddFixtureContacts(mjSpec* spec, const Scenario& scenario, const ObjectModel& object) {
+  const EnvironmentSpec& environment = scenario.environment;
+  std::vector<std::string> cobot, carried;
+  if (TouchesCobot(environment)) cobot = AddCobotShapes(spec, scenario);
+  for (std::size_t i = 0; i < object.collisions.size(); ++i) carried.push_back(ObjectShape(i));
+  const bool touched = std::ranges::any_of(
+      environment.fixtures, [](const FixtureSpec& fixture) { return fixture.Touches("object"); });
+  if (touched)
+    for (const ModelShape& shape : object.collisions) CheckHull(shape, "object.model");
+  for (std::size_t i = 0; i < environment.fixtures.size(); ++i) {
+    if (environment.fixtures[i].Touches("object")) AddContacts(spec, environment, i, carried);
+    if (environment.fixtures[i].Touches("cobot")) AddContacts(spec, environment, i, cobot);
   }
 }
 
@@ -212,7 +181,9 @@ mjsBody* AddObject(mjSpec* spec, mjsBody* end_effector, const Scenario& scenario
   const double inertia[6] = {I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)};
   std::copy_n(inertia, 6, object->fullinertia);
   for (std::size_t i = 0; i < model.collisions.size(); ++i) {
-    AddShape(spec, object, model.collisions[i], i, scenario.environment.friction);
+    // Named by index, since several shapes may use one file.
+    SetContact(AddShape(spec, object, model.collisions[i], ObjectShape(i), "object.model"), false,
+               scenario.environment.friction);
   }
   return object;
 }
@@ -261,6 +232,11 @@ void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cob
   for (std::size_t h = 0; h < kHands; ++h) {
     scene->hand[h] = mj_name2id(&model, mjOBJ_BODY, kHandBodies[h]);
   }
+  scene->fixture_of.assign(static_cast<std::size_t>(model.ngeom), -1);
+  for (std::size_t i = 0; i < scenario.environment.fixtures.size(); ++i) {
+    const int geom = mj_name2id(&model, mjOBJ_GEOM, FixtureName(i).c_str());
+    scene->fixture_of[static_cast<std::size_t>(geom)] = static_cast<int>(i);
+  }
   for (int j = 0; j < cobot.dof(); ++j) {
     const int id = mj_name2id(&model, mjOBJ_JOINT, (kCobotPrefix + cobot.joint_name(j)).c_str());
     scene->qpos[static_cast<std::size_t>(j)] = model.jnt_qposadr[id];
@@ -283,24 +259,6 @@ double DistanceToObject(const Scene& scene, mjData* data, const Vector3& p_W) {
     nearest = std::min(nearest, (p_G.cwiseAbs() - half).cwiseMax(0).norm());
   }
   return nearest;
-}
-
-// This is called after the engine has rejected the whole model. It names the first mesh that the
-// engine also rejects alone, if there is one.
-void CheckMeshes(const ObjectModel& object) {
-  for (const ModelShape& shape : object.collisions) {
-    if (shape.kind != ShapeKind::kMesh) continue;
-    const SpecPtr spec(mj_makeSpec());
-    AddMesh(spec.get(), shape, ReadCollisionMesh(shape), "mesh",
-            mjs_addGeom(mjs_findBody(spec.get(), "world"), nullptr));
-    const ModelPtr model(mj_compile(spec.get(), nullptr));
-    if (model != nullptr) continue;
-    throw InputError::At("object.model", "object.model: " + shape.place +
-                                             ": The physics engine cannot load the mesh " +
-                                             shape.mesh.string() + ": " + FirstLine(spec.get()) +
-                                             ". Repair it, save it as binary STL or OBJ, or give "
-                                             "<collision> a box, cylinder or sphere.");
-  }
 }
 
 void CheckHandles(const Scene& scene, const Scenario& scenario) {
@@ -329,7 +287,7 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist
   scene.spec.reset(mj_makeSpec());
   mjSpec* spec = scene.spec.get();
   SetOptions(spec, scenario.environment);
-  AddEnvironment(mjs_findBody(spec, "world"), scenario.environment);
+  AddSurroundings(spec, scenario.environment);
   mjsBody* end_effector = AddCobot(spec, scenario, cobot);
   scene.object_model = LoadObject(scenario.object, scenario.folder());
   const bool carried = holding == Holding::kJoint;
@@ -338,10 +296,11 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist
   for (int hand = 0; hand < kHands; ++hand) {
     if (scenario.Has(hand)) AddHandle(object, scenario, hand);
   }
+  AddFixtureContacts(spec, scenario, scene.object_model);
   scene.model.reset(mj_compile(spec, nullptr));
   if (scene.model == nullptr) {
     const std::string why = FirstLine(spec);
-    CheckMeshes(scene.object_model);
+    for (const ModelShape& shape : scene.object_model.collisions) CheckMesh(shape, "object.model");
     throw InputError("The physics engine cannot load the scene: " + why +
                      ". Check masses, inertias and shapes of the cobot and the object.");
   }

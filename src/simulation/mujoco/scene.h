@@ -3,6 +3,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "models/object_model.h"
 #include "models/robot.h"
@@ -11,6 +12,9 @@
 #include "simulation/mujoco/library.h"
 
 namespace predictor {
+
+// Before the names of the cobot's links and joints.
+inline constexpr const char* kCobotPrefix = "cobot/";
 
 struct Scene {
   ObjectModel object_model;
@@ -22,15 +26,17 @@ struct Scene {
   std::array<int, kHands> hand = {-1, -1};     // direct mode: point masses on the handles
   std::array<int, kMaxCobotJoints> qpos = {};  // address in qpos of RobotModel's joint j
   std::array<int, kMaxCobotJoints> dof = {};   // address in qvel of RobotModel's joint j
+  std::vector<int> fixture_of;                 // geom: index in environment.fixtures; −1: another
   int object_qpos = -1, object_dof = -1;       // of a free object; −1: the cobot carries it
 };
 
 // Composes and compiles the scene. The attachment's joint connects the object's body to the
-// end-effector's, so that only contacts need the constraint solver. Object, floor and table collide
-// with each other if at least one of the two can move, while the cobot's links collide with
-// nothing. In direct mode, each handle has a body without weight whose mass is set at run time.
-// Throws InputError. `wrist_sensor` states whether a sensor measures the wrench between the
-// end-effector and the object that it carries.
+// end-effector's, so that only contacts need the constraint solver. The object collides with floor,
+// table and fixtures, and the cobot's links with the fixtures that touch them. In
+// direct mode, each handle has a body without weight whose mass is set at run time. Throws
+// InputError.
+// wrist_sensor: whether a sensor measures the wrench between the end-effector and the object that
+// it carries.
 Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor = false,
                    Holding holding = Holding::kJoint);
 

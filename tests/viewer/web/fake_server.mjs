@@ -152,6 +152,7 @@ export class FakeServer {
       object: preset.object, handles: {left: handle('left'), right: handle('right')},
       arms: {left: arm('left', 2), right: arm('right', 3)}, floor: true,
       table: options.table ?? null,
+      ...(!options.older && {fixtures: options.fixtures ?? []}),
       guidance: preset.guidance ? {
         type: 'circle', radius: preset.guidance.radius,
         center: this.start.map((v, i) => v + preset.guidance.offset[i]),

@@ -1,10 +1,10 @@
-// Shows floor, grid, table and light.
+// Floor, grid, table, fixtures and light.
 import {
-  BoxGeometry, BufferGeometry, CircleGeometry, Color, CylinderGeometry, DirectionalLight, Float32BufferAttribute, Fog,
-  Group, HemisphereLight, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
-  MeshStandardMaterial, Scene,
+  BoxGeometry, BufferGeometry, CapsuleGeometry, CircleGeometry, Color, CylinderGeometry, DirectionalLight, DoubleSide,
+  Float32BufferAttribute, Fog, Group, HemisphereLight, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
+  MeshStandardMaterial, PlaneGeometry, Scene, SphereGeometry, SRGBColorSpace,
 } from 'three';
-import {SceneSpec} from '../protocol';
+import {FixtureSpec, SceneSpec, Vec3} from '../protocol';
 import {kSceneColors, Theme} from '../theme';
 
 const kFloorRadius = 6;   // [m]
@@ -29,6 +29,27 @@ function gridLines(minor: boolean): BufferGeometry {
   return geometry;
 }
 
+// A cylinder or capsule is along z, and a plane has its normal along z.
+function fixtureForm({shape, size: [a, b, c]}: FixtureSpec): BufferGeometry {
+  switch (shape) {
+    case 'box': return new BoxGeometry(a, b, c);
+    case 'cylinder': return new CylinderGeometry(a, a, b, 48).rotateX(Math.PI / 2);
+    case 'capsule': return new CapsuleGeometry(a, b, 12, 32).rotateX(Math.PI / 2);
+    case 'sphere': return new SphereGeometry(a, 48, 24);
+    case 'plane': return new PlaneGeometry(a, b);
+  }
+}
+
+function fixtureMesh(fixture: FixtureSpec): Mesh {
+  const {pose: {p, q}, color} = fixture;
+  const mesh = new Mesh(fixtureForm(fixture), new MeshStandardMaterial({
+    color: new Color().setRGB(...color, SRGBColorSpace), roughness: 0.8, side: DoubleSide}));
+  mesh.position.set(...p);
+  mesh.quaternion.set(q[1], q[2], q[3], q[0]);
+  mesh.castShadow = mesh.receiveShadow = true;
+  return mesh;
+}
+
 export class Room {
   readonly group = new Group();
   private readonly floor = new Mesh(
@@ -48,6 +69,7 @@ export class Room {
   private readonly feet = [1, -1].map(() => new Mesh(
       new CircleGeometry(1, 32), new MeshLambertMaterial({color: 0x5b8def})));
   private table: Mesh | null = null;
+  private readonly fixtures = new Group();
 
   constructor() {
     this.floor.receiveShadow = true;
@@ -71,11 +93,13 @@ export class Room {
     this.feet.forEach((foot) => foot.scale.set(kFoot[0], kFoot[1], 1));
     this.ground.add(this.floor, this.minor, this.major, ...this.feet);
     this.group.add(
-        this.ground, this.plate, this.sky, this.sun, this.sun.target, this.fill);
+        this.ground, this.plate, this.sky, this.sun, this.sun.target, this.fill, this.fixtures);
   }
 
   build(spec: SceneSpec) {
     this.stand(spec);
+    this.fixtures.clear();
+    for (const fixture of spec.fixtures ?? []) this.fixtures.add(fixtureMesh(fixture));
     this.table?.removeFromParent();
     this.table = null;
     if (!spec.table) return;
@@ -88,7 +112,17 @@ export class Room {
     this.group.add(this.table);
   }
 
-  // The operator stands on the ground. If it is below the virtual floor, the virtual floor is a
+  get fixtureBoxes(): {min: Vec3; max: Vec3}[] {
+    return this.fixtures.children.map((child) => {
+      const {geometry, matrix} = child as Mesh;
+      child.updateMatrix();
+      geometry.computeBoundingBox();
+      const box = geometry.boundingBox!.clone().applyMatrix4(matrix);
+      return {min: box.min.toArray(), max: box.max.toArray()};
+    });
+  }
+
+  // The ground is where the operator stands. If that is below the virtual floor, the virtual floor is a
   // plate above it.
   private stand({viewpoint, floor, cobot}: SceneSpec) {
     const {ground, forward, feet} = viewpoint;

@@ -292,7 +292,11 @@ export class Stage {
     return node ? poseIn(node, this.world) : null;
   }
 
-  // Returns the bounding box in W of only the visuals of a link of the cobot, or of 'object' [m].
+  get fixtureBoxes() {
+    return this.room.fixtureBoxes;
+  }
+
+  // Bounding box in W of only the visuals of a link of the cobot, or of 'object' [m].
   meshBox(name: string): {min: Vec3; max: Vec3} | null {
     const link = name === 'object' ? this.object : this.cobot?.link(name);
     if (!link) return null;

@@ -1,0 +1,57 @@
+// A body of the surroundings that never moves.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+
+namespace predictor {
+
+enum class FixtureShape { kBox, kCylinder, kCapsule, kSphere, kPlane };
+
+inline std::vector<std::string> NamesOf(FixtureShape) {
+  return {"box", "cylinder", "capsule", "sphere", "plane"};
+}
+
+struct FixtureSpec {
+  FixtureShape shape = FixtureShape::kBox;
+  // Box: x y z; cylinder: radius, length, –; capsule: radius, length without the caps, –;
+  // sphere: radius, –, –; plane: x, y as drawn, – [m]. A plane is unlimited and solid below.
+  Vector3 size = {0.1, 0.1, 0.1};
+  // Pose in W [m], [rad]. Axis of a cylinder or capsule, and normal of a plane: z.
+  Vector3 xyz = Vector3::Zero();
+  Vector3 rpy = Vector3::Zero();
+  std::optional<double> friction;  // sliding friction of its contacts; absent: environment.friction
+  // A contact is a spring and a damper scaled to the mass that it moves: undamped, the bodies would
+  // swing with the frequency 1/(time_constant · damping_ratio) [rad/s].
+  double time_constant = 0.0025;                  // [s]
+  double damping_ratio = 1;                       // 1: no bounce
+  std::vector<std::string> touches = {"object"};  // that collide with it: object, cobot
+  Vector3 color = {0.55, 0.58, 0.62};             // red, green, blue
+
+  Pose X_WG() const { return PoseFromXyzRpy(xyz, rpy); }  // NOLINT(readability-identifier-naming)
+  bool Touches(const char* what) const {
+    return std::find(touches.begin(), touches.end(), what) != touches.end();
+  }
+};
+
+// Number of entries of `size` that are dimensions.
+inline int Dimensions(FixtureShape shape) {
+  switch (shape) {
+    case FixtureShape::kBox:
+      return 3;
+    case FixtureShape::kSphere:
+      return 1;
+    default:
+      return 2;
+  }
+}
+
+inline std::string NameOf(FixtureShape shape) {
+  return NamesOf(shape)[static_cast<std::size_t>(shape)];
+}
+
+}  // namespace predictor

@@ -1,0 +1,19 @@
+// Holes of a mesh, which its convex hull would fill.
+#pragma once
+
+#include <string>
+
+#include "models/urdf.h"
+#include "simulation/mujoco/collision_mesh.h"
+
+namespace predictor {
+
+// Number of holes that go through a mesh (the sum of the genus of its closed parts; Euler's formula
+// V − E + F = 2 − 2 g for each). Parts with an open edge, or with an edge of more than two
+// triangles, count as without holes. A hole that does not go through is not counted.
+int ThroughHoles(const CollisionMesh& mesh);
+
+// Throws InputError if the shape is a mesh with a hole through it. `key`: of the scenario.
+void CheckHull(const ModelShape& shape, const std::string& key);
+
+}  // namespace predictor

@@ -1,0 +1,204 @@
+// Fixtures in the world: what the cobot carries rests on them, slides, and cannot pass.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+#include "event_fixtures.h"
+#include "simulation/controlled_scene.h"
+#include "support/allocation_guard.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kBoxMass = 9;      // [kg]
+constexpr double kTableGap = 0.05;  // between box and table before the box sags [m]
+constexpr double kVertical = 500;   // stiffness of the cobot's controller [N/m]
+
+// Middle of the box's lower face at cobot.posture, before it sags.
+Vector3 BottomOf(const Scenario& s) {
+  const ControlledRobot robot(s);
+  return robot.data.FramePose(*robot.model, robot.end_effector).p - Vector3(0, 0, 0.2);
+}
+
+FixtureSpec TableUnder(const Scenario& s, double friction) {
+  FixtureSpec table;
+  table.size = {1, 2, 0.1};
+  table.xyz = BottomOf(s) - Vector3(0, 0, kTableGap + 0.05);
+  table.friction = friction;
+  return table;
+}
+
+// The box sags onto a table.
+Scenario OnATable(double friction) {
+  Scenario s = BoxScene(kBoxMass);
+  s.right_handle->pose.rpy.setZero();
+  s.environment.fixtures = {TableUnder(s, friction)};
+  return s;
+}
+
+double Bottom(const World& world) { return world.state().object.X_W.p.z() - 0.1; }
+
+TEST(Fixtures, ABoxRestsOnATable) {
+  const Scenario s = OnATable(0.5);
+  World world(s);
+  const double top = s.environment.fixtures[0].xyz.z() + 0.05;
+  EXPECT_NEAR(Bottom(world), top, 1e-4);
+  RunWith(&world, HandsOff(s), 1);
+  EXPECT_NEAR(Bottom(world), top, 1e-4);
+  EXPECT_LT(world.state().object.V_W.norm(), 1e-5);
+}
+
+// The table carries what the cobot's spring does not.
+TEST(Fixtures, ABoxSlidesWhenTheHandsExceedItsFriction) {
+  constexpr double kFriction = 0.3;
+  const double normal = kBoxMass * kGravity - kVertical * kTableGap;
+  for (const double share : {0.9, 1.3}) {
+    const Scenario s = OnATable(kFriction);
+    World world(s);
+    const Vector3 start = world.state().object.X_W.p;
+    RunWith(&world, Push(s, {0, share * kFriction * normal / 2, 0}), 1);
+    const double moved = world.state().object.X_W.p.y() - start.y();
+    EXPECT_EQ(moved > 0.02, share > 1) << moved;
+    EXPECT_EQ(moved < 2e-3, share < 1) << moved;
+  }
+}
+
+TEST(Fixtures, AWallStopsTheBoxThatIsPushedIntoIt) {
+  constexpr double kGap = 0.03;  // [m]
+  Scenario s = RigidBox();
+  s.object.attachment.on_end_effector.rpy.z() = -0.785;  // its faces are along the axes of W
+  const World free(s);
+  FixtureSpec wall;
+  wall.size = {0.1, 2, 2};
+  const double face = free.state().object.X_W.p.x() + 0.13 + kGap;
+  wall.xyz = {face + 0.05, 0, free.state().object.X_W.p.z()};
+  s.environment.fixtures = {wall};
+  World world(s);
+  RunWith(&world, Push(s, {15, 0, 0}), 1.5);
+  EXPECT_NEAR(world.state().object.X_W.p.x() - free.state().object.X_W.p.x(), kGap, 2e-3);
+  s.environment.fixtures[0].touches = {"cobot"};
+  World through(s);
+  RunWith(&through, Push(s, {15, 0, 0}), 0.5);
+  EXPECT_GT(through.state().object.X_W.p.x() - free.state().object.X_W.p.x(), 2 * kGap);
+}
+
+// A ball beside a link of the cobot: the link's hull cannot pass it, if it is to touch the cobot.
+TEST(Fixtures, ALinkOfTheCobotIsStopped) {
+  Scenario s = RigidBox();
+  FixtureSpec wall;
+  wall.shape = FixtureShape::kPlane;
+  wall.touches = {"cobot"};
+  const World free(s);
+  wall.xyz = free.state().end_effector.X_W.p + Vector3(0.2, 0, 0);  // the flange is thinner
+  wall.rpy = {0, -M_PI / 2, 0};                                     // its normal is −x
+  s.environment.fixtures = {wall};
+  World world(s);
+  double farthest = 0;
+  for (int k = 0; k < 1500; ++k) {
+    ASSERT_TRUE(world.Step(Push(s, {10, 0, 0}), kTick).ok());
+    farthest = std::max(farthest, world.state().end_effector.X_W.p.x());
+  }
+  const double moved = farthest - free.state().end_effector.X_W.p.x();
+  EXPECT_GT(moved, 0.05);
+  EXPECT_LT(moved, 0.2);
+  EXPECT_LT(world.state().end_effector.V_W.norm(), 0.02);
+}
+
+// The solver's warm start is part of the state.
+TEST(Fixtures, ASavedStateContinuesBitForBitInContact) {
+  const Scenario s = OnATable(0.3);
+  const WorldInput input = Push(s, {3, 12, -5});
+  World world(s), other(s);
+  RunWith(&other, HandsOff(s), 0.07);  // leaves traces that the loaded state must replace
+  RunWith(&world, input, 0.3);
+  CopyState(&world, &other);
+  for (int round = 0; round < 2; ++round) {
+    RunWith(&world, input, 0.4);
+    RunWith(&other, input, 0.4);
+    EXPECT_EQ((world.state().q - other.state().q).norm(), 0);
+    EXPECT_EQ((world.state().object.X_W.p - other.state().object.X_W.p).norm(), 0);
+    EXPECT_EQ((world.state().object.V_W - other.state().object.V_W).norm(), 0);
+    world.Reset();
+    other.Reset();
+  }
+}
+
+TEST(Fixtures, AScenarioWithoutThemHasTheSameMotionAsWithOneFarAway) {
+  const Scenario s = BoxScene(kBoxMass);
+  Scenario far = s;
+  far.environment.fixtures = {FixtureSpec{}};
+  far.environment.fixtures[0].xyz = {50, 0, 0};
+  World world(s), other(far);
+  const WorldInput input = Push(s, {3, 12, -5});
+  RunWith(&world, input, 0.3);
+  RunWith(&other, input, 0.3);
+  EXPECT_EQ((world.state().q - other.state().q).norm(), 0);
+  EXPECT_EQ((world.state().object.X_W.p - other.state().object.X_W.p).norm(), 0);
+}
+
+TEST(Fixtures, OfEveryShapeTakeNothingFromTheHeap) {
+  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
+  Scenario s = BoxScene(kBoxMass);
+  const Vector3 bottom = BottomOf(s);
+  int touching = 0;
+  for (const FixtureShape shape :
+       {FixtureShape::kBox, FixtureShape::kCylinder, FixtureShape::kCapsule, FixtureShape::kSphere,
+        FixtureShape::kPlane}) {
+    FixtureSpec fixture;
+    fixture.shape = shape;
+    fixture.size = {0.04, 0.04, 0.04};
+    const double height = shape == FixtureShape::kPlane     ? 0
+                          : shape == FixtureShape::kCapsule ? 0.06
+                          : shape == FixtureShape::kSphere  ? 0.04
+                                                            : 0.02;
+    fixture.xyz = bottom + Vector3(0.05 * (touching - 2), 0.08 * (touching % 2), -0.02 - height);
+    // A plane extends to the foot of the cobot.
+    if (shape != FixtureShape::kPlane) fixture.touches = {"object", "cobot"};
+    s.environment.fixtures.push_back(fixture);
+    ++touching;
+  }
+  World world(s);
+  const WorldInput push = Push(s, {4, -5, -40});
+  bool ok = true;
+  const test::AllocationGuard guard;
+  for (int k = 0; k < 1000; ++k) ok = world.Step(push, kTick).ok() && ok;
+  world.Reset();
+  const std::int64_t count = guard.count();
+  EXPECT_EQ(count, 0);
+  EXPECT_TRUE(ok);
+}
+
+// ---- bad input ---------------------------------------------------------------------------------
+
+std::string StartError(const Scenario& s) {
+  try {
+    const World world(s);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Fixtures, AStartInsideOneIsRefused) {
+  Scenario s = BoxScene(kBoxMass);
+  s.environment.fixtures = {TableUnder(s, 0.3), TableUnder(s, 0.3)};
+  s.environment.fixtures[1].xyz.z() += kTableGap + 0.012;
+  EXPECT_EQ(StartError(s),
+            "environment.fixtures.1: at cobot.posture, the object is 12 mm inside this fixture. "
+            "Move the fixture, or change cobot.posture.");
+  s.environment.fixtures[1].touches = {"cobot"};
+  s.environment.fixtures[1].size.head<2>() = Eigen::Vector2d(0.3, 0.3);  // far from its foot
+  EXPECT_EQ(StartError(s), "");
+  s.environment.fixtures[1].xyz.z() += 0.25;  // through the flange
+  EXPECT_NE(StartError(s).find("environment.fixtures.1: at cobot.posture, the cobot's link "
+                               "\"panda_link"),
+            std::string::npos)
+      << StartError(s);
+  EXPECT_NE(StartError(s).find("remove cobot from the fixture's touches"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace predictor
