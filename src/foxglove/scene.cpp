@@ -1,7 +1,5 @@
 // The topics /tf and /scene, which show poses and shapes.
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <memory>
 #include <numbers>
 
@@ -9,6 +7,7 @@
 #include "models/fixture_shapes.h"
 #include "models/object_model.h"
 #include "models/robot.h"
+#include "scenario/obstacle_events.h"
 
 namespace predictor::foxglove {
 namespace {
@@ -182,9 +181,26 @@ Json FloorEntity(std::uint64_t ns) {
   return entity;
 }
 
-Json FixturesEntity(const std::vector<ModelShape>& shapes, std::uint64_t ns) {
+struct DrawnFixture {
+  std::vector<ModelShape> shapes;
+  std::uint16_t events;  // that let it appear; 0: it is always there
+};
+
+std::vector<DrawnFixture> FixturesOf(const Scenario& scenario) {
+  std::vector<DrawnFixture> fixtures;
+  for (std::size_t i = 0; i < scenario.environment.fixtures.size(); ++i)
+    fixtures.push_back(
+        {FixtureShapes(scenario.environment.fixtures[i]), EventsOfFixture(scenario, i)});
+  return fixtures;
+}
+
+Json FixturesEntity(const std::vector<DrawnFixture>& fixtures, const TickRecord& r,
+                    std::uint64_t ns) {
   Json entity = Entity("fixtures", "world", ns);
-  for (const ModelShape& shape : shapes) AddShape(shape, &entity);
+  for (const DrawnFixture& fixture : fixtures) {
+    if (fixture.events != 0 && (fixture.events & r.events) == 0) continue;
+    for (const ModelShape& shape : fixture.shapes) AddShape(shape, &entity);
+  }
   return entity;
 }
 
@@ -239,15 +255,13 @@ FoxgloveChannel SceneChannel(const Scenario& scenario, const Vector3& object_sta
   const Vector3 center = object_start + scenario.guidance.center;
   const double radius = scenario.guidance.radius;
   const bool floor = scenario.environment.floor;
-  std::vector<ModelShape> fixtures;
-  for (const FixtureSpec& fixture : scenario.environment.fixtures)
-    std::ranges::copy(FixtureShapes(fixture), std::back_inserter(fixtures));
+  const std::vector<DrawnFixture> fixtures = FixturesOf(scenario);
   return {"/scene", "foxglove.SceneUpdate", SceneUpdateSchema(),
           [cobot, object, circle, center, radius, floor, fixtures](const TickRecord& r,
                                                                    std::uint64_t ns) {
             Json entities = Json::array();
             if (floor) entities.push_back(FloorEntity(ns));
-            if (!fixtures.empty()) entities.push_back(FixturesEntity(fixtures, ns));
+            if (!fixtures.empty()) entities.push_back(FixturesEntity(fixtures, r, ns));
             if (circle) entities.push_back(GuidanceEntity(center, radius, ns));
             cobot->Update(r);
             entities.push_back(CobotEntity(cobot->Points(), ns));

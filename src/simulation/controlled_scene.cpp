@@ -1,5 +1,7 @@
 #include "simulation/controlled_scene.h"
 
+#include <bit>
+
 #include "core/error.h"
 #include "core/motion.h"
 #include "core/text.h"
@@ -109,9 +111,13 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
       v_(q_),
       torque_(q_),
       computed_(q_),
-      safety_(scenario.cobot) {
+      safety_(scenario.cobot),
+      fixtures_(static_cast<int>(scenario.environment.fixtures.size())),
+      obstacles_(events.obstacles()),
+      absent_(obstacles_) {
   for (int j = 0; j < robot_->dof(); ++j) friction_.push_back(carried_->JointFriction(j));
   CheckEvents(events);
+  if (obstacles_ != 0) RemoveFixtures();
 }
 
 bool ControlledScene::Update(Engine* engine) noexcept {
@@ -236,6 +242,34 @@ void ControlledScene::Disturb(const Disturbance& disturbance, double t) noexcept
   if (disturbance.delay != before.delay) timing_.AddDelay(disturbance.delay);
   if (disturbance.standby != before.standby) Acting().TakeOver(Input(t));
   if (loose_) loose_->attachment.SetLimits(disturbance.grip);
+  if (absent_ != (obstacles_ & ~disturbance.obstacles)) PlaceObstacles();
+}
+
+void ControlledScene::RemoveFixtures() noexcept {
+  carried_->RemoveFixtures(absent_);
+  if (loose_) loose_->engine->RemoveFixtures(absent_);
+}
+
+// Removes and adds fixtures as the events require. One that would be inside the object or the cobot
+// waits until it is not, since the contact would throw them off.
+void ControlledScene::PlaceObstacles() noexcept {
+  const std::uint64_t before = absent_;
+  const std::uint64_t wanted = obstacles_ & ~disturbance_.obstacles;
+  absent_ = wanted;
+  RemoveFixtures();
+  Update(&engine());
+  if (!IsBlocked(before & ~wanted)) return;
+  absent_ = before | wanted;
+  RemoveFixtures();
+  Update(&engine());
+}
+
+bool ControlledScene::IsBlocked(std::uint64_t fixtures) const noexcept {
+  for (int i = 0; i < engine().contact_count(); ++i) {
+    const Contact contact = engine().contact(i);
+    if (contact.fixture >= 0 && (fixtures >> contact.fixture & 1U) != 0) return true;
+  }
+  return false;
 }
 
 void ControlledScene::Resume(const Disturbance& disturbance) noexcept {
@@ -243,6 +277,9 @@ void ControlledScene::Resume(const Disturbance& disturbance) noexcept {
   SetBrakes(disturbance.brakes);
   timing_.AddDelay(disturbance.delay);
   if (loose_) loose_->attachment.SetLimits(disturbance.grip);
+  if (obstacles_ == 0) return;
+  if (disturbance.obstacles == 0) absent_ = obstacles_;
+  RemoveFixtures();
 }
 
 void ControlledScene::Loosen() noexcept {
@@ -289,6 +326,7 @@ void ControlledScene::CheckEvents(const EventSequence& events) const {
   for (std::size_t i = 0; i < events.size(); ++i) {
     const std::string path = "events." + std::to_string(i) + ".event";
     CheckAttachmentEvent(events, i);
+    CheckObstacle(events, i);
     const std::string missing = Missing(events.kind(i).needs);
     if (missing.empty()) continue;
     throw InputError::At(
@@ -296,6 +334,18 @@ void ControlledScene::CheckEvents(const EventSequence& events) const {
                     missing, ". Remove the event, or change the cobot."},
                    ""));
   }
+}
+
+void ControlledScene::CheckObstacle(const EventSequence& events, std::size_t i) const {
+  const std::uint64_t fixtures = events.obstacles(i);
+  if (fixtures == 0 || static_cast<int>(std::bit_width(fixtures)) <= fixtures_) return;
+  const std::string path = "events." + std::to_string(i) + ".fixture";
+  const std::string is = path + " is " + std::to_string(std::bit_width(fixtures) - 1);
+  throw InputError::At(
+      path,
+      is + (fixtures_ == 0 ? ", but environment.fixtures is empty. Add the fixture that appears."
+                           : ", but environment.fixtures has the numbers 0 to " +
+                                 std::to_string(fixtures_ - 1) + ". Give one of these."));
 }
 
 void ControlledScene::CheckAttachmentEvent(const EventSequence& events, std::size_t i) const {
@@ -358,6 +408,7 @@ void ControlledScene::AdvanceController(double t) noexcept {
 
 void ControlledScene::Archive(StateArchive& a) noexcept {
   a(torque_, timing_, computed_, tuning_, safety_);
+  if (obstacles_ != 0) a(absent_);
   if (has_wrist_sensor()) a(wrist_);
   a(loose_);
   for (Controller* controller : {controller_.get(), standby_.get()}) {

@@ -79,7 +79,9 @@ class ControlledScene {
   bool is_loose() const noexcept { return is_loose_; }
   // Returns whether the present hazards require the scene with a free object.
   bool must_loosen() const noexcept { return !is_loose_ && disturbance_.grip != GripLimits(); }
-  // Frees the object. From now on, the scene is the loose one, with the same poses, velocities and
+  // The fixtures that are not there at present: bit = number of the fixture.
+  std::uint64_t absent() const noexcept { return absent_; }
+  // Frees the object: from now on, the scene is the loose one, with the same poses, velocities and
   // torques.
   void Loosen() noexcept;
   // Call this before a state of that scene is restored.
@@ -129,6 +131,10 @@ class ControlledScene {
   void SetBrakes(bool closed) noexcept;
   void CheckEvents(const EventSequence& events) const;
   std::string Missing(HazardNeeds needs) const;
+  void CheckObstacle(const EventSequence& events, std::size_t i) const;
+  void PlaceObstacles() noexcept;
+  void RemoveFixtures() noexcept;
+  bool IsBlocked(std::uint64_t fixtures) const noexcept;
   void CheckAttachmentEvent(const EventSequence& events, std::size_t i) const;
   Controller& Acting() const noexcept { return disturbance_.standby ? *standby_ : *controller_; }
   double step() const noexcept { return carried_->step(); }
@@ -154,7 +160,10 @@ class ControlledScene {
   std::vector<DofFriction> friction_;  // of each joint, with open brakes
   CobotSafety safety_;
   Disturbance disturbance_;
-  ControllerTuning tuning_;  // by the last Tune
+  const int fixtures_;             // their number
+  const std::uint64_t obstacles_;  // fixtures that events let appear
+  std::uint64_t absent_;           // those of them that are not there
+  ControllerTuning tuning_;        // by the last Tune
 };
 
 }  // namespace predictor

@@ -2,13 +2,16 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "core/messages.h"
 #include "core/types.h"
 
 namespace predictor {
 
-// The limits up to which the attachment's grip holds the object.
+inline constexpr int kMaxFixtures = 64;  // of a scenario
+
+// What the attachment's grip on the object holds.
 struct GripLimits {
   double force = HUGE_VAL;   // beyond it, the object slides [N]; 0 with a torque of 0: open
   double torque = HUGE_VAL;  // beyond it, it turns [N·m]
@@ -30,6 +33,7 @@ struct Disturbance {
   Vector6 set_point = Vector6::Zero();  // shift of the set-point in W [m], [rad]
   ControllerTuning gains;               // factors of the controller's values
   GripLimits grip;                      // of the attachment
+  std::uint64_t obstacles = 0;          // fixtures that are there now: bit = number of the fixture
 };
 
 }  // namespace predictor

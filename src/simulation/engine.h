@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -72,7 +73,7 @@ class Engine {
   int dof() const noexcept { return layout_.dof; }
   double step() const noexcept { return layout_.step; }
 
-  // Returns another state of the same scene. Masses of hands, friction and options are common to
+  // Another state of the same scene. Masses of hands, friction, fixtures and options are common to
   // both.
   virtual std::unique_ptr<Engine> Copy() const = 0;
 
@@ -149,9 +150,12 @@ class Engine {
   virtual DofFriction JointFriction(int j) const noexcept = 0;
   virtual void SetJointFriction(int j, const DofFriction& friction) noexcept = 0;
 
-  // In direct mode, returns the mass of a hand [kg], which moves with its handle and has no weight.
-  // SetHandMass returns whether the mass changed. If so, Prepare must follow. In other modes, the
-  // mass is 0.
+  // Removes these fixtures, and returns all others to their places: bit = number of the fixture. To
+  // be followed by Prepare.
+  virtual void RemoveFixtures(std::uint64_t which) noexcept = 0;
+
+  // Direct mode: mass of a hand [kg], which moves with its handle and has no weight. SetHandMass
+  // returns whether the mass changed; if so, Prepare must follow. Other modes: 0.
   virtual double HandMass(int hand) const noexcept = 0;
   virtual bool SetHandMass(int hand, double mass) noexcept = 0;
   // Archives sums of masses with the rounding errors that changes of the hands' masses left.

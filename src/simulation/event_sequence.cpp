@@ -67,6 +67,18 @@ bool EventSequence::loosens_attachment() const {
   });
 }
 
+std::uint64_t EventSequence::obstacles(std::size_t i) const {
+  Disturbance d;
+  events_[i].kind->disturb(*events_[i].parameters, 0, &d);
+  return d.obstacles;
+}
+
+std::uint64_t EventSequence::obstacles() const {
+  std::uint64_t all = 0;
+  for (std::size_t i = 0; i < events_.size(); ++i) all |= obstacles(i);
+  return all;
+}
+
 void EventSequence::Reset() noexcept {
   for (Event& event : events_) {
     event.begun = event.ended = false;

@@ -22,6 +22,9 @@ class EventSequence {
   double duration(std::size_t i) const { return events_[i].duration; }  // [s]; 0: until the end
   double longest_delay() const;     // sum of all that events add [s]
   bool loosens_attachment() const;  // an event lets the object slip or break loose
+  // What event i, and what all events together, let appear: bit = number of the fixture.
+  std::uint64_t obstacles(std::size_t i) const;
+  std::uint64_t obstacles() const;
 
   // Returns to a state in which no event has begun. Draws the times again, since a person knows
   // those of the last run.

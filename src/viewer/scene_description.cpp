@@ -5,6 +5,7 @@
 #include "models/robot.h"
 #include "scenario/action_time.h"
 #include "scenario/actions/action.h"
+#include "scenario/obstacle_events.h"
 #include "scenario/operating_rules.h"
 #include "scenario/paths.h"
 #include "scenario/stance.h"
@@ -109,11 +110,13 @@ Json DescribeHazards() {
 
 Json DescribeFixtures(const Scenario& scenario) {
   Json json = Json::array();
-  for (const FixtureSpec& fixture : scenario.environment.fixtures)
-    json.push_back({{"shape", NameOf(fixture.shape)},
-                    {"size", ToJson(fixture.size)},
-                    {"pose", ToJson(fixture.X_WG())},
-                    {"color", ToJson(fixture.color)}});
+  const std::vector<FixtureSpec>& fixtures = scenario.environment.fixtures;
+  for (std::size_t i = 0; i < fixtures.size(); ++i)
+    json.push_back({{"shape", NameOf(fixtures[i].shape)},
+                    {"size", ToJson(fixtures[i].size)},
+                    {"pose", ToJson(fixtures[i].X_WG())},
+                    {"color", ToJson(fixtures[i].color)},
+                    {"events", EventsOfFixture(scenario, i)}});
   return json;
 }
 

@@ -28,7 +28,7 @@ export function inspection(app: App) {
     linkPose: (name: string): Pose | null => stage.linkPose(name),
     // Returns the bounding box in W of the visuals of a link of the cobot, or of 'object' [m].
     meshBox: (name: string) => stage.meshBox(name),
-    // Bounding boxes in W of the fixtures [m].
+    // Bounding boxes in W of the fixtures that are there [m].
     fixtureBoxes: () => stage.fixtureBoxes,
     placeholders: () => stage.placeholders,
     arrowColour: (side: Side, of: 'force' | 'torque' = 'force') => stage.arrows[side][of].level,

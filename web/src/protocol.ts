@@ -41,6 +41,7 @@ export interface FixtureSpec {
   size: Vec3;
   pose: Pose;
   color: Vec3;
+  events?: number;  // bits: it is there only while one of these entries of the scenario's events acts; 0: always
 }
 
 export interface ParameterSpec {

@@ -18,7 +18,8 @@
   add(kWrongFriction)          \
   add(kWrongPayload)           \
   add(kObjectBreaksLoose)      \
-  add(kObjectSlips)
+  add(kObjectSlips)            \
+  add(kObstacleAppears)
 // clang-format on
 
 namespace predictor::hazards {

@@ -153,6 +153,9 @@ class MujocoEngine final : public Engine {
   void SetJointFriction(int j, const DofFriction& friction) noexcept override {
     SetFriction(*scene_, j, friction);
   }
+  void RemoveFixtures(std::uint64_t which) noexcept override {
+    predictor::RemoveFixtures(*scene_, which);
+  }
   double HandMass(int hand) const noexcept override {
     const int body = scene_->hand[static_cast<std::size_t>(hand)];
     return body < 0 ? 0 : model_->body_mass[body];

@@ -23,6 +23,7 @@ constexpr double kHandleReach = 0.2;  // maximum distance of a handle from the o
 // it creeps fifty times more than with these.
 constexpr double kFrictionTime = 0.004;  // [s]
 constexpr double kFrictionImpedance = 0.99;
+constexpr double kFarAway = 1000;  // where a removed fixture is [m]
 constexpr const char* kObjectName = "object";
 constexpr const char* kObjectJoint = "object_motion";
 constexpr std::array<const char*, kHands> kHandleSites = {"left_handle", "right_handle"};
@@ -236,6 +237,9 @@ void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cob
   for (std::size_t i = 0; i < scenario.environment.fixtures.size(); ++i) {
     const int geom = mj_name2id(&model, mjOBJ_GEOM, FixtureName(i).c_str());
     scene->fixture_of[static_cast<std::size_t>(geom)] = static_cast<int>(i);
+    scene->fixture_place.emplace_back(Eigen::Map<const Vector3>(model.geom_pos + 3 * geom));
+    // So that RemoveFixtures has an effect also where the place is that of the world.
+    scene->model->geom_sameframe[geom] = mjSAMEFRAME_NONE;
   }
   for (int j = 0; j < cobot.dof(); ++j) {
     const int id = mj_name2id(&model, mjOBJ_JOINT, (kCobotPrefix + cobot.joint_name(j)).c_str());
@@ -337,6 +341,22 @@ bool SetHandMass(const Scene& scene, int hand, double mass) noexcept {
   std::fill_n(model.body_inertia + 3 * body, 3, inertia);
   for (int b = body; b > 0; b = model.body_parentid[b]) model.body_subtreemass[b] += change;
   return true;
+}
+
+void RemoveFixtures(const Scene& scene, std::uint64_t which) noexcept {
+  mjModel& model = *scene.model;
+  for (int g = 0; g < model.ngeom; ++g) {
+    const int i = scene.fixture_of[static_cast<std::size_t>(g)];
+    if (i < 0) continue;
+    const bool removed = (which >> i & 1U) != 0;
+    Vector3 place = scene.fixture_place[static_cast<std::size_t>(i)];
+    // Along its own axis z, so that a plane, too, is far below everything.
+    if (removed) {
+      const double* q = model.geom_quat + 4 * g;
+      place -= kFarAway * (Quaternion(q[0], q[1], q[2], q[3]) * Vector3::UnitZ());
+    }
+    SetVector(model.geom_pos + 3 * g, place);
+  }
 }
 
 DofFriction FrictionOf(const Scene& scene, int joint) noexcept {

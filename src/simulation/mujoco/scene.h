@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct Scene {
   std::array<int, kMaxCobotJoints> qpos = {};  // address in qpos of RobotModel's joint j
   std::array<int, kMaxCobotJoints> dof = {};   // address in qvel of RobotModel's joint j
   std::vector<int> fixture_of;                 // geom: index in environment.fixtures; −1: another
+  std::vector<Vector3> fixture_place;          // of each fixture, in W [m]
   int object_qpos = -1, object_dof = -1;       // of a free object; −1: the cobot carries it
 };
 
@@ -48,7 +50,10 @@ std::string SceneText(const Scene& scene);
 // computed again.
 bool SetHandMass(const Scene& scene, int hand, double mass) noexcept;
 
-// Returns the friction of a joint of the cobot in the engine's model.
+// Moves these fixtures far away, and all others to their places: bit = number of the fixture.
+void RemoveFixtures(const Scene& scene, std::uint64_t which) noexcept;
+
+// Friction of a joint of the cobot in the engine's model.
 DofFriction FrictionOf(const Scene& scene, int joint) noexcept;
 // Sets the friction. With closed brakes, the joint also creeps a hundred times less.
 void SetFriction(const Scene& scene, int joint, const DofFriction& friction) noexcept;

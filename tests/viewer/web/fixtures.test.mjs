@@ -14,6 +14,8 @@ const kFixtures = [
   {shape: 'sphere', size: [0.06, 0, 0], pose: at([0.8, 0.4, 0.06]), color: [0.8, 0.2, 0.2]},
   {shape: 'plane', size: [0.5, 0.2, 0], pose: at([0.9, -0.4, 0.3]), color: [0.3, 0.6, 0.4]},
 ];
+// They appear with the scenario's second event, and with its first or third.
+const kObstacles = [0b010, 0b101].map((events) => ({...kFixtures[3], events}));
 // Half extents in W.
 const kExtents = [[0.2, 0.3, 0.02], [0.15, 0.05, 0.05], [0.04, 0.04, 0.14], [0.06, 0.06, 0.06], [0.25, 0.1, 0]];
 
@@ -21,7 +23,7 @@ let browser, server, page;
 
 before(async () => {
   browser = await launch({unpainted: true});
-  server = await serve({fixtures: kFixtures, light: !shotsWanted});
+  server = await serve({fixtures: [...kFixtures, ...kObstacles], events: 0b100, light: !shotsWanted});
   page = await open(browser, server.url, {viewport: {width: 1280, height: 720}});
   await ready(page);
 });
@@ -32,7 +34,7 @@ after(async () => {
 });
 
 test('each fixture is drawn where it is, with its size', async () => {
-  const boxes = await page.evaluate(() => window.predictor.fixtureBoxes());
+  const boxes = (await page.evaluate(() => window.predictor.fixtureBoxes())).slice(0, kFixtures.length);
   assert.equal(boxes.length, kFixtures.length);
   boxes.forEach(({min, max}, i) => {
     for (let k = 0; k < 3; k++) {
@@ -42,4 +44,8 @@ test('each fixture is drawn where it is, with its size', async () => {
     }
   });
   await screenshot(page, 'fixtures');
+});
+
+test('a fixture that an event lets appear is drawn only while the event acts', async () => {
+  await page.waitForFunction((count) => window.predictor.fixtureBoxes().length === count, kFixtures.length + 1);
 });

@@ -233,6 +233,7 @@ export class Stage {
     const thresholds = presentThresholds(this.spec, state);
     this.cobot?.setJoints(state.cobotQ);
     place(this.objectPlace, state.object);
+    this.room.show(state.events);
     this.guidance.set(state.object.p);
     const byHand = this.spec.operator === 'browser' && !this.renderer.xr.isPresenting;
     for (const side of kSides) {
