@@ -116,9 +116,9 @@ TEST(Check, AStartOutOfReachIsUnfitAndNoError) {
 }
 
 TEST(Check, ScenariosAreInReachWithRoom) {
-  for (const char* name :
-       {"bar_circle.yaml", "box_18kg.yaml", "box_9kg.yaml", "dual_ur5.yaml", "linear_axis.yaml",
-        "mobile_base.yaml", "push.yaml", "single_arm.yaml", "underdamped.yaml"}) {
+  for (const char* name : {"bar_circle.yaml", "box_18kg.yaml", "box_9kg.yaml", "dual_ur5.yaml",
+                           "linear_axis.yaml", "mobile_base.yaml", "push.yaml", "single_arm.yaml",
+                           "slide_on_table.yaml", "underdamped.yaml"}) {
     const Scenario s = Load(name);
     const Reach reach = DeviceReach(s).Over(TaskPaths(s, StartOfObject(s), kPathStep));
     for (const auto& arm : reach.arms) {

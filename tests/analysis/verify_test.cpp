@@ -77,7 +77,26 @@ TEST_F(VerifyTest, ARunIsTheSameAgain) {
   EXPECT_EQ(result.missing + result.skipped, 0U);
 }
 
-// The recording contains the arms' joints. The handles are computed again in the shifted world.
+// The box hangs above a table, and is lowered onto it and pushed along it.
+TEST_F(VerifyTest, ARunWithContactIsTheSameAgain) {
+  scenario_ = LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/slide_on_table.yaml",
+                           {"duration=8"});
+  double highest = -HUGE_VAL, lowest = HUGE_VAL;
+  const Verification result = VerifyFile(Record([&](TickRecord* tick) {
+    highest = std::max(highest, tick->object.pose.p[2]);
+    lowest = std::min(lowest, tick->object.pose.p[2]);
+    return true;
+  }));
+  EXPECT_GT(result.ticks, 8000U);
+  EXPECT_FALSE(result.departure);
+  EXPECT_EQ(result.missing + result.skipped, 0U);
+  const FixtureSpec& table = scenario_.environment.fixtures[0];
+  const double resting = table.xyz.z() + table.size.z() / 2 + 0.1;  // [m]
+  EXPECT_NEAR(lowest, resting, 2e-4);
+  EXPECT_GT(highest, resting + 0.03);
+}
+
+// The arms' joints are recorded, and their handles are computed again in the shifted world.
 TEST_F(VerifyTest, ARunInAShiftedWorldIsTheSameAgain) {
   scenario_ =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml",
