@@ -67,6 +67,8 @@ int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOpti
     PrintWhyNotStarted(emulator);
     return kDeviceFailure;
   }
+  if (const std::string why = emulator.EngineFailure(); !why.empty())
+    TheScreen().Print("predictor: error: " + why);
   summary->loop = PredictedLoopOf(emulator);
   summary->real_time_factor = wall > 0 ? summary->duration() / wall : 0;
   options.Write(SummaryTable(*summary), SummaryJson(*summary));

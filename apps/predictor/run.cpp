@@ -376,6 +376,12 @@ Scenario LoadForRealTime(const ScenarioOptions& options) {
                                  "rendering.formulation lacks repairs, which is allowed in virtual "
                                  "time only. Remove this line, or use `predictor simulate`."),
                   scenario);
+  if (scenario.simulation.engine != EngineKind::kMujoco)
+    throw Located(InputError::At("simulation.engine",
+                                 "simulation.engine is dart, which runs in virtual time only: its "
+                                 "steps take memory and wait for another process, so a step may "
+                                 "come too late. Set it to mujoco, or use `predictor simulate`."),
+                  scenario);
   return scenario;
 }
 

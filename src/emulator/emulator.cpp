@@ -187,6 +187,7 @@ std::string Emulator::WhyNotAligned() const {
     return "";
   return impl_->pipeline.DescribeBeyond(static_cast<Refusal>(r.why_refused));
 }
+std::string Emulator::EngineFailure() const { return impl_->pipeline.world().EngineFailure(); }
 const EmulatorSetup& Emulator::setup() const { return impl_->setup; }
 const Scenario& Emulator::scenario() const { return impl_->scenario; }
 double Emulator::dt() const { return 1 / impl_->scenario.rate; }

@@ -28,7 +28,7 @@ class Checker {
 
   void Object() const;
   void Environment() const;
-  void Fixture(std::size_t i) const;
+  void Simulation() const;
   void Handles() const;
   void Device() const;
   void Operator() const;
@@ -142,6 +142,14 @@ void Checker::Environment() const {
   Unless(shift.xyz.norm() <= kMaxShift, path + "xyz",
          "is " + FormatNumber(shift.xyz.norm()) + " m long; it must be at most " +
              FormatNumber(kMaxShift) + " m. Give metres.");
+}
+
+// DART allocates memory in each step, and each step waits for another process.
+void Checker::Simulation() const {
+  Unless(s_.simulation.engine == EngineKind::kMujoco || !RulesFor(s_).needs_person,
+         "simulation.engine",
+         "is dart, but the arms are real. DART is not fast enough for them: its steps take "
+         "memory and wait for another process. Set simulation.engine: mujoco.");
 }
 
 void Checker::Handles() const {
@@ -348,6 +356,7 @@ void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* pro
   const Checker checker(scenario, root, problems);
   checker.Object();
   checker.Environment();
+  checker.Simulation();
   checker.Handles();
   checker.Device();
   checker.Operator();

@@ -26,6 +26,10 @@ inline std::vector<std::string> NamesOf(JointType) {
   return {"spherical", "fixed", "revolute", "prismatic"};
 }
 
+inline std::vector<std::string> NamesOf(EngineKind) { return {"mujoco", "dart"}; }
+inline std::vector<std::string> NamesOf(JointLimits) { return {"soft", "hard", "none"}; }
+inline std::vector<std::string> NamesOf(VelocityLimits) { return {"off", "hard"}; }
+
 template <class V, class Spec>
 void PoseFields(V& v, Spec& s) {
   v("xyz", s.xyz, Number("m", "position", Within(100)));
@@ -239,6 +243,17 @@ void Fields(V& v, EnvironmentSpec& s) {
   v("shift", s.shift,
     Part("pose of W in the frame of the arms' bases: moved, and turned about the vertical; "
          "null: the same frame"));
+}
+
+template <class V>
+void Fields(V& v, SimulationSpec& s) {
+  v("engine", s.engine,
+    Word("physics engine; dart is the engine of Gazebo's dartsim, in virtual time only"));
+  v("joint_limits", s.joint_limits,
+    AbsentAs("auto", Word("limits of positions, of the cobot's joints and the attachment; auto: "
+                          "soft with mujoco, hard with dart")));
+  v("velocity_limits", s.velocity_limits,
+    Word("limits of the velocities of the cobot's joints; hard: only with dart"));
 }
 
 template <class V>
@@ -468,6 +483,7 @@ void Fields(V& v, Scenario& s) {
     g("right", s.right_handle, Part("right handle; null: absent"));
   });
   v("environment", s.environment, Part("surroundings of the cobot and the object"));
+  v("simulation", s.simulation, Part("physics engine, and how it treats limits"));
   v("coupling", s.coupling, Part("force on the virtual handle when the arms cannot follow"));
   v("device", s.device, Part("the arms that a person holds"));
   v("rig", s.rig, Part("how the simulated arms differ from their description"));

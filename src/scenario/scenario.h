@@ -194,6 +194,19 @@ struct EnvironmentSpec {
   std::optional<PoseSpec> shift;
 };
 
+enum class EngineKind { kMujoco, kDart };
+enum class JointLimits { kSoft, kHard, kNone };
+enum class VelocityLimits { kOff, kHard };
+
+// The physics engine of the virtual world.
+struct SimulationSpec {
+  EngineKind engine = EngineKind::kMujoco;
+  // How the limits of positions hold, of the cobot's joints and the attachment; absent: as the
+  // engine can, soft in MuJoCo and hard in DART.
+  std::optional<JointLimits> joint_limits;
+  VelocityLimits velocity_limits = VelocityLimits::kOff;  // of the cobot's joints
+};
+
 // How far a real handle may deviate from the virtual one before the virtual handle is coupled to it
 // (DESIGN: coupling).
 struct CouplingSpec {
@@ -452,6 +465,7 @@ struct Scenario {
   ObjectSpec object;
   std::optional<HandleSpec> left_handle, right_handle;
   EnvironmentSpec environment;
+  SimulationSpec simulation;
   CouplingSpec coupling;
   DeviceSpec device;
   RigSpec rig;

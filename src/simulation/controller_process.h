@@ -2,11 +2,12 @@
 #pragma once
 
 #include <predictor/controller.h>
-#include <sys/types.h>
 
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "simulation/shared_process.h"
 
 namespace predictor {
 
@@ -33,18 +34,15 @@ class ControllerProcess {
   // Returns true while an answer to an earlier request may still arrive. `shared` then belongs to
   // the program.
   bool IsBusy() const noexcept;
-  // Returns "exit code 1", for example, or "" while the program runs.
-  std::string HowItEnded() noexcept;
+  // "exit code 1", or "" while it runs.
+  std::string HowItEnded() noexcept { return process_.HowItEnded(); }
 
  private:
   void Send(int kind) noexcept;
-  bool HasEnded() noexcept;
 
-  PredictorControllerMemory* shared_ = nullptr;
+  SharedProcess process_;
+  PredictorControllerMemory* shared_;
   std::uint32_t request_ = 0;  // number of the last request: the program can write the shared one
-  pid_t pid_ = 0;
-  bool ended_ = false;
-  int status_ = 0;  // of waitpid
 };
 
 }  // namespace predictor

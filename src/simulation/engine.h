@@ -143,6 +143,9 @@ class Engine {
   // Returns the contacts of the last Prepare. Their forces are those of the last accelerations.
   virtual int contact_count() const noexcept = 0;
   virtual Contact contact(int i) const noexcept = 0;
+  // Whether ComputeAccelerations includes contacts, so that an object may rest on something at the
+  // start.
+  virtual bool has_contacts_at_rest() const noexcept { return true; }
 
   // ---- the scene -------------------------------------------------------------------------------
 
@@ -170,15 +173,17 @@ class Engine {
   virtual Options options() const noexcept = 0;
   virtual void SetOptions(const Options& options) noexcept = 0;
 
-  virtual std::string SceneText() const = 0;  // for inspection, in the engine's language
+  virtual std::string SceneText() const = 0;  // for inspection, in the language of MuJoCo
+  // Why the engine no longer computes, as a sentence; "" if it does.
+  virtual std::string Failure() const { return ""; }
 
  protected:
   Layout layout_;
 };
 
-// Composes the scene of a scenario: cobot, object, handles, floor, table and fixtures. The object
-// collides with floor and table, and object and cobot with the fixtures that touch them, but not
-// with each other. `wrist_sensor`: whether LoadWrench will be used. Throws InputError.
+// Composes the scene of a scenario for its simulation.engine: cobot, object, handles, floor and
+// table. The object collides with floor and table. `wrist_sensor`: whether LoadWrench will be used.
+// Throws InputError, also for what this engine does not have.
 std::unique_ptr<Engine> MakeEngine(const Scenario& scenario, const RobotModel& cobot,
                                    bool wrist_sensor, Holding holding);
 

@@ -178,22 +178,13 @@ Obstacle ObstacleIn(const ControlledScene& scene) {
   return {};
 }
 
-// The search would push the bodies out of each other, to another start than the one described.
-void CheckStart(Engine* engine) {
-  engine->Prepare();
-  for (int i = 0; i < engine->contact_count(); ++i) {
-    const Contact contact = engine->contact(i);
-    if (contact.fixture < 0 || contact.depth <= kDeepestStart) continue;
-    const std::string key = "environment.fixtures." + std::to_string(contact.fixture);
-    const bool is_object = contact.link.empty();
-    throw InputError::At(
-        key,
-        key + ": at cobot.posture, " +
-            (is_object ? "the object" : "the cobot's link " + Quote(std::string(contact.link))) +
-            " is " + FormatNumber(std::round(contact.depth * 1e4) / 10) +
-            " mm inside this fixture. Move the fixture, or change cobot.posture" +
-            (is_object ? "." : ", or remove cobot from the fixture's touches."));
-  }
+// The search does not know contacts that the engine has only in a step.
+void RefuseContact(Engine* engine) {
+  if (engine->has_contacts_at_rest() || !engine->Prepare() || engine->contact_count() == 0) return;
+  throw InputError::At("simulation.engine",
+                       "simulation.engine is dart, but the object touches the floor or the table "
+                       "at the start. Lift it with cobot.posture, or set simulation.engine: "
+                       "mujoco.");
 }
 
 }  // namespace
@@ -207,13 +198,16 @@ void FindEquilibrium(ControlledScene* scene) {
   CheckStart(&engine);
   const double residual = EquilibriumSearch(scene).Run();
   Obstacle obstacle = ObstacleIn(*scene);
-  if (residual < kTolerance && obstacle.text.empty()) return;
+  if (residual < kTolerance && obstacle.text.empty()) return RefuseContact(&engine);
   if (obstacle.text.empty()) obstacle = {"cobot.posture", "no static equilibrium was found"};
   throw InputError::At(obstacle.key,
                        obstacle.key +
                            ": the cobot cannot hold the object at cobot.posture: " + obstacle.text +
                            ". Increase the stiffness of cobot.controller, choose another "
-                           "cobot.posture, use a lighter object, or add a table.");
+                           "cobot.posture, use a lighter object, or " +
+                           (engine.has_contacts_at_rest()
+                                ? "add a table."
+                                : "set simulation.engine: mujoco if a table shall support it."));
 }
 
 }  // namespace predictor

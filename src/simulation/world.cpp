@@ -268,6 +268,7 @@ std::vector<std::string> World::joint_names() const {
 }
 double World::object_mass() const { return impl_->engine().object_model().mass; }
 const JointVector& World::effort_limit() const { return impl_->controlled.effort_limit(); }
+std::string World::EngineFailure() const { return impl_->engine().Failure(); }
 std::string World::SceneXml() const { return impl_->controlled.start_engine().SceneText(); }
 
 void World::SetRealTime(bool real_time) noexcept { impl_->controlled.SetRealTime(real_time); }

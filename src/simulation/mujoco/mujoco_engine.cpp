@@ -1,7 +1,8 @@
-// Implements the engine of the virtual world with MuJoCo.
+#include "simulation/mujoco/mujoco_engine.h"
+
 #include <algorithm>
 
-#include "simulation/engine.h"
+#include "core/error.h"
 #include "simulation/mujoco/scene.h"
 
 namespace predictor {
@@ -217,8 +218,16 @@ Contact MujocoEngine::contact(int i) const noexcept {
 
 }  // namespace
 
-std::unique_ptr<Engine> MakeEngine(const Scenario& scenario, const RobotModel& cobot,
-                                   bool wrist_sensor, Holding holding) {
+std::unique_ptr<Engine> MakeMujocoEngine(const Scenario& scenario, const RobotModel& cobot,
+                                         bool wrist_sensor, Holding holding) {
+  const auto refuse = [](const std::string& key, const std::string& why) {
+    throw InputError::At(key, key + " is hard, but simulation.engine is mujoco, " + why +
+                                  ", or set simulation.engine: dart.");
+  };
+  if (scenario.simulation.joint_limits == JointLimits::kHard)
+    refuse("simulation.joint_limits", "whose limits are soft. Set it to soft or none");
+  if (scenario.simulation.velocity_limits == VelocityLimits::kHard)
+    refuse("simulation.velocity_limits", "which has no limits of velocities. Set it to off");
   return std::make_unique<MujocoEngine>(
       std::make_shared<const Scene>(ComposeScene(scenario, cobot, wrist_sensor, holding)));
 }

@@ -81,6 +81,18 @@ void SetJointFriction(mjSpec* spec, const JointFriction& friction, const RobotMo
   }
 }
 
+bool HasLimits(const Scenario& scenario) {
+  return scenario.simulation.joint_limits != JointLimits::kNone;
+}
+
+// The joints of the cobot then turn and slide without limits.
+void RemoveLimits(mjSpec* spec, const RobotModel& cobot) {
+  for (int j = 0; j < cobot.dof(); ++j) {
+    const std::string name = kCobotPrefix + cobot.joint_name(j);
+    mjs_asJoint(mjs_findElement(spec, mjOBJ_JOINT, name.c_str()))->limited = mjLIMITED_FALSE;
+  }
+}
+
 // Returns the body of the end-effector.
 mjsBody* AddCobot(mjSpec* spec, const Scenario& scenario, const RobotModel& cobot) {
   const SpecPtr urdf = CobotSpecOf(scenario);
@@ -92,6 +104,7 @@ mjsBody* AddCobot(mjSpec* spec, const Scenario& scenario, const RobotModel& cobo
                                             std::string(mjs_getError(spec)));
   }
   SetJointFriction(spec, scenario.cobot.joint_friction, cobot);
+  if (!HasLimits(scenario)) RemoveLimits(spec, cobot);
   const std::string name = kCobotPrefix + scenario.cobot.end_effector;
   mjsBody* end_effector = mjs_findBody(spec, name.c_str());
   if (end_effector == nullptr) {
@@ -145,7 +158,7 @@ void AddFixtureContacts(mjSpec* spec, const Scenario& scenario, const ObjectMode
 }
 
 // Adds the attachment's joint, in frame A.
-void AddAttachmentJoint(mjsBody* object, const AttachmentSpec& spec) {
+void AddAttachmentJoint(mjsBody* object, const AttachmentSpec& spec, bool has_limits) {
   if (spec.joint == JointType::kFixed) return;
   const Pose X_OA = spec.on_object.ToPose();
   mjsJoint* joint = mjs_addJoint(object, nullptr);
@@ -156,7 +169,7 @@ void AddAttachmentJoint(mjsBody* object, const AttachmentSpec& spec) {
   joint->type = spec.joint == JointType::kSpherical  ? mjJNT_BALL
                 : spec.joint == JointType::kRevolute ? mjJNT_HINGE
                                                      : mjJNT_SLIDE;
-  if (spec.range && joint->type != mjJNT_BALL) {
+  if (has_limits && spec.range && joint->type != mjJNT_BALL) {
     joint->limited = mjLIMITED_TRUE;
     std::copy(spec.range->begin(), spec.range->end(), joint->range);
   }
@@ -171,7 +184,7 @@ mjsBody* AddObject(mjSpec* spec, mjsBody* end_effector, const Scenario& scenario
   if (end_effector) {
     SetPose(object->pos, object->quat,
             attachment.on_end_effector.ToPose() * attachment.on_object.ToPose().Inverse());
-    AddAttachmentJoint(object, attachment);
+    AddAttachmentJoint(object, attachment, HasLimits(scenario));
   } else {
     mjs_setName(mjs_addFreeJoint(object)->element, kObjectJoint);
   }

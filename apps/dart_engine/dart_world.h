@@ -1,0 +1,60 @@
+// A world of DART, built from the scene that the run describes. It keeps no state between calls
+// except the scene, so equal requests have equal answers.
+#pragma once
+
+#include <Eigen/Core>
+#include <dart/collision/CollisionResult.hpp>
+#include <dart/dynamics/BodyNode.hpp>
+#include <dart/dynamics/Skeleton.hpp>
+#include <dart/simulation/World.hpp>
+#include <vector>
+
+#include "simulation/dart/protocol.h"
+
+namespace predictor::dart_engine {
+
+class DartWorld {
+ public:
+  explicit DartWorld(const SceneData& scene);
+
+  // Each reads state and forces from `memory` and writes the answer there.
+  Result Prepare(Memory* memory);
+  Result Accelerations(Memory* memory);
+  Result Advance(Memory* memory);
+
+ private:
+  using VectorX = Eigen::VectorXd;
+  using MatrixX = Eigen::MatrixXd;
+
+  void AddCobot();
+  void AddObject();
+  void AddHands();
+  void AddShapes();
+  void AddSurroundings();
+  dart::dynamics::BodyNode* Carrier(int joint) const;
+
+  void SetState(const StateData& state);
+  void SetForces(const ForceData& forces);
+  VectorX ToDart(const double* values) const;
+  void FromDart(const VectorX& values, double* to) const;
+  void ReadState(StateData* state) const;
+  // Forces that act besides inertia: applied ones, damping, Coriolis and gravity.
+  VectorX Forces(const ForceData& forces) const;
+  void WriteMotion(const StateData& at, MotionData* motion) const;
+  void WriteBody(const dart::dynamics::BodyNode& body, const Eigen::Vector3d& point,
+                 BodyMotion* to) const;
+  bool WriteContacts(const dart::collision::CollisionResult& result, MotionData* motion) const;
+  void WriteLoad(const VectorX& a, const ForceData& forces,
+                 const std::vector<ContactData>& contacts, AccelerationData* to);
+
+  const SceneData& scene_;
+  dart::simulation::WorldPtr world_;
+  dart::dynamics::SkeletonPtr cobot_, surroundings_;
+  std::vector<dart::dynamics::BodyNode*> links_;
+  dart::dynamics::BodyNode* object_ = nullptr;
+  dart::dynamics::BodyNode* hands_[kHandCount] = {};
+  std::vector<Eigen::Index> dof_;  // in DART's order, of each in ours
+  VectorX damping_;                // in DART's order
+};
+
+}  // namespace predictor::dart_engine

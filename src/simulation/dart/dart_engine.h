@@ -1,0 +1,14 @@
+// DART, the engine of Gazebo's dartsim, as an engine of the virtual world.
+#pragma once
+
+#include <memory>
+
+#include "simulation/engine.h"
+
+namespace predictor {
+
+// As MakeEngine. DART runs in a process of its own and in virtual time only: a step waits for it.
+std::unique_ptr<Engine> MakeDartEngine(const Scenario& scenario, const RobotModel& cobot,
+                                       Holding holding);
+
+}  // namespace predictor

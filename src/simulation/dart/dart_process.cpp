@@ -1,0 +1,104 @@
+#include "simulation/dart/dart_process.h"
+
+#include <chrono>
+#include <exception>
+#include <new>
+#include <system_error>
+
+#include "core/error.h"
+#include "simulation/dart/turn.h"
+
+namespace predictor {
+namespace {
+
+namespace fs = std::filesystem;
+using dart_engine::Request;
+
+constexpr const char* kEngineKey = "simulation.engine";
+constexpr double kLongestAnswer = 10;    // [s]
+constexpr double kProgramEndTime = 0.5;  // for the program to end by itself [s]
+
+// It is beside the program that runs.
+fs::path Program() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error).parent_path() / "predictor-dart";
+}
+
+}  // namespace
+
+bool HasDart() {
+  std::error_code error;
+  return fs::exists(Program(), error);
+}
+
+DartProcess::DartProcess(const dart_engine::SceneData& scene) : scene_(scene) {
+  if (!HasDart())
+    throw InputError::At(
+        kEngineKey,
+        "simulation.engine is dart, but PREDICTOR was built without it: there is no " +
+            Program().string() +
+            ". Install DART (Debian 12: apt-get install libdart-dev "
+            "libdart-collision-bullet-dev) and run `./dev build`, or set "
+            "simulation.engine: mujoco.");
+  Start();
+}
+
+DartProcess::~DartProcess() {
+  memory_->kind = Request::kEnd;
+  dart_engine::Publish(&memory_->request, ++request_);
+  process_->End(kProgramEndTime);
+}
+
+void DartProcess::Start() {
+  auto process = std::make_unique<SharedProcess>(kEngineKey, sizeof(dart_engine::Memory));
+  auto* memory = new (process->memory()) dart_engine::Memory{};
+  memory->version = dart_engine::kVersion;
+  memory->size = sizeof(dart_engine::Memory);
+  memory->scene = scene_;
+  process->Start({Program().string()}, "/", "Build PREDICTOR again.");
+  process_ = std::move(process);
+  memory_ = memory;
+  request_ = 0;
+  is_silent_ = false;
+  if (Ask(Request::kBuild)) return;
+  const std::string why = memory_->text[0] != '\0' ? std::string(memory_->text) : Failure();
+  throw InputError::At(kEngineKey, "simulation.engine is dart, which cannot load the scene: " +
+                                       why + " Set simulation.engine: mujoco.");
+}
+
+bool DartProcess::Ask(Request kind) noexcept {
+  using Clock = std::chrono::steady_clock;
+  if (is_silent_ || process_->was_seen_to_end()) return false;
+  memory_->kind = kind;
+  memory_->text[0] = '\0';
+  const std::uint32_t before = request_++;
+  const Clock::time_point start = Clock::now();
+  dart_engine::Publish(&memory_->request, request_);
+  while (!dart_engine::WaitForChange(&memory_->answer, before)) {
+    if (process_->HasEnded() && dart_engine::Load(&memory_->answer) == before) return false;
+    is_silent_ = std::chrono::duration<double>(Clock::now() - start).count() > kLongestAnswer;
+    if (is_silent_) return false;
+  }
+  return memory_->result == dart_engine::Result::kDone;
+}
+
+std::string DartProcess::Failure() noexcept {
+  if (is_silent_) return "The engine's process no longer answered.";
+  const std::string how = process_->HowItEnded();
+  return how.empty() ? failure_
+                     : "The engine's process ended: " + how +
+                           (how == "signal 6" ? ", as DART does on a diverged state." : ".");
+}
+
+void DartProcess::Revive() noexcept {
+  const std::string failure = Failure();
+  if (failure.empty() || (!is_silent_ && !process_->was_seen_to_end())) return;
+  try {
+    Start();
+    failure_ = failure;
+  } catch (const std::exception&) {
+    is_silent_ = true;
+  }
+}
+
+}  // namespace predictor

@@ -1,0 +1,141 @@
+#include "simulation/dart/dart_scene.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "models/robot_impl.h"
+
+namespace predictor {
+namespace {
+
+using dart_engine::SceneData;
+
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+constexpr double kBallRadius = 0.04;  // that defines a hand's inertia [m]
+
+static_assert(dart_engine::kMaxJoints == kMaxCobotJoints);
+static_assert(dart_engine::kHandCount == kHands);
+
+void CopyVector(const Vector3& from, double* to) { std::copy_n(from.data(), 3, to); }
+
+dart_engine::FramePose PoseFor(const Pose& X) {
+  dart_engine::FramePose to{};
+  CopyVector(X.p, to.p);
+  to.q[0] = X.q.w(), to.q[1] = X.q.x(), to.q[2] = X.q.y(), to.q[3] = X.q.z();
+  return to;
+}
+
+dart_engine::Inertia InertiaFor(double mass, const Vector3& com, const Matrix3& inertia) {
+  dart_engine::Inertia to{};
+  to.mass = mass;
+  CopyVector(com, to.com);
+  std::copy_n(inertia.data(), 9, to.inertia);
+  return to;
+}
+
+// From the inertia about the joint's origin.
+dart_engine::Inertia InertiaFor(const BodyInertia& body) {
+  if (body.mass <= 0) return InertiaFor(0, Vector3::Zero(), Matrix3::Zero());
+  const Vector3 com = body.moment / body.mass;
+  const Matrix3 about_com = body.inertia + body.mass * Skew(com) * Skew(com);
+  return InertiaFor(body.mass, com, about_com);
+}
+
+void AddJoints(const Scenario& scenario, const RobotModel& cobot, SceneData* scene) {
+  const EngineModel& model = cobot.impl().engine;
+  const bool is_limited = scenario.simulation.joint_limits != JointLimits::kNone;
+  const bool is_slow = scenario.simulation.velocity_limits == VelocityLimits::kHard;
+  scene->joints = cobot.dof();
+  for (int j = 0; j < cobot.dof(); ++j) {
+    const EngineJoint& from = model.joints[static_cast<std::size_t>(j)];
+    dart_engine::CobotJoint& to = scene->joint[j];
+    to.parent = static_cast<std::int32_t>(from.parent) - 1;
+    to.prismatic = from.prismatic ? 1 : 0;
+    to.at = PoseFor({from.p_PJ, Quaternion(from.R_PJ)});
+    CopyVector(from.axis, to.axis);
+    to.body = InertiaFor(from.body);
+    to.damping = OneOrEach(scenario.cobot.joint_friction.viscous, j);
+    to.lower = is_limited ? cobot.position_lower()[j] : -kUnlimited;
+    to.upper = is_limited ? cobot.position_upper()[j] : kUnlimited;
+    to.speed = is_slow ? cobot.velocity_limit()[j] : kUnlimited;
+  }
+}
+
+void AddAttachment(const Scenario& scenario, const ObjectModel& object, SceneData* scene) {
+  const AttachmentSpec& spec = scenario.object.attachment;
+  using Kind = dart_engine::Attachment;
+  scene->attachment = spec.joint == JointType::kFixed       ? Kind::kWeld
+                      : spec.joint == JointType::kSpherical ? Kind::kBall
+                      : spec.joint == JointType::kRevolute  ? Kind::kRevolute
+                                                            : Kind::kPrismatic;
+  const Pose X_OA = spec.on_object.ToPose();
+  scene->object_at = PoseFor(spec.on_end_effector.ToPose() * X_OA.Inverse());
+  CopyVector(X_OA.p, scene->pivot);
+  const bool turns = spec.joint == JointType::kRevolute || spec.joint == JointType::kPrismatic;
+  CopyVector(turns ? Vector3((X_OA.q * spec.axis).normalized()) : Vector3::UnitZ(), scene->axis);
+  scene->damping = spec.damping;
+  const bool is_limited = spec.range && scenario.simulation.joint_limits != JointLimits::kNone;
+  scene->lower = is_limited ? (*spec.range)[0] : -kUnlimited;
+  scene->upper = is_limited ? (*spec.range)[1] : kUnlimited;
+  scene->object = InertiaFor(object.mass, object.com, object.inertia);
+  scene->has_hand_masses = scenario.mode == Mode::kDirect ? 1 : 0;
+  scene->hand_radius = kBallRadius;
+  for (int hand = 0; hand < kHands; ++hand)
+    if (scenario.Has(hand)) CopyVector(scenario.handle(hand).pose.xyz, scene->handle[hand]);
+}
+
+void AddCollisions(const Scenario& scenario, const ObjectModel& object, SceneData* scene) {
+  const EnvironmentSpec& environment = scenario.environment;
+  scene->gravity = environment.gravity;
+  scene->friction = environment.friction;
+  scene->floor = environment.floor ? 1 : 0;
+  if (environment.table) {
+    scene->table = 1;
+    CopyVector(environment.table->size, scene->table_size);
+    CopyVector(environment.table->top - Vector3(0, 0, environment.table->size.z() / 2),
+               scene->table_at);
+  }
+  if (!environment.floor && !environment.table) return;
+  using Kind = dart_engine::ShapeKind;
+  for (const ModelShape& shape : object.collisions) {
+    if (shape.kind == ShapeKind::kMesh || scene->shapes == dart_engine::kMaxShapes)
+      throw InputError::At(
+          "object.model",
+          "object.model: " + shape.place +
+              ": simulation.engine is dart, which lets only boxes, cylinders and spheres collide, "
+              "at most " +
+              std::to_string(dart_engine::kMaxShapes) +
+              ". Describe <collision> by them, remove floor and table from environment, or set "
+              "simulation.engine: mujoco.");
+    dart_engine::CollisionShape& to = scene->shape[scene->shapes++];
+    to.kind = shape.kind == ShapeKind::kBox        ? Kind::kBox
+              : shape.kind == ShapeKind::kCylinder ? Kind::kCylinder
+                                                   : Kind::kSphere;
+    CopyVector(shape.size, to.size);
+    to.at = PoseFor(shape.X_LG);
+  }
+}
+
+}  // namespace
+
+SceneData DartScene(const Scenario& scenario, const RobotModel& cobot, const ObjectModel& object,
+                    double step) {
+  if (scenario.simulation.joint_limits == JointLimits::kSoft)
+    throw InputError::At("simulation.joint_limits",
+                         "simulation.joint_limits is soft, but simulation.engine is dart, whose "
+                         "limits are hard. Set it to hard or none, or set simulation.engine: "
+                         "mujoco.");
+  SceneData scene{};
+  scene.step = step;
+  AddJoints(scenario, cobot, &scene);
+  const FrameId E = cobot.Frame(scenario.cobot.end_effector);
+  scene.carrier = E.body - 1;
+  scene.end_effector = PoseFor(E.X_JF);
+  AddAttachment(scenario, object, &scene);
+  AddCollisions(scenario, object, &scene);
+  return scene;
+}
+
+}  // namespace predictor

@@ -1,0 +1,151 @@
+// What the run and the program predictor-dart, which steps a world of DART, write to the memory
+// that they share. Plain numbers: the two are built against different libraries.
+//
+// Poses are a position [m] and a unit quaternion (w, x, y, z). Axes and wrenches are those of W
+// unless stated otherwise. The program keeps no state between two requests except the scene.
+#pragma once
+
+#include <cstdint>
+
+namespace predictor::dart_engine {
+
+inline constexpr std::uint32_t kVersion = 1;
+inline constexpr int kDescriptor = 3;  // of the memory, in the program
+
+inline constexpr int kMaxJoints = 16;           // of the cobot
+inline constexpr int kMaxDof = kMaxJoints + 3;  // and of the attachment
+inline constexpr int kMaxPositions = kMaxJoints + 4;
+inline constexpr int kMaxShapes = 64;
+inline constexpr int kMaxContacts = 64;
+inline constexpr int kHandCount = 2;
+inline constexpr int kTextSize = 256;
+
+struct FramePose {
+  double p[3], q[4];
+};
+
+// Mass [kg], centre of mass [m] in a frame, and inertia about it in the frame's axes [kg·m²].
+struct Inertia {
+  double mass, com[3], inertia[9];
+};
+
+// ---- the scene, written once ---------------------------------------------------------------
+
+struct CobotJoint {
+  std::int32_t parent;  // joint that carries it; −1: the world
+  std::int32_t prismatic;
+  FramePose at;                // in the frame of the joint that carries it, at position 0
+  double axis[3];              // unit, in its own frame
+  Inertia body;                // that it moves, in its own frame
+  double damping;              // [N·m·s/rad] or [N·s/m]
+  double lower, upper, speed;  // limits; infinite: none
+};
+
+enum class Attachment : std::int32_t { kWeld, kBall, kRevolute, kPrismatic };
+enum class ShapeKind : std::int32_t { kBox, kCylinder, kSphere };
+
+struct CollisionShape {
+  ShapeKind kind;
+  double size[3];  // box: edges; cylinder: radius, length; sphere: radius [m]
+  FramePose at;    // in O
+};
+
+struct SceneData {
+  std::int32_t joints;
+  CobotJoint joint[kMaxJoints];
+  std::int32_t carrier;    // joint that moves the end-effector; −1: the world
+  FramePose end_effector;  // E in the carrier's frame
+  Attachment attachment;
+  FramePose object_at;  // O in E, at position 0
+  double pivot[3];      // of the attachment, in O [m]
+  double axis[3];       // of a revolute or prismatic attachment, unit, in O
+  double damping;       // of the attachment
+  double lower, upper;  // its limits; infinite: none
+  Inertia object;       // in O
+  std::int32_t has_hand_masses;
+  double handle[kHandCount][3];  // in O [m]
+  double hand_radius;            // of the ball that defines a hand's inertia [m]
+  std::int32_t shapes;
+  CollisionShape shape[kMaxShapes];
+  std::int32_t floor, table;          // present
+  double table_size[3], table_at[3];  // edges and centre [m]
+  double friction;                    // of contacts
+  double gravity;                     // along −z [m/s²]
+  double step;                        // [s]
+};
+
+// ---- a request -----------------------------------------------------------------------------
+
+enum class Request : std::int32_t {
+  kBuild,          // reads the scene
+  kPrepare,        // what follows from positions and velocities
+  kAccelerations,  // the same, and the accelerations at the given forces, without contacts
+  kAdvance,        // a step; then what follows from the new positions and velocities
+  kEnd,
+};
+
+enum class Result : std::int32_t {
+  kDone,
+  kNotFinite,  // before or after the step
+  kTooManyContacts,
+  kFailed,  // `text` says why
+};
+
+// Velocities of a ball joint are its angular velocity in axes of O; its positions a quaternion.
+struct StateData {
+  double q[kMaxPositions], v[kMaxDof];
+  double hand_mass[kHandCount];  // [kg]
+};
+
+struct ForceData {
+  double joint[kMaxDof];       // applied to the joints [N·m, N]
+  double object[6];            // force and torque on the object, about its centre of mass
+  double coulomb[kMaxJoints];  // friction of the cobot's joints [N·m, N]
+};
+
+// ---- the answer ----------------------------------------------------------------------------
+
+// Rows: linear velocity of the body's origin, then angular velocity, in axes of W.
+struct BodyMotion {
+  FramePose pose;
+  double twist[6];
+  double jacobian[6 * kMaxDof];  // row by row, kMaxDof numbers each
+  double jacobian_rate[6 * kMaxDof];
+};
+
+struct ContactData {
+  double p[3], normal[3], force[3];  // on the object; the normal points out of the surroundings
+  double depth;
+};
+
+struct MotionData {
+  StateData at;        // the state to which the following belongs
+  BodyMotion body[2];  // E, O
+  double com[3];       // of the object
+  double kinetic_energy;
+  double mass_matrix[kMaxDof * kMaxDof];  // column by column, kMaxDof numbers each
+  double bias[kMaxDof];                   // Coriolis, centrifugal and gravity forces
+  std::int32_t contacts;
+  ContactData contact[kMaxContacts];
+};
+
+struct AccelerationData {
+  double a[kMaxDof];
+  double load[6];  // wrench of the load on E, about the attachment
+  double load_at[3];
+};
+
+struct Memory {
+  std::uint32_t version, size;
+  std::uint32_t request, answer;  // numbers; equal: it is the run's turn
+  Request kind;
+  Result result;
+  SceneData scene;
+  StateData state;
+  ForceData forces;
+  MotionData motion;
+  AccelerationData acceleration;
+  char text[kTextSize];
+};
+
+}  // namespace predictor::dart_engine
