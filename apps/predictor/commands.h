@@ -103,6 +103,7 @@ struct IdentifyArmOptions : OutputOptions {
 // Output of `export scene`.
 struct ExportOptions {
   std::string folder;  // empty: named after the scenario, in the current folder
+  bool sdf = false;    // SDF for Gazebo instead of URDF
 };
 
 // Input and output of the `survey` commands.

@@ -11,9 +11,10 @@
 namespace predictor {
 namespace {
 
-scene_export::ScenePackage PackageOf(const Scenario& scenario) {
+scene_export::ScenePackage PackageOf(const Scenario& scenario, bool sdf) {
+  using scene_export::SceneFormat;
   try {
-    return scene_export::MakeScenePackage(scenario);
+    return scene_export::MakeScenePackage(scenario, sdf ? SceneFormat::kSdf : SceneFormat::kUrdf);
   } catch (const InputError& error) {
     throw Located(error, scenario);
   }
@@ -33,12 +34,12 @@ int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to) 
   const Scenario scenario = options.Load();
   const std::filesystem::path folder =
       to.folder.empty() ? scenario.file.stem().string() + "_scene" : to.folder;
-  const scene_export::ScenePackage package = PackageOf(scenario);
+  const scene_export::ScenePackage package = PackageOf(scenario, to.sdf);
   scene_export::WriteScenePackage(package, folder, options.force);
   for (const std::string& note : package.notes) TheScreen().Print(note);
   options.Write("Wrote " + std::to_string(package.files.size()) + " files to " + folder.string() +
-                    ". " + (folder / "README.txt").string() +
-                    " explains how to load them in Unity.\n",
+                    ". " + (folder / "README.txt").string() + " explains how to load them in " +
+                    (to.sdf ? "Gazebo" : "Unity") + ".\n",
                 JsonOf(package, folder.string()));
   return kFinished;
 }

@@ -25,8 +25,9 @@ void AddTable(CLI::App* app, RecordingOptions* o) {
 
 void AddExport(CLI::App* app, Request* r) {
   CLI::App* all =
-      app->add_subcommand("export",
-                          "Export recordings as CSV, the person for OpenSim, or the scene as URDF")
+      app->add_subcommand(
+             "export",
+             "Export recordings as CSV, the person for OpenSim, or the scene as URDF or SDF")
           ->group(kToolGroup)
           ->require_subcommand(1);
   RecordingOptions* o = &r->recording;
@@ -67,14 +68,19 @@ void AddExport(CLI::App* app, Request* r) {
   AddOutput(person, p);
   person->footer("Example:\n  predictor export person run.mcap -o run.opensim\n");
 
-  CLI::App* scene = AddCommand(all, "Commands", "scene",
-                               "The virtual scene as one URDF file with its meshes, for Unity", r,
-                               [r] { return ExportSceneCommand(r->scenario, r->scene); });
+  CLI::App* scene =
+      AddCommand(all, "Commands", "scene",
+                 "The virtual scene as one URDF or SDF file with its meshes, for Unity or Gazebo",
+                 r, [r] { return ExportSceneCommand(r->scenario, r->scene); });
   AddScenario(scene, &r->scenario);
   AddOption(scene, "Output", "-o,--output", &r->scene.folder, "FOLDER",
             "Folder to write [default: SCENARIO_scene]");
+  scene->add_flag("--sdf", r->scene.sdf, "Write SDF 1.9 for Gazebo instead of URDF")
+      ->group("Output");
   AddOutput(scene, &r->scenario);
-  scene->footer("Example:\n  predictor export scene scenarios/box_9kg.yaml -o unity/box\n");
+  scene->footer(
+      "Examples:\n  predictor export scene scenarios/box_9kg.yaml -o unity/box\n"
+      "  predictor export scene scenarios/box_9kg.yaml --sdf -o gazebo/box\n");
 }
 
 void AddImport(CLI::App* app, Request* r) {

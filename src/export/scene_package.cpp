@@ -7,7 +7,9 @@
 
 #include "core/text.h"
 #include "export/package_meshes.h"
+#include "export/scene_sdf.h"
 #include "export/scene_tree.h"
+#include "export/xml_text.h"
 #include "models/urdf_xml.h"
 
 namespace predictor::scene_export {
@@ -15,35 +17,7 @@ namespace {
 
 // ---- the scene as URDF
 
-constexpr double kNoLimit = 1e6;    // replaces an infinite limit: no reader accepts "inf"
-constexpr double kNothing = 1e-15;  // smaller values are rounding errors of zero
-
-XmlElement* Add(XmlElement* parent, const char* name) {
-  return parent->InsertNewChildElement(name);
-}
-
-void Set(XmlElement* element, const char* attribute, const std::string& value) {
-  element->SetAttribute(attribute, value.c_str());
-}
-
-std::string Text(double x) { return FormatNumber(std::abs(x) < kNothing ? 0 : x); }
-
-std::string Text(const Vector3& x) { return Text(x.x()) + " " + Text(x.y()) + " " + Text(x.z()); }
-
-std::string Text(const std::array<double, 4>& x) {
-  return Text(x[0]) + " " + Text(x[1]) + " " + Text(x[2]) + " " + Text(x[3]);
-}
-
-// Returns roll, pitch and yaw [rad]. Roll is computed last, from the rotation that remains after
-// yaw. The three angles are therefore consistent at a vertical pitch, where roll and yaw are not
-// unique.
-Vector3 RollPitchYaw(const Matrix3& R) {
-  const double yaw = std::atan2(R(1, 0), R(0, 0));
-  const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
-  const double s = std::sin(yaw), c = std::cos(yaw);
-  const double roll = std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1));
-  return {roll, pitch, yaw};
-}
+constexpr double kNoLimit = 1e6;  // replaces an infinite limit: no reader accepts "inf"
 
 void AddOrigin(XmlElement* parent, const Pose& X) {
   XmlElement* origin = Add(parent, "origin");
@@ -215,6 +189,18 @@ World: root link "world", z up, metres, kilograms, radians. The meshes and textu
 the models of the robot and the object; their licences apply.
 )";
 
+constexpr const char* kGazebo = R"(
+This folder was written by `predictor export scene --sdf`: the virtual scene of a scenario as one
+SDF 1.9 file, scene.sdf, with its meshes in the folder "meshes".
+
+Check it with `ign sdf -k scene.sdf`, and open it with Gazebo (Fortress or newer): `ign gazebo
+scene.sdf` or `gz sim scene.sdf`. No controller is part of it, so the cobot falls.
+
+The attachment is a ball joint if it is spherical. Gazebo Fortress ignores the damping of ball
+joints; Ionic knows it. Frames stand for links without mass, and only the object, the floor and the
+table collide. The meshes come from the models of the robot and the object; their licences apply.
+)";
+
 constexpr const char* kBallJoint =
     R"(They replace a ball joint, which URDF does not support: rotations about x, then y, then z. If the
 second is at 90 degrees, the other two rotate about the same axis. The damping equals that of the
@@ -251,14 +237,20 @@ std::string Readme(const Scenario& scenario, const SceneTree& tree,
 
 }  // namespace
 
-ScenePackage MakeScenePackage(const Scenario& scenario) {
+ScenePackage MakeScenePackage(const Scenario& scenario, SceneFormat format) {
   const SceneTree tree = ComposeTree(scenario);
   PackageMeshes meshes(scenario.folder());
+  const bool is_sdf = format == SceneFormat::kSdf;
+  const std::string text = is_sdf ? SdfText(tree, scenario, &meshes)
+                                  : UrdfText(tree, scenario.environment.gravity, &meshes);
   ScenePackage package;
-  const std::string urdf = UrdfText(tree, scenario.environment.gravity, &meshes);
   package.files = meshes.files();
   package.notes = meshes.notes();
-  package.files[kSceneUrdf].text = urdf;
+  package.files[is_sdf ? kSceneSdf : kSceneUrdf].text = text;
+  if (is_sdf) {
+    package.files["README.txt"].text = scenario.name + "\n" + kGazebo;
+    return package;
+  }
   package.files["package.xml"].text = kPackageXml;
   package.files["README.txt"].text = Readme(scenario, tree, meshes.left_out());
   return package;

@@ -1,5 +1,5 @@
 // A scenario's virtual scene as a package of one URDF and its meshes, for Unity's URDF-Importer and
-// other readers.
+// other readers, or of one SDF file and its meshes, for Gazebo.
 #pragma once
 
 #include <filesystem>
@@ -23,13 +23,19 @@ struct ScenePackage {
 };
 
 inline constexpr const char* kSceneUrdf = "scene.urdf";  // path in the package
+inline constexpr const char* kSceneSdf = "scene.sdf";
 
-// Makes the package: scene.urdf, meshes/…, package.xml and README.txt. The URDF is next to the
-// folder of meshes and refers to them by relative paths. This is the only form that URDF-Importer
-// (which looks for package:// and ../ below the URDF's own folder), MuJoCo and plain readers all
-// resolve. The same scenario always gives the same bytes. Throws InputError if loading a model
-// does, or if URDF-Importer does not read a mesh format.
-ScenePackage MakeScenePackage(const Scenario& scenario);
+enum class SceneFormat {
+  kUrdf,  // for Unity's URDF-Importer and others
+  kSdf,   // for Gazebo
+};
+
+// The package: scene.urdf, meshes/…, package.xml and README.txt. The URDF is beside the folder of
+// meshes and refers to them by relative paths. This is the only form that URDF-Importer (which
+// looks for package:// and ../ below the URDF's own folder), MuJoCo and plain readers all resolve.
+// The same scenario always gives the same bytes. Throws InputError if loading a model does, or if
+// URDF-Importer does not read a mesh format. For kSdf: scene.sdf, meshes/… and README.txt.
+ScenePackage MakeScenePackage(const Scenario& scenario, SceneFormat format = SceneFormat::kUrdf);
 
 // Writes the package into `folder`, which is created if necessary. A folder that is not empty is
 // refused unless `force` is set. With `force`, files of an earlier export are replaced, or removed

@@ -1,0 +1,19 @@
+// A scenario's virtual scene as SDF 1.9, for Gazebo.
+#pragma once
+
+#include <string>
+
+#include "export/package_meshes.h"
+#include "export/scene_tree.h"
+#include "scenario/scenario.h"
+
+namespace predictor::scene_export {
+
+// A world with steps of 1 ms: the model "predictor_scene", which is the cobot with the object, and
+// the models "floor" and "table". A link with mass is a <link>, at the pose that it has with all
+// joints at 0; one without is a <frame>, unless a joint moves it. A spherical attachment is a ball
+// joint. Limits are those of the scenario's simulation.joint_limits and velocity_limits. Meshes are
+// added to `meshes`. Throws InputError as PackageMeshes does.
+std::string SdfText(const SceneTree& tree, const Scenario& scenario, PackageMeshes* meshes);
+
+}  // namespace predictor::scene_export
