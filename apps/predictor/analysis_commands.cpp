@@ -261,6 +261,8 @@ void AddReproduce(CLI::App* app, Request* r) {
             "Folder of the project's scenarios")
       ->capture_default_str();
   AddOption(reproduce, "Experiments", "--only", &o->only, "NAME", "Run this experiment only");
+  AddOption(reproduce, "Experiments", "--set", &o->set, "KEY=VALUE",
+            "Change a value of all scenarios, for example simulation.engine=dart; repeatable");
   AddOption(reproduce, "Output", "-o,--output", &o->folder, "FOLDER",
             "Folder for the page, its figures and its numbers")
       ->capture_default_str();

@@ -133,6 +133,7 @@ struct CompareOptions : OutputOptions {
 struct ReproduceCommandOptions : OutputOptions {
   std::string folder = "reproduction";
   std::string scenarios = "scenarios";
+  std::vector<std::string> set;
   std::string only;  // name of a single experiment; empty: all
 };
 

@@ -13,6 +13,7 @@ int ReproduceCommand(const ReproduceCommandOptions& options) {
   ReproduceOptions how;
   how.scenarios = FindShipped(options.scenarios);
   how.folder = options.folder;
+  how.set = options.set;
   how.only = options.only;
   how.program_version = PREDICTOR_VERSION;
   how.progress = [&](double share, const std::string& what) { progress.Update(share, what); };

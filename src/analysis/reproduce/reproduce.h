@@ -66,7 +66,8 @@ struct ReproducedExperiment {
 struct ReproduceOptions {
   std::filesystem::path scenarios = "scenarios";  // folder of the project's scenarios
   std::filesystem::path folder = "reproduction";  // destination folder
-  std::string only;                               // name of the only experiment to run; empty: all
+  std::vector<std::string> set;  // changes of all scenarios, as --set of `simulate`
+  std::string only;              // name of the only experiment to run; empty: all
   int seeds = 17;  // runs of each kind on the circle, at least 2; the default is the number of the
                    // paper's participants
   std::string program_version;

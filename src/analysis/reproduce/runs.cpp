@@ -99,6 +99,11 @@ void ReproduceRuns::ReportProgress(double share) const {
   if (options_.progress) options_.progress(share, experiment_);
 }
 
+ReproducedSetting ReproduceRuns::Changed(ReproducedSetting setting) const {
+  setting.set.insert(setting.set.end(), options_.set.begin(), options_.set.end());
+  return setting;
+}
+
 Scenario ReproduceRuns::Load(const ReproducedSetting& setting) const {
   const std::filesystem::path file = options_.scenarios / (setting.scenario + ".yaml");
   std::error_code error;
@@ -106,7 +111,7 @@ Scenario ReproduceRuns::Load(const ReproducedSetting& setting) const {
     throw InputError("There is no '" + file.string() +
                      "'. The experiments use the project's folder `scenarios`. Run this command "
                      "next to that folder, or give the folder with --scenarios.");
-  return LoadScenario(file, setting.set);
+  return LoadScenario(file, Changed(setting).set);
 }
 
 ReproducedRun ReproduceRuns::Run(const ReproducedSetting& setting, RunEnd expected) {
@@ -140,7 +145,7 @@ ReproducedRun ReproduceRuns::RunToAnyEnd(const ReproducedSetting& setting,
   how.detail = kDetail;
   RunCollector collector(std::move(info), how);
   ReproducedRun run;
-  run.command = SimulateCommandOf(setting);
+  run.command = SimulateCommandOf(Changed(setting));
   const Released released(scenario.operator_);
   Emulator emulator(scenario);
   run.end = Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {

@@ -39,6 +39,8 @@ class ReproduceRuns {
  public:
   ReproduceRuns(const ReproduceOptions& options, const std::string& experiment, int runs);
 
+  // The setting with the changes of the options.
+  ReproducedSetting Changed(ReproducedSetting setting) const;
   Scenario Load(const ReproducedSetting& setting) const;
   // Performs a run. Throws std::runtime_error unless it ends as `expected`.
   ReproducedRun Run(const ReproducedSetting& setting, RunEnd expected = RunEnd::kFinished);
