@@ -1,0 +1,99 @@
+// The exported SDF in ign-physics (dartsim, Gazebo's engine), against our own world of DART.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/text.h"
+#include "export/scene_package.h"
+#include "models/object_model.h"
+#include "models/robot.h"
+#include "scenario/scenario_io.h"
+#include "simulation/dart/dart_process.h"
+#include "simulation/dart/dart_scene.h"
+#include "support/temporary_folder.h"
+
+namespace predictor::scene_export {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kGazeboSteps = 5000;             // of 1 ms
+constexpr double kMaxGazeboDifference = 1e-9;  // [m]
+
+// The program of tests/export/gazebo, beside the tests.
+fs::path Mover() { return fs::path(PREDICTOR_BINARY).parent_path() / "predictor-ign-mover"; }
+
+std::string OutputOf(const std::string& command) {
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return "";
+  std::string output;
+  std::array<char, 4096> text;
+  for (std::size_t n; (n = fread(text.data(), 1, text.size(), pipe)) > 0;)
+    output.append(text.data(), n);
+  pclose(pipe);
+  return output;
+}
+
+// The law of the program: springs and dampers in the joints, a force on the object's centre.
+std::vector<Vector3> MoveInDart(const Scenario& scenario) {
+  const auto robot = RobotModel::Load({scenario.cobot.model, scenario.folder(),
+                                       scenario.cobot.remove_links, scenario.cobot.base.ToPose()});
+  const ObjectModel object = LoadObject(scenario.object, scenario.folder());
+  DartProcess dart(DartScene(scenario, *robot, object, 0.001));
+  dart_engine::Memory& memory = dart.memory();
+  std::copy(scenario.cobot.posture.begin(), scenario.cobot.posture.end(), memory.state.q);
+  memory.state.q[robot->dof()] = 1;  // the ball's quaternion
+  constexpr std::array<double, 7> kStiffness = {600, 600, 600, 600, 100, 100, 20};
+  constexpr std::array<double, 7> kDamping = {30, 30, 30, 30, 3, 3, 0.5};
+  std::vector<Vector3> path;
+  for (int step = 0; step < kGazeboSteps; ++step) {
+    for (std::size_t j = 0; j < kStiffness.size(); ++j)
+      memory.forces.joint[j] = -kStiffness[j] * (memory.state.q[j] - scenario.cobot.posture[j]) -
+                               kDamping[j] * memory.state.v[j];
+    const double t = 0.001 * step;
+    memory.forces.object[0] = 10 * std::sin(t);
+    memory.forces.object[1] = 5 * std::sin(2 * t);
+    if (!dart.Ask(dart_engine::Request::kAdvance)) break;
+    path.push_back(Eigen::Map<const Vector3>(memory.motion.body[1].pose.p));
+  }
+  return path;
+}
+
+TEST(Gazebo, MovesTheExportedSceneAsOurWorldOfDartDoes) {
+  if (!HasDart()) GTEST_SKIP() << "This build has no DART.";
+  if (!fs::exists(Mover())) GTEST_SKIP() << "ign-physics is missing: see deps/apt-dart.txt.";
+  Scenario scenario = LoadScenario(fs::path(PREDICTOR_SOURCE_DIR) / "scenarios" / "box_9kg.yaml");
+  scenario.simulation.joint_limits = JointLimits::kNone;
+  scenario.environment.floor = false;
+  scenario.cobot.effort_limit = {1000};  // ign-physics limits forces by it, and our world does not
+  const test::TemporaryFolder folder;
+  WriteScenePackage(MakeScenePackage(scenario, SceneFormat::kSdf), folder.path() / "to", false);
+  std::string command = Mover().string() + " " + (folder.path() / "to" / kSceneSdf).string() +
+                        " /usr/lib/x86_64-linux-gnu/ign-physics-5/engine-plugins/"
+                        "libignition-physics-dartsim-plugin.so";
+  for (const double q : scenario.cobot.posture) command += " " + FormatNumber(q);
+  std::istringstream said(OutputOf(command + " 2>/dev/null"));
+  const std::vector<Vector3> ours = MoveInDart(scenario);
+  ASSERT_EQ(ours.size(), static_cast<std::size_t>(kGazeboSteps));
+  double difference = 0, distance = 0;
+  for (const Vector3& p : ours) {
+    Vector3 other;
+    ASSERT_TRUE(said >> other.x() >> other.y() >> other.z());
+    difference = std::max(difference, (other - p).norm());
+    distance = std::max(distance, (p - ours.front()).norm());
+  }
+  std::printf("%.2g m, over %.2f m\n", difference, distance);
+  EXPECT_LE(difference, kMaxGazeboDifference);
+  EXPECT_GT(distance, 0.02);
+}
+
+}  // namespace
+}  // namespace predictor::scene_export
