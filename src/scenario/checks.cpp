@@ -28,6 +28,7 @@ class Checker {
 
   void Object() const;
   void Environment() const;
+  void Fixture(std::size_t i) const;
   void Simulation() const;
   void Handles() const;
   void Device() const;
@@ -150,6 +151,10 @@ void Checker::Simulation() const {
          "simulation.engine",
          "is dart, but the arms are real. DART is not fast enough for them: its steps take "
          "memory and wait for another process. Set simulation.engine: mujoco.");
+  Unless(s_.simulation.engine == EngineKind::kMujoco || s_.environment.fixtures.empty(),
+         "simulation.engine",
+         "is dart, whose world has no fixtures. Set simulation.engine: mujoco, or remove "
+         "environment.fixtures.");
 }
 
 void Checker::Handles() const {

@@ -178,6 +178,25 @@ Obstacle ObstacleIn(const ControlledScene& scene) {
   return {};
 }
 
+// Without this check, the search would push the bodies apart, to another start than the one
+// described.
+void CheckStart(Engine* engine) {
+  engine->Prepare();
+  for (int i = 0; i < engine->contact_count(); ++i) {
+    const Contact contact = engine->contact(i);
+    if (contact.fixture < 0 || contact.depth <= kDeepestStart) continue;
+    const std::string key = "environment.fixtures." + std::to_string(contact.fixture);
+    const bool is_object = contact.link.empty();
+    throw InputError::At(
+        key,
+        key + ": at cobot.posture, " +
+            (is_object ? "the object" : "the cobot's link " + Quote(std::string(contact.link))) +
+            " is " + FormatNumber(std::round(contact.depth * 1e4) / 10) +
+            " mm inside this fixture. Move the fixture, or change cobot.posture" +
+            (is_object ? "." : ", or remove cobot from the fixture's touches."));
+  }
+}
+
 // The search does not know contacts that the engine has only in a step.
 void RefuseContact(Engine* engine) {
   if (engine->has_contacts_at_rest() || !engine->Prepare() || engine->contact_count() == 0) return;

@@ -181,6 +181,7 @@ class DartEngine final : public Engine {
   void SetJointFriction(int j, const DofFriction& friction) noexcept override {
     scene_->friction[static_cast<std::size_t>(j)] = friction;
   }
+  void RemoveFixtures(std::uint64_t) noexcept override {}  // scenarios with fixtures are refused
   double HandMass(int hand) const noexcept override {
     return scene_->hand_mass[static_cast<std::size_t>(hand)];
   }
