@@ -108,7 +108,7 @@ TEST(FileSizeLimit, IsAnErrorOfEveryCommand) {
 
 // Standard error accepts no more data. This happens if a pager is not scrolled or a terminal is
 // paused.
-// A pipe that is full and that nobody reads.
+// A pipe that is full and that is not read.
 class FullPipe {
  public:
   FullPipe() {

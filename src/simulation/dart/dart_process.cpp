@@ -34,12 +34,11 @@ bool HasDart() {
 DartProcess::DartProcess(const dart_engine::SceneData& scene) : scene_(scene) {
   if (!HasDart())
     throw InputError::At(
-        kEngineKey,
-        "simulation.engine is dart, but PREDICTOR was built without it: there is no " +
-            Program().string() +
-            ". Install DART (Debian 12: apt-get install libdart-dev "
-            "libdart-collision-bullet-dev) and run `./dev build`, or set "
-            "simulation.engine: mujoco.");
+        kEngineKey, "simulation.engine is dart, but PREDICTOR was built without it: there is no " +
+                        Program().string() +
+                        ". Install DART (Debian 12: apt-get install libdart-dev "
+                        "libdart-collision-bullet-dev) and run `./dev build`, or set "
+                        "simulation.engine: mujoco.");
   Start();
 }
 
