@@ -85,8 +85,8 @@ void AddShape(BodyNode* body, const dart::dynamics::ShapePtr& shape, const Isome
 }
 
 template <class J>
-typename J::Properties Properties(const std::string& name, const Isometry3d& parent,
-                                  const Isometry3d& child) {
+J::Properties Properties(const std::string& name, const Isometry3d& parent,
+                         const Isometry3d& child) {
   typename J::Properties properties;
   properties.mName = name;
   properties.mT_ParentBodyToJoint = parent;
@@ -95,7 +95,7 @@ typename J::Properties Properties(const std::string& name, const Isometry3d& par
 }
 
 template <class J>
-typename J::Properties WithAxis(typename J::Properties properties, const Vector3d& axis) {
+J::Properties WithAxis(typename J::Properties properties, const Vector3d& axis) {
   properties.mAxis = axis;
   return properties;
 }

@@ -188,12 +188,11 @@ void CheckStart(Engine* engine) {
     const std::string key = "environment.fixtures." + std::to_string(contact.fixture);
     const bool is_object = contact.link.empty();
     throw InputError::At(
-        key,
-        key + ": at cobot.posture, " +
-            (is_object ? "the object" : "the cobot's link " + Quote(std::string(contact.link))) +
-            " is " + FormatNumber(std::round(contact.depth * 1e4) / 10) +
-            " mm inside this fixture. Move the fixture, or change cobot.posture" +
-            (is_object ? "." : ", or remove cobot from the fixture's touches."));
+        key, key + ": at cobot.posture, " +
+                 (is_object ? "the object" : "the cobot's link " + Quote(contact.link)) + " is " +
+                 FormatNumber(std::round(contact.depth * 1e4) / 10) +
+                 " mm inside this fixture. Move the fixture, or change cobot.posture" +
+                 (is_object ? "." : ", or remove cobot from the fixture's touches."));
   }
 }
 

@@ -137,7 +137,7 @@ class LevenbergMarquardt {
     double cost = std::numeric_limits<double>::infinity();
   };
 
-  Result From(PlaneVector p) const {
+  Result From(const PlaneVector& p) const {
     PlaneMatrix H;
     PlaneVector g;
     Result best = {p, Linearise(p, &H, &g)};

@@ -1,7 +1,7 @@
 #include "simulation/dart/dart_engine.h"
 
 #include <algorithm>
-#include <cstring>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -211,7 +211,12 @@ class DartEngine final : public Engine {
   // Whether the present state is that of the last answer.
   bool IsPrepared() noexcept {
     std::copy_n(scene_->hand_mass.data(), kHands, state_.hand_mass);
-    return is_prepared_ && std::memcmp(&state_, &motion_.at, sizeof state_) == 0;
+    const auto same = [](const auto& a, const auto& b) {
+      return std::equal(std::begin(a), std::end(a), std::begin(b));
+    };
+    const dart_engine::StateData& at = motion_.at;
+    return is_prepared_ && same(state_.q, at.q) && same(state_.v, at.v) &&
+           same(state_.hand_mass, at.hand_mass);
   }
   bool Ask(Request kind) noexcept {
     DartProcess& process = scene_->process;
