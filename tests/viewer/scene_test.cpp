@@ -62,7 +62,7 @@ TEST(Scene, HasTheFixturesInTheWorld) {
   const auto& table = scene["fixtures"][0];
   EXPECT_EQ(table["shape"], "box");
   EXPECT_EQ(table["size"].dump(), "[0.5,1.0,0.03]");
-  EXPECT_EQ(table["pose"]["p"].dump(), "[0.6,0.1,0.1]");
+  EXPECT_EQ(table["pose"]["p"].dump(), "[0.6,0.1,0.12]");
   EXPECT_EQ(table["pose"]["q"].dump(), "[1.0,0.0,0.0,0.0]");
   EXPECT_EQ(table["color"].dump(), "[0.61,0.48,0.34]");
   EXPECT_TRUE(DescribeScene(Load("box_9kg.yaml"), Vector3::Zero(), &assets)["fixtures"].empty());
