@@ -194,7 +194,7 @@ export class App {
           state, this.spec, this.stage.guidance.error(state.object.p), this.score.result);
     }
     if (state) this.plots.draw(nowMs);
-    this.personCard.show(this.person.latest, this.person.silent(nowMs), nowMs);
+    this.personCard.show(this.person.latest, this.person.silent(nowMs), nowMs, this.isOver);
     this.panel.update(this.player.latest, this.spec, nowMs, this.trouble);
     this.invite();
     this.updateResults();

@@ -107,7 +107,7 @@ void HandExposure::AppendHand(std::size_t i, std::vector<Result>* results) const
       Quantile(hand.means, 0.95));
   add("force_rms_n", "force, rms", kForceUnit, "root mean square of " + mean, rms);
   add("impulse_ns", "impulse", kImpulseUnit, "integral of the force's magnitude", hand.impulse);
-  add("force_rate_n_per_s", "rate of force", kForceRateUnit, "largest; of the force" + smooth,
+  add("force_rate_n_per_s", "rate of force", kForceRateUnit, "largest; of the force " + smooth,
       hand.rate);
   add("high_force_s", "time with a high force", kTimeUnit,
       Formatted("above %.0f N, which is %.0f %% of the threshold of the stop", high_,

@@ -179,11 +179,12 @@ export class PersonCard {
 
   // `person` is the newest state, or null if there is none yet. `silent` states whether none has
   // arrived for too long.
-  show(person: PersonState | null, silent: boolean, nowMs: number) {
+  show(person: PersonState | null, silent: boolean, nowMs: number, over = false) {
     const judged = this.spec?.person?.judged ?? false;
     const why = !judged ? `Not judged: ${this.spec?.person?.why ?? 'the body or its place is not known.'}` :
         !person ? 'Waiting for the evaluation.' :
-        silent ? 'The evaluator has stopped sending: these values are old.' :
+        silent ? (over ? 'The run is over: these are its last values.' :
+                         'The evaluator has stopped sending: these values are old.') :
         person.status === 'judged' ? '' : kWhyNot[person.status];
     const warnings = silent ? [] : person?.warnings ?? [];
     const text = `${why} ${warnings.join()}`;
