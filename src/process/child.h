@@ -25,9 +25,9 @@ void Prepare(const Preparation& may);
 
 // Call this when everything has been read and the port is open. From then on, the process cannot
 // open files, start processes, make connections, or affect other processes. If the user was root,
-// it becomes "nobody". The process ends with the run, except with kOutlivesTheRun. Restrictions
-// that this system does not support are reported to the run. `who` is "The viewer", for example.
-// Throws std::runtime_error if root's rights cannot be given up.
+// it becomes the user `nobody`. The process ends with the run, except with kOutlivesTheRun.
+// Restrictions that this system does not support are reported to the run. `who` is "The viewer",
+// for example. Throws std::runtime_error if root's rights cannot be given up.
 void GiveUpRights(const Json& start, const std::string& who);
 
 }  // namespace predictor

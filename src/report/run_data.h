@@ -20,7 +20,7 @@
 
 namespace predictor {
 
-// What is known about a recording besides its ticks.
+// The origin of a recording: everything about it except its ticks.
 struct RunInfo {
   std::string name;           // file name, or another name that distinguishes the run
   std::string file;           // full file name, if `name` is shortened
