@@ -197,8 +197,8 @@ Check it with `ign sdf -k scene.sdf`, and open it with Gazebo (Fortress or newer
 scene.sdf` or `gz sim scene.sdf`. No controller is part of it, so the cobot falls.
 
 The attachment is a ball joint if it is spherical. Gazebo Fortress ignores the damping of ball
-joints; Ionic knows it. Frames stand for links without mass, and only the object, the floor and the
-table collide. The meshes come from the models of the robot and the object; their licences apply.
+joints; Ionic knows it. Frames stand for links without mass, and only the object, the floor, the
+table and the fixtures collide. The meshes come from the models of the robot and the object; their licences apply.
 )";
 
 constexpr const char* kBallJoint =

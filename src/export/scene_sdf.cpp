@@ -56,9 +56,7 @@ class SdfWriter {
   }
 
  private:
-  static bool IsSurroundings(const SceneLink& link) {
-    return link.name == "floor" || link.name == "table";
-  }
+  static bool IsSurroundings(const SceneLink& link) { return link.friction.has_value(); }
   // Of a ball joint, the tree has three axes with two links between them.
   bool IsBall() const { return tree_.attachment_joints.size() == 3; }
   bool IsOfBall(const SceneLink& link) const {
@@ -196,8 +194,9 @@ class SdfWriter {
       AddPose(collision, shape.shape.X_LG);
       AddGeometry(collision, shape.shape, "collision");
       XmlElement* ode = Add(Add(Add(collision, "surface"), "friction"), "ode");
-      AddText(ode, "mu", Text(scenario_.environment.friction));
-      AddText(ode, "mu2", Text(scenario_.environment.friction));
+      const std::string friction = Text(link.friction.value_or(scenario_.environment.friction));
+      AddText(ode, "mu", friction);
+      AddText(ode, "mu2", friction);
     }
   }
 

@@ -351,6 +351,7 @@ class Composer {
     link.name = name;
     link.visuals = {Plain(ShapeKind::kBox, size, At({0, 0, -size.z() / 2}), color)};
     link.collisions = link.visuals;
+    link.friction = scenario_.environment.friction;
     Join(name + "_joint", "world", link, At(top));
   }
 
@@ -360,6 +361,7 @@ class Composer {
     for (const ModelShape& shape : FixtureShapes(fixture))
       link.visuals.push_back({shape, true, {}});
     link.collisions = link.visuals;
+    link.friction = fixture.friction.value_or(scenario_.environment.friction);
     Join(name + "_joint", "world", link, Pose::Identity());
   }
 

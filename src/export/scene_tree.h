@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ struct SceneLink {
   Vector3 com = Vector3::Zero();      // in L [m]
   Matrix3 inertia = Matrix3::Zero();  // about the centre of mass, axes of L [kg·m²]
   std::vector<SceneShape> visuals, collisions;
+  std::optional<double> friction;  // of a body of the surroundings; other links have none
 };
 
 struct SceneJoint {

@@ -124,6 +124,29 @@ TEST_P(SdfScene, HasALinkForEachMassAndTheScenariosJoint) {
   EXPECT_EQ(movable, robot->dof() + (axis ? 1 : 0));
 }
 
+TEST_P(SdfScene, HasTheFixturesAsBodiesThatNeverMove) {
+  std::map<std::string, const XMLElement*> bodies;
+  for (const XMLElement* e = world->FirstChildElement("model"); e;
+       e = e->NextSiblingElement("model"))
+    if (e->FirstChildElement("static")) bodies[e->Attribute("name")] = e;
+  for (std::size_t i = 0; i < scenario.environment.fixtures.size(); ++i) {
+    const std::string name = "fixture_" + std::to_string(i);
+    ASSERT_TRUE(bodies.contains(name)) << name;
+    EXPECT_FALSE(parts.contains(name)) << "part of the robot";
+    const XMLElement* collision =
+        bodies[name]->FirstChildElement("link")->FirstChildElement("collision");
+    ASSERT_NE(collision, nullptr) << name;
+    const double friction =
+        scenario.environment.fixtures[i].friction.value_or(scenario.environment.friction);
+    EXPECT_DOUBLE_EQ(collision->FirstChildElement("surface")
+                         ->FirstChildElement("friction")
+                         ->FirstChildElement("ode")
+                         ->FirstChildElement("mu")
+                         ->DoubleText(),
+                     friction);
+  }
+}
+
 TEST_P(SdfScene, IsValidForGazebosChecker) {
   if (std::system("ign sdf --versions >/dev/null 2>&1") != 0 && !fs::exists("/usr/bin/ign"))
     GTEST_SKIP() << "ign is missing: apt-get install libsdformat-dev ignition-tools";
@@ -146,8 +169,9 @@ std::string SceneNameOf(const testing::TestParamInfo<const char*>& scene) { retu
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SdfScene,
                          testing::Values("box_9kg", "bar_circle", "dual_ur5", "linear_axis",
-                                         "mobile_base", "hybrid_force_position", "odd_spherical",
-                                         "odd_fixed", "odd_revolute", "odd_prismatic"),
+                                         "mobile_base", "hybrid_force_position", "slide_on_table",
+                                         "drill", "odd_spherical", "odd_fixed", "odd_revolute",
+                                         "odd_prismatic"),
                          SceneNameOf);
 
 }  // namespace
