@@ -18,7 +18,7 @@ using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kSilence = milliseconds(1000);  // after this, the client sends a keep-alive
-constexpr auto kChange = milliseconds(5000);   // between changes of the subscriptions
+constexpr auto kChange = milliseconds(2000);   // between changes of the subscriptions
 // The longest gap between messages is so large that the speed of the machine does not matter.
 constexpr auto kLongestGap = milliseconds(10'000);
 
@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Dialects, ConnectorTest,
                          [](const auto& dialect) { return Name(dialect.param); });
 
 TEST_P(ConnectorTest, SurvivesItsTrafficSoak) {
-  const auto traffic = std::chrono::seconds(Count(60, 3600));
+  const auto traffic = std::chrono::seconds(Count(20, 3600));
   Connector unity(server_->port(), GetParam());
   unity.Command("__subscribe",
                 {{"topic", "/predictor/state"}, {"message_name", "std_msgs/String"}});
