@@ -134,7 +134,7 @@ void RunRecording::Look() {
   board_->recording.store(recorder_.status().recording ? 1 : 0, std::memory_order_relaxed);
 }
 
-bool RunRecording::Close(bool quiet) {
+bool RunRecording::Close(bool quiet, bool has_report) {
   recorder_.Close();
   const RecorderStatus status = recorder_.status();
   board_->recording.store(0, std::memory_order_relaxed);
@@ -149,7 +149,8 @@ bool RunRecording::Close(bool quiet) {
     screen.Print(Formatted("%llu ticks could not be written in time. The recording marks the gaps.",
                            static_cast<unsigned long long>(status.lost)));
   if (!status.ended_why.empty()) screen.Print(status.ended_why);
-  if (!quiet && whole) screen.Print("To make a report, run: predictor report " + file_);
+  if (!quiet && whole && !has_report)
+    screen.Print("To make a report, run: predictor report " + file_);
   return status.ended_why.empty();
 }
 

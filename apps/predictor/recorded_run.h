@@ -80,9 +80,9 @@ class RunRecording final : public SnapshotSink {
   void Look();
   // Adds a marker for people who evaluate the recording.
   void Mark(const std::string& text) { recorder_.Mark(text); }
-  // Ends the recording and prints its result unless quiet. Returns whether it recorded until the
-  // end.
-  bool Close(bool quiet);
+  // Ends the recording and prints its result unless quiet. If the program does not make a report
+  // itself, it also prints how to make one. Returns whether the recording lasted until the end.
+  bool Close(bool quiet, bool has_report);
   const std::string& file() const { return file_; }
 
  private:

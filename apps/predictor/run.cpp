@@ -248,7 +248,7 @@ class Run {
     }
     summary.overruns = report.overruns;
     summary.by_the_clock = true;
-    const bool recorded = !recording_ || recording_->Close(options_.quiet);
+    const bool recorded = !recording_ || recording_->Close(options_.quiet, results);
     const RunEnd ended = report.scenario && summary.stop_count == 0 ? RunEnd::kFinished : end;
     const int code = Report(emulator_, ended, wall.count(), options_, &summary);
     if (!options_.quiet) PrintLoop(report);
@@ -283,6 +283,7 @@ class Run {
     const std::string recording = recording_ ? recording_->file() : "";
     ServeOptions serve = serve_;
     serve.page.report = WriteRunReport(recording, summary.duration(), &remark);
+    if (recording_ && !remark.empty() && !options_.quiet) TheScreen().Print(remark);
     serve.page.results = ResultsJson(summary, curves, how, recording, remark).dump();
     serve.page.object_start = emulator_.setup().object_start;
     serve.page.notice.clear();
@@ -379,8 +380,8 @@ Scenario LoadForRealTime(const ScenarioOptions& options) {
   if (scenario.simulation.engine != EngineKind::kMujoco)
     throw Located(InputError::At("simulation.engine",
                                  "simulation.engine is dart, which runs in virtual time only: its "
-                                 "steps take memory and wait for another process, so a step may "
-                                 "come too late. Set it to mujoco, or use `predictor simulate`."),
+                                 "steps allocate memory and wait for another process, so a step "
+                                 "may be late. Set it to mujoco, or use `predictor simulate`."),
                   scenario);
   return scenario;
 }

@@ -22,7 +22,7 @@ import {PathScore} from './score';
 import {ThemeSwitch} from './theme';
 import {Immersive} from './vr/immersive';
 import {isStopped, RunWatch} from './watch';
-import {kTroubles, overWords, Trouble} from './words';
+import {kTroubles, lossWords, overWords, Trouble} from './words';
 
 const kHeadsetSilenceMs = 1500;
 const kWatchMs = 50;
@@ -128,7 +128,8 @@ export class App {
     if (this.connection.send({type: 'stop'})) {
       this.watch.asked();
     } else {
-      this.overlay.notify('Not connected: use the robot’s emergency stop.');
+      const {title, emergency} = lossWords('closed', !!this.spec?.simulated);
+      this.overlay.notify(`${title}. ${emergency}.`);
     }
   }
 
@@ -137,9 +138,10 @@ export class App {
     if (this.connection.phase === 'ended') return kTroubles.ended;
     if (this.connection.phase === 'results') return kTroubles.results;
     if (this.spec?.results && this.connection.phase === 'open') return null;
-    if (this.connection.phase !== 'open') return kTroubles.closed;
-    if (this.watch.silent) return kTroubles.silent;
-    return this.watch.ignored ? kTroubles.ignored : null;
+    const simulated = !!this.spec?.simulated;
+    if (this.connection.phase !== 'open') return lossWords('closed', simulated);
+    if (this.watch.silent) return lossWords('silent', simulated);
+    return this.watch.ignored ? lossWords('ignored', simulated) : null;
   }
 
   get mayGrip(): boolean {
@@ -189,7 +191,7 @@ export class App {
 
   private updatePage(state: State | null, nowMs: number) {
     this.pageMs = nowMs;
-    if (state && this.spec && !this.spec.results && this.shownTrouble !== kTroubles.silent && !this.isOver) {
+    if (state && this.spec && !this.spec.results && !this.watch.silent && !this.isOver) {
       this.overlay.update(
           state, this.spec, this.stage.guidance.error(state.object.p), this.score.result);
     }
@@ -306,7 +308,7 @@ export class App {
 
   private phaseChanged(phase: Phase, reason: string) {
     if (phase === 'pairing') {
-      this.pairing.show(reason, this.welcome !== null);
+      this.pairing.show(reason, this.welcome !== null && !this.spec?.simulated);
     } else {
       this.pairing.hide();
     }

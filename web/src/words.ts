@@ -56,6 +56,22 @@ export const kTroubles = {
   ignored: trouble('ignored', true),
 };
 
+// A simulated rig has no emergency stop.
+const kSimulatedTroubles = {
+  closed: onSimulatedArms(kTroubles.closed),
+  silent: onSimulatedArms(kTroubles.silent),
+  ignored: onSimulatedArms(kTroubles.ignored),
+};
+
+function onSimulatedArms(words: Trouble): Trouble {
+  return {...words, emergency: message('link.simulated.emergency')};
+}
+
+// Returns the words for a lost connection, a silent run or a stop that was not obeyed.
+export function lossWords(name: keyof typeof kSimulatedTroubles, simulated: boolean): Trouble {
+  return (simulated ? kSimulatedTroubles : kTroubles)[name];
+}
+
 export interface StopWords {
   cause: string;   // the fault, with hand, value and limit
   advice: string;  // recommended action

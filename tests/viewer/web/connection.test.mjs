@@ -13,7 +13,7 @@ let page;
 
 before(async () => {
   browser = await launch({unpainted: true});
-  server = await serve({light: !shotsWanted});
+  server = await serve({light: !shotsWanted, simulated: false});
   page = await open(browser, server.url);
   await ready(page);
 });

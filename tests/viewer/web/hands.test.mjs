@@ -209,7 +209,7 @@ test('the time of the drawn state is reported, and stands still with the picture
   const {tones} = await inside();
   server.sending = false;
   await until(page, (title) => window.predictor.immersive().board.title === title, message('link.silent.title'));
-  assert.match((await board()).text, /emergency stop/);
+  assert.equal((await board()).text, `${message('link.simulated.emergency')}.`);
   assert.equal((await inside()).tones, tones + 1);
   await headset.frames(2);
   const still = newest();

@@ -131,7 +131,7 @@ const own = (problems) => problems.filter(
 
 async function reportsTheLoss() {
   await until(page, () => !document.getElementById('emergency').hidden);
-  assert.equal(await text('#emergency'), message('link.silent.emergency'));
+  assert.equal(await text('#emergency'), message('link.simulated.emergency'));
   await shows(page, '#stop', false);
   assert.equal(await predictor('instruction'), '');
 }

@@ -31,7 +31,7 @@ export class PairingPage {
             'console for digits. They are valid for two minutes.')));
   }
 
-  // `lost` states whether the page was connected to a run, and could stop it, until now.
+  // `lost` states whether the page was connected to real arms, and could stop them, until now.
   show(reason: string, lost: boolean) {
     this.element.hidden = false;
     this.emergency.hidden = !lost;
