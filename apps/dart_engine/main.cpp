@@ -1,6 +1,6 @@
-// predictor-dart: steps a world of DART for a run of PREDICTOR, which starts it. It is a program of
-// its own because Debian's DART ends the process on a diverged state, and because its libraries
-// must not meet those of PREDICTOR.
+// predictor-dart: steps a world of DART for a run of PREDICTOR, which starts it. It is a separate
+// program because Debian's DART aborts on a diverged state, and because its libraries would
+// conflict with those of PREDICTOR.
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -88,7 +88,7 @@ int Main() {
   }
   Memory* memory = static_cast<Memory*>(address);
   if (memory->version != kVersion || memory->size != sizeof(Memory)) {
-    std::fputs("predictor-dart and predictor are of different versions. Build both.\n", stderr);
+    std::fputs("predictor-dart and predictor have different versions. Build both again.\n", stderr);
     return kBadStart;
   }
   Server(memory).Serve(run);

@@ -79,7 +79,7 @@ void AddEvaluate(CLI::App* app, Request* r) {
   AddOption(evaluate, "Person", "--against", &o->against, "RECORDING",
             "Also compare with this recording of another design, for the same person");
   AddOption(evaluate, "Person", "--against-track", &o->against_tracks, "FILE",
-            "As --track, of the person in the other recording (repeatable)")
+            "Like --track, for the recording that --against names (repeatable)")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
@@ -90,9 +90,10 @@ void AddEvaluate(CLI::App* app, Request* r) {
       ->group("Person");
   evaluate
       ->add_flag("--repeated", o->repeated,
-                 "In the real work this posture recurs four times a minute or more")
+                 "In the real work, postures recur at least four times a minute")
       ->group("Work");
-  evaluate->add_flag("--held", o->held, "In the real work a posture is held for over a minute")
+  evaluate
+      ->add_flag("--held", o->held, "In the real work, postures are held for more than a minute")
       ->group("Work");
   AddOption(evaluate, "Work", "--contact-limits", &o->contact_limits, "FILE.csv",
             "Limits of force on the body for unintended contact, in the form of "
@@ -149,7 +150,7 @@ void AddVerify(CLI::App* app, Request* r) {
 void AddTrial(CLI::App* app, Request* r) {
   CLI::App* trial =
       AddCommand(app, kAnalysisGroup, "trial",
-                 "Try a controller's library on a recorded run before a real run uses it", r,
+                 "Test a controller's library on a recorded run, as runs with real arms require", r,
                  [r] { return TrialCommand(r->scenario, r->recording.recording); });
   AddScenario(trial, &r->scenario);
   AddRecording(trial, &r->recording.recording);
@@ -224,14 +225,15 @@ void AddPopulation(CLI::App* app, Request* r) {
   PopulationCommandOptions* o = &r->population;
   CLI::App* population = AddCommand(
       app, kAnalysisGroup, "population",
-      "Compare the effects of designs on the same simulated people, each with a body of their own",
-      r, [o] { return PopulationCommand(*o); });
+      "Compare the effects of designs on the same simulated people, who have different bodies", r,
+      [o] { return PopulationCommand(*o); });
   population->add_option("scenarios", o->scenarios, "Scenario files (YAML)")->required();
   AddOption(population, "Study", "--persons", &o->persons, "NUMBER", "Number of simulated people")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  AddOption(population, "Study", "--heights", &o->heights, "M,M,...",
-            "Heights of the handles above the ground, each a design [default: the scenario's]")
+  AddOption(
+      population, "Study", "--heights", &o->heights, "M,M,...",
+      "Heights of the handles above the ground; each height is a design [default: the scenario's]")
       ->delimiter(',')
       ->check(CLI::Range(0.1, 2.5));
   AddOption(population, "Study", "--set", &o->set, "KEY=VALUE",

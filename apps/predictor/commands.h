@@ -247,7 +247,7 @@ int ListChannelsCommand(const RecordingOptions& options);
 int RepairCommand(const RecordingOptions& options);
 // Writes to `output`, or to NAME.shared.mcap next to the recording.
 int ShareCommand(const RecordingOptions& options);
-// Returns the exit code kUnfit unless nothing of the person is left and all could be searched.
+// Returns the exit code kUnfit if data of the person remain, or if a place could not be searched.
 int ForgetCommand(const ForgetOptions& options);
 // Shows a recording in the viewer until asked to end.
 int ReplayCommand(const std::string& recording, const ServeOptions& options);

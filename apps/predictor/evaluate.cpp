@@ -25,7 +25,7 @@ void AddSafety(const EvaluatedRun& run, const EvaluateOptions& options,
   if (!run.safety) {
     result->not_evaluable.push_back(
         {"the safety of the collaboration",
-         "a recording of another system has no stops, limits and energies"});
+         "a recording of another system contains no stops, limits or energies"});
     return;
   }
   assessment::SafetyOptions judge{.intervals = options.intervals, .masses = run.masses};

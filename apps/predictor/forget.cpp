@@ -16,7 +16,7 @@ namespace predictor {
 namespace {
 
 constexpr const char* kNotReached =
-    "Not reached: backups and snapshots of the file system, copies in other folders and on other "
+    "Not covered: backups and snapshots of the file system, copies in other folders and on other "
     "computers, exports under names of your own that do not contain the pseudonym, and the blocks "
     "of a disk that are not yet overwritten (an SSD keeps some that no program can reach).";
 

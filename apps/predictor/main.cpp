@@ -23,7 +23,7 @@ constexpr const char* kFooter =
     "  1  negative result: a safety stop without a reset, a scenario that fails its check, a\n"
     "     replay that differs, a joint that was not identified, or a device that differs from the\n"
     "     machine file\n"
-    "  2  bad input or usage: an option, a file that is missing, wrong or damaged\n"
+    "  2  bad input or usage: a wrong option, or a file that is missing, invalid or damaged\n"
     "  3  a device, the system or the program failed\n"
     "\n"
     "Environment:\n"

@@ -90,7 +90,7 @@ void ConfirmPerturbation(const Scenario& scenario) {
   const std::string question = Formatted(
       "During the run, the handles will move by themselves by up to %.0f mm, again and again, to "
       "identify the operator's arms. A hand that resists with more than %.0f N ends such a motion. "
-      "Does the person who will hold the handles know this and agree? Type yes to go on: ",
+      "Does the person who will hold the handles know this and agree? Type yes to continue: ",
       1e3 * p.amplitude, p.force);
   std::fputs(question.c_str(), stderr);
   std::string answer;

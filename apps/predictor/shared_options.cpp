@@ -91,9 +91,10 @@ void AddPageOptions(CLI::App* app, ServeOptions* o) {
   AddPort(app, group, "--port", &o->page.port, "Port of the viewer (0: any)");
   AddOption(app, group, "--address", &o->page.address, "ADDRESS",
             "Address to serve on: 127.0.0.1, or 0.0.0.0 with --expose");
-  CLI::Option* expose = app->add_flag("--expose", o->page.expose,
-                                      "Let other machines reach the viewer, by TLS and a code")
-                            ->group(group);
+  CLI::Option* expose =
+      app->add_flag("--expose", o->page.expose,
+                    "Let other computers connect to the viewer, over TLS and with a code")
+          ->group(group);
   CLI::Option* certificate = AddOption(app, group, "--certificate", &o->page.certificate, "FILE",
                                        "Your own certificate (PEM)")
                                  ->needs(expose);

@@ -78,7 +78,7 @@ std::optional<Condition> RecordedCondition(const Destination& to) {
 std::optional<Condition> ConditionOf(const SurveyOptions& options, const Destination& to) {
   if (options.condition.empty()) return RecordedCondition(to);
   const auto condition = ConditionNamed(options.condition);
-  if (!condition) throw InputError("--condition is one of: real, emulated.");
+  if (!condition) throw InputError("--condition must be real or emulated.");
   return condition;
 }
 

@@ -87,12 +87,12 @@ void AddImport(CLI::App* app, Request* r) {
   ImportOptions* o = &r->imported;
   CLI::App* command =
       AddCommand(app, kToolGroup, "import",
-                 "Import what hands did from another system, so that `evaluate` can judge it", r,
+                 "Import a recording of another system, so that `evaluate` can judge the person", r,
                  [o] { return ImportCommand(*o); });
   command->add_option("file", o->file, "Table (CSV), markers (TRC, C3D) or ROS 2 bag (MCAP, db3)")
       ->required();
   AddOption(command, "Input", "--map", &o->map, "MAP.yaml",
-            "Which channels are the handles' poses and the hands' forces")
+            "Mapping (YAML) that names the channels of the handles' poses and the hands' forces")
       ->required();
   AddOption(command, "Output", "-o,--output", &o->output, "FILE.person.csv",
             "File to write [default: NAME.person.csv]");
@@ -118,7 +118,7 @@ void AddRepair(CLI::App* app, Request* r) {
 }
 
 void AddShare(CLI::App* app, Request* r) {
-  AddCopy(app, "share", "Copy a recording without body, place and labels of the person",
+  AddCopy(app, "share", "Copy a recording without the person's body, stance and labels",
           "File to write [default: NAME.shared.mcap]", r, ShareCommand)
       ->footer("Example:\n  predictor share runs/p07_real.mcap -o shared/07.mcap\n");
 }
@@ -126,7 +126,7 @@ void AddShare(CLI::App* app, Request* r) {
 void AddForget(CLI::App* app, Request* r) {
   ForgetOptions* o = &r->forget;
   CLI::App* forget =
-      AddCommand(app, kToolGroup, "forget", "Delete everything of one person below a folder", r,
+      AddCommand(app, kToolGroup, "forget", "Delete all data of one person in a folder", r,
                  [o] { return ForgetCommand(*o); });
   forget->add_option("pseudonym", o->pseudonym, "Pseudonym of the person")->required();
   forget->add_option("folder", o->folder, "Folder to search, with all folders in it")->required();
@@ -135,7 +135,7 @@ void AddForget(CLI::App* app, Request* r) {
   AddQuiet(forget, o);
   forget->footer(
       "Lists the files before it deletes them, and searches the folder again afterwards.\n\n"
-      "Exit code 1: something is left, or a place could not be searched.\n\n"
+      "Exit code 1: data remain, or a place could not be searched.\n\n"
       "Example:\n  predictor forget K7QM2XPX runs\n");
 }
 

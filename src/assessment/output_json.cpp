@@ -262,7 +262,7 @@ std::string AssessmentSchema() {
        {"against",
         schema::ValueOrNull(
             "object",
-            "tails of the other recording, and the differences for the same possible persons")}},
+            "tails of the other recording, and the differences for the same possible people")}},
       "The assessment of the person in a run of PREDICTOR");
   root["$schema"] = schema::kDraft;
   return root.dump(2) + "\n";

@@ -335,7 +335,7 @@ void AddComparison(std::span<const PersonOfRun> runs, ReportPage* page) {
   page->Paragraph(
       "The 95th percentile over time (5th percentile for balance) of the nominal posture, and its "
       "90 % interval over 64 possible postures and bodies. To compare two runs for the same "
-      "possible persons, use predictor evaluate with --against: its intervals of the differences "
+      "possible people, use predictor evaluate with --against: its intervals of the differences "
       "are narrower.");
 }
 

@@ -104,10 +104,11 @@ inline constexpr std::array kPersonGaugeRows = {
                    GaugeSource::kModelled},
     PersonGaugeRow{"lower_back_moment", "N m", "moment of the extensors of the back about L5/S1", 0,
                    false, GaugeSource::kModelled},
-    PersonGaugeRow{"balance_margin", "m",
-                   "from the centre of pressure to the edge of the feet; negative: outside", 0,
-                   true, GaugeSource::kModelled},
-    PersonGaugeRow{"trunk_flexion", "rad", "of the torso against the vertical, forward", 0, false,
+    PersonGaugeRow{
+        "balance_margin", "m",
+        "distance from the centre of pressure to the edge of the feet; negative: outside", 0, true,
+        GaugeSource::kModelled},
+    PersonGaugeRow{"trunk_flexion", "rad", "angle of the torso to the vertical, forward", 0, false,
                    GaugeSource::kModelled},
     PersonGaugeRow{"left_shoulder_use", "", "torque over the mean strength of the sex, flexion", 1,
                    false, GaugeSource::kModelled},
@@ -201,7 +202,7 @@ struct ScoreState {
   std::uint8_t score = 0;  // of the nominal posture; 0: not known
   std::uint8_t level = 0;  // its action level
   std::uint16_t reserved = 0;
-  // Probability of each action level among the possible persons, at interval_time; first: level 1.
+  // Probability of each action level among the possible people, at interval_time; first: level 1.
   std::array<float, kMaxClasses> probability = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
 };
 struct PartState {
@@ -226,7 +227,7 @@ struct PersonState {
   std::uint8_t reached = 0;          // 1: in this posture, both hands reach their handles
   std::uint16_t warnings = 0;        // bits by PersonWarning
   float miss = 0;                    // largest distance by which a hand misses its handle [m]
-  float sampled_reached = kUnknown;  // share of the possible persons who reach both handles
+  float sampled_reached = kUnknown;  // share of the possible people who reach both handles
   float reserved = 0;
   std::array<std::array<float, 3>, kBodyPoints> points = {};  // in W [m]; see status
   std::array<PartState, kBodyParts> parts;
@@ -286,7 +287,7 @@ void VisitScores(V& v, S& s) {
   for (std::size_t i = 0; i < kPersonScores; ++i)
     v.Group(kPersonScoreRows[i].name, "", [&, score = &s.scores[i], i](V& in) {
       in.Number("score", "", "nominal posture; 0: not known", score->score);
-      in.Number("level", "", "its action level, 1 the least", score->level);
+      in.Number("level", "", "its action level; 1 is the lowest", score->level);
       in.List("probability", "of each action level", score->probability,
               static_cast<std::size_t>(kPersonScoreRows[i].classes));
     });
@@ -296,19 +297,18 @@ void VisitScores(V& v, S& s) {
 
 template <class V, class S>
 void VisitPerson(V& v, S& s) {
-  v.Number("tick", "", "the newest one that is considered", s.tick);
-  v.Number("run_time", "s", "of the points: middle of the 10 ms that end with that tick",
+  v.Number("tick", "", "the newest tick that is taken into account", s.tick);
+  v.Number("run_time", "s", "time of the points: middle of the 10 ms that end with that tick",
            s.run_time);
-  v.Number("load_time", "s", "of loads, scores and warnings", s.load_time);
-  v.Number("interval_time", "s", "of intervals and probabilities", s.interval_time);
+  v.Number("load_time", "s", "time of loads, scores and warnings", s.load_time);
+  v.Number("interval_time", "s", "time of intervals and probabilities", s.interval_time);
   v.Number("since", "s", "start of damage and fatigue", s.since);
   v.Word("status", "whether the person is judged, or why not", kPersonStatusNames,
          static_cast<std::size_t>(s.status));
   v.Flag("reached", "both hands reach their handles", s.reached);
-  v.Number("miss", "m", "largest distance that is missing to a handle", s.miss);
-  v.Number("sampled_reached", "", "share of the possible persons who reach both",
-           s.sampled_reached);
-  v.Words("warnings", "that are on", person_rows::kWarningNames, s.warnings);
+  v.Number("miss", "m", "largest distance between a hand and its handle", s.miss);
+  v.Number("sampled_reached", "", "share of the possible people who reach both", s.sampled_reached);
+  v.Words("warnings", "active warnings", person_rows::kWarningNames, s.warnings);
   v.Group("points", "in W [m]", [&](V& in) {
     for (std::size_t i = 0; i < kBodyPoints; ++i)
       in.Vector(kBodyPointNames[i], "", s.points[i], s.status == PersonStatus::kJudged);

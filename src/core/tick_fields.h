@@ -60,11 +60,11 @@ template <class V, class S>
 constexpr void VisitStatus(V& v, S& s) {
   v.Value({"cause", "", "", "", "cause"}, s.cause);
   v.Value({"hand", "", "", "0 left, 1 right, -1 neither or both", "cause_hand"}, s.hand);
-  v.Value({"quantity", "", "", "that value and limit measure", "cause_quantity"}, s.quantity);
+  v.Value({"quantity", "", "", "quantity of that value and limit", "cause_quantity"}, s.quantity);
   v.Flag({"power_off", "", "", "the stop must cut the power (S1)"}, s.power_off);
   v.Reserved(s.reserved);
-  v.Value({"value", "", "", "measured, SI", "cause_value"}, s.value);
-  v.Value({"limit", "", "", "allowed, SI", "cause_limit"}, s.limit);
+  v.Value({"value", "", "", "measured value of the cause, SI", "cause_value"}, s.value);
+  v.Value({"limit", "", "", "limit of that value, SI", "cause_limit"}, s.limit);
 }
 
 template <class V, class I>
@@ -93,26 +93,26 @@ constexpr void VisitRun(V& v, R& r) {
            true},
           r.wall_ns);
   v.Value({"state", "", "", "", "state"}, r.state);
-  v.Value({"cause", "", "", "of the stop, until reset", "cause"}, r.cause);
+  v.Value({"cause", "", "", "cause of the stop, until reset", "cause"}, r.cause);
   v.Value({"cause_hand", "", "", "0 left, 1 right, -1 neither or both", "cause_hand"},
           r.cause_hand);
   v.Value({"hands_gripping", "", "", "number of hands that grip"}, r.hands_gripping);
-  v.Value({"action", "", "", "of the operator's script; -1 none", "action"}, r.action);
-  v.Value({"cause_value", "", "", "measured, SI", "cause_value"}, r.cause_value);
-  v.Value({"cause_limit", "", "", "allowed, SI", "cause_limit"}, r.cause_limit);
-  v.Value({"cause_quantity", "", "", "that value and limit measure", "cause_quantity"},
+  v.Value({"action", "", "", "index in the operator's script; -1 none", "action"}, r.action);
+  v.Value({"cause_value", "", "", "measured value of the cause, SI", "cause_value"}, r.cause_value);
+  v.Value({"cause_limit", "", "", "limit of that value, SI", "cause_limit"}, r.cause_limit);
+  v.Value({"cause_quantity", "", "", "quantity of that value and limit", "cause_quantity"},
           r.cause_quantity);
   v.Flag({"ran", "", "", "simulated time passed in this tick"}, r.ran);
-  v.Flag({"rendered", "", "", "a QP was solved or tried"}, r.rendered);
+  v.Flag({"rendered", "", "", "a QP was solved, or the attempt failed"}, r.rendered);
   v.Value({"refused", "", "", "1 + event of the last request that was refused; 0 none"}, r.refused);
   v.Value({"why_refused", "", "",
            "0 none, then: not enabled, joint limit exceeded, links too close, cause still present, "
            "hand loaded, not free, moving, not aligned"},
           r.why_refused);
-  v.Value({"controller", "", "", "of the cobot: 0 computed, 1 was late and fell back, 2 failed"},
+  v.Value({"controller", "", "",
+           "the cobot's controller: 0 computed, 1 was late and fell back, 2 failed"},
           r.controller);
-  v.Value({"events", "", "", "bits: entries of the scenario's events that act", "events"},
-          r.events);
+  v.Value({"events", "", "", "bits: active entries of the scenario's events", "events"}, r.events);
   v.Value(
       {"latest_event", "", "", "1 + number of the hazard that began last; 0 none", "latest_event"},
       r.latest_event);
@@ -171,15 +171,15 @@ constexpr void VisitHand(V& v, H& h) {
   v.Message({"virtual_handle", "", "", "handle D", "virtual"}, "predictor_msgs/Motion",
             [&](auto& inner) { VisitMotion(inner, h.virtual_); });
   v.Wrench({"wrench_raw", "", "S", "reading of the sensor"}, h.wrench_raw);
-  v.Wrench({"wrench", "", "W", "of the hand on the handle, about H", "wrench"}, h.wrench);
-  v.Wrench({"coupling", "", "W", "of the virtual coupling on D", "coupling"}, h.coupling);
+  v.Wrench({"wrench", "", "W", "wrench of the hand on the handle, about H", "wrench"}, h.wrench);
+  v.Wrench({"coupling", "", "W", "wrench of the virtual coupling on D", "coupling"}, h.coupling);
   v.Wrench({"true_wrench", "", "W", "simulated rig: true wrench of the hand, about H"},
            h.true_wrench);
   v.Joints({"q", "rad", "", "measured", "arm_q"}, h.q, h.arm_dof);
   v.Joints({"v", "rad/s", "", "measured"}, h.v, h.arm_dof);
   v.Joints({"command", "rad/s", "", "sent to the arm"}, h.command, h.arm_dof);
-  v.Value({"arm_age", "s", "", "of the arm's sample"}, h.arm_age);
-  v.Value({"sensor_age", "s", "", "of the sensor's sample", "sensor_age"}, h.sensor_age);
+  v.Value({"arm_age", "s", "", "age of the arm's sample"}, h.arm_age);
+  v.Value({"sensor_age", "s", "", "age of the sensor's sample", "sensor_age"}, h.sensor_age);
   v.Value({"arm_sequence", "", "", "number of the arm's sample"}, h.arm_sequence);
   v.Value({"sensor_sequence", "", "", "number of the sensor's sample"}, h.sensor_sequence);
   v.Value({"manipulability", "", "", "translational", "manipulability"}, h.manipulability);
@@ -192,10 +192,13 @@ constexpr void VisitHand(V& v, H& h) {
 template <class V, class R>
 constexpr void VisitCobot(V& v, R& r) {
   v.Value({"dof", "", "", "joints of the cobot"}, r.cobot_dof);
-  v.Joints({"q", "rad", "", "of a prismatic joint in m", "cobot_q"}, r.cobot_q, r.cobot_dof);
-  v.Joints({"v", "rad/s", "", "of a prismatic joint in m/s"}, r.cobot_v, r.cobot_dof);
-  v.Joints({"torque", "N m", "", "commanded by the controller, of a prismatic joint in N"},
-           r.cobot_torque, r.cobot_dof);
+  v.Joints({"q", "rad", "", "joint positions; in m for a prismatic joint", "cobot_q"}, r.cobot_q,
+           r.cobot_dof);
+  v.Joints({"v", "rad/s", "", "joint velocities; in m/s for a prismatic joint"}, r.cobot_v,
+           r.cobot_dof);
+  v.Joints(
+      {"torque", "N m", "", "torques that the controller commands; in N for a prismatic joint"},
+      r.cobot_torque, r.cobot_dof);
   v.Message({"end_effector", "", "", "E", "end_effector"}, "predictor_msgs/Motion",
             [&](auto& inner) { VisitMotion(inner, r.end_effector); });
 }
@@ -204,7 +207,7 @@ template <class V, class R>
 constexpr void VisitObject(V& v, R& r) {
   v.Message({"object", "", "", "O", "object"}, "predictor_msgs/Motion",
             [&](auto& inner) { VisitMotion(inner, r.object); });
-  v.Value({"energy", "J", "", "of the virtual world"}, r.energy);
+  v.Value({"energy", "J", "", "energy of the virtual world"}, r.energy);
 }
 
 template <class V, class R>
@@ -213,12 +216,14 @@ constexpr void VisitQp(V& v, R& r) {
   v.Flag({"failed", "", "", "no verified solution", "qp_failed"}, r.qp_failed);
   v.Flag({"guard_altered", "", "", "the guard changed the command", "guard_altered"},
          r.guard_altered);
-  v.Value({"iterations", "", "", "of the solver"}, r.qp_iterations);
-  v.Twist({"relative_slack", "", "", "of the relative-pose task", "relative_slack"},
+  v.Value({"iterations", "", "", "iterations of the solver"}, r.qp_iterations);
+  v.Twist({"relative_slack", "", "", "slack of the relative-pose task", "relative_slack"},
           r.relative_slack);
-  v.Value({"elbow_slack", "m/s", "", "by which the QP relaxed the worst limit"}, r.limit_slack);
+  v.Value({"elbow_slack", "m/s", "", "amount by which the QP relaxed the worst limit"},
+          r.limit_slack);
   v.Value({"elbow_distance", "m", "",
-           "of the nearest link pair; inf without pairs and before the first QP", "elbow_distance"},
+           "distance of the nearest link pair; inf without pairs and before the first QP",
+           "elbow_distance"},
           r.link_distance);
   v.Value({"kkt_residual", "", "", "largest, scaled"}, r.kkt_residual);
 }

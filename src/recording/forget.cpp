@@ -50,7 +50,7 @@ std::string CompressionAt(const InputFile& file, std::uint64_t at, std::uint64_t
 bool HasInChunks(const InputFile& file, const std::string& text) {
   for (std::uint64_t at = mcap::kMagic.size();;) {
     const auto head = ReadHead(file, at);
-    if (!head) file.Fail(at, "The file is damaged or cut off here.");
+    if (!head) file.Fail(at, "The file is damaged or truncated here.");
     if (head->op == mcap::Op::kDataEnd) return false;  // what follows is not compressed
     if (head->op == mcap::Op::kChunk && !CompressionAt(file, at, head->length).empty()) {
       const auto index = recording::ChunkAt(file, at);
@@ -151,9 +151,9 @@ class Search {
       if (Names(path) || target.string().find(pseudonym_) != std::string::npos)
         result_.found.push_back({path, "a link with the pseudonym"});
     } else if (Names(path)) {
-      result_.found.push_back({path, "it has the pseudonym in its name"});
+      result_.found.push_back({path, "its name contains the pseudonym"});
     } else if (type == fs::file_type::directory && path.filename() == ".git") {
-      result_.not_searched.push_back({path, "a history of Git is compressed"});
+      result_.not_searched.push_back({path, "the history of a Git repository is compressed"});
     } else if (type == fs::file_type::directory) {
       others_.push_back(path);
       Walk(path);
@@ -250,9 +250,10 @@ PersonSearch FindPerson(const fs::path& folder, const std::string& pseudonym,
   if (!fs::is_directory(folder)) throw InputError(folder.string(), "There is no such folder.");
   const fs::path whole = fs::canonical(folder);
   if (whole.string().find(pseudonym) != std::string::npos)
-    throw InputError(folder.string(),
-                     "The name of this folder contains the pseudonym, so it must go too. Give the "
-                     "folder that contains it.");
+    throw InputError(
+        folder.string(),
+        "The name of this folder contains the pseudonym, so it must be deleted too. Give the "
+        "folder that contains it.");
   return Search(pseudonym, progress).Run(folder);
 }
 

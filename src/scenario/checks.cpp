@@ -149,8 +149,8 @@ void Checker::Environment() const {
 void Checker::Simulation() const {
   Unless(s_.simulation.engine == EngineKind::kMujoco || !RulesFor(s_).needs_person,
          "simulation.engine",
-         "is dart, but the arms are real. DART is not fast enough for them: its steps take "
-         "memory and wait for another process. Set simulation.engine: mujoco.");
+         "is dart, but the arms are real. DART is not fast enough for them: its steps "
+         "allocate memory and wait for another process. Set simulation.engine: mujoco.");
   Unless(s_.simulation.engine == EngineKind::kMujoco || s_.environment.fixtures.empty(),
          "simulation.engine",
          "is dart, whose world has no fixtures. Set simulation.engine: mujoco, or remove "

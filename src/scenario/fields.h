@@ -227,8 +227,9 @@ void Fields(V& v, FixtureSpec& s) {
   v("friction", s.friction,
     Number("", "sliding friction of its contacts; null: environment.friction", From(0, 10)));
   v("time_constant", s.time_constant,
-    Number("s", "of its contacts; a smaller value is stiffer", From(0.002, 1)));
-  v("damping_ratio", s.damping_ratio, Number("", "of its contacts; 1: no bounce", From(0.01, 10)));
+    Number("s", "time constant of its contacts; a smaller value is stiffer", From(0.002, 1)));
+  v("damping_ratio", s.damping_ratio,
+    Number("", "damping ratio of its contacts; 1: no bounce", From(0.01, 10)));
   v("touches", s.touches, List(Word("what collides with it", {"object", "cobot"}), 1, 2));
   v("color", s.color, Number("", "red, green, blue", From(0, 1)));
 }

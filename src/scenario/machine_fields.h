@@ -50,9 +50,12 @@ void Fields(V& v, SensorConnection& s) {
   v("make", s.make, Word("make of the sensor; own: the arm measures the wrench itself"));
   v("host", s.host, Word("address of the sensor; none if make is own"));
   v("counts_per_force", s.counts_per_force,
-    Number("1/N", "from the sensor's configuration (ATI: cfgcpf; OnRobot: 10000)", Above(0, 1e9)));
+    Number("1/N", "counts per force in the sensor's configuration (ATI: cfgcpf; OnRobot: 10000)",
+           Above(0, 1e9)));
   v("counts_per_torque", s.counts_per_torque,
-    Number("1/(N·m)", "the same for torque (ATI: cfgcpt; OnRobot: 100000)", Above(0, 1e9)));
+    Number("1/(N·m)",
+           "counts per torque in the sensor's configuration (ATI: cfgcpt; OnRobot: 100000)",
+           Above(0, 1e9)));
 }
 
 template <class V>

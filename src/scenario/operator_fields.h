@@ -72,7 +72,8 @@ void Fields(V& v, BodySpec& s) {
            "flexion, shoulder extension",
            From(0.1, 5)));
   v("stiffness", s.stiffness,
-    Number("", "of the arm's joints, as a multiple of the published mean (operator.embodied)",
+    Number("",
+           "stiffness of the arm's joints, as a multiple of the published mean (operator.embodied)",
            From(0.1, 10)));
   v("fatigue", s.fatigue,
     Number("", "share of the arm's muscles that is fatigued at the start (operator.embodied)",
@@ -82,7 +83,7 @@ void Fields(V& v, BodySpec& s) {
 template <class V>
 void Fields(V& v, StanceSpec& s) {
   v("ground", s.ground,
-    Required(Number("m", "point of the ground midway between the feet, in W", Within(100))));
+    Required(Number("m", "point on the ground midway between the feet, in W", Within(100))));
   v("facing", s.facing,
     Required(Number("rad", "direction of view: angle about W's z axis from its x axis",
                     Within(kFullTurn))));

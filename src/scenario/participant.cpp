@@ -96,18 +96,19 @@ void CheckParticipant(const ParticipantSpec& participant, const std::string& pat
   const auto unless = [&](bool good, const std::string& key, const std::string& sentence) {
     if (!good) problems->Add(PlaceOf(path + key, root), path + key + " " + sentence);
   };
-  unless(IsPseudonym(participant.pseudonym), "pseudonym",
-         "is " + Quote(participant.pseudonym) +
-             ", but it must say nothing about the person: eight of the digits 2 to 9 and of the "
-             "capitals without I and O, of which the last one checks the others. `predictor "
-             "pseudonym` draws one; if you have one, check it for typing errors.");
+  unless(
+      IsPseudonym(participant.pseudonym), "pseudonym",
+      "is " + Quote(participant.pseudonym) +
+          ", but it must be eight characters (digits 2 to 9, capital letters except I and O), of "
+          "which the last one checks the others, and must not describe the person. `predictor "
+          "pseudonym` draws one. If you have one, check it for typing errors.");
   unless(IsVersion(participant.consent.version), "consent.version",
          "is " + Quote(participant.consent.version) +
              ". Give the version of the text to which the person agreed, in at most 40 ASCII "
              "characters, for example study-2.");
   unless(IsDate(participant.consent.date), "consent.date",
          "is " + Quote(participant.consent.date) +
-             ", which is no day of the calendar. Write it as YYYY-MM-DD, for example 2026-11-20.");
+             ", which is not a date. Write it as YYYY-MM-DD, for example 2026-11-20.");
 }
 
 }  // namespace predictor

@@ -8,13 +8,13 @@ namespace predictor {
 
 template <class V>
 void Fields(V& v, ConsentSpec& s) {
-  v("version", s.version, Required(Word("of the text of the consent")));
+  v("version", s.version, Required(Word("version of the consent text")));
   v("date", s.date, Required(Word("day on which the person signed it: YYYY-MM-DD")));
 }
 
 template <class V>
 void Fields(V& v, ParticipantSpec& s) {
-  v("pseudonym", s.pseudonym, Required(Word("that `predictor pseudonym` drew; never a name")));
+  v("pseudonym", s.pseudonym, Required(Word("pseudonym from `predictor pseudonym`; never a name")));
   v("consent", s.consent, Required(Part("what the person agreed to")));
   v("handedness", s.handedness,
     Word("the hand that the person prefers", {"unknown", "left", "right", "ambidextrous"}));

@@ -195,7 +195,7 @@ YamlNode ParseYaml(const std::string& file_text, const std::string& source_name)
     TreeBuilder rest(source, &second);
     if (parser.HandleNextDocument(rest)) {
       throw InputError(second.place.Text(),
-                       "a second document begins here. A file must have only one.");
+                       "a second document begins here. A file must contain only one document.");
     }
     builder.CheckLastQuote(text);
   } catch (const YAML::Exception& error) {

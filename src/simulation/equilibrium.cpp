@@ -20,10 +20,10 @@ constexpr int kIterations = 1000;
 constexpr double kMaxStep = 0.1;      // maximum change of a coordinate in an iteration [rad, m]
 constexpr double kPseudoTime = 0.01;  // first step of the flow, squared [s²]
 constexpr double kDifference = 1e-6;  // step of finite differences [rad, m]
-// While something rests on a fixture: less than the 0.5 µm by which it sinks in.
+// The step while a body rests on a fixture: less than the 0.5 µm by which the body sinks in.
 constexpr double kContactDifference = 1e-8;
-// An iteration enters a fixture at most this far [m]: deeper, the contact's force is so large that
-// the search would jump in and out.
+// The largest depth to which an iteration may enter a fixture [m]. Deeper inside, the contact's
+// force is so large that the search would jump in and out.
 constexpr double kMaxDepth = 1e-5;
 constexpr int kHalvings = 30;            // of an iteration that enters a fixture deeper
 constexpr double kDeepestStart = 0.001;  // in a fixture [m]
@@ -111,7 +111,7 @@ class EquilibriumSearch {
     }
   }
 
-  // How deep the object or the cobot is in a fixture [m].
+  // Returns how deep the object or the cobot is in a fixture [m].
   double Depth() {
     engine_.Prepare();
     double depth = 0;
@@ -161,7 +161,7 @@ struct Obstacle {
 Obstacle ObstacleIn(const ControlledScene& scene) {
   const RobotModel& robot = scene.robot();
   if (scene.outcome() == ControllerOutcome::kFailed)
-    return {"cobot.controller", "its program does not answer, or with torques that are not finite"};
+    return {"cobot.controller", "its program does not answer, or its torques are not finite"};
   for (int j = 0; j < robot.dof(); ++j) {
     const double limit = scene.effort_limit()[j];
     if (std::fabs(scene.torque()[j]) < limit) continue;
@@ -178,8 +178,8 @@ Obstacle ObstacleIn(const ControlledScene& scene) {
   return {};
 }
 
-// Without this check, the search would push the bodies apart, to another start than the one
-// described.
+// Without this check, the search would push the bodies apart, and the run would start elsewhere
+// than the scenario describes.
 void CheckStart(Engine* engine) {
   engine->Prepare();
   for (int i = 0; i < engine->contact_count(); ++i) {
@@ -196,7 +196,7 @@ void CheckStart(Engine* engine) {
   }
 }
 
-// The search does not know contacts that the engine has only in a step.
+// The search does not include contacts that the engine computes only in a step.
 void RefuseContact(Engine* engine) {
   if (engine->has_contacts_at_rest() || !engine->Prepare() || engine->contact_count() == 0) return;
   throw InputError::At("simulation.engine",
@@ -225,7 +225,7 @@ void FindEquilibrium(ControlledScene* scene) {
                            "cobot.posture, use a lighter object, or " +
                            (engine.has_contacts_at_rest()
                                 ? "add a table."
-                                : "set simulation.engine: mujoco if a table shall support it."));
+                                : "set simulation.engine: mujoco if a table should support it."));
 }
 
 }  // namespace predictor

@@ -112,9 +112,10 @@ class Mapper {
 
   void CheckTimes(const std::vector<const Series*>& channels, const Times& times) const {
     if (TimesOf(channels) != times)
-      throw InputError(file_.name, Quote(channels[0]->name) +
-                                       " has other times than the position of the same part. Map "
-                                       "channels of one message or table.");
+      throw InputError(
+          file_.name, Quote(channels[0]->name) +
+                          " has times that differ from those of the position of the same part. Map "
+                          "channels of one message or table.");
   }
 
   std::vector<Quaternion> Rotations(const std::vector<std::string>& names,
@@ -323,7 +324,7 @@ BodyTrack LoadBodyTrack(const std::filesystem::path& file) {
   TrackMap map = MapOfColumns(table);
   if (!map.head && !map.left_elbow && !map.right_elbow && !map.left_hand && !map.right_hand &&
       map.series.empty())
-    throw InputError(file.string(), "The table has no numbers beside the time.");
+    throw InputError(file.string(), "The table has no column of numbers other than the time.");
   return ApplyMap(map, table);
 }
 

@@ -159,7 +159,7 @@ class C3dReader {
     }
     const std::size_t frame = number_bytes_ * (4 * points_ + per_frame_ * analogs_);
     if (data_ < kBlock || data_ > bytes_.size() || (bytes_.size() - data_) / frame < frames_)
-      Fail("The file is cut off: it has fewer frames than its header says. Export it again.");
+      Fail("The file is truncated: it has fewer frames than its header states. Export it again.");
     if (frames_ < 2) Fail("The file has fewer than two frames.");
   }
 

@@ -197,7 +197,7 @@ ClockOffset EstimateOffset(const Path& reference, const Path& track, const std::
   }
   if (lags.size() < kMinBlocks)
     throw InputError(what, Formatted("The uncertainty of the clocks' offset cannot be estimated: "
-                                     "the hand moves in %zu of %zu parts of the record only. Give "
+                                     "the hand moves in only %zu of %zu parts of the record. Give "
                                      "the offset (clock: recording, offset: SECONDS).",
                                      lags.size(), kBlocks));
   const auto [least, most] = std::ranges::minmax(lags);

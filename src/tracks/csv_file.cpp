@@ -151,7 +151,7 @@ class CsvReader {
     file_.series = std::move(kept);
     if (repeated_ > 0)
       file_.warnings.push_back(std::to_string(repeated_) +
-                               " rows repeat the time of the row before and are left out.");
+                               " rows repeat the time of the previous row and are left out.");
     return std::move(file_);
   }
 

@@ -22,11 +22,11 @@ constexpr const char* kFirstLine = "# predictor_person: 1";
 
 template <class V>
 void PersonFields(V& v, PersonHeader& s) {
-  v("name", s.name, Word("of the task"));
+  v("name", s.name, Word("name of the task"));
   v("source", s.source, Word("file from which it was imported"));
   v("simulated", s.simulated, Flag("whether a simulation, and no person, held the handles"));
   v("object_mass", s.object_mass,
-    Number("kg", "of the object that the hands move together with a robot", Above(0, 1000)));
+    Number("kg", "mass of the object that the hands move together with a robot", Above(0, 1000)));
   v.Group("operator", "the person", [&](auto& inner) {
     inner("body", s.body, Part("height, mass and sex"));
     inner("stance", s.stance, Part("where the person stands, in W"));

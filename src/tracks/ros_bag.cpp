@@ -1,4 +1,4 @@
-// Reads bags of ROS 2: files of the two kinds of storage, and their topics.
+// Reads the topics of ROS 2 bags in both storage formats.
 #include <sqlite3.h>
 #include <zstd.h>
 
@@ -175,7 +175,7 @@ class SqliteBag {
   };
 
   [[noreturn]] void Fail() const {
-    throw InputError(file_, std::string("The file cannot be read as a bag of ROS 2 (SQLite): ") +
+    throw InputError(file_, std::string("The file cannot be read as a ROS 2 bag (SQLite): ") +
                                 sqlite3_errmsg(database_.get()) + ".");
   }
 

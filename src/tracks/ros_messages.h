@@ -1,4 +1,4 @@
-// Converts messages of ROS 2 to numbers over time.
+// Converts ROS 2 messages to numbers over time.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +50,7 @@ class RosTopic {
   std::vector<RosTopic> frames_;            // of a TFMessage: one for each child frame
 };
 
-// Reads a bag of ROS 2 according to its kind: MCAP or SQLite (.db3), or a folder that contains one
+// Reads a ROS 2 bag according to its format: MCAP or SQLite (.db3), or a folder that contains one
 // such file. Topics of other types are omitted, and the error about a missing channel lists their
 // names.
 SeriesFile ReadRosBag(const std::filesystem::path& file, MessageTime clock);

@@ -75,7 +75,7 @@ SeriesFile ReadSeries(const std::filesystem::path& file, const TimeColumn& time)
     return ReadRosBag(file, time.name == "received" ? MessageTime::kReceived : MessageTime::kStamp);
   throw InputError(file.string(),
                    "Files of this kind cannot be read. Give a table (.csv), markers "
-                   "(.trc, .c3d) or a bag of ROS 2 (.mcap, .db3).");
+                   "(.trc, .c3d) or a ROS 2 bag (.mcap, .db3).");
 }
 
 double LengthFactor(const std::string& unit, const std::string& what) {

@@ -21,7 +21,7 @@ struct Series {
 
 struct SeriesFile {
   std::string name;                   // for messages
-  std::vector<std::string> comments;  // lines that begin with #, without it
+  std::vector<std::string> comments;  // comment lines, without their #
   std::vector<Series> series;
   std::vector<std::string> warnings;  // about doubtful content, as sentences
 
@@ -35,7 +35,7 @@ struct SeriesFile {
 struct TimeColumn {
   std::string name;  // "": the column called time or timestamp
   std::string unit;  // "": as the header states it, otherwise s
-  double rate = 0;   // of the rows, of a table without times [Hz]; 0: it has times
+  double rate = 0;   // rows per second in a table without times; 0: the table has times
 };
 
 // Larger files are refused [bytes].

@@ -42,8 +42,8 @@ void Fields(V& v, HandMap& s) {
   const auto three = [](const char* doc) { return List(Word(doc), 0, 3); };
   v("force", s.force, three("channels of the force along x, y, z, or one name"));
   v("torque", s.torque, three("channels of the torque about x, y, z, or one name"));
-  v("axes", s.axes, Word("whose axes force and torque are along"));
-  v("on", s.on, Word("what force and torque act on"));
+  v("axes", s.axes, Word("whose axes the force and the torque refer to: hand or file"));
+  v("on", s.on, Word("what the force and the torque act on: handle or hand"));
   v("about", s.about,
     Number("m", "point about which the torque acts, in the frame of the handle", Within(2)));
   v("holds", s.holds, Word("channel above 0.5 while the hand holds; \"\": it always holds"));
@@ -59,18 +59,19 @@ void Fields(V& v, SeriesMap& s) {
 template <class V>
 void TrackFields(V& v, TrackMap& s) {
   v("time", s.time,
-    Word(
-        "column of a table with the times; \"\": time or timestamp. Of a bag: received, instead of "
-        "the messages' own stamps"));
+    Word("table: the column with the times; \"\": time or timestamp. Bag: received selects the "
+         "times at "
+         "which the messages were received, instead of their own stamps"));
   v("time_unit", s.time_unit, Word("\"\": as the header states it, otherwise s"));
   v("rate", s.rate,
-    Number("Hz", "of the rows of a table without times; 0: it has times", From(0, 1e5)));
+    Number("Hz", "rate of the rows of a table without times; 0: the table has times",
+           From(0, 1e5)));
   v("clock", s.clock, Word("what the file's times mean"));
   v("offset", s.offset, Number("s", "added to the file's times", Within(1e10)));
   v("frame", s.frame, Part("the file's frame in W"));
-  v("unit", s.unit, Word("of positions; \"\": as the file states it"));
-  v("force_unit", s.force_unit, Word("of forces; \"\": as the file states it"));
-  v("torque_unit", s.torque_unit, Word("of torques; \"\": as the file states it"));
+  v("unit", s.unit, Word("unit of positions; \"\": as the file states it"));
+  v("force_unit", s.force_unit, Word("unit of forces; \"\": as the file states it"));
+  v("torque_unit", s.torque_unit, Word("unit of torques; \"\": as the file states it"));
   v("head", s.head, Part("the eyes; x forward, y left, z up"));
   v("left_elbow", s.left_elbow, Part("centre of the left elbow"));
   v("right_elbow", s.right_elbow, Part("centre of the right elbow"));

@@ -208,7 +208,7 @@ TEST(Plugin, AProcessThatDoesNotFitIsRefusedWithPlaceAndRemedy) {
   ExpectError(Faulty("ends"), key, "ended before it answered (exit code 7)");
   ExpectError(Faulty("refuses"), key, "refuses this scenario. Not for today");
   ExpectError(PythonExample("rigidity=5"), key, "is not one of its parameters");
-  ExpectError(Faulty("nan", 0), "cobot.controller", "its program does not answer, or with torques");
+  ExpectError(Faulty("nan", 0), "cobot.controller", "its program does not answer, or its torques");
 }
 
 // The result of a trial applies only to a library with exactly these bytes.

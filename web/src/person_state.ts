@@ -2,16 +2,16 @@
 
 export interface PersonState {
   type: 'person';
-  tick: number;  // the newest one that is considered
-  run_time: number | null;  // [s] of the points: middle of the 10 ms that end with that tick
-  load_time: number | null;  // [s] of loads, scores and warnings
-  interval_time: number | null;  // [s] of intervals and probabilities
+  tick: number;  // the newest tick that is taken into account
+  run_time: number | null;  // [s] time of the points: middle of the 10 ms that end with that tick
+  load_time: number | null;  // [s] time of loads, scores and warnings
+  interval_time: number | null;  // [s] time of intervals and probabilities
   since: number | null;  // [s] start of damage and fatigue
   status: 'judged' | 'waiting' | 'no_hand' | 'below_ground';  // whether the person is judged, or why not
   reached: boolean;  // both hands reach their handles
-  miss: number | null;  // [m] largest distance that is missing to a handle
-  sampled_reached: number | null;  // share of the possible persons who reach both
-  warnings: ('lower_back_compression' | 'lower_back_shear' | 'balance' | 'left_shoulder' | 'right_shoulder' | 'left_elbow' | 'right_elbow' | 'rula' | 'reba' | 'owas' | 'reach')[];  // that are on
+  miss: number | null;  // [m] largest distance between a hand and its handle
+  sampled_reached: number | null;  // share of the possible people who reach both
+  warnings: ('lower_back_compression' | 'lower_back_shear' | 'balance' | 'left_shoulder' | 'right_shoulder' | 'left_elbow' | 'right_elbow' | 'rula' | 'reba' | 'owas' | 'reach')[];  // active warnings
   points: Record<'pelvis' | 'l5s1' | 'neck' | 'head' | 'eyes' | 'left_shoulder' | 'left_elbow' | 'left_wrist' | 'left_hand' | 'right_shoulder' | 'right_elbow' | 'right_wrist' | 'right_hand' | 'left_hip' | 'left_knee' | 'left_ankle' | 'left_toes' | 'right_hip' | 'right_knee' | 'right_ankle' | 'right_toes', [number, number, number] | null>;  // in W [m]
   parts: Record<'lower_back' | 'left_shoulder' | 'right_shoulder' | 'left_elbow' | 'right_elbow', Record<'load' | 'capacity' | 'damage' | 'day_share', number | null>>;
   gauges: Record<'lower_back_compression' | 'lower_back_shear' | 'lower_back_moment' | 'balance_margin' | 'trunk_flexion' | 'left_shoulder_use' | 'right_shoulder_use' | 'left_elbow_use' | 'right_elbow_use' | 'left_hand_force' | 'right_hand_force' | 'left_arm_activation' | 'right_arm_activation' | 'left_hand_stiffness' | 'right_hand_stiffness', Record<'value' | 'low' | 'high', number | null>>;

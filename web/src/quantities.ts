@@ -37,29 +37,29 @@ export interface RunQuantities {
   runTime: number;  // [s] simulated time since RUN began
   wallNs: number;  // [ns] monotonic clock at the tick's start; 0 in virtual time
   state: RunState;
-  cause: StopCause;  // of the stop, until reset
+  cause: StopCause;  // cause of the stop, until reset
   causeHand: number;  // 0 left, 1 right, -1 neither or both
-  action: number;  // of the operator's script; -1 none
-  causeValue: number;  // measured, SI
-  causeLimit: number;  // allowed, SI
-  causeQuantity: Quantity;  // that value and limit measure
-  events: number;  // bits: entries of the scenario's events that act
+  action: number;  // index in the operator's script; -1 none
+  causeValue: number;  // measured value of the cause, SI
+  causeLimit: number;  // limit of that value, SI
+  causeQuantity: Quantity;  // quantity of that value and limit
+  events: number;  // bits: active entries of the scenario's events
   latestEvent: number;  // 1 + number of the hazard that began last; 0 none
   cobotStop: number;  // protective stop of the virtual cobot itself: 0 none, then: force, speed, momentum, joint torque (in a prismatic joint: force)
   harderCause: StopCause;
   harderCauseHand: number;  // 0 left, 1 right, -1 neither or both
-  harderCauseQuantity: Quantity;  // that value and limit measure
-  harderCauseValue: number;  // measured, SI
-  harderCauseLimit: number;  // allowed, SI
+  harderCauseQuantity: Quantity;  // quantity of that value and limit
+  harderCauseValue: number;  // measured value of the cause, SI
+  harderCauseLimit: number;  // limit of that value, SI
   parameters: number[];  // factors of translational stiffness, rotational stiffness and damping; thresholds of force [N] and torque [N m]
-  cobotQ: number[];  // [rad] of a prismatic joint in m
+  cobotQ: number[];  // [rad] joint positions; in m for a prismatic joint
   endEffector: Pose;  // [m] in W
   object: Pose;  // [m] in W
   qpRelaxed: boolean;  // a slack is above its tolerance
   qpFailed: boolean;  // no verified solution
   guardAltered: boolean;  // the guard changed the command
-  relativeSlack: number[];  // [m/s, rad/s] of the relative-pose task
-  elbowDistance: number;  // [m] of the nearest link pair; inf without pairs and before the first QP
+  relativeSlack: number[];  // [m/s, rad/s] slack of the relative-pose task
+  elbowDistance: number;  // [m] distance of the nearest link pair; inf without pairs and before the first QP
   stageUs: number[];  // [us]
   sentNs: number;  // [ns] monotonic clock when the server sent it
   recording: boolean;  // the run is recorded
@@ -104,10 +104,10 @@ export interface HandQuantities {
   armFault: boolean;  // the arm reports a fault
   real: Pose;  // [m] in W
   virtual: Pose;  // [m] in W
-  wrench: number[];  // [N, N m] in W of the hand on the handle, about H
-  coupling: number[];  // [N, N m] in W of the virtual coupling on D
+  wrench: number[];  // [N, N m] in W wrench of the hand on the handle, about H
+  coupling: number[];  // [N, N m] in W wrench of the virtual coupling on D
   armQ: number[];  // [rad] measured
-  sensorAge: number;  // [s] of the sensor's sample
+  sensorAge: number;  // [s] age of the sensor's sample
   manipulability: number;  // translational
   peak: number[];  // [N, N m] largest force and torque since the previous state
   keepsPower: boolean;  // the arm reports power although it should have been cut

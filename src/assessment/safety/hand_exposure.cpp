@@ -110,8 +110,8 @@ void HandExposure::AppendHand(std::size_t i, std::vector<Result>* results) const
   add("force_rate_n_per_s", "rate of force", kForceRateUnit, "largest; of the force " + smooth,
       hand.rate);
   add("high_force_s", "time with a high force", kTimeUnit,
-      Formatted("above %.0f N, which is %.0f %% of the threshold of the stop", high_,
-                100 * kHighShare),
+      Formatted("time with a force above %.0f N, which is %.0f %% of the threshold of the stop",
+                high_, 100 * kHighShare),
       hand.high_time);
   add("peak_torque_nm", "peak torque", kTorqueUnit, "estimated at " + tick, hand.peak_torque);
   add("growing_cycles", "growing cycles", kNumberUnit,
@@ -120,10 +120,11 @@ void HandExposure::AppendHand(std::size_t i, std::vector<Result>* results) const
   add("growing_amplitude_n", "largest growing cycle", kForceUnit,
       "amplitude of the largest of them", hand.growing_amplitude);
   add("supplied_j", "energy supplied", kEnergyUnit,
-      "by the hand to the real handle, minus what it received", hand.device.sum);
-  add("returned_j", "energy received", kEnergyUnit, "by the hand from the real handle",
+      "energy from the hand to the real handle, minus the energy in the other direction",
+      hand.device.sum);
+  add("returned_j", "energy received", kEnergyUnit, "energy from the real handle to the hand",
       hand.device.returned);
-  add("peak_return_w", "peak power received", kPowerUnit, "by the hand from the real handle",
+  add("peak_return_w", "peak power received", kPowerUnit, "power from the real handle to the hand",
       hand.device.peak_return);
   add("lowest_j", "lowest energy", kEnergyUnit,
       "lowest energy balance at the real handle; a passive device keeps it above the negative of "
@@ -133,7 +134,8 @@ void HandExposure::AppendHand(std::size_t i, std::vector<Result>* results) const
       "how often that balance fell below −0.05 J: the handle gave more than it had received",
       hand.device.episodes);
   add("scene_supplied_j", "energy into the scene", kEnergyUnit,
-      "by the hand's wrench and the coupling to the virtual handle, minus what came back",
+      "energy from the hand's wrench and the coupling to the virtual handle, minus the energy "
+      "that returned",
       hand.scene.sum);
   add("scene_lowest_j", "lowest energy of the scene", kEnergyUnit,
       "lowest energy balance at the virtual handle", hand.scene.lowest);

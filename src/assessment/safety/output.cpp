@@ -139,7 +139,7 @@ std::string MeaningOf(const std::string& key) {
       {"transient", "each region, if it is hit and can recoil"},
       {"clamping_force_n", "bound that the scenario sets on the cobot's force; null: no bound [N]"},
       {"clamped", "each region, if it is clamped"},
-      {"what", "what the limit or the gap is about"},
+      {"what", "subject of the limit or the gap"},
       {"why", "why it could not be judged"},
       {"limit", "limit of what the rig renders, SI"},
       {"reached", "largest value in the run, SI"},

@@ -32,13 +32,14 @@ template <class V>
 void Fields(V& v, HybridParameters& p) {
   v("force_axes", p.axes,
     Word("axes of W that are force-controlled", {"x", "y", "z", "xy", "xz", "yz", "xyz"}));
-  v("set_force", p.force, Number("N", "of the cobot on the load, in W", Within(1e4)));
-  v("force_gain", p.gain, Number("", "proportional", From(0, 10)));
-  v("force_integral_gain", p.integral_gain, Number("1/s", "integral", From(0, 1000)));
+  v("set_force", p.force, Number("N", "force of the cobot on the load, in W", Within(1e4)));
+  v("force_gain", p.gain, Number("", "proportional gain of the force", From(0, 10)));
+  v("force_integral_gain", p.integral_gain,
+    Number("1/s", "integral gain of the force", From(0, 1000)));
   v("force_integral_limit", p.integral_limit,
-    Number("N", "largest force of the integral along each axis", From(0, 1e4)));
+    Number("N", "largest force of the integral term along each axis", From(0, 1e4)));
   v("stiffness_translation", p.stiffness,
-    Number("N/m", "along the other axes, towards the start", From(0, 1e5)));
+    Number("N/m", "stiffness of the spring along the other axes, towards the start", From(0, 1e5)));
   Fields(v, p.control);
 }
 

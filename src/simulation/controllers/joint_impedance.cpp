@@ -16,10 +16,11 @@ struct JointImpedanceParameters {
 template <class V>
 void Fields(V& v, JointImpedanceParameters& p) {
   v("joint_stiffness", p.stiffness,
-    OneOrList(Number("N·m/rad or N/m", "for all joints or one each", From(0, 1e5)), 1,
-              kMaxCobotJoints));
+    OneOrList(Number("N·m/rad or N/m", "stiffness for all joints, or one per joint", From(0, 1e5)),
+              1, kMaxCobotJoints));
   v("joint_damping_ratio", p.damping_ratio,
-    OneOrList(Number("", "for all joints or one each", From(0, 5)), 1, kMaxCobotJoints));
+    OneOrList(Number("", "damping ratio for all joints, or one per joint", From(0, 5)), 1,
+              kMaxCobotJoints));
 }
 
 class JointImpedance final : public Controller {

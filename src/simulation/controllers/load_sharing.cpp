@@ -26,11 +26,12 @@ struct LoadSharingParameters {
 template <class V>
 void Fields(V& v, LoadSharingParameters& p) {
   Fields(v, p.load);
-  v("share", p.share, Number("", "of the object's weight that the cobot carries", From(0, 1)));
+  v("share", p.share,
+    Number("", "share of the object's weight that the cobot carries", From(0, 1)));
   v("inertia_share", p.inertia_share,
-    Number("", "of the object's inertial force that the cobot exerts", From(0, 0.9)));
+    Number("", "share of the object's inertial force that the cobot exerts", From(0, 0.9)));
   v("acceleration_time", p.acceleration_time,
-    Number("s", "time constant of the measured acceleration", From(0.002, 1)));
+    Number("s", "time constant of the filter of the measured acceleration", From(0.002, 1)));
   Fields(v, p.control);
 }
 

@@ -38,9 +38,11 @@ void Fields(V& v, MinimumJerkParameters& p) {
   v("assistance", p.assistance,
     Number("", "the cobot's share of the force of the movement", From(0, 1)));
   v("onset_speed", p.onset_speed,
-    Number("m/s", "at which a movement is noticed; a quarter of it is rest", Above(0, 1)));
+    Number("m/s",
+           "speed at which a movement is detected; below a quarter of it, the hand is at rest",
+           Above(0, 1)));
   v("load_mass", p.load_mass,
-    Number("kg", "of the object, whose inertia the cobot then also shares", From(0, 1000)));
+    Number("kg", "mass of the object, whose inertia the cobot also shares", From(0, 1000)));
 }
 
 class MinimumJerkIntention final : public AdmittanceLaw {
@@ -85,6 +87,6 @@ class MinimumJerkIntention final : public AdmittanceLaw {
 
 const ControllerKind kMinimumJerkIntention =
     ControllerKindOf<MinimumJerkIntention, MinimumJerkParameters>(
-        "minimum_jerk_intention", "admittance that shares the movement which the person intends");
+        "minimum_jerk_intention", "admittance that assists the movement that the person intends");
 
 }  // namespace predictor::controllers

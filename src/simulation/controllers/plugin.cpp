@@ -28,7 +28,7 @@ void Fields(V& v, PluginParameters& p) {
   v("library", p.library,
     Required(Word("shared library: package://..., or relative to this file; it runs as part of "
                   "the program")));
-  v("parameters", p.parameters, Word("for the library: key=value, separated by spaces"));
+  v("parameters", p.parameters, Word("parameters for the library: key=value, separated by spaces"));
 }
 
 std::filesystem::path LibraryOf(const ControllerContext& context,
@@ -145,6 +145,6 @@ void Plugin::FindMemory(const PluginParameters& parameters) {
 }  // namespace
 
 const ControllerKind kPlugin = ControllerKindOf<Plugin, PluginParameters>(
-    "plugin", "a shared library of yours, in C or C++", ControllerPlace::kLibrary);
+    "plugin", "your own shared library, in C or C++", ControllerPlace::kLibrary);
 
 }  // namespace predictor::controllers

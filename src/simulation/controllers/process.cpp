@@ -32,9 +32,9 @@ void Fields(V& v, ProcessParameters& p) {
   v("command", p.command,
     List(Required(Word("the program and its arguments; it starts in the folder of this file")), 1,
          32));
-  v("parameters", p.parameters, Word("for the program: key=value, separated by spaces"));
+  v("parameters", p.parameters, Word("parameters for the program: key=value, separated by spaces"));
   v("deadline", p.deadline,
-    Number("s", "real time: for each answer; then gravity compensation and damping act",
+    Number("s", "real time: time for each answer; after it, gravity compensation and damping act",
            From(5e-5, 9e-4)));
 }
 
@@ -170,6 +170,6 @@ class Process final : public ExternalController {
 }  // namespace
 
 const ControllerKind kProcess = ControllerKindOf<Process, ProcessParameters>(
-    "process", "a program of yours, in any language", ControllerPlace::kProcess);
+    "process", "your own program, in any language", ControllerPlace::kProcess);
 
 }  // namespace predictor::controllers

@@ -42,13 +42,16 @@ void Fields(V& v, VariableImpedanceParameters& p) {
   Fields(v, p.law);
   v("adaptation", p.adaptation,
     Word("what changes the damping of translation", {"velocity", "intention"}));
-  v("damping_minimum", p.damping_minimum, Number("N·s/m", "of translation", From(0, 1e5)));
+  v("damping_minimum", p.damping_minimum,
+    Number("N·s/m", "minimum damping of translation", From(0, 1e5)));
   v("damping_maximum", p.damping_maximum,
-    Number("N·s/m", "of translation; for intention", From(0, 1e5)));
+    Number("N·s/m", "intention: maximum damping of translation", From(0, 1e5)));
   v("adaptation_speed", p.adaptation_speed,
-    Number("m/s", "velocity: damping falls towards its minimum by a factor e", Above(0, 10)));
+    Number("m/s", "velocity: speed at which the damping above the minimum has fallen by a factor e",
+           Above(0, 10)));
   v("adaptation_gain", p.adaptation_gain,
-    Number("s²/m", "intention: less damping for each N/s along the motion", From(0, 1000)));
+    Number("s²/m", "intention: decrease of the damping for each N/s along the motion",
+           From(0, 1000)));
   v("derivative_time", p.derivative_time,
     Number("s", "intention: time constant of the force's derivative", From(0.002, 1)));
 }

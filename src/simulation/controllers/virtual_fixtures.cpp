@@ -37,16 +37,20 @@ void Fields(V& v, VirtualFixturesParameters& p) {
   Fields(v, p.load);
   v.Group("guide", "a spring and a damper across a line or plane", [&](V& g) {
     g("type", p.guide, Word("what guides the end-effector", {"none", "line", "plane"}));
-    g("direction", p.direction, Number("", "of the line, or normal to the plane, in W", Within(1)));
-    g("offset", p.offset, Number("m", "of a point on it from the start, in W", Within(10)));
-    g("stiffness", p.stiffness, Number("N/m", "across it", From(0, 1e5)));
-    g("damping", p.damping, Number("N·s/m", "across it", From(0, 1e5)));
+    g("direction", p.direction,
+      Number("", "direction of the line, or normal of the plane, in W", Within(1)));
+    g("offset", p.offset,
+      Number("m", "offset from the start of a point on the line or plane, in W", Within(10)));
+    g("stiffness", p.stiffness, Number("N/m", "stiffness across the line or plane", From(0, 1e5)));
+    g("damping", p.damping, Number("N·s/m", "damping across the line or plane", From(0, 1e5)));
   });
   v.Group("zone", "a sphere in which a damper limits the speed", [&](V& g) {
-    g("radius", p.zone_radius, Number("m", "0: no zone", From(0, 10)));
-    g("center", p.zone_center, Number("m", "offset from the start, in W", Within(10)));
-    g("damping", p.zone_damping, Number("N·s/m", "in the zone", From(0, 1e5)));
-    g("edge", p.zone_edge, Number("m", "outside the radius, over which it fades", From(0.001, 1)));
+    g("radius", p.zone_radius, Number("m", "radius of the zone; 0: no zone", From(0, 10)));
+    g("center", p.zone_center,
+      Number("m", "offset of the zone's centre from the start, in W", Within(10)));
+    g("damping", p.zone_damping, Number("N·s/m", "damping in the zone", From(0, 1e5)));
+    g("edge", p.zone_edge,
+      Number("m", "distance outside the radius over which the damping fades", From(0.001, 1)));
   });
   Fields(v, p.control);
 }

@@ -19,11 +19,11 @@ struct WrenchControlParameters {
 template <class V>
 void Fields(V& v, WrenchControlParameters& p) {
   v("damping_translation", p.damping_translation,
-    Number("N·s/m", "of the end-effector", From(0, 1e5)));
+    Number("N·s/m", "damping of the end-effector's translation", From(0, 1e5)));
   v("damping_rotation", p.damping_rotation,
-    Number("N·m·s/rad", "of the end-effector", From(0, 1e4)));
+    Number("N·m·s/rad", "damping of the end-effector's rotation", From(0, 1e4)));
   v("stiffness_rotation", p.stiffness_rotation,
-    Number("N·m/rad", "towards the orientation of the start", From(0, 1e4)));
+    Number("N·m/rad", "stiffness towards the orientation at the start", From(0, 1e4)));
 }
 
 // What the controller knows of the object.
@@ -39,9 +39,11 @@ struct KnownLoad {
 
 template <class V>
 void Fields(V& v, KnownLoad& p) {
-  v("object_mass", p.mass, Number("kg", "as the cobot knows it", From(0, 1000)));
+  v("object_mass", p.mass,
+    Number("kg", "mass of the object that the controller assumes", From(0, 1000)));
   v("object_center_of_mass", p.center_of_mass,
-    Number("m", "in the end-effector's frame; of a ball joint: its centre", Within(10)));
+    Number("m", "centre of mass in the end-effector's frame; for a ball joint, the joint's centre",
+           Within(10)));
 }
 
 class WrenchControl : public Controller {

@@ -18,7 +18,7 @@ constexpr const char* kEngineKey = "simulation.engine";
 constexpr double kLongestAnswer = 10;    // [s]
 constexpr double kProgramEndTime = 0.5;  // for the program to end by itself [s]
 
-// It is beside the program that runs.
+// Returns the path of predictor-dart, in the folder of the running program.
 fs::path Program() {
   std::error_code error;
   return fs::read_symlink("/proc/self/exe", error).parent_path() / "predictor-dart";
@@ -86,7 +86,7 @@ std::string DartProcess::Failure() noexcept {
   const std::string how = process_->HowItEnded();
   return how.empty() ? failure_
                      : "The engine's process ended: " + how +
-                           (how == "signal 6" ? ", as DART does on a diverged state." : ".");
+                           (how == "signal 6" ? ", as DART does when the state diverges." : ".");
 }
 
 void DartProcess::Revive() noexcept {

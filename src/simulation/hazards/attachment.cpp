@@ -13,12 +13,13 @@ struct SlipParameters {
 template <class V>
 void Fields(V& v, SlipParameters& p) {
   v("slip_force", p.force,
-    Number("N", "that the grip holds; beyond it, the object slides", From(0, 1e4)));
+    Number("N", "largest force that the grip holds; above it, the object slides", From(0, 1e4)));
   v("slip_torque", p.torque,
-    Number("N·m", "that the grip of a fixed attachment holds; beyond it, the object turns",
+    Number("N·m",
+           "largest torque that the grip of a fixed attachment holds; above it, the object turns",
            From(0, 1e4)));
   v("slip_distance", p.distance,
-    Number("m", "beyond which the sliding object leaves the grip for good", Above(0, 10)));
+    Number("m", "distance after which the sliding object leaves the grip", Above(0, 10)));
 }
 
 void Open(const NoParameters&, double, Disturbance* d) noexcept {

@@ -11,8 +11,9 @@ struct SetPointJumpParameters {
 
 template <class V>
 void Fields(V& v, SetPointJumpParameters& p) {
-  v("xyz", p.xyz, Number("m", "by which the set-point jumps, in W", Within(10)));
-  v("rotation", p.rpy, Number("rad", "rotation vector by which it turns, in W", Within(3.2)));
+  v("xyz", p.xyz, Number("m", "displacement by which the set-point jumps, in W", Within(10)));
+  v("rotation", p.rpy,
+    Number("rad", "rotation vector by which the set-point turns, in W", Within(3.2)));
 }
 
 struct StiffnessStepParameters {
@@ -21,8 +22,9 @@ struct StiffnessStepParameters {
 
 template <class V>
 void Fields(V& v, StiffnessStepParameters& p) {
-  v("translation_factor", p.translation, Number("", "of the stiffness", From(0, 100)));
-  v("rotation_factor", p.rotation, Number("", "of the rotational stiffness", From(0, 100)));
+  v("translation_factor", p.translation,
+    Number("", "factor of the translational stiffness", From(0, 100)));
+  v("rotation_factor", p.rotation, Number("", "factor of the rotational stiffness", From(0, 100)));
 }
 
 struct DampingStepParameters {
@@ -31,7 +33,7 @@ struct DampingStepParameters {
 
 template <class V>
 void Fields(V& v, DampingStepParameters& p) {
-  v("damping_factor", p.factor, Number("", "of the damping ratio", From(0, 100)));
+  v("damping_factor", p.factor, Number("", "factor of the damping ratio", From(0, 100)));
 }
 
 struct ControlDelayParameters {
@@ -40,7 +42,8 @@ struct ControlDelayParameters {
 
 template <class V>
 void Fields(V& v, ControlDelayParameters& p) {
-  v("added_delay", p.delay, Number("s", "added to cobot.control.delay", Above(0, 0.5)));
+  v("added_delay", p.delay,
+    Number("s", "delay that is added to cobot.control.delay", Above(0, 0.5)));
 }
 
 void JumpSetPoint(const SetPointJumpParameters& p, double, Disturbance* d) noexcept {
@@ -80,10 +83,11 @@ const HazardKind kDampingStep = HazardKindOf<DampingStepParameters, StepDamping>
     HazardNeeds::kSprings);
 
 const HazardKind kControlDelay = HazardKindOf<ControlDelayParameters, DelayControl>(
-    "control_delay", "the controller's torques act later", "the controller became slow");
+    "control_delay", "the controller's torques act with a longer delay",
+    "the controller became slow");
 
 const HazardKind kControlFreeze = HazardKindOf<NoParameters, FreezeControl>(
-    "control_freeze", "the controller stands still, and its last torques act",
+    "control_freeze", "the controller stops computing, and its last torques continue to act",
     "the controller froze");
 
 const HazardKind kTakeover =

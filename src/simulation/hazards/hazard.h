@@ -1,4 +1,4 @@
-// Hazards on purpose. docs/how-to/hazards.md explains how scenarios use them. To add one, write a
+// Deliberate hazards. docs/how-to/hazards.md explains how scenarios use them. To add one, write a
 // struct of parameters, a function that writes a Disturbance, and a line in hazards.h.
 #pragma once
 
@@ -7,8 +7,8 @@
 
 namespace predictor {
 
-// What a hazard needs: a part of the cobot without which it would have no effect, an attachment
-// that can slip (kSlipping), or that it lasts until the end (kNoEnd).
+// The requirements of a hazard: a part of the cobot without which it would have no effect, an
+// attachment that can slip (kSlipping), or no end before that of the run (kNoEnd).
 enum class HazardNeeds { kNothing, kWristSensor, kSetPoint, kSprings, kStandby, kSlipping, kNoEnd };
 
 // The registry's description of a hazard. The sentence states what happens, for a report ("the

@@ -11,7 +11,7 @@ struct WrongPayloadParameters {
 template <class V>
 void Fields(V& v, WrongPayloadParameters& p) {
   v("payload_error", p.mass,
-    Number("kg", "mass at the end-effector that the controller compensates too much",
+    Number("kg", "mass by which the controller overestimates the load at the end-effector",
            Within(1000)));
 }
 
@@ -22,9 +22,10 @@ struct WrongFrictionParameters {
 template <class V>
 void Fields(V& v, WrongFrictionParameters& p) {
   v("coulomb_error", p.coulomb,
-    Number("N·m", "Coulomb friction of each joint that it compensates too much", Within(1000)));
+    Number("N·m", "Coulomb friction by which the controller overcompensates each joint",
+           Within(1000)));
   v("viscous_error", p.viscous,
-    Number("N·m·s/rad", "viscous friction of each joint that it compensates too much",
+    Number("N·m·s/rad", "viscous friction by which the controller overcompensates each joint",
            Within(1e4)));
 }
 
@@ -34,8 +35,9 @@ struct SensorBiasParameters {
 
 template <class V>
 void Fields(V& v, SensorBiasParameters& p) {
-  v("force_bias", p.force, Number("N", "added to the reading, axes of W", Within(1000)));
-  v("torque_bias", p.torque, Number("N·m", "added to the reading, axes of W", Within(1000)));
+  v("force_bias", p.force, Number("N", "force added to the reading, in axes of W", Within(1000)));
+  v("torque_bias", p.torque,
+    Number("N·m", "torque added to the reading, in axes of W", Within(1000)));
 }
 
 struct SensorDriftParameters {
@@ -44,9 +46,10 @@ struct SensorDriftParameters {
 
 template <class V>
 void Fields(V& v, SensorDriftParameters& p) {
-  v("force_drift", p.force, Number("N/s", "by which the reading drifts, axes of W", Within(1000)));
+  v("force_drift", p.force,
+    Number("N/s", "drift of the force reading, in axes of W", Within(1000)));
   v("torque_drift", p.torque,
-    Number("N·m/s", "by which the reading drifts, axes of W", Within(1000)));
+    Number("N·m/s", "drift of the torque reading, in axes of W", Within(1000)));
 }
 
 void MistakePayload(const WrongPayloadParameters& p, double, Disturbance* d) noexcept {
@@ -71,11 +74,11 @@ void DriftSensor(const SensorDriftParameters& p, double elapsed, Disturbance* d)
 }  // namespace
 
 const HazardKind kWrongPayload = HazardKindOf<WrongPayloadParameters, MistakePayload>(
-    "wrong_payload", "the controller compensates a load that is not there",
+    "wrong_payload", "the controller compensates for a load that does not exist",
     "the controller assumed a wrong payload");
 
 const HazardKind kWrongFriction = HazardKindOf<WrongFrictionParameters, MistakeFriction>(
-    "wrong_friction", "the controller compensates friction that is not there",
+    "wrong_friction", "the controller compensates for friction that does not exist",
     "the controller assumed wrong friction");
 
 const HazardKind kSensorBias = HazardKindOf<SensorBiasParameters, BiasSensor>(

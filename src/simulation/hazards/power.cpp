@@ -12,8 +12,8 @@ struct PowerLossParameters {
 template <class V>
 void Fields(V& v, PowerLossParameters& p) {
   v("brake_delay", p.brake_delay,
-    Number("s", "until the brakes close; until then, the cobot sinks", From(0, 10)));
-  v("brakes", p.brakes, Flag("whether it has brakes; without them, it falls"));
+    Number("s", "time until the brakes close; until then, the cobot sinks", From(0, 10)));
+  v("brakes", p.brakes, Flag("whether the cobot has brakes; without them, it falls"));
 }
 
 void CloseBrakes(const NoParameters&, double, Disturbance* d) noexcept { d->brakes = true; }

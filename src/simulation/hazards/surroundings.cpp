@@ -14,8 +14,8 @@ template <class V>
 void Fields(V& v, ObstacleParameters& p) {
   v("fixture", p.fixture,
     Required(Number("",
-                    "number of the fixture in environment.fixtures, the first is 0; it is absent "
-                    "until the event begins, and after it ends",
+                    "index of the fixture in environment.fixtures, from 0; the fixture exists only "
+                    "during the event",
                     From(0, kMaxFixtures - 1))));
 }
 
