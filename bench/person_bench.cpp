@@ -1,4 +1,4 @@
-// Measures what the evaluation of the person costs: posture, loads, muscles, 64 possible persons,
+// Measures what the evaluation of the person costs: posture, loads, muscles, 64 possible people,
 // and all of it during a run.
 #include <cmath>
 
@@ -64,7 +64,7 @@ TickRecord TickAt(const person::Stance& stance, std::uint64_t tick) {
 }
 
 // Measures the share of a core that the evaluator needs for the nominal person at 100 Hz and 64
-// persons at 5 Hz.
+// people at 5 Hz.
 void TimeLive(bool quick) {
   Scenario scenario;
   scenario.left_handle = scenario.right_handle = HandleSpec{};
@@ -126,7 +126,7 @@ void TimePerson(bool quick) {
   row("posture, starting at the comfort", cold);
   row("inverse dynamics, loads and angles", loads);
   row("muscles and stiffness of both arms", muscle);
-  row("64 possible persons", persons);
+  row("64 possible people", persons);
   std::printf("nominal chain: %.0f Hz%s\n", 1e6 / (Median(next) + Median(loads) + Median(muscle)),
               std::isfinite(check) ? "" : " (not finite)");
   TimeLive(quick);

@@ -24,7 +24,7 @@ function(predictor_library NAME HEADER)
   set_target_properties(${NAME} PROPERTIES IMPORTED_LOCATION ${${NAME}_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${${NAME}_INCLUDE_DIR})
 endfunction()
 predictor_library(zstd zstd.h)           # compression of recordings
-predictor_library(sqlite3 sqlite3.h)     # bags of ROS 2
+predictor_library(sqlite3 sqlite3.h)     # ROS 2 bags
 predictor_library(deflate libdeflate.h)  # CRC32 of recordings, compression of PNG pictures
 predictor_library(seccomp seccomp.h)     # system call filter of the server processes
 predictor_library(rapidcheck rapidcheck.h)  # tests: random cases that shrink

@@ -87,7 +87,7 @@ expect() {
 properties() { sed -n 's/^ltl \([a-z_]*\) .*/\1/p' "$here/safety.pml"; }
 
 # Returns whether a property can be violated only by pages and leases. The violation of any other
-# property is found much sooner where the viewer does as it likes.
+# property is found much sooner if the viewer may do anything.
 of_pages() { [[ $1 =~ ^(one_holder|holder_commands|runs_out|passed_on|can_hand_over)$ ]]; }
 
 check_properties() {

@@ -27,7 +27,8 @@ using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Below this part of the largest acceleration, what contacts and limits add is rounding error.
+// Accelerations that contacts and limits add count as rounding errors below this share of the
+// largest acceleration.
 constexpr double kRounding = 1e-9;
 
 Vector3d At(const double* xyz) { return Eigen::Map<const Vector3d>(xyz); }
@@ -349,7 +350,7 @@ bool DartWorld::WriteContacts(const dart::collision::CollisionResult& result,
   for (std::size_t i = 0; i < result.getNumContacts(); ++i) {
     const dart::collision::Contact& from = result.getContact(i);
     const auto* first = from.collisionObject1->getShapeFrame()->asShapeNode();
-    // DART's normal and force are those on the first body.
+    // DART gives the normal and the force on the first body.
     const double sign = first != nullptr && first->getBodyNodePtr().get() == object_ ? 1 : -1;
     ContactData& to = motion->contact[motion->contacts++];
     Write(from.point, to.p);
@@ -360,8 +361,8 @@ bool DartWorld::WriteContacts(const dart::collision::CollisionResult& result,
   return true;
 }
 
-// Newton and Euler about the object's centre of mass, at the state before a step. The hands move
-// with it and have no weight.
+// Applies the Newton-Euler equations about the object's centre of mass, in the state before a step.
+// The hands move with the object and have no weight.
 void DartWorld::WriteLoad(const VectorX& a, const ForceData& forces,
                           const std::vector<ContactData>& contacts, AccelerationData* to) {
   FromDart(a, to->a);
@@ -428,7 +429,7 @@ Result DartWorld::Advance(Memory* memory) {
   ReadState(&next);
   if (!WriteContacts(world_->getLastCollisionResult(), &memory->motion))
     return Result::kTooManyContacts;
-  // What contacts, limits and friction add, on top of the accelerations without them.
+  // The part of the accelerations that contacts, limits and friction cause.
   VectorX reaction = total - step;
   if (reaction.lpNorm<Eigen::Infinity>() <= kRounding * (1 + total.lpNorm<Eigen::Infinity>()))
     reaction.setZero();

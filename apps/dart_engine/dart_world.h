@@ -1,4 +1,4 @@
-// A world of DART, built from the scene that the run describes. It keeps no state between calls
+// Builds a world of DART from the scene that the run describes. It keeps no state between calls
 // except the scene, so equal requests have equal answers.
 #pragma once
 
@@ -38,7 +38,7 @@ class DartWorld {
   VectorX ToDart(const double* values) const;
   void FromDart(const VectorX& values, double* to) const;
   void ReadState(StateData* state) const;
-  // Forces that act besides inertia: applied ones, damping, Coriolis and gravity.
+  // Returns all forces except inertial ones: applied forces, damping, Coriolis and gravity.
   VectorX Forces(const ForceData& forces) const;
   void WriteMotion(const StateData& at, MotionData* motion) const;
   void WriteBody(const dart::dynamics::BodyNode& body, const Eigen::Vector3d& point,
@@ -53,7 +53,7 @@ class DartWorld {
   std::vector<dart::dynamics::BodyNode*> links_;
   dart::dynamics::BodyNode* object_ = nullptr;
   dart::dynamics::BodyNode* hands_[kHandCount] = {};
-  std::vector<Eigen::Index> dof_;  // in DART's order, of each in ours
+  std::vector<Eigen::Index> dof_;  // DART's index of each of our coordinates
   VectorX damping_;                // in DART's order
 };
 

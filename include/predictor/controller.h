@@ -56,7 +56,7 @@ typedef struct PredictorParameter {
   const char* value;
 } PredictorParameter;
 
-/* From what a controller is made. The pointers are valid during `create` only. */
+/* What `create` makes a controller from. The pointers are valid during `create` only. */
 typedef struct PredictorControllerConfig {
   int32_t dof; /* number of joints, at most 16 */
   int32_t parameter_count;

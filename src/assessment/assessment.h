@@ -26,7 +26,7 @@ struct QuantityResult {
   double mean = 0, p5 = 0, p95 = 0, min = 0, max = 0;  // of the nominal posture over time
   // 90 % intervals, over possible postures and bodies, of the mean and of the tail on the bad side.
   std::optional<person::Interval> mean_interval, tail_interval;
-  std::vector<double> person_tail;  // tail of each possible person; the persons are the same in all
+  std::vector<double> person_tail;  // tail of each possible person; the people are the same in all
                                     // assessments
   std::vector<double> values;       // at Assessment::times
   std::vector<double> low, high;    // 90 % interval at Assessment::sampled_times

@@ -12,10 +12,11 @@ namespace predictor::assessment {
 struct Difference {
   const QuantityKind* kind = nullptr;
   double a = 0, b = 0;  // QuantityResult::tail()
-  // 90 % interval of a - b over the possible persons. Each person is compared with himself or
-  // herself, so most of the uncertainty about the posture cancels.
+  // 90 % interval of a - b over the possible people. Each person in one run is
+  // compared with the same person in the other, so most of the uncertainty about the posture
+  // cancels.
   std::optional<person::Interval> interval;
-  std::optional<double> share_better;  // of the possible persons for whom a is better than b
+  std::optional<double> share_better;  // of the possible people for whom a is better than b
 };
 
 struct Comparison {

@@ -34,7 +34,7 @@ struct Frame {
   // the person's sex times WorkPattern::strength.
   std::array<double, kHands> elbow_use = {}, shoulder_use = {};
   bool reached = false;  // in this posture, the hands reach the handles
-  // These are computed for the nominal person only and have no values for the other persons.
+  // These are computed for the nominal person only and have no values for the other people.
   std::array<ArmMuscleUse, kHands> muscles;
 };
 

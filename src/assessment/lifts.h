@@ -19,7 +19,7 @@ struct Lift {
                                               // [N]
   ergonomics::AssistedLift niosh;
   ergonomics::Acceptable acceptable;  // by LM-MMH, of the carried mass [kg]
-  double share_that_accepts = 0;      // among persons of the same sex, 0 … 1
+  double share_that_accepts = 0;      // among people of the same sex, 0 … 1
 };
 
 // Design choices [m]: a lift is a rise of at least kMinLift between two turning points of the

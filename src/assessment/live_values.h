@@ -13,16 +13,16 @@ namespace predictor::assessment {
 // Writes gauges, scores and loads of the nominal person into `state` and keeps its intervals.
 void WriteFrame(const JudgedSample& judged, PersonState* state);
 
-// Writes intervals and probabilities from the frames of all possible persons.
+// Writes intervals and probabilities from the frames of all possible people.
 void WriteIntervals(std::span<const Frame> frames, const PersonSample& sample, PersonState* state);
 // Sets the same values to unknown.
 void ForgetValues(PersonState* state);
 
-// Evaluates the possible persons, a few at a time, so that the nominal person is never late.
+// Evaluates the possible people, a few at a time, so that the nominal person is never late.
 class LiveIntervals {
  public:
   LiveIntervals(const PersonSetup& setup, const WorkPattern& work);
-  // Call with each judged sample: every kSampledStride-th sample is evaluated for all persons.
+  // Call with each judged sample: every kSampledStride-th sample is evaluated for all people.
   // Writes the results when they are complete.
   void Add(const JudgedSample& judged, PersonState* state);
 
@@ -32,7 +32,7 @@ class LiveIntervals {
   person::PostureSampler sampler_;
   std::size_t count_ = 0;
   std::optional<JudgedSample> current_;
-  std::vector<Frame> frames_;  // of the persons evaluated so far
+  std::vector<Frame> frames_;  // of the people evaluated so far
 };
 
 // Warnings with hysteresis and a delay for each direction, so that they do not flicker.

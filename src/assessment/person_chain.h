@@ -58,10 +58,10 @@ NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> 
 Frame FrameOfPerson(const person::SampledPosture& person, const FrameInput& input, Sex sex,
                     const WorkPattern& work);
 
-// The number of samples between two evaluations of all possible persons, which gives 5 Hz.
+// The number of samples between two evaluations of all possible people, which gives 5 Hz.
 inline constexpr std::size_t kSampledStride = 20;
 
-// All possible persons at every `stride`-th sample: frames[time][person].
+// All possible people at every `stride`-th sample: frames[time][person].
 struct SampledChain {
   std::vector<std::size_t> at;  // samples
   std::vector<std::vector<Frame>> frames;
@@ -70,7 +70,7 @@ SampledChain RunSampled(const PersonSetup& setup, std::span<const PersonSample> 
                         const NominalChain& nominal, std::size_t stride, const WorkPattern& work,
                         const std::function<void(double)>& progress);
 
-// All possible persons at a single sample `i`, with their joints in S.
+// All possible people at a single sample `i`, with their joints in S.
 struct PossiblePersons {
   std::vector<Frame> frames;
   std::vector<person::Skeleton> skeletons;

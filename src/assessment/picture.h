@@ -30,7 +30,7 @@ struct BodyPicture {
   person::Skeleton body;
   PartLoads loads = {};
   std::array<Vector3, kHands> force;  // of the hands on the handles, in S [N]
-  // Only where they were computed: the possible persons at this time.
+  // Only where they were computed: the possible people at this time.
   std::vector<person::Skeleton> possible;
   std::array<std::optional<person::Interval>, kBodyParts> intervals;
 };
@@ -38,7 +38,7 @@ struct BodyPicture {
 // Returns the sample with the highest load of any of these parts.
 std::size_t WorstSample(const NominalChain& nominal);
 
-// Returns the picture at one sample. `possible` states whether to include all possible persons.
+// Returns the picture at one sample. `possible` states whether to include all possible people.
 BodyPicture PictureAt(const PersonSetup& setup, std::span<const PersonSample> samples,
                       const NominalChain& nominal, std::size_t i, bool possible);
 

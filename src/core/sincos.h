@@ -1,5 +1,6 @@
 // Sines and cosines of several angles at once, without branches, so that the compiler computes two
-// or more at a time. A tick needs about fifty, for which the C library takes a twentieth of it.
+// or more at a time. A tick needs about fifty. With the C library, they would take a twentieth of
+// the tick's time.
 #pragma once
 
 namespace predictor {

@@ -82,7 +82,7 @@ class Emulator {
   // other, the key in the scenario's file, and the remedy. Returns "" if it was not refused. It
   // must not be called in a tick.
   std::string WhyNotAligned() const;
-  // Why the physics engine no longer computes, as a sentence; "" if it does.
+  // Returns a sentence that states why the physics engine no longer computes, or "" if it does.
   std::string EngineFailure() const;
   const EmulatorSetup& setup() const;
   const Scenario& scenario() const;

@@ -35,7 +35,7 @@ class QuinticMotion {
   double goal_ = 0, duration_ = 1;
 };
 
-// The conditions that decide whether a displacement may begin or must be taken back.
+// The conditions that decide whether a displacement may begin or must be reversed.
 struct PerturbationInput {
   double run_time = 0;  // [s]
   Hands present;

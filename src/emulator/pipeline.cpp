@@ -111,7 +111,7 @@ void Pipeline::Simulate(const TickPlan& plan, TickData* data) noexcept {
   data->simulation = Status::Ok();
   if (!plan.time_passes) return;
   if (plan.tuning) world_.Tune(*plan.tuning);
-  // An invalid wrench never enters the physics.
+  // An invalid wrench never reaches the simulation.
   if (!data->reading.ok() || !data->sensing.ok()) return;
   WorldInput input;
   input.present = hands_;

@@ -1,4 +1,4 @@
-// Derives the events of a scenario in a run, and what the hands felt after them, from its records.
+// Finds the events of a scenario in the records of a run, and what the hands felt after them.
 #pragma once
 
 #include <array>

@@ -57,12 +57,12 @@ class SdfWriter {
 
  private:
   static bool IsSurroundings(const SceneLink& link) { return link.friction.has_value(); }
-  // Of a ball joint, the tree has three axes with two links between them.
+  // In the tree, a ball joint consists of three axes with two links between them.
   bool IsBall() const { return tree_.attachment_joints.size() == 3; }
   bool IsOfBall(const SceneLink& link) const {
     return IsBall() && link.name.starts_with("attachment_");
   }
-  // Whether the link is a <link> of the model.
+  // Returns whether the link is a <link> of the model.
   bool IsLink(const SceneLink& link) const {
     if (link.name == "world" || IsSurroundings(link) || IsOfBall(link)) return false;
     return link.mass > kTinyMass || IsMoved(link);

@@ -21,7 +21,7 @@ JointVector PostureOf(const std::vector<double>& posture, const RobotModel& mode
 // cannot be loaded.
 std::vector<bool> PrismaticJoints(const Scenario& scenario);
 
-// Refuses an angle for a prismatic joint and a length for a revolute one, in the list at `key` of
+// Refuses an angle for a prismatic joint and a length for a revolute joint, in the list at `key` of
 // the tree from which a scenario was read. Throws InputError at the entry.
 void CheckPostureUnits(const YamlNode& tree, const RobotModel& model, const std::string& key);
 

@@ -54,13 +54,13 @@ struct Range {
 };
 
 struct SampledBody {
-  std::vector<SampledPosture> samples;  // kPostureSamples of them; the same persons at every time
+  std::vector<SampledPosture> samples;  // kPostureSamples of them; the same people at every time
   Range<PostureAngles> angles;
   Range<BodyLoads> loads;
   int reached = 0;  // number of samples whose hands reach the handles
 };
 
-// Draws kPostureSamples persons once, in pairs of opposite deviations, and evaluates all of them at
+// Draws kPostureSamples people once, in pairs of opposite deviations, and evaluates all of them at
 // each time (common random numbers).
 class PostureSampler {
  public:
@@ -72,7 +72,7 @@ class PostureSampler {
   // accelerations. Their postures are solved for this time alone, starting from the nominal
   // posture.
   SampledBody Evaluate(const BodySample& sample, const BodyMotion& nominal) const;
-  // Evaluates one of the kPostureSamples persons.
+  // Evaluates one of the kPostureSamples people.
   SampledPosture EvaluatePerson(std::size_t i, const BodySample& sample,
                                 const BodyMotion& nominal) const;
 

@@ -31,7 +31,7 @@ class Trace {
   Trace(std::size_t channels, double dt, double detail);
 
   // Adds a tick with a value of each channel (NaN if there is none). Ticks must ascend, and missing
-  // ticks are gaps. Throws InputError if the ticks lie in more seconds than memory allows (eight
+  // ticks are gaps. Throws InputError if the ticks cover more time than memory allows (eight
   // hours).
   void Add(std::uint64_t tick, const float* values);
   // Keeps every tick near a given time, which may be at most kBefore in the past. Returns the

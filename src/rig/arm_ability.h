@@ -80,7 +80,7 @@ struct Standing {
 struct HandForce {
   Vector3 p = Vector3::Zero(), F = Vector3::Zero();
 };
-// The shares of the forces' parts along x and y that keep the centre of pressure within the
+// The shares of the forces' x and y components at which the centre of pressure stays within the
 // footprint. Static: N = W + Σ Fz carries c = (x W + Σ (px Fz - pz Fx)) / N along x, and likewise
 // along y. A force along y does not move the centre of pressure along x, so a person who stands at
 // the front edge of the feet can still push sideways.

@@ -28,7 +28,8 @@ Matrix3 HandJacobian(const ArmPoints& arm, const ArmAxes& axes);
 // Returns K_J = -∂τ/∂q [N·m/rad] of muscles that produce the torques τ [N·m], in the order above.
 // Shoulder and elbow are the symmetric part of Tee, Burdet, Chew & Milner, Biol. Cybern. 90 (2004)
 // 368, after Gomi & Osu 1998 (R). It was measured in the horizontal plane with a supported arm, and
-// includes reflexes. That the lateral joint is as stiff as the shoulder is D.
+// includes reflexes. The lateral joint is assumed to be as stiff as
+// the shoulder (D).
 Matrix3 JointStiffness(const Vector3& torque);
 
 // Returns the symmetric part of K_x = J⁻ᵀ (K_J - ∂Jᵀ/∂q F) J⁻¹ [N/m], computed as the inverse of

@@ -151,7 +151,7 @@ void RosTcpServer::Impl::Open() {
   port = ntohs(address.sin_port);
 }
 
-// Returns whether a new client gets a seat. An idle client may lose its seat to it.
+// Returns whether a new client gets a seat. It may take the seat of an idle client.
 bool RosTcpServer::Impl::MakeRoom(std::uint32_t address) {
   std::vector<Seat> taken;
   for (const Client& client : clients) taken.push_back({client.address, client.session.idle()});

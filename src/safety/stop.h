@@ -93,7 +93,7 @@ class StopController {
   // The largest speed of a handle that counts as at rest [m/s].
   static constexpr double kMaxRestSpeed = RestDetector::kMaxMotion / kRestTime;
 
-  static constexpr double kMaxCorrection = 0.5;  // share of the scaled command's size
+  static constexpr double kMaxCorrection = 0.5;  // as a share of the scaled command's norm
   // The share of the joints' acceleration that scaling uses. The rest is for the correction.
   static constexpr double kShareOfJoints = 0.75;
   // The largest extra distance that an arm travels compared with stopping alone, expressed as time

@@ -9,7 +9,7 @@
 
 namespace predictor {
 
-// The haptic loop becomes unstable above 10 Hz, where no person moves on purpose. Coherence, not
+// The haptic loop becomes unstable above 10 Hz, where no person moves deliberately. Coherence, not
 // amplitude, distinguishes such a vibration from noise: a vibration continues its own past, noise
 // does not.
 //
@@ -19,7 +19,7 @@ namespace predictor {
 //   R(T)² − R(T−h) R(T+h) = R(0)² sin²(2π f h),
 // whatever its frequency, phase and direction. The left side divided by the right side is the
 // squared coherence after a lag T. It is 1 for a vibration. It is near 0 for the response of a
-// damped loop to noise, a push or a release, because such a loop forgets within T. A growing
+// damped loop to noise, a push or a release, because that response decays within T. A growing
 // vibration is normalised by the power at both times, so that it stays coherent.
 //
 // A jump of the force (a push, a release, the step of a mouse) contains all frequencies, and the

@@ -1,4 +1,4 @@
-// Which events let a fixture appear.
+// Finds the events in which a fixture appears.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace predictor {
 
-// Bits: the entries of `events` that let fixture number i appear (obstacle_appears). 0: the fixture
-// is always there. Otherwise it is there only while one of them acts.
+// Returns the entries of `events` in which fixture number i appears (obstacle_appears), as bits. If
+// there are none, the fixture is always present. Otherwise it is present only while one is active.
 std::uint16_t EventsOfFixture(const Scenario& scenario, std::size_t i);
 
 }  // namespace predictor

@@ -1,5 +1,6 @@
-// A scenario is all data that define an emulation, as plain structs. One YAML file contains one
-// scenario; scenario_io.h reads and writes it. Every member has a default and a unit (SI).
+// Defines a scenario, which contains all data of an emulation, as plain structs. One YAML file
+// contains one scenario; scenario_io.h reads and writes it. Every member has a default and a unit
+// (SI).
 #pragma once
 
 #include <array>
@@ -202,8 +203,8 @@ enum class VelocityLimits { kOff, kHard };
 // The physics engine of the virtual world.
 struct SimulationSpec {
   EngineKind engine = EngineKind::kMujoco;
-  // How the limits of positions hold, of the cobot's joints and the attachment; absent: as the
-  // engine can, soft in MuJoCo and hard in DART.
+  // How the engine enforces the position limits of the cobot's joints and the attachment; absent:
+  // soft in MuJoCo and hard in DART.
   std::optional<JointLimits> joint_limits;
   VelocityLimits velocity_limits = VelocityLimits::kOff;  // of the cobot's joints
 };

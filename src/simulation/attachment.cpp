@@ -71,7 +71,7 @@ void Attachment::Grip() noexcept {
   load_.setZero();
 }
 
-// Lower limits apply at once. What slid in the last step is held at most a step's share tighter.
+// Lower limits apply at once. While the object slides, the limits rise at most at the grip's rates.
 void Attachment::Tighten() noexcept {
   const double dt = engine_.step();
   const bool open = is_open();
@@ -100,8 +100,8 @@ bool Attachment::Hold() noexcept {
     applied = others;
     applied.noalias() += J_.transpose().lazyProduct(wrench_);
   };
-  // Contacts and joint friction react to the attachment, and it reacts to them. Newton's method
-  // solves both.
+  // The attachment affects contacts and joint friction, and these affect the attachment. Newton's
+  // method solves both together.
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     apply();
     if (engine_.has_reactions() && !engine_.ComputeAccelerations(false)) return false;
@@ -130,7 +130,7 @@ void Attachment::Prepare() noexcept {
   factor_.compute(M_);
 }
 
-// Computes G, with the contacts and the friction that hold at present.
+// Computes G, including the contacts and the friction that are active at present.
 void Attachment::UpdateMobility() noexcept {
   holding_ = M_;
   engine_.AddReactions(holding_);
@@ -141,8 +141,8 @@ void Attachment::UpdateMobility() noexcept {
   }
 }
 
-// Returns the wrench on E about A if contacts and friction react to its change from the present
-// one, wrench_, as UpdateMobility determined.
+// Returns the wrench on E about A. It assumes that contacts and friction react to the change from
+// the present wrench_ as UpdateMobility determined.
 Wrench Attachment::Solve() noexcept {
   const double dt = engine_.step();
   DofVector force(engine_.dof());

@@ -1,5 +1,5 @@
-// The attachment of an object that is a separate body. It is a grip with limits, which holds, slips
-// or is open.
+// The attachment of an object that is a separate body: a grip with limits, which holds, slips or is
+// open.
 #pragma once
 
 #include "core/archive.h"
@@ -12,10 +12,11 @@ namespace predictor {
 
 // Holds the object's attachment frame A at a place in the end-effector's frame E. In each step, the
 // wrench λ of the object on E, about A, is the one with which E and the object have the same
-// velocity at A after the step, as long as its force and its torque are within the grip's limits.
-// Beyond them, they act at the limit against the sliding: λ minimises ½ λᵀ G λ + λᵀ V/dt over both
-// balls, where G = J M⁻¹ Jᵀ, and V is the relative velocity that would result without λ (maximum
-// dissipation, Moreau 1977; Stewart & Trinkle 1996). The grip then holds at the new place.
+// velocity at A after the step, if its force and its torque are within the grip's limits.
+// Otherwise, the force or the torque is at its limit and opposes the sliding: λ minimises
+// ½ λᵀ G λ + λᵀ V/dt within both limits, where G = J M⁻¹ Jᵀ, and V is the relative velocity that
+// would result without λ (maximum dissipation, Moreau 1977; Stewart & Trinkle 1996). The grip then
+// holds at the new place.
 //
 // If the limits rise while the object slides, the grip tightens at kForceRate and kTorqueRate until
 // the object no longer slides. A grip that held immediately would stop the object within one step.
@@ -32,14 +33,14 @@ class Attachment {
 
   // Grips the object at its present place.
   void Grip() noexcept;
-  // Sets what the grip shall hold.
+  // Sets the limits that the grip should reach.
   void SetLimits(const GripLimits& limits) noexcept { wanted_ = limits; }
 
   // Adds the attachment's forces to the engine's joint forces. All other forces must be complete.
   // Uses the state of the last Prepare. Returns false on an error of the engine. Does not use the
   // heap.
   bool Hold() noexcept;
-  // Moves the place of the grip by the distance that the object slid, in the state after the step.
+  // Moves the place of the grip by the distance that the object has slid. Call it after the step.
   void Follow() noexcept;
 
   // Returns the wrench of the object on the end-effector in the last Hold, about E, in axes of W
@@ -69,7 +70,7 @@ class Attachment {
   Vector3 p_OA_;
   bool is_fixed_;
   double damping_;              // of a spherical joint [N·m·s/rad]
-  GripLimits wanted_, limits_;  // that it shall hold, and that it holds
+  GripLimits wanted_, limits_;  // requested, and at present
   Pose grip_;                   // X_EA where the grip holds; its rotation is that of O
   Vector3 first_;               // p_EA where it held first [m]
   bool lost_ = false;

@@ -155,7 +155,8 @@ bool ControlledScene::ComputeTorque(double t, JointVector* torque) noexcept {
   return Acting().outcome() != ControllerOutcome::kFailed;
 }
 
-// Adds what the controller compensates although it does not exist: a load at E, and friction.
+// Adds the torques with which the controller compensates for a load at E and for friction that do
+// not exist.
 void ControlledScene::AddModelErrors(JointVector* torque) const noexcept {
   const Disturbance& d = disturbance_;
   if (d.payload != 0) {
@@ -250,8 +251,8 @@ void ControlledScene::RemoveFixtures() noexcept {
   if (loose_) loose_->engine->RemoveFixtures(absent_);
 }
 
-// Removes and adds fixtures as the events require. One that would be inside the object or the cobot
-// waits until it is not, since the contact would throw them off.
+// Removes and adds fixtures as the events require. A fixture that would overlap the object or the
+// cobot is added later, when it no longer does, because the contact would push them away violently.
 void ControlledScene::PlaceObstacles() noexcept {
   const std::uint64_t before = absent_;
   const std::uint64_t wanted = obstacles_ & ~disturbance_.obstacles;
@@ -312,7 +313,7 @@ Wrench ControlledScene::LandingOf(const FrameMotion& object) const noexcept {
   return LandingWrench(carried_->object_model(), object, loose_->landing);
 }
 
-// A closed brake is friction in the joint that holds as much as the motor can exert.
+// A closed brake is joint friction that resists up to the motor's largest torque.
 void ControlledScene::SetBrakes(bool closed) noexcept {
   for (int j = 0; j < q_.size(); ++j) {
     DofFriction friction = friction_[static_cast<std::size_t>(j)];
@@ -363,7 +364,7 @@ void ControlledScene::CheckAttachmentEvent(const EventSequence& events, std::siz
                               "the cobot. Remove the duration, or use object_slips.");
 }
 
-// Returns the part that an event needs and this cobot lacks, or "" if it lacks nothing.
+// Returns the part that an event needs but this cobot lacks, or "" if the cobot has all parts.
 std::string ControlledScene::Missing(HazardNeeds needs) const {
   switch (needs) {
     case HazardNeeds::kWristSensor:

@@ -79,7 +79,7 @@ class ControlledScene {
   bool is_loose() const noexcept { return is_loose_; }
   // Returns whether the present hazards require the scene with a free object.
   bool must_loosen() const noexcept { return !is_loose_ && disturbance_.grip != GripLimits(); }
-  // The fixtures that are not there at present: bit = number of the fixture.
+  // Returns the fixtures that are absent at present: bit = number of the fixture.
   std::uint64_t absent() const noexcept { return absent_; }
   // Frees the object: from now on, the scene is the loose one, with the same poses, velocities and
   // torques.
@@ -161,8 +161,8 @@ class ControlledScene {
   CobotSafety safety_;
   Disturbance disturbance_;
   const int fixtures_;             // their number
-  const std::uint64_t obstacles_;  // fixtures that events let appear
-  std::uint64_t absent_;           // those of them that are not there
+  const std::uint64_t obstacles_;  // fixtures that appear in events
+  std::uint64_t absent_;           // those that are absent at present
   ControllerTuning tuning_;        // by the last Tune
 };
 

@@ -1,4 +1,4 @@
-// What the hazards that act at present do to the virtual cobot.
+// The effects of the active hazards on the virtual cobot.
 #pragma once
 
 #include <cmath>
@@ -11,11 +11,11 @@ namespace predictor {
 
 inline constexpr int kMaxFixtures = 64;  // of a scenario
 
-// What the attachment's grip on the object holds.
+// The limits of the attachment's grip on the object.
 struct GripLimits {
-  double force = HUGE_VAL;   // beyond it, the object slides [N]; 0 with a torque of 0: open
-  double torque = HUGE_VAL;  // beyond it, it turns [N·m]
-  double reach = HUGE_VAL;   // if it slid farther, it left the grip for good [m]
+  double force = HUGE_VAL;   // above it, the object slides [N]; 0 with a torque of 0: open
+  double torque = HUGE_VAL;  // above it, the object turns [N·m]
+  double reach = HUGE_VAL;   // after sliding this far, the object leaves the grip [m]
   bool operator==(const GripLimits&) const = default;
 };
 
@@ -23,17 +23,17 @@ struct GripLimits {
 struct Disturbance {
   bool brakes = false;                  // the brakes are closed, and the motors give no torque
   bool powerless = false;               // the motors give no torque
-  bool frozen = false;                  // the controller stands still, and its last torques act
+  bool frozen = false;                  // the controller stops, and its last torques act
   bool standby = false;                 // cobot.standby_controller commands
   double delay = 0;                     // of the controller's torques, added to its own [s]
-  double payload = 0;                   // mass that the controller compensates too much [kg]
-  double coulomb = 0;                   // friction that it compensates too much [N·m]
-  double viscous = 0;                   // " [N·m·s/rad]
+  double payload = 0;                   // overestimated mass of the load [kg]
+  double coulomb = 0;                   // overcompensated Coulomb friction [N·m]
+  double viscous = 0;                   // overcompensated viscous friction [N·m·s/rad]
   Wrench sensor = Wrench::Zero();       // added to the wrist sensor's reading [N], [N·m]
   Vector6 set_point = Vector6::Zero();  // shift of the set-point in W [m], [rad]
   ControllerTuning gains;               // factors of the controller's values
   GripLimits grip;                      // of the attachment
-  std::uint64_t obstacles = 0;          // fixtures that are there now: bit = number of the fixture
+  std::uint64_t obstacles = 0;          // fixtures present now: bit = number of the fixture
 };
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// The interface of a physics engine to the rest of this module: a scene in one state.
+// The interface of a physics engine for the rest of this module: a scene in one state.
 #pragma once
 
 #include <Eigen/Core>
@@ -73,8 +73,8 @@ class Engine {
   int dof() const noexcept { return layout_.dof; }
   double step() const noexcept { return layout_.step; }
 
-  // Another state of the same scene. Masses of hands, friction, fixtures and options are common to
-  // both.
+  // Returns another state of the same scene. Both states share the masses of hands, the friction,
+  // the fixtures and the options.
   virtual std::unique_ptr<Engine> Copy() const = 0;
 
   // ---- the state -------------------------------------------------------------------------------
@@ -87,7 +87,7 @@ class Engine {
   // Sets the wrench on the object, about its centre of mass, in axes of W [N, N·m].
   virtual void SetObjectWrench(const Wrench& wrench) noexcept = 0;
   virtual ConstValues accelerations() const noexcept = 0;  // of the last step
-  // Forgets where an iterative solver of contacts begins, on which the last digits of the results
+  // Clears the start of the iterative contact solver, on which the last digits of the results
   // depend.
   virtual void ForgetSolution() noexcept = 0;
 
@@ -103,8 +103,8 @@ class Engine {
 
   // ---- a step ----------------------------------------------------------------------------------
 
-  // These return false on an error of the engine, and if there were more contacts than it can
-  // treat. The state is then unusable until Clear or Restore.
+  // These functions return false on an error of the engine, or if there are more contacts than it
+  // can handle. The state is then unusable until Clear or Restore.
   virtual bool Prepare() noexcept = 0;
   virtual bool Advance() noexcept = 0;  // by layout().step
   // Computes only the accelerations at the present forces, and the load's wrench if `load`.
@@ -128,8 +128,8 @@ class Engine {
   // Writes all forces of the last ComputeAccelerations except those that StepMatrix contains [N·m,
   // N].
   virtual void Forces(Eigen::Ref<Eigen::VectorXd> forces) noexcept = 0;
-  // Returns whether contacts, limits or friction react to applied forces. AddReactions adds what
-  // those that hold contribute to the StepMatrix.
+  // Returns whether contacts, limits or friction react to applied forces. AddReactions adds the
+  // contribution of the active ones to the StepMatrix.
   virtual bool has_reactions() const noexcept = 0;
   virtual void AddReactions(Eigen::Ref<Eigen::MatrixXd> M) const noexcept = 0;
   // Sets positions ⊕ scale · change.
@@ -143,8 +143,8 @@ class Engine {
   // Returns the contacts of the last Prepare. Their forces are those of the last accelerations.
   virtual int contact_count() const noexcept = 0;
   virtual Contact contact(int i) const noexcept = 0;
-  // Whether ComputeAccelerations includes contacts, so that an object may rest on something at the
-  // start.
+  // Returns whether ComputeAccelerations includes contacts, so that an object may rest on a body at
+  // the start.
   virtual bool has_contacts_at_rest() const noexcept { return true; }
 
   // ---- the scene -------------------------------------------------------------------------------
@@ -161,7 +161,7 @@ class Engine {
   // returns whether the mass changed; if so, Prepare must follow. Other modes: 0.
   virtual double HandMass(int hand) const noexcept = 0;
   virtual bool SetHandMass(int hand, double mass) noexcept = 0;
-  // Archives sums of masses with the rounding errors that changes of the hands' masses left.
+  // Archives the sums of masses, including the rounding errors from changes of the hands' masses.
   virtual void ArchiveMasses(StateArchive& a) noexcept = 0;
 
   // Options for searches outside the tick: whether the joints have Coulomb friction, and how
@@ -174,7 +174,7 @@ class Engine {
   virtual void SetOptions(const Options& options) noexcept = 0;
 
   virtual std::string SceneText() const = 0;  // for inspection, in the language of MuJoCo
-  // Why the engine no longer computes, as a sentence; "" if it does.
+  // Returns a sentence that states why the engine no longer computes, or "" if it does.
   virtual std::string Failure() const { return ""; }
 
  protected:
@@ -182,8 +182,8 @@ class Engine {
 };
 
 // Composes the scene of a scenario for its simulation.engine: cobot, object, handles, floor and
-// table. The object collides with floor and table. `wrist_sensor`: whether LoadWrench will be used.
-// Throws InputError, also for what this engine does not have.
+// table. The object collides with floor and table. `wrist_sensor` states whether LoadWrench will be
+// used. Throws InputError, also if the scene needs something that this engine lacks.
 std::unique_ptr<Engine> MakeEngine(const Scenario& scenario, const RobotModel& cobot,
                                    bool wrist_sensor, Holding holding);
 

@@ -22,16 +22,16 @@ class EventSequence {
   double duration(std::size_t i) const { return events_[i].duration; }  // [s]; 0: until the end
   double longest_delay() const;     // sum of all that events add [s]
   bool loosens_attachment() const;  // an event lets the object slip or break loose
-  // What event i, and what all events together, let appear: bit = number of the fixture.
+  // Returns the fixtures that appear in event i, or in any event: bit = number of the fixture.
   std::uint64_t obstacles(std::size_t i) const;
   std::uint64_t obstacles() const;
 
-  // Returns to a state in which no event has begun. Draws the times again, since a person knows
-  // those of the last run.
+  // Returns to a state in which no event has begun. Draws new times, because the person knows those
+  // of the last run.
   void Reset() noexcept;
-  // Begins and ends events in the state of the world. Returns what the events that act do.
+  // Begins and ends events according to the state of the world. Returns their effects.
   Disturbance Update(const WorldState& world, const WorldInput& input) noexcept;
-  // Returns what the events that acted did at the last Update.
+  // Returns the effects of the events that were active at the last Update.
   Disturbance disturbance() const noexcept;
 
   std::uint16_t active() const noexcept;  // bit: number of the event

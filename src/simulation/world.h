@@ -56,7 +56,7 @@ class World {
   double object_mass() const;                    // [kg]
   std::vector<std::string> joint_names() const;  // of the cobot's joints
   const JointVector& effort_limit() const;       // of the cobot's joints [N·m]
-  // Why the engine no longer computes, as a sentence; "" if it does.
+  // Returns a sentence that states why the engine no longer computes, or "" if it does.
   std::string EngineFailure() const;
   std::string SceneXml() const;  // text of the composed scene (MJCF), for inspection
 

@@ -1,4 +1,4 @@
-// Do the intervals of a continued run contain what simulated people would have done?
+// Tests whether the intervals of a continued run contain what simulated people would have done.
 //
 // The numbers of IntentModel were chosen with the seeds 1000 to 1400. The seeds below were chosen
 // before that and played no part in it.

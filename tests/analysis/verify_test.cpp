@@ -210,8 +210,8 @@ TEST_F(VerifyTest, ARecordingWithoutTheAnswersOfItsControllerIsRefused) {
   }
 }
 
-// The soak test runs each scenario to its end. Scenarios that stop run to their stop in either
-// test.
+// The soak test runs each scenario to its end. A scenario that stops runs to its stop in both
+// tests.
 TEST_F(VerifyTest, EveryScenarioIsTheSameAgainSoak) {
   int scenarios = 0;
   for (const auto& entry :

@@ -1,4 +1,4 @@
-// `predictor continue` on recordings that the program made.
+// Tests `predictor continue` with recordings that the program made.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// `predictor evaluate` on recordings that the program made.
+// Tests `predictor evaluate` with recordings that the program made.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Faults of the operating system during a run of the program as a separate process.
+// Tests faults of the operating system during a run of the program as a separate process.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>

@@ -156,7 +156,7 @@ TEST(Assessment, DesignsAreComparedForTheSamePossiblePersons) {
     ASSERT_TRUE(d.interval);
     EXPECT_LT(d.interval->high, 0);
     EXPECT_NEAR(*d.share_better, 1, 1e-9);
-    // The interval must be narrower than that of the difference between independent persons.
+    // The interval must be narrower than that of the difference between independent people.
     const person::Interval heavy = *Find(Judge(40, true), d.kind->path).tail_interval;
     EXPECT_LT(d.interval->high - d.interval->low, heavy.high - heavy.low);
   }

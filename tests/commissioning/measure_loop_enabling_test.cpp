@@ -1,4 +1,4 @@
-// Measuring the velocity loop on a machine with an enabling device.
+// Measures the velocity loop on a machine with an enabling device.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// An arm of the rig as the station of a session in virtual time, with the persons at it.
+// An arm of the rig as the station of a session in virtual time, with the people at it.
 #pragma once
 
 #include <memory>

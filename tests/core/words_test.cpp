@@ -1,4 +1,4 @@
-// Messages about a run, selected by their ids in the catalogue.
+// Tests messages about a run, which are selected by their ids in the catalogue.
 #include "core/words.h"
 
 #include <gtest/gtest.h>

@@ -86,7 +86,7 @@ void StiffModel(const FaultRig& rig, std::uint64_t seed, const std::string& audi
 void BeginUnderdamped(const FaultRig&, std::uint64_t, BenchOptions* options) {
   options->change = [change = options->change](Scenario* s) {
     change(s);
-    // Only the cobot shall swing. No lead is stable with this cobot, so the automatic choice would
+    // Only the cobot should swing. No lead is stable with this cobot, so the automatic choice would
     // be the full lead. With it, the loop of a quick Franka next to a UR vibrates before the cobot
     // swings.
     s->rendering.lead = Emulator(*s).setup().lead.lead;

@@ -26,7 +26,7 @@ TEST_P(UrArmTest, CutsThePowerWhenAsked) {
   EXPECT_EQ(bench.fake.controller().robot_mode, UrController::kRunning);
 }
 
-// A stop requests power-off, but something prevents the robot from following.
+// A stop requests power-off, but something prevents the robot from obeying.
 TEST_P(UrArmTest, SaysThatItKeepsItsPower) {
   for (const char* why : {"no dashboard", "local control", "drop dashboard"}) {
     UrBench bench(GetParam());

@@ -20,8 +20,8 @@ double DistanceFrom(const FixtureSpec& box, const Vector3& p_W) {
   return out.cwiseMax(0).norm() + std::min(0.0, out.maxCoeff());
 }
 
-// How far a ball whose centre moves along the segment from a to b enters a fixture; negative: a gap
-// [m]. The segment is sampled.
+// Returns how deep a ball, whose centre moves along the segment from a to b, enters a fixture [m].
+// A negative value is a gap. The segment is sampled.
 double DepthOfCapsule(const FixtureSpec& box, const Vector3& a, const Vector3& b, double radius) {
   constexpr int kPoints = 20;
   double depth = -HUGE_VAL;

@@ -125,7 +125,7 @@ TEST(Perturbation, IsRepeatedBySeed) {
   EXPECT_NE(sum(5), sum(6));
 }
 
-// A push of 20 N, with which displacements end and do not begin.
+// A push of 20 N, which ends a displacement and prevents the next one.
 TEST(Perturbation, IsTakenBackWhenAHandPushes) {
   Vector3 before = Vector3::Zero();
   double jump = 0, during = 0;

@@ -26,7 +26,7 @@ constexpr const char* kObjectWithMesh = R"(<robot name="box"><link name="box">
   <inertial><mass value="9"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
   <collision><geometry><mesh filename="hollow.stl"/></geometry></collision></link></robot>)";
 
-// A file that a stranger wrote.
+// A file from an untrusted source.
 struct Foreign {
   const char* name;
   // the setting that refers to the file; "" for the scenario or the machine file itself

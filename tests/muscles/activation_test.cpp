@@ -31,7 +31,7 @@ TEST(Activation, TwoMusclesShareByTheirTorque) {
   EXPECT_NEAR(result.cost, 20 * 20 / 1000.0 / 2, 1e-6);
 }
 
-// With p = 3, the muscles share by the square root: a_i = τ √b_i / Σ b^(3/2).
+// With p = 3, the activation is proportional to the square root: a_i = τ √b_i / Σ b^(3/2).
 TEST(Activation, CubesSpreadTheLoad) {
   ActivationProblem problem = TwoMuscles(20);
   problem.power = 3;

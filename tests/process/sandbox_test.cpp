@@ -1,4 +1,4 @@
-// Examines from inside which rights remain to a process after it has entered the sandbox.
+// Tests, from inside a process, which rights it keeps after it has entered the sandbox.
 #include "process/sandbox.h"
 
 #include <arpa/inet.h>

@@ -1,4 +1,4 @@
-// Properties of the guard and the stop for arbitrary inputs, checked by RapidCheck, which shrinks
+// Tests properties of the guard and the stop for arbitrary inputs with RapidCheck, which shrinks
 // counterexamples:
 //   - every sent value is finite and bounded, for any command and any measurement;
 //   - from every motion within the bounds, a stop keeps to its closed-form budget.

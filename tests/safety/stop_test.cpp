@@ -30,7 +30,7 @@ JointBounds Bounds(int joints, double acceleration, double velocity = 5) {
 
 const Status kForceStop = {StopCause::kForce, 1, 31.5, 30};
 
-// Whatever command the guard let through, it must find nothing to correct in a stop from there.
+// If the guard has passed a command, it must not need to correct a stop that begins from it.
 TEST(StopController, ScalesBothArmsByOneFactorWithinEveryJointsBoundsSoak) {
   for (long seed = 1; seed <= Count(500, 50000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "controller");

@@ -33,8 +33,8 @@ struct Outcome {
   double megabytes;   // maximum resident memory
 };
 
-// Runs in the child process: it loads the file and writes the error to the pipe. It exits with 0
-// unless something else happens.
+// Runs in the child process. It loads the file, writes the InputError to the pipe if there is one,
+// and exits with 0. Any other failure gives another exit code.
 [[noreturn]] void LoadAndExit(const fs::path& file, int pipe) {
   if (kIsMeasured) {
     const rlimit memory = {kMaxMemory, kMaxMemory};

@@ -1,4 +1,4 @@
-// What a scenario may ask of `perturbation`, which moves the handles of a person.
+// Tests what a scenario may request with `perturbation`, which moves the handles of a person.
 #include "scenario/perturbation.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Contacts of a free body with fixtures, against closed forms of rigid bodies with Coulomb
+// Compares contacts of a free body and fixtures with closed forms of rigid bodies with Coulomb
 // friction.
 #include <gtest/gtest.h>
 

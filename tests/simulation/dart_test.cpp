@@ -1,4 +1,4 @@
-// DART as the engine of the world, against MuJoCo, which computes the same physics in another way.
+// Compares the engine DART with MuJoCo, which computes the same physics in another way.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// Fixtures in the world: what the cobot carries rests on them, slides, and cannot pass.
+// Tests fixtures in the world: the carried object rests and slides on them, and cannot pass.
 #include <gtest/gtest.h>
 
 #include <algorithm>

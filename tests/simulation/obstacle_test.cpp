@@ -28,7 +28,7 @@ Scenario WithWall(double after, double duration = 0) {
   return s;
 }
 
-// How far the box has moved from its start [m], after a push of 15 N for `time` [s].
+// Returns how far the box has moved from its start [m] after a push of 15 N for `time` [s].
 double MovedBy(const Scenario& s, double time) {
   World world(s);
   const double start = world.state().object.X_W.p.x();

@@ -96,8 +96,8 @@ class Identifier {
   // Adds ticks in order. Ticks that are not in RUN or are next to a gap are skipped.
   void Add(const TickRecord& record);
 
-  // Throws InputError if the data are not sufficient, because they cover less than ten seconds or a
-  // cobot with a different number of joints.
+  // Throws InputError if the data cover less than ten seconds, or come from a cobot with a
+  // different number of joints.
   Identification Finish() const;
 
   struct Impl;

@@ -164,7 +164,7 @@ class LevenbergMarquardt {
     return best;
   }
 
-  // From several delays, because the error has several minima.
+  // Starts from several delays, because the error has several minima.
   Result Everywhere() const {
     Result best;
     for (double delay = options_.min_delay + kDelayStep / 2; delay < options_.max_delay;

@@ -45,7 +45,8 @@ struct ArmResponses {
 };
 
 struct ArmFitOptions {
-  // Of a reflex [s] (Pruszynski & Scott 2012: long-latency reflexes, 50 to 100 ms).
+  // The range of a reflex's delay [s] (Pruszynski & Scott 2012: long-latency reflexes, 50 to 100
+  // ms).
   double min_delay = 0.03, max_delay = 0.13;
   double bin = 0.005;   // over which the equations are averaged [s]
   int resamples = 200;  // of the bootstrap

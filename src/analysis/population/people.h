@@ -1,7 +1,7 @@
 // A population of simulated operators. They are different people, not one person whose posture is
 // unknown.
 //
-// person::PostureSampler draws 64 persons who could have given the same measurements, and its
+// person::PostureSampler draws 64 people who could have given the same measurements, and its
 // spread expresses ignorance about one person. Here, the spread is that between people, whose
 // bodies are known.
 #pragma once
@@ -22,7 +22,7 @@ struct SampledPerson {
   HandSpec hand;  // with the sampled members, see WritePerson
 };
 
-// The first `count` persons of a population; a person does not depend on `count`. Odd numbers are
+// The first `count` people of a population; a person does not depend on `count`. Odd numbers are
 // women, even ones men. Marks: R, recalled from the literature; D, our choice.
 // - height: women 1.62 ± 0.065 m, men 1.75 ± 0.07 m (R), within 3 standard deviations;
 // - mass: body-mass index lognormal, median 25 kg/m², 15 % (D), 17 to 40 kg/m²;

@@ -11,7 +11,7 @@ namespace {
 
 using person::ArmJoint;
 
-constexpr std::size_t kStopStride = 2;  // samples between two evaluations of all possible persons
+constexpr std::size_t kStopStride = 2;  // samples between two evaluations of all possible people
 
 std::size_t SamplesIn(double time) {
   return static_cast<std::size_t>(std::lround(time * kSampleRate));

@@ -19,7 +19,7 @@ using RowMatrix = Eigen::Matrix<double, 6, dart_engine::kMaxDof, Eigen::RowMajor
 
 Eigen::Map<const Vector3> VectorAt(const double* xyz) { return Eigen::Map<const Vector3>(xyz); }
 
-// What all states of a scene have in common.
+// The data that all states of a scene share.
 struct SharedScene {
   SharedScene(ObjectModel model, const dart_engine::SceneData& data, std::string scene_text)
       : object(std::move(model)), process(data), text(std::move(scene_text)) {}
@@ -147,7 +147,7 @@ class DartEngine final : public Engine {
     Values(force, layout_.dof) =
         Mass().topLeftCorner(layout_.dof, layout_.dof).lazyProduct(ConstValues(a, layout_.dof));
   }
-  // These serve the attachment of a free object, which this engine does not have.
+  // These functions serve the attachment of a free object, which this engine lacks.
   void StepMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept override { MassMatrix(M); }
   void Forces(Eigen::Ref<Eigen::VectorXd> forces) noexcept override { forces.setZero(); }
   bool has_reactions() const noexcept override { return false; }
@@ -208,7 +208,7 @@ class DartEngine final : public Engine {
         motion_.mass_matrix);
   }
 
-  // Whether the present state is that of the last answer.
+  // Returns whether the present state is that of the last answer.
   bool IsPrepared() noexcept {
     std::copy_n(scene_->hand_mass.data(), kHands, state_.hand_mass);
     const auto same = [](const auto& a, const auto& b) {

@@ -1,4 +1,4 @@
-// The program predictor-dart, as the run sees it.
+// The run's side of the program predictor-dart.
 #pragma once
 
 #include <filesystem>
@@ -12,21 +12,21 @@ namespace predictor {
 
 class DartProcess {
  public:
-  // Starts the program and gives it the scene. Throws InputError: the program was not built, or it
+  // Starts the program and gives it the scene. Throws InputError if the program was not built or
   // cannot read the scene.
   explicit DartProcess(const dart_engine::SceneData& scene);
   ~DartProcess();
   DartProcess(const DartProcess&) = delete;
   DartProcess& operator=(const DartProcess&) = delete;
 
-  // What the next request contains, and the last answer.
+  // Returns the contents of the next request, and of the last answer.
   dart_engine::Memory& memory() noexcept { return *memory_; }
 
-  // Sends a request and waits for the answer. Returns false if the step failed, and if the program
-  // ended or no longer answers. Uses no heap.
+  // Sends a request and waits for the answer. Returns false if the step failed, or if the program
+  // ended or no longer answers. Does not use the heap.
   bool Ask(dart_engine::Request kind) noexcept;
 
-  // Why the program no longer answers, as a sentence; "" if it does.
+  // Returns a sentence that states why the program no longer answers, or "" if it does.
   std::string Failure() noexcept;
   // Starts the program again if it ended; does nothing if that is impossible.
   void Revive() noexcept;
@@ -42,7 +42,7 @@ class DartProcess {
   std::string failure_;
 };
 
-// Whether this build has the program.
+// Returns whether this build contains the program.
 bool HasDart();
 
 }  // namespace predictor

@@ -35,7 +35,7 @@ dart_engine::Inertia InertiaFor(double mass, const Vector3& com, const Matrix3& 
   return to;
 }
 
-// From the inertia about the joint's origin.
+// Converts from the inertia about the joint's origin.
 dart_engine::Inertia InertiaFor(const BodyInertia& body) {
   if (body.mass <= 0) return InertiaFor(0, Vector3::Zero(), Matrix3::Zero());
   const Vector3 com = body.moment / body.mass;

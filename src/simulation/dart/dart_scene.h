@@ -1,4 +1,4 @@
-// The scene of a scenario for DART, from the project's own models.
+// Describes the scene of a scenario for DART, from the project's own models.
 #pragma once
 
 #include "models/object_model.h"
@@ -8,8 +8,8 @@
 
 namespace predictor {
 
-// The object hangs on the cobot. Throws InputError that names the key for what this engine does not
-// have: soft limits, and collisions of a mesh.
+// The object is attached to the cobot. Throws InputError with the key if the scene needs something
+// that this engine lacks: soft limits, or collisions of a mesh.
 dart_engine::SceneData DartScene(const Scenario& scenario, const RobotModel& cobot,
                                  const ObjectModel& object, double step);
 

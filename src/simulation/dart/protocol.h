@@ -1,5 +1,5 @@
-// What the run and the program predictor-dart, which steps a world of DART, write to the memory
-// that they share. Plain numbers: the two are built against different libraries.
+// The memory that the run shares with the program predictor-dart, which steps a world of DART. It
+// contains only plain numbers, because the two programs are built with different libraries.
 //
 // Poses are a position [m] and a unit quaternion (w, x, y, z). Axes and wrenches are those of W
 // unless stated otherwise. The program keeps no state between two requests except the scene.
@@ -78,7 +78,7 @@ struct SceneData {
 
 enum class Request : std::int32_t {
   kBuild,          // reads the scene
-  kPrepare,        // what follows from positions and velocities
+  kPrepare,        // computes what depends on positions and velocities
   kAccelerations,  // the same, and the accelerations at the given forces, without contacts
   kAdvance,        // a step; then what follows from the new positions and velocities
   kEnd,
@@ -91,7 +91,7 @@ enum class Result : std::int32_t {
   kFailed,  // `text` says why
 };
 
-// Velocities of a ball joint are its angular velocity in axes of O; its positions a quaternion.
+// A ball joint has a quaternion as positions, and its angular velocity in axes of O as velocities.
 struct StateData {
   double q[kMaxPositions], v[kMaxDof];
   double hand_mass[kHandCount];  // [kg]
@@ -137,7 +137,7 @@ struct AccelerationData {
 
 struct Memory {
   std::uint32_t version, size;
-  std::uint32_t request, answer;  // numbers; equal: it is the run's turn
+  std::uint32_t request, answer;  // counters; if they are equal, it is the run's turn
   Request kind;
   Result result;
   SceneData scene;

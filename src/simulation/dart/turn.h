@@ -1,4 +1,4 @@
-// Waiting for the other process, by the number of its last request or answer.
+// Waits for the other process, by the number of its last request or answer.
 #pragma once
 
 #include <linux/futex.h>

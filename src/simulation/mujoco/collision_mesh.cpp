@@ -93,7 +93,7 @@ CollisionMesh Checked(const std::vector<std::byte>& bytes) {
   return mesh;
 }
 
-// Whether all vertices are in one plane.
+// Returns whether all vertices are in one plane.
 bool IsFlat(const CollisionMesh& mesh) {
   if (mesh.vertices.empty()) return true;
   const auto count = static_cast<Eigen::Index>(mesh.vertices.size() / 3);

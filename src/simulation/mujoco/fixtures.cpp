@@ -8,14 +8,14 @@
 namespace predictor {
 namespace {
 
-// Share of the motion into a fixture that its contact removes. It is the same at every depth, so
-// that a contact is a linear spring and damper.
+// The share of the motion into a fixture that its contact removes, which is equal at every depth,
+// so that a contact is a linear spring and damper.
 constexpr double kContactImpedance = 0.99;
 // Time constant with which friction stops a sliding body. With a shorter one, MuJoCo's convex
 // contacts make the body hop more; with a longer one, it stops too late
 // (docs/developer/decisions.md) [s].
 constexpr double kFixtureFrictionTime = 0.01;
-// Friction of fixtures creeps less, by this factor, than with the engine's default.
+// The friction of fixtures creeps less than the engine's default friction by this factor.
 constexpr double kFrictionStiffness = 10;
 
 void SetForm(const FixtureSpec& fixture, mjsGeom* geom) {

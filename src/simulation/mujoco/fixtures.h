@@ -1,4 +1,4 @@
-// What surrounds the cobot and the object, and never moves.
+// The fixed surroundings of the cobot and the object.
 #pragma once
 
 #include <string>
@@ -12,14 +12,14 @@ namespace predictor {
 // Adds floor, table and fixtures to the engine's world.
 void AddSurroundings(mjSpec* spec, const EnvironmentSpec& environment);
 
-// Whether a fixture touches the cobot.
+// Returns whether a fixture can touch the cobot.
 bool TouchesCobot(const EnvironmentSpec& environment);
 
-// Lets fixture number i and shapes of a body, by their names, collide.
+// Makes fixture number i collide with the named shapes of a body.
 void AddContacts(mjSpec* spec, const EnvironmentSpec& environment, std::size_t i,
                  const std::vector<std::string>& shapes);
 
-// Name of the shape of fixture number i.
+// Returns the name of the shape of fixture number i.
 std::string FixtureName(std::size_t i);
 
 }  // namespace predictor

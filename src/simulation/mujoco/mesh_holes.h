@@ -1,4 +1,4 @@
-// Holes of a mesh, which its convex hull would fill.
+// Finds holes of a mesh, which its convex hull would fill.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace predictor {
 
-// Number of holes that go through a mesh (the sum of the genus of its closed parts; Euler's formula
-// V − E + F = 2 − 2 g for each). Parts with an open edge, or with an edge of more than two
+// Returns the number of holes through a mesh (the sum of the genus of its closed parts; Euler's
+// formula V − E + F = 2 − 2 g for each). Parts with an open edge, or with an edge of more than two
 // triangles, count as without holes. A hole that does not go through is not counted.
 int ThroughHoles(const CollisionMesh& mesh);
 

@@ -141,7 +141,7 @@ std::vector<std::string> AddCobotShapes(mjSpec* spec, const Scenario& scenario) 
 
 std::string ObjectShape(std::size_t i) { return "object/" + std::to_string(i); }
 
-// The shapes that fixtures touch are added; now the pairs are.
+// Adds the pairs of shapes that can touch. The shapes themselves have already been added.
 void AddFixtureContacts(mjSpec* spec, const Scenario& scenario, const ObjectModel& object) {
   const EnvironmentSpec& environment = scenario.environment;
   std::vector<std::string> cobot, carried;
@@ -251,7 +251,7 @@ void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cob
     const int geom = mj_name2id(&model, mjOBJ_GEOM, FixtureName(i).c_str());
     scene->fixture_of[static_cast<std::size_t>(geom)] = static_cast<int>(i);
     scene->fixture_place.emplace_back(Eigen::Map<const Vector3>(model.geom_pos + 3 * geom));
-    // So that RemoveFixtures has an effect also where the place is that of the world.
+    // Without this, RemoveFixtures would have no effect on a fixture at the world's origin.
     scene->model->geom_sameframe[geom] = mjSAMEFRAME_NONE;
   }
   for (int j = 0; j < cobot.dof(); ++j) {
@@ -363,7 +363,7 @@ void RemoveFixtures(const Scene& scene, std::uint64_t which) noexcept {
     if (i < 0) continue;
     const bool removed = (which >> i & 1U) != 0;
     Vector3 place = scene.fixture_place[static_cast<std::size_t>(i)];
-    // Along its own axis z, so that a plane, too, is far below everything.
+    // The fixture moves along its own z axis, so that a plane is also far below everything.
     if (removed) {
       const double* q = model.geom_quat + 4 * g;
       place -= kFarAway * (Quaternion(q[0], q[1], q[2], q[3]) * Vector3::UnitZ());

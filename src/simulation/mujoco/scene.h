@@ -14,7 +14,7 @@
 
 namespace predictor {
 
-// Before the names of the cobot's links and joints.
+// The prefix of the names of the cobot's links and joints.
 inline constexpr const char* kCobotPrefix = "cobot/";
 
 struct Scene {
@@ -37,8 +37,8 @@ struct Scene {
 // table and fixtures, and the cobot's links with the fixtures that touch them. In
 // direct mode, each handle has a body without weight whose mass is set at run time. Throws
 // InputError.
-// wrist_sensor: whether a sensor measures the wrench between the end-effector and the object that
-// it carries.
+// `wrist_sensor` states whether a sensor measures the wrench between the end-effector and the
+// object that it carries.
 Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor = false,
                    Holding holding = Holding::kJoint);
 
@@ -53,7 +53,7 @@ bool SetHandMass(const Scene& scene, int hand, double mass) noexcept;
 // Moves these fixtures far away, and all others to their places: bit = number of the fixture.
 void RemoveFixtures(const Scene& scene, std::uint64_t which) noexcept;
 
-// Friction of a joint of the cobot in the engine's model.
+// Returns the friction of a joint of the cobot in the engine's model.
 DofFriction FrictionOf(const Scene& scene, int joint) noexcept;
 // Sets the friction. With closed brakes, the joint also creeps a hundred times less.
 void SetFriction(const Scene& scene, int joint, const DofFriction& friction) noexcept;

@@ -14,13 +14,13 @@ void SetPose(double* pos, double* quat, const Pose& X);
 // Floor and table collide with the object; the object does not collide with itself.
 void SetContact(mjsGeom* geom, bool surroundings, double friction);
 
-// Adds a shape to a body. For a mesh, its convex hull collides. `name`: of the shape, and of its
-// mesh. `key`: of the scenario, for errors. Throws InputError.
+// Adds a shape to a body. For a mesh, its convex hull collides. `name` is that of the shape
+// and of its mesh, `key` that of the scenario, for errors. Throws InputError.
 mjsGeom* AddShape(mjSpec* spec, mjsBody* body, const ModelShape& shape, const std::string& name,
                   const std::string& key);
 
-// Called after the engine rejected the whole model: throws InputError if it also rejects this mesh
-// alone.
+// Call this after the engine has rejected the whole model. Throws InputError if the engine also
+// rejects this mesh alone.
 void CheckMesh(const ModelShape& shape, const std::string& key);
 
 }  // namespace predictor

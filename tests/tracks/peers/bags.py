@@ -1,4 +1,4 @@
-"""Imports and evaluates bags of ROS 2 that the package rosbags wrote, with both kinds of storage."""
+"""Imports and evaluates ROS 2 bags that the package rosbags wrote, in both storage formats."""
 
 import csv
 import json

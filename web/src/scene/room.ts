@@ -70,7 +70,7 @@ export class Room {
       new CircleGeometry(1, 32), new MeshLambertMaterial({color: 0x5b8def})));
   private table: Mesh | null = null;
   private readonly fixtures = new Group();
-  private events: number[] = [];  // bits: those that let each fixture appear; 0: it is always there
+  private events: number[] = [];  // bits: those in which each fixture appears; 0: always present
 
   constructor() {
     this.floor.receiveShadow = true;
