@@ -22,7 +22,7 @@ struct TraceInterest {
 
 class Trace {
  public:
-  static constexpr double kBin = 0.050;     // interval of lowest and highest values [s]
+  static constexpr double kBin = 0.050;  // time over which lowest and highest values are kept [s]
   static constexpr int kBinsPerBlock = 20;  // parts are kept or discarded in blocks of one second
   static constexpr double kBefore = 10;     // longest `before` of an interest [s]
 

@@ -33,7 +33,7 @@ struct InterfaceParameter {
 // Throws InputError if a word is not "key=value".
 std::vector<InterfaceParameter> InterfaceParameters(const std::string& text);
 
-// Returns false for a number that no controller needs and that a saved state cannot contain.
+// Returns whether a saved state can contain this number. No controller needs larger ones.
 inline bool IsUsable(double x) noexcept { return std::abs(x) < 1e12; }
 
 void FillPose(const Pose& X, double* to) noexcept;

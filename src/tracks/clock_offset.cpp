@@ -162,8 +162,8 @@ double SearchAll(const Speeds& fine_a, const Speeds& fine_b, const std::string& 
   if (second.correlation > kMaxSecond * best.correlation)
     throw InputError(
         what, Formatted("The offset of the clocks is ambiguous: %.2f s and %.2f s fit "
-                        "nearly equally (correlations %.3f and %.3f), as after repeated "
-                        "equal motions. Give the offset (clock: recording, offset: "
+                        "nearly equally (correlations %.3f and %.3f). Repeated motions "
+                        "cause this. Give the offset (clock: recording, offset: "
                         "SECONDS).",
                         OffsetOf(a, b, best.lag), OffsetOf(a, b, second.lag), best.correlation,
                         second.correlation));

@@ -93,7 +93,7 @@ TEST_P(FrankaFault, GuidingByHand) {
 }
 
 // If a person has pressed the stop button or the state of the arm is unknown, the arm must not
-// remain powered. If it reports a fault and stands on its own, it may remain powered.
+// remain powered. If it reports a fault and holds itself at rest, it may remain powered.
 TEST_P(FrankaFault, EndsWithoutPowerWhereItMustNotBeLeftHolding) {
   const std::vector<std::pair<const char*, bool>> ends = {
       {"user stop", true}, {"emergency stop", true},       {"drop link", true}, {"freeze", true},

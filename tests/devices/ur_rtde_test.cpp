@@ -286,7 +286,7 @@ TEST(UrState, OfNumbersThatCannotBeIsNotTaken) {
   }
 }
 
-// The bits have the numbers of the RTDE guide.
+// The bits are numbered as in the RTDE guide.
 TEST(UrState, EachBitThatKeepsAnArmFromMovingIsAFault) {
   UrState well;
   well.robot_mode = 7;

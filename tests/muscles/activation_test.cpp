@@ -86,7 +86,7 @@ TEST(Activation, MeasuredActivationsPull) {
   problem.trust[5] = 2;
   const ActivationResult result = Activate(problem);
   EXPECT_NEAR(result.activation[5], 2 * 0.6 / 3, 1e-12);
-  // With an opposing muscle's measured activation, the torque must remain what is required.
+  // If an opposing muscle's activation was measured, the torque must still be the required one.
   ActivationProblem pair = TwoMuscles(9);
   pair.torque(3, 1) = -10;
   pair.measured[1] = 0.5;

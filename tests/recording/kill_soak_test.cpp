@@ -60,7 +60,7 @@ TEST(RecordingSoak, KilledAtRandomMoments) {
     if (child == 0) RecordForever(path, progress);
     const std::uint64_t until = 1 + random() % 3000;
     while (progress->tick < until) std::this_thread::sleep_for(milliseconds(1));
-    // The kill may hit any stage of the writing of a chunk.
+    // The signal may arrive at any stage of writing a chunk.
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 1000));
     kill(child, SIGKILL);
     int status = 0;
