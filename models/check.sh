@@ -91,7 +91,8 @@ properties() { sed -n 's/^ltl \([a-z_]*\) .*/\1/p' "$here/safety.pml"; }
 of_pages() { [[ $1 =~ ^(one_holder|holder_commands|runs_out|passed_on|can_hand_over)$ ]]; }
 
 check_properties() {
-  # For the end of a stop, it hardly matters who requested it, but the search for that takes long.
+  # The end of a stop hardly depends on who requested the stop, so only the long check also searches a viewer that does
+  # not lie.
   local ends=(-DLIES) fast="-O2 -DSAFETY -DNOREDUCE" property
   row property errors states depth time memory ""
   if [ -n "${PREDICTOR_SOAK:-}" ]; then

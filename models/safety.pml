@@ -59,7 +59,7 @@ mtype = {TAKE, RELEASE, HEARTBEAT, ASK_STOP, ASK_ALIGN, ASK_START, ASK_RESET, AS
 
 // ---- what stays as it is through a run
 bool real_arms;
-bool viewer_lies;  // the viewer's process has been taken over: it sends whatever it likes (-DLIES)
+bool viewer_lies;  // the viewer's process has been taken over: it may send anything (-DLIES)
 
 // ---- the run, between two ticks
 byte condition = INIT;

@@ -288,8 +288,8 @@ bool Supervisor::Advance(const TickData& data, Beyond beyond,
   return state == RunState::kInit;
 }
 
-// Returns whether no handle is further from its virtual one than this [m], [rad]. It is valid only
-// in states in which the virtual world is paused.
+// Returns whether each handle is at most this far from its virtual handle [m], [rad]. The result is
+// valid only in states in which the virtual world is paused.
 bool Supervisor::Within(double position, double rotation, const TickData& data) const noexcept {
   for (const int i : hands_) {
     const Pose &goal = data.after->handle[i].X_W, &real = data.real[i].X_W;

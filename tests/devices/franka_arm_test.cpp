@@ -44,7 +44,7 @@ TEST_P(FrankaDriver, FindsTheVersionAndDescribesTheArm) {
 }
 
 // After a command to rest, the driver brings the arm to rest within the jerk limit. Whichever
-// commands are lost, it reports motion until nothing but rest can follow.
+// commands are lost, it reports motion until the arm can no longer move.
 TEST_P(FrankaDriver, IsInMotionUntilNothingButRestFollows) {
   rig_.Connect();
   EXPECT_FALSE(rig_.reading.in_motion);
