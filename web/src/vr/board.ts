@@ -11,6 +11,8 @@ import {BoardText, kBarsFrom, kTones, layOut, wrap} from './lines';
 const kWidth = 0.6;   // [m]
 const kHeight = 0.4;  // [m]
 const kPixels = 1500; // per metre
+const kSideWidth = 100;     // of a bar's name, left of it
+const kNumberWidth = 270;   // of the text right of a bar; the longest is 12.34 / 12.34 N·m
 const kNumbersEveryMs = 100;  // text appears immediately, but painting takes the headset's time
 const kPlateDepth = 0.03;
 
@@ -171,7 +173,7 @@ export class Board {
     c.textAlign = 'right';
     c.fillText(text, x + width, y + 28);
     c.textAlign = 'left';
-    const [from, length] = [x + 100, width - 290];
+    const [from, length] = [x + kSideWidth, width - kSideWidth - kNumberWidth];
     c.fillStyle = '#2c3542';
     c.fillRect(from, y + 4, length, 28);
     c.fillStyle = hex(kMeaning[level]);
