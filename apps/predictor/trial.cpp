@@ -1,4 +1,3 @@
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -17,13 +16,19 @@
 namespace predictor {
 namespace {
 
-std::filesystem::path LibraryOf(const Scenario& scenario) {
+struct TriedLibrary {
+  std::filesystem::path file;
+  std::string parameters;
+};
+
+TriedLibrary LibraryOf(const Scenario& scenario) {
   const ParameterKind* kind = FindKind(Controllers(), scenario.cobot.controller.type);
   const YamlNode* library = scenario.cobot.controller.parameters.Find("library");
+  const YamlNode* parameters = scenario.cobot.controller.parameters.Find("parameters");
   if (kind == nullptr || kind->place != ControllerPlace::kLibrary || library == nullptr)
     throw InputError("cobot.controller.type is " + Quote(scenario.cobot.controller.type) +
                      ", which needs no trial. Give a scenario with type: plugin.");
-  return ResolveModelPath(library->text, scenario.folder());
+  return {ResolveModelPath(library->text, scenario.folder()), parameters ? parameters->text : ""};
 }
 
 JointVector Joints(const std::array<double, kMaxCobotJoints>& values, int dof) {
@@ -86,20 +91,17 @@ std::string JsonOf(const TrialFigures& f) {
 
 int TrialCommand(const ScenarioOptions& options, const std::string& recording) {
   const Scenario scenario = options.Load();
-  const std::filesystem::path library = LibraryOf(scenario);
-  const std::filesystem::path note = TrialNoteFile(library);
-  std::error_code ignored;
-  std::filesystem::remove(note, ignored);  // also for a library that crashes in the trial
+  const TriedLibrary library = LibraryOf(scenario);
+  NoteTrial(library.file, library.parameters, false);  // also for one that crashes in the trial
   RecordingReader reader(recording);
   const TrialFigures figures = TryOn(&reader, scenario, options.quiet);
   std::string text = TextOf(figures);
   if (figures.passed()) {
-    std::ofstream stream(note);
-    stream << TrialNote(library);
-    if (!stream.flush())
-      throw InputError(note.string(), "The note could not be written. Check the permissions.");
-    AppendLine(&text, "Passed. Noted in %s: the library may now drive a cobot with real arms.",
-               note.string().c_str());
+    NoteTrial(library.file, library.parameters, true);
+    AppendLine(&text,
+               "Passed. Noted in %s: with these parameters, the library may now drive a cobot with "
+               "real arms.",
+               TrialNoteFile(library.file).string().c_str());
   }
   options.Write(text, JsonOf(figures));
   return figures.passed() ? kFinished : kUnfit;

@@ -1,8 +1,11 @@
 #include "scenario/trial_note.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <sstream>
+#include <vector>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -16,26 +19,62 @@ bool ReadFile(const std::filesystem::path& file, std::string* bytes) {
   return stream.good() || stream.eof();
 }
 
-}  // namespace
-
-std::filesystem::path TrialNoteFile(const std::filesystem::path& library) {
-  return library.string() + ".trial";
-}
-
-std::string TrialNote(const std::filesystem::path& library) {
+// Returns the beginning of all lines about the library as it is now. Throws InputError if it cannot
+// be read.
+std::string StartOf(const std::filesystem::path& library) {
   std::string bytes;
   if (!ReadFile(library, &bytes))
     throw InputError(library.string(), "The library cannot be read. Check its permissions.");
   char hash[17];
   std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(Fnv1a(bytes)));
   return library.filename().string() + " (" + std::to_string(bytes.size()) + " bytes, hash " +
-         hash + ") passed `predictor trial`.\n";
+         hash + ") passed `predictor trial` with";
 }
 
-bool HasPassedTrial(const std::filesystem::path& library) {
+// Returns the end of the line about a list of parameters. How they are separated does not matter.
+std::string WordsOf(const std::string& parameters) {
+  std::istringstream words(parameters);
+  std::string text;
+  for (std::string word; words >> word;) text += " " + word;
+  return text.empty() ? " no parameters." : " the parameters" + text;
+}
+
+std::vector<std::string> LinesOf(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+std::filesystem::path TrialNoteFile(const std::filesystem::path& library) {
+  return library.string() + ".trial";
+}
+
+void NoteTrial(const std::filesystem::path& library, const std::string& parameters, bool passed) {
+  const std::string start = StartOf(library), line = start + WordsOf(parameters);
+  const std::filesystem::path file = TrialNoteFile(library);
   std::string note;
+  for (const std::string& other : LinesOf(file))
+    if (other.starts_with(start) && other != line) note += other + "\n";
+  if (passed) note += line + "\n";
+  std::error_code error;
+  if (note.empty()) {
+    std::filesystem::remove(file, error);
+    if (!std::filesystem::exists(file, error)) return;
+  } else {
+    std::ofstream stream(file);
+    stream << note;
+    if (stream.flush()) return;
+  }
+  throw InputError(file.string(), "The note could not be written. Check the permissions.");
+}
+
+bool HasPassedTrial(const std::filesystem::path& library, const std::string& parameters) {
   try {
-    return ReadFile(TrialNoteFile(library), &note) && note == TrialNote(library);
+    const std::vector<std::string> lines = LinesOf(TrialNoteFile(library));
+    return std::ranges::find(lines, StartOf(library) + WordsOf(parameters)) != lines.end();
   } catch (const InputError&) {
     return false;
   }

@@ -1,5 +1,6 @@
 // The note that a controller's library passed its trial (`predictor trial`). It is stored beside
-// the library and is valid only for the same bytes.
+// the library, with a line for each list of parameters that passed. A line is valid only for the
+// same bytes of the library and the same parameters.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +9,13 @@
 namespace predictor {
 
 std::filesystem::path TrialNoteFile(const std::filesystem::path& library);
-// Returns the note for the library as it is now. Throws InputError if it cannot be read.
-std::string TrialNote(const std::filesystem::path& library);
-// Returns whether the note exists and is about the library as it is now.
-bool HasPassedTrial(const std::filesystem::path& library);
+
+// Notes whether the library, as it is now, passed with these cobot.controller.parameters (words,
+// separated by spaces). Removes the lines about other bytes, and the file if no line is left.
+// Throws InputError if the library cannot be read or the file cannot be written.
+void NoteTrial(const std::filesystem::path& library, const std::string& parameters, bool passed);
+
+// Returns whether the library, as it is now, passed with these parameters.
+bool HasPassedTrial(const std::filesystem::path& library, const std::string& parameters);
 
 }  // namespace predictor

@@ -5,6 +5,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <regex>
 #include <string>
 #include <vector>
@@ -79,7 +81,8 @@ TEST_F(FailingController, ThatCrashesAsALibraryLeavesARecordingThatCanBeRepaired
   EXPECT_EQ(TicksSaid(), kept);
 }
 
-// The result of the trial applies only to a library with exactly these bytes.
+// The result of the trial applies only to a library with exactly these bytes, and to the same
+// parameters.
 TEST_F(FailingController, ThatAllocatesFailsItsTrial) {
   const auto library = [](const char* name) {
     return "cobot.controller={type: plugin, library: package://plugins/" + std::string(name) +
@@ -96,11 +99,16 @@ TEST_F(FailingController, ThatAllocatesFailsItsTrial) {
                 "cobot.controller.parameters=fault=none"}),
             0)
       << said_;
-  EXPECT_TRUE(fs::exists(mine / "mine.so.trial")) << said_;
+  const auto noted = [&] {
+    std::ifstream note(mine / "mine.so.trial");
+    return std::string(std::istreambuf_iterator<char>(note), {});
+  };
+  EXPECT_NE(noted().find("with the parameters fault=none\n"), std::string::npos) << noted();
   EXPECT_EQ(Do({"trial", Scenario("box_9kg"), file_, "--set", library("mine.so")}), 1) << said_;
   EXPECT_NE(said_.find("it allocates heap memory in"), std::string::npos) << said_;
   EXPECT_NE(said_.find("first at 2.00"), std::string::npos) << said_;
-  EXPECT_FALSE(fs::exists(mine / "mine.so.trial"));
+  EXPECT_NE(noted().find("with the parameters fault=none\n"), std::string::npos) << noted();
+  EXPECT_EQ(noted().find("allocate"), std::string::npos) << noted();
   EXPECT_EQ(Do({"trial", Scenario("box_9kg"), file_}), 2);
   EXPECT_NE(said_.find("which needs no trial"), std::string::npos) << said_;
 }

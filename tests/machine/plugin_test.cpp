@@ -23,7 +23,7 @@ TEST(PluginCrash, IsStoppedByTheWatchdogAndLeavesARecording) {
   const test::TemporaryFolder own;
   const fs::path library = own / "at_time.so";
   fs::copy_file(fs::path(std::getenv("PREDICTOR_PACKAGE_PATH")) / "at_time.so", library);
-  std::ofstream(TrialNoteFile(library)) << TrialNote(library);
+  NoteTrial(library, "damping=40 fault=crash at=1.5", true);
   setenv("PREDICTOR_PACKAGE_PATH", own.path().c_str(), 1);
   const MachineFolder folder({"ur", "franka"});
   folder.NotePushTests();

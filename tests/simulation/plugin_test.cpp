@@ -211,7 +211,8 @@ TEST(Plugin, AProcessThatDoesNotFitIsRefusedWithPlaceAndRemedy) {
   ExpectError(Faulty("nan", 0), "cobot.controller", "its program does not answer, or its torques");
 }
 
-// The result of a trial applies only to a library with exactly these bytes.
+// The result of a trial applies only to a library with exactly these bytes, and to the same
+// parameters.
 TEST(Plugin, IsRefusedWithRealArmsUnlessItHasPassedItsTrial) {
   test::FindPlugins();
   const test::TemporaryFolder folder;
@@ -225,8 +226,15 @@ TEST(Plugin, IsRefusedWithRealArmsUnlessItHasPassedItsTrial) {
   s.device.type = "real";
   const std::string refusal = "mine.so would run as part of the control loop";
   EXPECT_NE(ErrorOf(s).find(refusal), std::string::npos) << ErrorOf(s);
-  std::ofstream(TrialNoteFile(mine)) << TrialNote(mine);
+  NoteTrial(mine, "", true);
   EXPECT_EQ(ErrorOf(s), "");
+  s.cobot.controller.Set("parameters=joint_damping=30");
+  EXPECT_NE(ErrorOf(s).find(refusal), std::string::npos) << ErrorOf(s);
+  NoteTrial(mine, "joint_damping=30", true);
+  EXPECT_EQ(ErrorOf(s), "");
+  s.cobot.controller.Set("parameters=joint_damping=31");
+  EXPECT_NE(ErrorOf(s).find(refusal), std::string::npos) << ErrorOf(s);
+  s.cobot.controller.Set("parameters=joint_damping=30");
   std::ofstream(mine, std::ios::app) << "\n";
   EXPECT_NE(ErrorOf(s).find(refusal), std::string::npos) << ErrorOf(s);
   s.cobot.controller = PythonExample();

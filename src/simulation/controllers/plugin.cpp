@@ -39,12 +39,12 @@ std::filesystem::path LibraryOf(const ControllerContext& context,
   } catch (const InputError& error) {
     throw error.Within("cobot.controller.library");
   }
-  if (!context.distrusts_libraries || HasPassedTrial(file)) return file;
+  if (!context.distrusts_libraries || HasPassedTrial(file, parameters.parameters)) return file;
   throw InputError::At("cobot.controller.library",
                        "cobot.controller.library: " + parameters.library +
                            " would run as part of the control loop. With real arms, it must first "
-                           "pass a trial: run `predictor trial SCENARIO RECORDING`. Or use "
-                           "cobot.controller.type: process.");
+                           "pass a trial with the same parameters: run `predictor trial SCENARIO "
+                           "RECORDING`. Or use cobot.controller.type: process.");
 }
 
 class Plugin final : public ExternalController {
