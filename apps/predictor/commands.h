@@ -20,7 +20,7 @@ namespace predictor {
 // fails its check, a replay that differs, a joint that was not identified, a device that differs
 // from the machine file);
 // 2: bad input or usage;
-// 3: a device, the system or the program failed.
+// 3: a device, the system, the program or a controller's library failed.
 enum ExitCode {
   kFinished = 0,
   kSafetyStop = 1,

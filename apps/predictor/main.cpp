@@ -5,7 +5,9 @@
 
 #include "command_line.h"
 #include "core/error.h"
+#include "crash_message.h"
 #include "evaluator/evaluator_process.h"
+#include "plugin_watch.h"
 #include "screen.h"
 #include "watchdog/watchdog_process.h"
 
@@ -23,8 +25,10 @@ constexpr const char* kFooter =
     "  1  negative result: a safety stop without a reset, a scenario that fails its check, a\n"
     "     replay that differs, a joint that was not identified, or a device that differs from the\n"
     "     machine file\n"
-    "  2  bad input or usage: a wrong option, or a file that is missing, invalid or damaged\n"
-    "  3  a device, the system or the program failed\n"
+    "  2  bad input or usage: a wrong option, or a file that is missing, invalid or damaged
+"
+    "  3  a device, the system, the program or a controller's library failed
+"
     "\n"
     "Environment:\n"
     "  PREDICTOR_PACKAGE_PATH  folders, separated by colons, in which package:// paths of URDF\n"
@@ -81,6 +85,8 @@ int main(int argc, char** argv) {
   // program.
   std::signal(SIGXFSZ, SIG_IGN);
   if (const int code = RunHelperProcess(argc, argv); code >= 0) return code;
+  PrintMessageOnCrash();
+  WatchPlugins();
   CLI::App app(
       "Emulate physical human-robot collaboration: one or two haptic arms let people feel a "
       "simulated cobot.",

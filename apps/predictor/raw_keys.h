@@ -4,6 +4,8 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <atomic>
+
 namespace predictor {
 
 // While this object exists, standard input returns each key at once without showing it. Ctrl-C
@@ -22,17 +24,30 @@ class RawKeys {
       keys.c_lflag &= ~static_cast<tcflag_t>(IEXTEN);
       keys.c_cc[VSUSP] = _POSIX_VDISABLE;
     }
+    changed_ = true;
     tcsetattr(STDIN_FILENO, TCSANOW, &keys);
   }
-  ~RawKeys() { tcsetattr(STDIN_FILENO, TCSANOW, &before_); }
+  ~RawKeys() {
+    changed_ = false;
+    tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+  }
   RawKeys(const RawKeys&) = delete;
   RawKeys& operator=(const RawKeys&) = delete;
+
+  // Restores the terminal before the program ends without destructors. A signal handler may call
+  // this. In the background, the program would be suspended.
+  static void RestoreAtOnce() noexcept {
+    if (changed_ && tcgetpgrp(STDIN_FILENO) == getpgrp())
+      tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+  }
 
   // Ctrl-Space sends 0, which other code uses for no key.
   static char Read(char byte) { return byte != 0 ? byte : '\x01'; }
 
  private:
-  termios before_{};
+  // There is only one object at a time.
+  static inline termios before_{};
+  static inline std::atomic<bool> changed_{false};
 };
 
 }  // namespace predictor

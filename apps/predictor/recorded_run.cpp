@@ -106,13 +106,19 @@ VirtualRecording::VirtualRecording(Emulator* emulator, const RecordOptions& opti
               RecordedScene(emulator->scenario(), emulator->setup().object_start), nullptr,
               Options()),
       snapshot_ticks_(static_cast<std::uint64_t>(std::lround(kSnapshotTime / emulator->dt()))),
-      state_(kStateBytes) {}
+      state_(kStateBytes),
+      open_(std::in_place, file_, nullptr) {}
 
 void VirtualRecording::Add(const TickRecord& record) {
   writer_.Add(record);
   if (record.tick % snapshot_ticks_ != 0) return;
   const std::size_t size = emulator_->SaveState(state_);
   writer_.AddSnapshot(record.tick, std::span(state_).first(size));
+}
+
+void VirtualRecording::Close() {
+  writer_.Close();
+  open_.reset();
 }
 
 std::string VirtualRecording::Summary() const {
@@ -126,7 +132,8 @@ RunRecording::RunRecording(const Emulator& emulator, const RecordOptions& option
     : board_(board),
       file_(options.file.empty() ? NewRecordingName(emulator.scenario()) : options.file),
       recorder_(file_, HeaderOf(emulator, options), board->records, Options(person),
-                ChannelsOf(emulator, person)) {
+                ChannelsOf(emulator, person)),
+      open_(std::in_place, file_, [this] { Close(false); }) {
   Look();
 }
 
@@ -136,6 +143,7 @@ void RunRecording::Look() {
 
 bool RunRecording::Close(bool quiet, bool has_report) {
   recorder_.Close();
+  open_.reset();
   const RecorderStatus status = recorder_.status();
   board_->recording.store(0, std::memory_order_relaxed);
   const bool whole = status.ended_why.empty() && status.lost == 0;

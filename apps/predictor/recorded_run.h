@@ -6,12 +6,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/shared_run.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
+#include "open_recording.h"
 #include "recording/header.h"
 #include "recording/reader.h"
 #include "recording/recorder.h"
@@ -51,7 +53,7 @@ class VirtualRecording {
   VirtualRecording(Emulator* emulator, const RecordOptions& options);
   // Call this after each tick. Throws RecordingError.
   void Add(const TickRecord& record);
-  void Close() { writer_.Close(); }
+  void Close();
   std::string Summary() const;  // summary of the written file, as a sentence
 
  private:
@@ -60,6 +62,7 @@ class VirtualRecording {
   RecordingWriter writer_;
   std::uint64_t snapshot_ticks_;  // ticks between two saved states
   std::vector<std::byte> state_;
+  std::optional<OpenRecording> open_;
 };
 
 // Records a run in real time.
@@ -89,6 +92,7 @@ class RunRecording final : public SnapshotSink {
   RunBoard* board_;
   std::string file_;
   Recorder recorder_;
+  std::optional<OpenRecording> open_;
 };
 
 // A folder for this process only, which its destructor removes.

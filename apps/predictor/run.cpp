@@ -20,6 +20,7 @@
 #include "follower.h"
 #include "live_evaluation.h"
 #include "patient_output.h"
+#include "plugin_watch.h"
 #include "quit.h"
 #include "raw_keys.h"
 #include "real_arms.h"
@@ -438,6 +439,7 @@ int RunCommand(const ScenarioOptions& first, ServeOptions serve, RecordOptions r
   // the program.
   QuitOn({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
   BoundOutput();
+  ExpectPromptPlugins();
   ScenarioOptions options = first;
   if (!first.machine.empty()) return RunOnMachine(first, serve, record);
   Scenario scenario = LoadForRealTime(options);

@@ -75,7 +75,7 @@ typedef struct PredictorControllerConfig {
  *
  * All functions except `create` and `destroy` run in the control loop, once per millisecond: they
  * must not allocate, lock, wait, read or write files, print, or throw C++ exceptions, and must
- * return within a few microseconds. */
+ * return within a few microseconds. If one does not return, PREDICTOR ends with a message. */
 typedef struct PredictorController {
   uint32_t version;    /* PREDICTOR_CONTROLLER_VERSION */
   uint32_t input_size; /* sizeof(PredictorControllerInput) */

@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <filesystem>
 #include <string>
 
 #include "core/error.h"
@@ -23,10 +24,15 @@ std::string LoaderError() {
 
 }  // namespace
 
-void PluginLibrary::Closer::operator()(void* handle) const { dlclose(handle); }
+void PluginLibrary::Closer::operator()(void* handle) const {
+  const PluginCall call(calls, "dlclose", PluginCall::Kind::kPreparation);
+  dlclose(handle);
+}
 
-PluginLibrary::PluginLibrary(const std::filesystem::path& file)
-    : handle_(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)), functions_(nullptr) {
+PluginLibrary::PluginLibrary(const std::filesystem::path& file, PluginCalls* calls)
+    : handle_(nullptr, Closer{calls}), functions_(nullptr) {
+  const PluginCall call(calls, "dlopen", PluginCall::Kind::kPreparation);
+  handle_.reset(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL));
   if (!handle_)
     Refuse(file, "could not be loaded: " + LoaderError() +
                      ". Build it as a shared library for this computer, with all its libraries.");

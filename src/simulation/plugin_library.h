@@ -6,17 +6,21 @@
 #include <filesystem>
 #include <memory>
 
+#include "simulation/plugin_calls.h"
+
 namespace predictor {
 
 class PluginLibrary {
  public:
-  // Loads the library, which runs code in it. Throws InputError that states what does not fit.
-  explicit PluginLibrary(const std::filesystem::path& file);
+  // Loads the library of `calls`, which runs code in it. Throws InputError that states what does
+  // not fit. `calls` is borrowed.
+  explicit PluginLibrary(const std::filesystem::path& file, PluginCalls* calls);
 
   const PredictorController& functions() const { return *functions_; }
 
  private:
   struct Closer {
+    PluginCalls* calls;
     void operator()(void* handle) const;
   };
   std::unique_ptr<void, Closer> handle_;

@@ -3,6 +3,7 @@
 // controller.
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +14,7 @@
 
 #include "child.h"
 #include "support/find_plugins.h"
+#include "support/process.h"
 #include "support/temporary_folder.h"
 
 namespace predictor {
@@ -26,14 +28,18 @@ class FailingController : public testing::Test {
     said_ = child.output() + child.errors();
     return code;
   }
-  // Records a run of a scenario that can find the library.
-  int Run(const std::string& controller) {
-    test::FindPlugins();
-    std::vector<std::string> arguments = {"simulate",   Scenario("box_9kg"),
+  // The command line of a recorded run. It needs FindPlugins to find the library.
+  std::vector<std::string> Arguments(const std::string& controller, const std::string& command) {
+    std::vector<std::string> arguments = {command,      Scenario("box_9kg"),
                                           "--duration", "6",
                                           "--record",   file_,
                                           "--set",      "cobot.controller={" + controller + "}"};
-    const int code = Do(arguments);
+    if (command == "run") arguments.emplace_back("--no-viewer");
+    return arguments;
+  }
+  int Run(const std::string& controller, const std::string& command = "simulate") {
+    test::FindPlugins();
+    const int code = Do(Arguments(controller, command));
     unsetenv("PREDICTOR_PACKAGE_PATH");
     return code;
   }
@@ -71,14 +77,87 @@ TEST_F(FailingController, ThatEndsAsAProcessStopsTheRun) {
   ExpectStop("the cobot's controller no longer answers. Read what its program printed");
 }
 
-// The library crashes the program as well. `repair` must recover all but the last second.
-TEST_F(FailingController, ThatCrashesAsALibraryLeavesARecordingThatCanBeRepaired) {
-  EXPECT_NE(Run(Library("crash")), 0);
+// The library crashes the program as well, which must say so. `repair` must recover all but the
+// last second.
+TEST_F(FailingController, ThatCrashesAsALibraryIsNamedAndLeavesARecordingThatCanBeRepaired) {
+  const struct {
+    const char* fault;
+    int signal;
+    const char* name;
+  } kCrashes[] = {
+      {"crash", SIGABRT, "SIGABRT"}, {"access", SIGSEGV, "SIGSEGV"}, {"divide", SIGFPE, "SIGFPE"}};
+  const std::string repaired = folder_ / "run.repaired.mcap";
+  for (const auto& crash : kCrashes) {
+    EXPECT_EQ(Run(Library(crash.fault)), -crash.signal) << said_;
+    for (const std::string& words :
+         {std::string("The program crashed (") + crash.name,
+          std::string("in the function compute of the controller's library /"),
+          std::string("/at_time.so."), "predictor repair " + file_})
+      EXPECT_NE(said_.find(words), std::string::npos) << words << "\n" << said_;
+    ASSERT_EQ(Do({"repair", file_}), 0) << said_;
+    const long kept = TicksSaid();
+    EXPECT_GT(kept, 2400) << said_;
+    ASSERT_EQ(Do({"verify", repaired}), 0) << said_;
+    EXPECT_EQ(TicksSaid(), kept);
+    std::filesystem::remove(file_);
+    std::filesystem::remove(repaired);
+  }
+}
+
+// A signal from outside is no crash of a library, and nothing is recorded.
+TEST_F(FailingController, IsNotBlamedForASignalFromOutside) {
+  Child child({"run", Scenario("box_9kg"), "--no-viewer"});
+  ASSERT_TRUE(child.Says("Running")) << child.errors();
+  child.Send(SIGSEGV);
+  EXPECT_EQ(child.Wait(), -SIGSEGV);
+  EXPECT_NE(child.errors().find("This is a defect of the program"), std::string::npos)
+      << child.errors();
+  EXPECT_EQ(child.errors().find("library"), std::string::npos) << child.errors();
+  EXPECT_EQ(child.errors().find("repair"), std::string::npos) << child.errors();
+}
+
+// In real time, the recording is complete up to the hang, because other threads write it.
+TEST_F(FailingController, ThatHangsAsALibraryEndsARunInRealTime) {
+  ASSERT_EQ(Run(Library("hang"), "run"), 3) << said_;
+  for (const char* words : {"The function compute of the controller's library /", "/at_time.so ",
+                            "has not returned for 1 s", "Recorded "})
+    EXPECT_NE(said_.find(words), std::string::npos) << words << "\n" << said_;
+  EXPECT_EQ(said_.find("repair"), std::string::npos) << said_;
+  ASSERT_EQ(Do({"verify", file_}), 0) << said_;
+  EXPECT_GT(TicksSaid(), 2000) << said_;
+}
+
+// In virtual time, the thread that hangs also writes the recording.
+TEST_F(FailingController, ThatHangsAsALibraryEndsASimulation) {
+  ASSERT_EQ(Run(Library("hang")), 3) << said_;
+  for (const std::string& words : {std::string("has not returned for 10 s"),
+                                   std::string("/at_time.so "), "predictor repair " + file_})
+    EXPECT_NE(said_.find(words), std::string::npos) << words << "\n" << said_;
   ASSERT_EQ(Do({"repair", file_}), 0) << said_;
-  const long kept = TicksSaid();
-  EXPECT_GT(kept, 2400) << said_;
+  EXPECT_GT(TicksSaid(), 2400) << said_;
   ASSERT_EQ(Do({"verify", folder_ / "run.repaired.mcap"}), 0) << said_;
-  EXPECT_EQ(TicksSaid(), kept);
+}
+
+// A library may take long to prepare itself, but not after Ctrl-C. From the start of the thread
+// that watches libraries on, the program handles Ctrl-C itself.
+TEST_F(FailingController, ThatHangsInItsPreparationEndsWithTheFirstCtrlC) {
+  test::FindPlugins();
+  Child child(Arguments(Library("create"), "run"));
+  unsetenv("PREDICTOR_PACKAGE_PATH");
+  const std::string tasks = "/proc/" + std::to_string(child.pid()) + "/task";
+  ASSERT_TRUE(test::Becomes([&] {
+    for (const auto& task : std::filesystem::directory_iterator(tasks)) {
+      std::string name;
+      std::getline(std::ifstream(task.path() / "comm"), name);
+      if (name == "plug-in watch") return true;
+    }
+    return false;
+  }));
+  child.Send(SIGINT);
+  EXPECT_EQ(child.Wait(), 3) << child.errors();
+  EXPECT_NE(child.errors().find("The function create of the controller's library /"),
+            std::string::npos)
+      << child.errors();
 }
 
 // The result of the trial applies only to a library with exactly these bytes, and to the same

@@ -17,13 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The watchdog must bring the arms to rest, and `repair` must recover all but the last second.
-TEST(PluginCrash, IsStoppedByTheWatchdogAndLeavesARecording) {
+// Lets a library fail in a run with real arms. The watchdog must bring the arms to rest, the
+// program must end by itself with `code` and say `words`, and the recording must be whole, or
+// repairable to the last second.
+void ExpectStoppedArms(const std::string& fault, int code, const std::string& words, bool whole) {
   test::FindPlugins();
   const test::TemporaryFolder own;
   const fs::path library = own / "at_time.so";
+  const std::string parameters = "damping=40 fault=" + fault + " at=1.5";
   fs::copy_file(fs::path(std::getenv("PREDICTOR_PACKAGE_PATH")) / "at_time.so", library);
-  NoteTrial(library, "damping=40 fault=crash at=1.5", true);
+  NoteTrial(library, parameters, true);
   setenv("PREDICTOR_PACKAGE_PATH", own.path().c_str(), 1);
   const MachineFolder folder({"ur", "franka"});
   folder.NotePushTests();
@@ -37,23 +40,26 @@ TEST(PluginCrash, IsStoppedByTheWatchdogAndLeavesARecording) {
                        "--no-viewer", "--record", file, "--set",
                        "cobot.controller={type: plugin, library: package://" +
                            own.path().filename().string() +
-                           "/at_time.so, parameters: damping=40 fault=crash at=1.5}"});
+                           "/at_time.so, parameters: " + parameters + "}"});
     if (!terminal.Start(&rig)) {
       ASSERT_TRUE(attempts.EndedByComputer(&terminal, &rig));
       continue;
     }
-    const int code = terminal.Wait();
-    if (code != -SIGABRT && attempts.WasSpoiled(terminal, &rig)) continue;
-    EXPECT_EQ(code, -SIGABRT) << terminal.Screen();
+    const int ended = terminal.Wait();
+    if (ended != code && attempts.WasSpoiled(terminal, &rig)) continue;
+    EXPECT_EQ(ended, code) << terminal.Screen();
+    EXPECT_NE(terminal.Screen().find(words), std::string::npos) << terminal.Screen();
     std::this_thread::sleep_for(std::chrono::milliseconds(1000));
     EXPECT_EQ(rig.Ask("mark"), "ok");
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     EXPECT_LT(rig.Motion().fastest, 1e-3);
     const std::vector<std::string> log = rig.Log("left", 0);
     EXPECT_NE(std::find(log.begin(), log.end(), "program predictor_watchdog"), log.end());
-    Child repair({"repair", file});
-    EXPECT_EQ(repair.Wait(), 0) << repair.errors();
-    Child verify({"verify", own / "run.repaired.mcap"});
+    if (!whole) {
+      Child repair({"repair", file});
+      EXPECT_EQ(repair.Wait(), 0) << repair.errors();
+    }
+    Child verify({"verify", whole ? file : (own / "run.repaired.mcap").string()});
     EXPECT_EQ(verify.Wait(), 0) << verify.errors();
     EXPECT_NE(verify.output().find("bit for bit"), std::string::npos) << verify.output();
     return;
@@ -61,9 +67,17 @@ TEST(PluginCrash, IsStoppedByTheWatchdogAndLeavesARecording) {
   FAIL() << attempts.Words();
 }
 
+TEST(PluginCrash, IsStoppedByTheWatchdogAndLeavesARecording) {
+  ExpectStoppedArms("crash", -SIGABRT, "The program crashed (SIGABRT", false);
+}
+
+TEST(PluginHang, IsStoppedByTheWatchdogAndEndsTheRun) {
+  ExpectStoppedArms("hang", 3, "has not returned for 1 s", true);
+}
+
 // If a controller's process hangs in real time, gravity compensation and damping must replace it
 // until the run stops.
-TEST(PluginHang, IsBridgedUntilTheRunStops) {
+TEST(PluginHang, OfAProcessIsBridgedUntilTheRunStops) {
   const test::TemporaryFolder folder;
   const std::string file = folder / "run.mcap";
   for (int attempt = 0; attempt < Attempts::kMax; ++attempt) {

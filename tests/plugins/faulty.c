@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "predictor/controller.h"
 
@@ -13,12 +14,24 @@
 #define LONG_MEMORY 5
 #define AT_TIME 6
 
-/* Controllers AT_TIME carry the cobot's weight until "at", then do what "fault" names. */
+/* Controllers AT_TIME carry the cobot's weight until "at", then do what "fault" names. With the
+ * fault "create", they hang before that. */
 typedef struct {
   double at;
   char fault[16];
   double damping, posture[PREDICTOR_MAX_JOINTS];
+  volatile int zero;     /* always 0 */
+  volatile int* nowhere; /* always NULL */
 } Faulty;
+
+static int HasParameter(const PredictorControllerConfig* config, const char* key,
+                        const char* value) {
+  for (int i = 0; i < config->parameter_count; ++i)
+    if (strcmp(config->parameters[i].key, key) == 0 &&
+        strcmp(config->parameters[i].value, value) == 0)
+      return 1;
+  return 0;
+}
 
 static void* create(const PredictorControllerConfig* config, char* error, size_t error_size) {
   Faulty* self = calloc(1, sizeof *self);
@@ -28,6 +41,7 @@ static void* create(const PredictorControllerConfig* config, char* error, size_t
     free(self);
     return NULL;
   }
+  while (HasParameter(config, "fault", "create")) sleep(1);
   self->at = INFINITY;
   self->damping = 10;
   memcpy(self->posture, config->posture, sizeof self->posture);
@@ -49,6 +63,9 @@ static void compute(void* self_, const PredictorControllerInput* input, double* 
   if (strcmp(self->fault, "nan") == 0) torque[1] = torque[3] = NAN;
   if (strcmp(self->fault, "object") == 0) memcpy(torque, input->X_WO, sizeof input->X_WO);
   if (strcmp(self->fault, "crash") == 0) abort();
+  if (strcmp(self->fault, "access") == 0) *self->nowhere = 1;
+  if (strcmp(self->fault, "divide") == 0) torque[0] = 1 / self->zero;
+  while (strcmp(self->fault, "hang") == 0) sleep(1);
   if (strcmp(self->fault, "allocate") == 0) {
     static void* volatile taken;
     taken = malloc(64);

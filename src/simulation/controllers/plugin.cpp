@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "scenario/trial_note.h"
 #include "simulation/controllers/controllers.h"
 #include "simulation/external_controller.h"
+#include "simulation/plugin_calls.h"
 #include "simulation/plugin_library.h"
 
 namespace predictor::controllers {
@@ -51,10 +53,13 @@ class Plugin final : public ExternalController {
  public:
   Plugin(const ControllerContext& context, const PluginParameters& parameters)
       : ExternalController(context),
-        library_(LibraryOf(context, parameters)),
+        file_(LibraryOf(context, parameters)),
+        calls_(file_.string()),
+        library_(file_, &calls_),
         functions_(library_.functions()),
-        self_(Make(context, parameters), functions_.destroy) {
+        self_(Make(context, parameters), Destroyer{this}) {
     if (functions_.memory) FindMemory(parameters);
+    const PluginCall call(&calls_, "uses_wrist_sensor");
     uses_wrist_sensor_ = functions_.uses_wrist_sensor && functions_.uses_wrist_sensor(self_.get());
   }
 
@@ -62,18 +67,18 @@ class Plugin final : public ExternalController {
   bool uses_wrist_sensor() const noexcept override { return uses_wrist_sensor_; }
   void Start(const ControllerInput& input) noexcept override {
     failed_ = false;
-    Guard([&] {
+    Guard("start", [&] {
       if (functions_.start) functions_.start(self_.get(), &Fill(input));
     });
   }
   void Advance(const ControllerInput& input, double) noexcept override {
-    Guard([&] {
+    Guard("advance", [&] {
       if (functions_.advance) functions_.advance(self_.get(), &Fill(input));
     });
   }
   double StoredEnergy(const ControllerInput& input) const noexcept override {
     double energy = 0;
-    Guard([&] {
+    Guard("stored_energy", [&] {
       if (functions_.stored_energy) energy = functions_.stored_energy(self_.get(), &Fill(input));
     });
     return IsUsable(energy) ? energy : 0;
@@ -81,14 +86,15 @@ class Plugin final : public ExternalController {
 
  private:
   Answer Ask(const PredictorControllerInput& input, double* torque) noexcept override {
-    Guard([&] { functions_.compute(self_.get(), &input, torque); });
+    Guard("compute", [&] { functions_.compute(self_.get(), &input, torque); });
     if (failed_ || !std::all_of(memory_.begin(), memory_.end(), IsUsable)) torque[0] = std::nan("");
     return {};
   }
 
   // A C++ exception must not leave the library. If one does, its next torques are refused.
   template <class Call>
-  void Guard(Call call) const noexcept {
+  void Guard(const char* function, Call call) const noexcept {
+    const PluginCall running(&calls_, function);
     try {
       call();
     } catch (...) {
@@ -98,10 +104,19 @@ class Plugin final : public ExternalController {
 
   void* Make(const ControllerContext& context, const PluginParameters& given);
   void FindMemory(const PluginParameters& parameters);
+  struct Destroyer {
+    Plugin* plugin;
+    void operator()(void* self) const {
+      const PluginCall call(&plugin->calls_, "destroy", PluginCall::Kind::kPreparation);
+      plugin->functions_.destroy(self);
+    }
+  };
 
+  const std::filesystem::path file_;
+  mutable PluginCalls calls_;
   PluginLibrary library_;
   const PredictorController& functions_;
-  std::unique_ptr<void, void (*)(void*)> self_;
+  std::unique_ptr<void, Destroyer> self_;
   std::span<double> memory_;
   bool uses_wrist_sensor_ = false;
   mutable bool failed_ = false;  // since the last Start
@@ -124,6 +139,7 @@ void* Plugin::Make(const ControllerContext& context, const PluginParameters& giv
   config.gravity = context.gravity;
   config.dt = context.period;
   std::array<char, kErrorBytes> error{};
+  const PluginCall call(&calls_, "create", PluginCall::Kind::kPreparation);
   void* self = functions_.create(&config, error.data(), error.size() - 1);
   if (self) return self;
   const std::string why = error[0] ? Printable(error.data()) : "It gives no reason.";
@@ -133,6 +149,7 @@ void* Plugin::Make(const ControllerContext& context, const PluginParameters& giv
 
 void Plugin::FindMemory(const PluginParameters& parameters) {
   std::int32_t size = 0;
+  const PluginCall call(&calls_, "memory");
   double* numbers = functions_.memory(self_.get(), &size);
   if (size < 0 || size > PREDICTOR_MAX_MEMORY || (size > 0 && !numbers))
     throw InputError::At("cobot.controller.library",
