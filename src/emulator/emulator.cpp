@@ -147,6 +147,10 @@ Emulator::Emulator(const Scenario& scenario, std::unique_ptr<Device> device) try
 }
 Emulator::~Emulator() = default;
 void Emulator::Tick(std::uint64_t wall_ns, int missed) noexcept { impl_->Tick(wall_ns, missed); }
+std::string Emulator::PrioritiseController(bool on) {
+  return impl_->pipeline.world().PrioritiseProcess(on);
+}
+
 void Emulator::Play(const TickRecord& record) noexcept {
   ControllerAnswer answer;
   const Eigen::Index dof = std::min<Eigen::Index>(record.cobot_dof, kMaxCobotJoints);

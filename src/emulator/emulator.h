@@ -51,6 +51,10 @@ class Emulator {
   // Sets, for a replay, the answer of a controller outside the program in the tick that follows.
   void Play(const TickRecord& record) noexcept;
 
+  // Gives the process of the cobot's controller a real-time priority if the scenario asks for it,
+  // or takes it away again, as Controller::PrioritiseProcess. Returns what the system granted.
+  std::string PrioritiseController(bool on);
+
   // Accepts an input for the next tick, at most kInputsPerTick between two ticks. Only the tick's
   // thread may call this. Returns false if the input is out of range or the operating rules refuse
   // it. With real arms, align, start and reset are refused: a person at the rig requests them by

@@ -169,6 +169,8 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
   auto lateness = std::make_unique<Histogram>();
   const RealTimeScheduling scheduling;
   report->scheduling = scheduling.got();
+  if (const std::string got = emulator->PrioritiseController(scheduling.prior()); !got.empty())
+    report->scheduling += "; " + got;
   const double dt = emulator->dt();
   const auto period = static_cast<std::uint64_t>(dt * 1e9);
   std::uint64_t due = Now() + period;
@@ -222,6 +224,7 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
     if (now > due) ++report->overruns;
     for (; now > due; due += period) ++missed;
   }
+  emulator->PrioritiseController(false);
   report->lateness_us = {
       static_cast<float>(lateness->Quantile(0.5)), static_cast<float>(lateness->Quantile(0.99)),
       static_cast<float>(lateness->Quantile(0.999)), static_cast<float>(lateness->max())};

@@ -99,6 +99,7 @@ class ControlledScene {
   }
   Status failure() const noexcept { return Acting().failure(); }
   void SetRealTime(bool real_time) noexcept { controller_->SetRealTime(real_time); }
+  std::string PrioritiseProcess(bool on) { return controller_->PrioritiseProcess(on); }
   // Returns null unless the controller is outside the program.
   TapedController* taped() const noexcept { return controller_->taped(); }
   void Archive(StateArchive& a) noexcept;

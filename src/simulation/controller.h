@@ -80,6 +80,10 @@ class Controller {
   // In real time, a controller outside the program has a deadline. Otherwise the program waits for
   // it.
   virtual void SetRealTime(bool) noexcept {}
+  // If the scenario asks for it, gives the controller's process a real-time priority (SCHED_FIFO)
+  // below the loop's, or takes it away again. Returns what the system granted as text to follow
+  // "Real-time scheduling: ...; ", or "" if there is nothing to say. Not for the tick.
+  virtual std::string PrioritiseProcess(bool) { return ""; }
   // Returns null unless the controller is outside the program.
   virtual TapedController* taped() noexcept { return nullptr; }
   // Archives the changes by Tune, ShiftSetPoint and Start. The caller archives the memory.

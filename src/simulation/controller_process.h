@@ -34,6 +34,8 @@ class ControllerProcess {
   // Returns true while an answer to an earlier request may still arrive. `shared` then belongs to
   // the program.
   bool IsBusy() const noexcept;
+  // As SharedProcess::SetPriority.
+  int SetPriority(int priority) noexcept { return process_.SetPriority(priority); }
   // "exit code 1", or "" while it runs.
   std::string HowItEnded() noexcept { return process_.HowItEnded(); }
 

@@ -1,6 +1,7 @@
 #include "simulation/shared_process.h"
 
 #include <fcntl.h>
+#include <sched.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -97,6 +98,14 @@ void SharedProcess::Start(const std::vector<std::string>& command,
   }
   Refuse(key_, ": " + Quote(command[0]) + " could not be started in " + folder.string() + ": " +
                    std::strerror(error) + ". " + remedy);
+}
+
+int SharedProcess::SetPriority(int priority) noexcept {
+  if (HasEnded()) return ESRCH;
+  sched_param parameter{};
+  parameter.sched_priority = priority;
+  const int policy = priority > 0 ? SCHED_FIFO : SCHED_OTHER;
+  return sched_setscheduler(pid_, policy | SCHED_RESET_ON_FORK, &parameter) == 0 ? 0 : errno;
 }
 
 bool SharedProcess::HasEnded() noexcept {

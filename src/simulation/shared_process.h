@@ -27,6 +27,10 @@ class SharedProcess {
 
   void* memory() const noexcept { return memory_; }
 
+  // Gives the process, but not the processes that it starts, a real-time priority (SCHED_FIFO), or
+  // an ordinary one if `priority` is 0. Returns the error's number, 0 for none.
+  int SetPriority(int priority) noexcept;
+
   bool HasEnded() noexcept;
   bool was_seen_to_end() const noexcept { return ended_; }
   // Gives the program the time to end by itself [s], then ends it.

@@ -34,6 +34,9 @@ class TapedController final : public Controller {
   ControllerOutcome outcome() const noexcept override;
   Status failure() const noexcept override;
   void SetRealTime(bool real_time) noexcept override;
+  std::string PrioritiseProcess(bool on) override {
+    return controller_ ? controller_->PrioritiseProcess(on) : "";
+  }
   std::span<double> memory() noexcept override;
   void Start(const ControllerInput& input) noexcept override;
   void Advance(const ControllerInput& input, double dt) noexcept override;

@@ -271,6 +271,7 @@ const JointVector& World::effort_limit() const { return impl_->controlled.effort
 std::string World::EngineFailure() const { return impl_->engine().Failure(); }
 std::string World::SceneXml() const { return impl_->controlled.start_engine().SceneText(); }
 
+std::string World::PrioritiseProcess(bool on) { return impl_->controlled.PrioritiseProcess(on); }
 void World::SetRealTime(bool real_time) noexcept { impl_->controlled.SetRealTime(real_time); }
 void World::Play(const ControllerAnswer& answer) noexcept {
   if (TapedController* taped = impl_->controlled.taped()) taped->Play(answer);

@@ -32,8 +32,9 @@ class World {
   // These functions have an effect only for a controller outside the program. SetRealTime
   // determines whether it has a deadline. Play gives its answer in the tick that follows, in a
   // replay without it. Tape returns its answers while this world was set up, and nothing for
-  // another controller.
+  // another controller. PrioritiseProcess is that of Controller, and not for the tick.
   void SetRealTime(bool real_time) noexcept;
+  std::string PrioritiseProcess(bool on);
   void Play(const ControllerAnswer& answer) noexcept;
   std::vector<double> ControllerTape() const;
 

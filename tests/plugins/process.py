@@ -1,5 +1,6 @@
 """A controller as a process. It carries the cobot's weight with springs until a certain time. Then it does what
-its argument names: crash, hang, nan, late, shorten, or object (answers its pose). It can also refuse or end at once."""
+its argument names: crash, hang, nan, late, shorten, object (answers its pose), or priority (answers its scheduling
+policy and priority). It can also refuse or end at once."""
 
 import mmap
 import os
@@ -44,6 +45,8 @@ while os.getppid() == parent:
                     time.sleep(0.01)
             if fault == "object":
                 torque = read(memory, 4824)  # X_WO
+            if fault == "priority":
+                torque[:2] = os.sched_getscheduler(0) & ~os.SCHED_RESET_ON_FORK, os.sched_getparam(0).sched_priority
             if fault == "nan":
                 torque[0] = float("nan")
             if fault == "late" and not broken:

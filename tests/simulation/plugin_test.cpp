@@ -1,5 +1,6 @@
 // Tests controllers outside the program: shared libraries and processes.
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <chrono>
 #include <cmath>
@@ -9,10 +10,12 @@
 #include <fstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/archive.h"
 #include "core/error.h"
+#include "core/real_time.h"
 #include "scenario/trial_note.h"
 #include "support/plugins.h"
 #include "support/temporary_folder.h"
@@ -312,6 +315,42 @@ TEST(Plugin, AProcessThatMissesItsDeadlineIsReplacedAndThenStopped) {
       EXPECT_GE(status.value, 0.1);
       EXPECT_EQ(status.limit, 0.1);
     }
+  }
+}
+
+// ---- priority
+// --------------------------------------------------------------------------------------------
+
+// Returns whether the system allows this process a real-time priority.
+bool MayUse(int priority) {
+  sched_param parameter{};
+  parameter.sched_priority = priority;
+  if (sched_setscheduler(0, SCHED_FIFO, &parameter) != 0) return false;
+  parameter.sched_priority = 0;
+  return sched_setscheduler(0, SCHED_OTHER, &parameter) == 0;
+}
+
+// The process answers its scheduling policy and its priority. Without permission, it keeps its own.
+TEST(Plugin, AProcessGetsAPriorityBelowTheLoopsIfItAsksForIt) {
+  for (const bool asks : {false, true}) {
+    Scenario s = BallScene(Faulty("priority", 0.01));
+    s.cobot.controller.Set(asks ? "real_time_priority=true" : "real_time_priority=false");
+    World world(s);
+    const auto seen = [&] {
+      Simulate(&world, HandsOff(s), 0.02);
+      return std::pair(world.state().torque[0], world.state().torque[1]);
+    };
+    const std::string got = world.PrioritiseProcess(true);
+    const bool granted = asks && MayUse(kControllerPriority);
+    EXPECT_EQ(got, granted ? "controller's process: granted (SCHED_FIFO 70)"
+                   : asks  ? "controller's process: refused (Operation not permitted), so its "
+                             "answers may be late"
+                           : "");
+    EXPECT_EQ(seen(), granted ? std::pair(double{SCHED_FIFO}, double{kControllerPriority})
+                              : std::pair(double{SCHED_OTHER}, 0.0));
+    world.PrioritiseProcess(false);
+    EXPECT_EQ(seen(), std::pair(double{SCHED_OTHER}, 0.0));
+    EXPECT_LT(kControllerPriority, kLoopPriority);
   }
 }
 

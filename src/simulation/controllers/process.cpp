@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/real_time.h"
 #include "core/text.h"
 #include "simulation/controller_process.h"
 #include "simulation/controllers/controllers.h"
@@ -25,6 +26,7 @@ struct ProcessParameters {
   std::vector<std::string> command;
   std::string parameters;
   double deadline = 3e-4;  // [s]
+  bool real_time_priority = false;
 };
 
 template <class V>
@@ -36,6 +38,9 @@ void Fields(V& v, ProcessParameters& p) {
   v("deadline", p.deadline,
     Number("s", "real time: time for each answer; after it, gravity compensation and damping act",
            From(5e-5, 9e-4)));
+  v("real_time_priority", p.real_time_priority,
+    Flag("real time: whether the program's process gets a real-time priority below the control "
+         "loop's; it must then sleep while it waits for a request"));
 }
 
 class Process final : public ExternalController {
@@ -43,6 +48,7 @@ class Process final : public ExternalController {
   Process(const ControllerContext& context, const ProcessParameters& parameters)
       : ExternalController(context),
         deadline_(parameters.deadline),
+        wants_priority_(parameters.real_time_priority),
         process_(parameters.command, context.folder) {
     PredictorControllerMemory& shared = process_.shared();
     shared.input.dof = context.model.dof();
@@ -66,6 +72,13 @@ class Process final : public ExternalController {
   std::span<double> memory() noexcept override { return memory_; }
   bool uses_wrist_sensor() const noexcept override { return uses_wrist_sensor_; }
   void SetRealTime(bool real_time) noexcept override { real_time_ = real_time; }
+  std::string PrioritiseProcess(bool on) override {
+    if (!wants_priority_) return "";
+    const int error = process_.SetPriority(on ? kControllerPriority : 0);
+    if (error == 0) return on ? "controller's process: granted (SCHED_FIFO 70)" : "";
+    return std::string("controller's process: refused (") + std::strerror(error) +
+           "), so its answers may be late";
+  }
   void Start(const ControllerInput& input) noexcept override {
     must_start_ = !memory_.empty();
     TryStart(Fill(input));
@@ -158,6 +171,7 @@ class Process final : public ExternalController {
   }
 
   const double deadline_;  // [s]
+  const bool wants_priority_;
   ControllerProcess process_;
   std::vector<double> memory_;
   double energy_ = 0;  // [J]
