@@ -1,6 +1,7 @@
 #include "analysis/hazard_study/run_store.h"
 
 #include <charconv>
+#include <span>
 #include <sstream>
 
 #include "core/error.h"
@@ -13,7 +14,7 @@ namespace {
 constexpr const char* kHeader =
     "key,scenario,controller,hazard,seed,begin_s,force_before_N,force_after_N,torque_Nm,speed_m_s,"
     "until_stop_s,cause,detection_s,travel_m,cobot_stop,excess_N";
-constexpr std::size_t kColumns = 16;
+constexpr std::size_t kColumns = 16, kOfRun = 12;  // in all, and those of TextOf
 
 std::vector<std::string> Split(const std::string& line) {
   std::vector<std::string> cells;
@@ -42,17 +43,20 @@ std::string Short(double x) { return Formatted("%.6g", x); }
 
 std::string KeyOf(const std::string& key, const std::string& seed) { return key + "/" + seed; }
 
+// Reads the cells of TextOf, which are the last ones. A comma in a name before them adds a cell.
 bool ReadRun(const std::vector<std::string>& cells, HazardRun* run) {
+  if (cells.size() < kColumns) return false;
+  const std::span at = std::span(cells).last(kOfRun);
   double seed = 0;
-  bool read = cells.size() == kColumns && ReadNumber(cells[4], &seed);
+  bool read = ReadNumber(at[0], &seed);
   double* const numbers[] = {&run->begin,  &run->before, &run->after,
                              &run->torque, &run->speed,  &run->until_stop};
   for (std::size_t k = 0; read && k < std::size(numbers); ++k)
-    read = ReadNumber(cells[5 + k], numbers[k]);
+    read = ReadNumber(at[1 + k], numbers[k]);
   run->seed = static_cast<std::uint64_t>(seed);
-  return read && ReadName(cells[11], kStopCauses, &run->cause) &&
-         ReadNumber(cells[12], &run->detection) && ReadNumber(cells[13], &run->travel) &&
-         ReadName(cells[14], kCobotStops, &run->cobot_stop) && ReadNumber(cells[15], &run->excess);
+  return read && ReadName(at[7], kStopCauses, &run->cause) && ReadNumber(at[8], &run->detection) &&
+         ReadNumber(at[9], &run->travel) && ReadName(at[10], kCobotStops, &run->cobot_stop) &&
+         ReadNumber(at[11], &run->excess);
 }
 
 }  // namespace
@@ -65,23 +69,26 @@ std::string TextOf(const HazardRun& run) {
 }
 
 HazardRunStore::HazardRunStore(const std::filesystem::path& file) : file_(file) {
+  Read();
   std::error_code error;
   const bool is_new = std::filesystem::file_size(file, error) == 0 || error;
-  Read();
   out_.open(file, std::ios::app);
   Write(is_new ? std::string(kHeader) + "\n" : "");
 }
 
+// Removes the beginning of a line that was not completed. It may look like a whole line, with a
+// number that lacks its last digits.
 void HazardRunStore::Read() {
   std::ifstream in(file_);
-  bool whole = true;  // the last line is complete
-  for (std::string line; std::getline(in, line);) {
-    whole = !in.eof();
+  std::uintmax_t end = 0;  // of the last complete line
+  for (std::string line; std::getline(in, line) && !in.eof(); end += line.size() + 1) {
     const std::vector<std::string> cells = Split(line);
     HazardRun run;
-    if (whole && ReadRun(cells, &run)) runs_[KeyOf(cells[0], cells[4])] = run;
+    if (ReadRun(cells, &run)) runs_[KeyOf(cells[0], std::to_string(run.seed))] = run;
   }
-  if (!whole) std::ofstream(file_, std::ios::app) << '\n';
+  std::error_code error;
+  if (std::filesystem::file_size(file_, error) > end && !error)
+    std::filesystem::resize_file(file_, end, error);
 }
 
 bool HazardRunStore::Find(const std::string& key, std::uint64_t seed, HazardRun* run) const {
