@@ -105,6 +105,9 @@ double StepOf(const std::vector<double>& values, double step) {
   return std::max(step, least);
 }
 
+// Titles may come from files, so a reader must see everything that they contain.
+std::string Heading(const std::string& title) { return EscapeMarkup(Printable(title)); }
+
 }  // namespace
 
 std::string EncodeSteps(const std::vector<double>& values, double step) {
@@ -166,8 +169,8 @@ void ReportPage::Close() {
 void ReportPage::Section(const std::string& id, const std::string& title) {
   Close();
   open_ = true;
-  navigation_ += "<a href=\"#" + EscapeMarkup(id) + "\">" + EscapeMarkup(title) + "</a>\n";
-  body_ += "<section id=\"" + EscapeMarkup(id) + "\"><h2>" + EscapeMarkup(title) + "</h2>\n";
+  navigation_ += "<a href=\"#" + EscapeMarkup(id) + "\">" + Heading(title) + "</a>\n";
+  body_ += "<section id=\"" + EscapeMarkup(id) + "\"><h2>" + Heading(title) + "</h2>\n";
 }
 
 void ReportPage::Html(const std::string& html) { body_ += html; }
@@ -178,7 +181,7 @@ void ReportPage::Paragraph(const std::string& text) {
 
 void ReportPage::Figure(const Plot& plot) {
   body_ += "<figure class=\"plot\" id=\"" + EscapeMarkup(plot.id) + "\"><figcaption>" +
-           EscapeMarkup(plot.title) + "</figcaption>\n<div class=\"drawing\"></div>\n";
+           Heading(plot.title) + "</figcaption>\n<div class=\"drawing\"></div>\n";
   if (!plot.caption.empty())
     body_ += "<p class=\"caption\">" + EscapeMarkup(plot.caption) + "</p>\n";
   body_ += "</figure>\n";
@@ -187,7 +190,7 @@ void ReportPage::Figure(const Plot& plot) {
 }
 
 void ReportPage::Folded(const std::string& title, const std::string& text) {
-  body_ += "<details><summary>" + EscapeMarkup(title) + "</summary><pre>" + EscapeMarkup(text) +
+  body_ += "<details><summary>" + Heading(title) + "</summary><pre>" + EscapeMarkup(text) +
            "</pre></details>\n";
 }
 
@@ -200,9 +203,9 @@ std::string ReportPage::Finish() {
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
       "'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action "
       "'none'\">\n<title>" +
-      EscapeMarkup(title_) + "</title>\n<style>\n";
+      Heading(title_) + "</title>\n<style>\n";
   html += ReportStyleFile("report.css");
-  html += "</style>\n</head>\n<body>\n<header><h1>" + EscapeMarkup(title_) + "</h1>\n" + words_ +
+  html += "</style>\n</head>\n<body>\n<header><h1>" + Heading(title_) + "</h1>\n" + words_ +
           "</header>\n<nav>" + navigation_ +
           "<button type=\"button\" id=\"theme\" hidden>Dark or light</button></nav>\n<main>\n"
           "<noscript><p class=\"warning\">The plots need JavaScript, which is switched off "

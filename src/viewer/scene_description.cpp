@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/text.h"
 #include "models/robot.h"
 #include "scenario/action_time.h"
 #include "scenario/actions/action.h"
@@ -143,7 +144,7 @@ Json DescribeSurroundings(const Scenario& scenario, const Vector3& object_start)
 
 nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
                                      AssetStore* assets) {
-  Json json = {{"name", scenario.name},
+  Json json = {{"name", Printable(scenario.name)},
                {"file", scenario.file.stem().string()},
                {"mode", scenario.mode == Mode::kDirect ? "direct" : "emulate"},
                {"duration", scenario.duration},

@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "process/attached_run.h"
 #include "viewer/address.h"
 #include "viewer/generations_json.h"
@@ -51,7 +52,7 @@ Json ToJson(const Scenario& scenario, const ViewerOptions& o, bool judged) {
   Json line = RunLine(scenario, o.object_start);
   Json scenarios = Json::array();
   for (const ScenarioTitle& s : o.scenarios)
-    scenarios.push_back({{"name", s.name}, {"title", s.title}});
+    scenarios.push_back({{"name", s.name}, {"title", Printable(s.title)}});
   line.update({{"address", AddressOf(o)},
                {"port", o.port},
                {"tls", o.tls || o.expose},
@@ -65,7 +66,7 @@ Json ToJson(const Scenario& scenario, const ViewerOptions& o, bool judged) {
                {"generations", ToJson(o.generations)},
                {"last_client", 0},
                {"scenarios", scenarios},
-               {"notice", o.notice},
+               {"notice", Printable(o.notice, Lines::kMany)},
                {"results", Json::parse(o.results.empty() ? "null" : o.results)},
                {"report", o.report.string()},
                {"judged", judged},

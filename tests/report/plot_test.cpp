@@ -1,10 +1,11 @@
-// Tests the words and numbers in plots, and the names of runs.
+// Tests the words and numbers in plots, the headings of pages, and the names of runs.
 #include "report/plot.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "report/page.h"
 #include "report/run_names.h"
 
 namespace predictor {
@@ -18,6 +19,17 @@ TEST(Plot, NumbersHaveSensibleDigits) {
   EXPECT_EQ(Round(30), "30");
   EXPECT_EQ(Round(0.300), "0.3");
   EXPECT_EQ(Round(20.053), "20.05");
+}
+
+// A scenario's name may contain characters that change the direction of text.
+TEST(Page, ShowsHiddenCharactersInItsHeadings) {
+  ReportPage page("Box \u202egk 9", "");
+  page.Section("a", "Part\u2066 <1>");
+  page.Folded("More\u200f", "text");
+  const std::string html = page.Finish();
+  for (const char* part : {"<title>Box \\u202egk 9</title>", "<h1>Box \\u202egk 9</h1>",
+                           "<h2>Part\\u2066 &lt;1&gt;</h2>", "<summary>More\\u200f</summary>"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
 }
 
 TEST(ShortNames, DistinguishFilesByWhatIsNotCommon) {

@@ -218,7 +218,7 @@ TEST(Admission, ManyAddressesDoNotGetManyTries) {
   const std::string pin = admission.IssuePin(Role::kLook, 0);
   EXPECT_FALSE(admission.ByPin(OtherPin(pin), kHere, kSecond));
   for (std::size_t i = 0; i < 2 * Admission::kMaxGuessers; ++i)
-    admission.ByPin(OtherPin(pin), "2001:db8::" + std::to_string(i), kSecond);
+    admission.ByPin(OtherPin(pin), "2001:db8:0:" + std::to_string(i) + "::1", kSecond);
   EXPECT_FALSE(admission.ByPin(pin, "192.0.2.77", kSecond));  // no room for another address
   EXPECT_TRUE(admission.ByPin(pin, kHere, kSecond));          // had an entry before
   EXPECT_TRUE(admission.ByPin(admission.IssuePin(Role::kLook, kSecond), "192.0.2.77", kSecond));
@@ -231,7 +231,22 @@ TEST(Admission, CountsAllOfThisMachinesLoopbackAddressesAsOne) {
   EXPECT_EQ(SourceOf("::ffff:192.0.2.7"), SourceOf("192.0.2.7"));
   EXPECT_EQ(SourceOf("fe80::1%eth0"), SourceOf("fe80::1"));
   EXPECT_NE(SourceOf("192.0.2.7"), SourceOf("192.0.2.8"));
-  EXPECT_NE(SourceOf("2001:db8::1"), SourceOf("2001:db8::2"));
+}
+
+// One machine may use all addresses of its network of 64 bits (RFC 4862).
+TEST(Admission, CountsAnIpv6NetworkAsOneSource) {
+  EXPECT_EQ(SourceOf("2001:db8::1"), "2001:db8::/64");
+  EXPECT_EQ(SourceOf("2001:db8:0:0:1::"), "2001:db8::/64");
+  EXPECT_EQ(SourceOf("2001:DB8:0:0:ffff:ffff:ffff:ffff%eth0"), "2001:db8::/64");
+  EXPECT_NE(SourceOf("2001:db8:0:1::1"), SourceOf("2001:db8::1"));
+  EXPECT_NE(SourceOf("fe80::1"), SourceOf("fe80::2"));  // of any networks
+  Admission admission(false, NewAdmissionSecret());
+  const std::string pin = admission.IssuePin(Role::kLook, 0);
+  for (int i = 0; i < Admission::kPinTries; ++i)
+    admission.ByPin(OtherPin(pin), "2001:db8::" + std::to_string(i), kSecond);
+  EXPECT_EQ(admission.TakeLockedOut(), "2001:db8::/64");
+  EXPECT_FALSE(admission.ByPin(pin, "2001:db8::77", kSecond));
+  EXPECT_TRUE(admission.ByPin(pin, "2001:db8:0:1::77", kSecond));
 }
 
 TEST(Admission, ReportsOnceWhichAddressHasNoTriesLeft) {

@@ -55,6 +55,15 @@ TEST(Scene, HasTheMembersOfTheProtocol) {
   EXPECT_NE(scene["object"]["urdf"], scene["cobot"]["urdf"]);
 }
 
+// The name becomes the page's title, where characters that change the direction of text would show
+// another name.
+TEST(Scene, HasAPrintableName) {
+  Scenario scenario = Load("box_9kg.yaml");
+  scenario.name = "Box \u202egk 9\x1b[2J";
+  AssetStore assets;
+  EXPECT_EQ(DescribeScene(scenario, Vector3::Zero(), &assets)["name"], "Box \\u202egk 9\\x1b[2J");
+}
+
 TEST(Scene, HasTheFixturesInTheWorld) {
   AssetStore assets;
   const auto scene = DescribeScene(Load("slide_on_table.yaml"), Vector3::Zero(), &assets);
