@@ -185,8 +185,8 @@ void RegisterRig(const Recording& recording, const std::shared_ptr<Inputs>& inpu
   });
 }
 
-// Measures the complete tick from the middle of a run. At the script's end, it starts again in the
-// middle.
+// Measures the complete tick from the middle of a run. When the script has ended, the
+// measurement starts again from the middle.
 void RegisterTick(const Recording& recording) {
   auto emulator = std::make_shared<std::unique_ptr<Emulator>>();
   const Scenario scenario = recording.scenario;

@@ -37,7 +37,8 @@ struct RunMailbox {
   std::atomic<std::uint64_t> immersive_frame_ns{0};  // monotonic clock at the headsets' last report
 };
 
-// The ROS-TCP server's process writes it, the run reads it. Its clients may only request a stop.
+// The ROS-TCP server's process writes it, and the run reads it. The server's clients may only
+// request a stop.
 struct StopMailbox {
   std::atomic<std::uint32_t> stops{0};  // counts stop requests
 };

@@ -1,5 +1,5 @@
-// Explains to the user why the arms cannot start from their current position. It is not for the
-// tick.
+// Explains to the user why the arms cannot start from their current position. It must not
+// be used in the tick.
 #pragma once
 
 #include <array>

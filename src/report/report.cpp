@@ -139,7 +139,7 @@ ReportDocument Comparison(const std::vector<RunData>& data, const std::string& p
   for (const RunData& run : data) runs.emplace_back(run);
   std::string words = "<p>Differences are relative to the first, " +
                       EscapeMarkup(data.front().info.name) +
-                      ". Limits and guidance are the first's.</p>\n";
+                      ". Limits and guidance are those of the first.</p>\n";
   for (const RunData& run : data) words += Header(run, program_version);
   ReportPage page(std::to_string(data.size()) + " recordings compared", words);
   page.Section("summary", "Summary");

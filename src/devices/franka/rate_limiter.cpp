@@ -62,8 +62,9 @@ double Reaching(const JointLimit& limit, double way) noexcept {
   return std::min((n + r) * step, limit.acceleration);
 }
 
-// Returns the largest acceleration from which coasting stays below `cap`. a²/2j is at most half a
-// cycle's worth, because the published jerks are 500 times the accelerations.
+// Returns the largest acceleration from which coasting stays below `cap`. While the acceleration
+// then falls to zero, the velocity changes by a²/2j. This is at most a · dt, because the published
+// jerks are 500 times the accelerations.
 double Coasting(double v, double cap) noexcept {
   return std::max(0.0, cap - v) / (RateLimiter::kCoasting + 2 * RateLimiter::kDt);
 }

@@ -134,8 +134,8 @@ class Process final : public ExternalController {
                       : process_.AskAndWait(kind, kLongestWait);
   }
 
-  // The program can change these numbers at any time. One that is not finite would spoil every
-  // later step.
+  // The program can change these numbers at any time. A number that is not
+  // finite would corrupt every later step.
   void TakeMemory() noexcept {
     std::array<double, PREDICTOR_MAX_MEMORY> taken;
     std::copy_n(process_.shared().memory, memory_.size(), taken.begin());
