@@ -57,8 +57,8 @@ void AddStatistics(const ResultGroup& group, std::string* text) {
 }
 
 void AddQuantiles(const ResultGroup& group, std::string* text) {
-  AppendPadded(WithUnit(group.title, group.columns.front()->unit), 16, false, text);
-  AppendLine(text, " %10s %8s %8s %8s", "p50", "p99", "p99.9", "max");
+  AppendPadded(WithUnit(group.title, group.columns.front()->unit), 18, false, text);
+  AppendLine(text, " %8s %8s %8s %8s", "p50", "p99", "p99.9", "max");
   for (const ResultGroup::Row& row : group.rows) {
     const auto& q = std::get<Quantiles>(row.cells.front()->value);
     AppendLine(text, "  %-14s %10.1f %8.1f %8.1f %8.1f", row.label.c_str(), q.p50, q.p99, q.p999,
