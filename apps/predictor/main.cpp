@@ -25,10 +25,8 @@ constexpr const char* kFooter =
     "  1  negative result: a safety stop without a reset, a scenario that fails its check, a\n"
     "     replay that differs, a joint that was not identified, or a device that differs from the\n"
     "     machine file\n"
-    "  2  bad input or usage: a wrong option, or a file that is missing, invalid or damaged
-"
-    "  3  a device, the system, the program or a controller's library failed
-"
+    "  2  bad input or usage: a wrong option, or a file that is missing, invalid or damaged\n"
+    "  3  a device, the system, the program or a controller's library failed\n"
     "\n"
     "Environment:\n"
     "  PREDICTOR_PACKAGE_PATH  folders, separated by colons, in which package:// paths of URDF\n"
