@@ -127,18 +127,12 @@ struct HandleAxis {
   System::Signal position, velocity, acceleration;
 };
 
-// Returns the cutoff of the filter of the lead's acceleration [rad/s]. Without a filter, the
-// acceleration is the change over one tick, which is late by half a tick.
-double LeadCutoff(const RenderingSpec& rendering, double dt) {
-  return rendering.lead_cutoff > 0 ? 2 * kPi * rendering.lead_cutoff : 2 / dt;
-}
-
 // Adds the real handle, which follows the motion of the virtual one.
 HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
                   const LoopDelays& delays, double lead, bool turn, double dt,
                   const System::Signal& x_d, const System::Signal& v_d) {
   const int h = s->AddState();
-  const double lead_cutoff = LeadCutoff(rendering, dt);
+  const double lead_cutoff = HapticLoop::LeadCutoff(rendering, dt);
   const System::Signal a_d = lead_cutoff * (v_d - s->LowPass(v_d, lead_cutoff));
   const double gain = turn ? rendering.ko / 2 : rendering.kp;  // (9) uses half the angle
   const System::Signal command = v_d + lead * a_d + gain * (x_d - s->State(h));
@@ -177,6 +171,10 @@ System::Signal AddHand(System* s, const HandSpec& hand, const LoopDelays& delays
 
 double HapticLoop::Lag(const VelocityLoopSpec& loop, double dt) {
   return 2 * loop.damping_ratio / (2 * kPi * loop.bandwidth) + loop.delay - dt / 2;
+}
+
+double HapticLoop::LeadCutoff(const RenderingSpec& rendering, double dt) {
+  return rendering.lead_cutoff > 0 ? 2 * kPi * rendering.lead_cutoff : 2 / dt;
 }
 
 HapticLoop::HapticLoop(const LinearModel& world, const Scenario& scenario, double dt,

@@ -51,6 +51,10 @@ class HapticLoop {
   // tick by which the reference is ahead.
   static double Lag(const VelocityLoopSpec& loop, double dt);
 
+  // Returns the cutoff of the filter of the lead's acceleration [rad/s]. Without a filter, the
+  // acceleration is the change over one tick, which is late by half a tick.
+  static double LeadCutoff(const RenderingSpec& rendering, double dt);
+
  private:
   bool IsStable(const HandSpec& hand, double lead, double gain, StabilityMargin* margin) const;
 

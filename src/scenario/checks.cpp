@@ -127,6 +127,9 @@ void Checker::Fixture(std::size_t i) const {
   Unless(fixture.size.head(used).minCoeff() > 0, path + ".size",
          "has a zero among the first " + std::to_string(used) + " entries, the dimensions of a " +
              NameOf(fixture.shape) + ". They must be greater than 0.");
+  Unless(fixture.stiffness || fixture.damping == 0, path + ".damping",
+         "is given without a stiffness. Give " + path +
+             ".stiffness in N/m too, or damping_ratio instead of damping.");
 }
 
 // Weight compensation and people assume that gravity points down in the rig too.

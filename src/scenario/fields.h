@@ -230,6 +230,13 @@ void Fields(V& v, FixtureSpec& s) {
     Number("s", "time constant of its contacts; a smaller value is stiffer", From(0.002, 1)));
   v("damping_ratio", s.damping_ratio,
     Number("", "damping ratio of its contacts; 1: no bounce", From(0.01, 10)));
+  v("stiffness", s.stiffness,
+    Number("N/m",
+           "stiffness of each point of contact, instead of time_constant and damping_ratio; null: "
+           "as stiff as time_constant says",
+           From(1, 1e7)));
+  v("damping", s.damping,
+    Number("N·s/m", "damping of each point of contact, with a stiffness", From(0, 1e5)));
   v("touches", s.touches, List(Word("what collides with it", {"object", "cobot"}), 1, 2));
   v("color", s.color, Number("", "red, green, blue", From(0, 1)));
 }

@@ -27,8 +27,12 @@ struct FixtureSpec {
   std::optional<double> friction;  // sliding friction of its contacts; absent: environment.friction
   // A contact is a spring and a damper scaled to the mass that it moves: undamped, the bodies would
   // swing with the frequency 1/(time_constant · damping_ratio) [rad/s].
-  double time_constant = 0.0025;                  // [s]
-  double damping_ratio = 1;                       // 1: no bounce
+  double time_constant = 0.0025;  // [s]
+  double damping_ratio = 1;       // 1: no bounce
+  // With a stiffness, each point of contact is instead a spring and a damper of these values,
+  // whatever they move [N/m], [N·s/m].
+  std::optional<double> stiffness;
+  double damping = 0;
   std::vector<std::string> touches = {"object"};  // that collide with it: object, cobot
   Vector3 color = {0.55, 0.58, 0.62};             // red, green, blue
 

@@ -37,6 +37,7 @@ struct Contact {
   Vector3 force_W = Vector3::Zero();   // on the object or the cobot [N]
   double depth = 0;                    // of the penetration; negative: a gap [m]
   int fixture = -1;                    // index in environment.fixtures; −1: floor or table
+  bool yields = false;                 // the fixture has a stiffness [N/m]
   std::string_view link;               // of the cobot; empty: the object
 };
 

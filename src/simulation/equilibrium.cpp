@@ -25,6 +25,8 @@ constexpr double kContactDifference = 1e-8;
 // The largest depth to which an iteration may enter a fixture [m]. Deeper inside, the contact's
 // force is so large that the search would jump in and out.
 constexpr double kMaxDepth = 1e-5;
+// An iteration enters a fixture with a stiffness at most this many times deeper than the last one.
+constexpr double kDeeper = 2;
 constexpr int kHalvings = 30;            // of an iteration that enters a fixture deeper
 constexpr double kDeepestStart = 0.001;  // in a fixture [m]
 constexpr double kUnstable = -0.01;  // eigenvalue of M⁻¹ H below which the scene is unstable [1/s²]
@@ -102,22 +104,24 @@ class EquilibriumSearch {
     const double largest = dq.lpNorm<Eigen::Infinity>();
     if (largest > kMaxStep) dq *= kMaxStep / largest;
     const VectorXd start = engine_.positions();
-    const double allowed = std::max(kMaxDepth, Depth());
+    const double hard = std::max(kMaxDepth, Depth(false));
+    const double yielding = std::max(kMaxDepth, kDeeper * Depth(true));
     engine_.Displace(dq.data(), 1);
-    for (int i = 0; i < kHalvings && Depth() > allowed; ++i) {
+    for (int i = 0; i < kHalvings && (Depth(false) > hard || Depth(true) > yielding); ++i) {
       dq /= 2;
       engine_.positions() = start;
       engine_.Displace(dq.data(), 1);
     }
   }
 
-  // Returns how deep the object or the cobot is in a fixture [m].
-  double Depth() {
+  // Returns how deep the object or the cobot is in a fixture that has a stiffness (`yields`), or in
+  // one that has none [m].
+  double Depth(bool yields) {
     engine_.Prepare();
     double depth = 0;
     for (int i = 0; i < engine_.contact_count(); ++i) {
       const Contact contact = engine_.contact(i);
-      if (contact.fixture >= 0) depth = std::max(depth, contact.depth);
+      if (contact.fixture >= 0 && contact.yields == yields) depth = std::max(depth, contact.depth);
     }
     return depth;
   }

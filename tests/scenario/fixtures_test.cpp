@@ -42,6 +42,13 @@ TEST(FixtureKeys, ASizeThatIsZeroWhereItCountsIsAnError) {
   EXPECT_NE(ErrorOfFixture("shape: box, size: [0.1, 1, 0]"), "");
 }
 
+TEST(FixtureKeys, ADampingWithoutAStiffnessIsAnError) {
+  EXPECT_EQ(ErrorOfFixture("shape: box, stiffness: 2000, damping: 10"), "");
+  EXPECT_NE(ErrorOfFixture("shape: box, damping: 10")
+                .find("environment.fixtures.0.damping is given without a stiffness."),
+            std::string::npos);
+}
+
 TEST(FixtureKeys, ThatAreImpossibleAreErrors) {
   EXPECT_NE(ErrorOfFixture("size: [1, 1, 1]").find("shape is missing"), std::string::npos);
   EXPECT_NE(ErrorOfFixture("shape: box, touches: []"), "");

@@ -222,6 +222,51 @@ TEST(Bounce, AnImpactEntersAFixtureByLittleMoreThanItsSpeedTimesAStep) {
   }
 }
 
+// ---- a fixture with a stiffness ----------------------------------------------------------------
+
+FixtureSpec YieldingGround(double stiffness, double damping) {
+  FixtureSpec ground = Fixture(FixtureShape::kPlane, {1, 1, 0}, kOrigin);
+  ground.stiffness = stiffness;
+  ground.damping = damping;
+  return ground;
+}
+
+// The engine scales its contacts to the masses of the bodies; these must not depend on them.
+TEST(Yielding, ABodySinksInByTheForceOverTheStiffnessOfItsPoints) {
+  constexpr double kStiffness = 5000;  // [N/m]
+  for (const Shape shape : {Shape::kSphere, Shape::kBox}) {
+    const int points = shape == Shape::kSphere ? 1 : 4;
+    for (const double force : {0.0, 50.0}) {
+      FreeBody body(shape, {0.1, 0.1, 0.2}, {YieldingGround(kStiffness, 50)});
+      body.Place({kOrigin + Vector3(0, 0, 0.1), Quaternion::Identity()});
+      Wrench F = Wrench::Zero();
+      F[2] = -force;
+      body.Run(1.5, F);
+      const double expected = (kBodyMass * kGravity + force) / (points * kStiffness);
+      EXPECT_NEAR(kOrigin.z() + 0.1 - body.pose().p.z(), expected, 0.01 * expected)
+          << points << " points, " << force << " N";
+    }
+  }
+}
+
+// At its turning points, so that half a step does not matter.
+TEST(Yielding, ABodySwingsAsItsSpringAndDamperSay) {
+  constexpr double kRadius = 0.1, kStiffness = 2000, kDamping = 12;  // [m], [N/m], [N·s/m]
+  const double omega = std::sqrt(kStiffness / kBodyMass);
+  const double zeta = kDamping / (2 * kBodyMass * omega);
+  const double half = M_PI / (omega * std::sqrt(1 - zeta * zeta));  // half a period [s]
+  const double rest = kRadius - kBodyMass * kGravity / kStiffness;
+  constexpr double kDeeper = 0.004;  // at the start [m]
+  FreeBody body(Shape::kSphere, {kRadius, 0, 0}, {YieldingGround(kStiffness, kDamping)});
+  body.Place({kOrigin + Vector3(0, 0, rest - kDeeper), Quaternion::Identity()});
+  for (int k = 1; k <= 3; ++k) {
+    const double before = std::round(1000 * (k - 1) * half), until = std::round(1000 * k * half);
+    body.Run((until - before) / 1000);
+    const double expected = (k % 2 == 1 ? 1 : -1) * std::exp(-zeta * omega * k * half);
+    EXPECT_NEAR((body.pose().p.z() - kOrigin.z() - rest) / kDeeper, expected, kAccuracy) << k;
+  }
+}
+
 // ---- a sliding stop ----------------------------------------------------------------------------
 
 TEST(SlidingStop, ABlockStopsAfterTheDistanceOfItsFriction) {

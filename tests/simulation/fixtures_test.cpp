@@ -66,6 +66,25 @@ TEST(Fixtures, ABoxSlidesWhenTheHandsExceedItsFriction) {
   }
 }
 
+// The cobot's spring and that of the fixture share the hands' force.
+TEST(Fixtures, ABoxOnOneThatYieldsMovesByTheForceOverBothStiffnesses) {
+  constexpr double kStiffness = 4000, kForce = 20;  // [N/m], of each hand [N]
+  Scenario s = OnATable(0);
+  // On a joint, and with a cobot that is soft to the sides, the box would slip off the ball.
+  s.object.attachment.joint = JointType::kFixed;
+  s.cobot.controller.Set("stiffness.translation=[300, 300, 500]");
+  FixtureSpec& post = s.environment.fixtures[0];
+  post.shape = FixtureShape::kSphere;  // touches the box at one point, below its middle
+  post.size = {0.05, 0, 0};
+  post.stiffness = kStiffness;
+  post.damping = 100;
+  World world(s);
+  const double before = world.state().object.X_W.p.z();
+  RunWith(&world, Push(s, {0, 0, -kForce}), 2);
+  const double expected = 2 * kForce / (kStiffness + kVertical);
+  EXPECT_NEAR(before - world.state().object.X_W.p.z(), expected, 0.02 * expected);
+}
+
 TEST(Fixtures, AWallStopsTheBoxThatIsPushedIntoIt) {
   constexpr double kGap = 0.03;  // [m]
   Scenario s = RigidBox();
@@ -198,6 +217,16 @@ TEST(Fixtures, AStartInsideOneIsRefused) {
             std::string::npos)
       << StartError(s);
   EXPECT_NE(StartError(s).find("remove cobot from the fixture's touches"), std::string::npos);
+}
+
+TEST(Fixtures, OneTooStiffForTheStepOfTheSimulationIsRefused) {
+  Scenario s = OnATable(0.3);
+  s.environment.fixtures[0].stiffness = 1e7;
+  const std::string error = StartError(s);
+  EXPECT_EQ(error.find("environment.fixtures.0.stiffness and damping are so large that a body of"),
+            0u)
+      << error;
+  EXPECT_NE(error.find("the stiffness can be at most"), std::string::npos) << error;
 }
 
 }  // namespace

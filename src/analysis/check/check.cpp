@@ -84,6 +84,7 @@ class Judge {
     for (const PairReach& pair : report_->reach->pairs) Pair(pair);
     Speeds();
     Stability();
+    for (const ContactReport& contact : report_->contacts) Contact(contact);
   }
 
  private:
@@ -219,6 +220,21 @@ class Judge {
         r.margin.gain, 1e3 * r.lead, kMinMargin, r.margin.frequency, lead, change.c_str()));
   }
 
+  // The loop without contact may be unstable too, which Stability says.
+  void Contact(const ContactReport& r) {
+    if (r.stable || report_->stability->margin.gain < 1) return;
+    const std::string key = "environment.fixtures." + std::to_string(r.fixtures[0]);
+    const std::string limit =
+        r.yields && r.limit.reached
+            ? Formatted(
+                  " With its damping, the stiffness can be at most %.3g N/m in all points of "
+                  "contact together; it would oscillate at %.1f Hz.",
+                  r.limit.stiffness, r.limit.frequency)
+            : "";
+    Warn(key + ": the haptic loop oscillates while the object touches this fixture." + limit +
+         " Reduce its stiffness, increase its damping, use lighter hands, or faster arms.");
+  }
+
   const Scenario& s_;
   const Machine* machine_;
   CheckReport* report_;
@@ -250,9 +266,11 @@ void CheckDevice(const Scenario& s, const World& world, const CheckOptions& opti
     report->shift_proposal = SearchShift(s, paths, searching);
   else if (options.search)
     report->proposal = SearchBases(s, device, paths, searching);
+  const LinearModel linear = world.Linearise();
   report->stability = CheckStability(
-      s, world.Linearise(), {0.8, 1.5, 3}, {100, 250, 500, 1000},
+      s, linear, {0.8, 1.5, 3}, {100, 250, 500, 1000},
       [&](double share) { options.progress(middle + share * (1 - middle), "stability"); });
+  report->contacts = CheckContacts(s, linear, report->models.X_WO, report->stability->lead);
   report->stability->withheld = options.machine && !UnmeasuredLoops(*options.machine, s).empty();
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/check/base_search.h"
+#include "analysis/check/contact.h"
 #include "analysis/check/reach.h"
 #include "analysis/check/shift_search.h"
 #include "core/messages.h"
@@ -71,6 +72,7 @@ struct CheckReport {
   std::optional<BaseProposal> proposal;
   std::optional<ShiftProposal> shift_proposal;
   std::optional<StabilityReport> stability;  // empty without a device
+  std::vector<ContactReport> contacts;       // with fixtures that touch the object; the same
   // A stop from `handle_speed` [m/s] as the arms perform it (StopOfArms), and the same with a joint
   // at its speed limit (MinStopAcceleration). They are empty without a device.
   std::optional<StopBudget> stop, longest_stop;

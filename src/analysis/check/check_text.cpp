@@ -1,6 +1,8 @@
 // Writes the report of a check as text for the user, and as JSON.
 #include <cmath>
+#include <complex>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "analysis/check/check.h"
 #include "core/format.h"
@@ -153,6 +155,46 @@ void AddStability(const StabilityReport& r, std::string* text) {
   }
 }
 
+// "0, 1 and 4"
+std::string Numbers(const std::vector<std::size_t>& numbers) {
+  std::string text;
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == numbers.size() ? " and " : ", ") + std::to_string(numbers[k]);
+  return text;
+}
+
+// The damping that an impedance at kFeltFrequency contains [N·s/m].
+double DampingOf(const std::complex<double>& impedance) {
+  return impedance.imag() / (2 * std::numbers::pi * kFeltFrequency);
+}
+
+void AddContact(const ContactReport& r, std::string* text) {
+  const Vector3& n = r.wall.normal;
+  AppendLine(text, "  %s %s, normal [%.2f, %.2f, %.2f]: %s",
+             r.fixtures.size() == 1 ? "fixture" : "fixtures", Numbers(r.fixtures).c_str(), n.x(),
+             n.y(), n.z(), r.stable ? "stable" : "UNSTABLE");
+  if (!r.yields) return;
+  AppendLine(text, "    stiffness        %.3g N/m at each point", r.wall.stiffness);
+  if (r.limit.reached)
+    AppendLine(text, "    stable up to     %.3g N/m in all, then oscillates at %.1f Hz",
+               r.limit.stiffness, r.limit.frequency);
+  else
+    AppendLine(text, "    stable up to     more than %.3g N/m", kStiffestWall);
+  AppendLine(text, "    felt at rest     %.3g N/m of %.3g", r.at_rest.rendered.real(),
+             r.at_rest.requested.real());
+  AppendLine(text, "    felt at %.0f Hz     %.3g N/m of %.3g, %.3g N·s/m of %.3g%s", kFeltFrequency,
+             r.moving.rendered.real(), r.moving.requested.real(), DampingOf(r.moving.rendered),
+             DampingOf(r.moving.requested),
+             r.moving.rendered.imag() < 0 ? " (the arms' lag feeds energy in)" : "");
+}
+
+void AddContacts(const CheckReport& report, std::string* text) {
+  AppendLine(text,
+             "\n"
+             "Contact: what the hands feel while the object touches a fixture, at one point");
+  for (const ContactReport& contact : report.contacts) AddContact(contact, text);
+}
+
 // ---- JSON --------------------------------------------------------------------------------------
 
 Json ToJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
@@ -231,6 +273,27 @@ Json ToJson(const StabilityReport& r) {
   return json;
 }
 
+Json ToJson(const FeltImpedance& felt) {
+  const auto complex = [](const std::complex<double>& z) -> Json {
+    return {{"real_n_m", NumberOrNull(z.real())}, {"imaginary_n_m", NumberOrNull(z.imag())}};
+  };
+  return {{"requested", complex(felt.requested)}, {"rendered", complex(felt.rendered)}};
+}
+
+Json ToJson(const ContactReport& r) {
+  Json json = {{"fixtures", r.fixtures},
+               {"normal", ToJson(r.wall.normal)},
+               {"stiffness_n_m", r.wall.stiffness},
+               {"damping_ns_m", r.wall.damping},
+               {"yields", r.yields},
+               {"stable", r.stable},
+               {"largest_stable_stiffness_n_m", nullptr},
+               {"at_rest", ToJson(r.at_rest)},
+               {"at_5_hz", ToJson(r.moving)}};
+  if (r.yields && r.limit.reached) json["largest_stable_stiffness_n_m"] = r.limit.stiffness;
+  return json;
+}
+
 void AddStop(const CheckReport& report, std::string* text) {
   AppendLine(text,
              "\n"
@@ -261,6 +324,7 @@ std::string CheckText(const CheckReport& report) {
   if (report.proposal) AddProposal(report, *report.proposal, &text);
   if (report.shift_proposal) AddProposal(report, *report.shift_proposal, &text);
   if (report.stability) AddStability(*report.stability, &text);
+  if (!report.contacts.empty()) AddContacts(report, &text);
   if (report.stop) AddStop(report, &text);
   AppendLine(&text, "%s", "");
   for (const std::string& warning : report.warnings)
@@ -288,6 +352,8 @@ std::string CheckJson(const CheckReport& report) {
                                     {"longest_way", report.longest_stop->way}}
                              : Json(nullptr);
   json["stability"] = report.stability ? ToJson(*report.stability) : Json(nullptr);
+  json["contacts"] = Json::array();
+  for (const ContactReport& contact : report.contacts) json["contacts"].push_back(ToJson(contact));
   return json.dump(2) + "\n";
 }
 

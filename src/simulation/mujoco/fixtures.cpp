@@ -1,8 +1,12 @@
 #include "simulation/mujoco/fixtures.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
+#include "core/error.h"
+#include "core/text.h"
+#include "simulation/contact_law.h"
 #include "simulation/mujoco/shapes.h"
 
 namespace predictor {
@@ -15,6 +19,13 @@ constexpr double kContactImpedance = 0.99;
 // contacts make the body hop more; with a longer one, it stops too late
 // (docs/developer/decisions.md) [s].
 constexpr double kFixtureFrictionTime = 0.01;
+// The same for contacts with a stiffness [N/m]. It is small, because the engine's contacts also add
+// an inertia, which is this share of the mass that they move.
+constexpr double kYieldingImpedance = 0.001;
+constexpr double kYieldingFrictionTime = 0.2;  // instead of kFixtureFrictionTime [s]
+// Largest K dt²/m + 2 B dt/m of a point of contact. One spring and damper is stable below 4; a body
+// that turns on several points needs up to ten times less.
+constexpr double kLargestRate = 0.4;
 // The friction of fixtures creeps less than the engine's default friction by this factor.
 constexpr double kFrictionStiffness = 10;
 
@@ -77,6 +88,68 @@ void AddContacts(mjSpec* spec, const EnvironmentSpec& environment, std::size_t i
     pair->solimp[4] = 2;
     pair->margin = pair->gap = 0;
   }
+}
+
+namespace {
+
+// Throws InputError if a spring and a damper on a body with this inverse of the mass [1/kg] would
+// be unstable in steps of dt [s].
+void CheckRate(const FixtureSpec& fixture, std::size_t i, double inverse_mass, double dt) {
+  const double rate = dt * inverse_mass * (*fixture.stiffness * dt + 2 * fixture.damping);
+  if (rate <= kLargestRate) return;
+  const std::string key = "environment.fixtures." + std::to_string(i);
+  const double largest = std::max(0.0, kLargestRate / (dt * inverse_mass) - 2 * fixture.damping);
+  throw InputError::At(
+      key + ".stiffness",
+      key + ".stiffness and damping are so large that a body of " +
+          FormatNumber(std::round(10 / inverse_mass) / 10) +
+          " kg would be unstable in the simulation's steps of 1 ms. With this damping, the "
+          "stiffness can be at most " +
+          FormatNumber(std::floor(largest / dt)) +
+          " N/m. Reduce them, or remove both for a fixture that does not yield.");
+}
+
+}  // namespace
+
+// The engine's contact obeys (m + 1/R) a = F − k I/R x − b/R v with R = (1 − I)/I · Â, where I is
+// its impedance, k and b are those of solref divided by I² and I, and Â approximates the inverse of
+// the mass that the contact moves (MuJoCo, "Computation", "Constraint model"). The approximation
+// does not matter, because the same Â is used here.
+void SetStiffness(const EnvironmentSpec& environment, const std::vector<int>& fixture_of,
+                  mjSpec* spec, mjModel* model) {
+  for (mjsElement* e = mjs_firstElement(spec, mjOBJ_PAIR); e; e = mjs_nextElement(spec, e)) {
+    const int p = mjs_getId(e);
+    const int a = model->pair_geom1[p], b = model->pair_geom2[p];
+    const int i =
+        std::max(fixture_of[static_cast<std::size_t>(a)], fixture_of[static_cast<std::size_t>(b)]);
+    if (i < 0) continue;
+    const FixtureSpec& fixture = environment.fixtures[static_cast<std::size_t>(i)];
+    if (!fixture.stiffness) continue;
+    const double inverse_mass = model->body_invweight0[2 * model->geom_bodyid[a]] +
+                                model->body_invweight0[2 * model->geom_bodyid[b]];
+    CheckRate(fixture, static_cast<std::size_t>(i), inverse_mass, model->opt.timestep);
+    const double scale = (1 - kYieldingImpedance) * inverse_mass;
+    mjsPair* pair = mjs_asPair(e);
+    pair->solref[0] = -scale * *fixture.stiffness;
+    pair->solref[1] = -scale * fixture.damping;
+    pair->solreffriction[0] = kYieldingFrictionTime;
+    std::fill_n(pair->solimp, 2, kYieldingImpedance);
+    std::copy_n(pair->solref, mjNREF, model->pair_solref + mjNREF * p);
+    std::copy_n(pair->solreffriction, mjNREF, model->pair_solreffriction + mjNREF * p);
+    std::copy_n(pair->solimp, mjNIMP, model->pair_solimp + mjNIMP * p);
+  }
+}
+
+// As above: with the impedance I, the engine's contact adds the inertia m I/(1 − I), and its solref
+// of a time constant and a damping ratio ζ gives k = 1/(time ζ)² and b = 2/time (MuJoCo,
+// "Modeling", "Solver parameters").
+ContactLaw ContactLawOf(const FixtureSpec& fixture, double mass) {
+  if (fixture.stiffness)
+    return {*fixture.stiffness, fixture.damping,
+            mass * kYieldingImpedance / (1 - kYieldingImpedance)};
+  const double scaled = mass / (1 - kContactImpedance);
+  const double swing = fixture.time_constant * fixture.damping_ratio;  // [s]
+  return {scaled / (swing * swing), 2 * scaled / fixture.time_constant, scaled * kContactImpedance};
 }
 
 void AddSurroundings(mjSpec* spec, const EnvironmentSpec& environment) {

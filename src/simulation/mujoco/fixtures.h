@@ -19,6 +19,13 @@ bool TouchesCobot(const EnvironmentSpec& environment);
 void AddContacts(mjSpec* spec, const EnvironmentSpec& environment, std::size_t i,
                  const std::vector<std::string>& shapes);
 
+// Gives the contacts of fixtures with a stiffness this stiffness and damping, in the compiled model
+// and, for its text, in `spec`. The engine's own values are relative to a mass that it knows only
+// after compiling. `fixture_of`: number of the fixture of each shape, or −1. Throws InputError if a
+// fixture is too stiff for the simulation's step.
+void SetStiffness(const EnvironmentSpec& environment, const std::vector<int>& fixture_of,
+                  mjSpec* spec, mjModel* model);
+
 // Returns the name of the shape of fixture number i.
 std::string FixtureName(std::size_t i);
 

@@ -211,6 +211,8 @@ Contact MujocoEngine::contact(int i) const noexcept {
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R_CW(from.frame);
   contact.force_W = sign * (R_CW.transpose() * At(force));
   contact.fixture = scene_->fixture_of[static_cast<std::size_t>(from.geom[1 - moving])];
+  contact.yields =
+      contact.fixture >= 0 && scene_->fixture_yields[static_cast<std::size_t>(contact.fixture)];
   if (body != scene_->object)
     contact.link = mj_id2name(model_, mjOBJ_BODY, body) + std::string_view(kCobotPrefix).size();
   return contact;

@@ -251,6 +251,7 @@ void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cob
     const int geom = mj_name2id(&model, mjOBJ_GEOM, FixtureName(i).c_str());
     scene->fixture_of[static_cast<std::size_t>(geom)] = static_cast<int>(i);
     scene->fixture_place.emplace_back(Eigen::Map<const Vector3>(model.geom_pos + 3 * geom));
+    scene->fixture_yields.push_back(scenario.environment.fixtures[i].stiffness.has_value());
     // Without this, RemoveFixtures would have no effect on a fixture at the world's origin.
     scene->model->geom_sameframe[geom] = mjSAMEFRAME_NONE;
   }
@@ -322,6 +323,7 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist
                      ". Check masses, inertias and shapes of the cobot and the object.");
   }
   FindAddresses(&scene, scenario, cobot);
+  SetStiffness(scenario.environment, scene.fixture_of, spec, scene.model.get());
   if (carried) CheckHandles(scene, scenario);
   return scene;
 }

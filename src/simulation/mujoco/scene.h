@@ -29,6 +29,7 @@ struct Scene {
   std::array<int, kMaxCobotJoints> dof = {};   // address in qvel of RobotModel's joint j
   std::vector<int> fixture_of;                 // geom: index in environment.fixtures; −1: another
   std::vector<Vector3> fixture_place;          // of each fixture, in W [m]
+  std::vector<bool> fixture_yields;            // whether it has a stiffness
   int object_qpos = -1, object_dof = -1;       // of a free object; −1: the cobot carries it
 };
 

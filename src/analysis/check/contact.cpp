@@ -1,0 +1,130 @@
+#include "analysis/check/contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/contact_law.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kSoftestWall = 100;  // [N/m]
+constexpr double kScanRatio = 1.6;    // of successive stiffnesses
+constexpr double kPrecision = 1.05;
+constexpr double kGrowing = 1e-4;     // [1/s], as for HapticLoop's margin
+constexpr double kAtRest = 0.05;      // frequency that counts as rest [Hz]
+constexpr double kSameNormal = 0.99;  // cosine of the angle between normals that count as equal
+constexpr double kPoints = 4;         // where a flat face touches another
+
+// Returns the side of a box or the cap or mantle of a cylinder from which the point is farthest
+// outside.
+Vector3 FacingSide(const FixtureSpec& fixture, const Vector3& p) {
+  if (fixture.shape == FixtureShape::kBox) {
+    Eigen::Index axis = 0;
+    (p.cwiseAbs() - fixture.size / 2).maxCoeff(&axis);
+    return std::copysign(1.0, p[axis]) * Vector3::Unit(axis);
+  }
+  const double radial = p.head<2>().norm() - fixture.size.x();
+  if (std::abs(p.z()) - fixture.size.y() / 2 >= radial || p.head<2>().isZero())
+    return std::copysign(1.0, p.z()) * Vector3::UnitZ();
+  return Vector3(p.x(), p.y(), 0).normalized();
+}
+
+// Returns the normal in the fixture's own frame.
+Vector3 NormalInFixture(const FixtureSpec& fixture, const Vector3& p) {
+  switch (fixture.shape) {
+    case FixtureShape::kBox:
+    case FixtureShape::kCylinder:
+      return FacingSide(fixture, p);
+    case FixtureShape::kPlane:
+      return Vector3::UnitZ();
+    default: {
+      const double half = fixture.shape == FixtureShape::kCapsule ? fixture.size.y() / 2 : 0;
+      const Vector3 away = p - std::clamp(p.z(), -half, half) * Vector3::UnitZ();
+      return away.isZero() ? Vector3(Vector3::UnitZ()) : Vector3(away.normalized());
+    }
+  }
+}
+
+bool IsSameKind(const FixtureSpec& a, const FixtureSpec& b) {
+  return a.stiffness == b.stiffness && a.damping == b.damping &&
+         (a.stiffness ||
+          (a.time_constant == b.time_constant && a.damping_ratio == b.damping_ratio));
+}
+
+}  // namespace
+
+Vector3 NormalToward(const FixtureSpec& fixture, const Vector3& p_W) {
+  const Pose X_WG = fixture.X_WG();
+  return X_WG.q * NormalInFixture(fixture, X_WG.Inverse() * p_W);
+}
+
+WallLimit StiffestStableWall(const LinearModel& world, const Scenario& scenario,
+                             const HandSpec& hand, double lead, const Wall& wall, LoopModel model) {
+  WallLimit limit;
+  const auto is_stable = [&](double stiffness) {
+    Wall varied = wall;
+    varied.stiffness = stiffness;
+    double frequency = 0;
+    const HapticLoop loop(WithWall(world, varied), scenario, 1 / scenario.rate, model);
+    const bool stable = loop.GrowthRate(hand, lead, 1, &frequency) <= kGrowing;
+    if (!stable) limit.frequency = frequency;
+    return stable;
+  };
+  double stable = 0, unstable = kSoftestWall;
+  while (is_stable(unstable)) {
+    stable = unstable;
+    if (stable >= kStiffestWall) return {kStiffestWall, 0, false};
+    unstable = std::min(kScanRatio * unstable, kStiffestWall);
+  }
+  if (stable == 0) return limit;
+  while (unstable > kPrecision * stable) {
+    const double middle = std::sqrt(stable * unstable);
+    (is_stable(middle) ? stable : unstable) = middle;
+  }
+  limit.stiffness = stable;
+  return limit;
+}
+
+std::vector<ContactReport> CheckContacts(const Scenario& s, const LinearModel& world,
+                                         const Pose& X_WO, double lead) {
+  std::vector<ContactReport> reports;
+  const double dt = 1 / s.rate;
+  const HandSpec& hand = s.operator_.hand;
+  const auto& fixtures = s.environment.fixtures;
+  for (std::size_t i = 0; i < fixtures.size() && s.hands().count() > 0; ++i) {
+    if (!fixtures[i].Touches("object")) continue;
+    Wall wall;
+    wall.hand = *s.hands().begin();
+    wall.p_DC = X_WO.p - X_WO * s.handle(wall.hand).pose.xyz;
+    wall.normal = NormalToward(fixtures[i], X_WO.p);
+    const auto same = std::find_if(reports.begin(), reports.end(), [&](const ContactReport& r) {
+      return r.wall.normal.dot(wall.normal) > kSameNormal &&
+             IsSameKind(fixtures[r.fixtures[0]], fixtures[i]);
+    });
+    if (same != reports.end()) {
+      same->fixtures.push_back(i);
+      continue;
+    }
+    const ContactLaw law = ContactLawOf(fixtures[i], MassAt(world, wall));
+    wall.stiffness = law.stiffness, wall.damping = law.damping, wall.inertia = law.inertia;
+    ContactReport report;
+    report.fixtures = {i};
+    report.wall = wall;
+    report.yields = fixtures[i].stiffness.has_value();
+    const auto is_stable = [&](double points) {
+      Wall touched = wall;
+      touched.stiffness *= points, touched.damping *= points, touched.inertia *= points;
+      return HapticLoop(WithWall(world, touched), s, dt).GrowthRate(hand, lead, 1) <= kGrowing;
+    };
+    report.stable = is_stable(1) && (!report.yields || is_stable(kPoints));
+    if (report.yields) report.limit = StiffestStableWall(world, s, hand, lead, wall);
+    const LinearModel touching = WithWall(world, wall);
+    report.at_rest = ImpedanceAt(touching, s, lead, dt, wall.normal, kAtRest);
+    report.moving = ImpedanceAt(touching, s, lead, dt, wall.normal, kFeltFrequency);
+    reports.push_back(report);
+  }
+  return reports;
+}
+
+}  // namespace predictor

@@ -1,0 +1,52 @@
+// Predicts what the device can render while the object touches a fixture.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/messages.h"
+#include "haptics/stability.h"
+#include "haptics/wall.h"
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+// The largest stiffness for which the prediction searches [N/m].
+inline constexpr double kStiffestWall = 1e6;
+
+// The stiffest wall against which the loop does not oscillate.
+struct WallLimit {
+  double stiffness = 0;  // [N/m]; 0: the loop oscillates even without a wall
+  double frequency = 0;  // of the oscillation against a stiffer one [Hz]
+  bool reached = true;   // false: none up to kStiffestWall makes it oscillate
+};
+
+// Returns the limit for a hand and a lead [s] to 5 %. `wall` gives place, direction and damping of
+// the wall, whose stiffness is varied from soft to stiff. Above the limit, still stiffer walls may
+// be stable again.
+WallLimit StiffestStableWall(const LinearModel& world, const Scenario& scenario,
+                             const HandSpec& hand, double lead, const Wall& wall,
+                             LoopModel model = LoopModel::kWithReserve);
+
+// What happens in contact with fixtures of the same kind that lie on the same side of the object.
+struct ContactReport {
+  std::vector<std::size_t> fixtures;  // their numbers
+  Wall wall;                          // that stands for a point of contact with them
+  bool yields = false;                // they have a stiffness
+  bool stable = true;                 // touched at one point and, if they yield, at four
+  WallLimit limit;                    // with their damping, for the scenario's hand
+  // Felt by the hands at rest and at kFeltFrequency, touching at one point.
+  FeltImpedance at_rest, moving;
+};
+inline constexpr double kFeltFrequency = 5;  // [Hz]
+
+// Returns the reports for all fixtures that touch the object. The world is linearised about the
+// start. Each contact is at the object's origin, whose pose in W is X_WO, along the normal of
+// the fixture's nearest side. `lead` is that of the run [s]. Empty without hands.
+std::vector<ContactReport> CheckContacts(const Scenario& scenario, const LinearModel& world,
+                                         const Pose& X_WO, double lead);
+
+// Returns the unit normal of a fixture's side that faces the point p_W, out of the fixture, in W.
+Vector3 NormalToward(const FixtureSpec& fixture, const Vector3& p_W);
+
+}  // namespace predictor
