@@ -67,6 +67,8 @@ int Main(int argc, char** argv) {
   CompareSolvers(sets, quick ? 3 : 7);
   PrintParts(parts);
   if (parts.count("mj_step")) PrintRuns(runs, parts.at("mj_step"));
+  if (parts.count("mj_step") && parts.count(kContactStep))
+    TimeContact(parts.at(kContactStep), parts.at("mj_step"), quick ? 1 : 5);
   return 0;
 }
 

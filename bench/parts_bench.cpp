@@ -2,11 +2,10 @@
 
 #include <memory>
 
+#include "bare_engine.h"
 #include "rig/rig.h"
 #include "samples.h"
 #include "sections.h"
-#include "simulation/equilibrium.h"
-#include "simulation/mujoco/scene.h"
 #include "simulation/world.h"
 
 namespace predictor::bench {
@@ -62,43 +61,15 @@ struct Inputs {
   }
 };
 
-// The scene at its equilibrium, with the torques that keep it there.
-struct Still {
-  explicit Still(const Scenario& scenario) : scene(scenario, EventSequence(scenario)) {
-    FindEquilibrium(&scene);
-    scene.Update(&scene.engine());
-    scene.ApplyController(0, &scene.engine());
-    start.resize(scene.engine().state_size());
-    scene.engine().Save(start);
-  }
-  ControlledScene scene;
-  std::vector<double> start;
-};
-
-// MuJoCo alone, with a model and a state of its own.
-struct Bare {
-  explicit Bare(const Scenario& scenario)
-      : still(scenario),
-        scene(ComposeScene(scenario, still.scene.robot(), still.scene.has_wrist_sensor())),
-        data(mj_makeData(scene.model.get())) {
-    mj_setState(scene.model.get(), data.get(), still.start.data(), mjSTATE_INTEGRATION);
-  }
-  // Constant torques do not hold an arm for long, so the scene is reset every 100 steps.
-  void Step() {
-    if (++steps % 100 == 0)
-      mj_setState(scene.model.get(), data.get(), still.start.data(), mjSTATE_INTEGRATION);
-    mj_step(scene.model.get(), data.get());
-  }
-  Still still;
-  Scene scene;
-  DataPtr data;
-  int steps = 0;
-};
-
 void RegisterEngine(const Recording& recording) {
   auto bare = std::make_shared<Bare>(recording.scenario);
   Register("mj_step", [bare](benchmark::State& state) {
     for (auto _ : state) bare->Step();
+  });
+  auto contact = std::make_shared<Bare>(ContactScene());
+  Register(kContactStep, [contact](benchmark::State& state) {
+    for (auto _ : state) contact->Step();
+    if (contact->data->ncon != 20) state.SkipWithError("not 20 contacts");
   });
   auto first = std::make_shared<Still>(recording.scenario);
   Register("mj_step1 and the cobot's dynamics", [first](benchmark::State& state) {

@@ -21,6 +21,12 @@ struct RunTimes {
 };
 RunTimes TimeRuns(const std::string& scenario, int runs);
 
+// Returns box_9kg on twenty posts, each of which touches it. The hands grip and hold.
+Scenario ContactScene();
+inline constexpr const char* kContactStep = "mj_step with 20 contact pairs";
+// Prints the time of this scene's ticks and compares it with the bare steps of the engine [µs].
+void TimeContact(double contact_step, double mj_step, int runs);
+
 // Prints the time per tick of the drivers, monitor and guard of real arms. If `quick`, it uses
 // fewer ticks and no sockets.
 void TimeDriversAndSupervisor(bool quick);

@@ -1,0 +1,44 @@
+// The physics engine alone, for comparison.
+#pragma once
+
+#include <vector>
+
+#include "simulation/equilibrium.h"
+#include "simulation/mujoco/scene.h"
+
+namespace predictor::bench {
+
+// The scene at its equilibrium, with the torques that keep it there.
+struct Still {
+  explicit Still(const Scenario& scenario) : scene(scenario, EventSequence(scenario)) {
+    FindEquilibrium(&scene);
+    scene.Update(&scene.engine());
+    scene.ApplyController(0, &scene.engine());
+    start.resize(scene.engine().state_size());
+    scene.engine().Save(start);
+  }
+  ControlledScene scene;
+  std::vector<double> start;
+};
+
+// MuJoCo alone, with a model and a state of its own.
+struct Bare {
+  explicit Bare(const Scenario& scenario)
+      : still(scenario),
+        scene(ComposeScene(scenario, still.scene.robot(), still.scene.has_wrist_sensor())),
+        data(mj_makeData(scene.model.get())) {
+    mj_setState(scene.model.get(), data.get(), still.start.data(), mjSTATE_INTEGRATION);
+  }
+  // Constant torques do not hold an arm for long, so the scene is reset every 100 steps.
+  void Step() {
+    if (++steps % 100 == 0)
+      mj_setState(scene.model.get(), data.get(), still.start.data(), mjSTATE_INTEGRATION);
+    mj_step(scene.model.get(), data.get());
+  }
+  Still still;
+  Scene scene;
+  DataPtr data;
+  int steps = 0;
+};
+
+}  // namespace predictor::bench
