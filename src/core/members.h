@@ -22,8 +22,9 @@ consteval std::size_t MemberCount() {
 template <class T, class Visit>
 constexpr void VisitMembers(T& x, Visit&& visit) {
   constexpr std::size_t n = MemberCount<T>();
-  static_assert(n == 1 || n == 2 || n == 3 || n == 10 || n == 11 || n == 13 || n == 14 || n == 16,
-                "write a branch for this number of members below");
+  static_assert(
+      n == 1 || n == 2 || n == 3 || n == 10 || n == 11 || n == 13 || n == 14 || n == 15 || n == 16,
+      "write a branch for this number of members below");
   if constexpr (n == 1) {
     auto& [a] = x;
     visit(a);
@@ -45,6 +46,9 @@ constexpr void VisitMembers(T& x, Visit&& visit) {
   } else if constexpr (n == 14) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = x;
     visit(a, b, c, d, e, f, g, h, i, j, k, l, m, o);
+  } else if constexpr (n == 15) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p] = x;
+    visit(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p);
   } else {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q] = x;
     visit(a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q);

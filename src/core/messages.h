@@ -103,6 +103,7 @@ struct WorldState {
   std::uint16_t events = 0;       // active hazards: bit = entry of the scenario's `events`
   std::uint8_t latest_event = 0;  // 1 + number of the hazard that began last; 0: none
   std::uint8_t cobot_stop = 0;    // protective stop of the cobot itself: CobotStop
+  AttachmentState attachment = AttachmentState::kHolds;
 };
 
 // The answer of a controller outside the program in a tick, from its record, for a replay.

@@ -104,7 +104,8 @@ struct TickRecord {
   std::uint8_t cobot_stop;    // protective stop of the virtual cobot itself: CobotStop
   std::uint16_t events;       // active hazards: bit = entry of the scenario's `events`
   std::uint8_t latest_event;  // 1 + number of the hazard that began last; 0: none
-  std::array<std::uint8_t, 5> reserved;
+  std::uint8_t attachment;    // AttachmentState of the cobot's grip on the object
+  std::array<std::uint8_t, 4> reserved;
   StatusRecord read, written;  // result of the device's read and write
   // Fault that escalated a stop from hold (S2) to power-off (S1); latched.
   StatusRecord harder;

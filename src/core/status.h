@@ -119,6 +119,10 @@ enum class CobotStop : std::uint8_t { kNone, kForce, kSpeed, kMomentum, kJointTo
 inline constexpr int kCobotStops = 5;
 const char* Name(CobotStop stop);  // "none", "force", ...
 
+// The attachment between cobot and object: it holds, slips, is open, or stayed open because the
+// object was too far away to be grasped.
+enum class AttachmentState : std::uint8_t { kHolds, kSlips, kOpen, kMissed };
+
 // States of a run, as docs/concepts/states.md describes them.
 enum class RunState : std::uint8_t {
   kInit,

@@ -121,6 +121,10 @@ constexpr void VisitRun(V& v, R& r) {
            "joint torque (in a prismatic joint: force)",
            "cobot_stop"},
           r.cobot_stop);
+  v.Value({"attachment", "", "",
+           "the cobot's grip on the object: 0 holds, 1 slips, 2 open, 3 open, because the object "
+           "was too far away to be grasped"},
+          r.attachment);
   v.Reserved(r.reserved);
   v.Value({"requests", "", "", "bits: requests handled in this tick"}, r.requests);
   v.Value({"qp_rows", "", "", "bits: active rows of the limits (link pairs)"}, r.qp_rows);

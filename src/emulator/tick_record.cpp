@@ -93,6 +93,7 @@ void FillWorld(const TickData& data, TickRecord* record) noexcept {
   r.events = data.after->events;
   r.latest_event = data.after->latest_event;
   r.cobot_stop = data.after->cobot_stop;
+  r.attachment = static_cast<std::uint8_t>(data.after->attachment);
 }
 
 void FillDecisions(const RecordSources& from, TickRecord* record) noexcept {

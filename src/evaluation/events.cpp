@@ -22,6 +22,7 @@ void EventLog::Add(const TickRecord& record) {
     for (EventSummary& event : events_) {
       event.begin.reset(), event.end.reset(), event.until_stop.reset();
       event.force = event.torque = event.speed = {};
+      event.missed = false;
     }
     cobot_stop_.reset();
   }
@@ -34,7 +35,11 @@ void EventLog::Add(const TickRecord& record) {
 void EventLog::Follow(const TickRecord& record, std::size_t i) {
   EventSummary& event = events_[i];
   const bool acts = (record.events >> i & 1U) != 0;
-  if (acts && !event.begin) event.begin = run_time_;
+  if (acts && !event.begin) {
+    event.begin = run_time_;
+    event.missed = event.event == "grasp_object" &&
+                   record.attachment == static_cast<std::uint8_t>(AttachmentState::kMissed);
+  }
   if (!event.begin) return;
   if (!acts && !event.end) event.end = run_time_;
   if (!event.until_stop && record.cause != StopCause::kNone)

@@ -18,6 +18,7 @@ struct EventSummary {
   std::optional<double> end;    // run time at which it ended [s]
   // The largest values of a hand from the beginning of the event to the end of RUN.
   std::array<double, kHands> force = {}, torque = {}, speed = {};  // [N], [N·m], [m/s]
+  bool missed = false;  // the cobot shall grasp the object, but the object was too far away
   std::optional<double> until_stop;  // from the beginning of the event to the emulator's next stop
                                      // [s]
 };

@@ -115,6 +115,8 @@ void AddEvents(const Summary& s, std::string* text) {
     }
     AppendLine(text, "Event '%s' at %.3f s: %s.", event.event.c_str(), *event.begin,
                event.meaning.c_str());
+    if (event.missed)
+      AppendLine(text, "  The gripper stayed open, because the object was too far away.");
     AppendLine(text, "  Largest force afterwards %.1f N, torque %.2f N·m, speed %.0f mm/s%s.",
                *std::max_element(event.force.begin(), event.force.end()),
                *std::max_element(event.torque.begin(), event.torque.end()),

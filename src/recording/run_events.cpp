@@ -34,6 +34,7 @@ std::vector<RecordingEvent> RunEvents::Follow(const TickRecord& record, std::uin
     state_ = record.state;
     hazards_ = record.events;
     cobot_stop_ = record.cobot_stop;
+    attachment_ = record.attachment;
     second_ns_ = unix_ns;
   }
   if (unix_ns - second_ns_ >= kSecond) NewSecond(record, unix_ns);
@@ -91,6 +92,10 @@ void RunEvents::FollowHazards(const TickRecord& record) {
       Log(record, "hazard",
           "events." + std::to_string(i) + ((record.events >> i & 1U) != 0 ? " begins" : " ends"),
           kMaxPerSecond);
+  constexpr auto kMissed = static_cast<std::uint8_t>(AttachmentState::kMissed);
+  if (std::exchange(attachment_, record.attachment) != kMissed && record.attachment == kMissed)
+    Log(record, "hazard", "the cobot's gripper stays open: the object is too far away",
+        kMaxPerSecond);
   const std::uint8_t before = std::exchange(cobot_stop_, record.cobot_stop);
   if (record.cobot_stop != before && record.cobot_stop > 0 && record.cobot_stop < kCobotStops)
     Log(record, "hazard",

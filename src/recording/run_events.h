@@ -34,6 +34,7 @@ class RunEvents {
   bool controller_late_ = false;
   std::array<std::uint8_t, kHands> warnings_ = {};  // currently active
   std::uint16_t hazards_ = 0;                       // hazards that are currently active
+  std::uint8_t attachment_ = 0;
   std::uint8_t cobot_stop_ = 0;
   std::uint64_t second_ns_ = 0;  // the second in which events are counted
   int logged_ = 0;

@@ -130,6 +130,10 @@ void Checker::Fixture(std::size_t i) const {
   Unless(fixture.stiffness || fixture.damping == 0, path + ".damping",
          "is given without a stiffness. Give " + path +
              ".stiffness in N/m too, or damping_ratio instead of damping.");
+  for (std::size_t other = 0; other < i && !fixture.name.empty(); ++other)
+    Unless(fixture.name != s_.environment.fixtures[other].name, path + ".name",
+           "is " + Quote(fixture.name) + ", as that of environment.fixtures." +
+               std::to_string(other) + ". Choose another name.");
 }
 
 // Weight compensation and people assume that gravity points down in the rig too.

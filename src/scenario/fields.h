@@ -117,6 +117,13 @@ void Fields(V& v, CobotSafetySpec& s) {
 }
 
 template <class V>
+void Fields(V& v, PayloadSpec& s) {
+  v("mass", s.mass, Required(Number("kg", "mass of the load", From(0, 1000))));
+  v("center_of_mass", s.center_of_mass,
+    Number("m", "where its weight acts, in the end-effector's frame", Within(10)));
+}
+
+template <class V>
 void Fields(V& v, CobotSpec& s) {
   v("model", s.model, Required(Word("URDF: package://..., or relative to this file")));
   v("remove_links", s.remove_links, Word("links to remove, with everything attached to them"));
@@ -137,6 +144,8 @@ void Fields(V& v, CobotSpec& s) {
   v("standby_controller", s.standby_controller,
     Part("a second controller, for the event takeover; null: none"));
   v("safety", s.safety, Part("the cobot's own safety functions"));
+  v("payload", s.payload,
+    Part("load whose weight the cobot compensates while it holds the object; null: none"));
 }
 
 template <class V>
@@ -239,6 +248,7 @@ void Fields(V& v, FixtureSpec& s) {
     Number("N·s/m", "damping of each point of contact, with a stiffness", From(0, 1e5)));
   v("touches", s.touches, List(Word("what collides with it", {"object", "cobot"}), 1, 2));
   v("color", s.color, Number("", "red, green, blue", From(0, 1)));
+  v("name", s.name, Word("by which events refer to it"));
 }
 
 template <class V>

@@ -35,6 +35,7 @@ struct FixtureSpec {
   double damping = 0;
   std::vector<std::string> touches = {"object"};  // that collide with it: object, cobot
   Vector3 color = {0.55, 0.58, 0.62};             // red, green, blue
+  std::string name;                               // by which events refer to it; may be empty
 
   Pose X_WG() const { return PoseFromXyzRpy(xyz, rpy); }  // NOLINT(readability-identifier-naming)
   bool Touches(const char* what) const {

@@ -76,6 +76,12 @@ struct WristSensorSpec {
   double cutoff_frequency = 150;    // cutoff of the first-order filter [Hz]
 };
 
+// What the cobot's program states about the load in the gripper.
+struct PayloadSpec {
+  double mass = 1;                           // [kg]
+  Vector3 center_of_mass = Vector3::Zero();  // in E [m]
+};
+
 // The cobot's own safety functions, as its vendor ships them. Absent ones are off.
 struct CobotSafetySpec {
   std::optional<double> force;         // limit of the force estimated at the end-effector [N]
@@ -103,6 +109,7 @@ struct CobotSpec {
   WristSensorSpec wrist_sensor;
   std::optional<ControllerSpec> standby_controller;  // second controller, for the event `takeover`
   CobotSafetySpec safety;
+  std::optional<PayloadSpec> payload;  // that the cobot compensates while it holds the object
 };
 
 // ---- what goes wrong --------------------------------------------------------------------------

@@ -43,7 +43,9 @@ Attachment::Attachment(const AttachmentSpec& spec, Engine* engine)
       p_OA_(spec.on_object.xyz),
       is_fixed_(spec.joint == JointType::kFixed),
       damping_(spec.joint == JointType::kSpherical ? spec.damping : 0),
-      first_(spec.on_end_effector.xyz) {
+      first_(spec.on_end_effector.xyz),
+      start_(spec.on_end_effector.xyz,
+             (spec.on_end_effector.ToPose() * spec.on_object.ToPose().Inverse()).q) {
   const int nv = engine_.dof();
   if (nv > kMaxDof) {
     throw InputError::At("cobot.model", "cobot.model has " + std::to_string(nv - 6) +
@@ -66,12 +68,43 @@ void Attachment::Grip() noexcept {
   grip_ = Place();
   first_ = grip_.p;
   limits_ = wanted_;
-  lost_ = slides_ = turns_ = false;
+  lost_ = slides_ = turns_ = released_ = missed_ = false;
+  tried_ = HUGE_VAL;
   wrench_.setZero();
   load_.setZero();
 }
 
-// Lower limits apply at once. While the object slides, the limits rise at most at the grip's rates.
+void Attachment::Command(const GripperCommands& commands) noexcept {
+  if (commands.is_open()) {
+    released_ = true;
+    missed_ = false;
+    tried_ = HUGE_VAL;
+    return;
+  }
+  const bool is_new = commands.grasped < tried_;
+  tried_ = commands.grasped;
+  if (!released_ || !is_new) return;
+  missed_ = !IsNear(commands);
+  if (missed_) return;
+  released_ = lost_ = false;
+  grip_ = Place();
+  first_ = grip_.p;
+  limits_.force = limits_.torque = 0;  // it tightens from here
+}
+
+bool Attachment::IsNear(const GripperCommands& commands) const noexcept {
+  const Pose now = Place();
+  return (now.p - start_.p).norm() <= commands.distance &&
+         (!is_fixed_ || RotationError(now.q, start_.q).norm() <= commands.angle);
+}
+
+AttachmentState Attachment::state() const noexcept {
+  if (missed_) return AttachmentState::kMissed;
+  if (is_open()) return AttachmentState::kOpen;
+  return slides_ || turns_ ? AttachmentState::kSlips : AttachmentState::kHolds;
+}
+
+// Lower limits apply at once. What slid in the last step is held at most a step's share tighter.
 void Attachment::Tighten() noexcept {
   const double dt = engine_.step();
   const bool open = is_open();

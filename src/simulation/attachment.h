@@ -1,5 +1,5 @@
-// The attachment of an object that is a separate body: a grip with limits, which holds, slips or is
-// open.
+// The attachment of an object that is a separate body. It is a grip with limits, which holds, slips
+// or is open, and opens and closes on command.
 #pragma once
 
 #include "core/archive.h"
@@ -35,6 +35,12 @@ class Attachment {
   void Grip() noexcept;
   // Sets the limits that the grip should reach.
   void SetLimits(const GripLimits& limits) noexcept { wanted_ = limits; }
+  // Opens the grip, or closes it where the object is, if the object is near enough. A closing grip
+  // tightens at kForceRate and kTorqueRate. Uses the state of the last Prepare.
+  void Command(const GripperCommands& commands) noexcept;
+  AttachmentState state() const noexcept;
+  // Whether the last command to grasp found the object too far away.
+  bool missed() const noexcept { return missed_; }
 
   // Adds the attachment's forces to the engine's joint forces. All other forces must be complete.
   // Uses the state of the last Prepare. Returns false on an error of the engine. Does not use the
@@ -49,6 +55,7 @@ class Attachment {
 
   void Archive(StateArchive& a) noexcept {
     a(grip_, first_, lost_, wrench_, limits_.force, limits_.torque, limits_.reach, slides_, turns_);
+    a(released_, missed_, tried_);
   }
 
  private:
@@ -57,7 +64,10 @@ class Attachment {
   using DofMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxDof, kMaxDof>;
   using DofJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, kMaxDof>;
 
-  bool is_open() const noexcept { return lost_ || (limits_.force <= 0 && limits_.torque <= 0); }
+  bool is_open() const noexcept {
+    return released_ || lost_ || (limits_.force <= 0 && limits_.torque <= 0);
+  }
+  bool IsNear(const GripperCommands& commands) const noexcept;
   Pose PoseOf(SceneBody body) const noexcept { return engine_.PoseOf(body); }
   Pose Place() const noexcept;
   void Tighten() noexcept;
@@ -73,8 +83,11 @@ class Attachment {
   GripLimits wanted_, limits_;  // requested, and at present
   Pose grip_;                   // X_EA where the grip holds; its rotation is that of O
   Vector3 first_;               // p_EA where it held first [m]
+  Pose start_;                  // as grip_, at the start of the run
   bool lost_ = false;
-  bool slides_ = false, turns_ = false;  // in the last Hold
+  bool released_ = false, missed_ = false;  // by command; the last grasp found nothing
+  double tried_ = HUGE_VAL;                 // how long ago that grasp was commanded [s]
+  bool slides_ = false, turns_ = false;     // in the last Hold
   Wrench load_ = Wrench::Zero();
   Wrench wrench_ = Wrench::Zero();  // λ in the last Hold: on E, about A, in axes of W
   // The following members are workspace.

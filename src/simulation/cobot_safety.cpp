@@ -42,9 +42,19 @@ void CobotSafety::Reset(const ControllerInput& input) noexcept {
   external_ = input.data->gravity() - *input.torque;
   F_E_W_ = WrenchOf(input, external_);
   payload_ = F_E_W_;
+  load_ = 1;
   q_stop_ = *input.q;
   v_stop_ = *input.v;
   fade_ = fade_rate_ = 0;
+}
+
+void CobotSafety::SetLoad(const ControllerInput& input, double share) noexcept {
+  if (share == load_) return;
+  const Wrench change = (share - load_) * payload_;
+  load_ = share;
+  input.data->FrameJacobian(*input.model, input.end_effector, &J_);
+  external_.noalias() += J_.transpose().lazyProduct(change);
+  F_E_W_ += change;
 }
 
 void CobotSafety::Watch(const ControllerInput& input, double dt) noexcept {
@@ -75,7 +85,7 @@ CobotStop CobotSafety::Exceeded(const ControllerInput& input) noexcept {
   for (int j = 0; j < external_.size(); ++j) {
     const std::optional<double>& limit =
         input.model->is_prismatic(j) ? spec_.joint_force : spec_.joint_torque;
-    if (limit && std::abs(external_[j] - J_.col(j).dot(payload_)) > *limit)
+    if (limit && std::abs(external_[j] - J_.col(j).dot(load())) > *limit)
       return CobotStop::kJointTorque;
   }
   return CobotStop::kNone;
@@ -97,7 +107,7 @@ void CobotSafety::Limit(const ControllerInput& input, double dt, JointVector* to
 // The controller's force at E is the part of its torques that exceeds the arm's weight and the
 // payload.
 void CobotSafety::CapForce(const ControllerInput& input, JointVector* torque) noexcept {
-  const Wrench F = WrenchOf(input, *torque - input.data->gravity()) + payload_;
+  const Wrench F = WrenchOf(input, *torque - input.data->gravity()) + load();
   const double force = F.head<3>().norm();
   if (force <= *spec_.force_cap) return;
   Wrench excess = Wrench::Zero();
@@ -125,14 +135,14 @@ void CobotSafety::StopTorque(const ControllerInput& input, double dt,
   const JointVector wanted =
       omega * omega * (q_stop_ - *input.q) + 2 * omega * (fade_ * v_stop_ - *input.v);
   input.data->FrameJacobian(*input.model, input.end_effector, &J_);
-  *torque = input.data->gravity() - J_.transpose().lazyProduct(payload_);
+  *torque = input.data->gravity() - J_.transpose().lazyProduct(load());
   torque->noalias() += input.data->M().lazyProduct(wanted);
 }
 
 void CobotSafety::Archive(StateArchive& a) noexcept {
   if (!is_on()) return;
   int stop = static_cast<int>(stop_);
-  a(stop, v_before_, external_, F_E_W_, payload_, q_stop_, v_stop_, fade_, fade_rate_);
+  a(stop, v_before_, external_, F_E_W_, payload_, load_, q_stop_, v_stop_, fade_, fade_rate_);
   if (stop < 0 || stop >= kCobotStops) return a.Fail();
   stop_ = static_cast<CobotStop>(stop);
 }

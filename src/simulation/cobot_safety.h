@@ -22,7 +22,7 @@ class CobotSafety {
   bool is_on() const noexcept { return watches_ || spec_.force_cap || spec_.speed_cap; }
   CobotStop stop() const noexcept { return stop_; }
   // Returns the estimated wrench on E beyond the payload, about E, in axes of W [N], [N·m].
-  Wrench external_wrench() const noexcept { return F_E_W_ - payload_; }
+  Wrench external_wrench() const noexcept { return F_E_W_ - load(); }
 
   // The cobot rests at `input` under its torques. Any force that acts on it is that of its payload.
   void Reset(const ControllerInput& input) noexcept;
@@ -31,12 +31,16 @@ class CobotSafety {
   void Watch(const ControllerInput& input, double dt) noexcept;
   // Takes the velocities [rad/s] after a sub-step in which closed brakes held the joints.
   void Skip(const JointVector& v) noexcept { v_before_ = v; }
+  // Sets the share of its payload that it carries from now on: 0 after it put the object down.
+  // Its estimates change at once, as the observer alone would let them change slowly.
+  void SetLoad(const ControllerInput& input, double share) noexcept;
   // Caps the controller's torques. In a protective stop, which lasts until Reset, it replaces them.
   void Limit(const ControllerInput& input, double dt, JointVector* torque) noexcept;
 
   void Archive(StateArchive& a) noexcept;
 
  private:
+  Wrench load() const noexcept { return load_ * payload_; }
   JointVector Friction(const JointVector& v) const noexcept;
   Wrench WrenchOf(const ControllerInput& input, const JointVector& torque) noexcept;
   CobotStop Exceeded(const ControllerInput& input) noexcept;
@@ -51,6 +55,7 @@ class CobotSafety {
   CobotStop stop_ = CobotStop::kNone;
   JointVector v_before_, external_;                           // [rad/s], [N·m]
   Wrench F_E_W_ = Wrench::Zero(), payload_ = Wrench::Zero();  // estimated
+  double load_ = 1;                                           // share of payload_ that is there
   JointVector q_stop_, v_stop_;                               // reference of the stop
   double fade_ = 0, fade_rate_ = 0;                           // of v_stop_ [1], [1/s]
   Jacobian J_;                                                // workspace

@@ -1,7 +1,5 @@
 #include "simulation/controlled_scene.h"
 
-#include <bit>
-
 #include "core/error.h"
 #include "core/motion.h"
 #include "core/text.h"
@@ -100,6 +98,7 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
                                            end_effector_, posture_))
                    : nullptr),
       joint_(scenario.object.attachment.joint),
+      payload_(scenario.cobot.payload),
       carried_(MakeEngine(scenario, *robot_, has_wrist_sensor(), Holding::kJoint)),
       loose_(events.loosens_attachment() ? std::make_unique<LooseObject>(scenario, *robot_)
                                          : nullptr),
@@ -112,7 +111,6 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
       torque_(q_),
       computed_(q_),
       safety_(scenario.cobot),
-      fixtures_(static_cast<int>(scenario.environment.fixtures.size())),
       obstacles_(events.obstacles()),
       absent_(obstacles_) {
   for (int j = 0; j < robot_->dof(); ++j) friction_.push_back(carried_->JointFriction(j));
@@ -150,13 +148,32 @@ bool ControlledScene::ApplyController(double t, Engine* engine) noexcept {
 bool ControlledScene::ComputeTorque(double t, JointVector* torque) noexcept {
   Acting().Compute(Input(t), torque);
   if (!torque->allFinite()) return false;
+  if (payload_) AddPayload(torque);
   AddModelErrors(torque);
   *torque = torque->cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
   return Acting().outcome() != ControllerOutcome::kFailed;
 }
 
-// Adds the torques with which the controller compensates for a load at E and for friction that do
-// not exist.
+// Returns the share of the payload that the cobot's program says is in the gripper. It knows
+// nothing of an object that slips or breaks loose.
+double ControlledScene::PayloadShare() const noexcept {
+  const GripperCommands& gripper = disturbance_.gripper;
+  if (!gripper.was_opened()) return 1;
+  if (gripper.is_open() || (is_loose_ && loose_->attachment.missed())) return 0;
+  return gripper.grasped < gripper.load_time ? gripper.grasped / gripper.load_time : 1;
+}
+
+void ControlledScene::AddPayload(JointVector* torque) const noexcept {
+  const Pose X_WE = robot_data_.FramePose(*robot_, end_effector_);
+  Jacobian J;
+  robot_data_.FrameJacobian(*robot_, end_effector_, &J);
+  Wrench weight = Wrench::Zero();
+  weight[2] = PayloadShare() * payload_->mass * gravity_;
+  weight = ShiftWrench(weight, X_WE.q * payload_->center_of_mass);
+  torque->noalias() += J.transpose().lazyProduct(weight);
+}
+
+// Adds what the controller compensates although it does not exist: a load at E, and friction.
 void ControlledScene::AddModelErrors(JointVector* torque) const noexcept {
   const Disturbance& d = disturbance_;
   if (d.payload != 0) {
@@ -243,6 +260,8 @@ void ControlledScene::Disturb(const Disturbance& disturbance, double t) noexcept
   if (disturbance.delay != before.delay) timing_.AddDelay(disturbance.delay);
   if (disturbance.standby != before.standby) Acting().TakeOver(Input(t));
   if (loose_) loose_->attachment.SetLimits(disturbance.grip);
+  if (is_loose_) loose_->attachment.Command(disturbance.gripper);
+  if (safety_.is_on()) safety_.SetLoad(Input(t), PayloadShare());
   if (absent_ != (obstacles_ & ~disturbance.obstacles)) PlaceObstacles();
 }
 
@@ -300,6 +319,7 @@ void ControlledScene::Loosen() noexcept {
   WriteTorque(&loose);
   Update(&loose);
   loose_->attachment.Grip();
+  loose_->attachment.Command(disturbance_.gripper);
   loose_->landing = LandingHeight(loose.object_com().z());
 }
 
@@ -327,7 +347,6 @@ void ControlledScene::CheckEvents(const EventSequence& events) const {
   for (std::size_t i = 0; i < events.size(); ++i) {
     const std::string path = "events." + std::to_string(i) + ".event";
     CheckAttachmentEvent(events, i);
-    CheckObstacle(events, i);
     const std::string missing = Missing(events.kind(i).needs);
     if (missing.empty()) continue;
     throw InputError::At(
@@ -337,23 +356,13 @@ void ControlledScene::CheckEvents(const EventSequence& events) const {
   }
 }
 
-void ControlledScene::CheckObstacle(const EventSequence& events, std::size_t i) const {
-  const std::uint64_t fixtures = events.obstacles(i);
-  if (fixtures == 0 || static_cast<int>(std::bit_width(fixtures)) <= fixtures_) return;
-  const std::string path = "events." + std::to_string(i) + ".fixture";
-  const std::string is = path + " is " + std::to_string(std::bit_width(fixtures) - 1);
-  throw InputError::At(
-      path,
-      is + (fixtures_ == 0 ? ", but environment.fixtures is empty. Add the fixture that appears."
-                           : ", but environment.fixtures has the numbers 0 to " +
-                                 std::to_string(fixtures_ - 1) + ". Give one of these."));
-}
-
 void ControlledScene::CheckAttachmentEvent(const EventSequence& events, std::size_t i) const {
   const HazardKind& kind = events.kind(i);
   const std::string path = "events." + std::to_string(i);
   const std::string is = path + ".event is " + kind.name;
   const bool can_slip = joint_ == JointType::kFixed || joint_ == JointType::kSpherical;
+  if (kind.needs == HazardNeeds::kRelease || kind.needs == HazardNeeds::kGrasp)
+    return CheckGripper(events, i);
   if (kind.needs == HazardNeeds::kSlipping && !can_slip)
     throw InputError::At(path + ".event",
                          is + ", but only a fixed or a spherical attachment can slip. Change "
@@ -364,7 +373,31 @@ void ControlledScene::CheckAttachmentEvent(const EventSequence& events, std::siz
                               "the cobot. Remove the duration, or use object_slips.");
 }
 
-// Returns the part that an event needs but this cobot lacks, or "" if the cobot has all parts.
+void ControlledScene::CheckGripper(const EventSequence& events, std::size_t i) const {
+  const std::string path = "events." + std::to_string(i);
+  const std::string is = path + ".event is " + events.kind(i).name;
+  const bool grasps = events.kind(i).needs == HazardNeeds::kGrasp;
+  if (events.duration(i) > 0)
+    throw InputError::At(
+        path + ".duration",
+        is + " with a duration, but a gripper " +
+            (grasps ? "stays closed until an event opens it. Remove the duration, and add an event "
+                      "release_object."
+                    : "stays open until an event closes it. Remove the duration, and add an event "
+                      "grasp_object."));
+  if (!grasps) return;
+  if (joint_ != JointType::kFixed && joint_ != JointType::kSpherical)
+    throw InputError::At(path + ".event",
+                         is +
+                             ", but only a fixed or a spherical attachment can close again. Change "
+                             "object.attachment.joint, or remove the event.");
+  if (!events.releases_object())
+    throw InputError::At(path + ".event",
+                         is + ", but the gripper is closed from the start. Add an event "
+                              "release_object before.");
+}
+
+// Returns the part that an event needs and this cobot lacks, or "" if it lacks nothing.
 std::string ControlledScene::Missing(HazardNeeds needs) const {
   switch (needs) {
     case HazardNeeds::kWristSensor:
@@ -429,8 +462,13 @@ FrameMotion ControlledScene::EndEffector() const {
 double ControlledScene::Energy(double t) const noexcept {
   if (const ControllerAnswer* played = taped() ? taped()->played() : nullptr) return played->energy;
   const double kinetic = engine().KineticEnergy();
-  return kinetic + carried_->object_model().mass * gravity_ * engine().object_com().z() +
-         Acting().StoredEnergy(Input(t));
+  double energy = kinetic + carried_->object_model().mass * gravity_ * engine().object_com().z() +
+                  Acting().StoredEnergy(Input(t));
+  if (payload_) {
+    const Pose X_WE = robot_data_.FramePose(*robot_, end_effector_);
+    energy -= PayloadShare() * payload_->mass * gravity_ * (X_WE * payload_->center_of_mass).z();
+  }
+  return energy;
 }
 
 }  // namespace predictor

@@ -76,10 +76,15 @@ class ControlledScene {
   // As above, before a state is restored in which they already acted.
   void Resume(const Disturbance& disturbance) noexcept;
   CobotStop cobot_stop() const noexcept { return safety_.stop(); }
+  AttachmentState attachment() const noexcept {
+    return is_loose_ ? loose_->attachment.state() : AttachmentState::kHolds;
+  }
   bool is_loose() const noexcept { return is_loose_; }
-  // Returns whether the present hazards require the scene with a free object.
-  bool must_loosen() const noexcept { return !is_loose_ && disturbance_.grip != GripLimits(); }
-  // Returns the fixtures that are absent at present: bit = number of the fixture.
+  // Returns whether the present events require the scene with a free object.
+  bool must_loosen() const noexcept {
+    return !is_loose_ && (disturbance_.grip != GripLimits() || disturbance_.gripper.was_opened());
+  }
+  // The fixtures that are not there at present: bit = number of the fixture.
   std::uint64_t absent() const noexcept { return absent_; }
   // Frees the object: from now on, the scene is the loose one, with the same poses, velocities and
   // torques.
@@ -127,16 +132,18 @@ class ControlledScene {
   // Computes the controller's torques at time t [s], within the effort limits [N·m]. Returns false
   // if they are not finite.
   bool ComputeTorque(double t, JointVector* torque) noexcept;
+  double PayloadShare() const noexcept;
+  void AddPayload(JointVector* torque) const noexcept;
   void AddModelErrors(JointVector* torque) const noexcept;
   void SetGains(double t, bool keeps_force) noexcept;
   void SetBrakes(bool closed) noexcept;
   void CheckEvents(const EventSequence& events) const;
   std::string Missing(HazardNeeds needs) const;
-  void CheckObstacle(const EventSequence& events, std::size_t i) const;
   void PlaceObstacles() noexcept;
   void RemoveFixtures() noexcept;
   bool IsBlocked(std::uint64_t fixtures) const noexcept;
   void CheckAttachmentEvent(const EventSequence& events, std::size_t i) const;
+  void CheckGripper(const EventSequence& events, std::size_t i) const;
   Controller& Acting() const noexcept { return disturbance_.standby ? *standby_ : *controller_; }
   double step() const noexcept { return carried_->step(); }
   void WriteTorque(Engine* engine) const noexcept;
@@ -147,6 +154,7 @@ class ControlledScene {
   JointVector posture_;
   std::unique_ptr<Controller> controller_, standby_;  // standby_ may be null
   JointType joint_;                                   // of the attachment
+  std::optional<PayloadSpec> payload_;
   std::unique_ptr<Engine> carried_;
   std::unique_ptr<LooseObject> loose_;  // may be null
   bool is_loose_ = false;
@@ -161,9 +169,8 @@ class ControlledScene {
   std::vector<DofFriction> friction_;  // of each joint, with open brakes
   CobotSafety safety_;
   Disturbance disturbance_;
-  const int fixtures_;             // their number
-  const std::uint64_t obstacles_;  // fixtures that appear in events
-  std::uint64_t absent_;           // those that are absent at present
+  const std::uint64_t obstacles_;  // fixtures that events let appear
+  std::uint64_t absent_;           // those of them that are not there
   ControllerTuning tuning_;        // by the last Tune
 };
 

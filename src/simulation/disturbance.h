@@ -1,4 +1,4 @@
-// The effects of the active hazards on the virtual cobot.
+// What the events that act at present do to the virtual cobot.
 #pragma once
 
 #include <cmath>
@@ -19,6 +19,18 @@ struct GripLimits {
   bool operator==(const GripLimits&) const = default;
 };
 
+// The last commands of the cobot's program to its gripper. Times say how long ago a command was
+// given [s]; infinite: never.
+struct GripperCommands {
+  double released = HUGE_VAL, grasped = HUGE_VAL;
+  // Of the last command to grasp: how far the object may be from the place where the gripper held
+  // it at the start [m], [rad], and how long the cobot takes to compensate its payload [s].
+  double distance = 0, angle = 0, load_time = 0;
+
+  bool was_opened() const noexcept { return released < HUGE_VAL; }
+  bool is_open() const noexcept { return released < grasped; }
+};
+
 // The default values are those of an undisturbed cobot.
 struct Disturbance {
   bool brakes = false;                  // the brakes are closed, and the motors give no torque
@@ -33,7 +45,8 @@ struct Disturbance {
   Vector6 set_point = Vector6::Zero();  // shift of the set-point in W [m], [rad]
   ControllerTuning gains;               // factors of the controller's values
   GripLimits grip;                      // of the attachment
-  std::uint64_t obstacles = 0;          // fixtures present now: bit = number of the fixture
+  GripperCommands gripper;
+  std::uint64_t obstacles = 0;  // fixtures that are there now: bit = number of the fixture
 };
 
 }  // namespace predictor

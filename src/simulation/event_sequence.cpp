@@ -21,6 +21,24 @@ constexpr const ParameterKind* kHazardKinds[] = {PREDICTOR_HAZARDS(PREDICTOR_ENT
 
 constexpr double kGrip = 0.5;  // force of a hand that grips [N]
 
+// The fixture that an event names. Bit: its number.
+std::uint64_t BitOfFixture(const Scenario& scenario, std::size_t event) {
+  const std::string path = "events." + std::to_string(event) + ".fixture";
+  const YamlNode* named = scenario.events[event].parameters.Find("fixture");
+  const std::string name = named ? named->text : "";
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scenario.environment.fixtures.size(); ++i) {
+    const std::string& of_fixture = scenario.environment.fixtures[i].name;
+    if (of_fixture.empty()) continue;
+    if (of_fixture == name) return std::uint64_t{1} << i;
+    names.push_back(of_fixture);
+  }
+  throw InputError::At(
+      path, path + ": no fixture has the name " + Quote(name) + ". " +
+                (names.empty() ? "Give the fixture that appears a name in environment.fixtures."
+                               : Suggestion(name, names)));
+}
+
 }  // namespace
 
 const HazardKind* FindHazard(const std::string& name) noexcept {
@@ -44,7 +62,8 @@ EventSequence::EventSequence(const Scenario& scenario) {
     // others.
     events_.push_back({kind, std::move(parameters), spec.trigger, spec.duration,
                        RandomStream(scenario.seed, "event " + std::to_string(i)),
-                       static_cast<std::uint8_t>(place - std::begin(kHazardKinds) + 1)});
+                       static_cast<std::uint8_t>(place - std::begin(kHazardKinds) + 1),
+                       kind->needs == HazardNeeds::kFixture ? BitOfFixture(scenario, i) : 0});
   }
   Reset();
 }
@@ -63,19 +82,21 @@ bool EventSequence::loosens_attachment() const {
   return std::ranges::any_of(events_, [](const Event& event) {
     Disturbance d;
     event.kind->disturb(*event.parameters, 0, &d);
-    return d.grip != GripLimits();
+    return d.grip != GripLimits() || d.gripper.was_opened();
   });
 }
 
-std::uint64_t EventSequence::obstacles(std::size_t i) const {
-  Disturbance d;
-  events_[i].kind->disturb(*events_[i].parameters, 0, &d);
-  return d.obstacles;
+bool EventSequence::releases_object() const {
+  return std::ranges::any_of(events_, [](const Event& event) {
+    Disturbance d;
+    event.kind->disturb(*event.parameters, 0, &d);
+    return d.gripper.was_opened();
+  });
 }
 
 std::uint64_t EventSequence::obstacles() const {
   std::uint64_t all = 0;
-  for (std::size_t i = 0; i < events_.size(); ++i) all |= obstacles(i);
+  for (const Event& event : events_) all |= event.obstacles;
   return all;
 }
 
@@ -125,9 +146,11 @@ Disturbance EventSequence::Update(const WorldState& world, const WorldInput& inp
 
 Disturbance EventSequence::disturbance() const noexcept {
   Disturbance d;
-  for (const Event& event : events_)
-    if (event.begun && !event.ended)
-      event.kind->disturb(*event.parameters, time_ - event.begin, &d);
+  for (const Event& event : events_) {
+    if (!event.begun || event.ended) continue;
+    event.kind->disturb(*event.parameters, time_ - event.begin, &d);
+    d.obstacles |= event.obstacles;
+  }
   return d;
 }
 

@@ -21,9 +21,9 @@ class EventSequence {
   const HazardKind& kind(std::size_t i) const { return *events_[i].kind; }
   double duration(std::size_t i) const { return events_[i].duration; }  // [s]; 0: until the end
   double longest_delay() const;     // sum of all that events add [s]
-  bool loosens_attachment() const;  // an event lets the object slip or break loose
-  // Returns the fixtures that appear in event i, or in any event: bit = number of the fixture.
-  std::uint64_t obstacles(std::size_t i) const;
+  bool loosens_attachment() const;  // an event lets the object slip, break loose or be put down
+  bool releases_object() const;     // an event opens the gripper
+  // What all events together let appear: bit = number of the fixture.
   std::uint64_t obstacles() const;
 
   // Returns to a state in which no event has begun. Draws new times, because the person knows those
@@ -48,8 +48,9 @@ class EventSequence {
     TriggerSpec trigger;
     double duration;  // [s]
     RandomStream random;
-    std::uint8_t number;  // 1 + that of the hazard
-    double earliest = 0;  // [s]
+    std::uint8_t number;      // 1 + that of the hazard
+    std::uint64_t obstacles;  // that it lets appear: bit = number of the fixture
+    double earliest = 0;      // [s]
     bool begun = false, ended = false;
     double begin = 0;  // [s]
   };

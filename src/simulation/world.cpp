@@ -232,6 +232,7 @@ struct World::Impl {
     state.events = events.active();
     state.latest_event = events.latest();
     state.cobot_stop = static_cast<std::uint8_t>(controlled.cobot_stop());
+    state.attachment = controlled.attachment();
     state.energy = controlled.Energy(engine().time());
     state.controller = controlled.outcome();
   }

@@ -116,9 +116,10 @@ TEST(Check, AStartOutOfReachIsUnfitAndNoError) {
 }
 
 TEST(Check, ScenariosAreInReachWithRoom) {
-  for (const char* name : {"bar_circle.yaml", "box_18kg.yaml", "box_9kg.yaml", "dual_ur5.yaml",
-                           "linear_axis.yaml", "mobile_base.yaml", "push.yaml", "single_arm.yaml",
-                           "slide_on_table.yaml", "underdamped.yaml"}) {
+  for (const char* name :
+       {"bar_circle.yaml", "box_18kg.yaml", "box_9kg.yaml", "dual_ur5.yaml", "linear_axis.yaml",
+        "mobile_base.yaml", "push.yaml", "put_down_and_pick_up.yaml", "single_arm.yaml",
+        "slide_on_table.yaml", "underdamped.yaml"}) {
     const Scenario s = Load(name);
     const Reach reach = DeviceReach(s).Over(TaskPaths(s, StartOfObject(s), kPathStep));
     for (const auto& arm : reach.arms) {
@@ -154,7 +155,7 @@ TEST(Check, AFastScriptWarns) {
 }
 
 TEST(Check, SaysThatItDescribesTheObjectOnTheCobot) {
-  for (const char* event : {"object_slips", "object_breaks_loose"}) {
+  for (const char* event : {"object_slips", "object_breaks_loose", "release_object"}) {
     const CheckReport report =
         Check(Load("single_arm.yaml",
                    {"events=[{event: brakes_close}, {event: " + std::string(event) + "}]"}),

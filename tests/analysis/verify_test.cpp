@@ -166,15 +166,17 @@ TEST_F(VerifyTest, ARunWithAnyHazardIsTheSameAgain) {
   for (const ParameterKind* kind : Hazards()) {
     const std::string name = kind->name;
     SCOPED_TRACE(name);
-    const bool has_end = name != "object_breaks_loose";
+    const bool has_end =
+        name != "object_breaks_loose" && name != "release_object" && name != "grasp_object";
     std::string event = "{event: " + name + ", trigger: {after: 0.3, window: 0.2}";
     if (has_end) event += ", duration: 0.7";
     if (name == "object_slips") event += ", slip_force: 60";
-    if (name == "obstacle_appears") event += ", fixture: 0";
+    if (name == "obstacle_appears") event += ", fixture: wall";
+    if (name == "grasp_object") event += "}, {event: release_object, trigger: {after: 0.1}";
     std::vector<std::string> set = kNoStops;
     if (name == "obstacle_appears")
       set.emplace_back(
-          "environment.fixtures=[{shape: box, size: [0.3, 0.05, 0.5], "
+          "environment.fixtures=[{name: wall, shape: box, size: [0.3, 0.05, 0.5], "
           "xyz: [0.46, 0.4, 0.3]}]");
     set.insert(set.end(),
                {"events=[" + event + "}]",

@@ -49,6 +49,15 @@ TEST(FixtureKeys, ADampingWithoutAStiffnessIsAnError) {
             std::string::npos);
 }
 
+TEST(FixtureKeys, TwoFixturesWithTheSameNameAreAnError) {
+  EXPECT_EQ(ErrorOfFixture("shape: box}, {shape: box}, {shape: box, name: wall"), "");
+  const std::string error = ErrorOfFixture("shape: box, name: wall}, {shape: box, name: wall");
+  EXPECT_NE(
+      error.find("environment.fixtures.1.name is \"wall\", as that of environment.fixtures.0"),
+      std::string::npos)
+      << error;
+}
+
 TEST(FixtureKeys, ThatAreImpossibleAreErrors) {
   EXPECT_NE(ErrorOfFixture("size: [1, 1, 1]").find("shape is missing"), std::string::npos);
   EXPECT_NE(ErrorOfFixture("shape: box, touches: []"), "");

@@ -46,13 +46,13 @@ Json ToJson(const YamlNode& node) {
 // Returns a tree that contains everything that a scenario can hold once, so that every leaf has an
 // instance.
 YamlNode FullTree() {
-  return ScenarioTree(
-      Fixture({"rig.loop={}", "rendering.link_pairs=[[a, b]]", "object.attachment.range=[-1, 1]",
-               "rendering.lead=0.02", "device.arms.left.posture=[0, 1]",
-               "device.arms.left.velocity_limit=[1, 2]",
-               "operator.script=[{action: hold}, {action: push, force: [1, 2, 3]}]",
-               "cobot.controller.trajectory=[{time: 1}]", "handles.right=null",
-               "device.arms.right=null", "perturbation={consent: true}"}));
+  return ScenarioTree(Fixture(
+      {"rig.loop={}", "rendering.link_pairs=[[a, b]]", "object.attachment.range=[-1, 1]",
+       "rendering.lead=0.02", "device.arms.left.posture=[0, 1]",
+       "device.arms.left.velocity_limit=[1, 2]",
+       "operator.script=[{action: hold}, {action: push, force: [1, 2, 3]}]",
+       "cobot.controller.trajectory=[{time: 1}]", "handles.right=null", "device.arms.right=null",
+       "perturbation={consent: true}", "cobot.payload={mass: 1}"}));
 }
 
 bool SchemaAccepts(const YamlNode& tree) { return Validates(Schema(), ToJson(tree)); }

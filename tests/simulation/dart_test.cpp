@@ -235,10 +235,11 @@ TEST_F(Dart, RefusesByNameWhatItDoesNotHave) {
   s.simulation.joint_limits = JointLimits::kSoft;
   EXPECT_TRUE(RefusalOf(s).starts_with("simulation.joint_limits | ")) << RefusalOf(s);
   s = With(EngineKind::kDart, BoxScene(9));
-  EventSpec slip;
-  slip.event = "object_breaks_loose";
-  s.events = {slip};
-  EXPECT_TRUE(RefusalOf(s).starts_with("simulation.engine | ")) << RefusalOf(s);
+  for (const char* event : {"object_breaks_loose", "release_object"}) {
+    s.events.resize(1);
+    s.events[0].event = event;
+    EXPECT_TRUE(RefusalOf(s).starts_with("simulation.engine | ")) << RefusalOf(s);
+  }
   s = With(EngineKind::kDart, BoxScene(9));
   s.environment.table = TableSpec{};
   World free(With(EngineKind::kMujoco, BoxScene(9)));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "event_fixtures.h"
 #include "support/allocation_guard.h"
 
@@ -21,9 +22,10 @@ Scenario WithWall(double after, double duration = 0) {
   FixtureSpec wall;
   wall.size = {0.1, 2, 2};
   wall.xyz = start + Vector3(0.13 + kWallGap + 0.05, 0, 0);
+  wall.name = "wall";
   s.environment.fixtures = {FixtureSpec{}, wall};
   s.environment.fixtures[0].xyz = {50, 0, 0};
-  s.events = {Event("obstacle_appears", after, {"fixture=1"})};
+  s.events = {Event("obstacle_appears", after, {"fixture=wall"})};
   s.events[0].duration = duration;
   return s;
 }
@@ -117,14 +119,13 @@ std::string StartErrorOf(const Scenario& s) {
 
 TEST(Obstacle, ThatDoesNotExistIsAnError) {
   Scenario s = WithWall(0);
-  s.events[0].Set("fixture=2");
+  s.events[0].Set("fixture=gate");
   EXPECT_EQ(StartErrorOf(s),
-            "events.0.fixture is 2, but environment.fixtures has the numbers 0 to 1. Give one of "
-            "these.");
+            "events.0.fixture: no fixture has the name \"gate\". " + Suggestion("gate", {"wall"}));
   s.environment.fixtures.clear();
   EXPECT_EQ(StartErrorOf(s),
-            "events.0.fixture is 2, but environment.fixtures is empty. Add the fixture that "
-            "appears.");
+            "events.0.fixture: no fixture has the name \"gate\". Give the fixture that appears a "
+            "name in environment.fixtures.");
 }
 
 TEST(Obstacle, MayBeginInsideTheObject) {

@@ -113,7 +113,9 @@ class Judge {
     const EventSequence events(s_);
     for (std::size_t i = 0; i < events.size(); ++i) {
       const HazardKind& kind = events.kind(i);
-      if (kind.needs != HazardNeeds::kSlipping && kind.needs != HazardNeeds::kNoEnd) continue;
+      if (kind.needs != HazardNeeds::kSlipping && kind.needs != HazardNeeds::kNoEnd &&
+          kind.needs != HazardNeeds::kRelease)
+        continue;
       Warn(
           Formatted("After events.%zu (%s), the object may be loose. Reach, stability and torques "
                     "here are those of the object on the cobot. Simulate the scenario to see what "

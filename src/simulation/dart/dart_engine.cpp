@@ -245,9 +245,9 @@ std::unique_ptr<Engine> MakeDartEngine(const Scenario& scenario, const RobotMode
                                        Holding holding) {
   if (holding == Holding::kFree)
     throw InputError::At("simulation.engine",
-                         "simulation.engine is dart, in which the object cannot slip or break "
-                         "loose. Remove the events object_slips and object_breaks_loose, or set "
-                         "simulation.engine: mujoco.");
+                         "simulation.engine is dart, in which the object cannot slip, break loose "
+                         "or be put down. Remove the events object_slips, object_breaks_loose and "
+                         "release_object, or set simulation.engine: mujoco.");
   // Both engines refuse the same scenarios, with the same words.
   Scenario same = scenario;
   same.simulation = {};

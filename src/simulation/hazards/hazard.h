@@ -7,9 +7,22 @@
 
 namespace predictor {
 
-// The requirements of a hazard: a part of the cobot without which it would have no effect, an
-// attachment that can slip (kSlipping), or no end before that of the run (kNoEnd).
-enum class HazardNeeds { kNothing, kWristSensor, kSetPoint, kSprings, kStandby, kSlipping, kNoEnd };
+// What a hazard needs: a part of the cobot without which it would have no effect, an attachment
+// that can slip (kSlipping), or that it lasts until the end (kNoEnd). Commands to the gripper have
+// no end either (kRelease), and one to grasp needs another event that releases the object (kGrasp).
+// kFixture: its parameter `fixture` names one of environment.fixtures.
+enum class HazardNeeds {
+  kNothing,
+  kWristSensor,
+  kSetPoint,
+  kSprings,
+  kStandby,
+  kSlipping,
+  kNoEnd,
+  kRelease,
+  kGrasp,
+  kFixture
+};
 
 // The registry's description of a hazard. The sentence states what happens, for a report ("the
 // brakes close").

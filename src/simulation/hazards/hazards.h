@@ -19,7 +19,9 @@
   add(kWrongPayload)           \
   add(kObjectBreaksLoose)      \
   add(kObjectSlips)            \
-  add(kObstacleAppears)
+  add(kObstacleAppears)        \
+  add(kReleaseObject)          \
+  add(kGraspObject)
 // clang-format on
 
 namespace predictor::hazards {

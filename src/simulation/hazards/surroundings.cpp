@@ -1,5 +1,5 @@
 // Hazards of what surrounds the cobot and the object.
-#include <cstdint>
+#include <string>
 
 #include "simulation/hazards/hazards.h"
 
@@ -7,25 +7,23 @@ namespace predictor::hazards {
 namespace {
 
 struct ObstacleParameters {
-  int fixture = 0;
+  std::string fixture;
 };
 
 template <class V>
 void Fields(V& v, ObstacleParameters& p) {
   v("fixture", p.fixture,
-    Required(Number("",
-                    "index of the fixture in environment.fixtures, from 0; the fixture exists only "
-                    "during the event",
-                    From(0, kMaxFixtures - 1))));
+    Required(Word("name of the fixture in environment.fixtures; it is absent until the event "
+                  "begins, and after it ends")));
 }
 
-void Appear(const ObstacleParameters& p, double, Disturbance* d) noexcept {
-  d->obstacles |= std::uint64_t{1} << p.fixture;
-}
+// The sequence of events knows the number of the fixture.
+void Appear(const ObstacleParameters&, double, Disturbance*) noexcept {}
 
 }  // namespace
 
 const HazardKind kObstacleAppears = HazardKindOf<ObstacleParameters, Appear>(
-    "obstacle_appears", "a fixture that was absent is there", "an obstacle appeared");
+    "obstacle_appears", "a fixture that was absent is there", "an obstacle appeared",
+    HazardNeeds::kFixture);
 
 }  // namespace predictor::hazards

@@ -104,6 +104,7 @@ Json RunJson(const TickRecord& r) {
           {"why_refused", r.why_refused},
           {"controller", r.controller},
           {"cobot_stop", r.cobot_stop},
+          {"attachment", r.attachment},
           {"events", r.events},
           {"latest_event", r.latest_event},
           {"requests", r.requests},

@@ -1,0 +1,48 @@
+// Commands of the cobot's program to its gripper. They are no hazards, but events like them.
+#include "simulation/hazards/hazards.h"
+
+namespace predictor::hazards {
+namespace {
+
+struct GraspParameters {
+  double distance = 0.03, angle = 0.35, load_time = 0.5;
+};
+
+template <class V>
+void Fields(V& v, GraspParameters& p) {
+  v("grasp_distance", p.distance,
+    Number("m",
+           "between the attachment on the object and its place in the gripper at the start, up to "
+           "which the gripper can close; beyond, it stays open",
+           Above(0, 10)));
+  v("grasp_angle", p.angle,
+    Number("rad", "the same for the rotation of a fixed attachment", Above(0, 3.2)));
+  v("load_time", p.load_time,
+    Number("s", "in which the cobot begins to compensate cobot.payload", From(0, 60)));
+}
+
+// The most recent command of each kind counts.
+void Release(const NoParameters&, double elapsed, Disturbance* d) noexcept {
+  if (elapsed < d->gripper.released) d->gripper.released = elapsed;
+}
+
+void Grasp(const GraspParameters& p, double elapsed, Disturbance* d) noexcept {
+  GripperCommands& gripper = d->gripper;
+  if (elapsed >= gripper.grasped) return;
+  gripper.grasped = elapsed;
+  gripper.distance = p.distance;
+  gripper.angle = p.angle;
+  gripper.load_time = p.load_time;
+}
+
+}  // namespace
+
+const HazardKind kReleaseObject = HazardKindOf<NoParameters, Release>(
+    "release_object", "the cobot puts the object down: its gripper opens",
+    "the cobot released the object", HazardNeeds::kRelease);
+
+const HazardKind kGraspObject = HazardKindOf<GraspParameters, Grasp>(
+    "grasp_object", "the cobot's gripper closes around the object where it is at that time",
+    "the cobot's gripper closed", HazardNeeds::kGrasp);
+
+}  // namespace predictor::hazards
