@@ -11,6 +11,7 @@ constexpr double kSample = 0.004;         // h [s]
 constexpr double kMaxShareOfRate = 0.35;  // highest corner of a filter, as a share of the tick rate
 constexpr double kMinPower = 1e-12;       // [N²]
 constexpr double kMinSine = 0.03;         // sin²(2π f h) at kLow is 0.09
+constexpr double kMinAngle = 1e-6;        // sin² between past samples that are not parallel
 constexpr std::array<double, 2> kButterworth = {1.847759065022573, 0.7653668647301796};  // 1/Q
 
 }  // namespace
@@ -95,10 +96,21 @@ const Vector3& VibrationDetector::Past(int samples) const noexcept {
 void VibrationDetector::Follow(double share, int lag, Across* across) const noexcept {
   const Vector3& y = Past(0);
   const Vector3& late = Past(lag);
+  const Vector3& earlier = Past(lag + 1);
   across->before += share * (late.squaredNorm() - across->before);
+  across->earlier += share * (earlier.squaredNorm() - across->earlier);
+  across->past += share * (late.dot(earlier) - across->past);
   across->shorter += share * (y.dot(Past(lag - 1)) - across->shorter);
   across->lag += share * (y.dot(late) - across->lag);
-  across->longer += share * (y.dot(Past(lag + 1)) - across->longer);
+  across->longer += share * (y.dot(earlier) - across->longer);
+}
+
+double VibrationDetector::Across::Explained() const noexcept {
+  // The normal equations of two variables.
+  const double area = before * earlier - past * past;
+  if (area < kMinAngle * before * earlier) return lag * lag / std::max(before, kMinPower);
+  const double power = lag * lag * earlier - 2 * lag * longer * past + longer * longer * before;
+  return std::max(0.0, power) / std::max(area, kMinPower * kMinPower);
 }
 
 bool VibrationDetector::Counts(const Scale& scale, const Means& m) const noexcept {
@@ -111,7 +123,8 @@ bool VibrationDetector::Counts(const Scale& scale, const Means& m) const noexcep
   const auto is_coherent = [&](const Across& a) {
     const double squared = a.lag * a.lag - a.shorter * a.longer;
     const double whole = m.now * a.before * sine2;
-    return whole > 0 && squared >= scale.coherence * scale.coherence * whole;
+    return whole > 0 && squared >= scale.coherence * scale.coherence * whole &&
+           a.Explained() >= scale.explained * scale.explained * m.now;
   };
   return is_coherent(m.whole) && is_coherent(m.half);
 }

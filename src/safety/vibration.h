@@ -27,6 +27,14 @@ namespace predictor {
 // Two jumps one lag apart look coherent after that lag, but not after half of it, so the force must
 // be coherent after both.
 //
+// The identity above assumes that the power is constant while the mean is taken. After a jolt it is
+// not: the mean contains the onset, and the left side can then exceed the right side for a force
+// that only decays. The three shorter scales, which require growth, therefore also require that
+// the past explains the present: the least-squares projection of y(t) on y(t − T) and y(t − T − h)
+// must have more than half of the power of y(t). It explains nothing that began within the last T,
+// so a ringing decays before the past explains it, while a growing vibration consists mostly of
+// its latest cycles, which the cycles before them explain.
+//
 // Each of the four scales has its own lag, averaging time, coherence and amplitude: the shorter the
 // lag, the sooner it responds and the larger the amplitude must be. The three shorter ones also
 // require growth; the longest finds a steady vibration. A vibration that beats or whose amplitude
@@ -45,18 +53,19 @@ class VibrationDetector {
     // vibration that did not exist one lag ago cannot be compared with itself.
     double growth, max_growth;
     double share_of_jump;  // minimum share of the latest jump of the force below kLow
+    double explained;      // minimum share of the amplitude that the past explains
   };
   static constexpr std::array<Scale, 4> kScales = {{
-      {0.032, 0.016, 0.85, 2.0, 3.00, 20, 1.0},
-      {0.060, 0.040, 0.75, 1.8, 1.15, 20, 0.5},
-      {0.100, 0.080, 0.80, 1.5, 1.10, 20, 0.5},
-      {0.240, 0.300, 0.65, 1.0, 0, HUGE_VAL, 0.5},
+      {0.032, 0.016, 0.85, 2.0, 3.00, 20, 1.0, 0.75},
+      {0.060, 0.040, 0.75, 1.8, 1.15, 20, 1.0, 0.75},
+      {0.100, 0.080, 0.80, 1.5, 1.10, 20, 1.0, 0.75},
+      {0.240, 0.300, 0.65, 1.0, 0, HUGE_VAL, 0.5, 0},
   }};
 
   // Repeated coherence: at the first scale's lag, for the share kLastingShare of about kLastingTime
   // [s].
   static constexpr Scale kLasting = {
-      kScales[0].lag, kScales[0].window, 0.75, 1.0, 0, HUGE_VAL, 0.5};
+      kScales[0].lag, kScales[0].window, 0.75, 1.0, 0, HUGE_VAL, 0.5, 0};
   static constexpr double kLastingShare = 0.4, kLastingTime = 0.8;
 
   static constexpr double kJumpTime = 0.15;  // time constant with which a jump is forgotten [s]
@@ -85,11 +94,14 @@ class VibrationDetector {
     void Step(const Vector3& x, Vector3* high, Vector3* low) noexcept;
     void Archive(StateArchive& a) noexcept { a(s1, s2); }
   };
-  // Means of products across a lag L, and of the power one lag ago [N²].
+  // Means of products across a lag L, and of products of the past [N²].
   struct Across {
-    double before = 0;
-    double shorter = 0, lag = 0, longer = 0;  // L − h, L, L + h
-    void Archive(StateArchive& a) noexcept { a(before, shorter, lag, longer); }
+    double before = 0, earlier = 0;           // power at t − L and at t − L − h
+    double past = 0;                          // product of y(t − L) and y(t − L − h)
+    double shorter = 0, lag = 0, longer = 0;  // products across L − h, L, L + h
+    // Returns the mean power of the projection of y(t) on y(t − L) and y(t − L − h) [N²].
+    double Explained() const noexcept;
+    void Archive(StateArchive& a) noexcept { a(before, earlier, past, shorter, lag, longer); }
   };
   // Means of one scale: the present power, the product with the previous sample, and the products
   // across T and T/2 [N²].

@@ -240,6 +240,30 @@ TEST(Vibration, PushesReleasesAndStepsNeverCount) {
   }
 }
 
+// A hazard of the cobot makes the force step within 10 ms, and the loop rings with at most the
+// height of the step. The ringing decays by the factor e within 30 to 80 ms. None of these
+// frequencies and times was used to choose the thresholds.
+TEST(Vibration, RingingAfterAJoltNeverCounts) {
+  for (const double frequency : {15.0, 20.0, 25.0, 30.0, 36.0}) {
+    for (const double decay : {0.03, 0.05, 0.08}) {
+      for (const double height : {3.0, 7.0, 18.0}) {
+        for (const double share : {0.4, 0.7, 1.0}) {
+          RandomStream random(static_cast<std::uint64_t>(height), "noise");
+          const auto force = [&](double t) {
+            const double since = std::max(0.0, t - 0.5);
+            const double ring =
+                share * std::exp(-since / decay) * std::sin(2 * kPi * frequency * since);
+            return Vector3(height * (1 - std::exp(-since / 0.01) + ring) + 0.1 * random.Normal(),
+                           0.1 * random.Normal(), 0);
+          };
+          EXPECT_LT(FirstVibration(force, 2).time, 0)
+              << frequency << " Hz, " << decay << " s, " << height << " N, " << share;
+        }
+      }
+    }
+  }
+}
+
 // A person moves with 10 N back and forth at up to 6 Hz and has 0.6 N of tremor at 10 Hz.
 TEST(Vibration, MotionAndTremorNeverCount) {
   for (const double frequency : {0.5, 2.0, 4.0, 6.0}) {
