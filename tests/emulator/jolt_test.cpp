@@ -27,8 +27,8 @@ struct Jolt {
   double alarm = -1;    // of the detector, from the hazard to kUntil [s]; −1: none
 };
 
-// Runs a scenario without the stops by oscillation and vibration. Detectors beside the run show
-// when it would have been stopped, and the rest of the run shows whether that was necessary.
+// Runs a scenario without the stops by oscillation and vibration. Detectors that read its forces
+// show when it would have been stopped, and the rest of the run shows whether that was necessary.
 Jolt RunJolt(const std::string& name, std::vector<std::string> set) {
   set.insert(set.end(), {"safety.oscillation.enabled=false", "cobot.safety.force=100",
                          "cobot.safety.speed=0.75", "cobot.safety.joint_torque=60"});
