@@ -102,8 +102,7 @@ struct CobotSpec {
   std::string end_effector;               // link E
   std::vector<double> posture;  // joint positions at the start, before the cobot sags [rad]
   JointFriction joint_friction;
-  std::vector<double> effort_limit;  // one for all, or one per joint; empty: the URDF's limits
-                                     // [N·m]
+  std::vector<double> effort_limit;  // [N·m]; one for all, or per joint; empty: those of the URDF
   ControllerSpec controller;
   ControlSpec control;
   WristSensorSpec wrist_sensor;
