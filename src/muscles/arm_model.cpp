@@ -134,19 +134,29 @@ ArmVector WorkingCorner(int corner) {
 
 }  // namespace
 
-ArmModel::ArmModel(const BodySpec& spec, int hand) : body_(spec), hand_(hand) {
-  const double scale = body_.anthropometry().upper_arm.length / kTableUpperArm;
-  const double strength = spec.mass * spec.height / (kReferenceMass * kReferenceHeight) / scale *
+ArmModel::ArmModel(const BodySpec& spec, int hand, std::shared_ptr<const ArmPaths> paths)
+    : body_(spec),
+      hand_(hand),
+      paths_(std::move(paths)),
+      scale_(body_.anthropometry().upper_arm.length / kTableUpperArm) {
+  const double strength = spec.mass * spec.height / (kReferenceMass * kReferenceHeight) / scale_ *
                           (spec.sex == Sex::kFemale ? kWomen : 1);
   for (int i = 0; i < kMuscles; ++i) {
-    const MuscleSpec& muscle = MuscleTable()[static_cast<std::size_t>(i)];
-    muscles_[static_cast<std::size_t>(i)] = {
-        .max_force = strength * StrengthOf(spec, muscle.group) * muscle.max_force,
-        .fibre_length = scale * kMetre * muscle.fibre_length,
-        .pennation = muscle.pennation * std::numbers::pi / 180};
-    PlaceMuscle(i);
+    const MuscleSpec& table = MuscleTable()[static_cast<std::size_t>(i)];
+    MuscleParameters& muscle = muscles_[static_cast<std::size_t>(i)];
+    if (paths_) {
+      muscle = paths_->muscle(i);
+      muscle.tendon_slack *= scale_;
+    } else {
+      muscle = {.max_force = table.max_force,
+                .fibre_length = kMetre * table.fibre_length,
+                .pennation = table.pennation * std::numbers::pi / 180};
+      PlaceMuscle(i);
+    }
+    muscle.max_force *= strength * StrengthOf(spec, table.group);
+    muscle.fibre_length *= scale_;
   }
-  SetTendons();
+  if (!paths_) SetTendons();
 }
 
 void ArmModel::PlaceMuscle(int i) {
@@ -186,6 +196,14 @@ void ArmModel::SetTendons() {
 }
 
 MuscleLines ArmModel::LinesAt(const ArmVector& q) const noexcept {
+  if (!paths_) return OwnLinesAt(q);
+  MuscleLines lines = paths_->LinesAt(q);
+  lines.length *= scale_;
+  lines.moment_arm *= scale_;
+  return lines;
+}
+
+MuscleLines ArmModel::OwnLinesAt(const ArmVector& q) const noexcept {
   const ArmPlacement arm = PlaceArm(body_, hand_, q);
   const auto place = [&](const Node& node) -> Point {
     if (node.level < 0) return {arm.torso + node.p, -1};

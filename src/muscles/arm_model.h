@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 
 #include "muscles/muscle.h"
 #include "muscles/muscle_table.h"
@@ -34,6 +35,18 @@ struct MuscleForces {
   MuscleVector fibre_length;  // relative to the optimal length; 0: slack
 };
 
+// The muscles of another arm model, with the same names and joints. Both arms are mirror images, so
+// it describes them with the same angles. All lengths are those of an upper arm of kTableUpperArm.
+class ArmPaths {
+ public:
+  virtual ~ArmPaths() = default;
+  // Returns the model's name, for the reader of results.
+  virtual const char* name() const = 0;
+  // q is in [rad]. Does not use the heap. One object serves one thread.
+  virtual MuscleLines LinesAt(const ArmVector& q) const noexcept = 0;
+  virtual const MuscleParameters& muscle(int i) const = 0;
+};
+
 class ArmModel {
  public:
   // An arm of the body (hand 0: left). The paths scale with the lengths of upper arm, forearm and
@@ -42,7 +55,10 @@ class ArmModel {
   // multiplied by the person's own strength. Tendon lengths are chosen so that the longest fibres
   // over the corners of the working range have kLongestFibre: flexion 0 to 90°, abduction 0 to 60°
   // and so on (D).
-  ArmModel(const BodySpec& spec, int hand);
+  //
+  // With `paths`, lines and parameters are those of another model, and all lengths scale with the
+  // upper arm. Forces are scaled in the same way.
+  ArmModel(const BodySpec& spec, int hand, std::shared_ptr<const ArmPaths> paths = nullptr);
 
   int hand() const { return hand_; }
   const person::BodyModel& body() const { return body_; }
@@ -67,9 +83,12 @@ class ArmModel {
 
   void PlaceMuscle(int i);
   void SetTendons();
+  MuscleLines OwnLinesAt(const ArmVector& q) const noexcept;
 
   person::BodyModel body_;
   int hand_;
+  std::shared_ptr<const ArmPaths> paths_;  // null: the built-in ones
+  double scale_;                           // length of the upper arm relative to kTableUpperArm
   std::array<MuscleParameters, kMuscles> muscles_;
   std::array<Line, kMuscles> lines_;
 };
