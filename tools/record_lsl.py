@@ -60,6 +60,7 @@ class Recorded:
             sys.exit(f"record_lsl: {name!r} has words, not numbers.")
         self.stem = folder / re.sub(r"[^A-Za-z0-9_-]+", "_", info.name())
         self.labels = labels_of(info)
+        self.type = info.type()
         self.samples = 0
         self.corrections = [self.inlet.time_correction(timeout=RESOLVE)]
         self.file = open(self.stem.with_suffix(".csv"), "w", newline="", encoding="utf-8")
@@ -83,6 +84,10 @@ class Recorded:
             lines += [f"{part}:", f"  position: [{part}.p]"]
             if any(label == f"{part}.q.w" for label, _ in self.labels):
                 lines.append(f"  rotation: [{part}.q]")
+        if self.type.upper() == "EMG":
+            lines += ["# Name the muscles, give the envelope of a maximum voluntary contraction, and remove the signs #:",
+                      "# emg:"]
+            lines += [f"#   - {{channel: \"{label}\", arm: right, muscles: [], mvc: }}" for label, _ in self.labels]
         others = [label for label, _ in self.labels if label.split(".")[0] not in parts]
         if others:
             lines.append("series:")

@@ -95,6 +95,9 @@ void AddEvaluate(CLI::App* app, Request* r) {
   evaluate
       ->add_flag("--held", o->held, "In the real work, postures are held for more than a minute")
       ->group("Work");
+  AddOption(evaluate, "Person", "--arm-model", &o->arm_model, "PATH",
+            "Muscles of the arms from MyoArm instead of the built-in model: myo_sim/models of the "
+            "package myo-sim, or one MJCF file with the whole arm");
   AddOption(evaluate, "Work", "--contact-limits", &o->contact_limits, "FILE.csv",
             "Limits of force on the body for unintended contact, in the form of "
             "assets/contact_limits_template.csv");

@@ -150,6 +150,7 @@ struct EvaluateOptions : PersonOptions {
   std::vector<std::string> against_tracks;  // further measurements of its person
   bool intervals = true;
   bool repeated = false, held = false;  // see assessment::WorkPattern
+  std::string arm_model;                // MyoArm, folder or MJCF; empty: the built-in model
   std::string contact_limits;           // file of limits for unintended contact; empty: none
   std::string page;                     // empty: NAME.person.html
   std::string csv;                      // empty: no table

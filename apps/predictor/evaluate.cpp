@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "evaluated_run.h"
+#include "muscles/myo_arm.h"
 #include "progress.h"
 #include "recording/reader.h"
 #include "scenario/scenario_io.h"
@@ -40,6 +41,7 @@ assessment::Assessment Evaluate(const EvaluateOptions& options, const std::strin
   Progress progress("Evaluating", 1, options.quiet);
   assessment::AssessOptions how = run.Options();
   how.intervals = options.intervals;
+  if (!options.arm_model.empty()) how.arm = muscles::LoadMyoArm(options.arm_model);
   how.work = {.repeated = options.repeated, .held = options.held};
   how.progress = [&](double share) { progress.Update(share); };
   assessment::Assessment result = Assess(run.scenario, run.object_mass, run.run, how);

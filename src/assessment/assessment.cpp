@@ -299,7 +299,7 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass, c
   work.strength = a.setup.body.strength;
   NominalChain nominal =
       RunNominal(a.setup, samples, work, [&](double done) { options.progress(share * done); });
-  AddMuscles(a.setup, samples, &nominal);
+  AddMuscles(a.setup, samples, options.arm, &a.measured.emg.channels, &nominal);
   SampledChain sampled;
   if (options.intervals)
     sampled = RunSampled(a.setup, samples, nominal, kSampledStride, work,
@@ -319,6 +319,13 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass, c
   AddPictures(nominal, samples, options.intervals, &a);
   AddWords(scenario, work, &a);
   AddMuscleWords(nominal, &a.warnings, &a.assumptions, &a.not_evaluable);
+  if (options.arm)
+    a.assumptions.push_back(
+        std::string("The moment arms and strengths of the muscles are those of ") +
+        options.arm->name() + ", scaled to the person's upper arm.");
+  AddEmgWords(a.measured.emg.channels, &a.assumptions, &a.not_evaluable);
+  a.not_evaluable.insert(a.not_evaluable.end(), a.measured.emg.gaps.begin(),
+                         a.measured.emg.gaps.end());
   AddLifts(object_mass, run, &a);
   return a;
 }

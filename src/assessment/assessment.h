@@ -5,6 +5,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -77,9 +78,10 @@ struct Assessment {
 struct AssessOptions {
   bool intervals = true;  // false: only the nominal posture
   WorkPattern work;
-  std::vector<tracks::BodyTrack> tracks;  // further measurements of the person
-  double start_unix = 0;                  // of the recording, for tracks in this clock [s]
-  std::vector<std::string> notes;         // about what was missing in the recording
+  std::shared_ptr<const muscles::ArmPaths> arm;  // the arms' muscles; null: the built-in model
+  std::vector<tracks::BodyTrack> tracks;         // further measurements of the person
+  double start_unix = 0;                         // of the recording, for tracks in this clock [s]
+  std::vector<std::string> notes;                // about what was missing in the recording
   std::function<void(double share)> progress = [](double) {};
 };
 

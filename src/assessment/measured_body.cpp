@@ -157,6 +157,7 @@ std::pair<double, double> SpanOf(const tracks::BodyTrack& track) {
     if (track.hands[h]) add(track.hands[h]->pose.times);
   }
   for (const tracks::SignalTrack& signal : track.signals) add(signal.times);
+  for (const tracks::EmgTrack& emg : track.emg) add(emg.times);
   return {first, last};
 }
 
@@ -199,8 +200,10 @@ MeasuredBody AddTracks(std::span<const tracks::BodyTrack> tracks, const PersonSe
       if (const auto& elbow = track.elbows[static_cast<std::size_t>(hand)])
         AddElbow(*elbow, hand, used, setup, samples, &body);
     AddSignals(track, used, *samples, &body);
+    AddEmg(track, used.offset, *samples, &body.emg);
     CheckUnique(body);
   }
+  body.warnings.insert(body.warnings.end(), body.emg.warnings.begin(), body.emg.warnings.end());
   return body;
 }
 

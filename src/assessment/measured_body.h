@@ -1,4 +1,5 @@
-// Measurements of the person in addition to the hands: head, elbows, and other signals.
+// Measurements of the person in addition to the hands: head, elbows, electromyograms, and other
+// signals.
 #pragma once
 
 #include <optional>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "assessment/hand_samples.h"
+#include "assessment/measured_emg.h"
 #include "assessment/person_setup.h"
 #include "person/posture_solver.h"
 #include "tracks/body_track.h"
@@ -40,6 +42,7 @@ struct MeasuredBody {
   std::vector<UsedTrack> tracks;
   std::vector<MeasuredPart> parts;
   std::vector<MeasuredSignal> signals;
+  MeasuredEmgs emg;  // the warnings about them are in `warnings`
   std::vector<std::string> warnings;
 };
 
@@ -50,7 +53,7 @@ struct MeasuredBody {
 // Throws InputError with the file if two tracks measure the same part, a track has no measurement
 // during the run, its clock's offset cannot be estimated, or most of its positions are impossible
 // for this person at this place (wrong unit, frame or marker). Single impossible positions are left
-// out and counted.
+// out and counted. Electromyograms are converted by AddEmg.
 MeasuredBody AddTracks(std::span<const tracks::BodyTrack> tracks, const PersonSetup& setup,
                        double start_unix, std::vector<PersonSample>* samples);
 

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "assessment/measured_emg.h"
 #include "assessment/person_chain.h"
 #include "assessment/quantities.h"
 #include "core/format.h"
@@ -28,6 +29,8 @@ void SetActivations(const MuscleVector& activation, ArmMuscleUse* use) {
     const auto group =
         static_cast<std::size_t>(muscles::MuscleTable()[static_cast<std::size_t>(i)].group);
     largest[group] = std::max(largest[group], activation[i]);
+    if (!use->raised || !muscles::ActsAtShoulder(static_cast<int>(group)))
+      use->activation[i] = activation[i];
   }
   for (int group = 0; group < muscles::kMuscleGroups; ++group)
     if (!use->raised || !muscles::ActsAtShoulder(group))
@@ -49,7 +52,7 @@ void SetReserve(const ArmVector& reserve, const ArmVector& torque, ArmMuscleUse*
 // Muscles of one arm at one time.
 ArmMuscleUse MusclesOf(const muscles::ArmModel& arm, const person::BodyMotion& motion,
                        const person::BodyVector& torques, const person::ExternalWrench& wrench,
-                       double elevation) {
+                       double elevation, const MeasuredActivations& measured) {
   ArmMuscleUse use;
   use.raised = elevation > std::numbers::pi / 2;
   const ArmVector q = muscles::ArmOf(motion.q, arm.hand());
@@ -59,6 +62,8 @@ ArmMuscleUse MusclesOf(const muscles::ArmModel& arm, const person::BodyMotion& m
   muscles::ActivationProblem problem;
   problem.torque = lines.moment_arm * forces.active.asDiagonal();
   problem.target = torque - lines.moment_arm * forces.passive;
+  problem.measured = measured.value;
+  problem.trust = measured.trust;
   const muscles::ActivationResult result = muscles::Activate(problem);
   SetActivations(result.activation, &use);
   if (use.raised) return use;
@@ -137,23 +142,27 @@ void AddRows(std::integer_sequence<int, Values...>, std::vector<QuantityKind>* k
 
 }  // namespace
 
-ArmMuscles::ArmMuscles(const PersonSetup& setup)
-    : stance_(setup.stance), arms_{{{setup.body, 0}, {setup.body, 1}}} {}
+ArmMuscles::ArmMuscles(const PersonSetup& setup,
+                       const std::shared_ptr<const muscles::ArmPaths>& paths)
+    : stance_(setup.stance), arms_{{{setup.body, 0, paths}, {setup.body, 1, paths}}} {}
 
 void ArmMuscles::Add(const person::BodySample& sample, const person::BodyMotion& motion,
-                     Frame* frame) const {
+                     Frame* frame, const std::array<MeasuredActivations, kHands>& measured) const {
   const auto wrenches = person::WrenchesOn(sample, stance_);
   for (std::size_t h = 0; h < kHands; ++h)
     if (sample.hands[h].present)
       frame->muscles[h] = MusclesOf(arms_[h], motion, frame->loads.torque, wrenches[h],
-                                    frame->angles.arms[h].upper_arm_elevation);
+                                    frame->angles.arms[h].upper_arm_elevation, measured[h]);
 }
 
 void AddMuscles(const PersonSetup& setup, std::span<const PersonSample> samples,
-                NominalChain* chain) {
-  const ArmMuscles muscles(setup);
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    muscles.Add(samples[i].body, chain->motions[i], &chain->frames[i]);
+                const std::shared_ptr<const muscles::ArmPaths>& paths,
+                std::vector<MeasuredEmg>* emg, NominalChain* chain) {
+  const ArmMuscles muscles(setup, paths);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    muscles.Add(samples[i].body, chain->motions[i], &chain->frames[i], ActivationsAt(*emg, i));
+    AddModelled(chain->frames[i].muscles, emg);
+  }
 }
 
 std::vector<QuantityKind> MuscleQuantities() {

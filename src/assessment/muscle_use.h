@@ -1,9 +1,10 @@
 // What the muscles of the arms do at each time of a run, according to the built-in model of the
-// nominal person.
+// arm, or to another one, for the nominal person.
 #pragma once
 
 #include <array>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 namespace predictor::assessment {
 
 struct Frame;
+struct MeasuredEmg;
 struct NominalChain;
 struct NotEvaluable;
 struct PersonSample;
@@ -44,26 +46,40 @@ inline constexpr double kReserveShare = 0.05;  // (design choice)
 // elbow and forearm have values.
 struct ArmMuscleUse {
   std::array<double, kMuscleValues> values;
+  muscles::MuscleVector activation;  // of each muscle, 0 ... 1
   bool raised = false;
 
-  ArmMuscleUse() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
+  ArmMuscleUse() {
+    values.fill(std::numeric_limits<double>::quiet_NaN());
+    activation.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+};
+
+// Activations that electromyograms state, and their weights: see muscles::ActivationProblem.
+struct MeasuredActivations {
+  muscles::MuscleVector value = muscles::MuscleVector::Zero();
+  muscles::MuscleVector trust = muscles::MuscleVector::Zero();  // 0: not measured
 };
 
 // The muscles of both arms of the nominal person.
 class ArmMuscles {
  public:
-  explicit ArmMuscles(const PersonSetup& setup);
+  // `paths` is another model of the arm; null: the built-in one.
+  explicit ArmMuscles(const PersonSetup& setup,
+                      const std::shared_ptr<const muscles::ArmPaths>& paths = nullptr);
   // Fills in `muscles` of a frame whose angles and loads belong to this sample and motion.
-  void Add(const person::BodySample& sample, const person::BodyMotion& motion, Frame* frame) const;
+  void Add(const person::BodySample& sample, const person::BodyMotion& motion, Frame* frame,
+           const std::array<MeasuredActivations, kHands>& measured = {}) const;
 
  private:
   person::Stance stance_;
   std::array<muscles::ArmModel, kHands> arms_;
 };
 
-// Fills in `muscles` of the chain's frames.
+// Fills in `muscles` of the chain's frames, and `modelled` of the electromyograms.
 void AddMuscles(const PersonSetup& setup, std::span<const PersonSample> samples,
-                NominalChain* chain);
+                const std::shared_ptr<const muscles::ArmPaths>& paths,
+                std::vector<MeasuredEmg>* emg, NominalChain* chain);
 
 // Rows for the table of quantities, for both arms.
 std::vector<QuantityKind> MuscleQuantities();

@@ -26,6 +26,8 @@ std::string HeadOf(const Assessment& a) {
   for (const MeasuredSignal& signal : a.measured.signals)
     text += "," + CsvCell("measured." + signal.name +
                           (signal.unit.empty() ? "" : " [" + signal.unit + "]"));
+  for (const MeasuredEmg& emg : a.measured.emg.channels)
+    text += ",measured.muscles." + PathOf(emg) + ",modelled.muscles." + PathOf(emg);
   if (a.participant) text += ",pseudonym";
   return text + '\n';
 }
@@ -50,6 +52,9 @@ std::string AssessmentCsv(const Assessment& a) {
     for (const WorksheetResult& w : a.worksheets) Append(&text, ",%d", w.values[i]);
     for (const MeasuredSignal& signal : a.measured.signals)
       text += std::isfinite(signal.values[i]) ? Formatted(",%.9g", signal.values[i]) : ",";
+    for (const MeasuredEmg& emg : a.measured.emg.channels)
+      for (const double value : {emg.measured[i], emg.modelled[i]})
+        text += std::isfinite(value) ? Formatted(",%.6g", value) : ",";
     if (a.participant) text += "," + CsvCell(a.participant->pseudonym);
     text += '\n';
     k += sampled ? 1 : 0;

@@ -103,6 +103,25 @@ Json ToJson(const MeasuredSignal& signal) {
           {"share_of_time", signal.share}};
 }
 
+// One of the two activations of a channel.
+Json ActivationOf(Origin origin, double mean) {
+  return {{"origin", Name(origin)}, {"mean_activation", NumberOrNull(mean)}};
+}
+
+Json ToJson(const MeasuredEmg& emg) {
+  const EmgAgreement agreement = AgreementOf(emg);
+  return {{"muscles", PathOf(emg)},
+          {"channel", emg.channel},
+          {"source", emg.source},
+          {"share_of_time", emg.share},
+          {"largest_envelope_over_mvc", emg.largest},
+          {"share_above_mvc", emg.above},
+          {"weight", emg.weight},
+          {"electromyogram", ActivationOf(Origin::kMeasured, agreement.measured)},
+          {"model", ActivationOf(Origin::kModelled, agreement.modelled)},
+          {"rms_difference", NumberOrNull(agreement.rms)}};
+}
+
 template <class T>
 Json ListOf(const std::vector<T>& list) {
   Json json = Json::array();
@@ -204,6 +223,7 @@ std::string AssessmentJson(const Assessment& a, const Comparison* comparison) {
   json["safety"] = a.safety ? SafetyJson(*a.safety) : Json(nullptr);
   json["measured"] = {{"parts", ListOf(a.measured.parts)},
                       {"signals", ListOf(a.measured.signals)},
+                      {"electromyograms", ListOf(a.measured.emg.channels)},
                       {"clocks", ListOf(a.measured.tracks)}};
   json["warnings"] = a.warnings;
   json["assumptions"] = a.assumptions;
@@ -252,6 +272,9 @@ std::string AssessmentSchema() {
         schema::Object(
             {{"parts", ListSchema("parts of the body beside the hands", ToJson(MeasuredPart{}))},
              {"signals", ListSchema("signals that no score uses", ToJson(MeasuredSignal{}))},
+             {"electromyograms",
+              ListSchema("activations by electromyograms, and by the model that uses them",
+                         ToJson(MeasuredEmg{}))},
              {"clocks",
               ListSchema("offsets added to the times of the files", ToJson(UsedTrack{}))}},
             "measurements beside the hands")},

@@ -262,6 +262,7 @@ void AddMeasured(const MeasuredBody& measured, Outline* outline) {
   ReportPage& page = outline->page();
   for (const MeasuredPart& part : measured.parts) page.Paragraph(Sentence(part));
   for (const MeasuredSignal& signal : measured.signals) page.Paragraph(Sentence(signal));
+  for (const MeasuredEmg& emg : measured.emg.channels) page.Paragraph(Sentence(emg));
   for (const UsedTrack& track : measured.tracks) page.Paragraph(Sentence(track));
 }
 

@@ -136,6 +136,7 @@ std::string AssessmentText(const Assessment& a) {
   AppendLine(&text, "%s.", OriginWords().c_str());
   AppendSentences("Measured beside the hands", a.measured.parts, &text);
   AppendSentences("Measured signals", a.measured.signals, &text);
+  AppendSentences("Measured muscles (electromyograms)", a.measured.emg.channels, &text);
   AppendSentences("Clocks", a.measured.tracks, &text);
   if (!a.measured.tracks.empty()) text += '\n';
   text +=

@@ -87,6 +87,11 @@ class Mapper {
             series.values};
   }
 
+  EmgTrack EmgOf(const EmgMap& emg) const {
+    const Series& series = file_.At(emg.channel);
+    return {emg, *series.times, series.values};
+  }
+
  private:
   using Times = std::shared_ptr<const std::vector<double>>;
 
@@ -308,6 +313,7 @@ BodyTrack ApplyMap(const TrackMap& map, const SeriesFile& file) {
   if (map.left_hand) track.hands[0] = mapper.HandOf(*map.left_hand, "left_hand");
   if (map.right_hand) track.hands[1] = mapper.HandOf(*map.right_hand, "right_hand");
   for (const SeriesMap& signal : map.series) track.signals.push_back(mapper.SignalOf(signal));
+  for (const EmgMap& emg : map.emg) track.emg.push_back(mapper.EmgOf(emg));
   return track;
 }
 
@@ -322,8 +328,7 @@ BodyTrack LoadBodyTrack(const std::filesystem::path& file) {
                      "(.yaml) that names this file.");
   const SeriesFile table = ReadSeries(file);
   TrackMap map = MapOfColumns(table);
-  if (!map.head && !map.left_elbow && !map.right_elbow && !map.left_hand && !map.right_hand &&
-      map.series.empty())
+  if (map.MapsNothing())
     throw InputError(file.string(), "The table has no column of numbers other than the time.");
   return ApplyMap(map, table);
 }

@@ -53,6 +53,12 @@ struct SignalTrack {
   double At(double time, double width) const;
 };
 
+// A raw electromyogram, and how it becomes an activation.
+struct EmgTrack {
+  EmgMap map;
+  std::vector<double> times, values;  // [s], in the unit of the channel; NaN: missing
+};
+
 struct BodyTrack {
   std::string source;  // file
   TrackClock clock = TrackClock::kRecording;
@@ -61,6 +67,7 @@ struct BodyTrack {
   std::array<std::optional<PartTrack>, kHands> elbows;
   std::array<std::optional<HandTrack>, kHands> hands;
   std::vector<SignalTrack> signals;
+  std::vector<EmgTrack> emg;
   std::vector<std::string> warnings;
 };
 

@@ -76,6 +76,10 @@ void CheckImport(const ImportMap& map, const YamlNode& root, Problems* problems)
   };
   check(map.channels.left_hand, "left_hand");
   check(map.channels.right_hand, "right_hand");
+  if (!map.channels.emg.empty())
+    problems->Add(PlaceOf("emg", root),
+                  "emg has more values per second than the table that an import makes. Remove it "
+                  "here, and give it to predictor evaluate in a mapping with --track.");
   Require(map.channels.left_hand || map.channels.right_hand, "left_hand or right_hand",
           "give the pose of the handle and the force of at least one hand.", root.place, problems);
 }

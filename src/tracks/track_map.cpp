@@ -43,6 +43,19 @@ void CheckHand(const HandMap& hand, const std::string& path, const YamlNode& roo
     problems->Add(PlaceOf(path + ".torque", root), path + ".torque needs a force.");
 }
 
+void CheckEmg(const EmgMap& emg, const std::string& path, const YamlNode& root,
+              Problems* problems) {
+  if (!(emg.mvc > 0))
+    problems->Add(PlaceOf(path, root),
+                  path +
+                      " has no mvc. A voltage depends on the electrode and the skin, so it "
+                      "states an activation only relative to a maximum voluntary contraction. "
+                      "Record one, and give the largest envelope as mvc, in the unit of the "
+                      "channel.");
+  if (emg.band_low >= emg.band_high)
+    problems->Add(PlaceOf(path, root), path + ".band_low must be below band_high.");
+}
+
 }  // namespace
 
 void CheckTrackMap(const TrackMap& map, const YamlNode& root, Problems* problems) {
@@ -51,6 +64,8 @@ void CheckTrackMap(const TrackMap& map, const YamlNode& root, Problems* problems
   if (map.right_elbow) CheckPart(*map.right_elbow, "right_elbow", root, problems);
   if (map.left_hand) CheckHand(*map.left_hand, "left_hand", root, problems);
   if (map.right_hand) CheckHand(*map.right_hand, "right_hand", root, problems);
+  for (std::size_t i = 0; i < map.emg.size(); ++i)
+    CheckEmg(map.emg[i], "emg." + std::to_string(i), root, problems);
   if (map.clock == TrackClock::kAuto && !map.left_hand && !map.right_hand)
     problems->Add(PlaceOf("clock", root),
                   "clock is auto, which needs the motion of a hand. Map left_hand or right_hand, "
@@ -66,11 +81,10 @@ TrackMap ParseTrackMap(const std::string& text, const std::string& name) {
   auto map = ReadStruct<TrackMap>(root, &problems);
   problems.ThrowIfAny();
   CheckTrackMap(map, root, &problems);
-  if (!map.head && !map.left_elbow && !map.right_elbow && !map.left_hand && !map.right_hand &&
-      map.series.empty())
+  if (map.MapsNothing())
     problems.Add(root.place,
                  "The mapping maps nothing. Add head, left_elbow, right_elbow, "
-                 "left_hand, right_hand or series.");
+                 "left_hand, right_hand, series or emg.");
   problems.ThrowIfAny();
   return map;
 }

@@ -38,6 +38,22 @@ struct SeriesMap {
   std::string name, channel, unit;  // unit: "": as the file states it
 };
 
+enum class ArmSide { kLeft, kRight };
+
+// The raw electromyogram of one or several muscles of an arm. The names of the muscles are the keys
+// of muscles::MuscleTable, which this module does not know.
+struct EmgMap {
+  std::string channel;
+  ArmSide arm = ArmSide::kLeft;
+  std::vector<std::string> muscles;
+  // Envelope of a maximum voluntary contraction, in the unit of the channel. Without it, a voltage
+  // does not state an activation. 0: not given, which CheckTrackMap refuses.
+  double mvc = 0;
+  double shape = -2, delay = 0.04;        // as in muscles::EmgProcessing; [s]
+  double band_low = 20, band_high = 450;  // [Hz]
+  double weight = 10;                     // see muscles::ActivationProblem::trust (D)
+};
+
 // What a time of the file means.
 enum class TrackClock {
   kRecording,  // seconds since the first tick of the recording
@@ -58,6 +74,12 @@ struct TrackMap {
   std::optional<PartMap> head, left_elbow, right_elbow;
   std::optional<HandMap> left_hand, right_hand;
   std::vector<SeriesMap> series;
+  std::vector<EmgMap> emg;
+
+  bool MapsNothing() const {
+    return !head && !left_elbow && !right_elbow && !left_hand && !right_hand && series.empty() &&
+           emg.empty();
+  }
 };
 
 // Returns the mapping of a table whose columns are named like the parts: head.p.x [m], head.q.w,
@@ -68,7 +90,8 @@ TrackMap MapOfColumns(const SeriesFile& file);
 // Throws InputError with file:line:column and the text to write instead.
 TrackMap ParseTrackMap(const std::string& text, const std::string& name);
 TrackMap LoadTrackMap(const std::filesystem::path& file);
-// Reports parts that are described incompletely or twice.
+// Reports parts that are described incompletely or twice, and electromyograms that cannot be
+// normalised.
 void CheckTrackMap(const TrackMap& map, const YamlNode& root, Problems* problems);
 
 }  // namespace predictor::tracks

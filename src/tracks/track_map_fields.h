@@ -11,6 +11,7 @@ namespace predictor::tracks {
 
 inline std::vector<std::string> NamesOf(WrenchAxes) { return {"file", "hand"}; }
 inline std::vector<std::string> NamesOf(WrenchOn) { return {"handle", "hand"}; }
+inline std::vector<std::string> NamesOf(ArmSide) { return {"left", "right"}; }
 inline std::vector<std::string> NamesOf(TrackClock) { return {"recording", "unix", "auto"}; }
 
 template <class V>
@@ -57,6 +58,27 @@ void Fields(V& v, SeriesMap& s) {
 }
 
 template <class V>
+void Fields(V& v, EmgMap& s) {
+  v("channel", s.channel, Required(Word("channel of the file with the raw electromyogram")));
+  v("arm", s.arm, Required(Word("arm of the muscles")));
+  v("muscles", s.muscles, Required(List(Word("muscles under the electrode"), 1, 4)));
+  v("mvc", s.mvc,
+    Number("", "envelope of a maximum voluntary contraction, in the unit of the channel",
+           From(0, 1e9)));
+  v("shape", s.shape,
+    Number("", "A of the activation (e^(A u) - 1)/(e^A - 1); 0: straight", From(-3, 0)));
+  v("delay", s.delay, Number("s", "from the electrical to the mechanical onset", From(0.01, 0.08)));
+  v("band_low", s.band_low, Number("Hz", "lower end of the band-pass", From(10, 100)));
+  v("band_high", s.band_high,
+    Number("Hz", "upper end of the band-pass, below half of the channel's rate", From(100, 1000)));
+  v("weight", s.weight,
+    Number("",
+           "cost of an activation that differs from the measured one, relative to that of an "
+           "activation",
+           Above(0, 1e6)));
+}
+
+template <class V>
 void TrackFields(V& v, TrackMap& s) {
   v("time", s.time,
     Word("table: the column with the times; \"\": time or timestamp. Bag: received selects the "
@@ -77,7 +99,8 @@ void TrackFields(V& v, TrackMap& s) {
   v("right_elbow", s.right_elbow, Part("centre of the right elbow"));
   v("left_hand", s.left_hand, Part("the left hand or its handle"));
   v("right_hand", s.right_hand, Part("the right hand or its handle"));
-  v("series", s.series, List(Part("other measured numbers, such as EMG"), 0, 64));
+  v("series", s.series, List(Part("other measured numbers, such as heart rate"), 0, 64));
+  v("emg", s.emg, List(Part("raw electromyograms of arm muscles"), 0, 64));
 }
 
 template <class V>

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "assessment/assessment.h"
+#include "assessment/measured_emg.h"
 #include "assessment/samples.h"
 #include "core/error.h"
 
@@ -50,7 +51,8 @@ const GaugeState& Gauge(const PersonState& state, PersonGauge gauge) {
 TEST(LiveChain, IsExactOverAShortPart) {
   const Recorded recorded(0.4);
   NominalChain nominal = recorded.nominal;
-  AddMuscles(recorded.setup, recorded.run.samples(), &nominal);
+  std::vector<MeasuredEmg> none;
+  AddMuscles(recorded.setup, recorded.run.samples(), nullptr, &none, &nominal);
   LiveChain live(recorded.setup, {});
   for (const PersonSample& sample : recorded.run.samples()) live.Add(sample);
   std::size_t i = 0;

@@ -1,0 +1,71 @@
+// Electromyograms of the arm muscles in a recording: the activations that they state, and how the
+// model uses them.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "assessment/hand_samples.h"
+#include "assessment/muscle_use.h"
+#include "assessment/person_setup.h"
+#include "tracks/body_track.h"
+
+namespace predictor::assessment {
+
+// One channel. Its activation is that of all of its muscles.
+struct MeasuredEmg {
+  std::string channel, source;  // source: file
+  int hand = 0;                 // of the arm
+  std::vector<int> muscles;     // in muscles::MuscleTable()
+  double weight = 0;            // muscles::ActivationProblem::trust
+  double share = 0;             // of the judged time in which it was measured
+  double largest = 0;           // largest envelope over mvc; above 1, the activation is limited
+  double above = 0;             // share of the channel's usable time with an envelope above mvc
+  // Activations at Assessment::times, 0 ... 1; NaN: missing. `modelled` is the mean over the
+  // muscles, computed with the measured activation. It is missing where the arm holds no handle.
+  std::vector<double> measured, modelled;
+};
+
+struct MeasuredEmgs {
+  std::vector<MeasuredEmg> channels;
+  std::vector<std::string> warnings;
+  std::vector<NotEvaluable> gaps;  // channels that cannot be used
+};
+
+// Converts the electromyograms of a file with muscles::EmgActivation and adds them. `offset` is
+// added to the times of the file [s]. A channel is split where values are missing for more than
+// PartTrack::kMaxGap. Shorter gaps are closed, since the envelope is slower than them. At both ends
+// of each part, one period of the low-pass (kEmgSettling) is left out, and so are parts shorter
+// than kShortestEmg (D).
+//
+// A channel that changes nowhere, has no part that is long enough, or is too slow for its band is
+// left out, and `gaps` says why. Throws InputError with the file if a muscle is unknown, or is
+// measured twice.
+void AddEmg(const tracks::BodyTrack& track, double offset, std::span<const PersonSample> samples,
+            MeasuredEmgs* emgs);
+inline constexpr double kEmgSettling = 1.0 / 6, kShortestEmg = 0.5;  // [s]
+
+// Returns the activations that were measured at a sample.
+std::array<MeasuredActivations, kHands> ActivationsAt(std::span<const MeasuredEmg> channels,
+                                                      std::size_t sample);
+
+// Stores what the model computed for the muscles of the channels at the next sample.
+void AddModelled(const std::array<ArmMuscleUse, kHands>& use, std::vector<MeasuredEmg>* channels);
+
+// Says which channels had no influence, because their arm held no handle while they were measured.
+void AddEmgWords(const std::vector<MeasuredEmg>& channels, std::vector<std::string>* assumptions,
+                 std::vector<NotEvaluable>* gaps);
+
+// Returns "right.biceps_long+biceps_short", for example.
+std::string PathOf(const MeasuredEmg& channel);
+// Over the times at which both values of a channel are known. Without any, the values are NaN.
+struct EmgAgreement {
+  double measured = 0, modelled = 0;  // means
+  double rms = 0;                     // of the difference
+};
+EmgAgreement AgreementOf(const MeasuredEmg& channel);
+std::string Sentence(const MeasuredEmg& channel);
+
+}  // namespace predictor::assessment
