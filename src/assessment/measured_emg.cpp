@@ -14,7 +14,7 @@ namespace predictor::assessment {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMostAbove =
+constexpr double kMaxShareAbove =
     0.01;  // of the time with an envelope above mvc, without a warning (D)
 
 // A part of a channel without a long gap.
@@ -180,7 +180,7 @@ void AddEmg(const tracks::BodyTrack& track, double offset, std::span<const Perso
     channel.largest = activations.largest;
     channel.above =
         static_cast<double>(activations.above) / static_cast<double>(activations.times.size());
-    if (channel.above > kMostAbove)
+    if (channel.above > kMaxShareAbove)
       emgs->warnings.push_back(Formatted(
           "%s exceeds mvc for %.1f %% of the time, up to %.2f times: the contraction that gave mvc "
           "was not the maximum, or the channel has artefacts. The activation is limited to 1.",
