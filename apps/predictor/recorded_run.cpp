@@ -133,7 +133,7 @@ RunRecording::RunRecording(const Emulator& emulator, const RecordOptions& option
       file_(options.file.empty() ? NewRecordingName(emulator.scenario()) : options.file),
       recorder_(file_, HeaderOf(emulator, options), board->records, Options(person),
                 ChannelsOf(emulator, person)),
-      open_(std::in_place, file_, [this] { Close(false); }) {
+      open_(std::in_place, file_, [this] { Close(false, false); }) {
   Look();
 }
 
