@@ -50,7 +50,7 @@ TEST(ArmFit, RefusesDisplacementsAlongALine) {
 
 // ---- through the simulated device ---------------------------------------------------------------
 
-struct Person {
+struct PlaneArm {
   HandSpec hand;
   PlaneVector Truth() const {
     const auto damping = [&](int axis) {
@@ -64,12 +64,12 @@ struct Person {
 };
 
 // Ranges around those of the literature (shared with docs/concepts/operator.md).
-Person DrawPerson(std::uint64_t seed) {
+PlaneArm DrawPerson(std::uint64_t seed) {
   RandomStream random(seed, "person");
   const auto between = [&](double low, double high) {
     return low + (high - low) * random.Uniform();
   };
-  Person person;
+  PlaneArm person;
   HandSpec& h = person.hand;
   h.stiffness = {between(150, 500), between(60, 250), between(80, 200)};
   h.mass = between(0.9, 2.5);
@@ -82,7 +82,7 @@ Person DrawPerson(std::uint64_t seed) {
 }
 
 // The person holds the box and moves it slowly to and fro.
-Scenario ScenarioOf(const Person& person, std::uint64_t seed, double duration) {
+Scenario ScenarioOf(const PlaneArm& person, std::uint64_t seed, double duration) {
   Scenario s = Load("identify_arm.yaml");
   s.seed = seed;
   s.duration = duration;
@@ -119,7 +119,7 @@ double Median(std::vector<double> x) {
 
 // A person with whom the haptic loop has too small a margin of stability is not displaced, and
 // another one is drawn.
-std::optional<Identified> TryToIdentify(const Person& person, std::uint64_t seed) {
+std::optional<Identified> TryToIdentify(const PlaneArm& person, std::uint64_t seed) {
   try {
     return Identify(ScenarioOf(person, seed, 180));
   } catch (const InputError& error) {
@@ -167,7 +167,7 @@ TEST(PerturbedPeople, AreIdentifiedThroughTheDeviceSoak) {
   Errors errors;
   long identified = 0, refused = 0, stopped = 0;
   for (std::uint64_t seed = 910000; identified < people; ++seed) {
-    const Person person = DrawPerson(seed);
+    const PlaneArm person = DrawPerson(seed);
     const std::optional<Identified> run = TryToIdentify(person, seed);
     if (!run) ++refused;
     if (run && run->stopped()) {

@@ -78,8 +78,8 @@ TEST(StabilityMargin, CriticalDampingOfADelayedSpringIsItsClosedForm) {
 // of the reference with lead, the delay, the second-order arm, the hand with its mass, spring and
 // damper, the sensor filter, and the mass. Returns the largest deflection in the last quarter
 // divided by that in the second quarter. The loop grows if this ratio is above 1.
-double Growth(const Scenario& s, const HandSpec& hand, double mass, double damper, double lead,
-              double gain) {
+double GrowthOf(const Scenario& s, const HandSpec& hand, double mass, double damper, double lead,
+                double gain) {
   constexpr double kStep = 2e-5;
   constexpr int kSteps = 400000;
   const ArmSpec& arm = *s.device.left;
@@ -124,9 +124,9 @@ TEST(StabilityMargin, IsWhereTheSimulatedLoopBeginsToGrow) {
       const StabilityMargin margin = loop.Margin(hand, lead);
       ASSERT_GT(margin.gain, 0.05);
       ASSERT_LT(margin.gain, HapticLoop::kLargestGain) << hand_mass << " kg, lead " << lead;
-      EXPECT_LT(Growth(s, hand, mass, damper, lead, 0.94 * margin.gain), 1)
+      EXPECT_LT(GrowthOf(s, hand, mass, damper, lead, 0.94 * margin.gain), 1)
           << hand_mass << " kg, lead " << lead;
-      EXPECT_GT(Growth(s, hand, mass, damper, lead, 1.06 * margin.gain), 1)
+      EXPECT_GT(GrowthOf(s, hand, mass, damper, lead, 1.06 * margin.gain), 1)
           << hand_mass << " kg, lead " << lead;
     }
 }

@@ -30,10 +30,6 @@ double DepthOfCapsule(const FixtureSpec& box, const Vector3& a, const Vector3& b
   return depth;
 }
 
-Pose ObjectOf(const TickRecord& record) { return FromRecord(record.object.pose); }
-
-bool EndsWell(const TestRun& run) { return run.summary.stop_count == 0 && !run.summary.cobot_stop; }
-
 TEST(ContactScenarios, APegGoesIntoAHoleWithOneMillimetreOfClearance) {
   const Scenario scenario = LoadTestScenario("peg_in_hole");
   const auto& fixtures = scenario.environment.fixtures;

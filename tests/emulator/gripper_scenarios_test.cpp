@@ -10,10 +10,6 @@
 namespace predictor {
 namespace {
 
-Pose ObjectOf(const TickRecord& record) { return FromRecord(record.object.pose); }
-
-bool EndsWell(const TestRun& run) { return run.summary.stop_count == 0 && !run.summary.cobot_stop; }
-
 AttachmentState GripOf(const TickRecord& record) {
   return static_cast<AttachmentState>(record.attachment);
 }

@@ -39,4 +39,11 @@ inline TestRun RunScenario(const std::string& name, const std::vector<std::strin
   return run;
 }
 
+// Returns whether neither the emulator nor the cobot's own safety stopped the run.
+inline bool EndsWell(const TestRun& run) {
+  return run.summary.stop_count == 0 && !run.summary.cobot_stop;
+}
+
+inline Pose ObjectOf(const TickRecord& record) { return FromRecord(record.object.pose); }
+
 }  // namespace predictor
