@@ -32,7 +32,7 @@ TEST(OwnParameters, HaveTheirDefaults) {
   EXPECT_EQ(ParameterOf(cartesian, "joint_stiffness"), "none");
   const std::string saved = SaveScenario(Fixture({"cobot.controller={type: joint_impedance}"}));
   EXPECT_NE(saved.find("joint_damping_ratio: 0.7"), std::string::npos);
-  EXPECT_NE(saved.find("# [N·m/rad or N/m] for all joints"), std::string::npos);
+  EXPECT_NE(saved.find("# [N·m/rad or N/m] stiffness for all joints"), std::string::npos);
   EXPECT_EQ(saved.find("posture_stiffness"), std::string::npos);
   EXPECT_NE(SaveScenario(Scenario()).find("posture_stiffness: 10"), std::string::npos);
 }

@@ -17,6 +17,10 @@ namespace {
 constexpr double kMass = 2;        // of the box [kg]
 constexpr double kFriction = 0.3;  // of the table
 constexpr double kWeight = kMass * kGravity;
+// Below this speed per unit of friction, the friction of a fixture is smaller
+// (docs/how-to/fixtures.md) [m/s].
+constexpr double kWeakFriction = 0.05;
+constexpr double kGap = 1e-4;  // between box and table at the start [m]
 
 // A box fixed to the flange of a cobot that knows its load, so that nothing sags.
 Scenario KnownLoad() {
@@ -25,14 +29,14 @@ Scenario KnownLoad() {
   return s;
 }
 
-// The box of that cobot just touches a table.
+// The box of that cobot is just above a table.
 Scenario OnATable() {
   Scenario s = KnownLoad();
   s.right_handle->pose.rpy.setZero();
   s.object.attachment.on_end_effector.rpy.z() = -0.785;  // its faces are along the axes of W
   FixtureSpec table;
   table.size = {2, 2, 0.1};
-  table.xyz = World(s).state().object.X_W.p - Vector3(0, 0, 0.1 + 0.05);
+  table.xyz = World(s).state().object.X_W.p - Vector3(0, 0, 0.1 + 0.05 + kGap);
   table.friction = kFriction;
   s.environment.fixtures = {table};
   return s;
@@ -96,8 +100,11 @@ TEST(Gripper, TheTableCarriesTheReleasedObject) {
     EXPECT_NEAR(moved.z(), 0, 1e-4);
     if (share < 1)
       EXPECT_LT(moved.norm(), 1e-3);
-    else
-      EXPECT_NEAR(moved.x(), a * kTime * kTime / 2, 0.05 * a * kTime * kTime / 2);
+    else {
+      const double slid = a * kTime * kTime / 2;
+      EXPECT_GT(moved.x(), slid);
+      EXPECT_LT(moved.x(), slid + kWeakFriction * kFriction * kTime);
+    }
     EXPECT_LT(world.state().end_effector.V_W.norm(), 1e-6);
   }
 }
@@ -122,7 +129,7 @@ TEST(Gripper, ClosesWhereTheObjectIs) {
     slid = std::max(slid, (ObjectInFlange(world).p - place.p).norm());
   }
   EXPECT_EQ(world.state().attachment, AttachmentState::kHolds);
-  EXPECT_LT(fastest, 2e-3);
+  EXPECT_LT(fastest, 5e-3);  // a return to the first place would be a hundred times faster
   EXPECT_LT(slid, 1e-5);
   const double height = world.state().object.X_W.p.z();
   for (int k = 0; k < 500; ++k) {
