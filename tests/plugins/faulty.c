@@ -64,7 +64,7 @@ static void compute(void* self_, const PredictorControllerInput* input, double* 
   if (strcmp(self->fault, "object") == 0) memcpy(torque, input->X_WO, sizeof input->X_WO);
   if (strcmp(self->fault, "crash") == 0) abort();
   if (strcmp(self->fault, "access") == 0) *self->nowhere = 1;
-  if (strcmp(self->fault, "divide") == 0) torque[0] = 1 / self->zero;
+  if (strcmp(self->fault, "divide") == 0) torque[0] = 7 / self->zero; /* 1 / x needs no division */
   while (strcmp(self->fault, "hang") == 0) sleep(1);
   if (strcmp(self->fault, "allocate") == 0) {
     static void* volatile taken;
