@@ -12,13 +12,13 @@ template <class V>
 void Fields(V& v, GraspParameters& p) {
   v("grasp_distance", p.distance,
     Number("m",
-           "between the attachment on the object and its place in the gripper at the start, up to "
-           "which the gripper can close; beyond, it stays open",
+           "largest distance between the attachment on the object and its place in the gripper at "
+           "the start; beyond it, the gripper stays open",
            Above(0, 10)));
   v("grasp_angle", p.angle,
-    Number("rad", "the same for the rotation of a fixed attachment", Above(0, 3.2)));
+    Number("rad", "largest rotation of a fixed attachment, likewise", Above(0, 3.2)));
   v("load_time", p.load_time,
-    Number("s", "in which the cobot begins to compensate cobot.payload", From(0, 60)));
+    Number("s", "time within which the cobot begins to compensate cobot.payload", From(0, 60)));
 }
 
 // The most recent command of each kind counts.
@@ -38,7 +38,7 @@ void Grasp(const GraspParameters& p, double elapsed, Disturbance* d) noexcept {
 }  // namespace
 
 const HazardKind kReleaseObject = HazardKindOf<NoParameters, Release>(
-    "release_object", "the cobot puts the object down: its gripper opens",
+    "release_object", "the cobot's gripper opens and releases the object",
     "the cobot released the object", HazardNeeds::kRelease);
 
 const HazardKind kGraspObject = HazardKindOf<GraspParameters, Grasp>(
