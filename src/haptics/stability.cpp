@@ -12,7 +12,6 @@ namespace predictor {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kGrowing = 1e-4;  // a mode that grows faster counts as unstable [1/s]
 constexpr double kSmallestGain = 1.0 / 16;
 constexpr double kPrecision = 1.02;
 
@@ -278,7 +277,8 @@ LeadChoice ChooseLead(const HapticLoop& loop, const Scenario& scenario, double d
     const double lead = choice.lag * k / kSteps;
     // The loop must be stable with the nominal impedance of the hands and with the impedance
     // increased by the margin.
-    if (loop.GrowthRate(hand, lead, margin) > kGrowing || loop.GrowthRate(hand, lead, 1) > kGrowing)
+    if (loop.GrowthRate(hand, lead, margin) > HapticLoop::kGrowing ||
+        loop.GrowthRate(hand, lead, 1) > HapticLoop::kGrowing)
       continue;
     choice.lead = lead;
     choice.margin = loop.Margin(hand, lead);

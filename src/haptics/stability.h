@@ -33,6 +33,7 @@ struct LoopDelays;
 class HapticLoop {
  public:
   static constexpr double kLargestGain = 8;
+  static constexpr double kGrowing = 1e-4;  // a mode that grows faster counts as unstable [1/s]
 
   // `world` is a linear model without hands. `dt` is the duration of a tick [s].
   HapticLoop(const LinearModel& world, const Scenario& scenario, double dt,

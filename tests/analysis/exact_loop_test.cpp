@@ -20,18 +20,6 @@ HandSpec SpringWithReflex(double stiffness, double reflex_gain, double reflex_de
   return hand;
 }
 
-// Returns one arm whose only dynamics are a delay [s] from the virtual to the real handle and back.
-Scenario PureDelay(double delay) {
-  Scenario s;
-  s.left_handle.emplace();
-  s.device.left.emplace();
-  s.device.left->loop = {20000, 1, delay};
-  s.device.left->sensor.cutoff_frequency = 0;
-  s.device.left->sensor.delay = 0;
-  s.rendering.kp = s.rendering.ko = 0;
-  return s;
-}
-
 // M s² + B s + K (1 + g e^−sT) = 0 at s = jω for ωT = 2π n + π/2: M ω² = K and B = g K/ω. If too
 // few states model the delay, its phase is wrong at this frequency.
 TEST(ExactLoop, KnowsTheReflexAfterWholeTurnsOfItsPhase) {

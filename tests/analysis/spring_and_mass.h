@@ -20,6 +20,18 @@ inline LinearModel Mass(double mass, double damper) {
   return world;
 }
 
+// Returns one arm whose only dynamics are a delay [s] from the virtual to the real handle and back.
+inline Scenario PureDelay(double delay) {
+  Scenario s;
+  s.left_handle.emplace();
+  s.device.left.emplace();
+  s.device.left->loop = {20000, 1, delay};
+  s.device.left->sensor.cutoff_frequency = 0;
+  s.device.left->sensor.delay = 0;
+  s.rendering.kp = s.rendering.ko = 0;
+  return s;
+}
+
 // Returns a hand that consists only of a spring along x.
 inline HandSpec Spring(double stiffness) {
   HandSpec hand;

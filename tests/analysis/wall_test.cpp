@@ -12,18 +12,6 @@
 namespace predictor {
 namespace {
 
-// Returns one arm whose only dynamics are a delay [s].
-Scenario PureDelay(double delay) {
-  Scenario s;
-  s.left_handle.emplace();
-  s.device.left.emplace();
-  s.device.left->loop = {20000, 1, delay};
-  s.device.left->sensor.cutoff_frequency = 0;
-  s.device.left->sensor.delay = 0;
-  s.rendering.kp = s.rendering.ko = 0;
-  return s;
-}
-
 Wall AlongX(double stiffness, double damping) {
   Wall wall;
   wall.normal = Vector3::UnitX();

@@ -5,10 +5,12 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "core/archive.h"
+#include "support/allocation_guard.h"
 #include "world_fixtures.h"
 
 namespace predictor {
@@ -32,6 +34,21 @@ inline Scenario RigidBox() {
 inline void RunWith(World* world, const WorldInput& input, double time) {
   for (int k = 0; k < std::lround(time / kTick); ++k)
     ASSERT_TRUE(world->Step(input, kTick).ok()) << world->state().time;
+}
+
+// Requires that `ticks` steps with this force on each handle, and a reset, take nothing from the
+// heap.
+inline void ExpectNoHeap(const Scenario& scenario, const Vector3& force, int ticks) {
+  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
+  World world(scenario);
+  const WorldInput input = Push(scenario, force);
+  bool ok = true;
+  const test::AllocationGuard guard;
+  for (int k = 0; k < ticks; ++k) ok = world.Step(input, kTick).ok() && ok;
+  world.Reset();
+  const std::int64_t count = guard.count();
+  EXPECT_EQ(count, 0);
+  EXPECT_TRUE(ok);
 }
 
 // Saves the state of one world and loads it into another one.

@@ -9,7 +9,6 @@
 
 #include "core/error.h"
 #include "event_fixtures.h"
-#include "support/allocation_guard.h"
 
 namespace predictor {
 namespace {
@@ -216,18 +215,9 @@ TEST(Gripper, ContinuesFromASavedStateBitForBit) {
 }
 
 TEST(Gripper, TakesNothingFromTheHeap) {
-  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   Scenario s = OnATable();
   s.events = {Release(0.05), Grasp(0.1)};
-  World world(s);
-  const WorldInput input = Push(s, {0.2, 0, 0});
-  const test::AllocationGuard guard;
-  bool ok = true;
-  for (int k = 0; k < 300; ++k) ok = world.Step(input, kTick).ok() && ok;
-  world.Reset();
-  const std::int64_t count = guard.count();
-  EXPECT_EQ(count, 0);
-  EXPECT_TRUE(ok);
+  ExpectNoHeap(s, {0.2, 0, 0}, 300);
 }
 
 // The cobot knows that it put its load down, so its own safety functions do not take the missing

@@ -7,7 +7,6 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "event_fixtures.h"
-#include "support/allocation_guard.h"
 
 namespace predictor {
 namespace {
@@ -94,19 +93,7 @@ TEST(Obstacle, ASavedStateContinuesBitForBit) {
   EXPECT_EQ((world.state().q - other.state().q).norm(), 0);
 }
 
-TEST(Obstacle, TakesNothingFromTheHeap) {
-  PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
-  const Scenario s = WithWall(0.1, 0.5);
-  World world(s);
-  const WorldInput push = Push(s, {15, 0, 0});
-  bool ok = true;
-  const test::AllocationGuard guard;
-  for (int k = 0; k < 1000; ++k) ok = world.Step(push, kTick).ok() && ok;
-  world.Reset();
-  const std::int64_t count = guard.count();
-  EXPECT_EQ(count, 0);
-  EXPECT_TRUE(ok);
-}
+TEST(Obstacle, TakesNothingFromTheHeap) { ExpectNoHeap(WithWall(0.1, 0.5), {15, 0, 0}, 1000); }
 
 std::string StartErrorOf(const Scenario& s) {
   try {

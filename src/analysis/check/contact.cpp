@@ -11,7 +11,6 @@ namespace {
 constexpr double kSoftestWall = 100;  // [N/m]
 constexpr double kScanRatio = 1.6;    // of successive stiffnesses
 constexpr double kPrecision = 1.05;
-constexpr double kGrowing = 1e-4;     // [1/s], as for HapticLoop's margin
 constexpr double kAtRest = 0.05;      // frequency that counts as rest [Hz]
 constexpr double kSameNormal = 0.99;  // cosine of the angle between normals that count as equal
 constexpr double kPoints = 4;         // where a flat face touches another
@@ -67,7 +66,7 @@ WallLimit StiffestStableWall(const LinearModel& world, const Scenario& scenario,
     varied.stiffness = stiffness;
     double frequency = 0;
     const HapticLoop loop(WithWall(world, varied), scenario, 1 / scenario.rate, model);
-    const bool stable = loop.GrowthRate(hand, lead, 1, &frequency) <= kGrowing;
+    const bool stable = loop.GrowthRate(hand, lead, 1, &frequency) <= HapticLoop::kGrowing;
     if (!stable) limit.frequency = frequency;
     return stable;
   };
@@ -115,7 +114,8 @@ std::vector<ContactReport> CheckContacts(const Scenario& s, const LinearModel& w
     const auto is_stable = [&](double points) {
       Wall touched = wall;
       touched.stiffness *= points, touched.damping *= points, touched.inertia *= points;
-      return HapticLoop(WithWall(world, touched), s, dt).GrowthRate(hand, lead, 1) <= kGrowing;
+      return HapticLoop(WithWall(world, touched), s, dt).GrowthRate(hand, lead, 1) <=
+             HapticLoop::kGrowing;
     };
     report.stable = is_stable(1) && (!report.yields || is_stable(kPoints));
     if (report.yields) report.limit = StiffestStableWall(world, s, hand, lead, wall);
