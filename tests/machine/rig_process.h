@@ -246,7 +246,6 @@ class Terminal {
     return Comes("Now RUN") && rig->Ask("run") == "ok";
   }
 
- private:
   // Returns whether the text appears before a stop.
   bool Comes(const std::string& text) {
     for (int i = 0; i < 1500; ++i) {
@@ -259,6 +258,8 @@ class Terminal {
     }
     return false;
   }
+
+ private:
   static bool ReportsAStop(const std::string& said) {
     const auto contains = [&](const char* sign) { return said.find(sign) != std::string::npos; };
     return contains("Now STOPPING") || contains("Now UNPOWERED") ||
