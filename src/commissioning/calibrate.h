@@ -43,8 +43,8 @@ void SwingJoints(Session* session, Station* station, const SwingOptions& options
 LoopFit FitSwings(Session* session, const std::vector<LoopRecord>& records);
 
 // The person pushes the handle along the axes of the world. `other` is the station of the other
-// hand, or null. Returns if every push is read correctly. Otherwise throws with the pattern of the
-// readings.
+// hand, or null. Returns if every push is read correctly. Otherwise throws InputError, whose
+// message describes the pattern of the readings.
 void TestPushes(Session* session, const Station& pushed, const Station* other);
 
 }  // namespace predictor::commissioning

@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// Haptic rendering is the largest problem (haptics/limit.h): its rows, and the joints of two arms
-// with a slack for each row.
+// The largest problem is that of haptic rendering (haptics/limit.h). Its variables are the joints
+// of two arms and one slack for each of its rows.
 inline constexpr int kMaxQpRows = 28;
 inline constexpr int kMaxQpVariables = kHands * kMaxArmJoints + kMaxQpRows;
 

@@ -64,7 +64,8 @@ TEST_F(HeldKeyTest, IsHeldFromTheSecondLetterUntilItIsSilent) {
                                  KeySign::kContinues, KeySign::kContinues}));
 }
 
-// Silence releases the key. After that, one letter does not count as held, but two do.
+// If no letter arrives for too long, the key is released. After that, one letter does not count as
+// held, but two do.
 TEST_F(HeldKeyTest, MustBeHeldAgainAfterSilence) {
   Hold();
   Letters({0.15});
@@ -75,7 +76,7 @@ TEST_F(HeldKeyTest, MustBeHeldAgainAfterSilence) {
   EXPECT_TRUE(key_.held());
 }
 
-// Silence releases the key even if no update occurs during it.
+// If no letter arrives for too long, the key is released, even if nothing calls Update meanwhile.
 TEST_F(HeldKeyTest, IsReleasedByUnobservedSilence) {
   Hold();
   now_ += 0.5;

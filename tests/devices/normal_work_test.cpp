@@ -1,5 +1,6 @@
-// Normal work of people with the real drivers must cause no warnings and no stops. The detector of
-// handles that run away monitors real sensors only, so a simulated rig cannot test this.
+// When people work normally with the real drivers, the program must neither warn nor stop. The
+// detector of handles that run away monitors real sensors only, so a simulated rig cannot test
+// this.
 #include <gtest/gtest.h>
 
 #include <algorithm>

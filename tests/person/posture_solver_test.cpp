@@ -47,8 +47,8 @@ TEST(PostureSolver, ReproducesThePositionsOfTheHands) {
   }
 }
 
-// Returns the handles of a person who stands in front of them and reaches them. `phase` moves them
-// along a circle.
+// Returns both handles where a person who stands in front of them can reach them. `phase` moves
+// them along a circle.
 BodySample BeforeThePerson(const Stance& stance, double phase) {
   BodySample sample;
   for (int hand = 0; hand < kHands; ++hand) {

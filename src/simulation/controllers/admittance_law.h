@@ -11,7 +11,7 @@
 // proportional and integral action on the error of the velocity.
 //
 // The tare at the start includes the load's weight, as on a real cobot. The memory contains V, the
-// displacement x (its integral), q_ref, and numbers of the derived controller.
+// displacement x (its integral), q_ref, and the state of the derived controller.
 #pragma once
 
 #include <Eigen/Cholesky>
