@@ -40,25 +40,25 @@ std::string Paragraph(const std::string& text) { return "<p>" + text + "</p>\n";
 std::string RunWords(const RunData& run) {
   const Summary& s = run.summary;
   std::string text =
-      Round(s.duration(), 5) + " s of " +
-      (run.info.scenario.mode == Mode::kDirect ? "the object held directly" : "emulation") +
-      " in " + Count(s.ticks()) + " ticks, " +
-      (run.real_time ? "in real time" : "in virtual time") + ", seed " + std::to_string(s.seed) +
-      ".";
-  if (s.ticks() == 0) text += " It never reached RUN.";
+      std::string("This run ") +
+      (run.info.scenario.mode == Mode::kDirect ? "with the object held directly " : "") + "took " +
+      Round(s.duration(), 5) + " s (" + Count(s.ticks()) + " ticks) in " +
+      (run.real_time ? "real" : "virtual") + " time, with the seed " + std::to_string(s.seed) + ".";
+  if (s.ticks() == 0) text += " The run never reached the state RUN.";
   return text;
 }
 
 std::string StopSentence(const RunData& run) {
   if (run.stops.empty()) return "There was no safety stop.";
   const StopSummary& stop = run.stops.front().summary;
-  std::string text = run.stops.size() == 1
-                         ? "A safety stop occurred "
-                         : "A safety stop occurred " + Times(run.stops.size()) + ", first ";
-  text += Round(stop.time, 5) + " s after the start: " + EscapeMarkup(Name(stop.cause));
-  if (stop.hand >= 0) text += std::string(" of the ") + HandName(stop.hand & 1) + " hand";
+  std::string text = run.stops.size() == 1 ? "A safety stop occurred "
+                                           : "A safety stop occurred " + Times(run.stops.size()) +
+                                                 ". The first one occurred ";
+  text += Round(stop.time, 5) + " s after the start. Its cause was '" +
+          EscapeMarkup(Name(stop.cause)) + "'";
+  if (stop.hand >= 0) text += std::string(" (") + HandName(stop.hand & 1) + " hand)";
   if (stop.quantity != Quantity::kNone)
-    text += ", " + SeenAndAllowed(stop.value, stop.limit, stop.quantity);
+    text += ": " + SeenAndAllowed(stop.value, stop.limit, stop.quantity);
   text += DidNotRest(stop) ? ". The arms did not come to rest."
                            : ". The arms came to rest after " + Round(1e3 * stop.duration) +
                                  " ms and " + Mm(stop.distance) + ".";
@@ -75,16 +75,18 @@ std::string TrackingWords(const RunData& run) {
   for (const char* side : kHandNames) {
     const Statistics& s = of(side + std::string(".translation_m"));
     if (s.count() == 0) continue;
-    text += (text.empty() ? "While gripping, the " : "; the ") + std::string(side) +
-            " handle was " + Spread(1e3 * s.mean(), 1e3 * s.std(), 3) + " mm from its target, " +
-            Mm(s.max()) + " at most";
+    text += (text.empty() ? "While the hands gripped, the distance between the "
+                          : "; the distance between the ") +
+            std::string(side) + " handle and its target was " +
+            Spread(1e3 * s.mean(), 1e3 * s.std(), 3) + " mm, and at most " + Mm(s.max());
   }
   if (text.empty()) return "";
   if (of("relative.distance_m").count() > 0)
-    text += ". The error of the distance between them was " + Mm(of("relative.distance_m").max()) +
-            " at most; relative to the left handle, the error of the right one was " +
+    text += ". The error of the distance between the two handles was at most " +
+            Mm(of("relative.distance_m").max()) +
+            ". The error of the right handle's pose relative to the left handle was at most " +
             Mm(of("relative.right_from_left_m").max()) + " and " +
-            Degrees(of("relative.angle_rad").max()) + " at most";
+            Degrees(of("relative.angle_rad").max());
   return text + ".";
 }
 
@@ -93,15 +95,15 @@ std::string ForceWords(const RunData& run) {
   for (const char* side : kHandNames) {
     const auto& force = run.summary.Get<Statistics>(std::string("wrench.") + side + ".force_n");
     if (force.count() == 0) continue;
-    text += (text.empty() ? "The " : ", the ") + std::string(side) + " hand's force reached " +
+    text += (text.empty() ? "The " : ", and the ") + std::string(side) + " hand's force reached " +
             Significant(force.max()) + " N";
   }
   if (text.empty()) return "";
   text += " (threshold " + Round(ThresholdOf(run, Parameter::kForceThreshold)) + " N).";
   const auto nearest = run.summary.Get<double>("elbow_distance_m.min");
   if (std::isfinite(nearest))
-    text += " The closest distance between links of the two arms was " + Significant(nearest) +
-            " m (" + Round(run.info.scenario.rendering.security_distance) + " m is the limit).";
+    text += " The smallest distance between links of the two arms was " + Significant(nearest) +
+            " m (limit " + Round(run.info.scenario.rendering.security_distance) + " m).";
   return text;
 }
 
@@ -116,25 +118,28 @@ std::string OscillationWords(const RunData& run) {
   };
   const double index = largest("index"), bad = largest("strong_index"), rms = largest("rms_n");
   if (bad > OscillationIndex::kStop)
-    return "A hand's force oscillated: the index reached " + Significant(bad, 2) +
-           ", the rms from 3 to 10 Hz " + Significant(rms, 2) + " N.";
+    return "A hand's force oscillated. The oscillation index reached " + Significant(bad, 2) +
+           ", and the rms of the force from 3 to 10 Hz reached " + Significant(rms, 2) + " N.";
   if (index > OscillationIndex::kWarn)
-    return "The oscillation index reached " + Significant(index, 2) +
-           ", with less than 3 N or an index below 0.5 (rms from 3 to 10 Hz at most " +
-           Significant(rms, 2) + " N).";
+    return "The oscillation index of a hand's force reached " + Significant(index, 2) +
+           ", but did not exceed 0.5 while the force varied by more than 3 N. The rms of the force "
+           "from 3 to 10 Hz was at most " +
+           Significant(rms, 2) + " N.";
   if (index == 0) return "The hands' forces were too small for an oscillation between 3 and 10 Hz.";
   // A small share of a large force may still be a large force.
-  return "From 3 to 10 Hz a hand's force had an rms of at most " + Significant(rms, 2) +
-         " N, which is small compared with slower changes (index at most " + Significant(index, 2) +
-         " where the force varied by more than " + Round(OscillationIndex::kMinForce) + " N).";
+  return "From 3 to 10 Hz, each hand's force had an rms of at most " + Significant(rms, 2) +
+         " N, which is small compared with slower changes of the force (index at most " +
+         Significant(index, 2) + " while the force varied by more than " +
+         Round(OscillationIndex::kMinForce) + " N).";
 }
 
 std::string TimingWords(const RunData& run) {
   const auto& tick = run.summary.Get<Quantiles>("timing_us.tick");
   if (tick.count == 0) return "";
-  std::string text = "A tick took " + Significant(tick.p50) + " µs (median), " +
-                     Significant(tick.p999) + " µs (99.9 %), " + Significant(tick.max) +
-                     " µs at most; the period is " + Round(1e6 * run.dt) + " µs";
+  std::string text = "The median time of a tick was " + Significant(tick.p50) +
+                     " µs, the 99.9 % quantile was " + Significant(tick.p999) +
+                     " µs and the maximum was " + Significant(tick.max) + " µs, with a period of " +
+                     Round(1e6 * run.dt) + " µs";
   const auto late = run.summary.Get<std::uint64_t>("deadlines.late_ticks");
   const auto most = run.summary.Get<std::uint64_t>("deadlines.most_in_a_row");
   if (run.real_time)
@@ -148,9 +153,9 @@ std::string FileWords(const RunData& run) {
   std::string text;
   if (run.lost > 0)
     text += "<b>" + Count(run.lost) + " ticks are missing</b> in " + Count(run.gaps) +
-            " places. Lines are interrupted there, and sums omit these ticks. ";
+            " places. The plotted lines are interrupted there, and sums omit these ticks. ";
   if (run.disordered > 0)
-    text += Count(run.disordered) + " records were out of order and omitted. ";
+    text += Count(run.disordered) + " records were out of order, so the report omits them. ";
   if (!run.info.problem.empty()) text += EscapeMarkup(run.info.problem) + " ";
   return text;
 }
@@ -238,7 +243,9 @@ std::string LastEvents(const RunData& run, const ReportedStop& stop) {
     list += "<li>" + Round(std::round(1e3 * ago) / 1e3) + " s before: " + EscapeMarkup(event.text) +
             "</li>\n";
   }
-  return list.empty() ? "" : "<p>In the ten seconds before:</p>\n<ul>" + list + "</ul>\n";
+  return list.empty()
+             ? ""
+             : "<p>Events in the ten seconds before the stop:</p>\n<ul>" + list + "</ul>\n";
 }
 
 // A quantity by which runs are compared.
@@ -320,27 +327,28 @@ std::string SummaryWords(const RunData& run) {
   };
   html += Paragraph("The hands supplied " + energy("energy.supplied_j") +
                     " J in total and received " + energy("energy.returned_j") +
-                    " J back; the balance was " + energy("energy.lowest_j") + " J at its lowest" +
+                    " J back. The lowest balance was " + energy("energy.lowest_j") + " J" +
                     (run.summary.Get<double>("energy.lowest_j") < PortEnergy::kEpisode
-                         ? ": some energy was returned before it was supplied, for example from a "
-                           "spring that is loaded at the start."
-                         : ": the energy returned never exceeded the energy supplied.") +
+                         ? ", because some energy was returned before it was supplied, for example "
+                           "from a spring that is loaded at the start."
+                         : ", so the energy returned never exceeded the energy supplied.") +
                     " " + TimingWords(run));
   return html;
 }
 
 std::string StopWords(const RunData& run, const ReportedStop& stop) {
   const StopSummary& s = stop.summary;
-  std::string text = "Decided at " + Round(s.time, 5) + " s by cause '" + Name(s.cause) + "'";
-  if (s.hand >= 0) text += std::string(", ") + HandName(s.hand & 1) + " hand";
+  std::string text =
+      "This stop was decided at " + Round(s.time, 5) + " s with the cause '" + Name(s.cause) + "'";
+  if (s.hand >= 0) text += std::string(" (") + HandName(s.hand & 1) + " hand)";
   if (s.quantity != Quantity::kNone) text += ": " + SeenAndAllowed(s.value, s.limit, s.quantity);
   text += ". ";
   if (s.detection)
-    text += "The true value of the hand crossed the threshold " + Round(1e3 * *s.detection) +
-            " ms earlier. ";
+    text += "The true force or torque of the hand crossed the threshold " +
+            Round(1e3 * *s.detection) + " ms before the decision. ";
   text += DidNotRest(s) ? "The arms did not come to rest."
                         : "The arms came to rest " + Round(1e3 * s.duration) +
-                              " ms after the decision; the handle that moved further moved " +
+                              " ms after the decision. The handle that moved further moved " +
                               Mm(s.distance) + ".";
   return Paragraph(text + HarderWords(s.harder) + " " + Approach(run, stop)) +
          LastEvents(run, stop);
@@ -366,13 +374,15 @@ std::string DetailWords(const Runs& runs) {
         Significant(run.trace.detail_seconds()) +
         " s around stops, markers and worst values, except in wide views:");
     html.append("<ul>").append(list).append("</ul>\n");
-    html += Paragraph("The other ticks are in the recording: <code>predictor replay</code>.");
+    html += Paragraph(
+        "This page does not contain the other ticks. To see them, show the recording with "
+        "<code>predictor replay</code>.");
   }
   return html + Paragraph(
-                    "Only values in the plots are rounded, to keep the page small: translations to "
+                    "To keep the page small, the values in the plots are rounded: translations to "
                     "0.1 µm, angles of errors to 0.00001°, joints to 0.002°, forces to 5 mN, "
                     "torques to 0.5 mN·m, energies to 0.1 mJ, positions to 0.1 mm or better. "
-                    "Statistics use every tick without rounding.");
+                    "All statistics use the unrounded values of every tick.");
 }
 
 std::string ResultTables(const RunData& run, Chapter chapter) {
@@ -407,10 +417,12 @@ std::string EnergyTable(const RunData& run) {
   return HtmlTable(rows) +
          Paragraph(
              "A port is passive if its balance never falls below the negative of the energy stored "
-             "at the start. The virtual world stores " +
-             Significant(run.stored) + " J more than at the start; " + Significant(run.dissipated) +
-             " J of the energy from hands and coupling was dissipated by its friction and damping "
-             "(a controller that moves its set-point can also supply energy).");
+             "at the start. At the end, the virtual world stored " +
+             Significant(run.stored) +
+             " J more than at the start. Its friction and damping dissipated " +
+             Significant(run.dissipated) +
+             " J of the energy from the hands and the coupling. A controller that moves its "
+             "set-point can also supply energy.");
 }
 
 std::string LatencyTable(const RunData& run) {
@@ -433,7 +445,7 @@ std::string LatencyTable(const RunData& run) {
     html += Paragraph("No page reported how long a state takes to reach its screen.");
   else
     html += Paragraph(
-        "Pages report the medians of each second, with their clocks synchronised to the program's "
+        "Each page reports the medians of each second. Its clock is synchronised to the program's "
         "clock.");
   return html;
 }
@@ -447,7 +459,8 @@ std::string EventTable(const RunData& run) {
          (event.marker ? "<b>" + EscapeMarkup(event.text) + "</b>" : EscapeMarkup(event.text))});
   }
   const std::uint64_t more = run.events.size() + 1 - rows.size() + run.more_events;
-  return HtmlTable(rows) + (more > 0 ? Paragraph("And " + Count(more) + " more.") : "");
+  return HtmlTable(rows) +
+         (more > 0 ? Paragraph("The table omits " + Count(more) + " more events.") : "");
 }
 
 std::string ComparisonTable(const std::vector<RunData>& runs) {

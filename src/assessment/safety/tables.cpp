@@ -61,7 +61,7 @@ SafetyTable StopTable(const StopJudgement& judged) {
   const StopSummary& stop = judged.stop;
   SafetyTable table{.title = Formatted("What the stop at %.2f s did to the joints", stop.time),
                     .origin = "modelled"};
-  std::string words = "The stop: " + StopCauseText(stop.cause, stop.quantity);
+  std::string words = "Cause of the stop: " + StopCauseText(stop.cause, stop.quantity);
   if (stop.hand >= 0) words += Formatted(" (%s hand)", HandName(stop.hand));
   words += Formatted(". The handles came to rest after %.0f ms and %.1f mm.", 1e3 * stop.duration,
                      1e3 * stop.distance);
@@ -78,9 +78,12 @@ SafetyTable StopTable(const StopJudgement& judged) {
          load.change_90 ? Formatted("%.1f … %.1f", load.change_90->low, load.change_90->high) : "–",
          Formatted("%.1f", load.peak), load.use ? PercentText(*load.use) : "–"});
   table.notes.emplace_back(
-      "Caused by the stop: largest change of the torque since the decision to stop. 90 %: over 64 "
-      "possible postures and bodies. Strength is given as a fraction of the mean for the person's "
-      "sex, where a source was verified.");
+      "The change caused by the stop is the largest change of the torque after the decision to "
+      "stop. The 90 % column contains the 90 % interval of this change for 64 possible postures "
+      "and "
+      "bodies. The last "
+      "column gives the largest torque as a percentage of the mean strength for the person's "
+      "sex, if a verified source for this strength exists.");
   return table;
 }
 
@@ -89,21 +92,22 @@ SafetyTable LettingGoTable(const SafetyAssessment& safety) {
   if (safety.drop) {
     const Drop& drop = *safety.drop;
     table.notes.push_back(Formatted(
-        "The object would fall %.2f m from its highest place (%.1f s): %.1f m/s and %.0f J at the "
-        "ground, %s.",
+        "The object would fall %.2f m from its highest position (at %.1f s). It would reach the "
+        "ground with a speed of %.1f m/s and an energy of %.0f J, %s.",
         drop.height, drop.time, drop.speed, drop.energy,
         drop.beside_feet > 0
-            ? Formatted("its origin %.2f m beside the feet", drop.beside_feet).c_str()
-            : "its origin above the feet"));
-    table.notes.push_back(
-        Formatted("If the cobot lost its force, each hand would carry %.0f N, up to %.0f N more "
-                  "than it did in the run.",
-                  drop.weight_of_hand, drop.jump));
+            ? Formatted("with its origin %.2f m beside the feet", drop.beside_feet).c_str()
+            : "with its origin above the feet"));
+    table.notes.push_back(Formatted(
+        "If the cobot lost its force, each hand would carry %.0f N, which is up to %.0f N "
+        "more than it carried in the run.",
+        drop.weight_of_hand, drop.jump));
   }
   const Separation& s = safety.separation;
   table.notes.push_back(Formatted(
-      "At %.1f s the scene moved at %.2f m/s. A person who walks towards it needs a distance of "
-      "%.2f m (ISO 13855, without the intrusion distance of a sensor); the feet are %.2f m away%s.",
+      "At %.1f s, the scene moved at %.2f m/s. A person who walks towards the scene needs a "
+      "distance of %.2f m (ISO 13855, without the intrusion distance of a sensor). The feet are "
+      "%.2f m away%s.",
       s.time, s.speed, s.needed, s.distance,
       s.needed > s.distance ? ", which is too close to a cobot that does not detect the person"
                             : ""));
@@ -150,8 +154,8 @@ SafetyTable RigTable(const std::vector<RigLimit>& limits) {
                           PercentText(limit.reached / limit.limit)});
   }
   table.notes.emplace_back(censored
-                               ? "The run reached a limit of the rig: the values without that "
-                                 "limit are unknown, and values with \"at least\" are lower bounds."
+                               ? "The run reached a limit of the rig. The values without this "
+                                 "limit are unknown, so values with \"at least\" are lower bounds."
                                : "The run stayed within the limits. A hazard that exceeds these "
                                  "limits cannot be judged on this rig.");
   return table;
