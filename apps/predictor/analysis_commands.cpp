@@ -95,9 +95,10 @@ void AddEvaluate(CLI::App* app, Request* r) {
   evaluate
       ->add_flag("--held", o->held, "In the real work, postures are held for more than a minute")
       ->group("Work");
-  AddOption(evaluate, "Person", "--arm-model", &o->arm_model, "PATH",
-            "Muscles of the arms from MyoArm instead of the built-in model: myo_sim/models of the "
-            "package myo-sim, or one MJCF file with the whole arm");
+  AddOption(
+      evaluate, "Person", "--arm-model", &o->arm_model, "PATH",
+      "Use the arm muscles of MyoArm instead of the built-in model: the folder myo_sim/models of "
+      "the package myo-sim, or one MJCF file with the whole arm");
   AddOption(evaluate, "Work", "--contact-limits", &o->contact_limits, "FILE.csv",
             "Limits of force on the body for unintended contact, in the form of "
             "assets/contact_limits_template.csv");
@@ -242,7 +243,7 @@ void AddPopulation(CLI::App* app, Request* r) {
   AddOption(population, "Study", "--set", &o->set, "KEY=VALUE",
             "Change a value of all scenarios; repeatable");
   AddOption(population, "Study", "--population-seed", &o->seed, "NUMBER",
-            "Seed of the people: the same number draws the same people")
+            "Seed of the simulated people; the same number gives the same people")
       ->capture_default_str();
   AddOption(population, "Study", "--jobs", &o->workers, "NUMBER",
             "Number of simultaneous runs [default: the number of cores]")

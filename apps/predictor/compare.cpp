@@ -65,21 +65,23 @@ std::vector<FidelitySignals> SignalsOf(std::vector<Compared>* runs) {
 void WarnOfOtherTask(const Compared& first, const Compared& other, FidelityReport* report) {
   if (!first.scenario || !other.scenario) {
     report->warnings.push_back("It is unknown whether " + other.name + " had the same task as " +
-                               first.name + ": a recording is damaged and its scenario is lost.");
+                               first.name +
+                               ", because a recording is damaged and its scenario is lost.");
     return;
   }
   const std::vector<std::string> different = TaskDifferences(*first.scenario, *other.scenario);
   if (different.empty()) return;
-  report->warnings.push_back(other.name + " has a different task from " + first.name + ": " +
-                             Join(different) + (different.size() == 1 ? " differs" : " differ") +
-                             ". This alone may explain differences in the figures.");
+  report->warnings.push_back(
+      other.name + " has a different task from " + first.name + ": " + Join(different) +
+      (different.size() == 1 ? " differs" : " differ") +
+      ". This difference alone may explain other differences in the figures.");
 }
 
 // The emulator's stop ends what the person would have felt.
 void WarnOfStop(const Compared& run, FidelityReport* report) {
   if (!IsLimit(run.stopped)) return;
   report->warnings.push_back(Formatted(
-      "The emulator stopped %s at a limit (%s): its largest values are only lower bounds. "
+      "The emulator stopped %s at a limit (%s), so its largest values are only lower bounds. "
       "`predictor continue` predicts what would have happened.",
       run.name.c_str(), Name(run.stopped)));
 }

@@ -57,7 +57,7 @@ const char* NameOfCrash(int signal) {
     case SIGILL:
       return "SIGILL, an invalid instruction";
     default:
-      return "SIGABRT, it gave up";
+      return "SIGABRT, a deliberate abort";
   }
 }
 
@@ -72,7 +72,7 @@ void WriteMessage(int signal) {
          << ". Correct the library. To run a controller that may crash, use "
             "cobot.controller.type: process.\n";
   else
-    text << ". This is a defect of the program: please report it.\n";
+    text << ". This is a defect of the program. Please report it.\n";
   const std::string_view remedy = OpenRecording::Remedy();
   if (!remedy.empty()) text << remedy << "\n";
   text.Write();

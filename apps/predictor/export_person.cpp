@@ -34,7 +34,8 @@ int ExportPersonCommand(const ExportPersonOptions& options) {
   }
   const nlohmann::ordered_json result = {{"folder", folder.string()}, {"files", names}};
   options.Write("Wrote the body, its motion and the forces of the hands to " + folder.string() +
-                    ". OpenSim's inverse dynamics: opensim-cmd run-tool inverse_dynamics.xml\n",
+                    ". To compute the inverse dynamics, run there: opensim-cmd run-tool "
+                    "inverse_dynamics.xml\n",
                 result.dump(2) + "\n");
   return kFinished;
 }

@@ -16,9 +16,11 @@ namespace predictor {
 namespace {
 
 constexpr const char* kNotReached =
-    "Not covered: backups and snapshots of the file system, copies in other folders and on other "
-    "computers, exports under names of your own that do not contain the pseudonym, and the blocks "
-    "of a disk that are not yet overwritten (an SSD keeps some that no program can reach).";
+    "This command does not cover backups and snapshots of the file system, copies in other folders "
+    "and on other computers, exports under names of your own that do not contain the pseudonym, "
+    "and "
+    "the blocks of a disk that are not yet overwritten (an SSD keeps some that no program can "
+    "reach).";
 
 void PrintList(const std::string& title, const std::vector<PersonalFile>& list) {
   if (list.empty()) return;
@@ -30,7 +32,7 @@ void PrintList(const std::string& title, const std::vector<PersonalFile>& list) 
 bool Confirmed(const ForgetOptions& options, std::size_t count) {
   if (options.yes) return true;
   if (isatty(STDIN_FILENO) != 1)
-    throw InputError("Nothing was deleted. To delete what is listed, add --yes.");
+    throw InputError("Nothing was deleted. To delete the listed files, add --yes.");
   TheScreen().Print(Formatted("Files to delete for good: %zu. To delete them, type yes.", count));
   std::string answer;
   std::getline(std::cin, answer);
@@ -71,8 +73,7 @@ int ForgetCommand(const ForgetOptions& options) {
   options.CheckWritable();
   const PersonSearch before = Search(options);
   PrintList("Files of this person:", before.found);
-  PrintList("Their content is also under another name outside of the folder (hard links):",
-            before.linked);
+  PrintList("These files also have other names outside of the folder (hard links):", before.linked);
   if (!before.found.empty() && !Confirmed(options, before.found.size())) {
     TheScreen().Print("Nothing was deleted.");
     return kUnfit;

@@ -211,12 +211,12 @@ std::string ResultText(const InitOptions& o, const Draft& draft, const std::stri
   const InitCobot& cobot = draft.cobot;
   std::string text;
   if (!o.urdf.empty())
-    text = Formatted("%zu joints carry link %s, which holds the object of %g kg.\n",
+    text = Formatted("%zu joints carry link %s, which holds the %g kg object.\n",
                      cobot.posture.size(), cobot.end_effector.c_str(), draft.mass);
   if (!o.urdf.empty() && !cobot.remove_links.empty())
     Append(&text,
-           "Left out (%.2g kg), because other joints move them: %s. To choose another link for the "
-           "object, use --end-effector.\n",
+           "The scenario leaves out these links (%.2g kg), because other joints move them: %s. To "
+           "choose another link for the object, use --end-effector.\n",
            cobot.removed_mass, Join(cobot.remove_links).c_str());
   if (!draft.problems.empty()) return text + "Wrote " + file + ", which does not pass its check.\n";
   return text + "Wrote " + file + ". Next: predictor check " + file + "; predictor run " + file +
@@ -230,7 +230,9 @@ int InitCommand(const InitOptions& options) {
   options.CheckWritable();
   options.RefuseToReplace(file);
   if (options.urdf.empty() && !options.end_effector.empty())
-    throw InputError("--end-effector is a link of your cobot. Give its URDF as well: --urdf FILE.");
+    throw InputError(
+        "--end-effector names a link of your own cobot. Give the URDF of this cobot as well: "
+        "--urdf FILE.");
   const Draft draft = Choose(options, file);
   WriteFile(file, TextOf(options, draft));
   for (const std::string& problem : draft.problems) TheScreen().Print("Unfit: " + problem);

@@ -88,7 +88,7 @@ void ConfirmPerturbation(const Scenario& scenario) {
   if (!scenario.perturbation) return;
   const PerturbationSpec& p = *scenario.perturbation;
   const std::string question = Formatted(
-      "During the run, the handles will move by themselves by up to %.0f mm, again and again, to "
+      "During the run, the handles will move by themselves by up to %.0f mm, repeatedly, to "
       "identify the operator's arms. A hand that resists with more than %.0f N ends such a motion. "
       "Does the person who will hold the handles know this and agree? Type yes to continue: ",
       1e3 * p.amplitude, p.force);

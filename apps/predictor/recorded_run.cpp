@@ -47,9 +47,10 @@ std::map<std::string, std::string> RecordOptions::Labels() const {
       throw InputError("--label: " + Quote(label) + " is not a label. Write key=value.");
     const std::string key = label.substr(0, equals);
     if (IsParticipantLabel(key))
-      throw InputError("--label: " + Quote(key) +
-                       " is checked before it is stored. Write it into a file, and give the file "
-                       "with --participant.");
+      throw InputError(
+          "--label: " + Quote(key) +
+          " belongs to the data of the participant, which the program checks first. Write "
+          "it into a file, and give the file with --participant.");
     result[key] = label.substr(equals + 1);
   }
   return result;

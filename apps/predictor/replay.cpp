@@ -225,8 +225,9 @@ int VerifyCommand(const RecordingOptions& options) {
       &reader, scenario, [&](std::uint64_t ticks) { progress.Update(static_cast<double>(ticks)); });
   progress.Finish();
   if (result.ticks == 0)
-    throw InputError(options.recording,
-                     "No tick could be compared: the recording has no saved state to start from.");
+    throw InputError(
+        options.recording,
+        "No tick could be compared, because the recording has no saved state to start from.");
   options.Write(TextOf(result), JsonOf(result));
   return result.departure ? kDeparted : kFinished;
 }

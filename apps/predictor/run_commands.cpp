@@ -56,8 +56,8 @@ void AddRosOptions(CLI::App* app, ServeOptions* o) {
 
 void AddEvaluation(CLI::App* app, ServeOptions* o) {
   app->add_flag("--evaluation,!--no-evaluation", o->evaluation,
-                "Judge the person live [default: on, if the scenario says who the operator is and "
-                "where the operator stands]")
+                "Judge the person live [default: on, if the scenario specifies the operator's body "
+                "and stance]")
       ->group("Person");
 }
 
@@ -143,9 +143,9 @@ void AddInit(CLI::App* app, Request* r) {
       "Examples:\n"
       "  predictor init first && predictor run first.yaml\n"
       "  predictor init mine --arms 1 --urdf robot.urdf --object bar\n"
-      "Of a robot with grippers, several arms or wheels, only one arm is used, without its "
-      "gripper's joints; the scenario lists what is left out.\n"
-      "Exit code 1: no scenario with this cobot passed its check; the file is written "
+      "From a robot with grippers, several arms or wheels, the scenario uses only one arm, without "
+      "its gripper's joints. It lists the links that are left out.\n"
+      "Exit code 1: no scenario with this cobot passed its check. The file is written "
       "nevertheless.\n");
 }
 

@@ -22,7 +22,8 @@ int ShareCommand(const RecordingOptions& options) {
   const std::vector<std::string> removed = WriteShared(options.recording, out.string());
   const nlohmann::ordered_json result = {{"file", out.string()}, {"removed", removed}};
   options.Write("Wrote " + out.string() + " without the person. Removed: " +
-                    (removed.empty() ? "nothing, nothing was there" : Printable(Join(removed))) +
+                    (removed.empty() ? "nothing, because the recording has no such data"
+                                     : Printable(Join(removed))) +
                     ".\n",
                 result.dump(2) + "\n");
   return kFinished;

@@ -134,7 +134,8 @@ void AddForget(CLI::App* app, Request* r) {
   AddJson(forget, o);
   AddQuiet(forget, o);
   forget->footer(
-      "Lists the files before it deletes them, and searches the folder again afterwards.\n\n"
+      "The command lists the files before it deletes them, and searches the folder again "
+      "afterwards.\n\n"
       "Exit code 1: data remain, or a place could not be searched.\n\n"
       "Example:\n  predictor forget K7QM2XPX runs\n");
 }

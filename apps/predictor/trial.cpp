@@ -51,7 +51,7 @@ TrialFigures TryOn(RecordingReader* reader, const Scenario& scenario, bool quiet
   }
   progress.Finish();
   if (trial.Figures().steps == 0)
-    throw InputError("In the recording, no simulated time passes. Give one with a run.");
+    throw InputError("No simulated time passes in this recording. Give a recording of a run.");
   return trial.Figures();
 }
 
@@ -61,18 +61,20 @@ std::string TextOf(const TrialFigures& f) {
              static_cast<unsigned long long>(f.steps), 1e6 * f.median, 1e6 * f.p99,
              1e6 * f.longest_cpu);
   if (f.allocating > 0)
-    AppendLine(&text,
-               "Unfit: it allocates heap memory in %llu steps, first at %.3f s. Allocate all "
-               "memory in create.",
-               static_cast<unsigned long long>(f.allocating), f.first_allocation);
+    AppendLine(
+        &text,
+        "Unfit: the library allocates heap memory in %llu steps, first at %.3f s. Allocate all "
+        "memory in create.",
+        static_cast<unsigned long long>(f.allocating), f.first_allocation);
   if (f.not_finite > 0)
-    AppendLine(&text, "Unfit: in %llu steps, its torques are not finite.",
+    AppendLine(&text, "Unfit: in %llu steps, the torques of the library are not finite.",
                static_cast<unsigned long long>(f.not_finite));
   if (f.p99 > f.kMaxTime || f.longest_cpu > f.kMaxCpuTime)
-    AppendLine(&text,
-               "Unfit: it takes too long. The limits are %.0f µs in 99 %% of the steps, and %.0f "
-               "µs of CPU time.",
-               1e6 * f.kMaxTime, 1e6 * f.kMaxCpuTime);
+    AppendLine(
+        &text,
+        "Unfit: the library takes too long. The limits are %.0f µs in 99 %% of the steps, and %.0f "
+        "µs of CPU time.",
+        1e6 * f.kMaxTime, 1e6 * f.kMaxCpuTime);
   return text;
 }
 
@@ -98,10 +100,11 @@ int TrialCommand(const ScenarioOptions& options, const std::string& recording) {
   std::string text = TextOf(figures);
   if (figures.passed()) {
     NoteTrial(library.file, library.parameters, true);
-    AppendLine(&text,
-               "Passed. Noted in %s: with these parameters, the library may now drive a cobot with "
-               "real arms.",
-               TrialNoteFile(library.file).string().c_str());
+    AppendLine(
+        &text,
+        "Passed. The result is stored in %s. With these parameters, the library may now be used "
+        "with real arms.",
+        TrialNoteFile(library.file).string().c_str());
   }
   options.Write(text, JsonOf(figures));
   return figures.passed() ? kFinished : kUnfit;

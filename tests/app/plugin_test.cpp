@@ -74,7 +74,8 @@ TEST_F(FailingController, ThatReturnsNoNumberStopsTheRun) {
 
 TEST_F(FailingController, ThatEndsAsAProcessStopsTheRun) {
   ASSERT_EQ(Run(Program("crash")), 1) << said_;
-  ExpectStop("the cobot's controller no longer answers. Read what its program printed");
+  ExpectStop(
+      "the cobot's controller no longer answers. Read the output of the controller's program");
 }
 
 // The library crashes the program as well, which must say so. `repair` must recover all but the
@@ -184,7 +185,7 @@ TEST_F(FailingController, ThatAllocatesFailsItsTrial) {
   };
   EXPECT_NE(noted().find("with the parameters fault=none\n"), std::string::npos) << noted();
   EXPECT_EQ(Do({"trial", Scenario("box_9kg"), file_, "--set", library("mine.so")}), 1) << said_;
-  EXPECT_NE(said_.find("it allocates heap memory in"), std::string::npos) << said_;
+  EXPECT_NE(said_.find("the library allocates heap memory in"), std::string::npos) << said_;
   EXPECT_NE(said_.find("first at 2.00"), std::string::npos) << said_;
   EXPECT_NE(noted().find("with the parameters fault=none\n"), std::string::npos) << noted();
   EXPECT_EQ(noted().find("allocate"), std::string::npos) << noted();

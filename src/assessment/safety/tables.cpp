@@ -79,11 +79,9 @@ SafetyTable StopTable(const StopJudgement& judged) {
          Formatted("%.1f", load.peak), load.use ? PercentText(*load.use) : "–"});
   table.notes.emplace_back(
       "The change caused by the stop is the largest change of the torque after the decision to "
-      "stop. The 90 % column contains the 90 % interval of this change for 64 possible postures "
-      "and "
-      "bodies. The last "
-      "column gives the largest torque as a percentage of the mean strength for the person's "
-      "sex, if a verified source for this strength exists.");
+      "stop. The 90 % column contains the 90 % interval of this change, for 64 possible postures "
+      "and bodies. The last column gives the largest torque as a percentage of the mean strength "
+      "for the person's sex, if a verified source for this strength exists.");
   return table;
 }
 
