@@ -152,7 +152,8 @@ int ExportEventsCommand(const RecordingOptions& options) {
   out.Finish(out.Add(text));
   if (reader.more_events() > 0)
     TheScreen().Print(
-        Formatted("%llu events are missing: the file has more events than the program can read.",
+        Formatted("%llu events are missing, because the file has more events than the program "
+                  "can read.",
                   static_cast<unsigned long long>(reader.more_events())));
   return kFinished;
 }

@@ -77,7 +77,7 @@ void RequireStability(const Machine& machine, const Scenario& scenario) try {
       scenario.file.string(),
       Formatted(
           "the real arms were not moved, because the loop of hand, simulation and arms would be "
-          "unstable. Its stability margin is %.1f; at least 1 is required, and 2 is recommended. ",
+          "unstable. The stability margin is %.1f; at least 1 is required, and 2 is recommended. ",
           margin) +
           way);
 } catch (const InputError& error) {

@@ -53,7 +53,8 @@ RunInfo Describe(const std::string& file, RecordingReader* reader) {
   if (reader->more_events() > 0)
     info.problem +=
         (info.problem.empty() ? "" : " ") + std::to_string(reader->more_events()) +
-        " of the recording's events are omitted: it has more events than the program can read.";
+        " of the recording's events are omitted, because the recording has more events than the "
+        "program can read.";
   return info;
 }
 

@@ -33,21 +33,23 @@ constexpr CalibrateStep kCalibrateSteps[] = {
      "  predictor calibrate bases --machine rig.yaml --tip 0 0 0.18"},
     {"loop", "Measure how fast an arm follows: THE ARM MOVES",
      "Which arm (required if there are two)",
-     "Keep your hands off the handle and hold s (or the enabling device): each joint in turn "
+     "Keep your hands off the handle and hold s (or the enabling device). Each joint in turn "
      "oscillates by at most 30 mrad for ten seconds. Releasing the key or device stops the arm. "
-     "The results of measured joints are kept; run the command again to measure the others.\n"
+     "The results of measured joints are kept. Run the command again to measure the other joints.\n"
      "Needs: the controller ready for commands, real-time scheduling on this computer and no other "
      "programs, no person within reach, and a hand on the emergency stop.\n"
-     "Writes: loop (bandwidth, damping ratio, delay). Without it, runs have no lag compensation.\n"
+     "Writes: loop (bandwidth, damping ratio, delay). Without these values, runs have no lag "
+     "compensation.\n"
      "Example:\n"
      "  predictor calibrate loop --machine rig.yaml --arm left"},
     {"push", "Check the direction of the force readings by pushing the handles; nothing moves",
      "Only this arm [default: all]",
      "Take your hands off and press Enter. Then push each handle along +x, +y and +z of the world "
-     "when asked, with 5 to 25 N.\n"
+     "with 5 to 25 N, when the program prompts you.\n"
      "Needs: final values of base, sensor.pose and payload. Repeat this test after any later "
      "change.\n"
-     "Writes: commissioned.push_test. Without it, `predictor run` does not move real arms.\n"
+     "Writes: commissioned.push_test. Without this entry, `predictor run` does not move real "
+     "arms.\n"
      "Example:\n"
      "  predictor calibrate push --machine rig.yaml"}};
 

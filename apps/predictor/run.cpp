@@ -379,11 +379,12 @@ Scenario LoadForRealTime(const ScenarioOptions& options) {
                                  "time only. Remove this line, or use `predictor simulate`."),
                   scenario);
   if (scenario.simulation.engine != EngineKind::kMujoco)
-    throw Located(InputError::At("simulation.engine",
-                                 "simulation.engine is dart, which runs in virtual time only: its "
-                                 "steps allocate memory and wait for another process, so a step "
-                                 "may be late. Set it to mujoco, or use `predictor simulate`."),
-                  scenario);
+    throw Located(
+        InputError::At("simulation.engine",
+                       "simulation.engine is dart, which runs in virtual time only. "
+                       "DART's steps allocate memory and wait for another process, so a step "
+                       "may be late. Set it to mujoco, or use `predictor simulate`."),
+        scenario);
   return scenario;
 }
 
@@ -418,7 +419,7 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
   RequireStability(machine, scenario);
   ConfirmPerturbation(scenario);
   std::fputs(
-      "Connecting to the arms. We have never run these drivers on hardware: keep the emergency "
+      "Connecting to the arms. We have never run these drivers on hardware, so keep the emergency "
       "stop within reach. Keep your hands off the handles until IDLE, because the sensors are "
       "being tared.\n",
       stderr);
