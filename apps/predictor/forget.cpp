@@ -18,8 +18,7 @@ namespace {
 constexpr const char* kNotReached =
     "This command does not cover backups and snapshots of the file system, copies in other folders "
     "and on other computers, exports under names of your own that do not contain the pseudonym, "
-    "and "
-    "the blocks of a disk that are not yet overwritten (an SSD keeps some that no program can "
+    "and the blocks of a disk that are not yet overwritten (an SSD keeps some that no program can "
     "reach).";
 
 void PrintList(const std::string& title, const std::vector<PersonalFile>& list) {
