@@ -66,17 +66,20 @@ std::string StopSentence(const RunData& run) {
 }
 
 std::string TrackingWords(const RunData& run) {
+  const bool gripped = std::ranges::any_of(kHandNames, [&](const char* side) {
+    return run.summary.Get<Statistics>(std::string("tracking.") + side + ".translation_m").count() >
+           0;
+  });
   const auto of = [&](const std::string& key) -> const Statistics& {
-    const auto& gripping = run.summary.Get<Statistics>("tracking." + key);
-    return gripping.count() > 0 ? gripping
-                                : run.summary.Get<Statistics>("tracking.released." + key);
+    return run.summary.Get<Statistics>((gripped ? "tracking." : "tracking.released.") + key);
   };
   std::string text;
   for (const char* side : kHandNames) {
     const Statistics& s = of(side + std::string(".translation_m"));
     if (s.count() == 0) continue;
-    text += (text.empty() ? "While the hands gripped, the distance between the "
-                          : "; the distance between the ") +
+    text += (!text.empty() ? "; the distance between the "
+             : gripped     ? "While the hands gripped, the distance between the "
+                           : "No hand gripped; the distance between the ") +
             std::string(side) + " handle and its target was " +
             Spread(1e3 * s.mean(), 1e3 * s.std(), 3) + " mm, and at most " + Mm(s.max());
   }
