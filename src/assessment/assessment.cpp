@@ -167,9 +167,10 @@ void AddFatigue(const Scenario& scenario, const NominalChain& nominal,
   add(1, "right elbow", FatigueJoint::kElbow, [](const Frame& f) { return f.elbow_use[1]; });
 }
 
-// If the person's place is wrong, every number is wrong. Throws InputError if it is impossible.
+// Throws InputError if the place of the person is impossible, because every result would then be
+// wrong.
 void CheckPlace(std::span<const PersonSample> samples, Assessment* a) {
-  Vector3 mean = Vector3::Zero();  // of the gripping hands, in S
+  Vector3 mean = Vector3::Zero();  // mean position of the gripping hands, in S
   double hands = 0, highest = 0;
   for (const PersonSample& sample : samples)
     for (const person::HandSample& hand : sample.body.hands) {
@@ -204,7 +205,7 @@ void AddStopWarning(const PersonRun& run, Assessment* a) {
 void AddBalanceWarning(const NominalChain& nominal, Assessment* a) {
   const auto falling = std::ranges::count_if(
       nominal.frames, [](const Frame& f) { return f.loads.balance.margin < 0; });
-  constexpr double kShort = 0.1;  // a person can balance for this long [s]
+  constexpr double kShort = 0.1;  // a person can be off balance for this time without falling [s]
   if (static_cast<double>(falling) < kShort * kSampleRate) return;
   a->warnings.push_back(Formatted(
       "The centre of pressure is outside the feet for %.1f s: a person could not stand like this.",
@@ -245,7 +246,7 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
           "repeated four times a minute and " + (work.held ? "" : "not ") +
           "held for more than a minute, and the handles are easy to grip.",
       "For the lifting index, lifts occur as often as in this run, and for at most one hour.",
-      std::string("Strength is the mean of the person's sex") +
+      std::string("Strength is the mean for the person's sex") +
           (work.strength == WorkPattern().strength ? "" : ", times operator.body.strength") +
           ", for flexion and extension only."};
   if (scenario.operator_.type == "virtual")

@@ -24,7 +24,7 @@ namespace predictor::assessment {
 
 struct QuantityResult {
   const QuantityKind* kind = nullptr;
-  double mean = 0, p5 = 0, p95 = 0, min = 0, max = 0;  // of the nominal posture over time
+  double mean = 0, p5 = 0, p95 = 0, min = 0, max = 0;  // over time, for the nominal posture
   // 90 % intervals, over possible postures and bodies, of the mean and of the tail on the bad side.
   std::optional<person::Interval> mean_interval, tail_interval;
   std::vector<double> person_tail;  // tail of each possible person; the people are the same in all
@@ -41,8 +41,8 @@ struct QuantityResult {
 struct WorksheetResult {
   const WorksheetKind* kind = nullptr;
   int worst = 0, p95 = 0;                       // of the nominal posture
-  std::vector<double> share;                    // of time, by score (index 0: score 0)
-  std::vector<double> probability;              // of each score, averaged over time
+  std::vector<double> share;                    // share of time for each score (index 0: score 0)
+  std::vector<double> probability;              // probability of each score, averaged over time
   std::vector<int> values;                      // at Assessment::times
   std::vector<double> likely_low, likely_high;  // range of 90 % of the postures, at sampled_times
 };
@@ -54,13 +54,13 @@ struct Assessment {
   PersonSetup setup;
   std::array<bool, kHands> hands = {};  // which handles the scenario has
   double duration = 0;                  // simulated [s]
-  double held = 0;             // part of it in which a hand held a handle; only this part is judged
-                               // [s]
+  double held = 0;  // part of the duration in which a hand held a handle; only this part is judged
+                    // [s]
   double reached = 0;          // share of the time in which the body reaches the handles
-  double sampled_reached = 0;  // the same, averaged over the possible postures
+  double sampled_reached = 0;  // share of the time, averaged over the possible postures
   double worst_miss = 0;       // largest distance by which a hand misses its handle [m]
   std::vector<double> times, sampled_times;  // [s]
-  std::vector<QuantityResult> quantities;    // those of existing handles, in the order of
+  std::vector<QuantityResult> quantities;    // quantities of existing handles, in the order of
                                              // Quantities()
   std::vector<WorksheetResult> worksheets;   // in the order of Worksheets()
   std::vector<Lift> lifts;
@@ -69,8 +69,8 @@ struct Assessment {
   BodyPicture worst;                       // at WorstSample()
   std::vector<BodyPicture> pictures;       // evenly spaced over the judged time
   std::optional<SafetyAssessment> safety;  // filled by JudgeSafety; empty: not judged
-  MeasuredBody measured;                   // beside the hands
-  std::vector<std::string> warnings;       // about doubtful input
+  MeasuredBody measured;                   // measurements in addition to the hands
+  std::vector<std::string> warnings;       // sentences about doubtful input
   std::vector<std::string> assumptions;
   std::vector<NotEvaluable> not_evaluable;
 };
@@ -80,8 +80,8 @@ struct AssessOptions {
   WorkPattern work;
   std::shared_ptr<const muscles::ArmPaths> arm;  // the arms' muscles; null: the built-in model
   std::vector<tracks::BodyTrack> tracks;         // further measurements of the person
-  double start_unix = 0;                         // of the recording, for tracks in this clock [s]
-  std::vector<std::string> notes;                // about what was missing in the recording
+  double start_unix = 0;  // start of the recording, for tracks whose clock is Unix time [s]
+  std::vector<std::string> notes;  // sentences about what was missing in the recording
   std::function<void(double share)> progress = [](double) {};
 };
 

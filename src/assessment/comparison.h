@@ -16,14 +16,14 @@ struct Difference {
   // compared with the same person in the other, so most of the uncertainty about the posture
   // cancels.
   std::optional<person::Interval> interval;
-  std::optional<double> share_better;  // of the possible people for whom a is better than b
+  std::optional<double> share_better;  // share of the possible people for whom a is better than b
 };
 
 struct Comparison {
   std::string a, b;  // recordings
   std::vector<Difference> differences;
   std::vector<DamageResult> damage_a, damage_b;
-  std::string warning;  // if the runs can hardly be compared; else empty
+  std::string warning;  // why the runs can hardly be compared; empty if they can
 };
 
 // Throws InputError if the bodies differ: the difference would then not be due to the designs

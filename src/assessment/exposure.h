@@ -15,15 +15,15 @@ namespace predictor::assessment {
 struct DamageResult {
   std::string tool, part;  // "LiFFT", "lower back"
   double per_run = 0;      // damage
-  double day_share = 0;    // of the reference day, per run
-  double shift_share = 0;  // of the reference day, if the run is repeated for an 8 h shift
-  double probability = 0;  // of the tool's outcome for that shift
+  double day_share = 0;    // damage of the run, as a share of the damage of the reference day
+  double shift_share = 0;  // the same for an 8 h shift in which the run is repeated
+  double probability = 0;  // probability of the tool's outcome after that shift
 };
 
 // `moment` [N·m] covers a run at 100 Hz and is 0 at rest. It is low-passed at kDamageCutoff in both
 // directions. Ranges smaller than kMinRange or than kMinRangeShare of the largest range are
-// ignored. In this method, each cycle causes some damage even without a load, so tremor and noise
-// would count as lifts.
+// ignored. Without these thresholds, tremor and noise would count as lifts, because in this method
+// each cycle causes some damage even without a load.
 DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
                             std::span<const double> moment, double (*per_cycle)(double),
                             const ergonomics::DamageRisk& risk);
@@ -55,8 +55,8 @@ struct FatigueResult {
   std::string joint;         // "left shoulder"
   double mean_load = 0;      // share of strength
   double capacity = 1;       // remaining strength at the end of the run, as a share
-  double time_to_limit = 0;  // until a repetition of the run needs more than the remaining strength
-                             // [s]; infinite: not within 8 h
+  double time_to_limit = 0;  // time until a repetition of the run needs more than the remaining
+                             // strength [s]; infinite if longer than 8 h
 };
 
 // `load` is a share of strength at 100 Hz.

@@ -16,7 +16,7 @@ namespace predictor::assessment {
 
 // Assumptions about the work, which no recording contains.
 struct WorkPattern {
-  bool repeated = false;  // the same posture at least four times a minute
+  bool repeated = false;  // the person takes the same posture at least four times a minute
   bool held = false;      // a posture is static for more than a minute
   ergonomics::Coupling coupling = ergonomics::Coupling::kGood;
   // Strength of the person, as a multiple of the mean for the person's sex (BodySpec::strength).
@@ -33,8 +33,8 @@ struct Frame {
   // Torque divided by the strength in its direction (flexion or extension), which is the mean for
   // the person's sex times WorkPattern::strength.
   std::array<double, kHands> elbow_use = {}, shoulder_use = {};
-  bool reached = false;  // in this posture, the hands reach the handles
-  // These are computed for the nominal person only and have no values for the other people.
+  bool reached = false;  // whether the hands reach the handles in this posture
+  // The use of the muscles is computed for the nominal person only.
   std::array<ArmMuscleUse, kHands> muscles;
 };
 

@@ -19,7 +19,7 @@ std::size_t TicksPerSample(double rate);
 
 struct PersonSample {
   person::BodySample body;
-  double recorded = 0;                         // since the first tick of the recording [s]
+  double recorded = 0;                         // time since the first tick of the recording [s]
   std::array<double, kHands> peak_force = {};  // largest over the ticks of the sample [N]
   // False if, before this sample, simulated time was paused, ticks were lost, or a hand gripped or
   // let go.
@@ -47,8 +47,8 @@ class SampleBuilder {
   std::optional<std::uint64_t> start_;  // first tick of the recording
   TickRecord first_{};
   std::vector<TickRecord> pending_;
-  std::optional<double> last_time_;                  // of the last tick in RUN [s]
-  std::optional<std::array<bool, kHands>> present_;  // in the previous sample
+  std::optional<double> last_time_;                  // time of the last tick in RUN [s]
+  std::optional<std::array<bool, kHands>> present_;  // hands present in the previous sample
   bool interrupted_ = false;
 };
 
@@ -81,7 +81,7 @@ class HeldFilter {
   std::optional<PersonSample> Take(PersonSample sample);
 
  private:
-  bool gap_ = false;  // since the last sample that was passed on
+  bool gap_ = false;  // whether samples were dropped since the last one that was passed on
 };
 std::vector<PersonSample> Held(const std::vector<PersonSample>& samples);
 

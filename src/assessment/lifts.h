@@ -12,14 +12,14 @@
 namespace predictor::assessment {
 
 struct Lift {
-  bool one_hand = false;                      // if true, the equations do not apply
-  double begin = 0, end = 0;                  // [s]
-  ergonomics::HandPlace origin, destination;  // of the point midway between the gripping hands
+  bool one_hand = false;      // lifted with one hand: the lifting equations do not apply
+  double begin = 0, end = 0;  // [s]
+  ergonomics::HandPlace origin, destination;  // points midway between the gripping hands
   double vertical_force = 0;                  // sum over the hands, averaged over the lift, upwards
                                               // [N]
   ergonomics::AssistedLift niosh;
-  ergonomics::Acceptable acceptable;  // by LM-MMH, of the carried mass [kg]
-  double share_that_accepts = 0;      // among people of the same sex, 0 … 1
+  ergonomics::Acceptable acceptable;  // acceptable mass by LM-MMH [kg]
+  double share_that_accepts = 0;      // share of people of the same sex, 0 … 1
 };
 
 // Design choices [m]: a lift is a rise of at least kMinLift between two turning points of the

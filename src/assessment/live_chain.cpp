@@ -8,7 +8,8 @@ void LiveChain::Add(const PersonSample& sample) {
   postures_.push_back(person_.Solve(sample));
 }
 
-// Drops samples that no later one needs. It does so only now and then, because it moves the others.
+// Drops samples that are no longer needed. This happens only occasionally, because the remaining
+// samples are then moved.
 void LiveChain::Forget() {
   if (next_ < 4 * kLiveHistory) return;
   const auto dropped = static_cast<std::ptrdiff_t>(next_ - kLiveHistory);
@@ -20,7 +21,7 @@ void LiveChain::Forget() {
 bool LiveChain::Next(bool all, JudgedSample* judged) {
   const std::size_t known = samples_.size();
   if (next_ >= known) return false;
-  std::size_t end = next_ + 1;  // of the uninterrupted part
+  std::size_t end = next_ + 1;  // end of the uninterrupted part
   while (end < known && samples_[end].continues) ++end;
   if (!all && end == known && next_ + kLiveDelay >= known) return false;
   std::size_t begin = next_;

@@ -35,8 +35,8 @@ class LiveChain {
   void Add(const PersonSample& sample);
   // Returns the posture of the newest sample.
   const person::Posture& newest() const { return postures_.back(); }
-  // Gets the next sample that can be judged. `all` states that no later sample continues the known
-  // ones, so all of them can be judged. Returns false if no sample can be judged yet.
+  // Gets the next sample that can be judged. Set `all` if no later sample continues the known ones:
+  // all of them can then be judged. Returns false if no sample can be judged yet.
   bool Next(bool all, JudgedSample* judged);
 
   const person::BodyModel& model() const { return person_.model(); }
@@ -47,7 +47,7 @@ class LiveChain {
 
   NominalPerson person_;
   ArmMuscles muscles_;
-  std::vector<PersonSample> samples_;  // with the same indices in both
+  std::vector<PersonSample> samples_;  // same indices as postures_
   std::vector<person::Posture> postures_;
   std::size_t next_ = 0;  // the next sample to be judged
 };

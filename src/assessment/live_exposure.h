@@ -15,7 +15,7 @@ namespace predictor::assessment {
 class LiveExposure {
  public:
   explicit LiveExposure(const Scenario& scenario);
-  // Adds the next sample. null means that no hand holds a handle, so the arms rest.
+  // Adds the next sample. A null `frame` means that no hand holds a handle, so the arms rest.
   void Add(const Frame* frame);
   // Writes damage and capacity into `state`. To bound the cost, the damage is computed again only
   // when the number of samples has grown by 2 % and by at least 1 s, or immediately with `now`.
@@ -31,7 +31,7 @@ class LiveExposure {
   };
 
   std::array<Part, kBodyParts> parts_;
-  std::size_t count_ = 0, counted_ = 0;  // samples, and how many of them are included in the damage
+  std::size_t count_ = 0, counted_ = 0;  // number of samples, and of those included in the damage
 };
 
 }  // namespace predictor::assessment

@@ -35,7 +35,7 @@ class LivePerson {
   Scenario scenario_;
   WorkPattern work_;
   std::uint64_t last_tick_ = 0;
-  std::optional<PersonSetup> setup_;  // from the first tick in RUN
+  std::optional<PersonSetup> setup_;  // set in the first tick in RUN
   SampleBuilder builder_;
   HeldFilter held_;
   std::optional<LiveChain> chain_;

@@ -49,7 +49,7 @@ constexpr int HandOf(std::size_t gauge) {
   return static_cast<int>(gauge - static_cast<std::size_t>(PersonGauge::kLeftShoulderUse)) % 2;
 }
 
-// Returns true for −1 as well.
+// Returns whether this hand is present. Returns true for −1, which means neither hand.
 bool IsPresent(int hand, const PersonSample& sample) {
   return hand < 0 || sample.body.hands[static_cast<std::size_t>(hand)].present;
 }
@@ -119,7 +119,7 @@ LiveIntervals::LiveIntervals(const PersonSetup& setup, const WorkPattern& work)
     : setup_(setup), work_(work), sampler_(setup.body, setup.stance, setup.grips) {}
 
 void LiveIntervals::Add(const JudgedSample& judged, PersonState* state) {
-  constexpr std::size_t kAtOnce = 4;  // these are complete before the next ones begin
+  constexpr std::size_t kAtOnce = 4;  // people that are evaluated at once, before the next ones
   static_assert(kAtOnce * kSampledStride >= person::kPostureSamples);
   if (count_++ % kSampledStride == 0) {
     current_ = judged;

@@ -10,12 +10,13 @@
 
 namespace predictor::assessment {
 
-// Writes gauges, scores and loads of the nominal person into `state` and keeps its intervals.
+// Writes gauges, scores and loads of the nominal person into `state`, whose intervals stay
+// unchanged.
 void WriteFrame(const JudgedSample& judged, PersonState* state);
 
 // Writes intervals and probabilities from the frames of all possible people.
 void WriteIntervals(std::span<const Frame> frames, const PersonSample& sample, PersonState* state);
-// Sets the same values to unknown.
+// Sets all values that WriteFrame and WriteIntervals write to unknown.
 void ForgetValues(PersonState* state);
 
 // Evaluates the possible people, a few at a time, so that the nominal person is never late.
@@ -32,7 +33,7 @@ class LiveIntervals {
   person::PostureSampler sampler_;
   std::size_t count_ = 0;
   std::optional<JudgedSample> current_;
-  std::vector<Frame> frames_;  // of the people evaluated so far
+  std::vector<Frame> frames_;  // frames of the people evaluated so far
 };
 
 // Warnings with hysteresis and a delay for each direction, so that they do not flicker.
@@ -45,7 +46,7 @@ class WarningKeeper {
  private:
   struct Entry {
     bool on = false;
-    std::optional<double> since;  // since when the value has called for the opposite state [s]
+    std::optional<double> since;  // time since which the value has required the opposite state [s]
   };
   std::array<Entry, kPersonWarnings> entries_;
 };

@@ -12,14 +12,14 @@
 namespace predictor::assessment {
 namespace {
 
-// Limits of what is possible, as shares of the height (design choices). They only have to
-// distinguish a person from a wrong unit, frame or marker.
+// Limits of what is possible, as shares of the height (design choices). They only have to reveal a
+// wrong unit, frame or marker.
 constexpr double kLowest = 0.1, kHighest = 1.25, kFarthest = 1.0;
 constexpr double kElbowToHandle = 0.4;
 
 struct Finding {
   std::size_t measured = 0, impossible = 0;
-  std::vector<double> heights, distances;  // of impossible positions, in S [m]
+  std::vector<double> heights, distances;  // the impossible positions, in S [m]
 };
 
 bool IsPossible(const PersonSetup& setup, const Vector3& p_W, Finding* finding) {
@@ -131,7 +131,7 @@ tracks::ClockOffset Estimate(const tracks::BodyTrack& track,
     const auto found = tracks::EstimateOffset({times, handle}, {hand.times, hand.p}, track.source);
     if (!best || found.correlation > best->correlation) best = found;
   }
-  return *best;  // a mapping with an unknown clock has a hand
+  return *best;  // set, because a mapping with an unknown clock must map a hand
 }
 
 UsedTrack Relate(const tracks::BodyTrack& track, double start_unix,
@@ -234,7 +234,8 @@ std::string MeasuredSentence(const MeasuredBody& measured) {
   std::vector<std::string> parts = {"the hands"};
   for (const MeasuredPart& part : measured.parts)
     parts.push_back(Formatted("the %s (%.0f %% of the time)", part.what.c_str(), 100 * part.share));
-  return "Measured were " + Join(parts) + ": the rest of the posture is the most comfortable one.";
+  return "These were measured: " + Join(parts) +
+         ": the rest of the posture is the most comfortable one.";
 }
 
 std::string Sentence(const MeasuredPart& part) {

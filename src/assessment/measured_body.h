@@ -19,22 +19,22 @@ namespace predictor::assessment {
 // A file with measurements, and how its clock was related to that of the recording.
 struct UsedTrack {
   std::string source;
-  double offset = 0;                            // added to its times [s]
-  std::optional<tracks::ClockOffset> estimate;  // if the offset was estimated
+  double offset = 0;                            // added to the file's times [s]
+  std::optional<tracks::ClockOffset> estimate;  // empty if the offset was given
 };
 
 struct MeasuredPart {
   std::string what;    // "head", "head rotation", "left elbow", "right elbow"
   std::string source;  // file
-  double share = 0;    // of the judged time in which it was measured
-  // The median distance of the nominal posture from the measurement [m]. A rotation has none.
+  double share = 0;    // share of the judged time in which the part was measured
+  // The median distance of the nominal posture from the measurement [m]. Empty for a rotation.
   std::optional<double> misfit;
 };
 
-// No score uses these signals.
+// A signal that no score uses.
 struct MeasuredSignal {
   std::string name, unit, source;
-  double share = 0;            // of the judged time
+  double share = 0;            // share of the judged time in which the signal was measured
   std::vector<double> values;  // at Assessment::times; NaN: missing
 };
 
@@ -42,13 +42,12 @@ struct MeasuredBody {
   std::vector<UsedTrack> tracks;
   std::vector<MeasuredPart> parts;
   std::vector<MeasuredSignal> signals;
-  MeasuredEmgs emg;  // the warnings about them are in `warnings`
+  MeasuredEmgs emg;  // their warnings are in `warnings` below
   std::vector<std::string> warnings;
 };
 
-// Adds the measured head and elbows to the samples, as far as they were measured at these times. It
-// extrapolates nothing, and interpolates only over 0.05 s. `start_unix` is the start of the
-// recording [s].
+// Adds the measured head and elbows to the samples. Missing values are not extrapolated, and are
+// interpolated only in gaps of up to 0.05 s. `start_unix` is the start of the recording [s].
 //
 // Throws InputError with the file if two tracks measure the same part, a track has no measurement
 // during the run, its clock's offset cannot be estimated, or most of its positions are impossible
@@ -57,14 +56,13 @@ struct MeasuredBody {
 MeasuredBody AddTracks(std::span<const tracks::BodyTrack> tracks, const PersonSetup& setup,
                        double start_unix, std::vector<PersonSample>* samples);
 
-// Says how far the nominal postures are from the measurements. Warns if a misfit is larger than
-// kMaxMisfit (design choice) [m].
+// Computes the misfit of each measured part to the nominal postures. Warns if a misfit is larger
+// than kMaxMisfit (design choice) [m].
 void AddMisfit(std::span<const person::Posture> postures, MeasuredBody* measured,
                std::vector<std::string>* warnings);
 inline constexpr double kMaxMisfit = 0.08;
 
-// Returns "Measured were the hands, the head (98 % of the time), ...: the rest of the posture
-// follows from comfort."
+// Returns "These were measured: the hands, the head (98 % of the time), ...", for example.
 std::string MeasuredSentence(const MeasuredBody& measured);
 // Each of these functions returns one sentence.
 std::string Sentence(const UsedTrack& track);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMaxShareAbove =
-    0.01;  // of the time with an envelope above mvc, without a warning (D)
+    0.01;  // share of the time with an envelope above mvc that causes no warning (D)
 
 // A part of a channel without a long gap.
 struct Part {
@@ -43,13 +43,13 @@ bool Changes(const std::vector<Part>& parts) {
   return false;
 }
 
-// What a channel states: activations at its own times, without the ends of its parts.
+// The activations computed from a channel, at its own times, without the ends of its parts.
 struct Activations {
   std::vector<double> times, values;
   double largest = 0;
   std::size_t above = 0;
 
-  // NaN outside of a part.
+  // Returns the mean activation within `width` around `time`, or NaN outside of a part.
   double At(double time, double width) const {
     const auto begin = std::ranges::lower_bound(times, time - width / 2);
     const auto end = std::ranges::lower_bound(times, time + width / 2);
@@ -60,7 +60,7 @@ struct Activations {
   }
 };
 
-// Throws InputError if the rate does not suffice for the band.
+// Throws InputError if the sampling rate is too low for the band.
 void AddPart(const Part& part, const tracks::EmgMap& map, Activations* all) {
   muscles::EmgProcessing how;
   const double rate = static_cast<double>(part.times.size() - 1) / part.Duration();
@@ -83,7 +83,7 @@ void AddPart(const Part& part, const tracks::EmgMap& map, Activations* all) {
   }
 }
 
-// Throws InputError that says why the channel cannot be used.
+// Throws InputError with the reason if the channel cannot be used.
 Activations ActivationsOf(const tracks::EmgTrack& track) {
   const std::vector<Part> parts = PartsOf(track);
   if (parts.empty()) throw InputError("No value of the channel is a number.");
@@ -128,7 +128,8 @@ void CheckUnique(const MeasuredEmg& added, const std::vector<MeasuredEmg>& chann
                       HandName(added.hand), Quote(other.channel).c_str(), other.source.c_str()));
 }
 
-// Returns a reason without its full stop, as the lists of gaps need it.
+// Returns the text of the error without its full stop, because the text becomes part of a sentence
+// in the lists of gaps.
 std::string ReasonOf(const InputError& error) {
   std::string text = error.what();
   if (text.ends_with('.')) text.pop_back();
@@ -227,8 +228,9 @@ void AddEmgWords(const std::vector<MeasuredEmg>& channels, std::vector<std::stri
   }
   if (used)
     assumptions->emplace_back(
-        "Measured activations pull the activations of their muscles. The torques of the joints are "
-        "kept, so the other muscles of the arm follow.");
+        "The model keeps the activations of measured muscles close to the measured ones. The "
+        "torques "
+        "of the joints stay the same, so the activations of the arm's other muscles change.");
 }
 
 std::string PathOf(const MeasuredEmg& channel) {

@@ -1,5 +1,5 @@
-// Electromyograms of the arm muscles in a recording: the activations that they state, and how the
-// model uses them.
+// Electromyograms of the arm muscles in a recording: the activations computed from them, and how
+// the model uses these.
 #pragma once
 
 #include <array>
@@ -14,17 +14,18 @@
 
 namespace predictor::assessment {
 
-// One channel. Its activation is that of all of its muscles.
+// One channel. Its activation applies to each of its muscles.
 struct MeasuredEmg {
   std::string channel, source;  // source: file
-  int hand = 0;                 // of the arm
-  std::vector<int> muscles;     // in muscles::MuscleTable()
+  int hand = 0;                 // side of the arm
+  std::vector<int> muscles;     // indices into muscles::MuscleTable()
   double weight = 0;            // muscles::ActivationProblem::trust
-  double share = 0;             // of the judged time in which it was measured
+  double share = 0;             // share of the judged time in which the channel was measured
   double largest = 0;           // largest envelope over mvc; above 1, the activation is limited
   double above = 0;             // share of the channel's usable time with an envelope above mvc
   // Activations at Assessment::times, 0 ... 1; NaN: missing. `modelled` is the mean over the
-  // muscles, computed with the measured activation. It is missing where the arm holds no handle.
+  // muscles, computed with the measured activation. Values are missing for times at which the arm
+  // holds no handle.
   std::vector<double> measured, modelled;
 };
 
@@ -40,9 +41,9 @@ struct MeasuredEmgs {
 // of each part, one period of the low-pass (kEmgSettling) is left out, and so are parts shorter
 // than kShortestEmg (D).
 //
-// A channel that changes nowhere, has no part that is long enough, or is too slow for its band is
-// left out, and `gaps` says why. Throws InputError with the file if a muscle is unknown, or is
-// measured twice.
+// A channel is left out if it is constant, has no part that is long enough, or has too low a
+// sampling rate for its band. `gaps` then contains the reason. Throws InputError with the file if a
+// muscle is unknown, or is measured twice.
 void AddEmg(const tracks::BodyTrack& track, double offset, std::span<const PersonSample> samples,
             MeasuredEmgs* emgs);
 inline constexpr double kEmgSettling = 1.0 / 6, kShortestEmg = 0.5;  // [s]
@@ -54,16 +55,18 @@ std::array<MeasuredActivations, kHands> ActivationsAt(std::span<const MeasuredEm
 // Stores what the model computed for the muscles of the channels at the next sample.
 void AddModelled(const std::array<ArmMuscleUse, kHands>& use, std::vector<MeasuredEmg>* channels);
 
-// Says which channels had no influence, because their arm held no handle while they were measured.
+// Adds to `gaps` the channels that had no influence, because their arm held no handle, or was
+// raised above 90°, while they were measured. Adds to `assumptions` how the model uses the others.
 void AddEmgWords(const std::vector<MeasuredEmg>& channels, std::vector<std::string>* assumptions,
                  std::vector<NotEvaluable>* gaps);
 
 // Returns "right.biceps_long+biceps_short", for example.
 std::string PathOf(const MeasuredEmg& channel);
-// Over the times at which both values of a channel are known. Without any, the values are NaN.
+// How measured and modelled activations of a channel agree, over the times at which both are known.
+// Without such times, the values are NaN.
 struct EmgAgreement {
   double measured = 0, modelled = 0;  // means
-  double rms = 0;                     // of the difference
+  double rms = 0;                     // root mean square of the difference
 };
 EmgAgreement AgreementOf(const MeasuredEmg& channel);
 std::string Sentence(const MeasuredEmg& channel);

@@ -28,7 +28,7 @@ struct QuantityKind;
 // Values of one arm.
 enum MuscleValue : int {
   kLargestActivation,  // 0 ... 1
-  kMeanActivation,     // of all muscles
+  kMeanActivation,     // mean over all muscles
   kGroupActivation,    // largest of each group, in the order of muscles::MuscleGroup
   // Largest torque of a joint that the muscles cannot produce [N·m].
   kReserve = kGroupActivation + muscles::kMuscleGroups,
@@ -46,7 +46,7 @@ inline constexpr double kReserveShare = 0.05;  // (design choice)
 // elbow and forearm have values.
 struct ArmMuscleUse {
   std::array<double, kMuscleValues> values;
-  muscles::MuscleVector activation;  // of each muscle, 0 ... 1
+  muscles::MuscleVector activation;  // activation of each muscle, 0 ... 1
   bool raised = false;
 
   ArmMuscleUse() {
@@ -55,7 +55,7 @@ struct ArmMuscleUse {
   }
 };
 
-// Activations that electromyograms state, and their weights: see muscles::ActivationProblem.
+// Activations from electromyograms, and their weights: see muscles::ActivationProblem.
 struct MeasuredActivations {
   muscles::MuscleVector value = muscles::MuscleVector::Zero();
   muscles::MuscleVector trust = muscles::MuscleVector::Zero();  // 0: not measured
@@ -81,7 +81,7 @@ void AddMuscles(const PersonSetup& setup, std::span<const PersonSample> samples,
                 const std::shared_ptr<const muscles::ArmPaths>& paths,
                 std::vector<MeasuredEmg>* emg, NominalChain* chain);
 
-// Rows for the table of quantities, for both arms.
+// Returns the rows of the table of quantities for the muscles of both arms.
 std::vector<QuantityKind> MuscleQuantities();
 
 // Adds sentences about the share of time in which an arm is too weak, and about what could not be

@@ -21,10 +21,10 @@ struct NamedFile {
 // person.osim: model (OpenSimModelOf); motion.mot: coordinates [rad, m]; hand_loads.sto: forces
 // [N], torques [N·m] and points [m] of the handles' action on the hands; hand_loads.xml: the bodies
 // on which they act; inverse_dynamics.xml: set-up of OpenSim's tool; torques.sto: our joint
-// torques, in the names of that tool. Times are those of the recording.
+// torques, with the names that this tool uses. Times are those of the recording.
 //
 // The torques contain the acceleration of the trunk, as OpenSim computes it from the coordinates.
-// The evaluation leaves it out (RunNominal).
+// The evaluation neglects this acceleration (RunNominal).
 std::vector<NamedFile> OpenSimFiles(const PersonSetup& setup,
                                     std::span<const PersonSample> samples);
 

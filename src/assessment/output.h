@@ -26,7 +26,7 @@ std::string AssessmentPage(const Assessment& a, const std::string& program_versi
 
 // The person of a run in a report: the assessment, or a sentence that explains its absence.
 struct PersonOfRun {
-  std::string name;  // of the run, if the report compares several
+  std::string name;  // name of the run, if the report compares several
   std::optional<Assessment> assessment;
   std::string why;
 };
@@ -47,7 +47,7 @@ std::string Sentence(const DamageResult& damage);
 std::string Sentence(const FatigueResult& fatigue);
 // Returns "The body reaches the handles 98 % of the time ...", for example.
 std::string ReachSentence(const Assessment& a);
-// States who moved the handles.
+// Returns a sentence that states who moved the handles.
 std::string OperatorSentence(const Assessment& a);
 
 }  // namespace predictor::assessment

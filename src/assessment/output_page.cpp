@@ -258,7 +258,7 @@ void AddSummary(const Assessment& a, ReportPage* page) {
 
 void AddMeasured(const MeasuredBody& measured, Outline* outline) {
   if (measured.tracks.empty()) return;
-  outline->Begin("measured", "Measured beside the hands");
+  outline->Begin("measured", "Measured in addition to the hands");
   ReportPage& page = outline->page();
   for (const MeasuredPart& part : measured.parts) page.Paragraph(Sentence(part));
   for (const MeasuredSignal& signal : measured.signals) page.Paragraph(Sentence(signal));

@@ -24,7 +24,7 @@ struct View {
 const View kSide = {"from the side", Vector3::UnitX(), Vector3::UnitY(), -0.6, 0.95};
 const View kFront = {"from the front", Vector3::UnitY(), -Vector3::UnitX(), -0.72, 0.72};
 
-constexpr double kScale = 170;   // of a picture [px/m]
+constexpr double kScale = 170;   // scale of a picture [px/m]
 constexpr double kAbove = 0.1;   // upper edge above the head [m]
 constexpr double kBottom = 0.1;  // lower edge below the ground [m]
 constexpr const char* kNotJudged = "var(--grid)";
@@ -131,7 +131,7 @@ void DrawArm(const SkeletonSide& side, const std::string& upper, const std::stri
 
 void DrawTrunk(const Skeleton& s, const std::string& color, Drawing* d) {
   d->Limb(s.neck, s.head, breadth::kNeck, kNotJudged);
-  // Ends inside the joints, so that the outline passes through them.
+  // The corners are inside the joints, so that the outline passes through these.
   const auto inside = [&](const Vector3& p, const Vector3& middle) {
     return Vector3(p +
                    (middle - p).normalized() * std::min(breadth::kTrunk / 3, (middle - p).norm()));
@@ -179,7 +179,7 @@ void DrawThin(const Skeleton& s, Drawing* d) {
 
 // Draws the forces of the hands on the handles as arrows.
 void DrawForces(const BodyPicture& picture, Drawing* d) {
-  constexpr double kLength = 0.3, kMinForce = 1;  // length of the largest force [m]; smallest force
+  constexpr double kLength = 0.3, kMinForce = 1;  // length of the largest arrow [m]; smallest force
                                                   // with an arrow [N]
   double most = 0;
   for (const Vector3& force : picture.force) most = std::max(most, force.norm());

@@ -134,7 +134,7 @@ std::string AssessmentText(const Assessment& a) {
   AppendLine(&text, "%s %s", OperatorSentence(a).c_str(), ReachSentence(a).c_str());
   for (const std::string& line : a.warnings) AppendLine(&text, "Warning: %s", line.c_str());
   AppendLine(&text, "%s.", OriginWords().c_str());
-  AppendSentences("Measured beside the hands", a.measured.parts, &text);
+  AppendSentences("Measured in addition to the hands", a.measured.parts, &text);
   AppendSentences("Measured signals", a.measured.signals, &text);
   AppendSentences("Measured muscles (electromyograms)", a.measured.emg.channels, &text);
   AppendSentences("Clocks", a.measured.tracks, &text);

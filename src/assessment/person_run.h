@@ -14,15 +14,15 @@ namespace predictor::assessment {
 struct PersonRun {
   std::vector<PersonSample> samples;
   std::array<Pose, kHands> handles;      // X_WD at the start, of existing handles
-  StopCause stopped = StopCause::kNone;  // what first stopped it; kNone: nothing
+  StopCause stopped = StopCause::kNone;  // first cause of a stop; kNone: not stopped
 };
 
 PersonRun RunOf(const SampleCollector& ticks);
-// In a row, a hand counts as not holding if it is not measured or does not hold.
+// A hand counts as holding only in rows in which it is measured and holds.
 PersonRun RunOf(const tracks::PersonFile& file);
 
-// Converts the statements of such a file about person, place and grips. The type of the operator is
-// `virtual` if it was simulated, and otherwise `imported`.
+// Returns the scenario that follows from the person, place and grips of an imported recording. The
+// type of the operator is `virtual` if the operator was simulated, and otherwise `imported`.
 Scenario ScenarioOf(const tracks::PersonHeader& header, const tracks::BodyTrack& track);
 
 }  // namespace predictor::assessment

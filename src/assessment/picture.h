@@ -29,8 +29,8 @@ struct BodyPicture {
   double time = 0;  // [s]
   person::Skeleton body;
   PartLoads loads = {};
-  std::array<Vector3, kHands> force;  // of the hands on the handles, in S [N]
-  // Only where they were computed: the possible people at this time.
+  std::array<Vector3, kHands> force;  // force of each hand on its handle, in S [N]
+  // The possible people at this time, if they were computed.
   std::vector<person::Skeleton> possible;
   std::array<std::optional<person::Interval>, kBodyParts> intervals;
 };

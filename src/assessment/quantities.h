@@ -13,7 +13,7 @@ namespace predictor::assessment {
 enum class Origin {
   kMeasured,  // measured by the sensors of the arms
   kModelled,  // computed by the model of the person's body
-  kStandard,  // from measured and modelled values, by a published method or worksheet
+  kStandard,  // computed by a published method or worksheet, from measured and modelled values
 };
 const char* Name(Origin origin);
 
@@ -27,7 +27,7 @@ enum class Bad { kHigh, kLow };
 
 struct QuantityKind {
   const char* path;   // key in JSON and CSV, ending in the SI unit
-  const char* group;  // in tables and plots
+  const char* group;  // heading in tables and plots
   const char* label;
   Unit unit;
   Origin origin;

@@ -107,8 +107,8 @@ void HandExposure::AppendHand(std::size_t i, std::vector<Result>* results) const
       Quantile(hand.means, 0.95));
   add("force_rms_n", "force, rms", kForceUnit, "root mean square of " + mean, rms);
   add("impulse_ns", "impulse", kImpulseUnit, "integral of the force's magnitude", hand.impulse);
-  add("force_rate_n_per_s", "rate of force", kForceRateUnit, "largest; of the force " + smooth,
-      hand.rate);
+  add("force_rate_n_per_s", "rate of force", kForceRateUnit,
+      "largest rate of change of the force " + smooth, hand.rate);
   add("high_force_s", "time with a high force", kTimeUnit,
       Formatted("time with a force above %.0f N, which is %.0f %% of the threshold of the stop",
                 high_, 100 * kHighShare),
@@ -118,7 +118,7 @@ void HandExposure::AppendHand(std::size_t i, std::vector<Result>* results) const
       "cycles of the force that ended a series of growing ones (the criterion of the stop)",
       hand.growing_cycles);
   add("growing_amplitude_n", "largest growing cycle", kForceUnit,
-      "amplitude of the largest of them", hand.growing_amplitude);
+      "amplitude of the largest growing cycle", hand.growing_amplitude);
   add("supplied_j", "energy supplied", kEnergyUnit,
       "energy from the hand to the real handle, minus the energy in the other direction",
       hand.device.sum);
@@ -131,7 +131,7 @@ void HandExposure::AppendHand(std::size_t i, std::vector<Result>* results) const
       "the energy stored at the start",
       hand.device.lowest);
   add("active_episodes", "active episodes", kNumberUnit,
-      "how often that balance fell below −0.05 J: the handle gave more than it had received",
+      "how often the energy balance fell below −0.05 J: the handle gave more than it had received",
       hand.device.episodes);
   add("scene_supplied_j", "energy into the scene", kEnergyUnit,
       "energy from the hand's wrench and the coupling to the virtual handle, minus the energy "

@@ -16,7 +16,7 @@ namespace predictor::assessment {
 // Collects the records of a run. Forces count in RUN, energies also while the arms are stopping.
 class HandExposure {
  public:
-  static constexpr double kCutoff = 20;      // of the low-passed force and of its rate [Hz]
+  static constexpr double kCutoff = 20;      // cut-off for the low-passed force and its rate [Hz]
   static constexpr double kHighShare = 0.5;  // share of the stop's threshold above which a force
                                              // counts as "high"
 
@@ -32,19 +32,19 @@ class HandExposure {
     bool present = false;
     LowPass<Vector3> low_pass;
     bool started = false;           // whether the filter has a value
-    double peak = 0;                // of the force at the rate of the ticks [N]
-    double smooth_peak = 0;         // of the low-passed force [N]
+    double peak = 0;                // largest force, sampled at each tick [N]
+    double smooth_peak = 0;         // largest low-passed force [N]
     double peak_torque = 0;         // [N·m]
     double rate = 0;                // largest |dF/dt| of the low-passed force [N/s]
     double impulse = 0;             // ∫ |F| dt [N·s]
-    double high_time = 0;           // with a force above the high one [s]
-    Vector3 sum = Vector3::Zero();  // of the forces in the current averaging interval [N]
+    double high_time = 0;           // time with a force above high_ [s]
+    Vector3 sum = Vector3::Zero();  // sum of the forces in the current averaging interval [N]
     std::size_t count = 0;
     std::vector<double> means;  // magnitudes of the mean forces [N]
     OscillationDetector growing;
-    int growing_cycles = 0;        // that end a series of at least the set number of growing cycles
+    int growing_cycles = 0;        // cycles that complete a series of growing cycles
     double growing_amplitude = 0;  // largest amplitude of these cycles [N]
-    PortEnergy device, scene;      // at the real handle; at the virtual one
+    PortEnergy device, scene;      // energy at the real handle; at the virtual handle
   };
 
   void AddForce(const HandRecord& record, Hand* hand) const;
@@ -54,7 +54,7 @@ class HandExposure {
   std::size_t ticks_a_mean_;  // averaging interval for the percentiles: as long as a sample
   bool ran_ = false;
   std::array<Hand, kHands> hands_;
-  std::vector<std::unique_ptr<Metric>> metrics_;  // of the summary
+  std::vector<std::unique_ptr<Metric>> metrics_;  // metrics of the summary
 };
 
 }  // namespace predictor::assessment

@@ -2,7 +2,7 @@
 // cobot hits the person or clamps a part of the body, the person stands too close to the moving
 // cobot.
 //
-// All of this is unintended contact. It says nothing about the forces at the handles, which the
+// These are unintended contacts. Their limits do not apply to the forces at the handles, which the
 // person intends.
 #pragma once
 
@@ -22,7 +22,7 @@ namespace predictor::assessment {
 
 // Masses of the virtual scene [kg].
 struct SceneMasses {
-  double cobot = 0;  // of the links that its joints move
+  double cobot = 0;  // mass of the links that its joints move
   double object = 0;
 };
 
@@ -33,7 +33,7 @@ class SceneMotion {
     double time = 0;                                  // run time [s]
     Vector3 object = Vector3::Zero();                 // its origin, in W [m]
     Vector3 end_effector = Vector3::Zero();           // in W [m]
-    double object_speed = 0, end_effector_speed = 0;  // of the origins [m/s]
+    double object_speed = 0, end_effector_speed = 0;  // speeds of the origins [m/s]
     double speed() const { return std::max(object_speed, end_effector_speed); }
   };
 
@@ -42,7 +42,7 @@ class SceneMotion {
 
   bool empty() const { return !any_; }
   const Sample& fastest() const { return fastest_; }
-  const Sample& highest() const { return highest_; }  // of the object
+  const Sample& highest() const { return highest_; }  // the object's highest place
   // Returns the times of greatest speed after each release by a simulated operator's hand, until
   // the hands hold again.
   const std::vector<Sample>& releases() const { return releases_; }
@@ -60,8 +60,8 @@ class SceneMotion {
 // The fall of the object from its highest place in the run, when the cobot lets go of it.
 struct Drop {
   double time = 0;         // run time of the highest place [s]
-  double height = 0;       // of the object's origin above the ground [m]
-  double speed = 0;        // on the ground, √(2 g h) [m/s]
+  double height = 0;       // height of the object's origin above the ground [m]
+  double speed = 0;        // speed at the ground, √(2 g h) [m/s]
   double energy = 0;       // m g h [J]
   double beside_feet = 0;  // horizontal distance of the object's origin from the feet [m]; 0: above
                            // them
@@ -75,10 +75,10 @@ struct Drop {
 // distance C and the uncertainties Z, which belong to a sensor that this scene does not have.
 struct Separation {
   double time = 0;      // run time [s]
-  double speed = 0;     // v_r, of the faster of object and end-effector [m/s]
+  double speed = 0;     // v_r: speed of the faster of object and end-effector [m/s]
   double needed = 0;    // S [m]
-  double distance = 0;  // horizontal, from the point between the feet to the nearer of object and
-                        // end-effector [m]
+  double distance = 0;  // horizontal distance from the point between the feet to the nearer of
+                        // object and end-effector [m]
 };
 inline constexpr double kApproachSpeed = 1.6;   // v_h of a walking person (R) [m/s]
 inline constexpr double kReactionTime = 0.1;    // T_r (D) [s]
@@ -86,15 +86,15 @@ inline constexpr double kStopDeceleration = 5;  // a, so that T_s = v_r / a (D) 
 double NeededSeparation(double robot_speed);    // S [m]
 
 // A region of the body that the object or the cobot hits or clamps. Only the force is judged: the
-// pressure depends on the shape of the surface that hits.
+// pressure depends on the unknown shape of the contact surface.
 struct RegionCheck {
   ergonomics::ContactLimit limit;
-  double max_speed = 0;  // at which the force limit is reached [m/s]; 0: must not be hit
+  double max_speed = 0;  // speed at which the force limit is reached [m/s]; 0: must not be hit
   double share = 0;      // largest speed of the run / max_speed
 };
 
 struct UnintendedContact {
-  std::string edition;               // of the limits
+  std::string edition;               // edition of the limits
   double robot_mass = 0;             // effective [kg]
   double speed = 0;                  // largest speed in the run [m/s]
   double time = 0;                   // run time of that speed [s]
@@ -107,8 +107,8 @@ struct UnintendedContact {
 
 Drop DropOf(const SceneMotion& motion, const SceneMasses& masses, const PersonSetup& setup,
             const Scenario& scenario);
-// Returns the separation for the release at which the distance is most insufficient or, without a
-// release, for the fastest moment.
+// Returns the separation for the release with the largest shortfall of distance or, without a
+// release, for the moment of the highest speed.
 Separation SeparationOf(const SceneMotion& motion, const PersonSetup& setup);
 UnintendedContact ContactOf(const SceneMotion& motion, const SceneMasses& masses,
                             const ergonomics::ContactLimits& limits, const Scenario& scenario);

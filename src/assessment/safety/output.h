@@ -11,7 +11,7 @@ namespace predictor::assessment {
 
 std::string SafetyText(const SafetyAssessment& safety);
 nlohmann::ordered_json SafetyJson(const SafetyAssessment& safety);
-nlohmann::ordered_json SafetySchema();  // of SafetyJson, JSON Schema (draft-07)
+nlohmann::ordered_json SafetySchema();  // JSON Schema (draft-07) of SafetyJson
 
 // Content that text and page share.
 struct SafetyTable {

@@ -57,8 +57,8 @@ struct SafetyAssessment {
 };
 
 struct SafetyOptions {
-  bool intervals = true;                            // for the loads during stops
-  std::optional<SceneMasses> masses;                // empty: not known
+  bool intervals = true;              // whether to compute 90 % intervals of the loads during stops
+  std::optional<SceneMasses> masses;  // empty: not known
   std::optional<ergonomics::ContactLimits> limits;  // empty: the user gave none
 };
 

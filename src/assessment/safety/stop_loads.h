@@ -56,19 +56,19 @@ class StopWindows {
 
 // The torque of one joint during a stop.
 struct StopLoad {
-  std::string joint;                          // "left shoulder flexion"
-  double before = 0;                          // when the stop was decided [N·m]
-  double peak = 0;                            // largest magnitude from then on [N·m]
-  double change = 0;                          // largest magnitude of its change from then on, which
-                                              // the stop caused [N·m]
-  std::optional<person::Interval> change_90;  // over the possible postures [N·m]
+  std::string joint;  // "left shoulder flexion"
+  double before = 0;  // torque when the stop was decided [N·m]
+  double peak = 0;    // largest magnitude since the decision [N·m]
+  double change = 0;  // largest change of the torque since the decision, which
+                      // the stop caused [N·m]
+  std::optional<person::Interval> change_90;  // 90 % interval over the possible postures [N·m]
   std::optional<double> use;                  // largest share of mean strength; empty if no
                                               // strength from a verified source exists
 };
 
 struct StopJudgement {
   StopSummary stop;
-  std::vector<StopLoad> loads;  // of the arms that held a handle
+  std::vector<StopLoad> loads;  // loads of the arms that held a handle
 };
 
 // Wrenches and motions are measured at 100 Hz (means of 10 ms). The posture's accelerations are
