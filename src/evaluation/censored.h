@@ -18,11 +18,11 @@ struct CensoredValue {
 
 // A step of the product-limit estimate of Kaplan & Meier (1958), J. Am. Stat. Assoc. 53, 457–481.
 struct SurvivalStep {
-  double value = 0;           // at which exact values were observed
+  double value = 0;           // the exact value that was observed
   std::size_t at_risk = 0;    // number of values and bounds that are not smaller
   std::size_t observed = 0;   // number of exact values here
   double share_above = 1;     // estimated probability of a larger value
-  double standard_error = 0;  // of share_above, by Greenwood's formula
+  double standard_error = 0;  // standard error of share_above, by Greenwood's formula
 };
 
 // Returns the steps in ascending order. By convention, a bound that equals an observed value counts

@@ -13,14 +13,14 @@ namespace predictor {
 
 struct EventSummary {
   std::string event;            // name of the hazard
-  std::string meaning;          // what happens, as text
+  std::string meaning;          // description of the hazard
   std::optional<double> begin;  // run time at which it began [s]; empty: it did not begin
   std::optional<double> end;    // run time at which it ended [s]
   // The largest values of a hand from the beginning of the event to the end of RUN.
   std::array<double, kHands> force = {}, torque = {}, speed = {};  // [N], [N·m], [m/s]
-  bool missed = false;  // the cobot shall grasp the object, but the object was too far away
-  std::optional<double> until_stop;  // from the beginning of the event to the emulator's next stop
-                                     // [s]
+  bool missed = false;               // the object was too far away to be grasped
+  std::optional<double> until_stop;  // time from the beginning of the event to the emulator's next
+                                     // stop [s]
 };
 
 struct CobotStopSummary {
@@ -44,7 +44,7 @@ class EventLog {
 
   std::vector<EventSummary> events_;
   std::optional<CobotStopSummary> cobot_stop_;
-  double run_time_ = 0;  // of the last record [s]
+  double run_time_ = 0;  // run time of the last record [s]
 };
 
 }  // namespace predictor

@@ -282,8 +282,8 @@ FidelityReport CompareFidelity(std::span<const FidelitySignals> a,
       ComparePerceived(a[0], PartsOf(runs_a[0], alignment), b[0], PartsOf(runs_b[0], alignment));
   if (std::any_of(report.perceived.begin(), report.perceived.end(), ErrorUnknown))
     report.warnings.emplace_back(
-        "A run has fewer than two cycles, so the standard errors are not known: what would be felt "
-        "is judged from single values.");
+        "A run has fewer than two cycles, so the standard errors are not known. Whether a person "
+        "would feel a difference is judged from single values.");
   return report;
 }
 

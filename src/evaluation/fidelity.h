@@ -67,7 +67,7 @@ struct ChannelFidelity {
   double relative_rmse = 0;       // rmse / range
   double correlation = 0;         // Pearson's correlation
   double lag = 0;                 // [s]; positive: b is later than a
-  double lag_correlation = 0;     // at that lag
+  double lag_correlation = 0;     // correlation at that lag
   double warped = 0;              // per sample, after dynamic time warping [unit]
   double peak_a = 0, peak_b = 0;  // largest absolute value in a cycle, averaged over the cycles
                                   // [unit]

@@ -52,7 +52,7 @@ std::span<const double> Part(const std::vector<double>& samples, const SampleRan
   return std::span(samples).subspan(begin, end - begin);
 }
 
-// If a hand moves the object less than this (standard deviation) [m], it yields and does not lead.
+// A hand that moves the object less than this (standard deviation) [m] yields and does not lead.
 // Motion and force then show the stiffness and mass of the hand itself, with the opposite sign.
 constexpr double kLed = 5e-3;
 

@@ -48,7 +48,7 @@ Lag LagOf(std::span<const double> a, std::span<const double> b, std::size_t long
 double WarpedDistance(std::span<const double> a, std::span<const double> b, double band = 0.1);
 
 struct Coherence {
-  double mean = 0;    // of the squared coherence, each frequency weighted by √(S_aa S_bb)
+  double mean = 0;    // mean squared coherence, with the weight √(S_aa S_bb) for each frequency
   double chance = 0;  // unrelated noise stays below this value at one frequency in 95 % of cases
   std::size_t segments = 0;
 };

@@ -22,8 +22,8 @@ namespace predictor {
 struct Unit {
   const char* si = "";
   const char* shown = "";
-  double factor = 1;  // from SI to the displayed unit
-  int decimals = 0;   // in the displayed unit, in tables
+  double factor = 1;  // factor from SI to the displayed unit
+  int decimals = 0;   // number of decimals in tables, in the displayed unit
 };
 namespace units {
 inline constexpr Unit kNone = {};
@@ -58,7 +58,7 @@ struct Result {
   // of quantiles, or a line of single values.
   std::string group;   // title
   std::string label;   // row, or the words after a single value
-  std::string column;  // in a table of statistics
+  std::string column;  // column in a table of statistics
   Unit unit = units::kNone;
   std::string meaning;  // description for the reference
   ResultValue value;

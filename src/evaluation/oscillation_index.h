@@ -24,7 +24,7 @@ class OscillationIndex {
   struct Window {
     double time = 0;   // middle of the window [s]
     double index = 0;  // 0 to 1
-    double rms = 0;    // of the force from 3 to 10 Hz [N]
+    double rms = 0;    // rms of the force from 3 to 10 Hz [N]
     double total = 0;  // rms up to 10 Hz, with the mean removed [N]
     // This is false if the force hardly varies. The index is then meaningless.
     bool IsMeaningful() const { return total > kMinForce; }
@@ -44,7 +44,7 @@ class OscillationIndex {
   double dt_;
   int each_;                       // ticks averaged per sample
   int count_ = 0;                  // ticks in the current sample
-  double time_ = 0;                // of the newest tick [s]
+  double time_ = 0;                // time of the newest tick [s]
   Vector3 sum_ = Vector3::Zero();  // sum of the forces in the current sample [N]
   std::vector<Vector3> samples_;   // [N]
   Window window_;                  // the last complete window

@@ -40,7 +40,7 @@ inline constexpr int kConsentVersion = 1;
 
 inline constexpr int kOldest = 120;                      // [years]
 inline constexpr std::size_t kLongestComment = 2000;     // [characters]
-inline constexpr std::size_t kLongestAnswer = 32 << 10;  // as JSON [bytes]
+inline constexpr std::size_t kLongestAnswer = 32 << 10;  // size of the JSON [bytes]
 
 struct SurveyAnswer {
   std::string pseudonym;  // IsPseudonym; if it is empty in a form, one is drawn

@@ -24,7 +24,7 @@ struct StatementSummary {
 struct ShiftSummary {
   int count = 0;
   SignedRankTest test;  // against 0; zeros are dropped
-  ShiftEstimate shift;  // at 95 %
+  ShiftEstimate shift;  // with a 95 % interval
   double adjusted = 1;  // p after Holm's adjustment over the statements with scores
 };
 using ShiftSummaries = std::array<ShiftSummary, kStatements>;

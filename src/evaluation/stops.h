@@ -18,7 +18,7 @@ struct StopSummary {
   double value = 0, limit = 0;          // SI
   Quantity quantity = Quantity::kNone;  // quantity of value and limit
   double time = 0;      // emulated time until the stop, including the time before resets [s]
-  double duration = 0;  // from the decision to rest [s]
+  double duration = 0;  // time from the decision to rest [s]
   double distance = 0;  // path of the faster handle from the decision to rest [m]
   // The time from the moment at which the true force (torque) crosses its threshold to the
   // decision, for a simulated rig only.
@@ -76,8 +76,7 @@ class StopLog {
 
   std::vector<StopSummary> stops_;
   std::uint64_t count_ = 0;
-  double force_, torque_;  // thresholds [N], [N·m]; they determine when the true value exceeded
-                           // them
+  double force_, torque_;  // thresholds for `detection` [N], [N·m]
   double dt_;              // [s]
   std::array<double, kHands> force_crossed_,
       torque_crossed_;                // time of the last upward crossing [s]
@@ -88,7 +87,7 @@ class StopLog {
   bool stopping_ = false;
   HandleOdometer odometer_;
   RestDetector rest_;
-  std::uint64_t ticks_ = 0;  // since the decision
+  std::uint64_t ticks_ = 0;  // number of ticks since the decision
 };
 
 }  // namespace predictor

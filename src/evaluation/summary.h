@@ -21,7 +21,7 @@ namespace predictor {
 struct Summary {
   std::string scenario;
   std::uint64_t seed = 0;
-  std::vector<Result> results;  // of all metrics
+  std::vector<Result> results;  // results of all metrics
   std::vector<StopSummary> stops;
   std::uint64_t stop_count = 0;      // may exceed the number of kept stops
   std::vector<EventSummary> events;  // in the order of the scenario

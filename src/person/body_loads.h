@@ -21,9 +21,9 @@ struct DiscLoads {
   double flexion_moment = 0;  // moment that the back muscles must produce, positive: extensors
                               // [N·m]
   double lateral_moment = 0;  // positive: the muscles bend to the left [N·m]
-  double twist_moment = 0;    // about the pelvis's long axis, positive to the left [N·m]
+  double twist_moment = 0;    // moment about the pelvis's long axis, positive to the left [N·m]
   double compression = 0;     // [N]
-  double shear = 0;           // of the upper body on the disc, positive forward [N]
+  double shear = 0;           // shear force of the upper body on the disc, positive forward [N]
 };
 
 struct Balance {

@@ -6,8 +6,8 @@
 namespace predictor::person {
 namespace {
 
-constexpr double kHeelToAnkle = 0.25;  // of the foot's length
-constexpr double kFootWidth = 0.055;   // of the height
+constexpr double kHeelToAnkle = 0.25;  // as a share of the foot's length
+constexpr double kFootWidth = 0.055;   // as a share of the person's height
 
 struct Leg {
   std::array<Vector3, 3> com, joints;

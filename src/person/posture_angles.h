@@ -15,7 +15,7 @@ struct ArmAngles {
   double upper_arm_abduction = 0;
   // The angle of the upper arm to the vertical, from 0 (hanging) to π (up) (ISO 11226) [rad].
   double upper_arm_elevation = 0;
-  double upper_arm_rotation = 0;  // about its own axis, positive inward [rad]
+  double upper_arm_rotation = 0;  // rotation about the upper arm's own axis, positive inward [rad]
   double elbow_flexion = 0;       // 0 straight [rad]
   double wrist_flexion = 0;       // positive towards the palm, negative extension [rad]
   double wrist_deviation = 0;     // positive ulnar, negative radial [rad]
@@ -24,7 +24,8 @@ struct ArmAngles {
   // negative if the forearm crosses the midline, and larger than the shoulder's distance if the
   // forearm is out to the side.
   double hand_beside_midline = 0;
-  // As above, minus the distance of the shoulder joint, so it is positive out to the side [m].
+  // hand_beside_midline minus the distance of the shoulder joint from the midplane [m]. Positive if
+  // the hand is further out to the side than the shoulder.
   double hand_beside_shoulder = 0;
 };
 
@@ -34,9 +35,9 @@ struct PostureAngles {
   // The angle of the torso to the vertical in the direction that the pelvis faces, positive forward
   // and negative in extension [rad].
   double trunk_flexion = 0;
-  double trunk_side_bend = 0;  // of the torso to the vertical, positive to the right [rad]
-  double trunk_twist = 0;      // of the torso relative to the pelvis, positive to the left [rad]
-  double neck_flexion = 0;     // of the head relative to the torso, positive forward [rad]
+  double trunk_side_bend = 0;  // torso relative to the vertical, positive to the right [rad]
+  double trunk_twist = 0;      // torso relative to the pelvis, positive to the left [rad]
+  double neck_flexion = 0;     // head relative to the torso, positive forward [rad]
   double neck_side_bend = 0;   // positive to the right [rad]
   double neck_twist = 0;       // positive to the left [rad]
   std::array<double, kHands> knee_flexion = {};  // 0 straight [rad]

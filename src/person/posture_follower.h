@@ -10,8 +10,8 @@ namespace predictor::person {
 inline constexpr int kFollowIterations = 5;
 
 // Performs only a few steps of the solver's first stage at a time, so that its cost is bounded. The
-// hands do not reach the handles exactly. Comfort costs a few millimetres, and more while the
-// handles move fast.
+// hands do not reach the handles exactly: the weight of comfort causes an error of a few
+// millimetres, which grows while the handles move fast.
 class PostureFollower {
  public:
   // The constructor allocates all memory.

@@ -15,16 +15,15 @@ namespace predictor::person {
 // The standard deviations of everything that must be assumed. All of them are our choice (D). The
 // project's reference also gives ±15° for the swivel.
 struct PostureSpread {
-  double swivel = 0.262;           // of each elbow (15°); half of it is common to both [rad]
+  double swivel = 0.262;  // swivel of each elbow, 15°; half of the variance is common to both [rad]
   double pelvis_forward = 0.03;    // [m]
   double pelvis_sideways = 0.02;   // [m]
   double pelvis_tilt = 0.087;      // 5° [rad]
-  double spine_share = 0.7;        // of the logarithms of the weights of torso, pelvis and lowering
+  double spine_share = 0.7;        // logarithms of the weights of torso, pelvis and lowering
   double neck = 0.26;              // 15° [rad]
-  double comfort = 0.12;           // of each arm joint's comfort [rad]
-  double length = 0.05;            // of the length of each segment that is not measured, as a
-                                   // fraction
-  double segment_mass = 0.05;      // of each segment's share of the mass, as a fraction
+  double comfort = 0.12;           // comfortable angle of each arm joint [rad]
+  double length = 0.05;            // length of each segment that is not measured, as a fraction
+  double segment_mass = 0.05;      // share of the mass of each segment, as a fraction
   double back_muscle_arm = 0.006;  // [m]
 };
 
@@ -54,7 +53,7 @@ struct Range {
 };
 
 struct SampledBody {
-  std::vector<SampledPosture> samples;  // kPostureSamples of them; the same people at every time
+  std::vector<SampledPosture> samples;  // kPostureSamples samples; the same people at every time
   Range<PostureAngles> angles;
   Range<BodyLoads> loads;
   int reached = 0;  // number of samples whose hands reach the handles

@@ -8,9 +8,9 @@
 
 namespace predictor::person {
 
-// Determines the posture where the measurements do not (all figures D). These are the weights of
-// squared deviations. A hand's squared position error has the weight 1 [1/m²], and its squared
-// rotation error 0.04 [1/rad²].
+// Weights of squared deviations, which determine the posture as far as the measurements do not (all
+// figures D). A hand's squared position error has the weight 1 [1/m²], and its squared rotation
+// error 0.04 [1/rad²].
 struct PosturePrior {
   BodyVector comfort;  // [rad], [m]
   BodyVector weight;   // [1/rad²], [1/m²]
@@ -21,8 +21,8 @@ struct PosturePrior {
   double swivel_weight = 0.1;
   // The cost of lowering the hips [1/m]. It is nearly linear, like the squared knee angle (8 d /
   // length of the leg for hips lowered by d; four times the weight of an arm's joint), so the knees
-  // stay straight unless bending them is worth it. The cost is lowering · (√(z² + s²) - s) with s =
-  // kLoweringSmooth.
+  // stay straight unless bending them lowers the total cost. The cost is lowering · (√(z² + s²) -
+  // s) with s = kLoweringSmooth.
   double lowering = 3.5e-2;
 };
 inline constexpr double kLoweringSmooth = 0.01;  // [m]

@@ -16,8 +16,8 @@ struct ArmPoints {
 };
 
 // Returns the displacement of the elbow [m] outward about the line from shoulder to wrist that is
-// needed to reach `swivel` [rad]. It fades where the reference direction of the angle is parallel
-// to that line.
+// needed to reach `swivel` [rad]. The displacement fades to zero as the reference direction of the
+// angle becomes parallel to that line.
 double MissingSwivel(const ArmPoints& arm, int hand, double swivel) {
   const double side = hand == 0 ? 1 : -1;
   const Vector3 line = arm.wrist - arm.shoulder;
@@ -26,7 +26,7 @@ double MissingSwivel(const ArmPoints& arm, int hand, double swivel) {
   const double radius = radial.norm();
   if (!(radius > 1e-9)) return 0;
   const Vector3 behind_down(-0.5, 0, -std::sqrt(0.75));
-  const Vector3 down = behind_down - n * behind_down.dot(n);  // its length fades
+  const Vector3 down = behind_down - n * behind_down.dot(n);  // 0 if n is parallel to behind_down
   const Vector3 goal = std::cos(swivel) * down + std::sin(swivel) * side * n.cross(down);
   return goal.dot(n.cross(radial));
 }

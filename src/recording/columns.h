@@ -18,9 +18,9 @@ struct Column {
   std::size_t offset = 0, size = 0;  // position in TickRecord [bytes]
   std::string (*text)(const std::byte* number) = nullptr;
   bool of_clock = false;  // measured by the computer's clock, so a replay does not reproduce it
-  bool of_input = false;  // part of an input of a person or page
-  // These numbers (of type uint8) in the record must exceed a value, because hands and joints may
-  // be absent.
+  bool of_input = false;  // part of an input from a person or a page
+  // The number exists in a record only if the byte at each `offset` exceeds `above`. Numbers of
+  // absent hands and joints do not exist.
   struct Condition {
     std::size_t offset, above;
   };

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using recording::InputFile;
 
-constexpr std::uint64_t kBlock = 1U << 20U;  // of a file that is searched at once [bytes]
+constexpr std::uint64_t kBlock = 1U << 20U;  // part of a file that is searched at once [bytes]
 
 // ---- contents ---------------------------------------------------------------------------------
 
@@ -51,7 +51,7 @@ bool HasInChunks(const InputFile& file, const std::string& text) {
   for (std::uint64_t at = mcap::kMagic.size();;) {
     const auto head = ReadHead(file, at);
     if (!head) file.Fail(at, "The file is damaged or truncated here.");
-    if (head->op == mcap::Op::kDataEnd) return false;  // what follows is not compressed
+    if (head->op == mcap::Op::kDataEnd) return false;  // the rest of the file is not compressed
     if (head->op == mcap::Op::kChunk && !CompressionAt(file, at, head->length).empty()) {
       const auto index = recording::ChunkAt(file, at);
       if (!index) file.Fail(at, "Its chunks are compressed in a way that is not known here.");
@@ -88,7 +88,7 @@ std::optional<std::int64_t> StartOf(const InputFile& file) {
     const std::int64_t start = ReadOpening(file).header.start_unix_ns;
     if (start != 0) return start;
   } catch (const InputError&) {
-    // This is a file of another program.
+    // The file was written by another program.
   }
   return {};
 }
@@ -104,7 +104,7 @@ std::string StemOfRun(const fs::path& file) {
   return "";
 }
 
-// Returns whether the program gives this name by default to files that it makes from the run STEM.
+// Returns whether this is a default name of the files that this program makes from the run STEM.
 bool IsMadeFrom(const std::string& stem, const fs::path& file) {
   const std::string name = file.filename().string();
   if (!name.starts_with(stem + ".") || name.ends_with(".survey.json")) return false;
@@ -200,7 +200,7 @@ class Search {
           if (const auto start = StartOf(InputFile(found.path.string())))
             starts_[*start] = found.path.filename().string();
         } catch (const InputError&) {
-          // The file is deleted in any case.
+          // The start of a damaged file is not needed, because the file is deleted in any case.
         }
     for (const auto& [path, start] : recordings_)
       if (const auto of = starts_.find(start); of != starts_.end() && !IsFound(path))
@@ -236,9 +236,9 @@ class Search {
   const std::string& pseudonym_;
   const std::function<void(std::uint64_t)>& progress_;
   PersonSearch result_;
-  std::vector<fs::path> others_;                               // not found by themselves
-  std::vector<std::pair<fs::path, std::int64_t>> recordings_;  // of them, with their starts
-  std::map<std::int64_t, std::string> starts_;                 // of found recordings
+  std::vector<fs::path> others_;  // files in which no pseudonym was found
+  std::vector<std::pair<fs::path, std::int64_t>> recordings_;  // with their starts
+  std::map<std::int64_t, std::string> starts_;  // starts of found recordings, with their names
 };
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace predictor {
 
 struct PersonalFile {
-  std::filesystem::path path;  // a file, a link, or a folder with all that is in it
+  std::filesystem::path path;  // a file, a link, or a folder with its contents
   std::string why;             // "it contains the pseudonym"
 };
 
@@ -20,7 +20,7 @@ struct PersonSearch {
   // damaged files, compressed files of other programs, histories of Git.
   std::vector<PersonalFile> not_searched;
   std::vector<PersonalFile> linked;  // found files that have another name outside of the folder
-  std::uint64_t files = 0;           // that were searched
+  std::uint64_t files = 0;           // number of searched files
 };
 
 // Finds everything below `folder` that belongs to the person: files that have the pseudonym in

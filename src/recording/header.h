@@ -38,7 +38,7 @@ struct RecordingHeader {
 struct JsonChannel {
   std::string topic, schema_name;
   std::string schema;  // JSON Schema
-  // If this is empty, the messages do not follow from ticks.
+  // Converts a record to a message. Empty if the messages do not follow from ticks.
   std::function<std::string(const TickRecord& record, std::uint64_t unix_ns)> message;
 };
 
@@ -46,7 +46,7 @@ struct JsonChannel {
 inline constexpr const char* kPersonTopic = "/person/state";
 JsonChannel PersonChannel();
 
-// An event: a marker, lost ticks, a stop.
+// An event, for example a marker, lost ticks or a stop.
 struct RecordingEvent {
   std::uint64_t tick = 0;  // the newest tick when the event was recorded
   std::uint64_t unix_ns = 0;

@@ -27,9 +27,9 @@ constexpr milliseconds kChunkPeriod{500};  // longest time that a chunk waits fo
 // interval between two events about lost ticks [ns]
 constexpr std::uint64_t kLossPeriod = 1'000'000'000;
 
-constexpr int kThrown = -1;  // used instead of an errno value
+constexpr int kThrown = -1;  // means an exception where an errno value is expected
 
-// Works even if only a short text fits into memory.
+// Stores the text, or a short one if memory is insufficient.
 void Note(const char* why, std::string* text) noexcept {
   try {
     *text = why;

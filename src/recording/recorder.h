@@ -18,10 +18,10 @@ namespace predictor {
 
 struct RecorderStatus {
   bool recording = true;
-  std::string ended_why;  // a full sentence; empty while it records, or if it was ended on request
-  std::uint64_t bytes = 0;       // bytes on the disk
-  std::uint64_t ticks = 0;       // ticks in complete chunks on the disk
-  std::uint64_t lost = 0;        // ticks that were overwritten before they could be read
+  std::string ended_why;    // full sentence; empty while recording, or if the end was requested
+  std::uint64_t bytes = 0;  // bytes on the disk
+  std::uint64_t ticks = 0;  // ticks in complete chunks on the disk
+  std::uint64_t lost = 0;   // ticks that were overwritten before they could be read
   std::uint64_t free_bytes = 0;  // free space on the disk at the last check
 };
 
@@ -31,7 +31,7 @@ struct RecorderOptions : DiskRules {
   std::size_t max_queued = 64U << 20U;     // maximum size of the chunks that wait for the disk
                                            // [bytes]
   const EvaluationBoard* person =
-      nullptr;  // whose states are recorded as well; null: none; borrowed
+      nullptr;  // source of the person's states to record; null: none; borrowed
 };
 
 // One thread reads the ring, encodes and compresses, another writes, and a third synchronises the

@@ -250,7 +250,7 @@ std::string RecoverReport::Text() const {
             (lost_ticks == 1 ? "is" : "are") + " lost.";
   if (gave_up_at > 0)
     text += " From byte " + std::to_string(gave_up_at) +
-            " on, the file was not searched: too much data before it only looks like chunks.";
+            " on, the file was not searched: too much of the preceding data only resembles chunks.";
   return text;
 }
 

@@ -14,21 +14,21 @@ struct RecoverReport {
   bool was_complete = false;         // the recording had no damage
   std::uint64_t ticks = 0;           // number of ticks kept
   std::uint64_t chunks = 0;          // number of complete chunks kept
-  std::uint64_t damaged_chunks = 0;  // including truncated chunks
+  std::uint64_t damaged_chunks = 0;  // number of damaged chunks, including truncated ones
   std::uint64_t salvaged_ticks = 0;  // number of `ticks` that come from damaged chunks
   std::uint64_t lost_ticks = 0;  // ticks lost between kept ones; the number after the last kept one
                                  // is unknown
   std::uint64_t snapshots = 0, events = 0;                  // numbers of those kept
-  std::uint64_t left_out_markers = 0, left_out_states = 0;  // as Rewriting asks
-  std::uint64_t gave_up_at = 0;  // byte at which the search was abandoned; 0: it was not
+  std::uint64_t left_out_markers = 0, left_out_states = 0;  // because of Rewriting
+  std::uint64_t gave_up_at = 0;  // byte at which the search was abandoned; 0: not abandoned
   std::string preamble;  // sentences about repaired or lost parts of the preamble; empty: none
 
   std::string Text() const;  // Sentences for the user.
 };
 
-// What a copy is meant to change.
+// The changes to be made in the copy.
 struct Rewriting {
-  std::function<void(RecordingHeader*)> change;  // of the header; may throw; empty: none
+  std::function<void(RecordingHeader*)> change;  // changes the header; may throw; empty: no change
   bool person = true;  // keep events with free text, and the states of the person
 };
 

@@ -143,7 +143,7 @@ TEST_F(Damage, AFileFullOfHeadsIsNotReadAgainForEach) {
   const RecoverReport report = Recover(path_, folder_.File("out.mcap"), &calls_);
   EXPECT_LT(BytesRead() - before, 40 * hostile.size() + (200U << 20U));
   EXPECT_GT(report.gave_up_at, first);
-  EXPECT_NE(report.Text().find("only looks like chunks"), std::string::npos);
+  EXPECT_NE(report.Text().find("only resembles chunks"), std::string::npos);
 
   // After fewer such headers, the reader must still find intact chunks.
   WriteFile(path_,

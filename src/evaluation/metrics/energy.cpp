@@ -36,11 +36,11 @@ class Energy final : public Metric {
         "energy that the hands supplied to the real handles in RUN and while stopping, minus what "
         "they received",
         hands_.sum, true);
-    add("lowest_j", "lowest balance", kJoule, "lowest value of that balance during the run",
+    add("lowest_j", "lowest balance", kJoule, "lowest value of the supplied energy during the run",
         hands_.lowest, false);
     add("episodes", "times below −0.05 J", units::kNone,
-        "how often that balance fell below −0.05 J", static_cast<std::uint64_t>(hands_.episodes),
-        false);
+        "how often the supplied energy fell below −0.05 J",
+        static_cast<std::uint64_t>(hands_.episodes), false);
     add("returned_j", "returned", kJoule, "energy that the hands received", hands_.returned, true);
     add("peak_return_w", "largest power received", kWatt, "largest power that the hands received",
         hands_.peak_return, false);

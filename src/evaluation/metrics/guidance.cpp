@@ -28,7 +28,7 @@ class Guidance final : public Metric {
 
  private:
   GuidanceSpec guidance_;
-  std::optional<std::array<double, 3>> start_;  // of the object, in W [m]
+  std::optional<std::array<double, 3>> start_;  // position of the object at the start, in W [m]
   Statistics distance_;
 };
 

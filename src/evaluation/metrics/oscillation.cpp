@@ -43,8 +43,8 @@ class Oscillation final : public Metric {
           "of 4 s in which the force varied by more than 1 N rms",
           of.index, true);
       add("strong_index", "largest index above 3 N", kIndex,
-          "the same, in windows in which the force varied by more than 3 N rms", of.strong_index,
-          false);
+          "largest index in windows in which the force varied by more than 3 N rms",
+          of.strong_index, false);
       add("rms_n", "largest rms from 3 to 10 Hz", units::kNewton,
           "largest rms of the force from 3 to 10 Hz, in windows of 4 s", of.rms, true);
     }
@@ -69,7 +69,7 @@ class Oscillation final : public Metric {
   };
 
   std::array<Hand, kHands> hands_;
-  std::uint64_t tick_ = 0;  // of the last record
+  std::uint64_t tick_ = 0;  // tick of the last record
 };
 
 }  // namespace
