@@ -25,10 +25,10 @@ bool Fits(const Pose& X_BF, const Pose& reported) {
          RotationError(reported.q, X_BF.q).norm() <= kFlangeRotation;
 }
 
-// Larger errors are noticeable by hand in the arm's protective stops and free-drive.
+// Larger errors noticeably affect the arm's protective stops and free-drive.
 constexpr double kMass = 0.1;      // [kg]
 constexpr double kMassPart = 0.1;  // share of the handle's mass
-constexpr double kSensor = 1.0;    // possible mass of a sensor [kg]
+constexpr double kSensor = 1.0;    // largest mass of a separate sensor [kg]
 constexpr double kReach = 0.1;     // distance of its centre of gravity from the flange [m]
 constexpr double kMoment = 0.01;   // limit for mass times distance [kg·m]: 0.1 N·m
 

@@ -21,8 +21,8 @@ constexpr double kResidualForce = 0.1;
 constexpr double kResidualTorque = 0.01;
 constexpr double kResidualPart = 0.02;
 // Required accuracy.
-constexpr double kMaxRelativeMassError = 0.05;  // as a share of the mass
-constexpr double kMaxMassError = 0.010;         // or as an amount [kg]
+constexpr double kMaxRelativeMassError = 0.05;  // half-width as a share of the mass
+constexpr double kMaxMassError = 0.010;         // half-width as an amount [kg]
 constexpr double kNoMass = 0.020;               // a smaller mass counts as no weight [kg]
 constexpr double kMaxCenterError = 0.005;       // [m]
 

@@ -145,7 +145,7 @@ void MotionWatch::Check(double due) {
   const Status wrong = monitor_.Check(input);
   if (wrong.ok()) return;
   std::string words = CauseWords(wrong) + ". " + Advice(wrong);
-  // Every late reading except a frozen sensor or silence.
+  // A frozen sensor (kCount) and a silent one (power_off) are not merely late.
   const bool late = wrong.cause == StopCause::kStale && wrong.quantity != Quantity::kCount;
   if (!wrong.power_off && (late || wrong.cause == StopCause::kDeadline)) throw HeldUp(words);
   words += " Nothing was written to the machine file.";

@@ -46,7 +46,8 @@ class Consent {
   double silent_since_ = 0;  // while consent is revoked: start of the silence [s]
 };
 
-// The arm must stop because of a condition that may end immediately: late readings or ticks.
+// Thrown if the arm must stop because of late readings or ticks, which may be on time again
+// immediately.
 class HeldUp : public DeviceError {
  public:
   using DeviceError::DeviceError;

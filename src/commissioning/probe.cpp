@@ -219,7 +219,7 @@ void CompareModel(const Machine& machine, int hand, const DeviceFacts& facts, Pr
   }
 }
 
-// Connects by `connect` and observes by `watch`. Any error is recorded as the device's own trouble.
+// Connects by `connect` and observes by `watch`. Any error is recorded as a problem of this device.
 template <class Connect, class Watch>
 void Try(const std::string& place, const Connect& connect, const Watch& watch,
          std::vector<Probed>* all) {

@@ -9,8 +9,8 @@
 namespace predictor::commissioning {
 namespace {
 
-constexpr double kNoOne = 1;  // limit for the pushed handle when the other handle's sensor reads
-                              // the push [N]
+constexpr double kNoOne = 1;  // largest force at the pushed handle if the other handle's sensor
+                              // reads the push [N]
 
 using Readings = std::array<AxisReading, PushTest::kAxes>;
 

@@ -15,7 +15,7 @@ namespace predictor::commissioning {
 struct AxisReading {
   std::int8_t axis = -1;  // 0 x, 1 y, 2 z; −1: no clear axis
   bool negative = false;
-  bool other_hand = false;  // the sensor of the other handle read it
+  bool other_hand = false;  // the sensor of the other handle measured the push
   bool operator==(const AxisReading&) const = default;
 };
 
@@ -24,7 +24,7 @@ struct AxisReading {
 class PushTest {
  public:
   static constexpr double kMinForce = 5,
-                          kMaxForce = 25;  // smallest force of a push that counts [N]
+                          kMaxForce = 25;  // smallest and largest force of a push that counts [N]
   static constexpr double kDominant = 3;   // smallest ratio to each of the other components
   static constexpr double kLong = 0.3;     // minimum duration [s]
   static constexpr double kFree = 2;       // a smaller force is not a push [N]

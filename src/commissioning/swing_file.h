@@ -21,7 +21,7 @@ class SwingFile {
   struct Kept {
     Swings swings;       // empty without a record
     std::string date;    // date of the last swing
-    std::string remark;  // why an existing file cannot be used; otherwise ""
+    std::string remark;  // why an existing file cannot be used; empty without a problem
   };
   // Does not throw: a file that cannot be read counts as absent.
   Kept Load() const;

@@ -27,7 +27,7 @@ struct ContactLimit {
 };
 
 struct ContactLimits {
-  std::string edition;  // as given in the file
+  std::string edition;  // edition of the limits, as given in the file
   std::vector<ContactLimit> points;
 };
 
@@ -43,7 +43,7 @@ ContactLimits ParseContactLimits(const std::string& text, const std::string& nam
 
 enum class ContactKind {
   kTransient,    // the body part can recoil
-  kQuasiStatic,  // it is clamped, for example against a fixture
+  kQuasiStatic,  // the body part is clamped, for example against a fixture
 };
 
 // These functions return the limits at this point, or 0 if the point must not be hit.

@@ -1,8 +1,8 @@
 // Models of muscle fatigue by joint. All of them take the load as a share of strength, u = torque /
 // strength in that direction, 0 … 1. They have no memory beyond their state and do not allocate.
 //
-// They are not for a person's own endurance without a trial (people differ by a factor of two or
-// more), for eccentric or fast movement, or for pain.
+// They do not predict a person's own endurance without a trial (people differ by a factor of two or
+// more), eccentric or fast movement, or pain.
 #pragma once
 
 #include <string_view>

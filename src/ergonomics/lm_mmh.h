@@ -45,8 +45,8 @@ struct HorizontalHandling {
   double frequency = 0;    // [1/min] 1/480 … 20
 };
 enum class ForcePhase {
-  kInitial,    // to set the object in motion
-  kSustained,  // to keep it moving
+  kInitial,    // the force that sets the object in motion
+  kSustained,  // the force that keeps the object moving
 };
 Acceptable AcceptablePush(const HorizontalHandling& task, ForcePhase phase, Sex sex);
 Acceptable AcceptablePull(const HorizontalHandling& task, ForcePhase phase, Sex sex);

@@ -6,9 +6,9 @@
 // frequency table are verified. Only the metric form is implemented. The manual's form in inches
 // and pounds gives slightly different limits for the same lift.
 //
-// The equation is not for one hand, sitting, kneeling, carrying, pushing, unstable loads, motion
-// faster than about 0.75 m/s, slippery floors, heat, or more than 8 h. It is defined for lifts
-// "without mechanical assistance"; see AssistedLift.
+// The equation is not valid for one hand, sitting, kneeling, carrying, pushing, unstable loads,
+// motion faster than about 0.75 m/s, slippery floors, heat, or more than 8 h. It is defined for
+// lifts "without mechanical assistance"; see AssistedLift.
 #pragma once
 
 #include <span>
@@ -82,7 +82,7 @@ double CompositeLiftingIndex(std::span<const LiftTask> tasks);
 // label.
 struct AssistedLift {
   LiftAssessment carried;     // adapted: mass = mean vertical force of both hands / g
-  LiftAssessment unassisted;  // the same lift with the whole mass
+  LiftAssessment unassisted;  // the same lift without assistance: the person carries the whole mass
   static constexpr const char* kCarriedLabel = "adapted, not NIOSH";
 };
 

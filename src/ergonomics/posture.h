@@ -1,4 +1,4 @@
-// RULA, REBA and OWAS assess this: a person's posture and exertion.
+// A person's posture and exertion, which RULA, REBA and OWAS assess.
 //
 // All angles are in radians and finite, which the assessments do not check. Signs give the
 // direction in which a joint bends, as stated for each member. Side bend and twist count equally in

@@ -8,8 +8,8 @@
 // "Static" means one minute, as in the paper, while a common worksheet says ten. Thresholds of
 // measured angles are a design choice (posture.h).
 //
-// RULA is not for the risk of a person, for loads that differ within a posture, or for the trend
-// over a shift.
+// RULA is not suitable for judging the risk of a person, loads that differ within a posture, or the
+// trend over a shift.
 #pragma once
 
 #include "ergonomics/posture.h"

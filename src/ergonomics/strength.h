@@ -1,12 +1,12 @@
 // The joint strengths of a population, and the share of it that can exert a torque.
 //
-// The source is the mean strengths of elbow and shoulder by joint angle after Stobbe, in Chaffin &
+// The mean strengths of elbow and shoulder by joint angle are those of Stobbe, in Chaffin &
 // Andersson, Occupational Biomechanics. They are quoted from memory and were not verified, because
 // no public copy of the equations was found. The elbow flexion at 90° agrees with the book's table
-// of means (men 77, women 41 N·m; quoted from memory). They apply to static, isometric exertions of
-// US industrial workers.
+// of means (men 77, women 41 N·m; quoted from memory). The strengths apply to static, isometric
+// exertions of US industrial workers.
 //
-// They are not for a particular person, fast movement, other joints, or the grip of the hand.
+// They are not valid for a particular person, fast movement, other joints, or the grip of the hand.
 #pragma once
 
 #include <array>

@@ -100,8 +100,8 @@ class Arms {
 
   const UrdfModel& urdf_;
   std::vector<int> above_, carriers_, body_;  // body: the first link of those fixed to each other
-  std::vector<bool> hand_;                    // of each joint
-  std::vector<bool> on_hand_;                 // of each link
+  std::vector<bool> hand_;                    // whether each joint is part of a hand
+  std::vector<bool> on_hand_;                 // whether each link is part of a hand
 };
 
 int LinkNamed(const UrdfModel& urdf, const std::string& name) {

@@ -12,7 +12,7 @@ namespace predictor {
 struct ArmChain {
   std::string end_effector;               // link
   std::vector<std::string> joints;        // movable joints, from the base outwards
-  std::vector<std::string> remove_links;  // what other joints move (see RobotSource)
+  std::vector<std::string> remove_links;  // links that other joints move (see RobotSource)
   double removed_mass = 0;                // mass of these links and all attached to them [kg]
 };
 

@@ -52,10 +52,10 @@ struct EngineState {
   Jacobian J_W;         // column k: twist of W's origin caused by joint k alone, axes of W
   JointMatrix M;        // [kg·m²]
   JointVector gravity;  // [N·m]
-  std::array<BodyInertia, kMaxJoints + 1> inertia;    // of the bodies, in W
-  std::array<BodyInertia, kMaxJoints + 1> composite;  // of what each joint carries, in W
+  std::array<BodyInertia, kMaxJoints + 1> inertia;    // inertia of each body, in W
+  std::array<BodyInertia, kMaxJoints + 1> composite;  // what each joint carries, in W
   JointVector bias;                                   // [N·m]; see Bias
-  const EngineModel* waits_for_bias = nullptr;        // set: `bias` is not computed yet
+  const EngineModel* waits_for_bias = nullptr;        // model to compute `bias` with; null: done
 };
 
 // Builds the model. `body` and `X_JL` give, for each link, the joint that carries it and its pose

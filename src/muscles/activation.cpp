@@ -8,7 +8,7 @@ namespace predictor::muscles {
 namespace {
 
 constexpr int kMaxIterations = 200;
-constexpr double kTolerance = 1e-10;  // of the slope, relative to the largest torque
+constexpr double kTolerance = 1e-10;  // tolerance of the slope, relative to the largest torque
 
 // The dual at one λ, negated so that it can be minimised.
 struct Dual {

@@ -12,7 +12,7 @@ struct EmgProcessing {
   double envelope = 6;                    // cutoff of the low-pass, 4 to 6 [Hz]
   double mvc = 1;       // envelope of a maximum voluntary contraction, unit of the input
   double shape = -2;    // A of ActivationOfEmg
-  double delay = 0.04;  // from the electrical to the mechanical onset, 0.01 to 0.08 [s]
+  double delay = 0.04;  // delay from the electrical to the mechanical onset, 0.01 to 0.08 [s]
 };
 
 // Applies a band-pass, takes the absolute value, and applies a low-pass. Each filter is of second

@@ -21,7 +21,7 @@ constexpr int kMaxDofs = 256;
 
 // MyoArm's muscles that form one of ours.
 struct Strands {
-  const char* key;  // of MuscleTable
+  const char* key;  // key in MuscleTable
   std::vector<const char*> names;
 };
 
@@ -64,7 +64,7 @@ const std::vector<Strands>& AllStrands() {
 
 // A joint of MyoArm with one degree of freedom.
 struct MyoJoint {
-  int q = -1, v = -1, id = -1;  // in qpos, in qvel, among the joints
+  int q = -1, v = -1, id = -1;  // index in qpos, index in qvel, number of the joint
 };
 
 // A joint that follows another one.
@@ -88,7 +88,8 @@ struct Strand {
   double share = 0;
 };
 
-// Rotations about the axis of the plane of elevation, that of the elevation, and the first again.
+// Rotations about the axis of the plane of elevation, about the axis of elevation, and about the
+// first axis again.
 struct ShoulderAngles {
   double plane = 0, elevation = 0, rotation = 0;
 };
@@ -126,10 +127,10 @@ class MyoArm final : public ArmPaths {
   std::vector<Coupling> couplings_;
   std::vector<Strand> strands_;
   std::array<MuscleParameters, kMuscles> muscles_;
-  std::vector<double> rest_;  // qpos of the joints that stay
+  std::vector<double> rest_;  // qpos of the joints that do not move
   person::BodyModel body_{BodySpec{}};
-  Matrix3 R_WS_ = Matrix3::Identity();        // of our torso's axes in MyoArm's world
-  Matrix3 R_shoulder_ = Matrix3::Identity();  // columns: axis of elevation, their normal, of plane
+  Matrix3 R_WS_ = Matrix3::Identity();        // rotation of our torso's axes in MyoArm's world
+  Matrix3 R_shoulder_ = Matrix3::Identity();  // columns: elevation axis, normal, plane axis
 };
 
 MyoArm::MyoArm(MyoModel model, const std::string& source)
@@ -263,7 +264,8 @@ void MyoArm::SetPosture(const ArmVector& q, const Matrix3& R_upper_arm) const no
   const ShoulderAngles shoulder = ShoulderAt(R_upper_arm);
   qpos[plane_.q] = shoulder.plane;
   qpos[elevation_.q] = shoulder.elevation;
-  // A joint that follows the plane turns it back (see couplings_).
+  // A coupled joint turns the upper arm back by the angle of the plane (see couplings_), which is
+  // therefore added.
   qpos[rotation_.q] = shoulder.rotation + shoulder.plane;
   const auto at = [&](ArmJoint joint) { return q[static_cast<int>(joint)]; };
   qpos[elbow_.q] = at(ArmJoint::kElbowFlexion);

@@ -1,10 +1,10 @@
 // Reads MyoArm, an arm model in MuJoCo's format with a moving shoulder girdle, as an alternative to
 // the built-in paths and strengths of the muscles.
 //
-// MyoArm (package myo-sim 0.2.4, Apache-2.0) is no part of this program. Its clavicle and scapula
+// MyoArm (package myo-sim 0.2.4, Apache-2.0) is not part of this program. Its clavicle and scapula
 // follow the elevation of the upper arm through equality constraints, q_dep = polynomial(q_indep).
-// A muscle that begins at the scapula therefore changes its length in two ways when the shoulder
-// turns, and its moment arm is the sum of both:
+// A muscle that originates at the scapula therefore changes its length in two ways when the
+// shoulder turns, and its moment arm is the sum of both:
 //     R = R_indep + Σ R_dep ∂q_dep/∂q_indep
 #pragma once
 

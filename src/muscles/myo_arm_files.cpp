@@ -21,8 +21,8 @@ void DeleteAll(mjSpec* spec, mjtObj kind) {
   }
 }
 
-// The bodies state their inertias, so the shapes of the bones are needed only for pictures. Tendons
-// run around other shapes.
+// The file contains the inertias of the bodies, so the shapes of the bones are needed only for
+// pictures. Tendons run around other shapes.
 void DeletePictures(mjSpec* spec) {
   for (mjsElement* element = mjs_firstElement(spec, mjOBJ_GEOM); element != nullptr;) {
     mjsElement* next = mjs_nextElement(spec, element);

@@ -18,8 +18,8 @@ struct PartTrack {
   std::vector<Vector3> p;     // in W [m]; NaN: missing
   std::vector<Quaternion> q;  // R_WT; empty: not measured; NaN: missing
 
-  // Interpolates linearly between two measurements that are at most `gap` [s] apart. There is no
-  // value outside of them.
+  // Interpolates linearly between two measurements that are at most `gap` [s] apart. Returns no
+  // value outside of these measurements.
   std::optional<Vector3> PositionAt(double time, double gap = kMaxGap) const;
   std::optional<Quaternion> RotationAt(double time, double gap = kMaxGap) const;
 
@@ -30,10 +30,10 @@ struct PartTrack {
 struct HandTrack {
   PartTrack pose;
   std::vector<double> wrench_times;  // [s]
-  std::vector<Wrench> F;             // on the handle, about the point `about`, in `axes`; or NaN
+  std::vector<Wrench> F;             // wrench on the handle, about the point `about`; NaN: missing
   std::vector<double> holds_times, holds;
   bool along_handle = false;        // F is along the handle's axes, otherwise along those of W
-  Vector3 about = Vector3::Zero();  // in the handle's frame [m]
+  Vector3 about = Vector3::Zero();  // point of the torque, in the handle's frame [m]
 
   // Returns F_D_W about the handle's origin, or no value where the pose or the wrench is missing.
   // If there are several values within `width` [s] around the time, it is their mean. Otherwise it
@@ -53,7 +53,7 @@ struct SignalTrack {
   double At(double time, double width) const;
 };
 
-// A raw electromyogram, and how it becomes an activation.
+// A raw electromyogram, and how an activation is computed from it.
 struct EmgTrack {
   EmgMap map;
   std::vector<double> times, values;  // [s], in the unit of the channel; NaN: missing
@@ -72,7 +72,7 @@ struct BodyTrack {
 };
 
 // Applies a mapping. Throws InputError if a channel is missing, a position has no unit, a rotation
-// is no unit quaternion, or a part was never seen.
+// is not a unit quaternion, or a part was never seen.
 BodyTrack ApplyMap(const TrackMap& map, const SeriesFile& file);
 
 // Loads a mapping (.yaml) with its file, or a table with named columns (MapOfColumns). Throws

@@ -34,7 +34,7 @@ class C3dReader {
 
   SeriesFile Read() {
     if (bytes_.size() < 2 * kBlock || static_cast<unsigned char>(bytes_[1]) != 0x50)
-      Fail("This is no C3D file.");
+      Fail("This is not a C3D file.");
     ReadParameters((Byte(0) - 1) * kBlock);
     ReadSettings();
     AddPoints();

@@ -12,12 +12,12 @@
 namespace predictor::tracks {
 namespace {
 
-constexpr double kRate = 100;           // of the compared speeds [Hz]
-constexpr double kWindow = 0.1;         // over which a speed is taken [s]
-constexpr double kMaxHole = 0.1;        // between neighbouring samples [s]
-constexpr double kLobe = 0.5;           // offsets closer to the best one belong to it [s]
-constexpr double kSearch = 0.3;         // of a part's own offset about the best one [s]
-constexpr double kMinDeviation = 0.01;  // of a speed that says something [m/s]
+constexpr double kRate = 100;     // sampling rate of the compared speeds [Hz]
+constexpr double kWindow = 0.1;   // time over which a speed is computed [s]
+constexpr double kMaxHole = 0.1;  // longest interpolated gap between samples [s]
+constexpr double kLobe = 0.5;     // offsets closer to the best one belong to the same maximum [s]
+constexpr double kSearch = 0.3;   // search range of a part's offset about the best one [s]
+constexpr double kMinDeviation = 0.01;  // smallest standard deviation of a usable speed [m/s]
 constexpr std::size_t kBlocks = 8, kMinBlocks = 3;
 constexpr double kMaxWork = 2e8;  // products in the search over all offsets
 

@@ -12,13 +12,13 @@ namespace predictor::tracks {
 // The positions of a point over time, with NaN where they are missing. Times ascend [s].
 struct Path {
   std::span<const double> times;
-  std::span<const Vector3> p;  // in any frame that rests [m]
+  std::span<const Vector3> p;  // in any frame at rest [m]
 };
 
 struct ClockOffset {
   double offset = 0;       // to be added to the times of `track` to get those of `reference` [s]
   double uncertainty = 0;  // half of the 95 % interval [s]
-  double correlation = 0;  // of the speeds at this offset
+  double correlation = 0;  // correlation of the speeds at this offset
 };
 
 // Estimates the offset from the speeds, which do not depend on the frames. The normalised
@@ -36,6 +36,6 @@ ClockOffset EstimateOffset(const Path& reference, const Path& track, const std::
 inline constexpr double kMinCorrelation = 0.8;
 inline constexpr double kMaxSecond = 0.9;
 inline constexpr double kMinOverlap = 3;  // [s]
-inline constexpr double kMaxDrift = 0.1;  // between parts of the record [s]
+inline constexpr double kMaxDrift = 0.1;  // largest difference between parts of the record [s]
 
 }  // namespace predictor::tracks

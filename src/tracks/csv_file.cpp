@@ -128,7 +128,7 @@ class CsvReader {
     Series& series = file_.series[i];
     const std::optional<double> value = NumberIn(cell);
     if (!value && !words_[i]) {
-      // A column of words contains one from its first cell that is not empty.
+      // In a column of words, the first cell that is not empty must contain a word.
       if (std::ranges::any_of(series.values, [](double x) { return x - x == 0; }))
         Fail("Column " + Quote(series.name) + " has " + Quote(cell) + ", which is not a number.");
       words_[i] = true;

@@ -18,25 +18,25 @@ namespace predictor::tracks {
 
 struct PersonHeader {
   int format = 1;
-  std::string name;                   // of the task
+  std::string name;                   // name of the task
   std::string source;                 // file from which it was imported
-  bool simulated = false;             // no person, but a simulation held the handles
-  std::optional<double> object_mass;  // that the hands move together with a robot [kg]
+  bool simulated = false;             // a simulation, and no person, held the handles
+  std::optional<double> object_mass;  // moved by the hands together with a robot [kg]
   std::optional<BodySpec> body;
   std::optional<StanceSpec> stance;
   std::optional<ParticipantSpec> participant;
   GripSpec left, right;            // how the hands hold their handles
-  std::vector<std::string> notes;  // what was missing, as sentences
+  std::vector<std::string> notes;  // sentences about what was missing
 };
 
 struct PersonFile {
   PersonHeader header;
-  BodyTrack track;  // hands with poses and wrenches; perhaps head, elbows, signals
+  BodyTrack track;  // hands with poses and wrenches; possibly head, elbows and signals
 };
 
 inline constexpr double kPersonRate = 100;  // rows [Hz]
 
-// A mapping for `predictor import`: that of a track without its file, plus the header's keys.
+// A mapping for `predictor import`: a TrackMap without the name of the file, and the header's keys.
 struct ImportMap {
   TrackMap channels;
   PersonHeader person;

@@ -70,7 +70,7 @@ class McapBag {
   McapBag(const std::string& file, Topics* topics) : file_(file), topics_(topics) {}
 
   void Read(std::string_view bytes) {
-    if (!bytes.starts_with(mcap::kMagic)) Fail("This is no MCAP file.");
+    if (!bytes.starts_with(mcap::kMagic)) Fail("This is not an MCAP file.");
     ReadRecords(bytes.substr(mcap::kMagic.size()), false);
   }
 
@@ -214,7 +214,7 @@ SeriesFile ReadRosBag(const std::filesystem::path& given, MessageTime clock) {
     const std::string bytes = ReadBytes(file);
     McapBag(file.string(), &topics).Read(bytes);
   } else {
-    ReadBytes(file);  // throws its errors: missing, empty, too large
+    ReadBytes(file);  // checks that the file exists, is not empty and is not too large
     SqliteBag(file.string()).Read(&topics);
   }
   return topics.Finish();

@@ -152,7 +152,8 @@ void RosTopic::Add(std::string_view bytes, std::int64_t received, MessageTime cl
   else
     AddOne(&cdr, received, clock);
   if (!cdr.ok())
-    throw InputError(topic_, "A message is no " + type_ + " in CDR. Record the topic again.");
+    throw InputError(topic_,
+                     "A message cannot be read as " + type_ + " in CDR. Record the topic again.");
 }
 
 void RosTopic::AddTransforms(Cdr* cdr, std::int64_t received, MessageTime clock) {

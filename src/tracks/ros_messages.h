@@ -46,7 +46,7 @@ class RosTopic {
   std::string topic_, type_;
   std::vector<double> times_;
   std::vector<std::string> order_;
-  std::map<std::string, Series> channels_;  // by field
+  std::map<std::string, Series> channels_;  // channels by field
   std::vector<RosTopic> frames_;            // of a TFMessage: one for each child frame
 };
 

@@ -14,16 +14,16 @@ inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 // The numbers of one channel.
 struct Series {
   std::string name;
-  std::string unit;                                  // as the file states it; "": it does not
+  std::string unit;                                  // as stated in the file; "": not stated
   std::shared_ptr<const std::vector<double>> times;  // in the file's clock, ascending [s]
   std::vector<double> values;                        // one for each time; NaN: missing
 };
 
 struct SeriesFile {
-  std::string name;                   // for messages
+  std::string name;                   // name for messages
   std::vector<std::string> comments;  // comment lines, without their #
   std::vector<Series> series;
-  std::vector<std::string> warnings;  // about doubtful content, as sentences
+  std::vector<std::string> warnings;  // sentences about doubtful content
 
   // Returns null for an unknown channel.
   const Series* Find(const std::string& channel) const;
@@ -31,7 +31,7 @@ struct SeriesFile {
   const Series& At(const std::string& channel) const;
 };
 
-// How the time of a table is read. Other formats state it themselves.
+// How the time of a table is read. Files of other formats define their time themselves.
 struct TimeColumn {
   std::string name;  // "": the column called time or timestamp
   std::string unit;  // "": as the header states it, otherwise s

@@ -14,7 +14,7 @@ class TextLines {
   explicit TextLines(std::string_view text);
   // Returns false at the end.
   bool Next(std::string_view* line);
-  int number() const { return number_; }  // of the last line, from 1
+  int number() const { return number_; }  // number of the last line, from 1
 
  private:
   std::string_view rest_;

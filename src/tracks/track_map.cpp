@@ -46,12 +46,12 @@ void CheckHand(const HandMap& hand, const std::string& path, const YamlNode& roo
 void CheckEmg(const EmgMap& emg, const std::string& path, const YamlNode& root,
               Problems* problems) {
   if (!(emg.mvc > 0))
-    problems->Add(PlaceOf(path, root),
-                  path +
-                      " has no mvc. A voltage depends on the electrode and the skin, so it "
-                      "states an activation only relative to a maximum voluntary contraction. "
-                      "Record one, and give the largest envelope as mvc, in the unit of the "
-                      "channel.");
+    problems->Add(
+        PlaceOf(path, root),
+        path +
+            " has no mvc. A voltage depends on the electrode and the skin, so an activation "
+            "follows from it only relative to a maximum voluntary contraction. Record one, and "
+            "give the largest envelope as mvc, in the unit of the channel.");
   if (emg.band_low >= emg.band_high)
     problems->Add(PlaceOf(path, root), path + ".band_low must be below band_high.");
 }

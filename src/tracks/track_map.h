@@ -16,7 +16,7 @@ namespace predictor::tracks {
 // Where a part of the body is. Its frame is the tracked frame T, times the pose `xyz`, `rpy`.
 struct PartMap {
   std::vector<std::string> position;  // three channels, or NAME for NAME.x, NAME.y, NAME.z
-  std::vector<std::string> markers;   // or points whose mean it is; one missing: all missing
+  std::vector<std::string> markers;   // or points whose mean is the position; all must be present
   std::vector<std::string> rotation;  // four channels w, x, y, z, or NAME for NAME.w, ...
   // Or four sets of markers on its sides: x of T points from back to front, y from right to left.
   std::vector<std::string> front, back, left, right;
@@ -26,12 +26,12 @@ struct PartMap {
 enum class WrenchAxes { kFile, kHand };
 enum class WrenchOn { kHandle, kHand };
 
-struct HandMap : PartMap {                 // of the handle's frame
-  std::vector<std::string> force, torque;  // as `position`
-  WrenchAxes axes = WrenchAxes::kFile;     // whose axes the components are along
-  WrenchOn on = WrenchOn::kHandle;         // that the wrench acts on
-  Vector3 about = Vector3::Zero();         // point of the torque, in the handle's frame [m]
-  std::string holds;                       // channel that is above 0.5 while the hand holds
+struct HandMap : PartMap {                 // the pose is that of the handle's frame
+  std::vector<std::string> force, torque;  // three channels each, or one NAME, as in `position`
+  WrenchAxes axes = WrenchAxes::kFile;     // axes of the components
+  WrenchOn on = WrenchOn::kHandle;         // the body on which the wrench acts
+  Vector3 about = Vector3::Zero();  // point about which the torque acts, in the handle's frame [m]
+  std::string holds;                // channel that is above 0.5 while the hand holds
 };
 
 struct SeriesMap {
@@ -46,15 +46,16 @@ struct EmgMap {
   std::string channel;
   ArmSide arm = ArmSide::kLeft;
   std::vector<std::string> muscles;
-  // Envelope of a maximum voluntary contraction, in the unit of the channel. Without it, a voltage
-  // does not state an activation. 0: not given, which CheckTrackMap refuses.
+  // Envelope of a maximum voluntary contraction, in the unit of the channel. An activation can be
+  // computed from a voltage only relative to this envelope. 0: not given, which CheckTrackMap
+  // refuses.
   double mvc = 0;
   double shape = -2, delay = 0.04;        // as in muscles::EmgProcessing; [s]
   double band_low = 20, band_high = 450;  // [Hz]
   double weight = 10;                     // see muscles::ActivationProblem::trust (D)
 };
 
-// What a time of the file means.
+// The meaning of the times in the file.
 enum class TrackClock {
   kRecording,  // seconds since the first tick of the recording
   kUnix,       // seconds since 1970, by a computer whose clock agrees with that of the run
@@ -64,12 +65,12 @@ enum class TrackClock {
 struct TrackMap {
   std::string file;  // relative to the mapping
   std::string time, time_unit;
-  double rate = 0;  // of the rows of a table without times [Hz]
+  double rate = 0;  // rate of the rows of a table without times [Hz]
 
   TimeColumn TimeOf() const { return {time, time_unit, rate}; }
   TrackClock clock = TrackClock::kRecording;
   double offset = 0;                          // added to the file's times [s]
-  PoseSpec frame;                             // of the file, in W
+  PoseSpec frame;                             // pose of the file's frame in W
   std::string unit, force_unit, torque_unit;  // "": as the file states it
   std::optional<PartMap> head, left_elbow, right_elbow;
   std::optional<HandMap> left_hand, right_hand;

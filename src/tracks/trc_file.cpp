@@ -21,7 +21,7 @@ class TrcReader {
       switch (line_) {
         case 1:
           if (!line.starts_with("PathFileType"))
-            Fail("This is no TRC file: it does not begin with PathFileType.");
+            Fail("This is not a TRC file: it does not begin with PathFileType.");
           break;
         case 2:
           names_ = CellsOf(line, '\t');
@@ -94,7 +94,7 @@ class TrcReader {
     if (!(frame > frame_) || !(step > 0))
       Fail(Formatted("The clock goes back from %.6g to %.6g s. Export the file again.",
                      times_.back(), time));
-    constexpr double kRounding = 0.6;  // of a frame: times are written with few digits
+    constexpr double kRounding = 0.6;  // in frames: times are written with few digits
     if (std::abs(step - expected) > kRounding / rate_)
       Fail(
           Formatted("The clock jumps by %.4g s within %.0f frames at %.4g Hz. Export the file "
