@@ -229,9 +229,8 @@ void AddCosts(const Assessment& a, Outline* outline) {
   outline->Begin("fatigue", "Fatigue by 3CC-r (modelled)");
   page.Html(FatigueTable(a));
   page.Html(
-      "<p class=\"caption\">As shares of strength. Too much: when a repetition of the run, without "
-      "a "
-      "break, needs more strength than is left.</p>\n");
+      "<p class=\"caption\">As shares of strength. Too much after: the time after which a "
+      "repetition of the run, without a break, needs more strength than is left.</p>\n");
 }
 
 void AddGroups(const Assessment& a, Outline* outline) {

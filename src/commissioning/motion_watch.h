@@ -40,9 +40,8 @@ class Consent {
   HeldKey held_;
   EnablingContact contact_;
   bool was_released_ = false, pressed_ = false, granted_ = false, revoked_ = false;
-  bool repeats_ = false;     // the key was received recently, so another letter does not count as a
-                             // new press
-  double letter_ = -1e9;     // time of its last letter [s]
+  bool repeats_ = false;     // the key was received recently: another letter only repeats it
+  double letter_ = -1e9;     // time at which the key was last received [s]
   double silent_since_ = 0;  // while consent is revoked: start of the silence [s]
 };
 

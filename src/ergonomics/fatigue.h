@@ -66,7 +66,7 @@ struct CapacityRates {
   // mean of 0.96 and a standard deviation of 0.29 per minute (Ergonomics 61, 806, abstract;
   // verified).
   double fatigue = 1.0 / 60;
-  double recovery = 2.4 / 60;  // [1/s] 2.4 per minute (recalled, not re-checked)
+  double recovery = 2.4 / 60;  // [1/s] 2.4 per minute (quoted from memory, not verified)
 };
 // Returns the remaining share of strength after `dt` [s] at constant load. It is exact for any dt:
 // under load it is c exp(−k load dt), and at rest it returns to 1 exponentially (form verified).

@@ -38,8 +38,8 @@ struct LiftTask {
   double mean_load = 0;  // [kg]
   double max_load = 0;   // [kg]; used only in the composite index
   HandPlace origin, destination;
-  // At the destination, the person must regrasp, hold or carefully place the load. The limit at the
-  // destination then counts as well.
+  // Whether the person must regrasp, hold or carefully place the load at the destination. If so,
+  // the limit at the destination counts as well.
   bool controlled_at_destination = false;
   double frequency = 0;  // [1/min] mean over 15 minutes
   LiftDuration duration = LiftDuration::kShort;

@@ -15,7 +15,7 @@ namespace predictor::evaluator {
 namespace {
 
 constexpr int kPause = 5;      // pause between two checks of the ring [ms]
-constexpr int kPriority = 10;  // lower than that of the run and the viewer
+constexpr int kPriority = 10;  // niceness: lower priority than the run and the viewer
 
 // Returns false if the run has ended, which closes the channel.
 bool WaitAWhile() {

@@ -44,7 +44,7 @@ class PackageMeshes {
   std::filesystem::path scenario_folder_;
   std::map<std::string, PackageFile> files_;
   std::map<std::filesystem::path, std::string> names_;  // names of the files in the package
-  std::set<std::string> stems_;                         // in lower case
+  std::set<std::string> stems_;                         // names without extension, in lower case
   std::vector<std::string> left_out_, notes_;
 };
 

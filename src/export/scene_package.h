@@ -26,8 +26,8 @@ inline constexpr const char* kSceneUrdf = "scene.urdf";  // path in the package
 inline constexpr const char* kSceneSdf = "scene.sdf";
 
 enum class SceneFormat {
-  kUrdf,  // for Unity's URDF-Importer and others
-  kSdf,   // for Gazebo
+  kUrdf,  // URDF for Unity's URDF-Importer and other readers
+  kSdf,   // SDF for Gazebo
 };
 
 // The package: scene.urdf, meshes/…, package.xml and README.txt. The URDF is beside the folder of

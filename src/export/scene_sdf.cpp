@@ -71,7 +71,7 @@ class SdfWriter {
     const auto found = above_.find(link.name);
     return found != above_.end() && found->second->type != UrdfJointType::kFixed;
   }
-  // The link that carries this one or is it: "world" or a <link>.
+  // Returns the first of this link and its ancestors that is "world" or a <link>.
   std::string CarrierOf(const std::string& name) const {
     const SceneLink& link = *links_.at(name);
     if (name == "world" || IsLink(link)) return name;
@@ -101,7 +101,7 @@ class SdfWriter {
     }
   }
 
-  // The pose of a link at the joints' zero, in a frame that the model has.
+  // Adds the pose of a link with all joints at 0, relative to its parent in the model.
   void AddPlace(XmlElement* element, const SceneLink& link) const {
     Pose X;
     const SceneJoint* joint = above_.at(link.name);
@@ -200,7 +200,7 @@ class SdfWriter {
     }
   }
 
-  // `frame`: what the link is in the model, unless it is `element`.
+  // `frame` is the name of the link's frame in the model, or empty if the link is `element` itself.
   void AddVisuals(XmlElement* element, const SceneLink& link, const std::string& frame) {
     int count = 0;
     for (const SceneShape& shape : link.visuals) {
@@ -256,7 +256,7 @@ class SdfWriter {
   const SceneTree& tree_;
   const Scenario& scenario_;
   PackageMeshes& meshes_;
-  std::map<std::string, const SceneJoint*> above_;  // by the link that it moves
+  std::map<std::string, const SceneJoint*> above_;  // joints by the link that they move
   std::map<std::string, const SceneLink*> links_;
   std::set<std::string> joints_;
 };

@@ -74,10 +74,10 @@ std::vector<std::vector<SceneShape>> VisualsOf(const UrdfModel& urdf,
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kFarOff = 1000;      // range of a slide without limits [m]
+constexpr double kFarOff = 1000;      // range of a prismatic joint without limits [m]
 constexpr double kFloorSize = 10;     // size of the box that represents the plane [m]
 constexpr double kFloorDepth = 0.05;  // [m]
-constexpr double kHandleRadius = 0.018, kHandleLength = 0.11;  // of the displayed grip [m]
+constexpr double kHandleRadius = 0.018, kHandleLength = 0.11;  // size of the displayed grip [m]
 constexpr std::array<std::array<double, 4>, kHands> kHandleColors = {
     {{0.21, 0.65, 1, 1}, {0.71, 0.48, 1, 1}}};
 constexpr std::array<double, 4> kFloorColor = {0.6, 0.6, 0.6, 1};
@@ -85,7 +85,7 @@ constexpr std::array<double, 4> kTableColor = {0.61, 0.48, 0.34, 1};
 
 constexpr const char* kFixturePrefix = "fixture_";
 
-// Names of the scene's own links, but those of fixtures.
+// Names of the scene's own links, except those of fixtures.
 const std::set<std::string>& OwnLinks() {
   static const std::set<std::string> names = {"world",
                                               "floor",

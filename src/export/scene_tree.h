@@ -25,7 +25,7 @@ inline constexpr double kTinyInertia = 1e-11;
 // A visual or collision shape of a link.
 struct SceneShape {
   ModelShape shape;
-  bool has_color = true;          // otherwise a mesh shows its own colours
+  bool has_color = true;          // false: the mesh shows its own colours
   std::filesystem::path texture;  // texture of the material, used instead of the colour; may be
                                   // empty
 };
@@ -36,7 +36,7 @@ struct SceneLink {
   Vector3 com = Vector3::Zero();      // in L [m]
   Matrix3 inertia = Matrix3::Zero();  // about the centre of mass, axes of L [kg·m²]
   std::vector<SceneShape> visuals, collisions;
-  std::optional<double> friction;  // of a body of the surroundings; other links have none
+  std::optional<double> friction;  // friction of a body of the surroundings; empty for other links
 };
 
 struct SceneJoint {

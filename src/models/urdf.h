@@ -45,7 +45,7 @@ struct UrdfJoint {
   double lower = 0, upper = 0;      // [rad] or [m]; ∓inf for continuous joints
   double velocity = 0;              // limit [rad/s] or [m/s]; +inf: none
   double effort = 0;                // limit [N·m] or [N]; +inf: none
-  std::string mimics;               // joint that it would follow, see ReadUrdf; "": none
+  std::string mimics;               // joint that a mimic joint would follow, see ReadUrdf; "": none
 };
 
 // A checked URDF. Links are in the file's order. Joints are depth-first from the root, so parents

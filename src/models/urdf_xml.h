@@ -19,7 +19,8 @@ using XmlElement = tinyxml2::XMLElement;
 struct UrdfSource {
   std::string name;
   std::filesystem::path folder;
-  // Meshes must be in a place that this scenario may read. If it is empty, `folder` is used.
+  // Folder of the scenario. Meshes must be in a place that this scenario may read. If empty,
+  // `folder` is used.
   std::filesystem::path scenario_folder = {};
 
   std::string Place(const tinyxml2::XMLNode& at) const;  // "file:line"

@@ -209,7 +209,7 @@ void MyoArm::ReadMuscle(const Strands& strands, int muscle) {
   for (std::size_t i = first; i < strands_.size(); ++i) strands_[i].share /= sum.max_force;
 }
 
-// Fingers and thumb are beyond the wrist.
+// Sets the joints beyond the wrist (fingers and thumb) to the middle of their ranges.
 void MyoArm::SetGrip() {
   const mjModel* m = model_.get();
   rest_.assign(m->qpos0, m->qpos0 + m->nq);

@@ -59,8 +59,8 @@ constexpr double kMinMass = 30, kMaxMass = 250;                   // [kg]
 constexpr double kMinBodyMassIndex = 12, kMaxBodyMassIndex = 70;  // [kg/m²]
 // The range of a measured length, as factors of the estimate.
 constexpr double kMinLengthFactor = 0.7, kMaxLengthFactor = 1.4;
-// The range of the height that the other lengths leave for the head, as a fraction of the body's
-// height.
+// The possible heights of the head, which remain after the other lengths, as a fraction of the
+// body's height.
 constexpr double kMinHeadHeight = 0.08, kMaxHeadHeight = 0.2;
 
 [[noreturn]] void Refuse(const std::string& key, const std::string& sentence) {

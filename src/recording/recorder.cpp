@@ -283,8 +283,8 @@ void Recorder::Impl::TakeMarks() {
   }
 }
 
-// A state that was read before its tick waits for it, because it has the time of its tick. States
-// that were overwritten are missing without a notice, because nothing depends on them.
+// A state that was read before its tick waits for that tick, because it is stored with the tick's
+// time. Overwritten states are missing without notice, because nothing depends on them.
 void Recorder::Impl::TakePersons(bool all) {
   for (std::size_t k = 0; persons && k < kPersonRing; ++k) {
     PersonState state;

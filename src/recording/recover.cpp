@@ -19,12 +19,12 @@ namespace predictor {
 namespace recording {
 namespace {
 
-// This text identifies a chunk among arbitrary bytes: the name of its compression, at this distance
-// from its start.
+// The name of its compression identifies a chunk among arbitrary bytes. It is at this distance from
+// the start of the chunk.
 constexpr std::string_view kMark{"\4\0\0\0zstd", 8};
 constexpr std::uint64_t kMarkAt = mcap::kHead + 8 + 8 + 8 + 4;
-// A hostile file may contain many apparent chunks, each of which seems to contain the rest of the
-// file.
+// The limits for bytes that are read or decompressed without result: a hostile file may contain
+// many apparent chunks, each of which seems to contain the rest of the file.
 constexpr std::uint64_t kMaxWasted = 2 * kLargestChunk, kMaxWastedPerByte = 16;  // [bytes]
 
 // Returns the part of the chunk at `offset` (which ends before `end`) that can be decompressed,

@@ -36,7 +36,7 @@ struct ArmAbility {
   Matrix3 stiffness = Matrix3::Zero();  // stiffness of the hand, including reflexes [N/m]
   Vector3 shoulder = Vector3::Zero();   // [m]
   std::array<JointAbility, kJudgedJoints> joints;
-  double capacity = 1;  // share of strength that fatigue leaves, of the weaker joint
+  double capacity = 1;  // share of strength left after fatigue, for the weaker joint
 
   template <class A>
   void Archive(A& a) {

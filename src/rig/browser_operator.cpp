@@ -71,7 +71,7 @@ class BrowserOperator final : public Operator {
 
   void Step(const OperatorInput& input, OperatorOutput* output) noexcept override {
     *output = OperatorOutput();
-    // No program plays the script: it only shows the person what to do and when.
+    // The script is not executed: it only shows the person what to do and when.
     if (input.running) output->action = ActionAt(script_, input.run_time);
     if (input.dt != dt_) {
       dt_ = input.dt;

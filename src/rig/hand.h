@@ -40,7 +40,7 @@ class HandModel {
 
   // Resets to a free hand. `dt` is the step time [s].
   void Reset(double dt) noexcept;
-  // Advances by one step and returns the wrench F_H_W on the handle, which moves as `handle` says.
+  // Advances by one step and returns the wrench F_H_W on the handle, whose motion is `handle`.
   Wrench Step(const HandGoal& goal, const FrameMotion& handle) noexcept {
     return Deliver(Intend(goal, handle, nullptr), handle);
   }

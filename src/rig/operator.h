@@ -54,8 +54,8 @@ class Operator {
 // mode, the hand's mass is part of the scene, and the wrench excludes it.
 enum class HandInertia { kInWrench, kInScene };
 
-// Makes the operator that the scenario names: one that follows its script, or a person at a page.
-// Throws InputError.
+// Makes the operator of the scenario: one that follows the script, or a person at a page. Throws
+// InputError.
 std::unique_ptr<Operator> MakeOperator(const Scenario& scenario, HandInertia inertia);
 
 std::unique_ptr<Operator> MakeVirtualOperator(const Scenario& scenario, HandInertia inertia);

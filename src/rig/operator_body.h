@@ -23,7 +23,7 @@ class OperatorBody {
   static constexpr double kPosturePeriod = 0.04;  // [s]
   static constexpr double kStiffnessTime = 0.1;   // [s]
 
-  // The scenario has a body and a stance. Throws InputError if no adult has such a body.
+  // The scenario must have a body and a stance. Throws InputError if no adult has such a body.
   explicit OperatorBody(const Scenario& scenario);
 
   // Returns to a rested person (except for body.fatigue) in a comfortable posture.
@@ -42,7 +42,8 @@ class OperatorBody {
   // direction.
   void LimitForces(const std::array<FrameMotion, kHands>& handle,
                    std::array<Vector3, kHands>* forces) const noexcept;
-  // Takes the wrenches that the hands exert, with which muscles stiffen and tire.
+  // Records the wrenches that the hands exert. They determine the stiffness and fatigue of the
+  // muscles.
   void Feel(const std::array<Wrench, kHands>& F_H_W) noexcept;
 
   void Archive(StateArchive& a) {

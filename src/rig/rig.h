@@ -1,5 +1,5 @@
-// The simulated hardware: two arms in velocity mode, sensors, handles and a person. It knows the
-// poses of its handles, but nothing about the simulated task.
+// The simulated hardware: two arms in velocity mode, sensors, handles and a person. It contains the
+// poses of its handles, but no information about the simulated task.
 #pragma once
 
 #include <array>

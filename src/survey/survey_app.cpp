@@ -54,7 +54,7 @@ viewer::Json ScaleList() {
 
 }  // namespace
 
-// One page, admitted or not.
+// The connection of one page, which may not be admitted yet.
 class SurveyApp::Client final : public viewer::Session {
  public:
   Client(SurveyApp* app, viewer::Connection* connection)

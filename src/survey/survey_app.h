@@ -47,7 +47,7 @@ class SurveyApp : public viewer::Application {
   viewer::UpgradeReply Upgrade(const viewer::HttpRequest& request) override;
   void Tick() override;
 
-  // Admits one browser, which then uses a token to reconnect.
+  // Returns the code that admits one browser, which then uses a token to reconnect.
   const std::string& code() const { return admission_.code(); }
   // Returns how the survey ended.
   SurveyEnd end() const { return end_; }

@@ -38,8 +38,8 @@ class FaultRecord {
   void Set(Fault fault, int detail = 0) noexcept {
     latch_.Set({fault, static_cast<std::int8_t>(detail)});
   }
-  // Names the errors that stopped the robot. A first report may show only that it was a reflex. A
-  // later state gives the errors.
+  // Names the errors that stopped the robot. The first report may show only that a reflex stopped
+  // the robot. A later state contains the errors.
   void Name(const Errors& errors) noexcept {
     if (errors_.load(std::memory_order_relaxed) == 0)
       errors_.store(errors.to_ullong(), std::memory_order_relaxed);

@@ -63,7 +63,7 @@ std::string ErrorWords(const Errors& errors);
 struct RobotState {
   std::uint64_t message_id = 0;
   Joints q{}, dq{};               // measured [rad], [rad/s]
-  Joints q_d{}, dq_d{}, ddq_d{};  // as last commanded, or extrapolated [rad], [rad/s], [rad/s²]
+  Joints q_d{}, dq_d{}, ddq_d{};  // last commanded or extrapolated values [rad], [rad/s], [rad/s²]
   Wrench F_K_K = Wrench::Zero();  // wrench of the robot on its surroundings, about K, axes of K
   Pose X_FK;                      // pose of the stiffness frame in the flange
   std::optional<Pose> X_OF;       // pose of the flange in the base; empty if it is not reported

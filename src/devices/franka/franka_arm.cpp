@@ -17,8 +17,8 @@ namespace {
 using fci::Fault;
 using fci::Joints;
 
-// The arm abandons a motion after this time without commands, the driver after this time without
-// states.
+// The arm abandons a motion after this time without commands, and the driver after this time
+// without states.
 constexpr double kSilence = fci::RateLimiter::kCoasting;  // [s]
 // Longest time in which the arm starts or ends a motion.
 constexpr double kPatience = 1;  // [s]
@@ -152,9 +152,9 @@ class Driver final : public FrankaArm {
   std::uint64_t wrench_sequence_ = 0;
 
   Phase phase_ = Phase::kIdle;
-  std::uint64_t since_ = 0;     // start of the phase [ns]
-  std::uint64_t rests_since_;   // time since which it has been commanded to rest but still moves
-                                // [ns]
+  std::uint64_t since_ = 0;    // start of the phase [ns]
+  std::uint64_t rests_since_;  // time since which the arm has been commanded to rest but still
+                               // moves [ns]
   std::uint32_t move_id_ = 0;   // ID of the motion request
   bool move_ended_ = false;     // the robot has answered that the motion is over
   bool finished_ = false;       // the end of the motion was requested
@@ -162,7 +162,7 @@ class Driver final : public FrankaArm {
   bool commanded_ = false;      // a command was sent in this motion
   fci::RateLimiter limiter_;
   fci::WayBack way_back_;
-  bool waits_ = false;  // it is not accelerated because commands were lost
+  bool waits_ = false;  // the arm is not accelerated, because commands were lost
   Joints asked_{};      // requested velocities of the last command [rad/s]
 };
 

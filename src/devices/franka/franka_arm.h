@@ -37,8 +37,8 @@ struct FrankaOptions {
   double limits = 0.95;                  // share of the published limits that is used
   Pose X_FS;                             // pose of the sensor's frame in the flange
   std::optional<FrankaCollision> collision;  // empty: the arm's own settings
-  bool listen = false;                       // only read: nothing is configured or moved
-  double timeout = 5;                        // maximum wait for each answer while connecting [s]
+  bool listen = false;  // the arm is only read, and neither configured nor moved
+  double timeout = 5;   // maximum wait for each answer while connecting [s]
 };
 
 // Counts of irregularities that are not faults.

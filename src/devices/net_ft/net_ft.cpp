@@ -118,7 +118,7 @@ class NetFt final : public WrenchSensor {
   std::uint64_t first_ = 0;                 // reading at the first time
   std::uint32_t last_ = 0;                  // sequence number of the newest accepted record
   std::uint64_t malformed_ = 0;             // datagrams dropped because of their size or number
-  bool resumes_ = false;                    // since a pause only buffered records have arrived
+  bool resumes_ = false;                    // only buffered records have arrived since a pause
   // Trouble may be called by other threads.
   std::atomic<std::uint32_t> status_ = 0;  // status of the newest record
   std::atomic<int> behind_ = 0;   // records since the newest one whose numbers were rejected

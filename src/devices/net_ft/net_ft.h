@@ -17,7 +17,7 @@ inline constexpr double kRateError = 2e-3;
 struct NetFtOptions {
   NetFtMake make = NetFtMake::kAti;
   Address address;                 // port 49152 by default
-  double counts_per_force = 1e6;   // from the sensor's configuration (netftapi2.xml: cfgcpf) [1/N]
+  double counts_per_force = 1e6;   // see the sensor's configuration (netftapi2.xml: cfgcpf) [1/N]
   double counts_per_torque = 1e6;  // cfgcpt [1/(N·m)]
   double rate = 1000;  // rate of the records; an OnRobot sensor is configured with it [Hz]
 };

@@ -20,7 +20,7 @@ namespace {
 constexpr double kDeaf = 0.1;  // longest time for which our program may miss commands [s]
 constexpr double kStop = 0.5;  // longest duration of a stop [s]
 constexpr int kRestarted =
-    3;  // after this many packages with an earlier time, the clock was set back
+    3;  // number of packages with an earlier time that shows that the clock was set back
 constexpr double kFresh = 0.02;  // age up to which a package is recent enough for this [s]
 constexpr double kPowerOff = 1;  // time in which a power-off request is executed, with margin [s]
 // A value beyond the range of these arms' sensors is not a measurement.
@@ -161,7 +161,7 @@ class UrArm final : public Arm {
     FollowPower();
   }
 
-  // A person may switch the power on again after it was off, and is aware of it.
+  // Power that a person switches on again after it was off does not count as kept.
   void FollowPower() noexcept {
     if (power_ == Power::kWanted || power_ == Power::kCut || clock_.Age(now_) >= kFresh) return;
     if (!Powered(state_))

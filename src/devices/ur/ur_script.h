@@ -9,7 +9,7 @@ namespace predictor {
 
 // The program's state, in the second output register.
 enum class UrScriptState : std::int32_t {
-  kReady = 1,     // the program runs but has heard nothing from the tick; the arm stands still
+  kReady = 1,     // the program runs but has received nothing from the tick; the arm stands still
   kFollows = 2,   // the program receives the counter; the arm stands still or follows
   kStopping = 3,  // the program brakes as commanded and then follows again
   kEnded = 4,     // the counter stopped or never changed: the program brakes and ends
