@@ -40,7 +40,7 @@ struct QuantityResult {
 
 struct WorksheetResult {
   const WorksheetKind* kind = nullptr;
-  int worst = 0, p95 = 0;                       // of the nominal posture
+  int worst = 0, p95 = 0;                       // scores of the nominal posture
   std::vector<double> share;                    // share of time for each score (index 0: score 0)
   std::vector<double> probability;              // probability of each score, averaged over time
   std::vector<int> values;                      // at Assessment::times

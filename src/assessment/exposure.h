@@ -15,8 +15,8 @@ namespace predictor::assessment {
 struct DamageResult {
   std::string tool, part;  // "LiFFT", "lower back"
   double per_run = 0;      // damage
-  double day_share = 0;    // damage of the run, as a share of the damage of the reference day
-  double shift_share = 0;  // the same for an 8 h shift in which the run is repeated
+  double day_share = 0;    // damage of the run, relative to the reference day
+  double shift_share = 0;  // damage of an 8 h shift of such runs, relative to the reference day
   double probability = 0;  // probability of the tool's outcome after that shift
 };
 
@@ -30,7 +30,7 @@ DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
 // Design choices.
 inline constexpr double kDamageCutoff = 1;     // [Hz]
 inline constexpr double kMinRange = 5;         // [N·m]
-inline constexpr double kMinRangeShare = 0.2;  // of the largest range
+inline constexpr double kMinRangeShare = 0.2;  // share of the largest range
 
 // Fatigue of one joint by the 3CC-r model, sample by sample.
 class FatigueTracker {

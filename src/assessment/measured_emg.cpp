@@ -64,7 +64,7 @@ struct Activations {
 void AddPart(const Part& part, const tracks::EmgMap& map, Activations* all) {
   muscles::EmgProcessing how;
   const double rate = static_cast<double>(part.times.size() - 1) / part.Duration();
-  how.rate = std::round(1e3 * rate) / 1e3;  // for messages
+  how.rate = std::round(1e3 * rate) / 1e3;  // rounded for messages
   how.band_low = map.band_low;
   how.band_high = map.band_high;
   how.mvc = map.mvc;

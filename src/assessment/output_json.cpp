@@ -258,7 +258,8 @@ std::string AssessmentSchema() {
                                        "share of time in which the body reaches the "
                                        "handles, 0 … 1")},
              {"reached_by_possible_postures",
-              schema::ValueOrNull("number", "the same, averaged over the possible postures")},
+              schema::ValueOrNull("number",
+                                  "share of time, averaged over the possible postures, 0 … 1")},
              {"largest_miss_m",
               schema::Value("number", "largest distance by which a hand misses its handle [m]")}},
             "the person")},

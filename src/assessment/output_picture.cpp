@@ -54,7 +54,7 @@ class Drawing {
     Line(from, to, Formatted("class=\"rim\" stroke-width=\"%.1f\"", width + 2).c_str());
     Line(from, to, Formatted("stroke=\"%s\" stroke-width=\"%.1f\"", color.c_str(), width).c_str());
   }
-  // Draws a closed polygon in the same way.
+  // Draws a closed polygon with an outline.
   void Block(const std::vector<Vector3>& corners, double breadth, const std::string& color) {
     std::string points;
     for (const Vector3& p : corners) Append(&points, "%.1f,%.1f ", X(p), Y(p));

@@ -16,8 +16,8 @@ struct NotEvaluable {
   std::string what, why;
 };
 
-// Returns what must be added to the scenario before a posture can be judged, as sentences that say
-// what to do. If nothing is missing, there are no sentences.
+// Returns instructions to the user about what must be added to the scenario before a posture can be
+// judged. The list is empty if nothing is missing.
 std::vector<std::string> MissingForPosture(const Scenario& scenario);
 
 struct PersonSetup {

@@ -29,7 +29,7 @@ constexpr double kMaxLateShare = 0.05,
                  kMaxLostShare = 0.05;  // share of the ticks; share of the samples
 constexpr double kBlock = 0.25;         // time over which the misfit is evaluated [s]
 constexpr double kShows = 6;  // least motion of a block to be evaluated, as a multiple of the noise
-constexpr double kCounts = 0.05;  // the same as a share of the largest block's motion, see Misfit
+constexpr double kCounts = 0.05;  // least share of the largest block's motion, see Misfit
 constexpr double kFits = 3;  // least motion of a block to be fitted, as a multiple of the noise
 constexpr std::size_t kMinBlock = 8;  // samples per block
 

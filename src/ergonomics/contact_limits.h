@@ -56,8 +56,8 @@ double EffectiveRobotMass(double moving_mass, double load);
 // Returns 1 / (1/m_H + 1/m_R) [kg]. With a heavy load, it hardly depends on the robot.
 double ReducedMass(double body_mass, double robot_mass);
 
-// A transient or clamping contact. `area` is that of the contact [m²]. If it is 0, it is unknown,
-// and only the force counts.
+// A transient or clamping contact. `area` is the area of the contact [m²]. 0 means unknown: only
+// the force then counts.
 struct Contact {
   ContactKind kind = ContactKind::kTransient;
   double robot_mass = 0;  // [kg] effective

@@ -9,7 +9,7 @@
 // - Another form of LiFFT takes compression, e^(0.162 S) / 902416 with S in % of 10 kN. If it is
 //   mixed up with the moment form below, the damage doubles.
 // - A second DUET (S = 10 OMNI, 0.766, 1.515) was fitted to two examples. It agrees with one
-//   published example and is wrong elsewhere, so one example proves nothing.
+//   published example and is wrong elsewhere, so agreement with one example is not sufficient.
 // - The probabilities are those of a *job* with many injuries in US car plants. They are not the
 //   risk of a person.
 //
@@ -27,7 +27,7 @@ namespace predictor::ergonomics {
 struct DamageRisk {
   double constant = 0, slope = 0;
   double Probability(double daily_damage) const;  // 0 … 1; 0 without damage
-  // Inverts the above: returns the daily damage with this probability, 0 < probability < 1.
+  // Inverts Probability: returns the daily damage with this probability, 0 < probability < 1.
   double DailyDamage(double probability) const;
 };
 

@@ -41,8 +41,8 @@ struct Compartments {
 // s, which are stable for the development rate of 10 1/s.
 Compartments Fatigued(const Compartments& state, double load, double dt, const FatigueRates& rates);
 
-// Computes the same in closed form, for an initially rested person who holds a load from the start.
-// Returns the fatigued share after `time` [s], which is valid until the endurance time.
+// Computes the fatigue in closed form, for an initially rested person who holds a load from the
+// start. Returns the fatigued share after `time` [s], which is valid until the endurance time.
 double FatiguedShareUnderConstantLoad(double load, double time, const FatigueRates& rates);
 
 // Returns the time [s] for which a rested person can hold the load in this model, or infinity if

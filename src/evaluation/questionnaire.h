@@ -43,7 +43,7 @@ inline constexpr std::size_t kLongestComment = 2000;     // [characters]
 inline constexpr std::size_t kLongestAnswer = 32 << 10;  // size of the JSON [bytes]
 
 struct SurveyAnswer {
-  std::string pseudonym;  // IsPseudonym; if it is empty in a form, one is drawn
+  std::string pseudonym;  // valid by IsPseudonym; drawn if the form has none
   std::string recording;  // file name of the run's recording; may be empty
   Condition condition = Condition::kEmulated;
   std::array<std::optional<int>, kStatements> scores;  // no value: not answered

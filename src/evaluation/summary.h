@@ -51,7 +51,7 @@ class SummaryBuilder {
  public:
   explicit SummaryBuilder(const Scenario& scenario);
   void Add(const TickRecord& record);
-  Summary summary() const;  // so far
+  Summary summary() const;  // summary of the records added so far
   const StopLog& stops() const { return stops_; }
 
  private:

@@ -22,9 +22,10 @@ class EvaluatorProcess {
 
   // Starts the evaluator and waits until it follows `board`. The evaluator writes its states to
   // `states` and may do nothing else. It runs at a lower priority than the run's threads, and the
-  // run never waits for it. If it dies, a message reports this, and it is restarted. Damage and
-  // fatigue then start from zero again. The descriptors of both are borrowed. Throws InputError if
-  // body or stance are missing or impossible, or std::runtime_error if no process can be started.
+  // run never waits for it. If it ends unexpectedly, a message reports this, and the evaluator is
+  // restarted. Damage and fatigue then start from zero again. The descriptors of both are borrowed.
+  // Throws InputError if body or stance are missing or impossible, or std::runtime_error if no
+  // process can be started.
   EvaluatorProcess(const Scenario& scenario, const Shared<RunBoard>& board,
                    const Shared<EvaluationBoard>& states, Notify show);
   int pid() const { return process_.pid(); }  // 0 while no process is running

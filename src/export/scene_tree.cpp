@@ -18,7 +18,7 @@
 namespace predictor::scene_export {
 namespace {
 
-// Returns the robot's material of the same name. It supplies the values that the visual's own
+// Returns the robot's material of the same name, which supplies the values that the visual's own
 // material omits.
 const XmlElement* GlobalMaterial(const XmlElement& robot, const XmlElement& material) {
   const char* name = material.Attribute("name");

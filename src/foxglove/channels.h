@@ -14,7 +14,7 @@ namespace predictor {
 
 using Json = nlohmann::ordered_json;
 
-// A topic: how it is advertised, and how a record is converted to a message.
+// A topic, with its advertisement and the conversion of a record to a message.
 struct FoxgloveChannel {
   std::string topic, schema_name;
   Json schema;

@@ -71,8 +71,8 @@ std::shared_ptr<const RobotModel> RobotModel::Load(const RobotSource& source) {
     return Build(ReadUrdf(file, source.remove_links, folder), source.X_WB);
   } catch (const InputError& error) {
     if (source.key.empty()) throw;
-    // remove_links is the only key that the model's reader knows. Every other error concerns the
-    // file.
+    // Errors of the model's reader have the key remove_links or none. Without a key, they concern
+    // the file.
     throw error.Within(error.key().empty() ? source.key + ".model" : source.key);
   }
 }

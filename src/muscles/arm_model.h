@@ -51,7 +51,7 @@ class ArmModel {
  public:
   // An arm of the body (hand 0: left). The paths scale with the lengths of upper arm, forearm and
   // hand. Forces scale with mass times height over length, relative to 75 kg and 1.75 m (a muscle's
-  // volume is proportional to mass times height, R), are 0.7 of that for women (D), and are
+  // volume is proportional to mass times height, R), are multiplied by 0.7 for women (D), and are
   // multiplied by the person's own strength. Tendon lengths are chosen so that the longest fibres
   // over the corners of the working range have kLongestFibre: flexion 0 to 90°, abduction 0 to 60°
   // and so on (D).

@@ -38,11 +38,11 @@ constexpr bool ActsAtShoulder(int group) {
 // posture (hanging, straight, thumb forward): x forward, y to the left, z up.
 enum class Part : int {
   kNone,
-  kTorso,     // from the shoulder joint; the shoulder girdle does not move relative to it
-  kUpperArm,  // from the shoulder joint
-  kUlna,      // from the elbow joint
-  kRadius,    // from the elbow joint; turns about the forearm's long axis
-  kHand,      // from the wrist joint
+  kTorso,     // origin at the shoulder joint; the shoulder girdle does not move relative to it
+  kUpperArm,  // origin at the shoulder joint
+  kUlna,      // origin at the elbow joint
+  kRadius,    // origin at the elbow joint; turns about the forearm's long axis
+  kHand,      // origin at the wrist joint
 };
 
 // The round obstacles. A muscle takes the shortest path around the obstacle, on the given side.

@@ -56,7 +56,7 @@ class Recorder {
 
   // Records an event at the newest tick. May be called from any thread except the one that ticks.
   void Mark(const std::string& text);
-  RecorderStatus status() const;  // likewise
+  RecorderStatus status() const;  // may be called from the same threads as Mark
 
   // Takes everything from the ring and ends the file. Blocks until all data are on the disk.
   void Close();

@@ -27,10 +27,10 @@ struct HandGoal {
 // F = s · (sat[K e + D de/dt + reflex + visual + feed-forward + noise + tremor] − M a), where e is
 // the reference minus the handle's pose. The reflex is a delayed share of K e + D de/dt. The torque
 // about H follows the same law. With the ability of an arm, noise and tremor are divided by the
-// capacity that fatigue leaves: muscles work harder for the same force. Its stiffness K_x and its
-// damping D_x = 2 ζ √(M K_x) were measured with reflexes. A reflex of gain g and delay τ adds
-// g (K e + D de/dt) - g τ K de/dt to a slow motion, so K = K_x / (1 + g) and
-// D = (D_x + g τ K) / (1 + g).
+// capacity that is left after fatigue: muscles work harder for the same force. Its stiffness K_x
+// and its damping D_x = 2 ζ √(M K_x) were measured with reflexes. A reflex of gain g and delay τ
+// adds g (K e + D de/dt) - g τ K de/dt to a slow motion, so
+// K = K_x / (1 + g) and D = (D_x + g τ K) / (1 + g).
 class HandModel {
  public:
   static constexpr double kMaxDelay = 0.5;  // maximum delay of reflex and vision [s]

@@ -11,8 +11,8 @@
 namespace predictor {
 
 // What a person feels and sees: the present motion of the handles, and whether the run is active.
-// The simulation is not part of it: the object's pose is derived from the handles, to which it is
-// rigidly attached.
+// The state of the simulation is not included: the object's pose is derived from the handles, to
+// which it is rigidly attached.
 struct OperatorInput {
   double dt = 0.001;    // time since the last call [s]
   double run_time = 0;  // time of the run [s]; advances only while running

@@ -106,8 +106,8 @@ const std::map<std::string, Layout>& Layouts() {
 constexpr const char* kJointState = "sensor_msgs/JointState";
 constexpr const char* kTransforms = "tf2_msgs/TFMessage";  // a list of these:
 constexpr const char* kTransformStamped = "geometry_msgs/TransformStamped";
-constexpr std::size_t kTransformBytes = 72;  // at least
-constexpr std::size_t kMaxFrames = 1000;     // of a topic
+constexpr std::size_t kTransformBytes = 72;  // smallest size [bytes]
+constexpr std::size_t kMaxFrames = 1000;     // maximum number per topic
 
 // "geometry_msgs/msg/Pose" and "geometry_msgs/Pose" are the same.
 std::string ShortType(const std::string& type) {

@@ -21,8 +21,8 @@ enum class MessageTime {
 class Cdr;  // reader of serialised messages
 
 // Collects the messages of one topic as channels TOPIC.FIELD, for example
-// /left/wrench.wrench.force.x. It knows Wrench, Pose, Point, Vector3 and Quaternion of
-// geometry_msgs with and without Stamped, PoseWithCovarianceStamped, TransformStamped, TFMessage
+// /left/wrench.wrench.force.x. The supported types are Wrench, Pose, Point, Vector3 and Quaternion
+// of geometry_msgs with and without Stamped, PoseWithCovarianceStamped, TransformStamped, TFMessage
 // (as TOPIC[CHILD FRAME].transform, relative to any parent), Odometry (its pose), JointState (as
 // TOPIC.position[JOINT]) and Float64 of std_msgs, in CDR of either byte order. Positions have the
 // unit m, forces N, torques N m (REP 103).

@@ -41,7 +41,7 @@ struct SeriesMap {
 enum class ArmSide { kLeft, kRight };
 
 // The raw electromyogram of one or several muscles of an arm. The names of the muscles are the keys
-// of muscles::MuscleTable, which this module does not know.
+// of muscles::MuscleTable, which belongs to a module that this one does not use.
 struct EmgMap {
   std::string channel;
   ArmSide arm = ArmSide::kLeft;

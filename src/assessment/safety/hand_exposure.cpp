@@ -101,7 +101,7 @@ void HandExposure::AppendHand(std::size_t i, std::vector<Result>* results) const
                     smooth = Formatted("low-passed at %.0f Hz", kCutoff);
   add("peak_force_n", "peak force", kForceUnit,
       "estimated at " + tick + ", without further filtering", hand.peak);
-  add("smooth_peak_force_n", "peak force, low-passed", kForceUnit, "the same " + smooth,
+  add("smooth_peak_force_n", "peak force, low-passed", kForceUnit, "estimated force, " + smooth,
       hand.smooth_peak);
   add("force_p95_n", "force, 95 %", kForceUnit, "95th percentile of " + mean,
       Quantile(hand.means, 0.95));

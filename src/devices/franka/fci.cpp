@@ -109,7 +109,7 @@ void TakeFlange(const Signals<Real>& packet, RobotState* state) noexcept {
     state->X_OF = X_OE * X_FE.Inverse();
 }
 
-// Combines end-effector and load.
+// Combines mass and centre of mass of end-effector and load.
 template <class Real>
 void TakePayload(const Signals<Real>& packet, RobotState* state) noexcept {
   state->compensated_mass = 0;

@@ -32,10 +32,9 @@ struct FrankaCollision {
 struct FrankaOptions {
   std::string host;
   std::uint16_t port = fci::kPort;
-  std::optional<std::uint16_t> version;  // version of the interface; empty: 10, then 5, whichever
-                                         // the robot accepts
-  double limits = 0.95;                  // share of the published limits that is used
-  Pose X_FS;                             // pose of the sensor's frame in the flange
+  std::optional<std::uint16_t> version;      // interface version; empty: 10, or 5 if 10 is refused
+  double limits = 0.95;                      // share of the published limits that is used
+  Pose X_FS;                                 // pose of the sensor's frame in the flange
   std::optional<FrankaCollision> collision;  // empty: the arm's own settings
   bool listen = false;  // the arm is only read, and neither configured nor moved
   double timeout = 5;   // maximum wait for each answer while connecting [s]

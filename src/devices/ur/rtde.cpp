@@ -128,7 +128,7 @@ std::string Refusal(std::span<const Field> recipe, const RecipeAnswer& answer) {
              "MODBUS). Stop that program or disable that adapter, or choose the other half of the "
              "registers (first register 0 or 24).";
     if (types[i] == "NOT_FOUND")
-      return "does not know " + recipe[i].name +
+      return "does not support " + recipe[i].name +
              ". Update PolyScope. (Registers from 24 on exist since versions 3.9 and 5.3; with "
              "older versions, choose first register 0.)";
     return "reports that " + recipe[i].name + " is of type " + std::string(types[i]) + ", not " +

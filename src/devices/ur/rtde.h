@@ -37,7 +37,7 @@ struct Packet {
 };
 
 // Splits a stream into packets, in whatever pieces the bytes arrive. An invalid size or type is a
-// permanent error, because the next packet cannot be found. No heap.
+// permanent error, because the next packet cannot be found. Does not use the heap.
 //
 //   parser.Filled(stream.Read(parser.Room()));
 //   while (parser.Next(&packet)) ...;

@@ -30,8 +30,8 @@ struct UrState {
   std::int32_t script = 0;
   double payload = 0;                   // configured at the pendant; zero if unknown [kg]
   std::array<double, 3> payload_cog{};  // centre of mass in the flange [m]
-  // The position [m] and rotation vector [rad] of the tool in the base, and on the flange. The
-  // latter is zero if it is unknown.
+  // The position [m] and rotation vector [rad] of the tool in the base, and on the flange. The pose
+  // on the flange is zero if it is unknown.
   UrVector tool{}, tool_offset{};
 };
 
@@ -81,7 +81,7 @@ constexpr bool EndsWithoutPower(UrFault fault) noexcept {
 // Returns the fault that prevents the arm from moving, whatever program runs, or kNone without a
 // fault.
 UrFault ArmFault(const UrState& state) noexcept;
-// Returns the same while our program should run at full speed.
+// Returns the fault that prevents the arm from moving while our program should run at full speed.
 UrFault RunFault(const UrState& state) noexcept;
 // Returns whether the motors have power, with brakes released or not.
 bool Powered(const UrState& state) noexcept;
