@@ -91,7 +91,7 @@ TEST(UrConnect, ValuesThatAreNotThere) {
                            "input_int_register_25", "output_int_register_24"}) {
     UrBench bench;
     bench.fake.rtde().unknown = {name};
-    EXPECT_TRUE(Says(Refusal(&bench), "does not know " + std::string(name)));
+    EXPECT_TRUE(Says(Refusal(&bench), "does not support " + std::string(name)));
   }
 }
 

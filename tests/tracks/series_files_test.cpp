@@ -107,7 +107,7 @@ TEST_F(Trc, SeesAClockThatJumps) {
   ExpectWords(error(head + "1\t0\t1\t2\t3\t4\t5\t6\n1\t0\t1\t2\t3\t4\t5\t6\n"), {"goes back"});
   // Frames that were left out must not count as a jump.
   EXPECT_EQ(error(head + "1\t0\t1\t2\t3\t4\t5\t6\n301\t3.0\t1\t2\t3\t4\t5\t6\n"), "no error");
-  ExpectWords(error("time,x\n0,1\n"), {"no TRC"});
+  ExpectWords(error("time,x\n0,1\n"), {"not a TRC"});
   ExpectWords(error(head.substr(0, 60)), {"bad.trc"});
   std::string foot = head;
   foot.replace(foot.find("\tmm\t"), 4, "\tft\t");
@@ -217,7 +217,7 @@ TEST_F(C3d, WithADamagedByteIsReadOrRefused) {
 }
 
 TEST_F(C3d, OfAnotherKindIsRefusedWithWhatToDo) {
-  ExpectWords(ErrorOf([&] { ReadC3d(Write("a.c3d", std::string(2000, 'x'))); }), {"no C3D"});
+  ExpectWords(ErrorOf([&] { ReadC3d(Write("a.c3d", std::string(2000, 'x'))); }), {"not a C3D"});
   std::string vax = MadeC3d(true);
   vax[512 + 3] = 85;
   ExpectWords(ErrorOf([&] { ReadC3d(Write("a.c3d", vax)); }), {"byte order", "Save it again"});
