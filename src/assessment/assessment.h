@@ -29,7 +29,7 @@ struct QuantityResult {
   std::optional<person::Interval> mean_interval, tail_interval;
   std::vector<double> person_tail;  // tail of each possible person; the people are the same in all
                                     // assessments
-  std::vector<double> values;       // at Assessment::times
+  std::vector<double> values;       // values at Assessment::times
   std::vector<double> low, high;    // 90 % interval at Assessment::sampled_times
 
   // Returns the value that is exceeded (in the bad direction) for 5 % of the time: p95, or p5 if
@@ -43,13 +43,13 @@ struct WorksheetResult {
   int worst = 0, p95 = 0;                       // scores of the nominal posture
   std::vector<double> share;                    // share of time for each score (index 0: score 0)
   std::vector<double> probability;              // probability of each score, averaged over time
-  std::vector<int> values;                      // at Assessment::times
+  std::vector<int> values;                      // scores at Assessment::times
   std::vector<double> likely_low, likely_high;  // range of 90 % of the postures, at sampled_times
 };
 
 struct Assessment {
   std::string recording, scenario;
-  std::string operator_type;                   // as in the scenario
+  std::string operator_type;                   // type of the operator, as in the scenario
   std::optional<ParticipantSpec> participant;  // filled by the caller
   PersonSetup setup;
   std::array<bool, kHands> hands = {};  // which handles the scenario has
@@ -62,11 +62,11 @@ struct Assessment {
   std::vector<double> times, sampled_times;  // [s]
   std::vector<QuantityResult> quantities;    // quantities of existing handles, in the order of
                                              // Quantities()
-  std::vector<WorksheetResult> worksheets;   // in the order of Worksheets()
+  std::vector<WorksheetResult> worksheets;   // results in the order of Worksheets()
   std::vector<Lift> lifts;
   std::vector<DamageResult> damage;
   std::vector<FatigueResult> fatigue;
-  BodyPicture worst;                       // at WorstSample()
+  BodyPicture worst;                       // body at WorstSample()
   std::vector<BodyPicture> pictures;       // evenly spaced over the judged time
   std::optional<SafetyAssessment> safety;  // filled by JudgeSafety; empty: not judged
   MeasuredBody measured;                   // measurements in addition to the hands

@@ -18,7 +18,7 @@ inline constexpr std::size_t kLiveHistory = 60;
 
 struct JudgedSample {
   PersonSample sample;
-  std::array<double, kHands> force_rate = {};  // as in FrameInput
+  std::array<double, kHands> force_rate = {};  // see FrameInput
   person::BodyMotion motion;
   Frame frame;
 };

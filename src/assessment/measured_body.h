@@ -35,7 +35,7 @@ struct MeasuredPart {
 struct MeasuredSignal {
   std::string name, unit, source;
   double share = 0;            // share of the judged time in which the signal was measured
-  std::vector<double> values;  // at Assessment::times; NaN: missing
+  std::vector<double> values;  // values at Assessment::times; NaN: missing
 };
 
 struct MeasuredBody {

@@ -92,7 +92,7 @@ struct Row {
   Bad bad = Bad::kHigh;
 };
 
-// In the order of MuscleValue.
+// The quantities, in the order of MuscleValue.
 constexpr Row kRows[kMuscleValues] = {
     {{"muscles.left.largest", "muscles.right.largest"}, "largest activation", kShare},
     {{"muscles.left.mean", "muscles.right.mean"}, "mean activation", kShare},

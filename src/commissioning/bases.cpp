@@ -12,8 +12,8 @@
 namespace predictor::commissioning {
 namespace {
 
-// If the points are closer to a line than this, they determine the rotation about it too poorly:
-// rms distance [m].
+// Smallest rms distance of the points from their best-fitting line [m]. Points closer to a line
+// determine the rotation about that line too poorly.
 constexpr double kMinSpread = 0.05;
 // The largest residual of touched points, because a person places a tip to within about 1 mm [m].
 constexpr double kMaxResidual = 0.005;

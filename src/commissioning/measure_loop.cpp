@@ -14,7 +14,7 @@ namespace {
 constexpr double kRest = 0.4;              // time at rest before and after a swing [s]
 constexpr double kPathWidth = 0.02;        // a larger deviation from the path is an error [rad]
 constexpr double kMargin = 0.05;           // smallest distance from a joint's limit [rad]
-constexpr double kAccelerationPart = 0.3;  // share of the joint's limit
+constexpr double kAccelerationPart = 0.3;  // share of the joint's acceleration limit
 constexpr double kHeldOn = 0.2;            // consent that lasts this long counts as not revoked [s]
 constexpr double kRemind = 3;  // interval between two reminders about keys without effect [s]
 

@@ -69,7 +69,7 @@ class Session {
   Network* network_;
   Person* person_;
   std::function<std::string(bool moves)> on_step_;
-  enum class Rest { kRests, kMoves, kSilent };  // at rest; still moving; no commands accepted
+  enum class Rest { kRests, kMoves, kSilent };  // at rest; still moving; not accepting commands
   Rest SlowDown(Station* moving, double deceleration, double* time);
   Rest AwaitRest(Station* moving);
 

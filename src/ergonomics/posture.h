@@ -57,7 +57,7 @@ struct Exertion {
 // source gives them. A report must state them with its scores.
 struct PostureThresholds {
   double neutral = Degrees(5);             // |wrist| flexion, trunk upright, neck not in extension
-  double side_or_twist = Degrees(10);      // of neck, trunk; deviation of the wrist
+  double side_or_twist = Degrees(10);      // neck, trunk: side bend or twist; wrist: deviation
   double abducted = Degrees(20);           // upper arm
   double rotated = Degrees(45);            // upper arm about its own axis (REBA only)
   double near_end_of_twist = Degrees(60);  // forearm rotation (RULA's wrist twist)

@@ -44,7 +44,7 @@ struct SurveyComment {
 };
 
 struct SurveyReport {
-  std::array<ConditionSummary, kConditions> conditions;  // by Condition
+  std::array<ConditionSummary, kConditions> conditions;  // summaries by Condition
   int people = 0;  // a person with both conditions counts once
   int paired_people = 0;
   ShiftSummaries paired;  // emulated minus real, for people who answered a statement in both

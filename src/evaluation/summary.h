@@ -24,7 +24,7 @@ struct Summary {
   std::vector<Result> results;  // results of all metrics
   std::vector<StopSummary> stops;
   std::uint64_t stop_count = 0;      // may exceed the number of kept stops
-  std::vector<EventSummary> events;  // in the order of the scenario
+  std::vector<EventSummary> events;  // events in the order of the scenario
   std::optional<CobotStopSummary> cobot_stop;
 
   // The caller provides the following values.
@@ -57,7 +57,7 @@ class SummaryBuilder {
  private:
   std::string scenario_;
   std::uint64_t seed_;
-  std::vector<std::unique_ptr<Metric>> metrics_;  // in the order of Metrics()
+  std::vector<std::unique_ptr<Metric>> metrics_;  // metrics in the order of Metrics()
   StopLog stops_;
   EventLog events_;
 };

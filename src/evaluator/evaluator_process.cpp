@@ -54,7 +54,7 @@ class Evaluator {
 
 void Serve(const Json& start) {
   setpriority(PRIO_PROCESS, 0, kPriority);
-  Prepare({});  // before the scenario is parsed
+  Prepare({});  // starts the sandbox before the scenario is parsed
   AttachedRun run(start);
   Shared<EvaluationBoard> states(kMailboxDescriptor, true);
   Evaluator evaluator(run.scenario, *run.board, &*states);

@@ -183,7 +183,7 @@ Json FloorEntity(std::uint64_t ns) {
 
 struct DrawnFixture {
   std::vector<ModelShape> shapes;
-  std::uint16_t events;  // those in which it appears; 0: always present
+  std::uint16_t events;  // events during which the entity is shown; 0: always shown
 };
 
 std::vector<DrawnFixture> FixturesOf(const Scenario& scenario) {

@@ -14,7 +14,7 @@ namespace {
 static_assert(kBodyJoints <= kMaxQpVariables);
 
 constexpr double kPriorWeight = 1e-3;
-constexpr double kLargestStep = 0.4;  // of a joint [rad] or [m]
+constexpr double kLargestStep = 0.4;  // largest step of a joint [rad] or [m]
 constexpr double kMaxDamping = 1e4;
 
 // One stage: which tasks count, whether the prior counts, and when the stage ends.

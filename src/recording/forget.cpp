@@ -237,7 +237,7 @@ class Search {
   const std::function<void(std::uint64_t)>& progress_;
   PersonSearch result_;
   std::vector<fs::path> others_;  // files in which no pseudonym was found
-  std::vector<std::pair<fs::path, std::int64_t>> recordings_;  // with their starts
+  std::vector<std::pair<fs::path, std::int64_t>> recordings_;  // recordings with their starts
   std::map<std::int64_t, std::string> starts_;  // starts of found recordings, with their names
 };
 

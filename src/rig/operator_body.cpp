@@ -14,7 +14,7 @@ using ergonomics::StrengthDirection;
 using person::ArmJoint;
 
 constexpr int kFirstUpdates = 4;       // updates of the posture made at once when a run begins
-constexpr double kMinCapacity = 0.05;  // so that noise stays finite (D)
+constexpr double kMinCapacity = 0.05;  // smallest capacity, which bounds the noise (D)
 constexpr FatigueJoint kTires[kJudgedJoints] = {FatigueJoint::kElbow, FatigueJoint::kShoulder};
 constexpr ArmJoint kJoints[kJudgedJoints] = {ArmJoint::kElbowFlexion, ArmJoint::kShoulderFlexion};
 constexpr StrengthDirection kFlexion[kJudgedJoints] = {StrengthDirection::kElbowFlexion,

@@ -153,7 +153,7 @@ class SurveyApp::Client final : public viewer::Session {
   int messages_ = 0;
   viewer::RateLimit control_frames_{kControlFrameRate};
   bool admitted_ = false;
-  bool ended_ = false;  // by this client
+  bool ended_ = false;  // whether this client ended the survey
 };
 
 SurveyApp::SurveyApp(SurveySetup setup)

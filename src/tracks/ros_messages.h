@@ -47,7 +47,7 @@ class RosTopic {
   std::vector<double> times_;
   std::vector<std::string> order_;
   std::map<std::string, Series> channels_;  // channels by field
-  std::vector<RosTopic> frames_;            // of a TFMessage: one for each child frame
+  std::vector<RosTopic> frames_;            // topics of a TFMessage, one for each child frame
 };
 
 // Reads a ROS 2 bag according to its format: MCAP or SQLite (.db3), or a folder that contains one

@@ -31,7 +31,7 @@ class SceneMotion {
  public:
   struct Sample {
     double time = 0;                                  // run time [s]
-    Vector3 object = Vector3::Zero();                 // its origin, in W [m]
+    Vector3 object = Vector3::Zero();                 // origin of the object, in W [m]
     Vector3 end_effector = Vector3::Zero();           // in W [m]
     double object_speed = 0, end_effector_speed = 0;  // speeds of the origins [m/s]
     double speed() const { return std::max(object_speed, end_effector_speed); }

@@ -20,7 +20,7 @@ namespace predictor::assessment {
 // posture stays.
 struct StopWindow {
   StopSummary stop;
-  std::vector<PersonSample> samples;  // at kSampleRate
+  std::vector<PersonSample> samples;  // samples at kSampleRate
   std::size_t decided = 0;            // the first sample after the decision
 };
 
