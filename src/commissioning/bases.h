@@ -23,7 +23,7 @@ struct BaseCalibration {
   Vector3 rotation = Vector3::Zero();  // half-widths for the rotation, about A's axes [rad]
   double at_points = 0;  // upper bound of the half-width for a point in the middle of the touched
                          // points [m]
-  double residual = 0;            // rms distance between the mapped and the touched points [m]
+  double residual = 0;   // rms distance between the mapped and the touched points [m]
   std::vector<double> distances;  // distance of each point [m]
 };
 

@@ -152,9 +152,9 @@ class Driver final : public FrankaArm {
   std::uint64_t wrench_sequence_ = 0;
 
   Phase phase_ = Phase::kIdle;
-  std::uint64_t since_ = 0;    // start of the phase [ns]
-  std::uint64_t rests_since_;  // time since which the arm has been commanded to rest but still
-                               // moves [ns]
+  std::uint64_t since_ = 0;     // start of the phase [ns]
+  std::uint64_t rests_since_;   // time since which the arm has been commanded to rest but still
+                                // moves [ns]
   std::uint32_t move_id_ = 0;   // ID of the motion request
   bool move_ended_ = false;     // the robot has answered that the motion is over
   bool finished_ = false;       // the end of the motion was requested
