@@ -48,9 +48,9 @@ class Session {
   // Waits for the next millisecond of the clock, in which all arms rest and are read. This and the
   // functions below throw DeviceError, and InputError if the person gives up.
   void Step();
-  // As above, but one arm receives the joint velocities [rad/s] that `command` computes from the
-  // latest reading. Exceptions of `command` are passed on. A caller that moves an arm must always
-  // bring it to rest with BringToRest.
+  // Does the same as Step(), but one arm receives the joint velocities [rad/s] that `command`
+  // computes from the latest reading. Exceptions of `command` are passed on. A caller that moves an
+  // arm must always bring it to rest with BringToRest.
   void Step(Station* moving, const std::function<JointVector()>& command);
   // Brings the arm to rest from its last commanded velocities. The fastest joint decelerates by
   // `deceleration` [rad/s²], and the others in proportion. Waits until the joints rest, and ends

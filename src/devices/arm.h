@@ -34,7 +34,7 @@ struct ArmReading {
   // reports motion. A command to rest would not be sent immediately. This is always false for an
   // arm that executes commands directly.
   bool in_motion = false;
-  // True if it does not obey commands yet: its controller either has not started the requested
+  // Whether the arm does not obey commands yet: its controller either has not started the requested
   // motion or has not received the request. Always false for an arm that needs no request.
   bool waits = false;
   bool no_power_off = false;  // the channel for power-off requests existed, but is lost

@@ -93,8 +93,8 @@ struct PerceivedQuantity {
   double difference = 0;            // (b − a) / |a|
   double error = 0;                 // standard error of the difference
   NoticeableDifference jnd;
-  // This is kUndecided if the standard error of a or of the difference reaches the JND. If the
-  // standard errors are unknown, the values alone decide, and the report contains a warning.
+  // The verdict is kUndecided if the standard error of a or of the difference reaches the JND. If
+  // the standard errors are unknown, the values alone decide, and the report contains a warning.
   Noticed noticed = Noticed::kUndecided;
 };
 

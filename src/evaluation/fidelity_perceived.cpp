@@ -14,8 +14,8 @@
 namespace predictor {
 namespace {
 
-// These are Weber fractions of hand and arm (Jones 1989: force 7 %; Jones & Hunter 1990 and 1993:
-// stiffness 23 %, viscosity 34 %).
+// Weber fractions of hand and arm (Jones 1989: force 7 %; Jones & Hunter 1990 and 1993: stiffness
+// 23 %, viscosity 34 %).
 constexpr NoticeableDifference kForce = {0.07, 0.10};
 constexpr NoticeableDifference kMass = {0.20, 0.20};
 constexpr NoticeableDifference kStiffness = {0.22, 0.23};

@@ -105,7 +105,7 @@ double PlaceOfPhase(std::span<const double> phase, double at) {
   const auto after = std::upper_bound(phase.begin(), phase.end(), at);
   if (after == phase.begin()) return 0;
   if (after == phase.end()) {
-    // This is the first sample at the final phase. The samples after it are at rest.
+    // Returns the first sample at the final phase, after which the phase is constant.
     return static_cast<double>(std::lower_bound(phase.begin(), phase.end(), phase.back()) -
                                phase.begin());
   }

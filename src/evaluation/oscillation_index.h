@@ -26,7 +26,7 @@ class OscillationIndex {
     double index = 0;  // 0 to 1
     double rms = 0;    // rms of the force from 3 to 10 Hz [N]
     double total = 0;  // rms up to 10 Hz, with the mean removed [N]
-    // This is false if the force hardly varies. The index is then meaningless.
+    // Returns false if the force hardly varies: the index is then meaningless.
     bool IsMeaningful() const { return total > kMinForce; }
     bool IsStrong() const { return total > kStopForce; }
   };

@@ -53,7 +53,7 @@ std::string CountsText(const ScoreCounts& counts) {
 
 RoundedFigures FiguresOf(const ScoreCounts& counts) {
   const auto [n, sum, squares] = SumsOf(counts);
-  // This is 100 |sum| / n plus one half, rounded down.
+  // The absolute mean in hundredths: 100 |sum| / n plus one half, rounded down.
   const std::int64_t size = (200 * std::abs(sum) + n) / (2 * n);
   // The squared deviation is spread / (n (n − 1)). In hundredths, the deviation is the largest m
   // for which m − 1/2 does not exceed it.

@@ -27,7 +27,7 @@ class PackageMeshes {
   // added too. Throws InputError if URDF-Importer does not read the format or if the file cannot be
   // read.
   std::string Add(const ModelShape& shape, const std::string& role);
-  // Adds a texture that a URDF refers to in the same way.
+  // Adds a texture that a URDF refers to, and returns its path in the package.
   std::string AddTexture(const std::filesystem::path& file);
 
   const std::map<std::string, PackageFile>& files() const { return files_; }

@@ -25,7 +25,8 @@ struct FoxgloveChannel {
 std::vector<FoxgloveChannel> FoxgloveChannels(const Scenario& scenario,
                                               const Vector3& object_start);
 
-// Returns the topics that show poses and shapes, "/tf" and "/scene". The parameters are as above.
+// Returns the topics that show poses and shapes, "/tf" and "/scene". The parameters are those of
+// FoxgloveChannels.
 std::vector<FoxgloveChannel> FoxgloveSceneChannels(const Scenario& scenario,
                                                    const Vector3& object_start);
 

@@ -68,8 +68,8 @@ EngineState MakeEngineState(const EngineModel& model);
 
 // Computes R_WJ, p_WJ and J_W at q without allocation.
 void ComputeKinematics(const EngineModel& model, const JointVector& q, EngineState* state) noexcept;
-// Computes the above, and M and gravity torques at q, without allocation. `gravity` [m/s²] acts
-// along −z of W. The model must outlive the next call of Bias.
+// Computes the results of ComputeKinematics, and also M and the gravity torques at q, without
+// allocation. `gravity` [m/s²] acts along −z of W. The model must outlive the next call of Bias.
 void ComputeDynamics(const EngineModel& model, const JointVector& q, const JointVector& v,
                      double gravity, EngineState* state) noexcept;
 // Returns the bias torques at (q, v) of the last ComputeDynamics [N·m]. They are computed at the

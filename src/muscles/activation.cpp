@@ -29,7 +29,7 @@ double CostOf(const ActivationProblem& p, double square, int i, double a) {
 double ActivationAt(const ActivationProblem& p, double square, int i, double gain, double* slope) {
   const double w = p.weight[i];
   const double pulled = gain + p.trust[i] * p.measured[i];
-  // This is twice the cost of the square of the activation.
+  // Twice the coefficient of the squared activation in the cost.
   const double v = p.trust[i] + square * w;
   if (p.power == 2) {
     *slope = 1 / v;

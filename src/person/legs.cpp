@@ -21,8 +21,8 @@ Leg LegOf(const Anthropometry& a, const Vector3& hip, const Vector3& ankle, cons
   const double apart = down.norm();
   const double reach = std::clamp(apart, std::abs(thigh - shank) + 1e-6, thigh + shank);
   leg.stretched = std::max(0.0, apart - thigh - shank);
-  // These are the position of the knee along the line from hip to ankle, and its distance from that
-  // line.
+  // The position of the knee along the line from hip to ankle, and the distance of the knee from
+  // that line.
   const double along = (thigh * thigh - shank * shank + reach * reach) / (2 * reach);
   const double out = std::sqrt(std::max(0.0, thigh * thigh - along * along));
   const Vector3 axis = down.normalized();

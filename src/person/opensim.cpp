@@ -19,7 +19,7 @@ std::string Numbers(const Vector3& v) {
 
 std::string BodyElement(const BodyModel& model, const BodyPart& part) {
   const BodyJoint& carries = model.joint(part.last);
-  const Vector3& I = carries.inertia;  // diagonal, so that turned axes only exchange its entries
+  const Vector3& I = carries.inertia;  // diagonal, so a change of axes only permutes the entries
   return Named("Body", part.name,
                Tag("mass", FormatNumber(carries.mass)) +
                    Tag("mass_center", Numbers(InOpenSim(carries.com))) +

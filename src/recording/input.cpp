@@ -149,7 +149,7 @@ std::string ReadChunk(const InputFile& file, const mcap::ChunkIndex& index) {
       head->uncompressed != index.uncompressed || head->start_time != index.start_time ||
       head->end_time != index.end_time)
     fail("does not match the index");
-  // This is checked before memory is allocated for the contents.
+  // The uncompressed size is checked before memory is allocated for the contents.
   if (ZSTD_getFrameContentSize(bytes.data() + mcap::kHead + mcap::kChunkHead, head->compressed) !=
       head->uncompressed)
     fail("cannot be decompressed");

@@ -40,7 +40,7 @@ inline constexpr const char* kBytes = "application/octet-stream";
 inline constexpr const char* kContents = "contents";
 inline constexpr const char* kLayout = "layout";
 inline constexpr const char* kCrc = "crc32";
-// This entry contains the predicted haptic loop, if available.
+// The entries with the lead and the stability margin of the predicted haptic loop, if available.
 inline constexpr const char* kLead = "lead_s";
 inline constexpr const char* kMargin = "stability_margin";
 

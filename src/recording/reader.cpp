@@ -301,7 +301,7 @@ void RecordingReader::Seek(std::uint64_t tick) {
   r.pending.reset();
   r.rest = {};
   r.decoder = {};
-  // This finds the last chunk that starts at or before `tick`. Chunks without ticks are skipped.
+  // Finds the last chunk that starts at or before `tick`. Chunks without ticks are skipped.
   std::size_t low = 0, high = r.chunks.size();
   while (low < high) {
     const std::size_t middle = (low + high) / 2;

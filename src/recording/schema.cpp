@@ -98,7 +98,7 @@ class SchemaVisitor {
     Line(type, f);
     DefineGeometry(type);
   }
-  // Defines the types of its members as well.
+  // Adds the definition of a type and of the types of its members.
   void DefineGeometry(const std::string& type) {
     for (const auto& [known, definition] : kGeometry) {
       if (type != known) continue;

@@ -152,8 +152,8 @@ void OperatorBody::UpdateStiffness(int hand, const person::Placement& at) noexce
   const std::size_t elbow = At(person::Of(hand, ArmJoint::kElbowFlexion));
   const ArmPoints points = {at.p[shoulder], at.p[elbow], GripOf(hand, at)};
   const ArmAxes axes = AxesOf(points);
-  // These are the torques that balance the hand's wrench. The stiffness was measured with a
-  // supported arm, so the torques that carry the arm do not count.
+  // `torque` contains the joint torques that balance the hand's wrench. The stiffness was measured
+  // with a supported arm, so the torques that carry the arm do not count.
   const Vector3 force = q_WS.conjugate() * exerted_[At(hand)].head<3>();
   const Vector3 moment = q_WS.conjugate() * exerted_[At(hand)].tail<3>();
   const auto about = [&](std::size_t joint) -> Vector3 {

@@ -180,7 +180,7 @@ ClockOffset EstimateOffset(const Path& reference, const Path& track, const std::
   const auto high = static_cast<std::ptrdiff_t>(std::ceil(middle + kSearch * kRate));
   const auto whole = BestLag(a, b, low, high, 0, a.values.size(), kMinOverlap * kRate);
   if (!whole) throw InputError(what, "The offset of the clocks cannot be estimated.");
-  // Only the part of the reference that meets the track is divided.
+  // Only the part of the reference that overlaps the track is divided into blocks.
   const auto lag = static_cast<std::ptrdiff_t>(std::lround(whole->lag));
   const auto begin = static_cast<std::size_t>(std::max<std::ptrdiff_t>(lag, 0));
   const std::size_t end =

@@ -299,7 +299,7 @@ std::span<const std::byte> EncodeConnect(std::uint16_t version, std::uint32_t id
 
 std::span<const std::byte> EncodeMove(std::uint16_t version, std::uint32_t id,
                                       RequestBuffer* buffer) noexcept {
-  // These are used only for Cartesian motions and have the same values as in libfranka.
+  // The deviations matter only in Cartesian motions. Their values are those of libfranka.
   constexpr Deviation kAny{10, 3.12, 2 * std::numbers::pi};
   Research3Move move{};
   move.controller = MoveController::kJointImpedance;

@@ -24,8 +24,8 @@ constexpr double kSilence = fci::RateLimiter::kCoasting;  // [s]
 constexpr double kPatience = 1;  // [s]
 // Maximum number of datagrams that are read in one tick.
 constexpr int kMaxDatagrams = 64;
-// Longer than any pause: a quarter of an hour. If a state further ahead were accepted, all later
-// states would count as old.
+// A quarter of an hour, which is longer than any pause, in states. If a state further ahead were
+// accepted, all later states would count as old.
 constexpr std::int64_t kMaxAhead = 1'000'000;
 // The commanded velocity and the one that the arm reports differ at most by this, because floats
 // are rounded.
@@ -221,7 +221,7 @@ bool Driver::TakeState(std::span<const std::byte> bytes) noexcept {
     ++counts_.malformed;
     return false;
   }
-  // Wraps in the same way as the numbers.
+  // The difference wraps around in the same way as the IDs.
   const auto ahead = static_cast<std::int64_t>(next.message_id - state_.message_id);
   if (ahead <= 0) {
     ++counts_.old_states;

@@ -113,7 +113,7 @@ struct Research3Command : PandaCommand {
   std::uint8_t torque_command_finished;
 };
 
-// Precedes every request and answer.
+// The header that precedes every request and answer.
 struct Header {
   std::uint32_t command;  // number of the command in this version
   std::uint32_t id;       // chosen by the client for the request

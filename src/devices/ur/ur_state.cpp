@@ -8,8 +8,8 @@
 namespace predictor {
 namespace {
 
-// These are values of robot_mode, from power-on through idle (brakes closed) to running. Higher
-// values mean that the firmware is being updated.
+// Values of robot_mode: the motors have power from power-on through idle (brakes closed) to
+// running. Higher values mean that the firmware is being updated.
 constexpr std::int32_t kPowerOn = 4;
 constexpr std::int32_t kRunning = 7;                 // powered, brakes released
 constexpr std::uint32_t kFreedriveButton = 1U << 2;  // bit of robot_status_bits
@@ -18,7 +18,7 @@ constexpr std::uint32_t kProtectiveStopBit = 1U << 2;
 constexpr std::uint32_t kSafeguardStopBit = 1U << 4;
 constexpr std::uint32_t kEmergencyStopBits = 1U << 5 | 1U << 6 | 1U << 7;
 constexpr std::uint32_t kSafetyFaultBits = 1U << 3 | 1U << 8 | 1U << 9;
-// This bit is set for any of these stops, or for another reason.
+// This bit is set for any of the stops above, but also for other reasons.
 constexpr std::uint32_t kStoppedBySafetyBit = 1U << 10;
 
 constexpr double kWholeSpeed = 0.995;  // setting of the speed slider
