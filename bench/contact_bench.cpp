@@ -8,7 +8,7 @@
 namespace predictor::bench {
 namespace {
 
-constexpr double kLifted = 0.06;  // the posts lift the box, which presses on them with 30 N [m]
+constexpr double kLifted = 0.06;  // lift of the box by the posts, for a force of 30 N [m]
 constexpr double kRadius = 0.02;  // of a post [m]
 constexpr double kDuration = 10;  // of a run [s]
 

@@ -15,7 +15,7 @@ namespace {
 
 void PrintParts(const std::map<std::string, double>& parts) {
   const double engine = parts.count("mj_step") ? parts.at("mj_step") : NAN;
-  Heading("Parts by themselves, box_9kg (medians, time of one core)");
+  Heading("Isolated parts, box_9kg (medians, time of one core)");
   std::printf("%-42s %8s %10s\n", "part", "us", "/ mj_step");
   for (const auto& [name, us] : parts)
     std::printf("%-42s %8.2f %10.2f\n", name.c_str(), us, us / engine);
@@ -32,7 +32,7 @@ void PrintRuns(const RunTimes& t, double mj_step) {
   std::printf("\ntick, median            %7.2f us   aim 15: %s, required 25: %s\n", tick,
               verdict(tick <= 15), verdict(tick <= 25));
   std::printf(
-      "real-time factor        %7.1f      of one core's time; required 40: %s (by the clock "
+      "real-time factor        %7.1f      of one core's time; required 40: %s (wall clock "
       "%.1f)\n",
       t.cpu_factor, verdict(t.cpu_factor >= 40), t.wall_factor);
   std::printf("start-up to first tick  %7.3f s    required 1: %s\n", t.start_up,

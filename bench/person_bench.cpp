@@ -82,7 +82,7 @@ void TimeLive(bool quick) {
     all += us;
     if (judged) states.push_back(us);
   }
-  std::printf("live: a state takes %.0f us (p50), %.0f us (p99); all of it %.1f %% of a core\n",
+  std::printf("live: %.0f us (p50), %.0f us (p99) per state; %.1f %% of a core in total\n",
               Median(states), Quantile(states, 0.99),
               all / (1e3 * static_cast<double>(ticks)) * 100);
 }
@@ -117,13 +117,13 @@ void TimePerson(bool quick) {
     if (i % 50 == 0)
       persons.push_back(Microseconds([&] { check += sampler.Evaluate(sample, motion).reached; }));
   }
-  Heading("Evaluation of the person, by the clock, one core");
+  Heading("Evaluation of the person (wall-clock time of one core)");
   std::printf("%-42s %9s %9s\n", "part", "p50 us", "p99 us");
   const auto row = [](const char* name, const std::vector<double>& us) {
     std::printf("%-42s %9.1f %9.1f\n", name, Median(us), Quantile(us, 0.99));
   };
-  row("posture, starting at the one before", next);
-  row("posture, starting at the comfort", cold);
+  row("posture, from the previous posture", next);
+  row("posture, from the comfortable posture", cold);
   row("inverse dynamics, loads and angles", loads);
   row("muscles and stiffness of both arms", muscle);
   row("64 possible people", persons);

@@ -61,7 +61,7 @@ void PrintYield(const ProblemSet& set) {
     distance.push_back((xw - xh).head(n - problem.weighed.m()).lpNorm<Eigen::Infinity>());
   }
   if (slack.empty()) {
-    std::printf("  with equality rows not one of the %zu problems has a solution\n",
+    std::printf("  with equality rows, none of the %zu problems has a solution\n",
                 set.problems.size());
     return;
   }

@@ -1,4 +1,5 @@
-// State that the emulator keeps between ticks, as bytes: saved after a tick, loaded before one.
+// Saves the state that the emulator keeps between ticks as bytes, after a tick, and loads it before
+// a tick.
 //
 // A class with state lists it once, for both directions:
 //   void Archive(StateArchive& a) { a(x_, v_, count_); }
@@ -79,7 +80,7 @@ class StateArchive {
     x = byte == 1;
   }
   void Field(int& x) noexcept {
-    constexpr int kMax = 1 << 30;  // leaves room to count further; twelve days of ticks
+    constexpr int kMax = 1 << 30;  // 12 days of ticks at 1 kHz; a counter may then still increase
     Bytes(&x, sizeof x);
     if (!saves_ && (x < -kMax || x > kMax)) Fail();
   }

@@ -18,9 +18,9 @@ enum class KeySign {
 //
 // A letter shows when it arrives, not when its key was pressed. After a delay (a stalled network or
 // a busy computer), the queued letters arrive together, perhaps after the hand has moved elsewhere.
-// No hand and no terminal repeats within kTogether, so letters that close together are a backlog,
-// and none of them counts. The first letter of a backlog looks like any other. Therefore, a letter
-// counts only if no other letter follows within kTogether.
+// Neither a person nor a terminal repeats a letter within kTogether. Letters that follow each other
+// so closely are therefore a backlog, and none of them counts. The first letter of a backlog looks
+// like any other. Therefore, a letter counts only if no other letter follows within kTogether.
 //
 // A backlog does not release a key that is already held, because on a busy computer two letters
 // sometimes arrive together. They count as one event, provided that they arrived within kSilence of

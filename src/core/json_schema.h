@@ -1,4 +1,5 @@
-// Parts of a JSON Schema (draft-07), and numbers that can be missing. They are not for the tick.
+// Builds parts of a JSON Schema (draft-07) and JSON numbers that may be null. Not for use in the
+// tick.
 #pragma once
 
 #include <cmath>
@@ -8,7 +9,7 @@
 
 namespace predictor {
 
-// JSON has no infinity and no NaN. Such a number is missing and becomes null.
+// JSON has no infinity and no NaN. A number that is not finite therefore becomes null.
 inline nlohmann::ordered_json NumberOrNull(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr);
 }

@@ -1,4 +1,5 @@
-// Least-squares fits and the uncertainty of their results. They allocate and are not for the tick.
+// Least-squares fits and the uncertainty of their results. They allocate memory, so the tick must
+// not use them.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // Decompositions of matrices of any size. They are compiled only here because each costs seconds of
-// compile time in every file that uses it. They allocate and are not for the tick.
+// compile time in every file that uses it. They allocate memory, so the tick must not use them.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// Detects hands on which the arms still press after a stop. It is not for the tick.
+// Detects hands on which the arms still press after a stop. Not for use in the tick.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // Texts shown at the console, on the page, in the headset and in reports. Each has an ID in
-// message_catalogue.json, which the page imports too. They are not for the tick.
+// message_catalogue.json, which the page imports too. Not for use in the tick.
 #pragma once
 
 #include <initializer_list>
@@ -23,7 +23,8 @@ constexpr std::string_view FindMessage(std::string_view id) {
   return {};
 }
 
-// This is only declared. A constant expression cannot call it, so an unknown ID does not compile.
+// This function has no definition and is not constexpr. A constant expression cannot call it, so an
+// unknown ID does not compile.
 void RejectUnknownMessageId();
 
 // The ID of a text in the catalogue: an unknown literal does not compile.

@@ -1,4 +1,4 @@
-// A person's state as JSON, for pages and recordings. It is not for the tick.
+// Writes a person's state as JSON, for pages and recordings. Not for use in the tick.
 #pragma once
 
 #include <string>

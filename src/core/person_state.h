@@ -167,8 +167,9 @@ struct PersonWarningRow {
   double on, off;  // if on < off, low values are bad
   const char* words;
 };
-// A joint's use warns at half of the mean strength. With a standard deviation of 0.3 of the mean,
-// one person in twenty is no stronger than that. A worksheet warns at its highest action level.
+// The warning about a joint begins at half of the mean strength. With a standard deviation of 0.3
+// of the mean, one person in twenty has at most this strength. The warning of a worksheet begins at
+// its highest action level.
 inline constexpr double kUseWarning = 0.5, kUseCalm = 0.4;
 inline constexpr std::array kPersonWarningRows = {
     PersonWarningRow{"lower_back_compression", kCompressionLimit, 3100,
@@ -185,9 +186,9 @@ inline constexpr std::array kPersonWarningRows = {
                      "The left elbow needs more than half of the mean strength."},
     PersonWarningRow{"right_elbow", kUseWarning, kUseCalm,
                      "The right elbow needs more than half of the mean strength."},
-    PersonWarningRow{"rula", 4, 3, "RULA asks for changes immediately."},
-    PersonWarningRow{"reba", 5, 4, "REBA asks for action now."},
-    PersonWarningRow{"owas", 4, 3, "OWAS asks for changes immediately."},
+    PersonWarningRow{"rula", 4, 3, "RULA requires immediate changes."},
+    PersonWarningRow{"reba", 5, 4, "REBA requires immediate action."},
+    PersonWarningRow{"owas", 4, 3, "OWAS requires immediate changes."},
     PersonWarningRow{"reach", 1, 0, "The body does not reach the handles."},
 };
 inline constexpr std::size_t kPersonWarnings = kPersonWarningRows.size();

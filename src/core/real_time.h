@@ -6,7 +6,8 @@
 namespace predictor {
 
 inline constexpr int kLoopPriority = 80;  // SCHED_FIFO priority; the watchdog's is higher
-// The priority of a controller's process that asks for one: whatever it does, the loop comes first.
+// The priority of a controller's process that requests real-time scheduling. It is lower than that
+// of the loop, so the process cannot delay the loop.
 inline constexpr int kControllerPriority = 70;
 
 // Real-time scheduling of the calling thread and locked memory, for the lifetime of this object.

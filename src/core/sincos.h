@@ -15,7 +15,7 @@ namespace predictor {
 // terms are below 5e-17.
 inline void SinesAndCosines(const double* __restrict angles, int n, double* __restrict sines,
                             double* __restrict cosines) noexcept {
-  constexpr double kRounds = 0x1.8p52;  // adding it leaves no digits behind the point
+  constexpr double kRounds = 0x1.8p52;  // adding and subtracting it rounds to an integer
   constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
   constexpr double kFirst = 0x1.921fb544p0, kSecond = 0x1.0b4611a6p-34,
                    kThird = 0x1.3198a2e037073p-69;

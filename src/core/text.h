@@ -1,4 +1,5 @@
-// Text for people: numbers, lists, quotations and the closest names. It is not for the tick.
+// Formats text for users: numbers, lists, quotations and the closest names. Not for use in the
+// tick.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Columns of text in a terminal, whose width is counted in characters and not in bytes.
+// Pads columns of text for a terminal. Widths are counted in characters, not in bytes.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // Messages about a run for the operator: the problem and the remedy. Their texts are in
-// message_catalogue.json. They are not for the tick.
+// message_catalogue.json. Not for use in the tick.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How fast a limit may be approached.
+// Computes how fast a limit may be approached.
 #pragma once
 
 #include "scenario/formulation.h"
@@ -16,7 +16,7 @@ struct VelocityDamper {
   double gain = 0;          // slope [1/s]
   double influence = 0;     // distance beyond which the paper's damper does not act [·]
   double acceleration = 0;  // of the parabola [·/s²]
-  bool ends = true;         // zero where the distance is negative; else it pushes apart
+  bool ends = true;         // at a negative distance, Speed() is zero and not negative
   bool has_parabola = true;
 
   VelocityDamper() = default;

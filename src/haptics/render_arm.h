@@ -21,7 +21,7 @@ struct RenderArm {
   bool present = false;
   const RobotModel* model = nullptr;
   const RobotData* data = nullptr;   // kinematics at the measured (q, v)
-  const RobotData* ahead = nullptr;  // kinematics when the arm will obey the command
+  const RobotData* ahead = nullptr;  // kinematics at the time when the arm obeys the command
   FrameId handle;                    // H
   const JointVector* q = nullptr;    // measured [rad]
 };

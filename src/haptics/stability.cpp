@@ -193,7 +193,7 @@ double HapticLoop::GrowthRate(const HandSpec& hand, double lead, double gain,
   };
   for (int i = 0; i < n; ++i) s.SetDerivative(i, of_world(world_.A.row(i)));
   std::array<std::array<HandleAxis, 6>, kHands> handles;
-  std::array<System::Signal, 6> object;  // mean motion of the handles, which surround it
+  std::array<System::Signal, 6> object;  // motion of the object: the mean of its handles
   object.fill(s.Zero());
   const double share = 1.0 / scenario_.hands().count();
   for (const int i : scenario_.hands()) {

@@ -22,9 +22,9 @@ struct StabilityMargin {
   double frequency = 0;  // frequency of the oscillation at that gain [Hz]
 };
 
-// How closely the linear model matches the simulated loop.
+// The delays of the linear model.
 enum class LoopModel {
-  kWithReserve,  // used to choose leads: quick, and 1.5 ticks later than the simulated loop,
+  kWithReserve,  // used to choose leads: quick, with 1.5 ticks more delay than the simulation,
                  // because a real device may be later
   kExact,        // same delays as the simulation, valid for oscillations up to about 30 Hz
 };

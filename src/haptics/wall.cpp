@@ -74,7 +74,7 @@ LinearModel WithWall(const LinearModel& world, const Wall& wall) {
   const RowVectorXd velocity = w.transpose() * world.C.middleRows(6 * wall.hand, 6);
   LinearModel model = world;
   model.A -= b * (wall.stiffness * Displacement(world, velocity) + wall.damping * velocity);
-  // The inertia answers to the rate of the velocity: (1 + m b c) dx/dt = A x + B u.
+  // The force of the inertia is proportional to the acceleration: (1 + m b c) dx/dt = A x + B u.
   const double share = wall.inertia / (1 + wall.inertia * velocity.dot(b));
   const RowVectorXd rate = velocity * model.A, input = velocity * model.B;
   model.A -= share * b * rate;

@@ -1,5 +1,5 @@
-// A wall that the object touches, added to the linear model of the virtual world, and what a hand
-// then feels through the arms.
+// Adds a wall that the object touches to the linear model of the virtual world, and computes the
+// impedance that the hands then feel.
 #pragma once
 
 #include <complex>
@@ -16,7 +16,7 @@ struct Wall {
   Vector3 p_DC = Vector3::Zero();     // from the handle's origin to the point, axes of W [m]
   Vector3 normal = Vector3::UnitZ();  // unit vector in W
   double stiffness = 0, damping = 0;  // [N/m], [N·s/m]
-  double inertia = 0;                 // [kg]; contacts of the engine have one
+  double inertia = 0;                 // [kg]; the engine's contacts also have an inertia
 };
 
 // Returns the model with the wall.
@@ -25,16 +25,17 @@ LinearModel WithWall(const LinearModel& world, const Wall& wall);
 // Returns the mass that a force at the wall's point and along its normal moves [kg].
 double MassAt(const LinearModel& world, const Wall& wall);
 
-// What the hands feel if all of them together press along `direction`, and their handles' mean
-// displacement answers: force over displacement [N/m] at a frequency [Hz]. Its real part is a
-// stiffness. Its imaginary part divided by 2π·frequency is a damping; if that is negative, the
-// device feeds energy into the hands.
+// The impedance that the hands feel if all of them press along `direction`: their total force
+// divided by the mean displacement of their handles [N/m] at one frequency. The real part is a
+// stiffness. The imaginary part divided by 2π·frequency is a damping. If it is negative, the device
+// feeds energy into the hands.
 struct FeltImpedance {
   std::complex<double> requested;  // of the virtual world
   std::complex<double> rendered;   // by the arms, through the force sensors
 };
-// `dt` is the duration of a tick [s], `lead` that of the reference [s]. The delays are exact.
-// `frequency` must be positive, because a world may be free at rest.
+// `dt` is the duration of a tick [s], and `lead` is the lead of the reference [s]. The delays are
+// modelled exactly. `frequency` [Hz] must be positive, because at zero frequency a free world has
+// no finite displacement.
 FeltImpedance ImpedanceAt(const LinearModel& world, const Scenario& scenario, double lead,
                           double dt, const Vector3& direction, double frequency);
 

@@ -21,9 +21,9 @@ class SaidFilter {
     return text.size() <= kLongest ? text : text.substr(0, kLongest) + " ...";
   }
 
-  // Returns the messages to show for `text`, received at `now`. Empty if there were too many
-  // messages recently. Otherwise the text, shortened if necessary, preceded by a count of the
-  // messages that were omitted before it.
+  // Returns the messages to show for `text`, received at `now`: none if there were too many
+  // messages recently, otherwise the text. It is shortened if necessary, and a message with the
+  // number of previously omitted messages precedes it.
   std::vector<std::string> Take(const std::string& text, Time now) {
     const std::chrono::duration<double> since = now - std::exchange(last_, now);
     room_ = std::min(kMaxAtOnce, room_ + kPerSecond * since.count());

@@ -50,8 +50,8 @@ export const kPersonWarnings = {
   right_shoulder: {words: 'The right shoulder needs more than half of the mean strength.'},
   left_elbow: {words: 'The left elbow needs more than half of the mean strength.'},
   right_elbow: {words: 'The right elbow needs more than half of the mean strength.'},
-  rula: {words: 'RULA asks for changes immediately.'},
-  reba: {words: 'REBA asks for action now.'},
-  owas: {words: 'OWAS asks for changes immediately.'},
+  rula: {words: 'RULA requires immediate changes.'},
+  reba: {words: 'REBA requires immediate action.'},
+  owas: {words: 'OWAS requires immediate changes.'},
   reach: {words: 'The body does not reach the handles.'},
 } as const;
