@@ -1,4 +1,4 @@
-// What `check` says about contact with fixtures.
+// Tests what `check` reports about contact with fixtures.
 #include <gtest/gtest.h>
 
 #include "analysis/check/check.h"

@@ -25,14 +25,15 @@ struct Coverage {
   std::map<std::string, std::array<int, 3>> counts;
   // of the intervals [N], and relative to the true value
   std::vector<double> widths, shares;
-  int runs = 0, others = 0, unknown = 0;  // without a stop by a limit; whose truth ends by a fault
+  // all people, those whom no limit stops, and those whose true run ends with a fault
+  int runs = 0, others = 0, unknown = 0;
 
   double share() const {
     const auto& n = counts.at("all");
     return n[1] / static_cast<double>(n[0] + n[1] + n[2]);
   }
   void Print(const char* title) const {
-    std::printf("%s: %d people, %d without such a stop, %d whose truth ends by another fault\n",
+    std::printf("%s: %d people, %d not stopped by a limit, %d whose true run ends with a fault\n",
                 title, runs, others, unknown);
     for (const auto& [kind, n] : counts)
       std::printf("  %-16s %3d below, %3d within, %3d above\n", kind.c_str(), n[0], n[1], n[2]);

@@ -117,8 +117,8 @@ double Median(std::vector<double> x) {
   return x[x.size() / 2];
 }
 
-// A person with whom the haptic loop has too small a margin of stability is not displaced, and
-// another one is drawn.
+// Returns no value if the haptic loop with this person has too small a stability margin for
+// displacements. The caller then draws another person.
 std::optional<Identified> TryToIdentify(const PlaneArm& person, std::uint64_t seed) {
   try {
     return Identify(ScenarioOf(person, seed, 180));
@@ -182,8 +182,8 @@ TEST(PerturbedPeople, AreIdentifiedThroughTheDeviceSoak) {
       errors.Add(*arm.fit, person.Truth(), seed);
     }
   }
-  std::printf("%ld people; %ld others refused for their margin, %ld stopped\n", people, refused,
-              stopped);
+  std::printf("%ld people; %ld others refused because of their margin, %ld stopped\n", people,
+              refused, stopped);
   const double covered = errors.Print();
   EXPECT_LE(stopped, people / 10);
   if (!InFull()) return;
@@ -229,7 +229,7 @@ TEST(ArmIdentifier, WritesTheDistributionThatOtherCommandsRead) {
   EXPECT_NEAR(mean[2], (0.2 + 0.2) / 2, 1e-12);  // 12 / (2 · 30), 8 / (2 · 20)
   EXPECT_DOUBLE_EQ(mean[3], 2);
   EXPECT_NEAR(json["covariance"][3][3].get<double>(), 0.5e-4, 1e-12);
-  // ∂ζ/∂M = −ζ/(4 M), for each of the two masses: their mean enters, and both ratios depend on it.
+  // ∂ζ/∂M = −ζ/(4 M) for each of the two masses, because both damping ratios depend on their mean.
   EXPECT_NEAR(json["covariance"][2][3].get<double>(), -0.2 / (4 * 2) * 1e-4, 1e-9);
 }
 

@@ -104,8 +104,8 @@ TEST_F(IdentifyTest, FrictionAndItsIntervalsSoak) {
   RecordProperty("held", tally.held);
 }
 
-// The residuals are correlated, as if by the temperature of a gear. The correlation time is 0.5 s,
-// the standard deviation 0.1 N·m.
+// The residuals are correlated, as changes in the temperature of a gear would cause. Their
+// correlation time is 0.5 s, and their standard deviation is 0.1 N·m.
 TEST_F(IdentifyTest, IntervalsCountWhatNeighbouringResidualsHaveInCommonSoak) {
   Tally tally;
   double widening = 0;

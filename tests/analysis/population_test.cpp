@@ -204,7 +204,7 @@ TEST(Study, RunsAndContinuesWhereItEnded) {
   ASSERT_EQ(study.designs.size(), 2U);
   EXPECT_EQ(study.kept, 0);
   EXPECT_NEAR(*study.designs[0].height, 0.9, 1e-9);
-  // The handles are at a different height relative to the body, but move alike.
+  // The handles move alike, but their height relative to the body is different.
   EXPECT_NE(study.designs[0].runs[0].values, study.designs[1].runs[0].values);
   for (const PopulationDesign& design : study.designs)
     for (const PopulationRun& run : design.runs) EXPECT_GT(run.held, 1);

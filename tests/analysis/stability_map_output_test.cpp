@@ -73,8 +73,8 @@ TEST(MapStore, SaysWhenThereIsNoRoom) {
   const test::TemporaryFolder folder;
   const auto add_without_room = [&] {
     MapStore store(folder.path() / "points.jsonl");
-    const rlimit limit = {4000, 4000};  // size of a file [bytes]; the error message must fit as
-                                        // well
+    // The maximum size of a file [bytes] also applies to the file that receives the error message.
+    const rlimit limit = {4000, 4000};
     setrlimit(RLIMIT_FSIZE, &limit);
     std::signal(SIGXFSZ, SIG_IGN);
     try {

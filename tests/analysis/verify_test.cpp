@@ -222,7 +222,7 @@ TEST_F(VerifyTest, EveryScenarioIsTheSameAgainSoak) {
     scenario_ = LoadScenario(entry.path());
     const bool stops = entry.path().stem() == "push" || entry.path().stem() == "underdamped";
     const long most = stops ? 1000 : Count(3, 1000);
-    if (scenario_.duration == 0) scenario_.duration = 20;  // otherwise until its visitor ends it
+    if (scenario_.duration == 0) scenario_.duration = 20;  // otherwise, a visitor ends it
     scenario_.duration = std::min<double>(scenario_.duration, static_cast<double>(most));
     bool stopped = false;
     const Verification result = VerifyFile(Record([&](TickRecord* record) {

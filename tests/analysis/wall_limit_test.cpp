@@ -1,5 +1,6 @@
-// The largest stiffness of a wall against which the haptic loop is stable: the linear loop with a
-// spring and a damper against the simulation of an object that touches a fixture.
+// Compares two values of the largest wall stiffness at which the haptic loop is stable: that of the
+// linear loop with a spring and a damper, and that of the simulation of an object that touches a
+// fixture.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -14,7 +15,7 @@ namespace predictor {
 namespace {
 
 constexpr double kWallDamping = 5;    // [N·s/m]
-constexpr double kPressed = 0.06;     // by which the wall lifts the object: 30 N [m]
+constexpr double kPressed = 0.06;     // lift of the object by the wall, for 30 N [m]
 constexpr double kBallRadius = 0.05;  // the wall is a ball, so that one point touches [m]
 
 struct ArmLoop {
@@ -22,8 +23,8 @@ struct ArmLoop {
 };
 
 Scenario LoopWith(const ArmLoop& arm, double hand_mass) {
-  // The cobot's own damping would hide that of the loop. On a joint, and with a cobot that is soft
-  // to the sides, the box would slip off the ball.
+  // The cobot's damping is low, because it would hide that of the loop. If the box hung on a joint
+  // or the cobot were compliant sideways, the box would slip off the ball.
   Scenario s = Load(
       "box_9kg.yaml",
       {"object.attachment.joint=fixed", "cobot.controller.stiffness.translation=[300, 300, 500]",

@@ -1,4 +1,4 @@
-// Walls in the linear loop, against closed forms.
+// Compares walls in the linear loop with closed forms.
 #include "haptics/wall.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(Wall, AddsItsSpringDamperAndInertiaToAMass) {
   EXPECT_NEAR(model.B(1, 0), 1.0 / 8, 1e-12);
 }
 
-// A body that moves along y and turns about z: the wall is at a distance from its centre.
+// The body moves along y and rotates about z, and the wall acts at a distance from its centre.
 TEST(Wall, ActsAtItsPoint) {
   constexpr double kMass = 3, kInertia = 0.2, kArm = 0.4;
   LinearModel body;
@@ -53,8 +53,8 @@ TEST(Wall, ActsAtItsPoint) {
   EXPECT_NEAR(model.A(3, 1), -500 * kArm * kArm / kInertia, 1e-9);
 }
 
-// A delay T of the motion turns the impedance Z = K − M ω² + j ω B by e^{jωT}: a wall feels more
-// damped, and an inertia less.
+// A delay T of the motion multiplies the impedance Z = K − M ω² + j ω B by e^{jωT}. This adds
+// apparent damping to a wall and removes it from an inertia.
 TEST(ImpedanceAt, OfAMassAtAWallThroughADelay) {
   constexpr double T = 0.02, kMass = 9, kDamper = 15, kFrequency = 5;
   const double omega = 2 * kPi * kFrequency;
@@ -75,8 +75,8 @@ TEST(ImpedanceAt, AtRestIsTheOneRequested) {
   EXPECT_NEAR(felt.rendered.real(), 5000, 5);
 }
 
-// M s² + B s + K + m s² e^−sT, the hand's mass m against a wall through a delay, is at its boundary
-// at B = −m ω sin ωT and K = M ω² + m ω² cos ωT.
+// M s² + B s + K + m s² e^−sT describes a hand of mass m that acts on a wall through a delay. Its
+// stability boundary is at B = −m ω sin ωT and K = M ω² + m ω² cos ωT.
 TEST(StiffestStableWall, FindsTheClosedForm) {
   constexpr double T = 0.02, kMass = 9, kHand = 2;
   for (const double phase : {1.1 * kPi, 1.15 * kPi}) {

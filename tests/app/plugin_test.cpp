@@ -78,8 +78,8 @@ TEST_F(FailingController, ThatEndsAsAProcessStopsTheRun) {
       "the cobot's controller no longer answers. Read the output of the controller's program");
 }
 
-// The library crashes the program as well, which must say so. `repair` must recover all but the
-// last second.
+// The crash of the library also ends the program, whose message must state the cause. `repair` must
+// recover the recording except for its last second.
 TEST_F(FailingController, ThatCrashesAsALibraryIsNamedAndLeavesARecordingThatCanBeRepaired) {
   const struct {
     const char* fault;
@@ -105,7 +105,8 @@ TEST_F(FailingController, ThatCrashesAsALibraryIsNamedAndLeavesARecordingThatCan
   }
 }
 
-// A signal from outside is no crash of a library, and nothing is recorded.
+// The program must not report a signal from another process as a crash of the library. This run is
+// not recorded.
 TEST_F(FailingController, IsNotBlamedForASignalFromOutside) {
   Child child({"run", Scenario("box_9kg"), "--no-viewer"});
   ASSERT_TRUE(child.Says("Running")) << child.errors();
@@ -139,8 +140,8 @@ TEST_F(FailingController, ThatHangsAsALibraryEndsASimulation) {
   ASSERT_EQ(Do({"verify", folder_ / "run.repaired.mcap"}), 0) << said_;
 }
 
-// A library may take long to prepare itself, but not after Ctrl-C. From the start of the thread
-// that watches libraries on, the program handles Ctrl-C itself.
+// A library may take a long time to prepare itself, but Ctrl-C must end the program nevertheless.
+// The program handles Ctrl-C as soon as the thread that watches the library has started.
 TEST_F(FailingController, ThatHangsInItsPreparationEndsWithTheFirstCtrlC) {
   test::FindPlugins();
   Child child(Arguments(Library("create"), "run"));

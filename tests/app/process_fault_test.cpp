@@ -106,9 +106,8 @@ TEST(FileSizeLimit, IsAnErrorOfEveryCommand) {
   }
 }
 
-// Standard error accepts no more data. This happens if a pager is not scrolled or a terminal is
-// paused.
-// A pipe that is full and that is not read.
+// A full pipe that no process reads. It takes the place of a standard error that accepts no more
+// data, as happens if a pager is not scrolled or a terminal is paused.
 class FullPipe {
  public:
   FullPipe() {

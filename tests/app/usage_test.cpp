@@ -1,5 +1,4 @@
-// Tests what a person meets at the command line: help, misspelt words, existing files, and a first
-// scenario.
+// Tests the command line: help, misspelt words, existing files, and a first scenario.
 #include <gtest/gtest.h>
 
 #include <filesystem>

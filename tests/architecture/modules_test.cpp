@@ -106,8 +106,8 @@ TEST(Modules, KeepThirdPartiesInTheirFolders) {
   }
 }
 
-// Only RulesFor may decide whether the arms are real. All other code must ask for the rule that it
-// needs.
+// Only RulesFor may decide whether the arms are real. All other code must use the operating rule
+// that applies.
 TEST(OperatingRules, AloneDecideWhatRealArmsChange) {
   const std::regex question(
       R"re(HasRealArms|IsSimulated|dynamic_cast<[^>]*(Device|Rig)\b|device\.type\s*[!=]=)re");

@@ -1,4 +1,4 @@
-// Electromyograms from a table to the activations of the model.
+// Tests the conversion of electromyograms from a table into muscle activations of the model.
 #include "assessment/measured_emg.h"
 
 #include <gtest/gtest.h>
@@ -34,8 +34,8 @@ SampleCollector MadeRun(bool right = true) {
   });
 }
 
-// The voltage whose envelope states the activation: the inverse of (e^(A u) - 1)/(e^A - 1), on a
-// carrier, earlier than the activation by the delay.
+// Returns the voltage of a carrier whose envelope u gives the activation (e^(A u) - 1)/(e^A - 1).
+// The voltage precedes the activation by the delay.
 double VoltageAt(double time, const std::function<double(double)>& activation) {
   const double u = std::log1p(activation(time + kDelay) * std::expm1(kShape)) / kShape;
   return kAmplitude * u * std::sin(2 * std::numbers::pi * kCarrier * time);
@@ -110,8 +110,8 @@ TEST_F(MeasuredEmgTest, TheActivationComesBackThroughTheTable) {
   EXPECT_LT(worst, 0.01);
 }
 
-// With a large weight, the antagonist does what was measured, the torques are kept, and the elbow
-// flexors must work against it.
+// With a large weight, the antagonist has the measured activation. The joint torques must not
+// change, so the elbow flexors must compensate for the antagonist.
 TEST_F(MeasuredEmgTest, AMeasuredAntagonistIsBalancedByTheOthers) {
   const Assessment without = JudgeWith({});
   const Assessment with =
@@ -123,7 +123,7 @@ TEST_F(MeasuredEmgTest, AMeasuredAntagonistIsBalancedByTheOthers) {
   EXPECT_GT(MeanOf(with, "muscles.right.elbow_flexors"),
             MeanOf(without, "muscles.right.elbow_flexors") + 0.05);
   EXPECT_LT(MeanOf(with, "muscles.right.reserve_nm"), kReserveLimit);
-  // The other arm is not concerned.
+  // The results of the other arm must not change.
   EXPECT_EQ(MeanOf(with, "muscles.left.largest"), MeanOf(without, "muscles.left.largest"));
 }
 
@@ -150,7 +150,8 @@ std::string GapOf(const Assessment& a, const std::string& words) {
   return "";
 }
 
-// A channel that cannot be used is left out, says why, and changes no result.
+// If a channel cannot be used, the output must omit it and state the reason, and no result may
+// change.
 TEST_F(MeasuredEmgTest, AnUnusableChannelSaysWhy) {
   const Assessment without = JudgeWith({});
   const auto slow = [](double t) { return VoltageAt(t, SlowlyAt); };

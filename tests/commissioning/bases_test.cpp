@@ -80,8 +80,9 @@ TEST(CalibrateBases, SaysHowSureItIs) {
     worst = std::max(worst, (found.X_AB * (X_AB.Inverse() * amid) - amid).norm());
   }
   const double part = 1.0 * held / intervals;
-  std::printf("intervals hold %.1f %%; centre of the points off by %.2f mm at most\n", 100 * part,
-              1000 * worst);
+  std::printf(
+      "%.1f %% of the intervals are correct; largest error of the points' centre: %.2f mm\n",
+      100 * part, 1000 * worst);
   EXPECT_GE(part, 0.92);
   EXPECT_LE(part, 0.98);
   EXPECT_LT(worst, 0.002);

@@ -163,8 +163,9 @@ TEST(CalibrateHandle, ReachesItsFiguresWithANoisySensorAndSaysHowSureItIs) {
     all += held;
   }
   EXPECT_GE(all, 0.90 * 10 * tally.runs);
-  std::printf("worst: mass %.2f %%, centre %.2f mm, bias %.3f N; intervals hold %.1f %%\n",
-              100 * tally.mass, 1000 * tally.center, tally.bias, 10.0 * all / tally.runs);
+  std::printf(
+      "largest errors: mass %.2f %%, centre %.2f mm, bias %.3f N; intervals correct: %.1f %%\n",
+      100 * tally.mass, 1000 * tally.center, tally.bias, 10.0 * all / tally.runs);
 }
 
 TEST(CalibrateHandle, RefusesTooFewPoses) {

@@ -17,9 +17,10 @@ constexpr double kRest = 2e-3;      // speed below which a handle is at rest [m/
 constexpr double kDegrees = 57.29577951;
 constexpr double kBefore = 0.05;  // audited time before a fault [s]
 
-// These limits are literals, so that the judgement does not depend on the prediction. The first is
-// for quick arms: the budget at 0.25 m/s, 30 ms of following, and 10 ms of lag, or 120 ms for a
-// Franka's impedance control. The second is for a Franka of 15 Hz.
+// These limits are literals, so that the judgement does not depend on the prediction. The first
+// applies to quick arms. It consists of the budget at 0.25 m/s, the 30 ms for which one arm follows
+// the other, and the lag (10 ms, or 120 ms for a Franka's impedance control). The second applies to
+// a Franka of 15 Hz.
 constexpr StopBudget kMaxStop{0.240, 0.0134 + 0.25 * 0.040}, kMaxSlowStop{0.260, 0.037};
 constexpr double kMaxDrift = 0.002, kMaxTurn = 0.5 / kDegrees;
 

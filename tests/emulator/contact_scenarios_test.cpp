@@ -1,5 +1,5 @@
-// The scenarios in which the object touches its surroundings. Penetrations follow from the recorded
-// poses and the shapes of the scenario, without the physics engine.
+// Tests the scenarios in which the object touches its surroundings. The test computes penetrations
+// from the recorded poses and the shapes in the scenario, without the physics engine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -124,7 +124,7 @@ TEST(ContactScenarios, APlateCarriesTheForceOfADrill) {
   });
   EXPECT_TRUE(EndsWell(run));
   ASSERT_GT(ticks, 1000);
-  EXPECT_NEAR(force.z() / ticks, -40, 6);  // the hands also hold their place
+  EXPECT_NEAR(force.z() / ticks, -40, 6);  // the hands also resist displacement
   EXPECT_LE(deepest, kMaxDepth);
   EXPECT_LT(highest - lowest, kMaxDepth);
 }

@@ -1,4 +1,5 @@
-// The scenarios in which the cobot's gripper opens and closes. Expected values are closed forms.
+// Tests the scenarios in which the cobot's gripper opens and closes. The expected values are closed
+// forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -96,7 +97,7 @@ TEST(GripperScenarios, AToolIsHandedOver) {
   EXPECT_TRUE(EndsWell(run));
   EXPECT_GT(opened, 2);
   EXPECT_LT(opened, 8);
-  EXPECT_GT(pull, threshold - 1);  // the event sees the force of the tick before
+  EXPECT_GT(pull, threshold - 1);  // the event uses the force of the previous tick
   EXPECT_LT(before, threshold + 1);
   EXPECT_NEAR(holding.mean(), 0, 2);
   EXPECT_NEAR(carrying.mean(), kWeight, 0.05 * kWeight);

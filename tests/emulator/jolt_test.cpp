@@ -17,7 +17,7 @@ namespace predictor {
 namespace {
 
 constexpr double kFrom = 0.3, kUntil = 1;  // after the hazard, the ringing should have decayed [s]
-constexpr double kShortest = 0.1;          // of what is judged before another stop [s]
+constexpr double kShortest = 0.1;          // minimum judged time of a run [s]
 constexpr double kDecayed = 0.7;  // rms of the smallest vibration that the detector counts [N]
 
 struct Jolt {
@@ -27,8 +27,8 @@ struct Jolt {
   double alarm = -1;    // of the detector, from the hazard to kUntil [s]; −1: none
 };
 
-// Runs a scenario without the stops by oscillation and vibration. Detectors that read its forces
-// show when it would have been stopped, and the rest of the run shows whether that was necessary.
+// Runs a scenario in which oscillation and vibration cause no stop. Separate detectors show when
+// they would have stopped the run, and the rest of the run shows whether that stop was necessary.
 Jolt RunJolt(const std::string& name, std::vector<std::string> set) {
   set.insert(set.end(), {"safety.oscillation.enabled=false", "cobot.safety.force=100",
                          "cobot.safety.speed=0.75", "cobot.safety.joint_torque=60"});
@@ -103,10 +103,10 @@ TEST(VibrationRun, DecayingJoltsFromHazardsHardlyCountSoak) {
                         hazard.c_str(), controller.c_str(), 60000 + seed, jolt.alarm);
         }
   if (InFull()) std::printf("soak: count=%ld\n", runs);
-  std::printf("%ld runs; the ringing decays in %ld, and counts in %ld of these\n", runs, decaying,
-              stopped);
-  // The detector still stops about a tenth, for example at the second of two jolts: a power loss,
-  // and the brakes that close after it.
+  std::printf("%ld runs; the ringing decays in %ld, and the detector counts it in %ld of these\n",
+              runs, decaying, stopped);
+  // The detector still stops about a tenth of these runs, for example if a power loss causes one
+  // jolt and the closing brakes cause a second one.
   EXPECT_GE(runs, 40 * seeds);
   EXPECT_GE(3 * decaying, runs);
   EXPECT_LE(5 * stopped, decaying);

@@ -1,5 +1,5 @@
-// The displacements of the handles that identify the operator's arm: their course, their bounds,
-// and when they happen.
+// Tests the displacements of the handles that identify the operator's arm: their course, bounds and
+// times.
 #include "emulator/perturbation.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ TEST(QuinticMotion, IsOfMinimumJerkFromRest) {
   }
 }
 
-// Boundary conditions, and derivatives by differences.
+// Checks the boundary conditions, and compares the derivatives with finite differences.
 TEST(QuinticMotion, ContinuesAMotionAndEndsAtRest) {
   const QuinticMotion::Point start = {0.003, 0.05, -0.4};
   const QuinticMotion motion(start, 0, 0.12);
@@ -44,7 +44,7 @@ TEST(QuinticMotion, ContinuesAMotionAndEndsAtRest) {
   }
 }
 
-// Wherever a displacement is taken back, it never exceeds its amplitude by more than 1 %.
+// A displacement that is taken back early must not exceed its amplitude by more than 1 %.
 TEST(QuinticMotion, TakenBackAtAnyTimeHardlyGoesFarther) {
   const QuinticMotion out({}, 1, 1);
   for (double t = 0; t <= 1; t += 0.02) {
@@ -66,8 +66,8 @@ TEST(Perturbation, IsRefusedNearInstability) {
   }
 }
 
-// Several seeds: the displacements stop no run and keep within their bounds; both hands move alike;
-// directions are balanced.
+// With several seeds, the displacements must not stop a run and must stay within their bounds. Both
+// hands must move alike, and the directions must be balanced.
 TEST(Perturbation, KeepsItsBoundsAndStopsNoRun) {
   for (const int seed : {1, 2, 3, 4}) {
     double largest = 0, force = 0, coupling = 0, fastest = 0, error = 0;
@@ -113,7 +113,7 @@ TEST(Perturbation, StopsNoShippedScenarioThatRunsWithoutIt) {
     }
 }
 
-// Times and directions follow from the seed.
+// The seed must determine the times and directions.
 TEST(Perturbation, IsRepeatedBySeed) {
   const auto sum = [](int seed) {
     Vector3 total = Vector3::Zero();
@@ -125,7 +125,7 @@ TEST(Perturbation, IsRepeatedBySeed) {
   EXPECT_NE(sum(5), sum(6));
 }
 
-// A push of 20 N, which ends a displacement and prevents the next one.
+// A push of 20 N must end a displacement and prevent the next one.
 TEST(Perturbation, IsTakenBackWhenAHandPushes) {
   Vector3 before = Vector3::Zero();
   double jump = 0, during = 0;
@@ -149,7 +149,7 @@ TEST(Perturbation, IsTakenBackWhenAHandPushes) {
   EXPECT_LT(jump, 1.2 * 1.876 * 0.007 / 0.12 * 0.001);
 }
 
-// A state saved in a displacement continues bit for bit.
+// A state saved during a displacement must continue bit for bit.
 TEST(Perturbation, ContinuesFromASavedState) {
   const Scenario scenario = LoadTestScenario("identify_arm");
   Emulator first(scenario), second(scenario);

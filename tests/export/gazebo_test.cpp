@@ -1,4 +1,5 @@
-// The exported SDF in ign-physics (dartsim, Gazebo's engine), against our own world of DART.
+// Compares the motion of the exported SDF in ign-physics (dartsim, Gazebo's engine) with that in
+// our DART world.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +29,8 @@ namespace fs = std::filesystem;
 constexpr int kGazeboSteps = 5000;             // of 1 ms
 constexpr double kMaxGazeboDifference = 1e-9;  // [m]
 
-// The program of tests/export/gazebo, beside the tests.
+// Returns the path of the program built from tests/export/gazebo, which is in the folder of the
+// tests.
 fs::path Mover() { return fs::path(PREDICTOR_BINARY).parent_path() / "predictor-ign-mover"; }
 
 std::string OutputOf(const std::string& command) {
@@ -42,7 +44,8 @@ std::string OutputOf(const std::string& command) {
   return output;
 }
 
-// The law of the program: springs and dampers in the joints, a force on the object's centre.
+// Applies the same control law as that program: springs and dampers in the joints, and a force on
+// the object's centre.
 std::vector<Vector3> MoveInDart(const Scenario& scenario) {
   const auto robot = RobotModel::Load({scenario.cobot.model, scenario.folder(),
                                        scenario.cobot.remove_links, scenario.cobot.base.ToPose()});
@@ -73,7 +76,7 @@ TEST(Gazebo, MovesTheExportedSceneAsOurWorldOfDartDoes) {
   Scenario scenario = LoadScenario(fs::path(PREDICTOR_SOURCE_DIR) / "scenarios" / "box_9kg.yaml");
   scenario.simulation.joint_limits = JointLimits::kNone;
   scenario.environment.floor = false;
-  scenario.cobot.effort_limit = {1000};  // ign-physics limits forces by it, and our world does not
+  scenario.cobot.effort_limit = {1000};  // only ign-physics enforces the limit
   const test::TemporaryFolder folder;
   WriteScenePackage(MakeScenePackage(scenario, SceneFormat::kSdf), folder.path() / "to", false);
   std::string command = Mover().string() + " " + (folder.path() / "to" / kSceneSdf).string() +

@@ -1,4 +1,5 @@
-// The scene as SDF: places of its links against our own kinematics, and Gazebo's own checker.
+// Tests the scene as SDF: compares the poses of its links with our kinematics, and runs Gazebo's
+// checker.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <tinyxml2.h>
@@ -55,7 +56,7 @@ class SdfScene : public testing::TestWithParam<const char*> {
 
   fs::path File() const { return folder.path() / "to" / kSceneSdf; }
 
-  // Pose of a link or frame at the joints' zero.
+  // Returns the pose of a link or frame with all joints at zero.
   Pose PlaceOf(const std::string& name) const {
     const XMLElement& part = *parts.at(name);
     const char* base = part.FirstChildElement("pose")->Attribute("relative_to");
@@ -82,7 +83,7 @@ TEST_P(SdfScene, PutsLinksWhereOurKinematicsDoes) {
   };
   int compared = 0;
   for (const std::string& link : robot->link_names()) {
-    // In the odd scenes, links have the names of the scene's own.
+    // In the odd scenes, links of the cobot have names that the scene itself uses.
     if (!parts.contains(link) || link == "object") continue;
     expect_at(link, data.FramePose(*robot, robot->Frame(link)));
     ++compared;
@@ -157,7 +158,8 @@ TEST_P(SdfScene, IsValidForGazebosChecker) {
   for (std::size_t n; (n = fread(text.data(), 1, text.size(), pipe)) > 0;)
     said.append(text.data(), n);
   const int status = pclose(pipe);
-  // It prints "Valid." and may yet end with 255, for a library that only improves its own errors.
+  // The checker may print "Valid." and exit with 255 nevertheless, because of a library that it
+  // needs only for better error messages.
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   EXPECT_TRUE(code == 0 || code == 255) << code;
   EXPECT_NE(said.find("Valid."), std::string::npos) << said;

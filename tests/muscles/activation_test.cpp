@@ -79,7 +79,8 @@ TEST(Activation, WhatTheMusclesCannotProduceIsInTheReserve) {
   EXPECT_NEAR(result.reserve[0], 0, 1e-12);
 }
 
-// For one muscle that is not needed, min a²/2 + v (a - e)²/2 has the solution a = v e / (1 + v).
+// If the task requires no force of a muscle, min a²/2 + v (a - e)²/2 has the solution a = v e / (1
+// + v).
 TEST(Activation, MeasuredActivationsPull) {
   ActivationProblem problem;
   problem.measured[5] = 0.6;

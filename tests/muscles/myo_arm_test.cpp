@@ -1,5 +1,5 @@
-// MyoArm's reader, with a small arm of the same structure that the test writes, and with MyoArm
-// itself where the package myo-sim is installed.
+// Tests the reader of MyoArm with a small arm of the same structure, which the test writes, and
+// with MyoArm itself if the package myo-sim is installed.
 #include "muscles/myo_arm.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 // In MyoArm's axes: x forward, y up, z to the right [m].
 const Vector3 kPivot(-0.02, 0.05, -0.1);           // of the shoulder blade
 const Vector3 kShoulder(0.01, 0, 0.02);            // in the zero posture
-constexpr double kSlope = 0.35, kCurvature = 0.1;  // of the blade's angle over the elevation
+constexpr double kSlope = 0.35, kCurvature = 0.1;  // of blade angle versus elevation
 
 constexpr const char* kNames[] = {
     "DELT1", "DELT2",  "DELT3", "SUPSP",  "INFSP",   "SUBSC",    "TMIN",    "TMAJ", "PECM1",
@@ -30,9 +30,10 @@ constexpr const char* kNames[] = {
     "ECRB",  "ECU",    "FCR",   "FCU",    "FDS2",    "FDS3",     "FDS4",    "FDS5", "FDP2",
     "FDP3",  "FDP4",   "FDP5",  "EDC2",   "EDC3",    "EDC4",     "EDC5"};
 constexpr int kStrands = static_cast<int>(std::size(kNames));
-constexpr int kOnUpperArm = 15;  // the first strands end at the upper arm
+constexpr int kOnUpperArm = 15;  // number of strands that end at the upper arm
 
-// Ends of the strands: the origin on the blade (even) or the torso (odd), in the torso's axes.
+// Return the ends of a strand. The origin is on the shoulder blade (even numbers) or on the torso
+// (odd numbers), in the torso's axes.
 Vector3 OriginOf(int i) {
   return kShoulder + Vector3(0.03 * std::sin(i), 0.02 + 0.004 * (i % 5), -0.02 * std::cos(2 * i));
 }
@@ -134,7 +135,7 @@ TEST_F(MyoArmTest, MomentArmsAreTheSlopesAlongTheCoupledPath) {
   EXPECT_LT(WorstSlope(*paths, 100), 1e-7);
 }
 
-// The orientation of the upper arm is that of our body, and the shoulder blade follows its
+// The upper arm must have the orientation of our body model, and the shoulder blade must follow its
 // elevation. The lengths are computed here without MuJoCo.
 TEST_F(MyoArmTest, TheUpperArmHasOurOrientationAndTheBladeFollows) {
   const auto paths = LoadMyoArm(Write(SmallArm()));
@@ -153,7 +154,7 @@ TEST_F(MyoArmTest, TheUpperArmHasOurOrientationAndTheBladeFollows) {
     const Matrix3 turn = RotationFromVector({angle, 0, 0}).toRotationMatrix();
     const Vector3 shoulder = kPivot + turn * (kShoulder - kPivot);
     const MuscleVector length = paths->LinesAt(q).length;
-    for (int i = 0; i < 12; ++i) {  // the strands that are muscles of their own
+    for (int i = 0; i < 12; ++i) {  // strands that are separate muscles
       const Vector3 origin =
           i % 2 == 0 ? Vector3(kPivot + turn * (OriginOf(i) - kPivot)) : OriginOf(i);
       EXPECT_NEAR(length[i], (shoulder + R * EndOf(i) - origin).norm(), 1e-9) << kNames[i];

@@ -72,7 +72,7 @@ TEST(Published, MomentArmsOfTheRotatorCuff) {
   }
 }
 
-// For a straight wrist [mm], these are the constant terms of the same source as the elbow's.
+// The moment arms of a straight wrist [mm] are constant terms in the source of the elbow's.
 TEST(Published, MomentArmsOfTheWrist) {
   const ArmModel arm({}, 1);
   const struct {

@@ -1,4 +1,4 @@
-/* Plug-ins with a fault, for the tests; FAULT chooses it. */
+/* Faulty plug-ins for the tests. The macro FAULT selects the fault. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,8 +14,8 @@
 #define LONG_MEMORY 5
 #define AT_TIME 6
 
-/* Controllers AT_TIME carry the cobot's weight until "at", then do what "fault" names. With the
- * fault "create", they hang before that. */
+/* A controller of kind AT_TIME carries the cobot's weight until the time "at" and then fails as
+ * "fault" states. With the fault "create", it hangs while it is created. */
 typedef struct {
   double at;
   char fault[16];

@@ -1,6 +1,6 @@
-"""A controller as a process. It carries the cobot's weight with springs until a certain time. Then it does what
-its argument names: crash, hang, nan, late, shorten, object (answers its pose), or priority (answers its scheduling
-policy and priority). It can also refuse or end at once."""
+"""A controller as a process. It carries the cobot's weight with springs until a given time and then performs the action
+in its argument: crash, hang, nan, late, shorten, object (returns the object's pose), or priority (returns its scheduling
+policy and priority). It can also refuse to start or end immediately."""
 
 import mmap
 import os

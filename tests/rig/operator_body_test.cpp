@@ -25,7 +25,7 @@ std::array<FrameMotion, kHands> HandlesAt(const Vector3& middle, double apart = 
   return handles;
 }
 
-// `middle`: of the handles, seen by the person.
+// `middle` is the middle of the handles in the person's frame.
 struct StandingBody {
   explicit StandingBody(const Scenario& scenario, const Vector3& middle = {0.4, 0, 1.0})
       : body(scenario), handles(HandlesAt(middle)) {

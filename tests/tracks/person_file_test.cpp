@@ -165,7 +165,7 @@ TEST_F(Import, RefusesADamagedBag) {
               {"/wrench", "CDR"});
 }
 
-// The message does not contain as many strings and characters as its counts and lengths say.
+// The message contains fewer strings and characters than its counts and lengths state.
 TEST_F(Import, RefusesTransformsThatAreCutOff) {
   std::string transforms("\0\1\0\0\2\0\0\0", 8);
   for (const char frame : {'a', 'b'}) {

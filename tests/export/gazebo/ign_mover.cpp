@@ -1,8 +1,6 @@
-// predictor-ign-mover FILE.sdf PLUGIN: moves an exported scene in ign-physics by the law below for
-// 5 s, and prints the object's position after each step. A program of its own, for the test that
-// compares it with our world of DART.
-//
-// Its arguments after the two are the start positions of the cobot's joints.
+// predictor-ign-mover FILE.sdf PLUGIN Q...: moves an exported scene in ign-physics for 5 s by the
+// control law below, and prints the object's position after each step. Q... are the start positions
+// of the cobot's joints. gazebo_test.cpp compares the output with our DART world.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// The bodies that surround the cobot, where and how large the scenario says.
+// Tests that the page draws the fixtures with the places and sizes in the scenario.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {launch, open, ready, screenshot, serve, shotsWanted} from './harness.mjs';
