@@ -141,7 +141,7 @@ TEST(FakeUr, PlaysTheProgramOfUrRtde) {
   c.input_int[24] = 77;
   bench.network.Pass(0.01);
   EXPECT_FALSE(bench.fake.running());
-  EXPECT_EQ(bench.fake.log().back(), "program ended: ur_rtde's command 77 is not played here");
+  EXPECT_EQ(bench.fake.log().back(), "program ended: ur_rtde's command 77 is not supported here");
 }
 
 }  // namespace

@@ -119,16 +119,19 @@ void JudgeStop(const Fault& fault, const StopBudget& most, FaultOutcome* o) {
   o->Require(o->end == end, std::string("ends ") + Name(o->end) + " instead of " + Name(end) +
                                 ", cause " + Name(o->cause));
   o->Require(o->ticks >= 0 && o->ticks <= fault.bound,
-             Formatted("seen after %d ticks, %d allowed", o->ticks, fault.bound));
+             Formatted("detected after %d ticks, %d allowed", o->ticks, fault.bound));
   if (fault.expect == Expect::kPowerOff) {
     const int latest = std::max(fault.bound, fault.off);
     o->Require(o->off >= 0 && o->off <= latest,
-               Formatted("asks for power to be cut after %d ticks, %d allowed", o->off, latest));
+               Formatted("requests power-off after %d ticks, %d allowed", o->off, latest));
   }
   JudgeReach(most, o);
   if (!fault.together) return;
-  o->Require(o->drift <= kMaxDrift, Formatted("the handles part by %.2f mm", 1e3 * o->drift));
-  o->Require(o->turn <= kMaxTurn, Formatted("the handles turn by %.2f deg", kDegrees * o->turn));
+  o->Require(o->drift <= kMaxDrift,
+             Formatted("the relative position of the handles changes by %.2f mm", 1e3 * o->drift));
+  o->Require(
+      o->turn <= kMaxTurn,
+      Formatted("the relative orientation of the handles changes by %.2f deg", kDegrees * o->turn));
 }
 
 void JudgeRest(Bench& bench, FaultOutcome* o) {
@@ -136,7 +139,7 @@ void JudgeRest(Bench& bench, FaultOutcome* o) {
   bench.rig().Mark();
   bench.Pass(0.3);
   const double fastest = bench.rig().motion().moving;
-  o->Require(fastest < kRest, Formatted("moves by %.1f mm/s after the stop", 1e3 * fastest));
+  o->Require(fastest < kRest, Formatted("moves at %.1f mm/s after the stop", 1e3 * fastest));
 }
 
 FaultOutcome Bring(Bench& bench, const Fault& fault, const FaultRig& rig, std::uint64_t seed,
@@ -185,7 +188,7 @@ void JudgeRestWithoutLoop(Bench& bench, const std::function<void()>& each, Fault
   bench.rig().Mark();
   PassWithoutLoop(bench, kResting, each);
   const double fastest = bench.rig().motion().moving;
-  o->Require(fastest < kRest, Formatted("moves by %.1f mm/s without the loop", 1e3 * fastest));
+  o->Require(fastest < kRest, Formatted("moves at %.1f mm/s without the loop", 1e3 * fastest));
 }
 
 // Returns whether a run may end in this state, apart from rest after a stop.
@@ -209,7 +212,8 @@ void JudgeBoth(Bench& bench, const Fault& first, const Fault& second, FaultOutco
   if (held) o->end = bench.emulator().state();
   const bool must_not_hold =
       first.expect == Expect::kPowerOff || second.expect == Expect::kPowerOff;
-  o->Require(!must_not_hold || o->end != RunState::kHeld, "holds: the most severe did not win");
+  o->Require(!must_not_hold || o->end != RunState::kHeld,
+             "holds the arms, which the most severe fault forbids");
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ void EndIsAskedFor(Bench& bench, int, FaultOutcome* o) {
   Take(bench.AwaitStop(tick, 2), o);
   o->Require(o->end == RunState::kHeld && o->cause == StopCause::kNone,
              std::string("ends ") + Name(o->end) + ", " + Name(o->cause));
-  o->Require(o->ticks == 1, Formatted("seen after %d ticks", o->ticks));
+  o->Require(o->ticks == 1, Formatted("detected after %d ticks", o->ticks));
   JudgeRest(bench, o);
 }
 

@@ -33,7 +33,7 @@
 namespace predictor {
 namespace {
 
-static_assert(std::is_trivially_copyable_v<FaultRun>, "it passes through a pipe");
+static_assert(std::is_trivially_copyable_v<FaultRun>, "it is sent through a pipe");
 
 constexpr unsigned kPatience = 300;  // time limit of one run, in real time [s]
 constexpr int kLastPair = 33;        // higher numbers concern neither the loop nor the devices
@@ -171,8 +171,8 @@ FaultOutcome OnARun(Bench& bench, const FaultRig& rig, const FaultRun& run,
   const Fault& fault = Faults()[run.fault];
   if (!fault.Begins() && bench.emulator().state() != RunState::kRun) {
     FaultOutcome outcome;
-    outcome.Fail(std::string("no run before the fault: ") + Name(bench.emulator().state()) + ", " +
-                 StopCauseWords(bench.record()));
+    outcome.Fail(std::string("RUN was not reached before the fault: ") +
+                 Name(bench.emulator().state()) + ", " + StopCauseWords(bench.record()));
     return outcome;
   }
   const Fault* second = run.second < 0 ? nullptr : &Faults()[static_cast<std::size_t>(run.second)];

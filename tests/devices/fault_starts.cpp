@@ -89,7 +89,7 @@ void SensorDrifts(const FaultRig& rig, std::uint64_t seed, const std::string&, c
   bench.Pass(2 * Warnings::kDriftTime + 0.1);
   const auto hand = static_cast<int>(random.Next() % kHands);
   const auto warned = [&] { return Has(bench.record().hands[Index(hand)], Warning::kBiasDrift); };
-  o->Require(!warned(), "warned of without a drift");
+  o->Require(!warned(), "a warning appears without a drift");
   const Wrench rate = DriftRate(&random);
   bench.rig().Drift(hand, rate);
   for (int k = 0; k < 20'000 && !warned(); ++k) {
@@ -107,7 +107,7 @@ void SensorDrifts(const FaultRig& rig, std::uint64_t seed, const std::string&, c
   bench.Tick();
   o->end = bench.emulator().state();
   o->Require(static_cast<Refusal>(bench.record().why_refused) == Refusal::kNotFree,
-             std::string("not refused to align: ") + Name(o->end));
+             std::string("ALIGN was not refused: ") + Name(o->end));
 }
 
 // Returns an incorrect mounting: depending on the seed, the axes are rotated, swapped or mirrored.
@@ -176,9 +176,9 @@ void Recovers(Bench& bench, FaultOutcome* o, Refusal expected) {
   o->Require(o->speed > 1e-3, "does not move");
   o->Require(o->speed <= kMaxRecoverySpeed, Formatted("recovers at %.1f mm/s", 1e3 * o->speed));
   bench.Hold(false);
-  o->Require(
-      bench.Await(RunState::kIdle, 1),
-      std::string("does not come back: ") + Name(bench.emulator().state()) + " " + Messages(bench));
+  o->Require(bench.Await(RunState::kIdle, 1), std::string("RECOVERY does not return the arm: ") +
+                                                  Name(bench.emulator().state()) + " " +
+                                                  Messages(bench));
   bench.Hold(true);
   bench.Pass(0.2);
   bench.emulator().Request(RunEvent::kAlignRequested);
@@ -250,7 +250,7 @@ void ScenarioLoosens(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) {
   o->Require(why.find(std::string("safety.") + limit.key) != std::string::npos,
              "not refused: " + why);
   const double tighter = limit.least ? 1 + 0.2 * random.Uniform() : 1 - 0.5 * random.Uniform();
-  o->Require(with(tighter).empty(), "a tighter one is refused");
+  o->Require(with(tighter).empty(), "a tighter limit is refused");
 }
 
 // Starts a drift of the sensor.

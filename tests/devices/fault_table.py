@@ -10,8 +10,8 @@ import sys
 
 RIG = re.compile(r'(?:\d+: )?([\w ]+): (\d+) runs$')
 ROW = re.compile(r'(?:\d+: )? ?(\d+)  (.{50}) (continues|warned|holds|power off|refused|arms stop|ends well)\s*(.*)$')
-STOP = re.compile(r'seen after +(-?\d+) of +(\d+) ticks; .* at rest after +(\d+) ms, +([\d.]+) mm; '
-                  r'apart ([\d.]+) mm, ([\d.]+) deg[^;]*(?:; power off asked for after (\d+) of)?')
+STOP = re.compile(r'detected after +(-?\d+) of +(\d+) ticks; .* at rest after +(\d+) ms, +([\d.]+) mm; '
+                  r'apart ([\d.]+) mm, ([\d.]+) deg[^;]*(?:; power-off requested after (\d+) of)?')
 
 # The names of faults and outcomes begin like this, and the page shows these words. The names
 # themselves seed random numbers.

@@ -80,17 +80,17 @@ void PrintRow(const Fault& fault, const std::vector<const FaultOutcome*>& runs) 
   if (fault.expect == Expect::kHold || fault.expect == Expect::kPowerOff ||
       fault.expect == Expect::kArmsThemselves)
     std::printf(
-        " seen after %2d of %2d ticks; from up to %3.0f mm/s at rest after %3.0f ms, %4.1f mm; "
+        " detected after %2d of %2d ticks; from up to %3.0f mm/s at rest after %3.0f ms, %4.1f mm; "
         "apart %.2f mm, %.2f deg (on the way %.2f mm)",
         worst.ticks, fault.bound, 1e3 * worst.speed, 1e3 * worst.time, 1e3 * worst.distance,
         1e3 * worst.drift, 57.2958 * worst.turn, 1e3 * worst.apart);
   if (fault.expect == Expect::kAnyEnd)
     std::printf(
-        " %td of %zu came to a run",
+        " %td of %zu reached RUN",
         std::count_if(runs.begin(), runs.end(), [](const FaultOutcome* run) { return run->ran; }),
         runs.size());
   if (fault.off > 0)
-    std::printf("; power off asked for after %d of %d ticks", worst.off, fault.off);
+    std::printf("; power-off requested after %d of %d ticks", worst.off, fault.off);
   std::printf("\n");
   if (worst.message[0] != 0) std::printf("      \"%s\"\n", worst.message.data());
 }
@@ -100,7 +100,7 @@ void ExpectAudited(const FaultRuns& runs) {
   for (const FaultRun& run : runs.all) {
     if (run.fault != kAudit) continue;
     ++audits;
-    EXPECT_TRUE(run.outcome.well) << "what was written to the arms, seed " << run.seed << ": "
+    EXPECT_TRUE(run.outcome.well) << "audit of the commands to the arms, seed " << run.seed << ": "
                                   << run.outcome.why.data();
   }
   EXPECT_EQ(audits, runs.audits_due);

@@ -134,12 +134,12 @@ void MakeQuick(std::optional<ArmSpec>* arm) {
 
 std::function<void(Bench&, int)> ToArm(const std::string& what) {
   return [what](Bench& b, int hand) {
-    if (!b.arm(hand).Do(what)) throw std::runtime_error("an arm does not know: " + what);
+    if (!b.arm(hand).Do(what)) throw std::runtime_error("unknown event of an arm: " + what);
   };
 }
 std::function<void(Bench&, int)> ToSensor(const std::string& what) {
   return [what](Bench& b, int hand) {
-    if (!b.sensor(hand).Do(what)) throw std::runtime_error("a sensor does not know: " + what);
+    if (!b.sensor(hand).Do(what)) throw std::runtime_error("unknown event of a sensor: " + what);
   };
 }
 std::function<void(Bench&, int)> ToWire(void (*change)(WireFaults*)) {

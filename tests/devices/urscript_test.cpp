@@ -184,8 +184,8 @@ TEST(UrScriptLanguage, WhatIsNotKnownIsAnError) {
   EXPECT_NE(ErrorOf("x = 1 ; y = 2").find("unknown symbol ';'"), std::string::npos);
   EXPECT_NE(ErrorOf("run f()").find("unknown function 'f'"), std::string::npos);
   EXPECT_NE(ErrorOf("def f():\nend\nrun f()").find("unknown function 'f'"), std::string::npos);
-  EXPECT_NE(ErrorOf("sync(1)").find("another number of arguments"), std::string::npos);
-  EXPECT_NE(ErrorOf("def f(a):\nend\nf()").find("another number of arguments"), std::string::npos);
+  EXPECT_NE(ErrorOf("sync(1)").find("wrong number of arguments"), std::string::npos);
+  EXPECT_NE(ErrorOf("def f(a):\nend\nf()").find("wrong number of arguments"), std::string::npos);
   EXPECT_NE(ErrorOf("if 1:\nend").find("wrong type"), std::string::npos);
   EXPECT_NE(ErrorOf("x = 1 +").find("a name expected"), std::string::npos);
   EXPECT_NE(ErrorOf("while True\nend").find("':' expected"), std::string::npos);

@@ -30,26 +30,30 @@ namespace predictor {
 namespace {
 
 constexpr const char* kHelp =
-    "run, rest                the person at the handles begins to work, or rests\n"
-    "press SIDE X Y Z         pushes that handle: axes of the world [N]; 0 0 0 lets go\n"
-    "lead SIDE Q ...          guides that arm to these joints [rad]; without any, lets go\n"
-    "led SIDE                 yes once it is there, or no\n"
-    "state, joints SIDE       where the joints are [rad], and how fast [rad/s]\n"
-    "mark, motion             watch the handles from here on; what they did: last moving after "
+    "run, rest                the person at the handles starts or stops working\n"
+    "press SIDE X Y Z         pushes the handle with this force [N], in axes of W; 0 0 0 releases "
+    "it\n"
+    "lead SIDE Q ...          guides the arm to these joint angles [rad]; without any, releases "
+    "it\n"
+    "led SIDE                 prints yes if the guided arm has arrived, otherwise no\n"
+    "state, joints SIDE       print the joint angles [rad]; state also prints velocities [rad/s]\n"
+    "mark, motion             motion prints, since mark: the time of the handles' last motion "
     "[s],\n"
-    "                         fastest [m/s], hardest [m/s^2], way [m], fastest joint [rad/s],\n"
-    "                         its hardest commanded braking [rad/s^2]\n"
-    "wire SIDE M ...          that sensor reads this matrix (9 numbers) times what it should\n"
-    "do SIDE PLACE WHAT       what happens to a fake, the PLACE-th of that side (0: the first)\n"
+    "                         their maximum speed [m/s] and acceleration [m/s^2], the distance "
+    "[m],\n"
+    "                         the maximum speed of a joint [rad/s], and its maximum commanded\n"
+    "                         deceleration [rad/s^2]\n"
+    "wire SIDE M ...          multiplies the sensor's readings by this matrix (9 numbers by rows)\n"
+    "do SIDE PLACE EVENT      applies an event to the fake at this place of that side, from 0\n"
     "                         UR: press INPUT, release INPUT, protective stop, unlock,\n"
     "                             emergency stop, slider PERCENT, freedrive, freedrive off\n"
     "                         Franka: user stop, emergency stop, release, guide, freeze, continue\n"
-    "late FROM TO             how late between these times of the monotonic clock [ns]: a "
-    "processor\n"
-    "                         at the worst, and in sum; the rig; the longest silence of a client;\n"
-    "                         a thread of ordinary priority [ms]\n"
-    "log SIDE PLACE           what it has seen, then a line with a dot\n"
-    "help, quit               SIDE is left or right; Ctrl-D ends it too";
+    "late FROM TO             prints delays [ms] between two times of the monotonic clock [ns]:\n"
+    "                         longest delay and sum of the worst processor, longest delay of the\n"
+    "                         rig, longest silence of a client, longest delay of a thread of\n"
+    "                         ordinary priority\n"
+    "log SIDE PLACE           prints the recorded events of the fake, then a line with a dot\n"
+    "help, quit               SIDE is left or right; Ctrl-D also ends the program";
 
 double Milliseconds(std::uint64_t from, std::uint64_t to) {
   return to > from ? 1e-6 * static_cast<double>(to - from) : 0;
@@ -69,7 +73,7 @@ Fake ParseFake(const std::string& text) {
   const std::size_t equals = text.find('='), colon = text.find(':');
   const std::string side = text.substr(0, equals);
   if ((side != "left" && side != "right") || colon == std::string::npos || colon < equals)
-    throw std::runtime_error("\"" + text + "\" is not as in left=ur:127.0.0.2.");
+    throw std::runtime_error("\"" + text + "\" does not have the form of left=ur:127.0.0.2.");
   std::stringstream rest(text.substr(colon + 1));
   std::string host;
   std::getline(rest, host, ',');
@@ -111,13 +115,13 @@ class FarEnd {
     words >> what;
     if (OneOf(what, {"help", "run", "rest", "state", "mark", "motion"})) {
       const std::string more = Rest(&words);
-      return more.empty() ? Alone(what) : what + " stands alone: " + more + " is too much.";
+      return more.empty() ? Alone(what) : what + " takes no arguments, but " + more + " was given.";
     }
     if (what == "late") return Late(&words);
     if (!OneOf(what, {"joints", "lead", "led", "press", "wire", "do", "log"}))
-      return "There is no command \"" + what + "\": help lists them.";
+      return "There is no command \"" + what + "\". Type help for a list.";
     words >> side;
-    if (!OneOf(side, {"left", "right"})) return what + " left or right? See help.";
+    if (!OneOf(side, {"left", "right"})) return what + " needs a side, left or right. See help.";
     const int hand = side == "left" ? 0 : 1;
     return OneOf(what, {"do", "log"}) ? OfFake(what, hand, &words) : ByHand(what, hand, &words);
   }
@@ -177,15 +181,15 @@ class FarEnd {
     std::vector<double> x;
     for (double number = 0; *words >> number;) x.push_back(number);
     if (const std::string more = Rest(words); !more.empty())
-      return more + " is no number: nothing was done.";
+      return more + " is not a number. The command was ignored.";
     const auto count = static_cast<long>(x.size()), joints = rig_.joints(hand).size();
     const long wanted = what == "press"                ? 3
                         : what == "wire"               ? 9
                         : what == "lead" && count != 0 ? joints
                                                        : 0;
     if (count != wanted)
-      return what + " takes " + std::to_string(wanted) + " numbers, and " + std::to_string(count) +
-             " were given: nothing was done.";
+      return what + " takes " + std::to_string(wanted) + " numbers, but " + std::to_string(count) +
+             " were given. The command was ignored.";
     if (what == "led") return rig_.Led(hand) ? "yes" : "no";
     if (what == "joints") {
       std::ostringstream text;
@@ -202,12 +206,13 @@ class FarEnd {
 
   std::string OfFake(const std::string& what, int hand, std::istream* words) {
     std::size_t place = 0;
-    if (!(*words >> place)) return what + " at which place? 0 is the first fake of that side.";
+    if (!(*words >> place))
+      return what + " needs the place of a fake. 0 is the first one of that side.";
     Fake* fake = Find(hand, place);
     if (fake == nullptr) return "There is no fake at place " + std::to_string(place) + ".";
     const std::string rest = Rest(words);
     if (what == "do") return Do(fake, rest);
-    if (!rest.empty()) return rest + " is too much.";
+    if (!rest.empty()) return rest + " is not expected here.";
     std::string text;
     for (const std::string& event : fake->device->log()) text += event + "\n";
     return text + ".";
@@ -219,10 +224,10 @@ class FarEnd {
     for (std::string word; words >> word;)
       if (std::isdigit(static_cast<unsigned char>(word[0])))
         if (const std::string more = Rest(&words); !more.empty())
-          return more + " is too much: nothing was done.";
+          return more + " is not expected here. The command was ignored.";
     return fake->device->Do(what) ? "ok" : "That fake does not know \"" + what + "\".";
   } catch (const std::exception&) {  // an invalid number
-    return "That fake does not understand \"" + what + "\".";
+    return "That fake cannot interpret \"" + what + "\".";
   }
 
   Fake* Find(int hand, std::size_t place) {

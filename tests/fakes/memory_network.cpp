@@ -147,7 +147,7 @@ std::unique_ptr<Stream> MemoryNetwork::Connect(const Address& peer, double timeo
 
 std::unique_ptr<Datagrams> MemoryNetwork::Open(const Address& peer, std::uint16_t port) {
   const auto it = hosts_.find(peer.host);
-  if (it == hosts_.end()) throw DeviceError(peer, "is on no network that this machine is in.");
+  if (it == hosts_.end()) throw DeviceError(peer, "is not in a network of this machine.");
   auto entry = std::make_shared<Port>();
   entry->number = port != 0 ? port : next_port_++;
   entry->peer = peer.port;

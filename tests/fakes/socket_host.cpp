@@ -36,7 +36,7 @@ int Bound(in_addr own, std::uint16_t port, int type) {
 
 SocketHost::SocketHost(const std::string& address, FakeDevice* device) : device_(device) {
   if (inet_aton(address.c_str(), &own_) == 0 || (ntohl(own_.s_addr) >> 24) != 127)
-    throw std::runtime_error("\"" + address + "\" is no loopback address, as 127.0.0.2 is.");
+    throw std::runtime_error("\"" + address + "\" is not a loopback address such as 127.0.0.2.");
   client_ = own_;
   for (const std::uint16_t port : device->tcp_ports())
     listeners_[port] = Bound(own_, port, SOCK_STREAM);

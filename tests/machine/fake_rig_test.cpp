@@ -20,22 +20,22 @@ TEST_F(FakeRigsLines, AreListedByHelp) {
 }
 
 TEST_F(FakeRigsLines, AreDoneOnlyIfUnderstoodToTheirLastWord) {
-  EXPECT_EQ(rig_.Ask("dance"), "There is no command \"dance\": help lists them.");
-  EXPECT_EQ(rig_.Ask("state left"), "state stands alone: left is too much.");
-  EXPECT_EQ(rig_.Ask("press up 1 2 3"), "press left or right? See help.");
+  EXPECT_EQ(rig_.Ask("dance"), "There is no command \"dance\". Type help for a list.");
+  EXPECT_EQ(rig_.Ask("state left"), "state takes no arguments, but left was given.");
+  EXPECT_EQ(rig_.Ask("press up 1 2 3"), "press needs a side, left or right. See help.");
   EXPECT_EQ(rig_.Ask("press left 1 2"),
-            "press takes 3 numbers, and 2 were given: nothing was done.");
+            "press takes 3 numbers, but 2 were given. The command was ignored.");
   EXPECT_EQ(rig_.Ask("press left 1 2 3 4"),
-            "press takes 3 numbers, and 4 were given: nothing was done.");
-  EXPECT_EQ(rig_.Ask("press left 1 2 3 N"), "N is no number: nothing was done.");
+            "press takes 3 numbers, but 4 were given. The command was ignored.");
+  EXPECT_EQ(rig_.Ask("press left 1 2 3 N"), "N is not a number. The command was ignored.");
   EXPECT_EQ(rig_.Ask("joints left 1"),
-            "joints takes 0 numbers, and 1 were given: nothing was done.");
-  EXPECT_EQ(rig_.Ask("do left"), "do at which place? 0 is the first fake of that side.");
+            "joints takes 0 numbers, but 1 were given. The command was ignored.");
+  EXPECT_EQ(rig_.Ask("do left"), "do needs the place of a fake. 0 is the first one of that side.");
   EXPECT_EQ(rig_.Ask("do left 1 press 8"), "There is no fake at place 1.");
-  EXPECT_EQ(rig_.Ask("do left 0 press 8 9"), "9 is too much: nothing was done.");
-  EXPECT_EQ(rig_.Ask("do left 0 press it"), "That fake does not understand \"press it\".");
+  EXPECT_EQ(rig_.Ask("do left 0 press 8 9"), "9 is not expected here. The command was ignored.");
+  EXPECT_EQ(rig_.Ask("do left 0 press it"), "That fake cannot interpret \"press it\".");
   EXPECT_EQ(rig_.Ask("do left 0 dance"), "That fake does not know \"dance\".");
-  EXPECT_EQ(rig_.Ask("log left 0 all"), "all is too much.");
+  EXPECT_EQ(rig_.Ask("log left 0 all"), "all is not expected here.");
   for (const char* line : {"press left 1 2 3", "press left 0 0 0", "do left 0 press 8",
                            "do left 0 protective stop", "lead left", "run", "rest"})
     EXPECT_EQ(rig_.Ask(line), "ok") << line;

@@ -45,7 +45,7 @@ class UrRtdeProgram final : public UrProgram {
     if (command == kStopScript) return false;
     if (command != kSpeedStop && command != kStopj)
       throw std::runtime_error("ur_rtde's command " + std::to_string(command) +
-                               " is not played here");
+                               " is not supported here");
     c_->Stopj(Argument(0));
     return true;
   }

@@ -18,7 +18,7 @@ class Compiler {
     Expect("def");
     program_.name = Definition(false);
     SkipNewlines();
-    if (tokens_[at_].kind != Token::Kind::kEnd) Fail("something follows the program");
+    if (tokens_[at_].kind != Token::Kind::kEnd) Fail("unexpected text after the program");
     for (const Instruction& i : program_.code) CheckCall(i);
     return std::move(program_);
   }
@@ -68,7 +68,7 @@ class Compiler {
     if (it == program_.functions.end() || it->second.thread != (i.op == Op::kRun))
       throw Error(i.line, "unknown function '" + i.name + "'");
     if (static_cast<int>(it->second.parameters.size()) != i.number)
-      throw Error(i.line, "'" + i.name + "' takes another number of arguments");
+      throw Error(i.line, "'" + i.name + "' has the wrong number of arguments");
   }
 
   // Parses a definition after `def` or `thread`. A jump skips the definition's code at its place.
@@ -290,7 +290,8 @@ class Compiler {
     std::istringstream text(token.text);
     text.imbue(std::locale::classic());
     double x = 0;
-    if (!(text >> x) || !text.eof()) throw Error(token.line, "'" + token.text + "' is no number");
+    if (!(text >> x) || !text.eof())
+      throw Error(token.line, "'" + token.text + "' is not a number");
     return x;
   }
 
@@ -307,7 +308,7 @@ class Compiler {
       return;
     }
     if (n < builtin->second.least || n > builtin->second.most)
-      Fail("'" + name + "' takes another number of arguments");
+      Fail("'" + name + "' has the wrong number of arguments");
     Emit(Op::kBuiltin, n, name);
   }
 

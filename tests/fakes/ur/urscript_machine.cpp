@@ -93,7 +93,7 @@ void Machine::Run(std::size_t t) {
   thread.moving = false;
   for (int n = 0; thread.wait == Wait::kNothing; ++n) {
     const Instruction& i = program_->code[thread.at];
-    if (n == kMaxInstructions) throw Error(i.line, "a thread runs on without waiting");
+    if (n == kMaxInstructions) throw Error(i.line, "a thread runs without waiting");
     ++thread.at;
     Step(&thread, i);
     // When the program ends, its threads end too.
@@ -188,7 +188,7 @@ void Machine::Variables(Thread* thread, const Instruction& i) {
     case Op::kStoreItem: {
       const Value value = Pop(&stack), at = Pop(&stack);
       auto* list = std::get_if<List>(&known());
-      if (list == nullptr) throw Error(i.line, "'" + i.name + "' is no list");
+      if (list == nullptr) throw Error(i.line, "'" + i.name + "' is not a list");
       (*list)[Index(at, list->size(), i)] = value;
       return;
     }

@@ -49,7 +49,7 @@ def differences(message, schema, path):
 def field_differences(field, schema, path):
     if field.is_repeated:
         if schema.get("type") != "array":
-            return [f"{path}: is no list"]
+            return [f"{path}: is not a list"]
         schema = schema["items"]
     if field.message_type:
         return differences(field.message_type, schema, path)
