@@ -46,7 +46,7 @@ Cost Measure(const Recording& run, const std::vector<JsonChannel>& scene) {
 
 void CompareRecordings(const std::vector<std::string>& names) {
   Heading("Recordings (time of one core for encoding, compressing and writing; size)");
-  std::printf("%-28s %12s %14s %18s\n", "run", "us a tick", "MB a minute", "without scene");
+  std::printf("%-28s %12s %14s %18s\n", "run", "us per tick", "MB per minute", "without scene");
   for (const std::string& name : names) {
     const Recording run = Record(name);
     const Cost whole = Measure(run, RecordedScene(run.scenario, Vector3(0.5, 0, 0.3)));

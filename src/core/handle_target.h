@@ -1,4 +1,4 @@
-// Where the real handles should be.
+// Computes the target poses of the real handles.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// Quantiles without storing the samples.
+// Estimates quantiles without storing the samples.
 #pragma once
 
 #include <algorithm>

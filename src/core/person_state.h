@@ -1,4 +1,5 @@
-// What the evaluator reports about the person at one time of a run: posture, loads, scores, damage.
+// The state of the person at one time of a run, as the evaluator reports it: posture, loads, scores
+// and damage.
 //
 // The page, the recording and the page's TypeScript are derived from the tables in this file.
 #pragma once
@@ -67,7 +68,7 @@ inline constexpr std::size_t kBodyParts = kBodyPartNames.size();
 inline constexpr double kCompressionLimit = 3400;  // NIOSH's limit for L5/S1 [N]
 inline constexpr double kShearLimit = 700;  // Gallagher & Marras's limit for frequent shear [N]
 
-// Values for the nominal posture, with an interval over the possible ones.
+// Values for the nominal posture, each with an interval that covers the possible postures.
 enum class PersonGauge : std::uint8_t {
   kCompression,
   kShear,
@@ -209,8 +210,8 @@ struct ScoreState {
   std::array<float, kMaxClasses> probability = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
 };
 struct PartState {
-  // For colouring: compression of the lower back over its limit; elsewhere, torque over the mean
-  // strength.
+  // For colouring: the compression of the lower back divided by its limit, and for other parts the
+  // torque divided by the mean strength.
   float load = kUnknown;
   float capacity = kUnknown;   // strength that remains despite fatigue (3CC-r), as a share
   float damage = kUnknown;     // of the run so far: LiFFT for the lower back, Shoulder Tool

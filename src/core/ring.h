@@ -12,7 +12,7 @@ namespace predictor {
 
 // Each slot has a version (a sequence lock) that is odd while the slot is being written. A reader
 // that was overtaken skips to the oldest slot still available and counts the lost items. The
-// storage contains no pointers, so it may be placed in shared memory. N: a power of two.
+// storage contains no pointers, so it may be placed in shared memory. N must be a power of two.
 template <class T, std::size_t N>
 class RingStorage {
   static_assert(std::is_trivially_copyable_v<T>);

@@ -103,7 +103,7 @@ TEST(Comparison, FindsTheShiftForTheSamePeople) {
   ASSERT_EQ(study.differences.size(), StudyQuantities().size());
   for (const PairedDifference& d : study.differences) {
     EXPECT_EQ(d.a, 1U);
-    EXPECT_NEAR(d.shift.estimate, 5, 1e-12);  // though the people differ by 80
+    EXPECT_NEAR(d.shift.estimate, 5, 1e-12);  // although the people differ by 80
     EXPECT_NEAR(d.shift.lower, 5, 1e-12);
     EXPECT_LT(d.p, 1e-6);
     EXPECT_GE(d.p_holm, d.p);

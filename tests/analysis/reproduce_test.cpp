@@ -59,7 +59,8 @@ const ReproducedNumber& Find(const ReproducedExperiment& e, const std::string& q
   return kNone;
 }
 
-// For scenario 1 of the paper, each printed number appears in its place, next to ours from a run.
+// For scenario 1 of the paper, each printed number must appear in its place, next to ours from a
+// run.
 TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
   options_.only = "box_9kg";
   const Reproduction r = Reproduce(options_);
@@ -84,8 +85,8 @@ TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
   // constant.
   EXPECT_GT(Find(e, "left handle", kPapers).mean, 3 * Find(e, "left handle", kOurs).mean);
   EXPECT_NE(Find(e, "left handle", kPapers).command.find("--set rate=100"), std::string::npos);
-  // Without our coupling, the run stops. The page shows the time of the stop, without a ratio to
-  // the paper's number.
+  // Without our coupling, the run stops. The page must show the time of the stop, without a ratio
+  // to the paper's number.
   const ReproducedNumber& stop = Find(e, "time of the safety stop", kPapersUncoupled);
   EXPECT_GT(stop.mean, 0);
   EXPECT_LT(stop.mean, 30);
@@ -110,7 +111,7 @@ TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
   EXPECT_TRUE(std::any_of(e.blocks.begin(), e.blocks.end(), [](const ReproducedBlock& block) {
     return block.html.find("assumed to be 100 Hz (1/10 ms") != std::string::npos;
   }));
-  // The page has three plots like Fig. 7, one like Fig. 8, and three pictures.
+  // The page must have three plots like Fig. 7, one like Fig. 8, and three pictures.
   int plots = 0;
   for (const ReproducedBlock& block : e.blocks) plots += block.plot ? 1 : 0;
   EXPECT_EQ(plots, 4);
@@ -183,7 +184,7 @@ TEST_F(ReproduceTest, NumbersFileIsWhatTheProgramComputesSoak) {
   }
 }
 
-// The loop keeps the relative pose even where it does not keep the absolute pose.
+// The loop must keep the relative pose even where it does not keep the absolute pose.
 TEST_F(ReproduceTest, ShowsTheRelativePoseKept) {
   options_.only = "relative_pose";
   const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
@@ -198,7 +199,7 @@ TEST_F(ReproduceTest, ShowsTheRelativePoseKept) {
   ExpectAsInNumbersFile(e);
 }
 
-// Fig. 12: with identified friction, the emulation agrees better with the real run.
+// Fig. 12: with identified friction, the emulation must agree better with the real run.
 TEST_F(ReproduceTest, HoldsTheCircleAgainstTheRealOne) {
   options_.only = "circle";
   options_.seeds = 2;
@@ -211,14 +212,15 @@ TEST_F(ReproduceTest, HoldsTheCircleAgainstTheRealOne) {
     EXPECT_GT(Find(e, std::string(axis) + ", correlation", "identified friction").mean, 0.9)
         << axis;
   }
-  // The plot shows one run of each kind, with three axes for each of two hands.
+  // The plot must show one run of each kind, with three axes for each of two hands.
   ASSERT_TRUE(std::any_of(e.blocks.begin(), e.blocks.end(), [](const ReproducedBlock& block) {
     return block.plot && block.plot->id == "fig12-forces" && block.plot->panels.size() == 6 &&
            block.plot->panels[0].series.size() == 3;
   }));
 }
 
-// Each reconstructed set of answers reproduces the printed numbers: ten numbers for 8 statements.
+// Each reconstructed set of answers must reproduce the printed numbers: ten numbers for 8
+// statements.
 TEST_F(ReproduceTest, ListsTheAnswersOfTableOne) {
   options_.only = "questionnaire";
   const ReproducedExperiment e = Reproduce(options_).experiments.at(0);

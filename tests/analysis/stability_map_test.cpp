@@ -211,7 +211,8 @@ TEST(DeparturesAt, ALimitOnTheStableSide) {
   const auto departures = DeparturesAt(found, found.extent.boundaries[0]);
   ASSERT_EQ(departures.size(), 1u);
   EXPECT_NE(departures[0].find("acceleration"), std::string::npos);
-  // A limit that acts far from the boundary or on its other side does not affect the boundary.
+  // A limit that acts far from the boundary or on its other side is not a departure, because it
+  // does not affect the boundary.
   FoundExtent elsewhere = AboutAThousand(0);
   for (const std::size_t k : {0u, 1u, 3u, 4u, 5u}) elsewhere.samples[k].growth.limited.fill(1);
   EXPECT_TRUE(DeparturesAt(elsewhere, elsewhere.extent.boundaries[0]).empty());

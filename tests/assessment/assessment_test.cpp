@@ -118,7 +118,7 @@ TEST(Assessment, WarnsOfAnImpossiblePlace) {
   EXPECT_THROW(judge(), InputError);
 }
 
-// The output omits the quantities of a handle that the scenario does not have.
+// The output must omit the quantities of a handle that the scenario does not have.
 TEST(Assessment, OneHandHasNoRightSide) {
   Scenario scenario = PersonScenario();
   scenario.right_handle.reset();

@@ -27,7 +27,7 @@ TEST(MessageCatalogue, FillsInValues) {
 TEST(MessageCatalogue, HasEachIdOnceAndNoEmptyText) {
   for (const CatalogueEntry& entry : kMessageCatalogue) {
     EXPECT_FALSE(entry.text.empty()) << entry.id;
-    EXPECT_EQ(FindMessage(entry.id).data(), entry.text.data()) << entry.id << " is there twice";
+    EXPECT_EQ(FindMessage(entry.id).data(), entry.text.data()) << entry.id << " occurs twice";
   }
 }
 

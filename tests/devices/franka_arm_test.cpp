@@ -139,7 +139,7 @@ TEST_P(FrankaDriver, MovesAsWrittenAndEndsTheMotion) {
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
   EXPECT_EQ(rig_.fake.log().back(), "motion ended with status 0");
   EXPECT_EQ(rig_.reading.v.norm(), 0);
-  // The driver answers the first state of a motion, so no command is lost.
+  // The driver must answer the first state of a motion, so that no command is lost.
   EXPECT_EQ(rig_.fake.lost_commands(), 0U);
   EXPECT_EQ(rig_.arm->counts().lost_commands, 0U);
   // The second motion must work in the same way.

@@ -53,7 +53,7 @@ TEST_P(UrArmTest, StandsWithoutMotion) {
   bench.Ticks(150, 0.3, false);
   EXPECT_EQ(bench.speed(), 0);
   EXPECT_TRUE(bench.read.ok());
-  bench.Ticks(100, 0.3);  // a person armed it again; there was no fault
+  bench.Ticks(100, 0.3);  // as after a person's request; there was no fault
   EXPECT_DOUBLE_EQ(bench.speed(), 0.3);
 }
 
@@ -124,7 +124,7 @@ TEST_P(UrArmTest, SilenceAges) {
   const bool own = bench.arm->facts().own_wrench;
   EXPECT_EQ(bench.reading.wrench.age, own ? bench.reading.age : WrenchReading().age);
   EXPECT_LE(bench.reading.sequence, last + 1);
-  EXPECT_TRUE(bench.read.ok());  // other parts decide when it is too old
+  EXPECT_TRUE(bench.read.ok());  // the monitor decides when it is too old
 }
 
 TEST_P(UrArmTest, LatePackagesAreAsOldAsTheyAre) {

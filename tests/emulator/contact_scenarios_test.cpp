@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMaxDepth = 1e-4;  // [m]
 
-// Distance of a point from the surface of a box; negative inside [m].
+// Returns the distance of a point from the surface of a box [m], which is negative inside.
 double DistanceFrom(const FixtureSpec& box, const Vector3& p_W) {
   const Vector3 out = (box.X_WG().Inverse() * p_W).cwiseAbs() - box.size / 2;
   return out.cwiseMax(0).norm() + std::min(0.0, out.maxCoeff());
@@ -36,7 +36,7 @@ TEST(ContactScenarios, APegGoesIntoAHoleWithOneMillimetreOfClearance) {
   const FixtureSpec& bottom = fixtures.back();
   const double floor = bottom.xyz.z() + bottom.size.z() / 2;          // [m]
   const double rim = fixtures[0].xyz.z() + fixtures[0].size.z() / 2;  // [m]
-  constexpr double kRadius = 0.02, kTip = 0.14;  // of peg_bar.urdf, the tip below O [m]
+  constexpr double kRadius = 0.02, kTip = 0.14;  // from peg_bar.urdf; the tip is kTip below O [m]
   // The inner faces are 20.5 mm from the hole's axis.
   const Vector3 axis(bottom.xyz.x(), bottom.xyz.y(), 0);
   for (std::size_t i = 0; i + 1 < fixtures.size(); ++i) {
@@ -106,7 +106,7 @@ TEST(ContactScenarios, ABarPassesADoorwayOnlyIfItIsTilted) {
 TEST(ContactScenarios, APlateCarriesTheForceOfADrill) {
   const Scenario scenario = LoadTestScenario("drill");
   const FixtureSpec& plate = scenario.environment.fixtures[0];
-  constexpr double kTip = 0.225;  // below O, of drill.urdf [m]
+  constexpr double kTip = 0.225;  // distance below O in drill.urdf [m]
   double deepest = -HUGE_VAL;
   Vector3 force = Vector3::Zero();
   double lowest = HUGE_VAL, highest = -HUGE_VAL;

@@ -46,7 +46,7 @@ inline std::string StopWords(const std::string& screen) {
     for (const char* sign : kLateSigns) relevant |= line.find(sign) != std::string::npos;
     if (relevant) words += "\n  " + line.substr(0, line.find('\r'));
   }
-  return words.empty() ? "\n  (no word of a stop)" : words;
+  return words.empty() ? "\n  (no message about a stop)" : words;
 }
 
 class Attempts {

@@ -185,7 +185,7 @@ class Damage : public ::testing::Test {
     bool failed = false;
     const auto content = ReadAll(out, &failed);
     if (!content || failed || !content->complete) {
-      ADD_FAILURE() << what << ": what was recovered cannot be read";
+      ADD_FAILURE() << what << ": the recovered file cannot be read";
       return {};
     }
     RecordingReader(out).Check();

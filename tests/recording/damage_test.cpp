@@ -82,7 +82,7 @@ TEST_F(Damage, EachByteFlippedSoak) {
     } catch (const InputError&) {
       checked = false;
     }
-    EXPECT_FALSE(checked) << what << " is not noticed";
+    EXPECT_FALSE(checked) << what << " is not detected";
     const auto recovered = RecoverAndCheck(what);
     ASSERT_TRUE(content.has_value() && recovered.has_value()) << what;
     EXPECT_GE(*recovered, kDamagedTicks - 6) << what;  // only one of three chunks is damaged

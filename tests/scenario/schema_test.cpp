@@ -76,7 +76,7 @@ TEST(Schema, EqualsTheFileInTheScenariosFolder) {
   std::ostringstream text;
   text << file.rdbuf();
   EXPECT_TRUE(text.str() == ScenarioSchema())
-      << "Write it again: predictor schema scenario > scenarios/scenario.schema.json";
+      << "Regenerate it: predictor schema scenario > scenarios/scenario.schema.json";
 }
 
 TEST(Schema, IsDraft07AndDescribesEachKey) {

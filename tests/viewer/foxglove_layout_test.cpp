@@ -80,7 +80,7 @@ TEST(FoxgloveLayout, PathsAreFoundAsAdvertised) {
       for (const auto& [topic, settings] : panel["topics"].items())
         EXPECT_TRUE(schemas.contains(topic)) << id << topic;
     } else {
-      ADD_FAILURE() << id << ": not a panel that this test knows";
+      ADD_FAILURE() << id << ": this test does not support panels of this type";
     }
   }
   EXPECT_EQ(plots, 5);

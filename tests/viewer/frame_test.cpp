@@ -56,14 +56,14 @@ TEST(Frame, ThePagesTypesAreThoseOfTheTable) {
   std::ifstream file(PREDICTOR_SOURCE_DIR "/web/src/quantities.ts");
   const std::string source{std::istreambuf_iterator<char>(file), {}};
   EXPECT_EQ(source, PageQuantities())
-      << "Write it again: build/release/bin/page_quantities > web/src/quantities.ts";
+      << "Regenerate it: build/release/bin/page_quantities > web/src/quantities.ts";
 }
 
 TEST(Frame, ThePagesTypeOfAPersonIsThatOfTheTable) {
   std::ifstream file(PREDICTOR_SOURCE_DIR "/web/src/person_state.ts");
   const std::string source{std::istreambuf_iterator<char>(file), {}};
   EXPECT_EQ(source, PagePerson())
-      << "Write it again: build/release/bin/page_quantities person > web/src/person_state.ts";
+      << "Regenerate it: build/release/bin/page_quantities person > web/src/person_state.ts";
 }
 
 // The fields must have the names and sizes given in docs/reference/viewer-protocol.md.

@@ -21,7 +21,7 @@ const kStart = 1_700_000_000_000_000_000n;
 let folder, bytes, expected;
 
 before(() => {
-  assert.ok(process.env.RECORDING_SAMPLE, "RECORDING_SAMPLE names what writes the recording");
+  assert.ok(process.env.RECORDING_SAMPLE, "Set RECORDING_SAMPLE to the program that writes the recording");
   folder = fs.mkdtempSync(path.join(os.tmpdir(), "recording-"));
   execFileSync(process.env.RECORDING_SAMPLE, [folder]);
   bytes = new Uint8Array(fs.readFileSync(path.join(folder, "sample.mcap")));

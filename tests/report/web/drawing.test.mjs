@@ -75,9 +75,9 @@ test('a legend that is too long stands in rows', () => {
   const rows = new Map();
   for (const one of words.sort((a, b) => a.x - b.x)) {
     const end = one.x + 5.5 * one.words.length;  // a letter's mean width at 12 px
-    assert.ok(one.x >= (rows.get(one.y) ?? 0), `${one.words} covers another`);
-    assert.ok(one.y < Number(frame), `${one.words} stands in the plot`);
-    assert.ok(end <= 900 + 5, `${one.words} sticks out`);
+    assert.ok(one.x >= (rows.get(one.y) ?? 0), `${one.words} overlaps another text`);
+    assert.ok(one.y < Number(frame), `${one.words} is inside the plot`);
+    assert.ok(end <= 900 + 5, `${one.words} extends beyond the picture`);
     rows.set(one.y, end);
   }
   assert.ok(rows.size >= 4, `${rows.size} rows`);

@@ -14,7 +14,7 @@ export const faults = (page) => page.evaluate(() => {
     const frame = svg.getBoundingClientRect();
     const words = [...figure.querySelectorAll('text')].map((t) => [t.textContent, t.getBoundingClientRect()]);
     words.forEach(([a, p], i) => {
-      if (p.left < frame.left - 1 || p.right > frame.right + 1) bad.push(`${figure.id}: "${a}" sticks out`);
+      if (p.left < frame.left - 1 || p.right > frame.right + 1) bad.push(`${figure.id}: "${a}" extends beyond the picture`);
       words.slice(i + 1).forEach(([b, q]) => {
         const w = Math.min(p.right, q.right) - Math.max(p.left, q.left);
         const h = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);

@@ -23,7 +23,7 @@ function event(emitter, name, wanted = () => true) {
 }
 
 before(async () => {
-  assert.ok(url, "FOXGLOVE_URL names the server");
+  assert.ok(url, "Set FOXGLOVE_URL to the address of the server");
   socket = new WebSocket(url, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]);
   client = new FoxgloveClient({ ws: socket });
   client.on("error", (error) => assert.fail(error));
@@ -101,7 +101,7 @@ test("every channel's messages fit its schema, and time advances", async () => {
     for (const [k, { time, message }] of list.entries()) {
       assert.ok(fits(message), `${channel.topic}: ${ajv.errorsText(fits.errors)}`);
       assert.deepEqual(strangers(schema, message), [], channel.topic);
-      if (k > 0) assert.ok(time > list[k - 1].time, `${channel.topic}: time stands still`);
+      if (k > 0) assert.ok(time > list[k - 1].time, `${channel.topic}: the log time does not increase`);
     }
   }
   const runs = received.get("/run").map(({ message }) => message);

@@ -61,8 +61,8 @@ const bearer = (request) => (request.headers.authorization ?? '').replace('Beare
 export class FakeServer {
   // The options are `scene` ('box' | 'circle'), `operator`, `simulated`, `state`, `table` and
   // `light`. `object` contains the files of the object's model {name: text}, which must include
-  // model.urdf. `ground` is where the operator stands in W. `person` is why nothing about the
-  // person is judged. An `older` server does not know the person.
+  // model.urdf. `ground` is where the operator stands in W. `person` is the reason why the person
+  // is not judged. An `older` server sends no data about the person.
   constructor(options = {}) {
     this.options = {scene: 'box', operator: 'virtual', simulated: true, state: 'RUN', ground: [1, 0, 0], ...options};
     this.preset = kScenes[this.options.scene];

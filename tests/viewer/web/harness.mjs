@@ -122,7 +122,7 @@ export async function ready(page) {
 export async function waitFor(condition, words) {
   const end = Date.now() + kPatienceMs;
   while (!condition()) {
-    if (Date.now() > end) assert.fail(`did not happen: ${words}`);
+    if (Date.now() > end) assert.fail(`timed out: ${words}`);
     await new Promise((resolve) => setTimeout(resolve, 20));
   }
 }

@@ -28,7 +28,7 @@ const pathOf = (scenario) => join(root, 'scenarios', scenario);
 export class Program {
   // Runs scenarios/SCENARIO. Options: set (['path.to.key=value']), port (0: any), args, terminal.
   static async run(scenario, {set = [], port = 0, args = [], terminal = true} = {}) {
-    assert.ok(existsSync(binary), `${binary} is not there: build it, or name it by PREDICTOR_BINARY`);
+    assert.ok(existsSync(binary), `${binary} does not exist. Build it, or set PREDICTOR_BINARY.`);
     return new Program().serve([
       binary, 'run', pathOf(scenario), '--quiet', '--port', String(port),
       ...(args.includes('--record') ? [] : ['--no-record']), ...args,
