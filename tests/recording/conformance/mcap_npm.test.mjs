@@ -50,7 +50,7 @@ function plain(value) {
   return Object.fromEntries(Object.entries(value).map(([name, item]) => [name, plain(item)]));
 }
 
-test("every record, streamed, with all CRCs checked", async () => {
+test("every record can be read as a stream, with all CRCs checked", async () => {
   const reader = new McapStreamReader({ decompressHandlers, validateCrcs: true });
   reader.append(bytes);
   const counts = {};
@@ -65,7 +65,7 @@ test("every record, streamed, with all CRCs checked", async () => {
     assert.ok(counts[type] > 0, type);
 });
 
-test("every value, by the index", async () => {
+test("every value can be read by the index", async () => {
   const reader = await open(bytes);
   assert.equal(reader.header.profile, "ros2");
   const decoders = new Map();
@@ -93,7 +93,7 @@ test("every value, by the index", async () => {
   });
 });
 
-test("every attachment, with its CRC checked, and the metadata", async () => {
+test("attachments, with their CRCs checked, and metadata can be read", async () => {
   const reader = await open(bytes);
   const names = [];
   for await (const attachment of reader.readAttachments({ validateCrcs: true })) names.push(attachment.name);
@@ -103,7 +103,7 @@ test("every attachment, with its CRC checked, and the metadata", async () => {
   assert.equal(metadata["predictor.run"].get("scenario"), "Box");
 });
 
-test("a span of time, found by the message indexes", async () => {
+test("an interval of time can be found by the message indexes", async () => {
   const reader = await open(bytes);
   const sequences = [];
   const span = { startTime: kStart + 400_000_000n, endTime: kStart + 700_000_000n, topics: ["/qp"] };
@@ -132,7 +132,7 @@ test("scene and log use Foxglove's own schemas", async () => {
   }
 });
 
-test("it does notice damage", async () => {
+test("the reader detects damage", async () => {
   const reader = await open(bytes);
   const damaged = bytes.slice();
   damaged[Number(reader.chunkIndexes[1].chunkStartOffset) + 200] ^= 1;

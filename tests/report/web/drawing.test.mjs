@@ -54,7 +54,7 @@ const placeOf = (svg, words) => wordsOf(svg).filter((one) => one.words === words
 const pathOf = (svg) => (svg.match(/<path d="([^"]*)"[^>]*stroke="#0072b2"/) ?? ['', ''])[1];
 const pointsOf = (path) => [...path.matchAll(/(-?[0-9.]+)[ ,](-?[0-9.]+)/g)].map((m) => [Number(m[1]), Number(m[2])]);
 
-test('it has units and limits, names are not markup, and a gap breaks the line', () => {
+test('a plot has units and limits, names are not markup, and a gap interrupts the line', () => {
   const svg = svgOf(simple());
   for (const words of ['Time [s]', 'Force [N]', 'stop above 30 N', 'left &lt;1&gt;', 'A &amp; B', 'far away ↑']) {
     assert.equal(placeOf(svg, words).length, 1, words);
@@ -63,7 +63,7 @@ test('it has units and limits, names are not markup, and a gap breaks the line',
   assert.doesNotMatch(svg, /NaN|undefined/);
 });
 
-test('a legend that is too long stands in rows', () => {
+test('a legend that is too long is drawn in several rows', () => {
   const plot = simple();
   const [panel] = plot.panels;
   panel.series = Array.from({length: 8}, (_, k) => line(`bar_circle_2026-01-31_14-05-0${k}.mcap, right`));
@@ -83,7 +83,7 @@ test('a legend that is too long stands in rows', () => {
   assert.ok(rows.size >= 4, `${rows.size} rows`);
 });
 
-test('no line runs through the words of a limit, and no words cover others', () => {
+test('no line crosses the text of a limit, and no texts overlap', () => {
   for (const apart of [0, 0.5, 1, 2, 4, 8]) {
     const plot = simple();
     plot.panels[0].limits = [{value: 10, label: 'first'}, {value: 10 + apart, label: 'second'}];
@@ -99,12 +99,12 @@ test('no line runs through the words of a limit, and no words cover others', () 
   }
 });
 
-test('notes that are near one another stand in rows', () => {
+test('notes that are close to each other are drawn in several rows', () => {
   const svg = svgOf(simple());
   assert.ok(Math.abs(placeOf(svg, 'one')[0].y - placeOf(svg, 'another beside it')[0].y) >= 14);
 });
 
-test('of a million points the drawing is small and loses no spike', () => {
+test('the drawing of a million points is small and keeps every spike', () => {
   const x = Array.from({length: 1_000_000}, (_, i) => 1e-3 * i);
   const plot = simple();
   plot.notes = [];
@@ -115,7 +115,7 @@ test('of a million points the drawing is small and loses no spike', () => {
   assert.ok(heights[1] - heights[0] > 100, 'the spike stands out');
 });
 
-test('a metre is as long along both axes of a path', () => {
+test('a metre has the same length on both axes of a path', () => {
   const plot = {...simple(), equal: true, notes: [], x: axis('x [m]')};
   plot.panels = [{title: '', height: 1, y: axis('y [m]'), limits: [], series: [line('', {kind: 'path'})]}];
   const points = pointsOf(pathOf(svgOf(plot, {x: [0, 1, 1, 0, 0], y: [0, 0, 1, 1, 0]})));
@@ -124,7 +124,7 @@ test('a metre is as long along both axes of a path', () => {
   assert.ok(Math.abs(size(0) - size(1)) < 0.3, `${size(0)} × ${size(1)}`);
 });
 
-test('markers stand at their values, with bars for errors that are known; values may have names', () => {
+test('markers are at their values, with bars for known errors; values may have names', () => {
   const plot = {...simple(), notes: [], x: axis('Statement', {names: ['S1', 'S2', 'S3'], low: -0.5, high: 2.5})};
   plot.panels = [{
     title: '', height: 1, limits: [], series: [line('mean', {kind: 'markers', symbol: 'square'})],
@@ -141,7 +141,7 @@ test('markers stand at their values, with bars for errors that are known; values
   assert.ok(placeOf(svg, 'disagree (−1)')[0].y > placeOf(svg, 'neither (0)')[0].y);
 });
 
-test('an area lies between its edges, and a gap parts it', () => {
+test('an area lies between its edges, and a gap splits it', () => {
   const plot = {...simple(), notes: []};
   plot.panels[0].limits = [];
   plot.panels[0].series = [line('band', {kind: 'area'})];
@@ -153,7 +153,7 @@ test('an area lies between its edges, and a gap parts it', () => {
   assert.doesNotMatch(svg, /NaN|undefined/);
 });
 
-test('numbers stand at round values', () => {
+test('tick labels are at round values', () => {
   assert.deepEqual(page.linearTicks({low: -0.2, high: 0.6}, 5).text, ['-0.2', '0.0', '0.2', '0.4', '0.6']);
   assert.deepEqual(page.logTicks({low: 8, high: 3000}, 10).text, ['10', '20', '50', '100', '200', '500', '1000', '2000']);
 });

@@ -41,7 +41,7 @@ test('a comparison of runs with long names, in folders, prints without overlaps'
   await assertWhole(page);
 });
 
-test('labels that one row does not hold stand in rows', async () => {
+test('labels that do not fit in one row are drawn in several rows', async () => {
   const name = (k) => `a condition with a long name, ${k}`;
   const files = [1, 2, 3, 4].map((k) => join(folder, `labelled${k}.mcap`));
   files.forEach((file, k) => predictor('simulate', join(root, 'scenarios/box_9kg.yaml'), '--quiet', '--duration', '3',
@@ -56,7 +56,7 @@ test('labels that one row does not hold stand in rows', async () => {
   await screenshot(printed, 'comparison-labels-print');
 });
 
-test('a page of the reproduction is whole and prints without overlaps', async () => {
+test('a page of the reproduction is complete and prints without overlaps', async () => {
   const out = join(folder, 'reproduction');
   predictor('reproduce', '-o', out, '--scenarios', join(root, 'scenarios'), '--only', 'relative_pose', '--quiet');
   const page = await assertWhole(join(out, 'index.html'));

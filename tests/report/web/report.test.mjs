@@ -81,7 +81,7 @@ test('a drag zooms all plots over time, the cursor shows values, the legend hide
   await page.close();
 });
 
-test('keys zoom, move and show the whole again', async () => {
+test('keys zoom, move and reset the view', async () => {
   const page = await open('light');
   await bring(page, 'forces');
   await page.focus('#forces .live');
@@ -111,7 +111,7 @@ test('on paper the plots are drawn, white, and no words overlap', async () => {
   await page.close();
 });
 
-test('without scripts the page says that plots need them', async () => {
+test('without scripts, the page reports that plots need them', async () => {
   const page = await open('light', {javaScriptEnabled: false});
   assert.match(await page.locator('noscript').first().innerText(), /plots need JavaScript/);
   await page.close();

@@ -58,7 +58,7 @@ test('on paper no words overlap', async () => {
   await page.close();
 });
 
-test('a report says what is missing', async () => {
+test('a report states which data is missing', async () => {
   const page = join(its.folder, 'without.html');
   const unknown = join(its.folder, 'without.mcap');
   predictor('simulate', join(root, 'scenarios/box_9kg.yaml'), '--quiet', '--duration', '2', '--set', 'operator.stance=null',

@@ -16,7 +16,7 @@ const kDuration = 8 * kCycles + 24;  // [s]
 const kMemory = 1_000_000;           // limit of the process's memory [KiB]
 const kZooms = 30;
 
-test('it is made within 1 GB of memory and is smaller than 20 MB', () => {
+test('the report needs less than 1 GB of memory and is smaller than 20 MB', () => {
   const script = `operator.script=[{action: grip, start: 0, duration: 0.5},
       {action: circle, start: 2, radius: 0.15, period: 8, cycles: ${kCycles}},
       {action: release, start: ${8 * kCycles + 14}}]`;
@@ -34,7 +34,7 @@ test('it is made within 1 GB of memory and is smaller than 20 MB', () => {
   assert.ok(size < 20e6);
 });
 
-test('its plots zoom, each step drawn', async () => {
+test('its plots zoom, and every step is drawn', async () => {
   const start = performance.now();
   const page = await open(its.browser, report, {viewport: {width: 1280, height: 720}});
   await bring(page, 'tracking');

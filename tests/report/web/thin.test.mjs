@@ -19,7 +19,7 @@ const wave = (x) => Math.sin(2 * Math.PI * x);
 const line = (x) => ({x: Float64Array.from(x), y: Float32Array.from(x, wave)});
 const inside = ({x}, from, to) => [...x].filter((v) => v >= from && v < to).length;
 
-test('rare points stay where there are a thousand beside them', () => {
+test('isolated points are kept among a thousand others', () => {
   const coarse = Array.from({length: 400}, (_, i) => i / 40 + 1 / 80);
   const dense = Array.from({length: 5000}, (_, i) => 10 + i / 1000);
   const points = line([...coarse, ...dense]);
@@ -29,7 +29,7 @@ test('rare points stay where there are a thousand beside them', () => {
   assert.ok(inside(thinned, 10, 15) <= 2 * (5 / 0.016 + 2));
 });
 
-test('the extremes of each bin stay, in their order, and so do gaps', () => {
+test('the extremes of each bin are kept in their order, and gaps are kept', () => {
   const {x, y} = line(Array.from({length: 1000}, (_, i) => i / 1000));
   y[500] = NaN;
   const thinned = spec.thin({x, y}, 0.05);
@@ -42,7 +42,7 @@ test('the extremes of each bin stay, in their order, and so do gaps', () => {
   assert.equal([...thinned.y].filter(Number.isNaN).length, 1);
 });
 
-test('lines at one place, or of nothing, have no spacing', () => {
+test('lines whose points coincide, or without points, have no spacing', () => {
   assert.equal(spec.spacing(Float64Array.from([2, 2, 2])), 0);
   assert.equal(spec.spacing(new Float64Array(0)), 0);
   assert.equal(spec.thin({x: new Float64Array(0), y: new Float32Array(0)}, 1).x.length, 0);

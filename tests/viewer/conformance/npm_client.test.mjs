@@ -33,7 +33,7 @@ before(async () => {
 
 after(() => client.close());
 
-test("the server says what it is", () => {
+test("the server describes itself", () => {
   assert.equal(socket.protocol, "foxglove.websocket.v1");
   assert.equal(info.name, "PREDICTOR");
   assert.deepEqual(info.capabilities, []);
@@ -89,7 +89,7 @@ function receive(count) {
   });
 }
 
-test("every channel's messages fit its schema, and time advances", async () => {
+test("the messages of every channel conform to its schema, and their time advances", async () => {
   const received = await receive(kMessages);
   const ajv = new Ajv({ strict: false, validateFormats: false });
   for (const channel of channels) {

@@ -16,7 +16,7 @@ after(async () => {
   await program?.end();
 });
 
-test('a cobot on a linear axis is drawn where its joints put it', async () => {
+test('a cobot on a linear axis has the pose that follows from its joints', async () => {
   browser = await launch();
   program = await Program.run(kScenario);
   const page = await open(browser, program.url, {viewport: {width: 1024, height: 768}});

@@ -87,7 +87,7 @@ test('unsafe values cannot be set', async () => {
 
 // ---- several pages -------------------------------------------------------------------------------
 
-test('of two pages one has control, and gives it on', async () => {
+test('only one of two pages has control, and it can pass control on', async () => {
   const {page, client} = rig;
   const other = await rig.open(rig.program.url);
   await ready(other);
@@ -126,7 +126,7 @@ test('of two pages one has control, and gives it on', async () => {
   assert.equal(newest().state, 'RUN');
 });
 
-test('a client that never reads does not delay the others, and gets no queue', async () => {
+test('a client that never reads does not delay the others, and no messages are queued for it', async () => {
   const {page, client} = rig;
   const silent = await Client.join(rig.program.url);
   silent.socket.pause();
@@ -184,7 +184,7 @@ test('the box is lifted by the mouse, by both handles', async () => {
   assert.equal(held.state, 'RUN');
 });
 
-test('let go, it sinks back to where it was', async () => {
+test('after its release, the box returns to its place', async () => {
   await rig.page.mouse.up();
   await waitFor(() => kSides.every((side) => newest()[`${side}_gripping`] === 0), 'letting go');
   const top = Math.max(...states.map((s) => s.object[2]));

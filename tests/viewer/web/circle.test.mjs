@@ -34,7 +34,7 @@ test('the error is the distance of the object from the circle', async () => {
   assert.ok(await page.locator('#guidance').isVisible());
 });
 
-test('the error in millimetres follows what is set', async () => {
+test('the page shows the error in millimetres', async () => {
   server.frozen = true;
   const {center, radius} = server.scene.guidance;
   const onCircle = center.map((v, i) => v + (i === 1 ? radius + 0.023 : 0));
@@ -62,7 +62,7 @@ test('each second is marked on the trail', async () => {
   assert.ok(marks < trail / 3, `${marks} marks, ${trail} points`);
 });
 
-test('after the circle its mean and largest error are shown', async () => {
+test('after the circle, its mean error and largest error are shown', async () => {
   assert.equal(await page.locator('#score').isVisible(), false);
   server.offset = [0, 0, 0];
   server.runTime = 28;
@@ -76,7 +76,7 @@ test('after the circle its mean and largest error are shown', async () => {
   await screenshot(page, 'circle-score');
 });
 
-test('the system’s bright colours are taken over, and kept once chosen', async () => {
+test('the page uses the system’s light colour scheme, and keeps a chosen one', async () => {
   assert.equal(await predictor('theme'), 'light');
   await page.click('#theme');
   await page.reload();

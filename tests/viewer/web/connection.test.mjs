@@ -25,7 +25,7 @@ after(async () => {
 
 const predictor = asker(() => page);
 
-test('the code leaves the address, and a token stays in this tab only', async () => {
+test('the code is removed from the address, and the token stays only in this tab', async () => {
   assert.equal(new URL(page.url()).hash, '');
   assert.equal(await predictor('phase'), 'open');
   const kept = await page.evaluate(() => ({
@@ -37,7 +37,7 @@ test('the code leaves the address, and a token stays in this tab only', async ()
   assert.ok(!kept.local.includes(kept.session));
 });
 
-test('the clocks are compared and every step of the delay ledger is shown', async () => {
+test('the clocks are compared, and every step of the delay is shown', async () => {
   await until(page, () => window.predictor.latency()['tick → drawn']?.count > 5);
   const clock = await predictor('clock');
   assert.ok(clock.roundTripMs >= 0);
@@ -57,7 +57,7 @@ test('the clocks are compared and every step of the delay ledger is shown', asyn
   assert.ok(sum > 0);
 });
 
-test('the medians of the ledger are reported for the record', async () => {
+test('the medians of the delays are sent for the recording', async () => {
   await waitFor(() => server.received.some((m) => m.type === 'latency'), 'a latency message');
   const report = server.received.findLast((m) => m.type === 'latency');
   assert.ok(report.rendered_ms >= report.received_ms);
@@ -67,7 +67,7 @@ test('the medians of the ledger are reported for the record', async () => {
 
 // ---- a run that does not answer ------------------------------------------------------------------
 
-test('a run that falls silent is reported within a second, though the server still answers', async () => {
+test('a silent run is reported within a second although the server still answers', async () => {
   server.command('reset');
   server.state = 'RUN';
   await until(page, () => window.predictor.stateText() === 'Running');
@@ -88,7 +88,7 @@ test('a run that falls silent is reported within a second, though the server sti
   await shows(page, '#banner', false);
 });
 
-test('a stop that the run does not accept is reported at once', async () => {
+test('a stop that the run does not accept is reported immediately', async () => {
   server.deaf = true;
   await page.click('#stop');
   await until(page, () => window.predictor.stateText() === 'Not stopped');
@@ -135,7 +135,7 @@ test('a lost connection is reported plainly, and restored with the token', async
   await until(page, () => window.predictor.state() !== null);
 });
 
-test('who finds no room keeps the token and comes in later', async () => {
+test('a client without a seat keeps its token and is admitted later', async () => {
   const token = () => page.evaluate(() => sessionStorage.getItem('predictor.token'));
   const kept = await token();
   server.full = true;
@@ -150,7 +150,7 @@ test('who finds no room keeps the token and comes in later', async () => {
   assert.equal(await token(), kept);
 });
 
-test('a restarted server asks for digits; wrong ones are refused', async () => {
+test('a restarted server requires a PIN and refuses wrong ones', async () => {
   server.renew();
   const {port} = server;
   await server.close();

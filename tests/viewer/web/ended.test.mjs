@@ -74,7 +74,7 @@ test('a run that ended as planned shows its results, and runs again', async () =
   assert.equal(await program.ended, 0, program.output);
 });
 
-test('a run that was stopped says why, in red', async () => {
+test('after a stop, the page shows the cause in red', async () => {
   const {program, page} = await begin(kRoundAndRound);
   await page.click('#stop');
   await resultsOf(page, 'Stopped');

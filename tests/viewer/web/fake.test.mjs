@@ -37,17 +37,17 @@ function shape(value, like) {
 }
 const same = (a, b) => assert.deepEqual(shape(a, b), shape(b, a));
 
-test('states have the same quantities; their order is each server’s own', () => {
+test('states have the same quantities, in an order of the server’s choice', () => {
   const quantities = (frame) => frame.map(({name, type, count}) => `${name} ${type} ${count}`).sort();
   assert.deepEqual(quantities(kFrame), quantities(real.welcome.frame));
 });
 
-test('a welcome has the same parts, a scene the same keys', () => {
+test('welcomes have the same members, and scenes have the same keys', () => {
   same({...made.welcome, frame: null, scene: null}, {...real.welcome, frame: null, scene: null});
   same(made.welcome.scene, real.welcome.scene);
 });
 
-test('answers have the same parts', async () => {
+test('answers have the same members', async () => {
   const kinds = ['pong', 'leases', 'denied'];
   const answers = async (client) => {
     client.send({type: 'ping', page_ms: 1});
@@ -59,7 +59,7 @@ test('answers have the same parts', async () => {
   same(await answers(made), await answers(real));
 });
 
-test('messages about the person have the same parts', async (t) => {
+test('messages about the person have the same members', async (t) => {
   if (!judges) return t.skip('this program judges no person during a run');
   const whole = (client) => client.messages.findLast(
       (m) => m.type === 'person' && m.status === 'judged' && m.scores.rula.probability && m.parts.lower_back.damage !== null);

@@ -33,7 +33,7 @@ after(async () => {
   await server?.close();
 });
 
-test('each fixture is drawn where it is, with its size', async () => {
+test('each fixture is drawn with its pose and size', async () => {
   const boxes = (await page.evaluate(() => window.predictor.fixtureBoxes())).slice(0, kFixtures.length);
   assert.equal(boxes.length, kFixtures.length);
   boxes.forEach(({min, max}, i) => {
@@ -46,6 +46,6 @@ test('each fixture is drawn where it is, with its size', async () => {
   await screenshot(page, 'fixtures');
 });
 
-test('a fixture that an event lets appear is drawn only while the event acts', async () => {
+test('a fixture of an event is drawn only while the event acts', async () => {
   await page.waitForFunction((count) => window.predictor.fixtureBoxes().length === count, kFixtures.length + 1);
 });

@@ -42,7 +42,7 @@ after(async () => {
 
 // ---- mouse ---------------------------------------------------------------------------------------
 
-test('without the lease a handle cannot be taken: the camera turns', async () => {
+test('without the lease, dragging turns the camera and takes no handle', async () => {
   await fresh({page: {viewport: {width: 900, height: 640}}});
   const {x, y} = await handleOnScreen('left');
   const eye = await predictor('cameraPosition');
@@ -81,7 +81,7 @@ test('a handle is dragged in the plane of the screen, and the object follows', a
   assert.deepEqual(await predictor('handTargets'), {left: null, right: null});
 });
 
-test('with Shift only up and down; with Ctrl both hands', async () => {
+test('Shift restricts the drag to the vertical, and Ctrl moves both hands', async () => {
   await look(page, 'free');
   const {x, y} = await handleOnScreen('right');
   const before = server.received.length;
@@ -107,7 +107,7 @@ test('with Shift only up and down; with Ctrl both hands', async () => {
   await page.keyboard.up('Shift');
 });
 
-test('at most 60 messages a second and hand, and never a force', async () => {
+test('each hand sends at most 60 messages per second, and never a force', async () => {
   const {x, y} = await handleOnScreen('left');
   await page.mouse.move(x, y);
   await page.mouse.down();
@@ -127,7 +127,7 @@ test('at most 60 messages a second and hand, and never a force', async () => {
   assert.deepEqual([...keys].sort(), ['client', 'grip', 'hand', 'p', 'q', 'type']);
 });
 
-test('a handle is taken, moved and let go by keys', async () => {
+test('keys take, move and release a handle', async () => {
   await look(page, 'front');
   await page.focus('canvas');
   const before = hands('left').length;
@@ -154,7 +154,7 @@ test('a handle is taken, moved and let go by keys', async () => {
   await waitFor(() => hands('right').at(-1).grip === false, 'moving the focus lets go');
 });
 
-test('who loses the lease lets go', async () => {
+test('a page that loses the lease releases the handles', async () => {
   const {x, y} = await handleOnScreen('left');
   await page.mouse.move(x, y);
   await page.mouse.down();
@@ -176,7 +176,7 @@ async function enterVr(options) {
   await headset.enter();
 }
 
-test('an immersive session begins; the world stands before the person', async () => {
+test('an immersive session begins with the scene in front of the person', async () => {
   await enterVr();
   const object = (await predictor('shown')).object.p;
   const [x, y, z] = await predictor('inHeadsetSpace', object);
@@ -187,7 +187,7 @@ test('an immersive session begins; the world stands before the person', async ()
   await headset.look([0, 1.5, 0.35], 0, -0.6);
 });
 
-test('the headset gives signs of life, at most ten a second', async () => {
+test('the headset sends at most ten heartbeats per second', async () => {
   const before = server.received.length;
   const start = Date.now();
   await waitFor(() => server.received.slice(before).filter((m) => m.type === 'immersive').length > 4,
@@ -201,7 +201,7 @@ test('the headset gives signs of life, at most ten a second', async () => {
   near([x, y, z], [0, 1.5, 0.35], 0.05, 'head');
 });
 
-test('the time of the drawn state is reported, and stands still with the picture', async () => {
+test('the time of the drawn state is reported, and does not advance if the picture freezes', async () => {
   const newest = () => reports().at(-1).drawn;
   const begin = newest();
   assert.ok(begin > 0 && begin <= Number(process.hrtime.bigint()), 'the run’s clock');
@@ -221,7 +221,7 @@ test('the time of the drawn state is reported, and stands still with the picture
   await waitFor(() => newest() > still, 'a newer picture');
 });
 
-test('the stop button works while the headset does not know where it is', async () => {
+test('the stop button works while the headset has lost its position', async () => {
   await page.evaluate(() => {
     window.viewerPose = XRFrame.prototype.getViewerPose;
     XRFrame.prototype.getViewerPose = () => null;
@@ -238,7 +238,7 @@ test('the stop button works while the headset does not know where it is', async 
   await until(page, () => window.predictor.immersive().board.title === 'Running');
 });
 
-test('a controller takes the handle it is at and carries it', async () => {
+test('a controller takes the handle that it touches and moves it', async () => {
   const {left, right} = (await predictor('shown')).hands;
   await headset.place('right', left.virtual.p);  // either hand takes the nearest handle
   await headset.frames(2);
@@ -287,7 +287,7 @@ test('controllers on the handles register too, and drift is reported', async () 
   await until(page, () => window.predictor.immersive().board.alarm === '');
 });
 
-test('points that do not fit are refused, and the registration before stays', async () => {
+test('points that do not match are refused, and the previous registration stays valid', async () => {
   const before = (await predictor('immersive')).registration;
   await headset.placeInSpace('left', [-0.6, 1, -0.4]);
   await headset.touchPlate('attach', [0.6, 1, -0.4]);
@@ -375,7 +375,7 @@ test('another page sees what the headset sees', async () => {
   await other.context().close();
 });
 
-test('leaving the headset lets go and puts the page back', async () => {
+test('leaving the session releases the handles and restores the page', async () => {
   await page.evaluate(() => document.getElementById('enter-vr').click());
   await until(page, () => !window.predictor.immersive().active);
   await waitFor(() => server.received.findLast((m) => m.type === 'immersive').active === false,
@@ -403,7 +403,7 @@ async function leaveVr() {
   await until(page, () => !window.predictor.immersive().active);
 }
 
-test('with real arms the page says that leaving stops them', async () => {
+test('with real arms, the page warns that leaving the session stops them', async () => {
   await enterVr({operator: 'person', simulated: false});
   server.frozen = true;
   assert.match((await board()).advice, /Leaving VR stops the real arms/);
@@ -429,7 +429,7 @@ test('a registration of an earlier session must be checked by touching a handle'
   assert.equal((await board()).alarm, '');
 });
 
-test('a hand that holds a real handle and is seen elsewhere raises the alarm', async () => {
+test('a hand that holds a real handle but is tracked elsewhere causes an alarm', async () => {
   const {hands: h} = await predictor('shown');
   server.state = 'IDLE';
   await until(page, () => !window.predictor.shown().hands.left.gripping);

@@ -102,7 +102,7 @@ test('both controllers take the handles and lift the box', async (t) => {
   await headset.screenshot('vr-lift');
 });
 
-test('open hands let go, and the box sinks', async (t) => {
+test('opening the hands releases the handles, and the box sinks', async (t) => {
   if (slow) return t.skip(slow);
   const top = Math.max(...states.map((s) => s.object[2]));
   for (const side of kSides) await headset.button(side, 'squeeze', 0);
@@ -111,7 +111,7 @@ test('open hands let go, and the box sinks', async (t) => {
   assert.equal(newest().state, 'RUN');
 });
 
-test('the plate stops the run, and the board says so', async () => {
+test('the stop plate stops the run, and the VR panel reports it', async () => {
   await headset.touchPlate('stop');
   await rig.reach('HELD');
   await until(page, () => window.predictor.immersive().board.title === 'Stopped, held');

@@ -50,7 +50,7 @@ async function window() {
           bytes: of('bytes'), frames: of('frames')};
 }
 
-test('the delay from the tick until it is drawn does not grow', async (t) => {
+test('the delay from the tick to its display does not grow', async (t) => {
   await until(rig.page, () => window.predictor.latency()['tick → drawn']?.count > 20);
   const seen = [];
   for (let k = 0; k < kWindows; k++) {
@@ -72,7 +72,7 @@ test('the delay from the tick until it is drawn does not grow', async (t) => {
   }
 });
 
-test('opened, the page shows the scene moving within two seconds', async (t) => {
+test('the page shows the moving scene within two seconds of being opened', async (t) => {
   const page = await open(rig.browser, 'about:blank', {viewport: {width: 1280, height: 720}});
   await rig.page.context().close();  // one page at a time, like a person
   await page.goto(rig.program.url, {waitUntil: 'commit'});

@@ -37,7 +37,7 @@ function state(values) {
   return new page.StateDecoder(kFrame).decode(view.buffer);
 }
 
-test('states are decoded by the list of fields, wherever these lie', () => {
+test('states are decoded by the list of fields, in any order', () => {
   const s = state({tick: 7, run_time: 1.25, wall_ns: 5e15, state: 5, cause: 1, cause_hand: 1,
                    cause_quantity: 2, cause_value: 31, action: -1, left_wrench: [1, 2, 3, 4, 5, 6],
                    object: [1, 2, 3, 1, 0, 0, 0], right_present: 1});
@@ -56,7 +56,7 @@ test('states are decoded by the list of fields, wherever these lie', () => {
   assert.throws(() => new page.StateDecoder([{name: 'a', type: 'u128', offset: 0, count: 1}]), /u128/);
 });
 
-test('between two states poses are interpolated, the shorter way round', () => {
+test('poses between two states are interpolated along the shorter rotation', () => {
   const half = Math.SQRT1_2;
   const a = state({object: [0, 0, 0, 1, 0, 0, 0], cobot_q: [1], left_wrench: [10]});
   const b = state({object: [1, 0, 0, -half, 0, 0, -half], cobot_q: [2], left_wrench: [20]});
@@ -67,7 +67,7 @@ test('between two states poses are interpolated, the shorter way round', () => {
   assert.equal(m.hands.left.wrench[0], 15);
 });
 
-test('states are played one behind the newest, and never queued', () => {
+test('the page plays the state before the newest one and queues no states', () => {
   const player = new page.StatePlayer();
   const at = (k) => state({tick: k, wall_ns: 1e9 + k * 16e6, object: [k, 0, 0, 1, 0, 0, 0]});
   // The clocks differ by 500 ms, and each state takes 4 ms.
@@ -93,7 +93,7 @@ test('the clock uses the quickest ping', () => {
   assert.equal(clock.roundTripMs, 2);
 });
 
-test('silence counts from the last new tick, and not while the page itself stands still', () => {
+test('silence is measured from the last new tick, and not while the page itself is suspended', () => {
   const watch = new page.RunWatch();
   let now = 1000;
   const pass = (ms, step = 50) => {
@@ -126,7 +126,7 @@ test('silence counts from the last new tick, and not while the page itself stand
   assert.equal(watch.ignored, false);
 });
 
-test('numbers are read as the language reads them', () => {
+test('numbers are parsed as JavaScript parses them', () => {
   const text = ' 1 -2 0.1\n-0.000123456 12345.678901\t1e-3 -1.5E+2 0.12345678901234567 .5 -.25 3. 007 1e400 ' +
       '9007199254740993 -0 nan 1-2 1.2.3 -\n';
   const expected = text.trim().split(/\s+/).map(Number);
@@ -145,7 +145,7 @@ test('levels change at 50 % and 80 %', () => {
                    ['green', 'orange', 'orange', 'red', 'red']);
 });
 
-test('the fit finds yaw and translation, and says what it leaves', () => {
+test('the fit finds yaw and translation and reports the residual', () => {
   const yaw = -2.4;
   const known = [[0.5, 0.1, 0.4], [0.5, -0.14, 0.42], [0, 0, 0]];
   const truth = ([x, y, z]) => [Math.cos(yaw) * x - Math.sin(yaw) * y + 1,
@@ -173,7 +173,7 @@ test('the fit finds yaw and translation, and says what it leaves', () => {
                                 {touched: [0, 0, 1], known: [0, 0, 1]}]), /close/);
 });
 
-test('nothing has no minus', () => {
+test('zero has no minus sign', () => {
   assert.equal(page.fixed(-0.0004, 3), '0.000');
   assert.equal(page.fixed(-0.0006, 3), '-0.001');
   assert.equal(page.fixed(12.345, 1), '12.3');
@@ -193,7 +193,7 @@ test('stops are described in words, in readable units', () => {
   }
 });
 
-test('where real arms have lost their power, a reset is not said to do', () => {
+test('if real arms have lost their power, a reset is not offered as the remedy', () => {
   const unpowered = state({cause: 13, cause_hand: 0});
   unpowered.state = 'UNPOWERED';
   const {advice} = page.stopWords(unpowered, false);
@@ -220,7 +220,7 @@ test('the measured quantity makes the cause more specific', () => {
   }
 });
 
-test('a fault of an arm behind the cause of a stop changes what is to be done', () => {
+test('an arm fault after the cause of a stop changes the advice', () => {
   const held = (values) => {
     const shown = state({cause: 1, cause_hand: 0, right_present: 1, ...values});
     shown.state = 'HELD';
@@ -234,7 +234,7 @@ test('a fault of an arm behind the cause of a stop changes what is to be done', 
   assert.equal(held({cause: 13, right_arm_fault: 1}), `${device} ${message('next.restart')}`);
 });
 
-test('the reason for power-off at the end of a stop is shown beside its cause', () => {
+test('the reason for power-off at the end of a stop is shown next to its cause', () => {
   const stopped = state({cause: 12, cause_hand: -1, cause_quantity: 1, cause_value: 3, cause_limit: 2,
                          harder_cause: 4, harder_cause_hand: 0, harder_cause_quantity: 9,
                          harder_cause_value: 0.0214, harder_cause_limit: 0.02});
@@ -323,7 +323,7 @@ function* stopTexts() {
   }
 }
 
-test('what the headset says of a stop ends above the bars of the hands, in letters that can be read', () => {
+test('the headset shows the text of a stop above the bars of the hands, in legible letters', () => {
   const alarm = 'The registration of an earlier session is not checked. Touch a handle and pull the trigger (or pinch).';
   const prompt = 'Not registered. This needs two controllers and two handles. Touch points instead.';
   const smallest = {alone: 40, all: 40};
@@ -343,7 +343,7 @@ test('what the headset says of a stop ends above the bars of the hands, in lette
   assert.ok(smallest.alone >= 24 && smallest.all >= 19, JSON.stringify(smallest));
 });
 
-test('the headset sounds once for each stop, loss of power, power that is kept, fault of an arm and loss of the run', () => {
+test('the headset plays one tone for each stop, loss of power, power that stays on, arm fault and loss of the run', () => {
   const bell = new page.AlarmBell();
   const rings = (values, trouble = false) => bell.rings(values && state({right_present: 1, ...values}), trouble);
   const held = {cause: 1}, off = {...held, harder_cause: 4}, fault = {...off, right_arm_fault: 1};
@@ -358,19 +358,19 @@ test('the headset sounds once for each stop, loss of power, power that is kept, 
   assert.deepEqual([{}, off].map((it) => rings(it)), [false, true]);
 });
 
-test('few words on the headset are large', () => {
+test('short texts in the headset are large', () => {
   const lines = page.layOut({title: 'Running', tone: 'running', text: 'Lift the object by 10 cm.',
                              advice: 'Leaving VR stops the real arms.', prompt: '', alarm: ''});
   assert.deepEqual(lines.map(({y, size}) => [y, size]), [[96, 64], [168, 40], [222, 34]]);
 });
 
-test('power off is said to be asked for, not done', () => {
+test('the text states that power-off was requested, not that it was done', () => {
   const {title, meaning} = page.stateWords(Object.assign(state({}), {state: 'UNPOWERED'}));
   assert.match(meaning, /requested/);
   assert.doesNotMatch(title + meaning, /have no power|no power/);
 });
 
-test('a run that is done does not look like one that was stopped', () => {
+test('a completed run looks different from a stopped one', () => {
   const words = (name, cause, values = {}) => {
     const shown = state({left_present: 1, ...values});
     return page.stateWords(Object.assign(shown, {state: name, stop: {...shown.stop, cause}}));
@@ -414,7 +414,7 @@ test('the body moves smoothly between two messages', () => {
   assert.equal(player.sample(9020), null);
 });
 
-test('a mirror keeps left at left, and turns the face to the person', () => {
+test('the mirror keeps left on the left and shows the face', () => {
   const {points} = personState(1);
   const ahead = page.mirrored(points, [1, 0, 0], [-1, 0, 0], {at: [0, 2, 0.5], toward: [-1, 0, 0], scale: 0.5});
   const aside = page.mirrored(points, [1, 0, 0], [-1, 0, 0], {at: [0, 2, 0.5], toward: [0, 1, 0], scale: 0.5});
@@ -424,7 +424,7 @@ test('a mirror keeps left at left, and turns the face to the person', () => {
   }
 });
 
-test('a higher load is darker, so that it shows without red and green', () => {
+test('a higher load is darker, so that red and green need not be distinguished', () => {
   const bright = (color) => 0.2126 * (color >> 16) + 0.7152 * (color >> 8 & 255) + 0.0722 * (color & 255);
   const shares = Array.from({length: 21}, (_, i) => i / 20);
   const values = shares.map((share) => bright(page.loadColor(share)));

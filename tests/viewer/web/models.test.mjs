@@ -68,7 +68,7 @@ after(async () => {
 
 const predictor = asker(() => page);
 
-test('what can be shown is shown where it belongs, also if some meshes cannot be', async () => {
+test('valid meshes are shown in their places even if others cannot be shown', async () => {
   const box = await predictor('meshBox', 'object');
   const {p} = (await predictor('shown')).object;
   // The box must reach from the Collada file's tetrahedron at −0.3 m to that of the .obj file at
@@ -78,7 +78,7 @@ test('what can be shown is shown where it belongs, also if some meshes cannot be
   assert.ok(await predictor('linkPose', 'panda_link8'), 'the cobot too');
 });
 
-test('a box of wire stands for each mesh that cannot be shown, and words stay', async () => {
+test('a wire box replaces each mesh that cannot be shown, and a message stays', async () => {
   assert.equal(await predictor('placeholders'), 3);
   const text = await page.locator('#warning').textContent();
   for (const words of ['unknown.ply: a mesh is .dae, .stl or .obj', 'missing.stl: 404', 'not a Collada file',
@@ -93,7 +93,7 @@ test('a box of wire stands for each mesh that cannot be shown, and words stay', 
   assert.equal(await page.locator('#warning').isVisible(), false);
 });
 
-test('nothing but the missing mesh is complained of by the browser', () => {
+test('the browser reports an error only for the missing mesh', () => {
   assert.equal(page.problems.length, 1, page.problems.join());
   assert.match(page.problems[0], /404/);
 });

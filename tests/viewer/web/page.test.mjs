@@ -35,7 +35,7 @@ function level(value, threshold) {
 
 // ---- scene ---------------------------------------------------------------------------------------
 
-test('the drawn links are where the joint angles put them', async () => {
+test('the drawn links have the poses that follow from the joint angles', async () => {
   const seen = await page.evaluate(() => {
     const {linkPose, shown} = window.predictor;
     const names = [1, 2, 3, 4, 5, 6, 7, 8].map((i) => `panda_link${i}`);
@@ -50,12 +50,12 @@ test('the drawn links are where the joint angles put them', async () => {
   near(seen.poses[7].p, seen.end.p, 1e-3, 'end-effector');
 });
 
-test('removed links are neither shown nor asked for', async () => {
+test('removed links are neither shown nor requested', async () => {
   assert.equal(await predictor('linkPose', 'panda_hand'), null);
   assert.equal(await predictor('linkPose', 'panda_leftfinger'), null);
 });
 
-test('the real arms appear on demand, where their joints put them', async () => {
+test('the real arms appear on demand, with the poses that follow from their joints', async () => {
   await page.click('#ghosts');
   await until(page, () => window.predictor.ghostsReady());
   const frames = (await predictor('counters')).frames;
@@ -71,7 +71,7 @@ test('the real arms appear on demand, where their joints put them', async () => 
   await page.click('#ghosts');
 });
 
-test('camera presets move the eye; keys do the same', async () => {
+test('camera presets move the camera, by button and by key', async () => {
   const eyes = new Set();
   for (const view of ['front', 'side', 'top', 'operator', 'free']) {
     await look(page, view);
@@ -86,7 +86,7 @@ test('camera presets move the eye; keys do the same', async () => {
 
 // ---- arrows, guidance, instruction ---------------------------------------------------------------
 
-test('arrows take the colour of their part of the present threshold', async () => {
+test('arrows have the colour of their share of the current threshold', async () => {
   const read = () => page.evaluate(() => ({
     force: window.predictor.arrowColour('left'), torque: window.predictor.arrowColour('left', 'torque'),
     wrench: window.predictor.shown().hands.left.wrench, limits: window.predictor.shown().parameters,
@@ -122,7 +122,7 @@ test('arrows take the colour of their part of the present threshold', async () =
   server.force = null;
 });
 
-test('the instruction of the present action is shown while running', async () => {
+test('the instruction of the current action is shown during the run', async () => {
   const text = await page.evaluate(() => window.predictor.instruction());
   assert.ok(server.scene.script.some((action) => action.text === text), text);
 });
@@ -169,7 +169,7 @@ test('a stop is shown with hand, value and limit', async () => {
   }
 });
 
-test('Space and Esc stop from anywhere and press nothing else', async () => {
+test('Space and Esc stop the run from anywhere and press no button', async () => {
   for (const [focus, key] of [['#theme', 'Space'], ['#window-30', 'Escape'], ['canvas', 'Space'],
                               ['#parameter-damping_ratio', 'Space']]) {
     server.state = 'RUN';
@@ -189,7 +189,7 @@ test('Space and Esc stop from anywhere and press nothing else', async () => {
   server.state = 'RUN';
 });
 
-test('a slider asks for a value and follows what the run makes of it', async () => {
+test('a slider requests a value and shows the value of the run', async () => {
   await page.locator('#parameter-stiffness_translation').fill('0.5');
   await waitFor(() => Math.abs(server.targets[0] - 0.5) < 0.02, 'the parameter message');
   await until(page, () => Math.abs(window.predictor.state().parameters[0] - 0.5) < 0.02);
@@ -248,7 +248,7 @@ test('a paused plot shows the values under the cursor', async () => {
   await page.click('#plots-pause');
 });
 
-test('torque and rotation are a press away, with their thresholds', async () => {
+test('a button shows torque and rotation with their thresholds', async () => {
   const value = (id, i) => page.locator(`#plot-${id} .legend .value`).nth(i).textContent();
   assert.equal(await page.locator('#plot-torques').isVisible(), false);
   await page.click('#show-torques');
@@ -270,7 +270,7 @@ test('torque and rotation are a press away, with their thresholds', async () => 
   await until(page, (n) => window.predictor.counters().points > n + 3, points);
 });
 
-test('plots are saved as a table and as a picture, the scene too', async () => {
+test('plots are saved as a table and as a picture, and the scene as a picture', async () => {
   const {head, column} = parseTable(await predictor('plotTable'));
   assert.equal(head[0], 'time [s]');
   const [times, forces] = [column('time').map(Number), column('left_force').map(Number)];
@@ -291,7 +291,7 @@ test('plots are saved as a table and as a picture, the scene too', async () => {
   server.force = null;
 });
 
-test('how far the script is, is shown', async () => {
+test('the progress of the script is shown', async () => {
   server.runTime = 15;
   // The test compares the text with the displayed state, whenever it is drawn.
   await until(page, (duration) => {
@@ -324,7 +324,7 @@ test('everything that can be pressed has a name and can be reached by Tab', asyn
   }
 });
 
-test('dark and light', async () => {
+test('the page has a dark and a light colour scheme', async () => {
   const theme = await predictor('theme');
   await page.click('#theme');
   assert.notEqual(await predictor('theme'), theme);
@@ -349,7 +349,7 @@ test('stop is visible on a screen of 1280 × 720 and on a tablet', async () => {
   }
 });
 
-test('what the run has to say stays until it is put away', async () => {
+test('messages of the run stay until they are dismissed', async () => {
   server.broadcast({type: 'notice', text: 'The force threshold stays at 20 N.'});
   await waitForText(page.locator('#warning'), /stays at 20 N/);
   await page.click('#warning button');

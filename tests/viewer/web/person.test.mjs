@@ -27,7 +27,7 @@ after(async () => {
   await server?.close();
 });
 
-test('the body is drawn where the messages put it, coloured by its loads', async () => {
+test('the body has the pose in the messages and the colours of its loads', async () => {
   await fresh();
   await until(page, () => window.predictor.body().visible);
   server.frozen = true;  // the run time does not change, so the messages repeat
@@ -43,7 +43,7 @@ test('the body is drawn where the messages put it, coloured by its loads', async
   await screenshot(page, 'person');
 });
 
-test('gauges, scores, damage and fatigue show the message, and say where it comes from', async () => {
+test('gauges, scores, damage and fatigue show the values in the message and their origin', async () => {
   const {gauges} = await predictor('person');
   const text = (selector) => page.locator(selector).innerText();
   assert.equal((await text('#gauge-lower_back_compression output')).trim(),
@@ -60,7 +60,7 @@ test('gauges, scores, damage and fatigue show the message, and say where it come
   for (const origin of ['measured', 'modelled', 'standard', 'operator is simulated']) assert.ok(words.includes(origin), origin);
 });
 
-test('a warning appears while the evaluation has it on', async () => {
+test('a warning appears while it is active in the evaluation', async () => {
   server.frozen = false;
   const warning = page.locator('[data-warning=left_shoulder]');
   server.runTime = 6.2;  // the made-up shoulder has a small load
@@ -70,7 +70,7 @@ test('a warning appears while the evaluation has it on', async () => {
   assert.match(await warning.innerText(), /half of the mean strength/);
 });
 
-test('while nothing is known of the posture, no body is drawn, and the card says why', async () => {
+test('while the posture is unknown, no body is drawn, and the card states the reason', async () => {
   server.personStatus = 'no_hand';
   await until(page, () => !window.predictor.body().visible);
   await waitForText(page.locator('#person-why'), /No hand holds a handle/);
@@ -84,7 +84,7 @@ test('while nothing is known of the posture, no body is drawn, and the card says
   await until(page, () => window.predictor.body().visible);
 });
 
-test('body and mirror can be switched', async () => {
+test('body and mirror can be switched on and off', async () => {
   await page.click('#body');
   await until(page, () => !window.predictor.body().visible);
   await page.click('#mirror');
@@ -97,7 +97,7 @@ test('body and mirror can be switched', async () => {
   assert.deepEqual(ownProblems(page), []);
 });
 
-test('a scenario without a body says what is missing, and offers no switches', async () => {
+test('for a scenario without a body, the page states what is missing and offers no switches', async () => {
   await fresh({person: 'The scenario does not describe the operator’s body.'});
   await waitForText(page.locator('#person-why'), /Not judged: The scenario does not describe/);
   await shows(page, '#body', false);
@@ -106,7 +106,7 @@ test('a scenario without a body says what is missing, and offers no switches', a
   assert.deepEqual(ownProblems(page), []);
 });
 
-test('an older server, which knows no person, gets a page without body and card', async () => {
+test('with an older server, which sends no person, the page has neither body nor card', async () => {
   await fresh({older: true});
   await shows(page, '#person', false);
   await shows(page, '#body', false);
@@ -114,7 +114,7 @@ test('an older server, which knows no person, gets a page without body and card'
   assert.deepEqual(ownProblems(page), []);
 });
 
-test('in a headset the body appears in the mirror only, which a plate switches', async () => {
+test('in a headset, the body appears only in the mirror, which a plate switches on and off', async () => {
   await fresh({before: withHeadset, operator: 'browser'}, {width: 640, height: 400});
   const headset = new Headset(page);
   await headset.enter();

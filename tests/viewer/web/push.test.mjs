@@ -31,7 +31,7 @@ const seen = () => page.evaluate(() => {
   }));
 });
 
-test('arrows take their colours at half and at 80 % of the threshold, red before the stop', async () => {
+test('arrows change colour at half and at 80 % of the threshold, and are red before the stop', async () => {
   const samples = [];
   const shots = new Set();
   await until(page, () => window.predictor.stateText() === 'Running');

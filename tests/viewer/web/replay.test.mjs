@@ -46,7 +46,7 @@ async function pause() {
   await until(page, () => /Play/.test(document.getElementById('play').textContent));
 }
 
-test('it plays, from the beginning once it was over, and there is nothing to stop', async () => {
+test('it plays, starts again after its end, and has no stop button', async () => {
   await until(page, () => !document.getElementById('play').disabled);
   await pause();
   await seek(Math.max(...recorded.keys()) / 1000);  // the end of the recording
@@ -58,7 +58,7 @@ test('it plays, from the beginning once it was over, and there is nothing to sto
   await screenshot(page, 'replay');
 });
 
-test('paused it stands still, and is not taken for a run that fell silent', async () => {
+test('a paused replay stands still and is not reported as a silent run', async () => {
   await pause();
   const {tick} = newest();
   await page.waitForTimeout(1500);
@@ -66,7 +66,7 @@ test('paused it stands still, and is not taken for a run that fell silent', asyn
   assert.equal(await page.locator('#banner').isVisible(), false);
 });
 
-test('a place is the recorded one, back and forth', async () => {
+test('seeking in both directions shows the recorded states', async () => {
   for (const seconds of [7, 2.5, 8.6]) {
     await seek(seconds);
     const state = newest();
@@ -79,7 +79,7 @@ test('a place is the recorded one, back and forth', async () => {
   }
 });
 
-test('single steps', async () => {
+test('single steps show consecutive states', async () => {
   await seek(3);
   const {tick} = newest();
   await page.getByLabel('One tick forward').click();
@@ -88,14 +88,14 @@ test('single steps', async () => {
   await waitFor(() => newest().tick === tick - 99, 'a hundred back');
 });
 
-test('the stop is shown as it was, in words', async () => {
+test('the recorded stop is shown in words', async () => {
   await seek(9.6);
   await waitFor(() => ['STOPPING', 'HELD'].includes(kStates[newest().state]), 'the stop');
   await until(page, () => document.getElementById('cause').textContent.includes('force'));
   await screenshot(page, 'replay-stopped');
 });
 
-test('faster and slower', async () => {
+test('the speed of the replay can be changed', async () => {
   await seek(1);
   await page.selectOption('#speed', '4');
   await page.click('#play');
@@ -107,7 +107,7 @@ test('faster and slower', async () => {
   await pause();
 });
 
-test('nothing but playing is commanded', async () => {
+test('a replay refuses the commands of a run', async () => {
   client.send({type: 'command', command: 'reset'});
   await waitFor(() => client.denials.length === 1, 'a denial');
   await page.waitForTimeout(300);

@@ -20,7 +20,7 @@ after(async () => {
 
 const predictor = asker(() => page);
 
-test('two UR5 with STL meshes stand where their joint angles put them', async () => {
+test('two UR5 with STL meshes have the poses that follow from their joint angles', async () => {
   browser = await launch({unpainted: true});
   program = await Program.run('dual_ur5.yaml', {set: [...kRoundAndRound, ...kLight]});
   page = await open(browser, program.url, {viewport: {width: 1024, height: 768}, touch: true});
@@ -58,7 +58,7 @@ async function middle() {
   return {x: box.x + box.width / 2, y: box.y + box.height / 3};
 }
 
-test('a finger turns the view, two bring it nearer', async () => {
+test('one finger rotates the view, and two fingers zoom', async () => {
   const session = await page.context().newCDPSession(page);
   const {x, y} = await middle();
   const eye = () => predictor('cameraPosition');
@@ -83,7 +83,7 @@ test('a finger turns the view, two bring it nearer', async () => {
   assert.deepEqual(page.problems, []);
 });
 
-test('the bar is led along the circle that is drawn', async () => {
+test('the bar follows the drawn circle', async () => {
   await page.context().close();
   await program.end();
   program = await Program.run('bar_circle.yaml', {set: kLight});

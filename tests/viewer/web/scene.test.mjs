@@ -71,7 +71,7 @@ test('every link of the cobot follows its joint angles', async () => {
   assert.ok(later.cobotQ.some((q, i) => Math.abs(q - first.cobotQ[i]) > 0.05), 'it moved');
 });
 
-test('object and handles are drawn where the program has them', async () => {
+test('object and handles have the poses that the program sends', async () => {
   const client = await Client.join(program.url);
   const {handles} = client.welcome.scene;
   client.close();
@@ -87,14 +87,14 @@ test('object and handles are drawn where the program has them', async () => {
   }
 });
 
-test('the visuals lie on their links: Z-up meshes are not turned', async () => {
+test('the visuals lie on their links, so Z-up meshes are not rotated', async () => {
   const box = await page.evaluate(() => window.predictor.meshBox('panda_link0'));
   // The base of the Panda is 0.14 m high and stands on the floor. It is longer in x than in y.
   near([box.min[2], box.max[2]], [0, 0.14], 0.02, 'height of the base');
   assert.ok(box.max[0] - box.min[0] > box.max[1] - box.min[1]);
 });
 
-test('the instruction is the one of the present action', async () => {
+test('the instruction is that of the current action', async () => {
   const client = await Client.join(program.url);
   const {script} = client.welcome.scene;
   client.close();
@@ -105,7 +105,7 @@ test('the instruction is the one of the present action', async () => {
   assert.equal(text, script[state.action].text);
 });
 
-test('left is left, in words and for the operator’s eyes', async () => {
+test('left is left in texts and from the operator’s point of view', async () => {
   const client = await Client.join(program.url);
   const words = client.welcome.scene.script.at(-1).text;
   client.close();
@@ -121,7 +121,7 @@ test('left is left, in words and for the operator’s eyes', async () => {
   await look(page, 'free');
 });
 
-test('the real arms stand where their joint angles put them', async () => {
+test('the real arms have the poses that follow from their joint angles', async () => {
   await page.click('#ghosts');
   await until(page, () => window.predictor.ghostsReady());
   await frames(page, 1);
@@ -131,7 +131,7 @@ test('the real arms stand where their joint angles put them', async () => {
   await page.click('#ghosts');
 });
 
-test('on a screen and on a tablet, dark and light', async () => {
+test('the page fits a screen and a tablet, dark and light', async () => {
   for (const [width, height] of [[1280, 720], [1024, 768]]) {
     await page.setViewportSize({width, height});
     for (const theme of ['light', 'dark']) {

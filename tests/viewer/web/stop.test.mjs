@@ -77,7 +77,7 @@ test('the cause is shown in words', async () => {
   await screenshot(page, 'stopped');
 });
 
-test('nothing starts again but by a person who has control', async () => {
+test('only a person with control can start the run again', async () => {
   const from = states.length;
   await ticks(1000);
   assert.deepEqual(await enabled(), []);
@@ -87,7 +87,7 @@ test('nothing starts again but by a person who has control', async () => {
   assert.ok(states.slice(from).every((s) => s.state === 'HELD'));
 });
 
-test('reset, align and start, each by its button', async () => {
+test('reset, align and start have their own buttons', async () => {
   await take(page, 'control');
   await until(page, () => !document.getElementById('reset').disabled);
   assert.deepEqual(await enabled(), ['reset']);
@@ -105,7 +105,7 @@ test('reset, align and start, each by its button', async () => {
   await waitFor(() => newest().run_time > 0.5, 'simulated time');
 });
 
-test('who may only look, by digits from the console, may stop', async () => {
+test('a client that may only look, admitted by a PIN, may stop the run', async () => {
   const other = await rig.open(new URL(rig.program.url).origin);
   await other.fill('#pin', await rig.program.pin('look'));
   await other.click('#pair');
@@ -136,7 +136,7 @@ async function reportsTheLoss() {
   assert.equal(await predictor('instruction'), '');
 }
 
-test('the viewer’s death is reported, and moves nothing', async () => {
+test('the death of the viewer is reported, and nothing moves', async () => {
   assert.equal(newest().state, 'RUN');
   const {tick, run_time: runTime} = newest();
   const {program} = rig;
@@ -158,7 +158,7 @@ test('the viewer’s death is reported, and moves nothing', async () => {
   await shows(page, '#banner', false);
 });
 
-test('a run that hangs is reported, though the viewer’s process lives', async () => {
+test('a run that hangs is reported while the viewer’s process is alive', async () => {
   assert.equal(await predictor('phase'), 'open');
   rig.program.freeze();
   await reportsTheLoss();
@@ -169,7 +169,7 @@ test('a run that hangs is reported, though the viewer’s process lives', async 
   await shows(page, '#stop');
 });
 
-test('another scenario is chosen when idle, and starts by a person alone', async () => {
+test('another scenario can be chosen when idle, and only a person can start it', async () => {
   await take(page, 'control');
   assert.ok(await page.locator('#scenario').isDisabled());
   await page.click('#stop');

@@ -24,7 +24,7 @@ function statesBeyond(side, limit) {
   return rows.slice(first).map((row) => kStates[row.at(-4)]);
 }
 
-test('a short push is seen in red, and the warning precedes the stop', async () => {
+test('a short push is shown in red, and the warning precedes the stop', async () => {
   // This code stores the colours of the hands' arrows in each frame until the run stops.
   await page.evaluate(() => {
     window.seen = {left: [], right: []};

@@ -148,7 +148,7 @@ test('the same person answers after the other run; the two are compared', async 
   await shown.context().close();
 });
 
-test('the recording says which system was used', async () => {
+test('the recording states which system was used', async () => {
   const {status, stderr} = spawnSync(
       binary, ['simulate', join(root, 'scenarios/bar_circle.yaml'), '--set', 'mode=direct', '--duration',
                '0.1', '--quiet', '--record', join(folder, 'direct.mcap')], {encoding: 'utf8'});
@@ -166,7 +166,7 @@ test('the recording says which system was used', async () => {
   assert.equal(report('remove', other, folder).status, 0);
 });
 
-test('who does not want to answer leaves nothing behind', async () => {
+test('the answers of a person who declines are not stored', async () => {
   const before = answers();
   const survey = await ask('one.mcap', '--condition', 'real');
   const page = await open(browser, survey.url, kViewport);
@@ -178,7 +178,7 @@ test('who does not want to answer leaves nothing behind', async () => {
   await page.context().close();
 });
 
-test('an address that was used is of no use to another browser', async () => {
+test('a used address does not admit another browser', async () => {
   const survey = await ask('one.mcap', '--condition', 'real');
   const first = await open(browser, survey.url, kViewport);
   await first.waitForSelector('#consent', {state: 'visible'});
@@ -194,7 +194,7 @@ test('an address that was used is of no use to another browser', async () => {
   await second.context().close();
 });
 
-test('an answer is removed alone, by its pseudonym', () => {
+test('only the answer with the given pseudonym is removed', () => {
   assert.equal(answers().length, 2);
   assert.equal(report('remove', 'ABCDEFGH', folder).status, 2);
   assert.equal(report('remove', pseudonym, folder).status, 0);

@@ -35,7 +35,7 @@ after(async () => {
   await server?.close().catch(() => undefined);
 });
 
-test('the only page gets the hands offered in the scene', async () => {
+test('the only page shows the offer of the hands in the scene', async () => {
   await fresh({operator: 'browser'});
   await shows(page, '#take-hands');
   assert.equal(await page.locator('#invitation').textContent(), 'Take the handsthen drag a ring.');
@@ -50,14 +50,14 @@ test('the only page gets the hands offered in the scene', async () => {
   await shows(page, '#take-hands');
 });
 
-test('a scripted operator, and a run that does not run, offer none', async () => {
+test('with a scripted operator or a run that is not in RUN, no hands are offered', async () => {
   await fresh();
   await shows(page, '#invitation', false);
   await fresh({operator: 'browser', state: 'IDLE'});
   await shows(page, '#invitation', false);
 });
 
-test('the handles invite, and the first drag shows force and threshold', async () => {
+test('the handles invite the visitor to drag, and the first drag shows force and threshold', async () => {
   await fresh({operator: 'browser'});
   await page.click('#take-hands');
   await until(page, () => window.predictor.leases().operator === window.predictor.client());
@@ -80,7 +80,7 @@ test('the handles invite, and the first drag shows force and threshold', async (
   await shows(page, '#gauge-left', false);
 });
 
-test('the page that holds the hands ends the run, which has no other end', async () => {
+test('the page with the hands can end the run, which has no duration', async () => {
   assert.match(await page.locator('#run-time').textContent(), /^\d+\.\d s$/, 'no end time is shown');
   await page.click('#end');
   await waitFor(() => sent('command').some((m) => m.command === 'end'), 'the end');
@@ -101,7 +101,7 @@ test('a ring stays large enough on the page for a finger', async () => {
 
 // ---- results ---------------------------------------------------------------------------------------
 
-test('a run that is over shows figures and curves, and is not red', async () => {
+test('after a run, figures and curves are shown, without red', async () => {
   await fresh();
   await server.finish('The run ended as planned.', kResults);
   await until(page, () => document.getElementById('results-title').textContent === 'Finished');
@@ -123,7 +123,7 @@ test('a run that is over shows figures and curves, and is not red', async () => 
   await until(page, () => document.getElementById('results-title').textContent === 'Finished');
 });
 
-test('run again and next scenario are asked for with control', async () => {
+test('"run again" and "next scenario" take control first', async () => {
   await page.click('#run-again');
   await waitFor(() => server.chosen === 'made_up', 'the same again');
   await page.reload();
@@ -132,7 +132,7 @@ test('run again and next scenario are asked for with control', async () => {
   await waitFor(() => server.chosen === 'made_up_too', 'the next');
 });
 
-test('another page’s control leaves nothing to choose', async () => {
+test('while another page has control, nothing can be chosen', async () => {
   await page.reload();
   await shows(page, '#run-again');
   server.leases.control = 99;
@@ -150,7 +150,7 @@ test('the report is saved', async () => {
   assert.match((await download).suggestedFilename(), /report\.html$/);
 });
 
-test('when the program ends, the results stay and offer nothing that cannot be done', async () => {
+test('when the program ends, the results stay without the actions that need the program', async () => {
   await server.finish('The program was ended.');
   await until(page, () => window.predictor.phase() === 'ended');
   await shows(page, '#results-figures');
@@ -160,7 +160,7 @@ test('when the program ends, the results stay and offer nothing that cannot be d
 
 // ---- a small window ----------------------------------------------------------------------------------
 
-test('at 900 × 640 no button lies over the scene, and nothing sticks out', async () => {
+test('at 900 × 640, no button covers the scene, and everything fits', async () => {
   await fresh();
   const {scene, over, width, wrapped} = await page.evaluate(() => {
     const box = document.querySelector('.scene').getBoundingClientRect();
