@@ -154,7 +154,7 @@ TEST(Check, AFastScriptWarns) {
   EXPECT_TRUE(Mentions(report.warnings, "safety.handle_speed"));
 }
 
-TEST(Check, SaysThatItDescribesTheObjectOnTheCobot) {
+TEST(Check, StatesThatItDescribesTheObjectOnTheCobot) {
   for (const char* event : {"object_slips", "object_breaks_loose", "release_object"}) {
     const CheckReport report =
         Check(Load("single_arm.yaml",
@@ -322,7 +322,7 @@ std::pair<int, std::string> RunCheck(const std::string& arguments) {
 }
 int ExitCode(const std::string& arguments) { return RunCheck(arguments).first; }
 
-TEST(CheckCommand, ExitsAsItFinds) {
+TEST(CheckCommand, ExitCodeMatchesTheFindings) {
   const std::string file = (kScenarios / "single_arm.yaml").string();
   EXPECT_EQ(RunCheck(file), std::pair(0, std::string()));
   const auto [code, said] = RunCheck(file + " --set 'device.arms.left.base.xyz=[-0.6, 0, 0]'");

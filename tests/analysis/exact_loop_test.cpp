@@ -22,7 +22,7 @@ HandSpec SpringWithReflex(double stiffness, double reflex_gain, double reflex_de
 
 // M s² + B s + K (1 + g e^−sT) = 0 at s = jω for ωT = 2π n + π/2: M ω² = K and B = g K/ω. If too
 // few states model the delay, its phase is wrong at this frequency.
-TEST(ExactLoop, KnowsTheReflexAfterWholeTurnsOfItsPhase) {
+TEST(ExactLoop, ModelsTheReflexAfterWholeTurnsOfItsPhase) {
   const double T = 0.060, g = 0.4, mass = 2;
   for (const int turns : {0, 1}) {
     const double omega = (2 * kPi * turns + kPi / 2) / T;  // 4 Hz, 21 Hz
@@ -41,7 +41,7 @@ TEST(ExactLoop, KnowsTheReflexAfterWholeTurnsOfItsPhase) {
 
 // For M s² + B s + K e^−sT, the boundary is at M ω² = K cos ωT and B ω = K sin ωT. The model must
 // not add a tick to the delay.
-TEST(ExactLoop, HasNoDelayButItsOwn) {
+TEST(ExactLoop, HasOnlyItsOwnDelay) {
   const double T = 0.040, mass = 9, omega = 20;
   const double stiffness = mass * omega * omega / std::cos(omega * T);
   const double critical = stiffness * std::sin(omega * T) / omega;

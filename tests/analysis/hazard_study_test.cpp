@@ -269,7 +269,7 @@ TEST(HazardTable, WithoutStopsHasNoBounds) {
   EXPECT_EQ(row["force_after_p95_is_bound"], "0");
 }
 
-TEST(HazardTable, OfAnImpossibleCellSaysWhy) {
+TEST(HazardTable, StatesTheReasonForAnImpossibleCell) {
   HazardCell cell = CellOf("box, heavy");
   cell.impossible = "events[0], \"takeover\", needs a standby controller.";
   auto row = RowOf(cell);

@@ -246,7 +246,7 @@ TEST_F(IdentifyTest, OneSpeedIsNotEnough) {
       << found.joints[0].refusal;
 }
 
-TEST_F(IdentifyTest, SaysWhatItCannotWorkWith) {
+TEST_F(IdentifyTest, ReportsUnusableData) {
   Identifier identifier(nominal_);
   EXPECT_THROW(identifier.Finish(), InputError);  // no data yet
   TickRecord record{};

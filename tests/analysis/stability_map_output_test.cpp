@@ -69,7 +69,7 @@ TEST(MapStore, KeepsFinishedPointsAfterTruncation) {
   }
 }
 
-TEST(MapStore, SaysWhenThereIsNoRoom) {
+TEST(MapStore, ReportsAFullDisk) {
   const test::TemporaryFolder folder;
   const auto add_without_room = [&] {
     MapStore store(folder.path() / "points.jsonl");
@@ -207,7 +207,7 @@ TEST(MapPlot, ShowsPredictionsAndResults) {
   }
 }
 
-TEST(MapPage, NeedsNoOtherFileAndSaysWhereNothingIsStable) {
+TEST(MapPage, NeedsNoOtherFileAndShowsWhereNothingIsStable) {
   const StabilityMap map = SomeMap();
   if (const char* folder = std::getenv("PREDICTOR_REPORTS"))  // for inspection
     std::ofstream(fs::path(folder) / "map.html") << MapPage(map);

@@ -251,7 +251,7 @@ TEST(Viewer, ThatIsKilledStopsNothing) {
   EXPECT_EQ(summary["ticks"], 6000);
 }
 
-TEST(Viewer, OfASecondRunOnTheSamePortIsRefusedInWords) {
+TEST(Viewer, OfASecondRunOnTheSamePortIsRefusedWithAMessage) {
   Child first({"run", Scenario("box_9kg"), "--port", "0"});
   ASSERT_TRUE(first.Says("/#code=")) << first.errors();
   const std::size_t at = first.errors().find("localhost:") + 10;

@@ -47,7 +47,7 @@ TEST_F(ContinueCommandTest, WritesTextPageAndJson) {
   EXPECT_NE(again.errors().find("--force"), std::string::npos) << again.errors();
 }
 
-TEST_F(ContinueCommandTest, OtherCommandsSayThatTheValuesOfAStoppedRunAreBounds) {
+TEST_F(ContinueCommandTest, OtherCommandsStateThatTheValuesOfAStoppedRunAreBounds) {
   const std::string recording = Record("push", "9");
   Child evaluate({"evaluate", recording, "--no-intervals"});
   ASSERT_EQ(evaluate.Wait(), 0) << evaluate.errors();

@@ -93,7 +93,7 @@ TEST_F(Evaluate, ComparesTwoDesigns) {
   EXPECT_TRUE(json["against"]["quantities"].contains("lower_back.compression_n"));
 }
 
-TEST_F(Evaluate, OfAnUnknownPlaceIsRefusedWithWhatToDo) {
+TEST_F(Evaluate, OfAnUnknownPlaceIsRefusedWithTheRemedy) {
   const std::string recording = Record("box_9kg", {"--set", "operator.stance=null"});
   Child child({"evaluate", recording});
   EXPECT_EQ(child.Wait(), 2);

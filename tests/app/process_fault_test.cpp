@@ -206,7 +206,7 @@ TEST(Memory, OfTheSupervisorExhaustedDoesNotEndIt) {
   EXPECT_EQ(run.Wait(), 0) << run.errors();
 }
 
-TEST(Suspend, StopsTheRunAndSaysSo) {
+TEST(Suspend, StopsTheRunAndIsReported) {
   const FaultySystem system("FAULTY_SUSPEND", "2,3600");
   Child run(
       {"run", Scenario("box_9kg"), "--duration", "3600", "--no-viewer", "--json", "-", "--stay"});

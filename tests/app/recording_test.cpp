@@ -53,7 +53,7 @@ TEST_F(RecordedProgram, InRealTimeIsComputedAgainBitForBit) {
 
 // The run's table, its JSON output, its recording and the report must all contain the prediction of
 // `check`.
-TEST_F(RecordedProgram, SaysWhetherItsHapticLoopWasPredictedUnstable) {
+TEST_F(RecordedProgram, StatesWhetherItsHapticLoopWasPredictedUnstable) {
   const std::string summary = folder_ / "summary.json", page = folder_ / "page.html";
   for (const bool unstable : {false, true}) {
     const std::string mass = unstable ? "operator.hand.mass=5" : "operator.hand.mass=1";
@@ -266,7 +266,7 @@ TEST_F(RecordedProgram, StatesItsCobotsFriction) {
 
 // On a nearly full disk, the program reports how much it kept, and its exit code indicates the
 // failure.
-TEST_F(RecordedProgram, OnANearlyFullDiskSaysHowMuchIsKept) {
+TEST_F(RecordedProgram, OnANearlyFullDiskReportsHowMuchIsKept) {
   if (mount("none", folder_.c_str(), "tmpfs", 0, "size=4m") != 0)
     GTEST_SKIP() << "Nothing may be mounted here.";
   EXPECT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--record", file_}), 3);

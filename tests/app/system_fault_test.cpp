@@ -67,7 +67,7 @@ TEST(SystemFault, ABusyPortEndsTheRunBeforeItBegins) {
 }
 
 // In contrast, a run that receives SIGTERM brings the arms to rest and completes its recording.
-TEST(SystemFault, ARunThatIsAskedToEndFinishesItsRecording) {
+TEST(SystemFault, ARunThatReceivesSigtermFinishesItsRecording) {
   const std::string recording = TemporaryFile("end.mcap");
   Child run({"run", Scenario("box_9kg"), "--no-viewer", "--record", recording});
   ASSERT_TRUE(run.Says("RUN")) << run.errors();

@@ -103,7 +103,7 @@ TEST(Assessment, OnlyARealStepOfForceIsAShock) {
   EXPECT_GT(worst(45, 0), worst(20, 0));
 }
 
-TEST(Assessment, WarnsOfAnImpossiblePlace) {
+TEST(Assessment, WarnsAboutAnImpossiblePlace) {
   Scenario scenario = PersonScenario();
   const auto judge = [&] {
     const SampleCollector run =
@@ -138,7 +138,7 @@ TEST(Assessment, RefusesAnAbsurdBodyAndAnEmptyRun) {
   EXPECT_THROW(Assess(scenario, 9, RunOf(SampleCollector(scenario)), {}), InputError);
 }
 
-TEST(Assessment, SaysWhatItCouldNotJudge) {
+TEST(Assessment, StatesWhatCouldNotBeJudged) {
   Scenario scenario = PersonScenario();
   const SampleCollector run =
       Collect(scenario, 1, [&](std::uint64_t tick) { return RecordOf(tick, 1.0, 5); });

@@ -62,7 +62,7 @@ TEST(Samples, ThatAreHeldLeaveOutTheTimeWithoutHands) {
   EXPECT_TRUE(held[3].continues);
 }
 
-TEST(PersonSetup, SaysWhatIsMissingAndWhatToDo) {
+TEST(PersonSetup, ReportsMissingDataAndTheRemedy) {
   Scenario scenario = PersonScenario();
   EXPECT_TRUE(MissingForPosture(scenario).empty());
   scenario.operator_.stance.reset();

@@ -181,7 +181,7 @@ TEST(LivePerson, DrawsTheBodyThatHoldsTheHandles) {
   EXPECT_LT(point(BodyPoint::kEyes).x(), point(BodyPoint::kHead).x());  // the person faces -x
 }
 
-TEST(LivePerson, SaysWhyItDoesNotJudge) {
+TEST(LivePerson, StatesWhyNothingIsJudged) {
   LivePerson live(PersonScenario(), {});
   TickRecord record = RecordOf(1, 1, 20);
   record.ran = 0;

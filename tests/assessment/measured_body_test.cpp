@@ -110,7 +110,7 @@ TEST(MeasuredBody, UsesAPositionWithoutRotation) {
   EXPECT_NEAR(neck(JudgeWith({position})), neck(JudgeWith({})), 0.1);
 }
 
-TEST(MeasuredBody, SaysForHowLongItWasMeasured) {
+TEST(MeasuredBody, StatesHowLongItWasMeasured) {
   const Truth truth = TruthOf(MadeRun());
   tracks::BodyTrack track = TrackOf(truth, true, true);
   for (std::size_t i = 0; i < track.head->times.size(); ++i)
@@ -150,7 +150,7 @@ std::string Refusal(const std::vector<tracks::BodyTrack>& tracks) {
   return "";
 }
 
-TEST(MeasuredBody, RefusesWhatNoPersonCanBe) {
+TEST(MeasuredBody, RefusesImpossibleBodies) {
   const Truth truth = TruthOf(MadeRun());
   tracks::BodyTrack track = TrackOf(truth, true, false);
   for (Vector3& p : track.head->p) p *= 1000;  // millimetres

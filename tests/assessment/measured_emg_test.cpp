@@ -127,7 +127,7 @@ TEST_F(MeasuredEmgTest, AMeasuredAntagonistIsBalancedByTheOthers) {
   EXPECT_EQ(MeanOf(with, "muscles.left.largest"), MeanOf(without, "muscles.left.largest"));
 }
 
-TEST_F(MeasuredEmgTest, EveryOutputSaysWhatIsMeasuredAndWhatIsModelled) {
+TEST_F(MeasuredEmgTest, EveryOutputDistinguishesMeasuredFromModelledValues) {
   const Assessment a = JudgeWith({LoadSlow(Row("right", "biceps_long, biceps_short"))});
   const std::string csv = AssessmentCsv(a);
   EXPECT_NE(csv.find("measured.muscles.right.biceps_long+biceps_short,modelled.muscles.right."),
@@ -152,7 +152,7 @@ std::string GapOf(const Assessment& a, const std::string& words) {
 
 // If a channel cannot be used, the output must omit it and state the reason, and no result may
 // change.
-TEST_F(MeasuredEmgTest, AnUnusableChannelSaysWhy) {
+TEST_F(MeasuredEmgTest, AnUnusableChannelIsReportedWithTheReason) {
   const Assessment without = JudgeWith({});
   const auto slow = [](double t) { return VoltageAt(t, SlowlyAt); };
   struct Case {

@@ -64,7 +64,7 @@ TEST(CalibrateBases, IsTheSolutionBySingularValues) {
   }
 }
 
-TEST(CalibrateBases, SaysHowSureItIs) {
+TEST(CalibrateBases, StatesItsUncertainty) {
   RandomStream random(3, "bases");
   int held = 0, intervals = 0;
   double worst = 0;
@@ -97,7 +97,7 @@ std::string RefusalOf(const std::vector<TouchedPoint>& points) {
   }
 }
 
-TEST(CalibrateBases, RefusesWhatDoesNotDetermineIt) {
+TEST(CalibrateBases, RefusesPointsThatDoNotDetermineTheBase) {
   RandomStream random(4, "bases");
   const Pose X_AB = RandomPose(&random);
   EXPECT_NE(RefusalOf(Points(X_AB, 2, 0, &random)).find("2 points are too few"), std::string::npos);

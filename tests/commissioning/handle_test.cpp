@@ -106,7 +106,7 @@ TEST(CalibrateHandle, IsExactWithoutNoise) {
   EXPECT_LT(found.residual.norm(), 1e-8);
 }
 
-TEST(CalibrateHandle, TakesTheDriftOfAWarmingSensorOff) {
+TEST(CalibrateHandle, SubtractsTheDriftOfAWarmingSensor) {
   Truth truth;
   truth.drift << 0.005, -0.003, 0.004, 1e-4, 2e-4, -1e-4;  // 0.3 N/min
   Wrench last;
@@ -143,7 +143,7 @@ struct Tally {
   }
 };
 
-TEST(CalibrateHandle, ReachesItsFiguresWithANoisySensorAndSaysHowSureItIs) {
+TEST(CalibrateHandle, ReachesItsAccuracyWithANoisySensorAndStatesItsUncertainty) {
   Truth truth;
   truth.drift << 0.002, -0.001, 0.0015, 5e-5, -5e-5, 2e-5;  // 0.1 N/min
   truth.wander << 0.004, 0.004, 0.004, 2e-4, 2e-4, 2e-4;
@@ -200,7 +200,7 @@ TEST(CalibrateHandle, NamesThePoseInWhichTheHandleWasTouched) {
   }
 }
 
-TEST(CalibrateHandle, RefusesWhatNoHandleExplains) {
+TEST(CalibrateHandle, RefusesReadingsThatNoHandleExplains) {
   auto poses = Poses({}, SensorSpec(), 8, 4);
   auto turned = poses;
   for (std::size_t i = 0; i < 4; ++i)

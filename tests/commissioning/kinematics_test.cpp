@@ -77,7 +77,7 @@ TEST(KinematicsRefusal, DistinguishesAllArmsOfUniversalRobots) {
   }
 }
 
-TEST(KinematicsRefusal, GrantsWhatACalibrationMakesUpAndNoMore) {
+TEST(KinematicsRefusal, ToleratesTheDeviationsOfACalibrationOnly) {
   const ArmSpec spec = UrSpec("ur5_robot.urdf");
   const UrVector q = {0.3, -1.2, 1.8, -2.2, -1.5, 0.4};
   for (const double beside : {0.99, 1.01}) {

@@ -230,7 +230,7 @@ TEST(MotionWatch, LetsNothingPastTheGuard) {
 
 // The program cannot guarantee anything about an arm that does not respond, so it must warn the
 // person.
-TEST(MeasureLoop, SaysWhenItCannotBringTheArmToRest) {
+TEST(MeasureLoop, ReportsAnArmThatCannotBeBroughtToRest) {
   for (const bool silent : {true, false}) {
     Bench bench;
     Holder holder(&bench.time);

@@ -93,7 +93,7 @@ TEST(MeasureLoop, ContinuesWithTheRemainingJoints) {
   EXPECT_NO_THROW(FitLoop(swings.records));
 }
 
-TEST(MeasureLoop, SaysThatATouchIsNotEnough) {
+TEST(MeasureLoop, ReportsThatATouchIsNotEnough) {
   Bench bench;
   double since = -1;
   bool touched = false;

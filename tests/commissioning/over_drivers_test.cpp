@@ -66,7 +66,7 @@ class OverDrivers : public testing::TestWithParam<Make> {
   int steps_ = 0;
 };
 
-TEST_P(OverDrivers, WhoGivesUpInMotionLeavesAnArmAtRest) {
+TEST_P(OverDrivers, GivingUpInMotionLeavesTheArmAtRest) {
   int moving = 0;
   ScriptedPerson person([&](const std::string& last) -> char {
     moving += Speed() > 0.005;

@@ -78,7 +78,7 @@ TEST(ProbeMachine, MeasuresRateAgeAndWrench) {
   }
 }
 
-TEST(ProbeMachine, SeesWhatALoopOfAMillisecondWouldNot) {
+TEST(ProbeMachine, DetectsWhatALoopOfAMillisecondWouldMiss) {
   OneArm one(1000);
   ProbeOptions slow = EveryMillisecond();
   slow.poll = 0.002;
@@ -125,7 +125,7 @@ TEST(ProbeMachine, KnowsTheRateOfAVersion) {
   EXPECT_NE(lost[0].remarks.at(0).find("should send 1000 samples"), std::string::npos);
 }
 
-TEST(ProbeMachine, HoldsTheModelAgainstTheArmThatAnswers) {
+TEST(ProbeMachine, ComparesTheModelWithTheConnectedArm) {
   const auto mismatch = [](const std::function<void(OneArm*)>& change) {
     OneArm one;
     change(&one);

@@ -103,7 +103,7 @@ TEST(PushTest, NamesTheLikelyError) {
   EXPECT_NE(other.find("swapped"), std::string::npos) << other;
 }
 
-TEST(PushTest, SaysOfEachPushWhetherItReadOtherwise) {
+TEST(PushTest, ReportsForEachPushWhetherTheReadingsDiffer) {
   Matrix3 mirrored = Matrix3::Identity();
   mirrored(1, 1) = -1;
   Pusher pusher(mirrored);
@@ -187,7 +187,7 @@ TEST(PushTest, IgnoresInvalidNumbers) {
   EXPECT_EQ(test.axis(), 0);
 }
 
-TEST(PushTest, TakesNothingFromTheHeap) {
+TEST(PushTest, DoesNotAllocate) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   Pusher pusher;
   test::AllocationGuard guard;

@@ -76,7 +76,7 @@ TEST_F(SwingFileTest, IsOfNoOtherArm) {
   EXPECT_TRUE(SwingFile(machine_, "right", "0123456789abcdef").Load().swings.records.empty());
 }
 
-TEST_F(SwingFileTest, TakesNothingFromATruncatedFile) {
+TEST_F(SwingFileTest, ReadsNothingFromATruncatedFile) {
   file_.Save(TwoOfSix(), "now");
   const std::string whole = Text();
   for (std::size_t length = 0; length + 1 < whole.size(); ++length) {
@@ -87,7 +87,7 @@ TEST_F(SwingFileTest, TakesNothingFromATruncatedFile) {
   }
 }
 
-TEST_F(SwingFileTest, RefusesWhatNoMeasurementIs) {
+TEST_F(SwingFileTest, RefusesImpossibleMeasurements) {
   const auto damaged = [&](const std::string& from, const std::string& to) {
     file_.Save(TwoOfSix(), "now");
     std::string text = Text();
@@ -109,7 +109,7 @@ TEST_F(SwingFileTest, RefusesWhatNoMeasurementIs) {
   EXPECT_TRUE(damaged("0.0080000999999999996 ", "1e300 "));
 }
 
-TEST_F(SwingFileTest, SaysWhereItCannotBeWritten) {
+TEST_F(SwingFileTest, ReportsThePathThatCannotBeWritten) {
   const SwingFile nowhere(folder_.path() / "none" / "lab.yaml", "left", "0");
   EXPECT_THROW(nowhere.Save(TwoOfSix(), "now"), InputError);
 }

@@ -8,7 +8,7 @@
 namespace predictor {
 namespace {
 
-TEST(ContainedThread, EndsAloneAndSaysWhy) {
+TEST(ContainedThread, EndsAloneAndReportsTheReason) {
   std::string why, name(16, '\0');
   ContainedThread(
       "a thread",

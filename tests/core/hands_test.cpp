@@ -13,7 +13,7 @@ std::vector<int> Visited(const Hands& hands) {
   return visited;
 }
 
-TEST(Hands, VisitsThoseThatThereAre) {
+TEST(Hands, VisitsThePresentHands) {
   EXPECT_EQ(Visited({}), std::vector<int>{});
   EXPECT_EQ(Visited({true, false}), std::vector<int>{0});
   EXPECT_EQ(Visited({false, true}), std::vector<int>{1});

@@ -65,7 +65,7 @@ double Parted(Bench* bench, const Pose& before, double* asked) {
 class BeginMotion : public testing::TestWithParam<int> {};  // time that the Franka takes to begin
                                                             // [ms]
 
-TEST_P(BeginMotion, IsWaitedForByTheOtherArm) {
+TEST_P(BeginMotion, MakesTheOtherArmWait) {
   Bench prompt(UrAndFranka()), late(UrAndFranka());
   ASSERT_NO_FATAL_FAILURE(BeginRun(&prompt, 3));
   ASSERT_NO_FATAL_FAILURE(BeginRun(&late, GetParam()));

@@ -56,7 +56,7 @@ TEST(FakeUr, AnswersRtdeAsCaptured) {
   EXPECT_TRUE(Heard(&bench, stream.get()).empty());
 }
 
-TEST(FakeUr, RecipesWithWhatIsNotThereAreInvalid) {
+TEST(FakeUr, RecipesWithUnknownNamesAreInvalid) {
   UrBench bench;
   const auto stream = bench.network.Connect({kUrHost, 30004}, 1);
   const std::vector<rtde::Field> recipe = {{"timestamp", ""}, {"nonsense", ""}};
@@ -66,7 +66,7 @@ TEST(FakeUr, RecipesWithWhatIsNotThereAreInvalid) {
   EXPECT_EQ(Heard(&bench, stream.get()).size(), 4U);  // no data
 }
 
-TEST(FakeUr, RateIsAsAskedFor) {
+TEST(FakeUr, RateIsAsRequested) {
   UrBench bench;
   const auto stream = bench.network.Connect({kUrHost, 30004}, 1);
   const std::vector<rtde::Field> recipe = {{"timestamp", ""}};
@@ -88,7 +88,7 @@ TEST(FakeUr, DashboardGreetsAndAnswersLines) {
   EXPECT_EQ(Text(Heard(&bench, stream.get())), "could not understand: 'sing'\n");
 }
 
-TEST(FakeUr, TakesAProgramInPieces) {
+TEST(FakeUr, AcceptsAProgramInPieces) {
   UrBench bench;
   const auto stream = bench.network.Connect({kUrHost, 30003}, 1);
   const std::string program = "def hop():\n  while True:\n    sync()\n  end\nend\n";
@@ -99,7 +99,7 @@ TEST(FakeUr, TakesAProgramInPieces) {
   EXPECT_TRUE(bench.fake.running());
 }
 
-TEST(FakeUr, RefusesProgramsThatItDoesNotKnowAndSaysWhy) {
+TEST(FakeUr, RefusesUnknownProgramsWithTheReason) {
   UrBench bench;
   const auto stream = bench.network.Connect({kUrHost, 30003}, 1);
   Say(stream.get(), "def hop():\n  movej([0,0,0,0,0,0])\nend\n");
@@ -113,7 +113,7 @@ TEST(FakeUr, RefusesProgramsThatItDoesNotKnowAndSaysWhy) {
 
 // In the protocol of ur_rtde's program, 9 moves the arm, 15 stops it and is acknowledged, and 255
 // ends the program.
-TEST(FakeUr, PlaysTheProgramOfUrRtde) {
+TEST(FakeUr, ImplementsTheProgramOfUrRtde) {
   UrBench bench;
   const auto stream = bench.network.Connect({kUrHost, 30003}, 1);
   Say(stream.get(),

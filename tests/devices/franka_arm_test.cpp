@@ -85,7 +85,7 @@ TEST_P(FrankaDriver, WaitsUntilItsControllerHasBegun) {
   EXPECT_TRUE(rig_.reading.waits);
 }
 
-TEST_P(FrankaDriver, AnArmAtFaultIsNotWaitedFor) {
+TEST_P(FrankaDriver, DoesNotWaitForAFaultyArm) {
   rig_.Connect();
   rig_.v.setConstant(0.05);
   ASSERT_TRUE(rig_.Ticks(40));
@@ -96,7 +96,7 @@ TEST_P(FrankaDriver, AnArmAtFaultIsNotWaitedFor) {
 }
 
 // Without this limit, a caller that waits for rest would wait forever.
-TEST_P(FrankaDriver, AnArmThatReportsMotionThoughCommandedToRestIsGivenUp) {
+TEST_P(FrankaDriver, GivesUpAnArmThatReportsMotionAfterACommandToRest) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(50));
   ASSERT_TRUE(rig_.fake.Do("say it moves"));
@@ -119,7 +119,7 @@ TEST_P(FrankaDriver, ReportsItsLimits) {
   }
 }
 
-TEST_P(FrankaDriver, MovesAsWrittenAndEndsTheMotion) {
+TEST_P(FrankaDriver, MovesAsCommandedAndEndsTheMotion) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(50, false));
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);  // no motion without a request
@@ -284,7 +284,7 @@ TEST_P(FrankaDriver, AfterAMissedStateDoesNotGoFaster) {
 
 // While states are lost, the driver does not accelerate. Afterwards it must not jump to the
 // velocity that was requested meanwhile.
-TEST_P(FrankaDriver, MakesUpWithoutALeapForHavingWaited) {
+TEST_P(FrankaDriver, CatchesUpWithoutAJumpAfterWaiting) {
   constexpr double kRate = 0.5, kStep = kRate * 1e-3;  // [rad/s²], [rad/s]
   rig_.Connect();
   const auto tick = [&] {
@@ -308,7 +308,7 @@ TEST_P(FrankaDriver, MakesUpWithoutALeapForHavingWaited) {
   EXPECT_NEAR(before, rig_.v[0], 3 * kStep);
 }
 
-TEST_P(FrankaDriver, CountsTheCommandsThatTheArmDidNotTake) {
+TEST_P(FrankaDriver, CountsTheCommandsThatTheArmDidNotUse) {
   rig_.Connect();
   rig_.v.setConstant(0.6);
   ASSERT_TRUE(rig_.Ticks(30));
@@ -345,7 +345,7 @@ TEST_P(FrankaDriver, ALateStateIsOld) {
   EXPECT_NEAR(rig_.reading.age, 8e-3, 1e-4);
 }
 
-TEST_P(FrankaDriver, DoesNotTakeARepeatedStateForAFreshOne) {
+TEST_P(FrankaDriver, ARepeatedStateIsNotFresh) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(20, false));
   const FrankaCounts before = rig_.arm->counts();
@@ -355,7 +355,7 @@ TEST_P(FrankaDriver, DoesNotTakeARepeatedStateForAFreshOne) {
   EXPECT_EQ(rig_.arm->counts().states, before.states + 1);
 }
 
-TEST_P(FrankaDriver, NeverGoesBackToAnOlderState) {
+TEST_P(FrankaDriver, NeverUsesAnOlderState) {
   rig_.Connect();
   rig_.v.setConstant(0.2);
   ASSERT_TRUE(rig_.Ticks(50));
@@ -386,7 +386,7 @@ TEST_P(FrankaDriver, DropsAndCountsInvalidStates) {
 
 // A single bit of a state's number is wrong. The driver must discard that state and use the later
 // ones.
-TEST_P(FrankaDriver, DropsAStateWhoseNumberLeaps) {
+TEST_P(FrankaDriver, DropsAStateWhoseNumberJumps) {
   FrankaRig rig(FrankaOfVersion(GetParam()));
   rig.Connect();
   ASSERT_TRUE(rig.Ticks(100));
@@ -397,7 +397,7 @@ TEST_P(FrankaDriver, DropsAStateWhoseNumberLeaps) {
   EXPECT_EQ(rig.arm->counts().old_states, 0U);
 }
 
-TEST_P(FrankaDriver, CountsOnWhereTheArmsNumbersWrap) {
+TEST_P(FrankaDriver, ContinuesCountingWhenTheArmsNumbersWrap) {
   FakeFrankaOptions options = FrankaOfVersion(GetParam());
   options.first_message = std::numeric_limits<std::uint64_t>::max() - 100;
   FrankaRig rig(options);

@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(Versions, FakeFrankaControl,
                          testing::Values(fci::kPandaVersion, fci::kResearch3Version),
                          [](const auto& version) { return ControllerName(version.param); });
 
-TEST(FakeFrankaDescription, HasWhatLibfrankaLooksFor) {
+TEST(FakeFrankaDescription, HasTheElementsThatLibfrankaReads) {
   const std::string text = FrankaDescription();
   int joints = 0;
   for (std::size_t at = 0;

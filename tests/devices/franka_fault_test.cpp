@@ -69,7 +69,7 @@ TEST_P(FrankaFault, ErrorThatChangesNoModeIsNamed) {
   ExpectMessageAtRest("error power_limit_violation", "reports an error (power limit violation)");
 }
 
-TEST_P(FrankaFault, IsNeverClearedFromHere) {
+TEST_P(FrankaFault, IsNeverClearedByTheDriver) {
   TicksUntilReported("reflex joint_reflex");
   ASSERT_TRUE(rig_.fake.Do("release"));
   ExpectMessage("joint reflex");
@@ -94,7 +94,7 @@ TEST_P(FrankaFault, GuidingByHand) {
 
 // If a person has pressed the stop button or the state of the arm is unknown, the arm must not
 // remain powered. If it reports a fault and holds itself at rest, it may remain powered.
-TEST_P(FrankaFault, EndsWithoutPowerWhereItMustNotBeLeftHolding) {
+TEST_P(FrankaFault, EndsWithoutPowerIfTheArmMustNotBeHeld) {
   const std::vector<std::pair<const char*, bool>> ends = {
       {"user stop", true}, {"emergency stop", true},       {"drop link", true}, {"freeze", true},
       {"babble", true},    {"reflex joint_reflex", false}, {"guide", false}};
@@ -182,7 +182,7 @@ TEST_P(FrankaFault, LostStatesInMotion) {
   ExpectMessage("stopped by a reflex");
 }
 
-TEST_P(FrankaFault, RepeatedStatesAreSilenceToo) {
+TEST_P(FrankaFault, RepeatedStatesCountAsSilence) {
   rig_.Connect();
   ASSERT_TRUE(rig_.Ticks(10, false));
   ASSERT_TRUE(rig_.fake.Do("replay state"));
@@ -215,7 +215,7 @@ TEST_P(FrankaFault, MotionThatNeverEnds) {
   ExpectMessage("did not end its motion");
 }
 
-TEST_P(FrankaFault, MotionThatEndsUnasked) {
+TEST_P(FrankaFault, MotionThatEndsWithoutARequest) {
   EXPECT_LE(TicksUntilReported("answer 0"), 2);
   ExpectMessage("has ended the motion");
 }
@@ -231,7 +231,7 @@ TEST_P(FrankaFault, RefusalToMove) {
 }
 
 // The driver must not allocate memory in a tick, neither in motion nor after a fault.
-TEST_P(FrankaFault, TakesNothingFromTheHeap) {
+TEST_P(FrankaFault, DoesNotAllocate) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   for (const char* what : {"lose states 3", "repeat state", "cut state", "lose commands 4",
                            "reflex", "drop link", "freeze", "answer 7"}) {
@@ -292,7 +292,7 @@ TEST(FrankaRefusal, UnknownVersion) {
   EXPECT_TRUE(Contains(more, "or extend this driver")) << more;
 }
 
-TEST(FrankaRefusal, AnotherVersionThanAskedFor) {
+TEST(FrankaRefusal, AnotherVersionThanRequested) {
   FrankaRig rig(FrankaOfVersion(5));
   FrankaOptions options = rig.options();
   options.version = fci::kResearch3Version;
@@ -336,14 +336,14 @@ TEST(FrankaRefusal, ArmThatIsNotReady) {
   }
 }
 
-TEST(FrankaRefusal, StatesThatCannotBe) {
+TEST(FrankaRefusal, ImpossibleStates) {
   FrankaRig rig;
   ASSERT_TRUE(rig.fake.Do("spoil state"));
   ASSERT_TRUE(rig.fake.Do("replay state"));
   EXPECT_TRUE(Contains(Refusal(&rig), "sends states with invalid numbers")) << Refusal(&rig);
 }
 
-TEST(FrankaRefusal, ThresholdsThatItDoesNotTake) {
+TEST(FrankaRefusal, ThresholdsThatTheArmRefuses) {
   FrankaRig rig;
   FrankaOptions options = rig.options();
   options.collision.emplace();
@@ -379,7 +379,7 @@ TEST(FrankaRefusal, SomethingElseAtThePort) {
   }
 }
 
-TEST(FrankaCollisionThresholds, AreSetWhereAskedFor) {
+TEST(FrankaCollisionThresholds, AreSetIfRequested) {
   for (const std::uint16_t version : {fci::kPandaVersion, fci::kResearch3Version}) {
     FrankaRig rig(FrankaOfVersion(version));
     FrankaOptions options = rig.options();

@@ -173,7 +173,7 @@ TEST(FrankaState, IsReadFromItsPlacesInEachLayout) {
   }
 }
 
-TEST(FrankaState, ThatCannotBeIsRefusedAndChangesNothing) {
+TEST(FrankaState, ThatIsImpossibleIsRefusedAndChangesNothing) {
   constexpr double kBad[] = {std::numeric_limits<double>::quiet_NaN(),
                              std::numeric_limits<double>::infinity(), -1e30, 400};
   for (const Layout& l : kLayouts) {

@@ -183,7 +183,7 @@ TEST_P(FrankaRateLimiter, FollowsWhatIsSmoothWithoutDelay) {
   EXPECT_LT(largest, 1e-9);
 }
 
-TEST_P(FrankaRateLimiter, IsNotMadeFasterWhenSomethingWasMissed) {
+TEST_P(FrankaRateLimiter, IsNotFasterAfterMissedStates) {
   RateLimiter limiter = Limiter();
   Joints q{}, asked{};
   for (std::size_t i = 0; i < kJoints; ++i) q[i] = (limits()[i].lower + limits()[i].upper) / 2;

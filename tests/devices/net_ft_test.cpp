@@ -103,7 +103,7 @@ TEST_F(NetFtTest, GivesTheWrenchInNewtons) {
   }
 }
 
-TEST_F(NetFtTest, CountsOnOverTheEndOfTheNumbers) {
+TEST_F(NetFtTest, ContinuesCountingWhenTheNumbersWrap) {
   const auto sensor = Connect({{"first", "4294967290"}});
   WrenchReading before, after;
   EXPECT_TRUE(sensor->Read(&before).ok());
@@ -131,7 +131,7 @@ TEST_F(NetFtTest, AgesWhenNothingComes) {
 }
 
 // Readings that arrive after newer ones are outdated and must be ignored.
-TEST_F(NetFtTest, DoesNotGoBack) {
+TEST_F(NetFtTest, IgnoresOlderReadings) {
   const auto sensor = Connect();
   network_.Pass(0.020);
   WrenchReading before, after;
@@ -170,7 +170,7 @@ TEST_F(NetFtTest, ReportsARestartedCounter) {
 // The driver must discard a record whose number the sensor cannot have reached, because it would
 // make all later records look old. If the sensor continues with such numbers, its counter has
 // restarted.
-TEST_F(NetFtTest, ANumberFarAheadMakesNoOtherOld) {
+TEST_F(NetFtTest, ANumberFarAheadDoesNotMakeOthersOld) {
   for (const std::uint32_t jump : {100U, 1'000'000U, 0x4000'0000U, 0x7fff'ffffU}) {
     fake_ = MakeFakeNetFt({});
     network_.Add(kHost, fake_.get(), &mechanics_);
@@ -246,7 +246,7 @@ TEST_F(NetFtTest, ARecordAheadIsAcceptedAfterSilence) {
 }
 
 // A repeated reading means that the sensor is frozen, not that its counter has restarted.
-TEST_F(NetFtTest, OneThatIsGivenAgainIsNotANew) {
+TEST_F(NetFtTest, ARepeatedReadingIsNotNew) {
   const auto sensor = Connect();
   WrenchReading reading;
   fake_->Do("repeat");
@@ -309,7 +309,7 @@ TEST_F(NetFtTest, ReportsSaturationAndErrors) {
 }
 
 // No datagram is lost or out of order. Only the sensor's own numbers show that the delay grows.
-TEST_F(NetFtTest, AQueueThatGrowsSlowlyIsSeen) {
+TEST_F(NetFtTest, AQueueThatGrowsSlowlyIsDetected) {
   constexpr double kGrowth = 5e-6;  // per millisecond [s]
   for (const NetFtMake make : {NetFtMake::kAti, NetFtMake::kOnRobot}) {
     fake_ = MakeFakeNetFt(make == NetFtMake::kAti ? FakeOptions{} : FakeOptions{{"onrobot", ""}});
@@ -450,7 +450,7 @@ TEST_F(NetFtTest, RepeatsALostRequest) {
   EXPECT_EQ(after.sequence - before.sequence, 25u);
 }
 
-TEST_F(NetFtTest, SaysWhyItCannotBeUsed) {
+TEST_F(NetFtTest, ReportsWhyItCannotBeUsed) {
   EXPECT_EQ(Refusal("silent"),
             "192.0.2.30:49152 sends no force readings. Check that the sensor is on, that RDT is "
             "enabled in its settings, and that no other client is connected.");

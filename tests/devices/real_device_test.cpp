@@ -157,7 +157,7 @@ TEST_F(RealDeviceTest, ReportsAgesAndWhatIsBeyondItsRange) {
   EXPECT_FALSE(sample.arms[1].sensor_saturated);
 }
 
-TEST_F(RealDeviceTest, NamesTheHandThatHasTrouble) {
+TEST_F(RealDeviceTest, NamesTheHandWithTheFault) {
   said_[1].status = {StopCause::kDevice};
   said_[1].reading.fault = true;
   DeviceSample sample;
@@ -169,7 +169,7 @@ TEST_F(RealDeviceTest, NamesTheHandThatHasTrouble) {
   EXPECT_EQ(device_->Trouble(), "right: trouble");
 }
 
-TEST_F(RealDeviceTest, NamesTheHandWhoseSensorHasTrouble) {
+TEST_F(RealDeviceTest, NamesTheHandWithTheSensorFault) {
   sensed_ = {StopCause::kSensor};
   DeviceSample sample;
   const Status status = device_->Read(&sample);
@@ -178,7 +178,7 @@ TEST_F(RealDeviceTest, NamesTheHandWhoseSensorHasTrouble) {
 }
 
 // The device reports the first fault, but the most severe one determines how the stop ends.
-TEST_F(RealDeviceTest, EndsWithoutPowerIfAnyOfThemMustNotBeLeftHolding) {
+TEST_F(RealDeviceTest, EndsWithoutPowerIfAnyArmMustNotBeHeld) {
   const Status holds{StopCause::kDevice};
   Status ends = holds;
   ends.power_off = true;
@@ -274,7 +274,7 @@ TEST_F(RealDeviceTest, AnEnablingDeviceIsPressedReleasedOrSilent) {
                DeviceError);
 }
 
-TEST_F(RealDeviceTest, TakesNothingFromTheHeap) {
+TEST_F(RealDeviceTest, DoesNotAllocate) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   DeviceSample sample;
   const DeviceCommand command = Command(RunState::kRun, 0.1);

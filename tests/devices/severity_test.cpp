@@ -69,7 +69,7 @@ TEST_P(Severity, TheLesserHoldsAndTheWorseEndsWithoutPower) {
 }
 
 // If a robot ignores a power-off request, the danger continues after the stop.
-TEST(PowerOff, ThatIsNotObeyedIsWarnedOfUntilItIsDone) {
+TEST(PowerOff, ThatTheArmIgnoresCausesAWarningUntilItHappens) {
   BenchOptions options;
   options.scenario = std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/dual_ur5.yaml";
   Bench bench(options);

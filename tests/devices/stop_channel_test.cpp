@@ -28,7 +28,7 @@ class StopChannelTest : public testing::Test {
   std::unique_ptr<StopChannel> channel_ = OpenStopChannel({ArmMake::kUr, kUrHost}, &bench_.network);
 };
 
-TEST_F(StopChannelTest, HearsTheController) { EXPECT_EQ(Tend(5000), Link::kTalks); }
+TEST_F(StopChannelTest, ReceivesDataFromTheController) { EXPECT_EQ(Tend(5000), Link::kTalks); }
 
 // The arm must brake although the loop continues to send velocities.
 TEST_F(StopChannelTest, BrakesTheArm) {

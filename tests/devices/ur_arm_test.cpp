@@ -67,7 +67,7 @@ TEST_P(UrArmTest, StandsWhileTheTickHasNotBegun) {
   EXPECT_DOUBLE_EQ(bench.speed(), 0.3);
 }
 
-TEST_P(UrArmTest, ReadsWhatTheArmIs) {
+TEST_P(UrArmTest, ReadsTheArmsModelAndVersion) {
   UrBench bench(GetParam());
   bench.mechanics.sample.F_S_raw << 1, -2, 3, -0.4, 0.5, -0.6;
   bench.mechanics.sample.q << 0.1, 0.2, 0.3, -0.4, -0.5, 7;
@@ -220,7 +220,7 @@ TEST(UrArm, WrenchBeyondAnySensorIsSaturated) {
   EXPECT_TRUE(bench.reading.wrench.saturated);
 }
 
-TEST_P(UrArmTest, CountsPackagesThatWereLeftOut) {
+TEST_P(UrArmTest, CountsMissingPackages) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(100, 0);
   EXPECT_EQ(bench.reading.link.lost, 0U);
@@ -257,7 +257,7 @@ TEST(UrArm, StreamCutAtAnyByteGivesTheSameSamples) {
   }
 }
 
-TEST(UrArm, TakesNothingFromTheHeap) {
+TEST(UrArm, DoesNotAllocate) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   for (const char* fault : {"text", "late 10", "repeat", "rewind", "protective stop", "power off",
                             "not a number", "stop program", "freeze", "malformed", "drop link"}) {
@@ -279,7 +279,7 @@ TEST(UrArm, TakesNothingFromTheHeap) {
   }
 }
 
-TEST(UrArm, EndsItsProgramWhenItIsGone) {
+TEST(UrArm, EndsItsProgramWhenItIsDestroyed) {
   UrBench bench;
   bench.Connect().Ticks(100, 0.3);
   bench.arm.reset();

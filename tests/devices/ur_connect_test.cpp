@@ -28,7 +28,7 @@ TEST(UrConnect, NoAnswer) {
   EXPECT_TRUE(Says(Refusal(&bench, {.host = "192.0.2.99"}), "192.0.2.99:30004 does not answer"));
 }
 
-TEST(UrConnect, ProtocolOfBefore) {
+TEST(UrConnect, AnOlderProtocol) {
   UrBench bench;
   bench.fake.rtde().newest_protocol = 1;
   EXPECT_EQ(Refusal(&bench),
@@ -86,7 +86,7 @@ TEST(UrConnect, RegistersThatAFieldbusHolds) {
   }
 }
 
-TEST(UrConnect, ValuesThatAreNotThere) {
+TEST(UrConnect, MissingValues) {
   for (const char* name : {"timestamp", "actual_q", "safety_status_bits", "ft_raw_wrench",
                            "input_int_register_25", "output_int_register_24"}) {
     UrBench bench;
@@ -95,7 +95,7 @@ TEST(UrConnect, ValuesThatAreNotThere) {
   }
 }
 
-TEST(UrConnect, RegistersThatCannotBe) {
+TEST(UrConnect, ImpossibleRegisters) {
   for (const int first : {-1, 19, 23, 43, 48}) {
     UrBench bench;
     EXPECT_TRUE(
@@ -103,7 +103,7 @@ TEST(UrConnect, RegistersThatCannotBe) {
   }
 }
 
-TEST(UrConnect, AccelerationsThatCannotBe) {
+TEST(UrConnect, ImpossibleAccelerations) {
   for (const double a : {0.0, -1.0, 101.0, std::nan("")}) {
     UrBench bench;
     EXPECT_TRUE(Says(Refusal(&bench, {.host = kUrHost, .acceleration = a}), "acceleration"));
@@ -174,7 +174,7 @@ TEST(UrConnect, TheFlangeIsTheToolLessItsOffset) {
 }
 
 // The program runs but does not echo the registers, so the driver cannot know what it would follow.
-TEST(UrConnect, AControllerThatTakesNoRegistersIsRefused) {
+TEST(UrConnect, AControllerThatAcceptsNoRegistersIsRefused) {
   UrBench bench;
   bench.fake.Do("deaf");
   EXPECT_TRUE(Says(Refusal(&bench), "does not start the program that receives our commands"));
@@ -273,7 +273,7 @@ TEST(UrConnect, AnyScriptPortDoes) {
 }
 
 // The registers contain arbitrary values from an earlier program.
-TEST(UrConnect, RegistersOfBeforeMoveNothing) {
+TEST(UrConnect, OldRegisterValuesMoveNothing) {
   UrBench bench;
   auto& c = bench.fake.controller();
   c.input_double.fill(0.7);

@@ -81,7 +81,7 @@ TEST(UrArm, WithInvalidNumbersFollowsOneStopOnly) {
   }
 }
 
-TEST(UrArm, ReportsWhetherItMayBeLeftHolding) {
+TEST(UrArm, ReportsWhetherItMayBeHeld) {
   const std::vector<std::pair<const char*, bool>> ends = {
       {"protective stop", false}, {"emergency stop", true}, {"drop link", true},
       {"malformed", true},        {"stop program", false},  {"not a number", false}};
@@ -116,7 +116,7 @@ TEST_P(UrArmTest, ArmBrakesByItselfWhenNothingIsWrittenAndStaysStanding) {
   }
 }
 
-TEST(UrArm, ProgramThatHearsNothingEndsAndThatIsAFault) {
+TEST(UrArm, AProgramWithoutCommandsEndsWhichIsAFault) {
   UrBench bench;
   bench.Connect().Ticks(100, 0.0);
   bench.fake.Do("deaf");
@@ -126,7 +126,7 @@ TEST(UrArm, ProgramThatHearsNothingEndsAndThatIsAFault) {
   EXPECT_NE(bench.arm->Trouble().find("received no command"), std::string::npos);
 }
 
-TEST(UrArm, ProgramThatRunsOnWithoutHearingIsAFault) {
+TEST(UrArm, AProgramThatContinuesWithoutCommandsIsAFault) {
   UrBench bench;
   bench.Connect();
   bench.fake.Do("deaf");  // before the first command, so the program waits and does not end

@@ -9,7 +9,7 @@
 namespace predictor {
 namespace {
 
-TEST_P(UrArmTest, CutsThePowerWhenAsked) {
+TEST_P(UrArmTest, CutsThePowerOnRequest) {
   UrBench bench(GetParam());
   bench.Connect().Ticks(50, 0.1);
   EXPECT_FALSE(bench.reading.no_power_off);
@@ -27,7 +27,7 @@ TEST_P(UrArmTest, CutsThePowerWhenAsked) {
 }
 
 // A stop requests power-off, but something prevents the robot from obeying.
-TEST_P(UrArmTest, SaysThatItKeepsItsPower) {
+TEST_P(UrArmTest, ReportsThatItKeepsItsPower) {
   for (const char* why : {"no dashboard", "local control", "drop dashboard"}) {
     UrBench bench(GetParam());
     const bool none = why == std::string("no dashboard");

@@ -143,7 +143,7 @@ TEST(Rtde, LongStreamsFit) {
   EXPECT_EQ(Parse({all}).size(), 2000U);
 }
 
-TEST(Rtde, SizesThatCannotBeBreakTheStream) {
+TEST(Rtde, ImpossibleSizesBreakTheStream) {
   for (const char* head : {"00 00 55", "00 01 55", "00 02 55", "10 01 55", "ff ff 55"}) {
     bool broken = false;
     Bytes bytes = Hex(head);
@@ -201,7 +201,7 @@ TEST(Rtde, TextMessagesHaveTwoTextsAndALevel) {
     EXPECT_FALSE(rtde::Decode(std::span(bytes).first(size), &text)) << size;
 }
 
-TEST(Rtde, RefusalsNameTheValueAndWhatToDo) {
+TEST(Rtde, RefusalsNameTheValueAndTheRemedy) {
   const std::vector<rtde::Field> recipe = {{"a", "DOUBLE"}, {"b", "INT32"}};
   const auto refusal = [&](int id, const std::string& types) {
     return rtde::Refusal(recipe, {id, types});
@@ -268,7 +268,7 @@ TEST(Rtde, StateIsTakenInTheRecipesOrderAndNoOtherSize) {
   }
 }
 
-TEST(UrState, OfNumbersThatCannotBeIsNotTaken) {
+TEST(UrState, WithImpossibleNumbersIsNotUsed) {
   UrState state;
   EXPECT_TRUE(Plausible(state));
   state.timestamp = 9e8;
@@ -321,7 +321,7 @@ TEST(UrState, ANanSpeedSliderIsNotAtItsEnd) {
 }
 
 // The state of the arm is unknown, or a person has pressed its stop button.
-TEST(UrState, EndsWithoutPowerWhereItMustNotBeLeftHolding) {
+TEST(UrState, EndsWithoutPowerIfTheArmMustNotBeHeld) {
   for (int fault = 0; fault <= static_cast<int>(UrFault::kCommand); ++fault) {
     const auto f = static_cast<UrFault>(fault);
     const bool ends = f == UrFault::kClosed || f == UrFault::kMalformed || f == UrFault::kDeaf ||

@@ -158,7 +158,7 @@ TEST_P(UrScriptTest, BrakesWithinTwentyMillisecondsOfSilenceAndForGood) {
   }
 }
 
-TEST_P(UrScriptTest, ShorterSilenceIsBorne) {
+TEST_P(UrScriptTest, ShorterSilenceIsTolerated) {
   Bench bench(GetParam());
   bench.Cycle();
   for (int i = 0; i < 100; ++i) {

@@ -177,7 +177,7 @@ TEST(UrScriptLanguage, StopjBrakesAndBlocksUntilStandstill) {
   EXPECT_EQ(Play(text, 15).set_point()[0], 0);
 }
 
-TEST(UrScriptLanguage, WhatIsNotKnownIsAnError) {
+TEST(UrScriptLanguage, UnknownNamesAreErrors) {
   EXPECT_NE(ErrorOf("movej([0,0,0,0,0,0])").find("line 2: unknown function 'movej'"),
             std::string::npos);
   EXPECT_NE(ErrorOf("x = y").find("unknown variable 'y'"), std::string::npos);

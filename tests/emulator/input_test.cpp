@@ -108,7 +108,7 @@ TEST(Buttons, EndAsPlannedEndsWithoutACause) {
   EXPECT_EQ(emulator.record().cause, StopCause::kNone);
 }
 
-TEST(Hands, OfAPageAreTakenFromABrowserOperatorAlone) {
+TEST(Hands, OfAPageAreUsedOnlyWithABrowserOperator) {
   Emulator scripted(LoadTestScenario("box_9kg"));
   Pass(&scripted, 0.1, [] {});
   EXPECT_FALSE(scripted.Submit(Hold(0, scripted.record().hands[0].virtual_.pose)));

@@ -282,7 +282,7 @@ class BeyondALimit : public RealArms {
   double offset_ = 0, seen_ = 0;
 };
 
-TEST_F(BeyondALimit, AStartIsRefusedAndRecoveryLeadsBack) {
+TEST_F(BeyondALimit, AStartIsRefusedAndRecoveryReturnsTheJoint) {
   ASSERT_TRUE(Await(RunState::kIdle));
   const double lower = -3.0718;  // panda_joint4
   // The offset grows slowly, because a jump would count as a fault.

@@ -239,7 +239,7 @@ TEST_F(FootSwitch, DoesNotCountUntilItWasReleased) {
   EXPECT_EQ(emulator_->state(), RunState::kAlign);
 }
 
-TEST_F(FootSwitch, StillPressedAfterAStopCountsForNothing) {
+TEST_F(FootSwitch, StillPressedAfterAStopDoesNotCount) {
   ASSERT_TRUE(Run());
   Tick(500);
   Ask(RunEvent::kStopRequested);

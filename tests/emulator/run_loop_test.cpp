@@ -30,7 +30,7 @@ TEST(RealTime, RunsItsTimeAndComesToRest) {
   EXPECT_FALSE(run.report.scheduling.empty());
 }
 
-TEST(RealTime, EndsWhenAskedTo) {
+TEST(RealTime, EndsOnRequest) {
   Paced run("box_9kg");
   std::thread asks([&run] {
     TickRecord record;
@@ -45,7 +45,7 @@ TEST(RealTime, EndsWhenAskedTo) {
 
 // A stop request arrives through the mailbox. The loop must continue to tick until its end is
 // requested.
-TEST(RealTime, TakesAStopAndStaysHeld) {
+TEST(RealTime, AcceptsAStopAndStaysHeld) {
   Paced run("box_9kg");
   Shared<RunMailbox> mailbox;
   std::thread page([&run, &mailbox] {
@@ -76,7 +76,7 @@ TEST(RealTime, TakesAStopAndStaysHeld) {
 }
 
 // Unity's clients have a separate mailbox that accepts only stop requests.
-TEST(RealTime, TakesAStopOfRosTcp) {
+TEST(RealTime, AcceptsAStopFromRosTcp) {
   Paced run("box_9kg");
   Shared<StopMailbox> stops;
   std::thread unity([&run, &stops] {
@@ -159,7 +159,7 @@ TEST(RealTime, StopsWhereTheWatchdogIsSilent) {
 
 // Another process can write the mailbox, so the loop must check by itself whether the switch is
 // allowed.
-TEST(RealTime, TakesAnotherScenarioOnlyWhereItMayBeChosen) {
+TEST(RealTime, AcceptsAnotherScenarioOnlyInPermittedStates) {
   for (const bool choose : {false, true}) {
     Paced run("box_9kg");
     Shared<RunMailbox> mailbox;

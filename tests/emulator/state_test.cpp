@@ -155,7 +155,7 @@ TEST(State, AnotherPressureOnTheHandleIsNoticed) {
   EXPECT_LE(first, 3020U);
 }
 
-TEST(State, SavingTakesNoHeapAndFits) {
+TEST(State, SavingDoesNotAllocateAndFits) {
   Emulator emulator(LoadTestScenario("box_9kg"));
   for (int k = 0; k < 2000; ++k) emulator.Tick(), AutoStart(&emulator);
   std::vector<std::byte> bytes(kStateBytes);

@@ -378,7 +378,7 @@ TEST(SurveyReport, ShowsThePapersStudyAsThePaperDoes) {
 // method=PermutationMethod(n_resamples=inf)), which enumerates all signs. The shift is the median
 // of the 153 Walsh averages. Its limits are the 35th and the 119th, as in the published tables for
 // 17. Holm's correction was computed by hand.
-TEST(SurveyReport, HoldsThePapersAnswersAgainstNeutral) {
+TEST(SurveyReport, ComparesThePapersAnswersWithNeutral) {
   struct Expected {
     double p, adjusted, shift, lower, upper;  // p in units of 2^−16
     std::size_t zeros;

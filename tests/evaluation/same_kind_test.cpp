@@ -71,7 +71,7 @@ TEST(SameKind, PIsThatOfGoingThroughAllWays) {
   EXPECT_FALSE(TestSameKind(low, low).distinguished());
 }
 
-TEST(SameKind, SaysFromHowManyRepeatsItCanDistinguish) {
+TEST(SameKind, StatesFromHowManyRepeatsItCanDistinguish) {
   std::mt19937_64 random(1);
   for (const std::size_t n : {2u, 3u, 4u, 17u})
     EXPECT_EQ(TestSameKind(Waves(n, 1, &random), Waves(n, 9, &random)).can_distinguish(), n >= 4)

@@ -190,7 +190,7 @@ TEST(SignedRank, EnumeratesWhatGoingThroughAllSignsGives) {
   }
 }
 
-TEST(SignedRank, SaysNothingOfNoDifference) {
+TEST(SignedRank, HasNoResultWithoutDifferences) {
   const auto none = TestSignedRank({});
   EXPECT_EQ(none.p, 1);
   const auto zeros = TestSignedRank(std::vector<double>(5, 0.0), ZeroRule::kPratt);
@@ -199,7 +199,7 @@ TEST(SignedRank, SaysNothingOfNoDifference) {
   EXPECT_TRUE(std::isnan(HodgesLehmann({}).estimate));
 }
 
-TEST(HodgesLehmannEstimate, SaysWhatConfidenceFewDifferencesGive) {
+TEST(HodgesLehmannEstimate, StatesTheConfidenceOfFewDifferences) {
   const auto three = HodgesLehmann(std::vector<double>{1, 5, 2});
   EXPECT_EQ(three.lower, 1);
   EXPECT_EQ(three.upper, 5);

@@ -103,7 +103,7 @@ TEST(Summary, HasTheContractsNames) {
       EXPECT_TRUE(json["timing_us"][stage].contains(quantile)) << stage;
 }
 
-TEST(Summary, SaysWhetherTheHapticLoopWasPredictedUnstable) {
+TEST(Summary, StatesWhetherTheHapticLoopWasPredictedUnstable) {
   SummaryBuilder builder(Named("name", 7));
   builder.Add(Running(0.001, 0.002, 10));
   Summary s = builder.summary();
@@ -251,7 +251,7 @@ TEST(Summary, ReportsWhatMadeAStopHarderInItsOwnTick) {
 
 // If the arms did not come to rest, the table must not claim that they did. The cause or the end of
 // the stop can show this.
-TEST(Summary, OfArmsThatDidNotRestSaysSo) {
+TEST(Summary, StatesThatArmsDidNotRest) {
   const auto rested = [](StopCause cause, Quantity quantity, const StatusRecord& harder) {
     SummaryBuilder builder(Named("name", 1));
     TickRecord stop = Running(0.001, 0, 1);
@@ -311,7 +311,7 @@ TEST(Summary, ShowsEachQuantityInItsOwnUnit) {
   EXPECT_EQ(reported(StopCause::kOperator, Quantity::kNone, 0), "by cause 'operator'.");
 }
 
-TEST(Summary, OfWhatNeverRanHasNoFigures) {
+TEST(Summary, HasNoFiguresIfRunWasNotReached) {
   SummaryBuilder builder(Named("name", 1));
   TickRecord record = Running(0, 9, 99);
   record.state = RunState::kIdle;

@@ -118,7 +118,7 @@ TEST_F(EvaluatorProcessTest, EndsWithTheRun) {
   EXPECT_NE(kill(pid, 0), 0);
 }
 
-TEST_F(EvaluatorProcessTest, SaysWhatIsMissingOrImpossible) {
+TEST_F(EvaluatorProcessTest, ReportsWhatIsMissingOrImpossible) {
   Scenario scenario = Box();
   scenario.operator_.stance.reset();
   EXPECT_THROW(Start(scenario), InputError);

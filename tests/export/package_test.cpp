@@ -74,7 +74,7 @@ TEST_F(Package, GivesFilesOfOneNameTwoNames) {
   }
 }
 
-TEST_F(Package, BringsTexturesAlongAndSaysWhichAreMissing) {
+TEST_F(Package, IncludesTexturesAndReportsMissingOnes) {
   const std::string dae = R"(<COLLADA><library_images>
       <image id="a"><init_from>../textures/wood.png</init_from></image>
       <image id="b"><init_from><ref> ../textures/WOOD.jpg </ref></init_from></image>
@@ -134,7 +134,7 @@ TEST_F(Package, KeepsMaterials) {
   EXPECT_EQ(files.at("meshes/texture_cloth.png"), "cloth");
 }
 
-TEST_F(Package, RenamesOnlyWhatIsCalledLikeTheScenesOwn) {
+TEST_F(Package, RenamesOnlyNamesThatTheSceneUses) {
   Exported();
   const UrdfModel urdf = ReadUrdf(folder.path() / "out/scene.urdf");
   const std::vector<std::string> expected = {"world",

@@ -108,7 +108,7 @@ TEST(WriteScenePackage, RejectsAListThatLeadsElsewhere) {
   EXPECT_EQ(Read(around.path() / "there/precious"), "p");
 }
 
-TEST(WriteScenePackage, SaysWhyItCannotWrite) {
+TEST(WriteScenePackage, ReportsWhyItCannotWrite) {
   const test::TemporaryFolder to;
   Write(to.path() / "file", "");
   const std::string file = Refusal(PackageOf(kOld), to.path() / "file", true);

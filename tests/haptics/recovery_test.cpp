@@ -58,7 +58,7 @@ class RecoveryTest : public testing::Test {
   std::array<HandWrench, kHands> wrench_;
 };
 
-TEST_F(RecoveryTest, FindsWhatIsBeyond) {
+TEST_F(RecoveryTest, FindsViolations) {
   int joints = 0, links = 0, nothing = 0;
   for (int k = 0; k < 3000; ++k) {
     two_.Draw(&random_);
@@ -222,7 +222,7 @@ TEST_F(RecoveryTest, IsSlow) {
   EXPECT_GT(fastest, 0.9 * Recovery::kHandleSpeed);
 }
 
-TEST_F(RecoveryTest, TakesNothingFromTheHeap) {
+TEST_F(RecoveryTest, DoesNotAllocate) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   two_.Draw(&random_);
   std::array<JointVector, kHands> v;

@@ -50,7 +50,7 @@ class LoopAtTheTerminal : public Commissioning {
   }
 };
 
-TEST_F(LoopAtTheTerminal, CtrlCInMotionBringsTheArmToRestAndSaysSo) {
+TEST_F(LoopAtTheTerminal, CtrlCInMotionBringsTheArmToRestAndReportsIt) {
   Attempts attempts;
   while (attempts.Next()) {
     SwitchOn();
@@ -223,7 +223,7 @@ commissioning::Swings SwingsOf(const VelocityLoopSpec& spec, int measured) {
 }
 
 // This test needs no arm.
-TEST_F(Commissioning, SwingsThatWereMeasuredAreNotMeasuredAgain) {
+TEST_F(Commissioning, MeasuredSwingsAreNotMeasuredAgain) {
   const commissioning::SwingFile file(folder_.file(), "left", HashOf(*folder_.machine().left));
   const VelocityLoopSpec truth{11, 0.8, 0.006};
   file.Save(SwingsOf(truth, 1), "a-day");
@@ -279,7 +279,7 @@ TEST_F(Commissioning, SwingsOfAnotherNumberOfJointsAreNotUsed) {
   EXPECT_EQ(terminal.Wait(), kBadInput) << terminal.Screen();
 }
 
-TEST_F(Commissioning, SwingsOutOfWhichNoLoopCanBeMadeAreNotKept) {
+TEST_F(Commissioning, SwingsThatGiveNoLoopAreNotKept) {
   const commissioning::SwingFile file(folder_.file(), "left", HashOf(*folder_.machine().left));
   commissioning::Swings swings = SwingsOf({11, 0.8, 0.006}, 6);
   for (commissioning::LoopRecord& record : swings.records)

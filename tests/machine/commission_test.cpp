@@ -66,7 +66,7 @@ TEST_F(Commissioning, DevicesReportsWhichAnswerAndContinuesIfOneDoesNot) {
 
 // ---- the handle ---------------------------------------------------------------------------------
 
-TEST_F(Commissioning, TheHandleIsFoundInPosesIntoWhichAPersonLeads) {
+TEST_F(Commissioning, TheHandleIsFoundInPosesToWhichAPersonGuides) {
   SwitchOn();
   folder_.Change([](Machine* machine) {  // removes the measurement of the handle
     machine->left->arm.payload = {};
@@ -196,7 +196,7 @@ TEST_F(Commissioning, TheBasesAreFoundByTouchingCommonPoints) {
 
 // ---- push tests ---------------------------------------------------------------------------------
 
-TEST_F(Commissioning, PushesThatReadAsPushedAreNotedForBothArms) {
+TEST_F(Commissioning, CorrectPushesAreRecordedForBothArms) {
   SwitchOn();
   Terminal terminal = Predictor({"calibrate", "push", "--json", ResultFile()});
   PushOne(&terminal);

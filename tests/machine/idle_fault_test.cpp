@@ -135,7 +135,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // The program reports the minor fault long before the major one occurs. After the major one, the
 // arms must no longer hold their position.
-TEST(IdleFaults, AnEmergencyStopWhileTheArmsAreHeldTakesThePowerAway) {
+TEST(IdleFaults, AnEmergencyStopWhileTheArmsAreHeldRemovesThePower) {
   const MachineFolder folder({"ur", "ur"});
   folder.NotePushTests();
   for (const std::string side : {"left", "right"}) {

@@ -297,7 +297,7 @@ class PushTests : public testing::Test {
   MachineFolder folder_;
 };
 
-TEST_F(PushTests, AreAskedForBeforeTheFirstRun) {
+TEST_F(PushTests, AreRequiredBeforeTheFirstRun) {
   const auto [code, said] = Run();
   EXPECT_EQ(code, 2);
   EXPECT_NE(said.find("arms.left has not passed a push test"), std::string::npos) << said;
@@ -305,7 +305,7 @@ TEST_F(PushTests, AreAskedForBeforeTheFirstRun) {
   EXPECT_EQ(said.find("Connecting"), std::string::npos) << said;
 }
 
-TEST_F(PushTests, AreAskedForAgainAfterEveryChangeOfTheArm) {
+TEST_F(PushTests, AreRequiredAgainAfterEveryChangeOfTheArm) {
   folder_.NotePushTests();
   {
     const auto [code, said] = Run();
@@ -333,7 +333,7 @@ TEST_F(PushTests, AreAskedForAgainAfterEveryChangeOfTheArm) {
 
 // The payload in the arm's controller contradicts the file. The program must check this over the
 // wire before anything moves.
-TEST_F(PushTests, ThePayloadThatTheRobotIsSetToIsComparedToo) {
+TEST_F(PushTests, ThePayloadInTheRobotsSettingsIsCompared) {
   folder_.NotePushTests();
   for (const bool fits : {false, true}) {
     const FakeRig rig(FileOf("dual_ur5"),
@@ -351,7 +351,7 @@ TEST_F(PushTests, ThePayloadThatTheRobotIsSetToIsComparedToo) {
 
 // The controller belongs to a different arm than the file's model. The program must check this over
 // the wire before anything moves.
-TEST_F(PushTests, TheArmThatAnswersHasToBeThatOfTheModel) {
+TEST_F(PushTests, TheConnectedArmMustBeThatOfTheModel) {
   folder_.NotePushTests();
   const FakeRig rig(FileOf("dual_ur5"),
                     {"left=ur:" + HostOf(kLeft), "right=ur:" + HostOf(kRight) + ",model=ur10e"});
@@ -420,7 +420,7 @@ TEST_F(RigsConsole, StopsByAnyOtherKey) {
 }
 
 // While a person types a command, letters belong to it. Any other key must stop the run as usual.
-TEST_F(RigsConsole, StopsAlsoWhileACommandIsTyped) {
+TEST_F(RigsConsole, StopsEvenWhileACommandIsTyped) {
   for (const std::string key : {"\x1b", "\t", "\x13", "\x1a"})
     InIdle([key](Terminal* terminal, bool* expected) {
       terminal->Type(":market \x7f");

@@ -154,7 +154,7 @@ TEST(ProcessFault, AWatchdogThatIsStoppedEndsMotionSoak) {
 }
 
 // A console that fails with an exception must have the same effect as an operator who left.
-TEST(ProcessFault, AConsoleThatHearsNoMoreKeysStopsTheRun) {
+TEST(ProcessFault, AConsoleThatReceivesNoMoreKeysStopsTheRun) {
   const MachineFolder folder({"ur", "ur"});
   folder.NotePushTests();
   const FaultySystem system("FAULTY_MEMORY", "console,1,1");

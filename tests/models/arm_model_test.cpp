@@ -28,7 +28,7 @@ std::string Refusal(const ArmSpec& arm) {
   return "";
 }
 
-TEST(ArmModel, HasTheLinksAndThePostureThatAreNamed) {
+TEST(ArmModel, HasTheNamedLinksAndPosture) {
   ArmSpec arm = Panda();
   EXPECT_EQ(Refusal(arm), "");
   arm.posture.clear();

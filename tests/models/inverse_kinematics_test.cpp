@@ -30,7 +30,7 @@ std::vector<RobotCase> Arms() {  // the tree has too few joints to reach a given
 
 INSTANTIATE_TEST_SUITE_P(Robots, InverseKinematics, testing::ValuesIn(Arms()), NameOf);
 
-TEST_P(InverseKinematics, ReachesWhatCanBeReached) {
+TEST_P(InverseKinematics, ReachesReachablePoses) {
   for (int i = 0; i < 50; ++i, Shake()) {
     const Pose goal = PoseAt(q);
     JointVector solution;
@@ -53,7 +53,7 @@ TEST_P(InverseKinematics, StaysNearTheStart) {
   }
 }
 
-TEST_P(InverseKinematics, SaysWhenItCannot) {
+TEST_P(InverseKinematics, ReportsUnreachablePoses) {
   Pose goal = SlantedBase();
   goal.p += Vector3(3, 0, 0);
   JointVector solution;

@@ -191,7 +191,7 @@ TEST_F(GeneratedUrdf, ThatIsAPipe) {
   ExpectRefused(file_, "is not a file");
 }
 
-TEST_F(GeneratedUrdf, ThatIsNotThere) { ExpectRefused(file_, "does not exist"); }
+TEST_F(GeneratedUrdf, ThatDoesNotExist) { ExpectRefused(file_, "does not exist"); }
 
 TEST_F(GeneratedUrdf, ThatIsAFolder) {
   fs::create_directory(file_);

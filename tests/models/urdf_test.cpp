@@ -50,7 +50,7 @@ TEST(Urdf, ReadsWhatTheFileSays) {
   EXPECT_EQ(joint4.axis, Vector3::UnitZ());
 }
 
-TEST(Urdf, RemovesLinksWithAllThatHangsOnThem) {
+TEST(Urdf, RemovesLinksWithTheirSubtrees) {
   const UrdfModel whole = Panda();
   const UrdfModel arm = Panda({"panda_hand"});
   EXPECT_EQ(arm.links.size(), 9u);
@@ -63,7 +63,7 @@ TEST(Urdf, RemovesLinksWithAllThatHangsOnThem) {
   EXPECT_EQ(again.LinkNames(), arm.LinkNames());
 }
 
-TEST(Urdf, RemovingSaysWhatItCannotFind) {
+TEST(Urdf, RemovingReportsUnknownLinks) {
   EXPECT_TRUE(Contains(MessageOf([] { Panda({"panda_hnad"}); }), "Did you mean panda_hand?"));
   EXPECT_TRUE(Contains(MessageOf([] { Panda({"panda_link0"}); }), "\"panda_link0\" is the root"));
 }

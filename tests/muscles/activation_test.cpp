@@ -50,7 +50,7 @@ TEST(Activation, TheRestOfASaturatedMuscleGoesToTheOther) {
   EXPECT_NEAR(result.activation[1], 0.6, 1e-6);
 }
 
-TEST(Activation, AnOpponentRests) {
+TEST(Activation, AnOpposingMuscleRests) {
   ActivationProblem problem = TwoMuscles(9);
   problem.torque(3, 1) = -10;
   const ActivationResult result = Activate(problem);

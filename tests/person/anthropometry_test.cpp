@@ -86,7 +86,7 @@ std::string Refusal(const BodySpec& spec) {
   return "accepted";
 }
 
-TEST(Anthropometry, RefusesWhatNoAdultHas) {
+TEST(Anthropometry, RefusesSizesThatNoAdultHas) {
   BodySpec giant = Man(), feather = Man(), stone = Man(), arm = Man(), legs = Man(), nan = Man();
   giant.height = 5;
   feather.mass = 31;

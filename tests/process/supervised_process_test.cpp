@@ -84,7 +84,7 @@ class SupervisedProcessTest : public testing::Test {
   std::unique_ptr<SupervisedProcess> process_;
 };
 
-TEST_F(SupervisedProcessTest, OneThatIsStoppedIsReportedEndedAndRestarted) {
+TEST_F(SupervisedProcessTest, AStoppedProcessIsReportedEndedAndRestarted) {
   Start();
   const int pid = process_->pid();
   ASSERT_EQ(kill(pid, SIGSTOP), 0);
@@ -96,7 +96,7 @@ TEST_F(SupervisedProcessTest, OneThatIsStoppedIsReportedEndedAndRestarted) {
   EXPECT_TRUE(Becomes([&] { return mailbox_->beats - beats > 10; }));
 }
 
-TEST_F(SupervisedProcessTest, OneThatEndsIsStartedAgain) {
+TEST_F(SupervisedProcessTest, AProcessThatEndsIsStartedAgain) {
   Start(false);
   const int pid = process_->pid();
   ASSERT_EQ(kill(pid, SIGKILL), 0);

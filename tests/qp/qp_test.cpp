@@ -130,7 +130,7 @@ TEST(QpSolver, AgreesWithAnotherSolver) {
 }
 
 // The check itself must detect every kind of error.
-TEST(KktResidual, SeesWrongSolutions) {
+TEST(KktResidual, DetectsWrongSolutions) {
   RandomStream random(3, "qp");
   QpSolver solver(kN, kM);
   QpSolution solution;

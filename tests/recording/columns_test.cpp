@@ -84,7 +84,7 @@ TEST(Columns, OfARecordLeaveOutWhatIsAbsent) {
   EXPECT_FALSE(has("hands.right.wrench.force.x"));
 }
 
-TEST(Columns, OfInputsAreThereIfAskedFor) {
+TEST(Columns, OfInputsExistIfRequested) {
   const std::vector<Column> columns = ColumnsOf(Sample(), InputColumns::kIncluded);
   const std::size_t inputs = Sample().inputs.size();
   EXPECT_EQ(Select(columns, {"inputs.inputs*.kind"}).size(), inputs);

@@ -16,7 +16,7 @@ namespace {
 
 using namespace recording_test;
 
-TEST_F(Damage, OfNothingIsNothingToMend) {
+TEST_F(Damage, AnIntactFileNeedsNoRepair) {
   const RecoverReport report = Recover(path_, folder_.File("out.mcap"));
   EXPECT_TRUE(report.was_complete);
   EXPECT_EQ(report.ticks, kDamagedTicks);

@@ -93,7 +93,7 @@ TEST_F(Damage, TicksOfNoLengthAreRefused) {
 
 // Small items take many times more memory than space in the file, so the reader limits their
 // number.
-TEST_F(Damage, SmallThingsWithoutEndAreRefused) {
+TEST_F(Damage, TooManySmallItemsAreRefused) {
   RecordingHeader header = SampleHeader();
   for (int k = 0; k < 20'000; ++k) header.labels[std::to_string(k)] = "";
   std::filesystem::remove(path_);

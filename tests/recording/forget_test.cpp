@@ -63,7 +63,7 @@ class Forget : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(Forget, LeavesNoByteAndNothingOfOthersIsTouched) {
+TEST_F(Forget, LeavesNoByteAndChangesNoOtherPersonsData) {
   Record("a/run.mcap", Own(), 1'700'000'000'000'000'000);
   WriteShared(Path("a/run.mcap"), Path("for_others.mcap"));  // without the person's pseudonym
   Record("a/other.mcap", "predictor: 1\n", 1'700'000'000'000'000'001);
@@ -99,7 +99,7 @@ TEST_F(Forget, LeavesNoByteAndNothingOfOthersIsTouched) {
 }
 
 // If the command silently skipped a file, it would claim that nothing is left.
-TEST_F(Forget, SaysWhatItCannotSearch) {
+TEST_F(Forget, ReportsFilesThatCannotBeSearched) {
   Record("cut.mcap", "predictor: 1\n", 1'700'000'000'000'000'000, "marker");
   const std::string bytes = ReadFile(Path("cut.mcap"));
   WriteFile(Path("cut.mcap"), bytes.substr(0, bytes.size() * 2 / 3));
@@ -114,14 +114,14 @@ TEST_F(Forget, SaysWhatItCannotSearch) {
   EXPECT_EQ(names, (std::vector<std::string>{"cut.mcap", "data.zip", "log.gz", ".git"}));
 }
 
-TEST_F(Forget, SaysThatAHardLinkKeepsTheContent) {
+TEST_F(Forget, ReportsThatAHardLinkKeepsTheContent) {
   Write("here/a.csv", kPerson);
   fs::create_hard_link(Path("here/a.csv"), Path("elsewhere.csv"));
   EXPECT_EQ(FindPerson(Path("here"), kPerson).linked.size(), 1u);
   EXPECT_TRUE(FindPerson(folder_.path(), kPerson).linked.empty());  // the search finds both links
 }
 
-TEST_F(Forget, SaysWhatCouldNotBeDeleted) {
+TEST_F(Forget, ReportsFilesThatCouldNotBeDeleted) {
   Write("fixed/a.csv", kPerson);
   fs::permissions(folder_.path(), fs::perms::others_exec, fs::perm_options::add);
   fs::permissions(Path("fixed"), fs::perms(0555));

@@ -86,7 +86,7 @@ std::uint64_t TicksOf(const std::string& path) {
   return ticks;
 }
 
-TEST(PersonStream, IsRecordedBesideTheTicks) {
+TEST(PersonStream, IsRecordedNextToTheTicks) {
   const Folder folder;
   const std::string file = folder.File("run.mcap");
   Record(file, true);
@@ -130,7 +130,7 @@ TEST(PersonStream, IsNotShared) {
   EXPECT_EQ(PersonsOf(shared).size(), 0u);
 }
 
-TEST(PersonStream, IsAbsentIfNobodyIsJudged) {
+TEST(PersonStream, IsAbsentIfNoPersonIsJudged) {
   const Folder folder;
   const std::string file = folder.File("run.mcap");
   Record(file, false);

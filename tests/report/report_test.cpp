@@ -211,7 +211,7 @@ TEST(Report, ThePowerOffOfAnUnlistedStopBelongsToNoStop) {
   }));
 }
 
-TEST(Report, OfArmsThatDidNotRestSaysSo) {
+TEST(Report, StatesThatArmsDidNotRest) {
   const auto reported = [](bool restless, const std::string& what) {
     const RunData data = WithMore([&](const auto& add, TickRecord* record) {
       if (restless) record->harder = {StopCause::kDevice, 1, Quantity::kSpeed, 1, {}, 0.02, 0.0025};
@@ -336,7 +336,7 @@ TEST(Report, OfOneArmAndOfDirectHoldingIsMadeToo) {
   EXPECT_EQ(WithoutScript(report.html).find("nan"), std::string::npos);
 }
 
-TEST(Report, SaysWhetherTheHapticLoopWasPredictedUnstable) {
+TEST(Report, StatesWhetherTheHapticLoopWasPredictedUnstable) {
   CollectedRun run = Collect("box_9kg", 0.5);
   EXPECT_EQ(MakeReport({run.data}, "test").html.find(", stability margin"), std::string::npos);
   for (const double margin : {0.84, 2.1}) {

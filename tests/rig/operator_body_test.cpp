@@ -74,7 +74,7 @@ TEST(ArmAbility, BalanceEndsWhereTheTippingMomentDoes) {
 
 // Lifting moves this person's centre of pressure beyond the toes, so the hand cannot pull.
 // Sideways, the force reaches W (half_width) / h plus what the lifted weight allows.
-TEST(ArmAbility, WhoStandsOnTheToesCanStillPushSideways) {
+TEST(ArmAbility, APersonOnTheToesCanStillPushSideways) {
   const Standing person = {700, 0.19, 0, -0.06, 0.2, 0.15};
   const double h = 0.8, lift = 40;
   const HandForce pull = {{0.55, 0, h}, {-10, 0, lift}};

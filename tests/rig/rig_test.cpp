@@ -140,7 +140,7 @@ TEST(Rig, AnArmWithoutCommandsComesToRest) {
   EXPECT_NEAR(sample.arms[0].v.norm(), 0, 1e-6);
 }
 
-TEST(Rig, RefusesCommandsThatAreNotANumberAJoint) {
+TEST(Rig, RefusesCommandsWithoutOneNumberPerJoint) {
   Scenario scenario = ArmScenario(1);
   MakeExact(&scenario);
   Rig rig(scenario, ArmStart(1), nullptr);

@@ -212,7 +212,7 @@ TEST(VirtualOperator, PutsDownAndReleases) {
   EXPECT_EQ(person.output.grip[0], 0);
 }
 
-TEST(VirtualOperator, HoldsNothingUnlessTheRunIsOn) {
+TEST(VirtualOperator, GripsOnlyInRun) {
   Scenario scenario = SpringScenario(1);
   scenario.operator_.script = {MakeActionSpec("grip", 0, {"duration=0.3"})};
   Person person(scenario);

@@ -118,7 +118,7 @@ TEST_F(RosTcpProcessTest, ItsDeathIsReportedAndItRestartsOnTheSamePort) {
   EXPECT_EQ(again.Receive().destination, "__handshake");
 }
 
-TEST_F(RosTcpProcessTest, EndsWithTheRunAndSaysWhyItCannotStart) {
+TEST_F(RosTcpProcessTest, EndsWithTheRunAndReportsWhyItCannotStart) {
   Start();
   const int pid = server_->pid();
   RosTcpOptions same;

@@ -74,7 +74,7 @@ TEST_P(RosTcp, AcceptsOnlyAStop) {
 }
 
 // The ROS-TCP endpoint of the paper's time would drop the connection after these messages.
-TEST_P(RosTcp, SurvivesWhatConnectorsSay) {
+TEST_P(RosTcp, SurvivesTheMessagesOfConnectors) {
   Unity unity(server_->port());
   unity.Receive();
   unity.Raw(std::string(8, '\0'));  // keep-alive

@@ -69,7 +69,7 @@ class ConsoleTalk : public testing::Test {
   std::string trouble_;
 };
 
-TEST_F(ConsoleTalk, OfWhatGoesWellIsShort) {
+TEST_F(ConsoleTalk, IsShortIfThereAreNoProblems) {
   EXPECT_EQ(Tick(RunState::kSelfTest),
             Now("SELFTEST") + " " + Text("console.possible.SELFTEST") + "\n");
   EXPECT_NE(Tick(RunState::kIdle).find("hold a to align"), std::string::npos);
@@ -81,14 +81,14 @@ TEST_F(ConsoleTalk, OfWhatGoesWellIsShort) {
 }
 
 // The request belongs to the tick of the stop, so the advice "ask again" would be wrong.
-TEST_F(ConsoleTalk, OfAStopSaysNothingOfWhatWasRefusedWithIt) {
+TEST_F(ConsoleTalk, OmitsRefusedRequestsInTheTickOfAStop) {
   Tick(RunState::kArmed);
   Stop(StopCause::kDeadline);
   EXPECT_EQ(Refused(RunState::kStopping, RunEvent::kStartRequested, Refusal::kNotEnabled),
             Now("STOPPING") + "\n");
 }
 
-TEST_F(ConsoleTalk, OfAKeyAtTheWrongTimeSaysWhyAndWhatIsPossible) {
+TEST_F(ConsoleTalk, ExplainsAKeyAtTheWrongTime) {
   Tick(RunState::kIdle);
   const std::string start = Tick(RunState::kIdle, {RunEvent::kStartRequested});
   ExpectInOrder(start, {KeyRefused('s', "start", "IDLE"), "hold a to align"});
@@ -101,7 +101,7 @@ TEST_F(ConsoleTalk, OfAKeyAtTheWrongTimeSaysWhyAndWhatIsPossible) {
   EXPECT_NE(Tick(RunState::kArmed, {RunEvent::kAlignRequested}), "");  // asked again
 }
 
-TEST_F(ConsoleTalk, OfAKeyThatStopsARunSaysSo) {
+TEST_F(ConsoleTalk, ReportsAKeyThatStopsARun) {
   Tick(RunState::kRun);
   Stop(StopCause::kOperator);
   ExpectInOrder(Tick(RunState::kStopping, {RunEvent::kReset}),
@@ -131,7 +131,7 @@ TEST_F(ConsoleTalk, OfAStopShowsDangerCauseAdviceAndKeysInThisOrder) {
 
 // A sensor that repeats its readings must be restarted. The program must be started again to accept
 // it.
-TEST_F(ConsoleTalk, OfAFrozenSensorOffersNoReset) {
+TEST_F(ConsoleTalk, OffersNoResetForAFrozenSensor) {
   Stop(StopCause::kStale, 1);
   record_.cause_quantity = Quantity::kCount;
   const std::string reported = Tick(RunState::kHeld);
@@ -141,7 +141,7 @@ TEST_F(ConsoleTalk, OfAFrozenSensorOffersNoReset) {
 }
 
 // Neither a reset nor RECOVERY can make an arm usable again after a fault.
-TEST_F(ConsoleTalk, OfAnArmAtFaultOffersNothingThatDoesNotHelp) {
+TEST_F(ConsoleTalk, OffersOnlyUsefulActionsForAFaultyArm) {
   Tick(RunState::kStopping);
   Stop(StopCause::kDevice, 1);
   trouble_ = "right: a protective stop.";
@@ -201,7 +201,7 @@ TEST_F(ConsoleTalk, ReportsAnArmsFaultWithTheChangeOfState) {
   EXPECT_EQ(Tick(RunState::kHeld), "");
 }
 
-TEST_F(ConsoleTalk, WithoutPowerSaysWhatDoes) {
+TEST_F(ConsoleTalk, StatesTheRemedyWithoutPower) {
   Tick(RunState::kStopping);
   Stop(StopCause::kDevice, 1);
   const std::string text = Tick(RunState::kUnpowered);
@@ -210,7 +210,7 @@ TEST_F(ConsoleTalk, WithoutPowerSaysWhatDoes) {
   ExpectInOrder(text, {Stopped("UNPOWERED"), Text("next.unpowered"), "Ctrl-C ends"});
 }
 
-TEST_F(ConsoleTalk, OfARefusedResetNamesWhatIsInTheWay) {
+TEST_F(ConsoleTalk, NamesTheReasonForARefusedReset) {
   Stop(StopCause::kStale, 0);
   Tick(RunState::kHeld);
   ExpectInOrder(Refused(RunState::kHeld, RunEvent::kReset, Refusal::kCauseRemains),
@@ -247,7 +247,7 @@ TEST(ConsoleTalkWithADevice, NamesItInsteadOfAHeldKey) {
 
 // The message must name the refusal and explain how to recover with the enabling method of this
 // rig.
-TEST(ConsoleTalkWithADevice, OfARefusalSaysWhatToHold) {
+TEST(ConsoleTalkWithADevice, StatesWhatToHoldAfterARefusal) {
   for (const bool device : {false, true})
     for (const Refusal why : {Refusal::kNotEnabled, Refusal::kBeyondJoint, Refusal::kBeyondLinks,
                               Refusal::kHandLoaded, Refusal::kMoves}) {

@@ -242,7 +242,7 @@ TEST(Guard, NeverCrossesALimitInALoopLikeTheRigs) {
   }
 }
 
-TEST(Guard, BeyondALimitOnlyTheWayBackIsOpen) {
+TEST(Guard, BeyondALimitOnlyMotionBackIsAllowed) {
   Guard guard({OneJoint(-1, 1, 2, 10), JointBounds{}}, 0.001);
   EXPECT_EQ(ApplyOne(&guard, 1.2, 0.5), 0);
   EXPECT_DOUBLE_EQ(ApplyOne(&guard, 1.2, -0.5), -0.01);
@@ -325,7 +325,7 @@ TEST(Guard, OneBadNumberBrakesBothArmsByOneFactor) {
 // Both arms move by the same fraction of the way from the last command to the slowed command, as
 // far as the joints' accelerations allow. Any quantity that is linear in the command then stays
 // between its values at both ends.
-TEST(Guard, SlowsBothArmsByOneShareOfTheWay) {
+TEST(Guard, SlowsBothArmsByTheSameFraction) {
   RandomStream random(7, "slow");
   int whole = 0, part = 0;
   for (int k = 0; k < 2000; ++k) {

@@ -48,7 +48,7 @@ TEST_F(ApplyMachineTest, AFrankasPositionIntegratesItsVelocities) {
 
 // The test changes each limit separately. A tighter value must be accepted, a looser one must be
 // refused and named.
-TEST_F(ApplyMachineTest, AScenarioMayTightenNeverLoosen) {
+TEST_F(ApplyMachineTest, AScenarioMayOnlyTightenLimits) {
   const std::string machine = With(kMachine, "limits: {force: 25, handle_speed: 0.2}",
                                    "limits: {force: 25, torque: 4, handle_speed: 0.2, "
                                    "handle_rotation_speed: 1, stop_acceleration: 5, "
@@ -128,7 +128,7 @@ TEST_F(ApplyMachineTest, ElbowsDoNotDrawTheHandlesAway) {
 }
 
 // A machine file must not be able to disable the detection of oscillations.
-TEST_F(ApplyMachineTest, TheSearchForOscillationsStays) {
+TEST_F(ApplyMachineTest, TheDetectionOfOscillationsStaysOn) {
   const std::string machine =
       With(kMachine, "limits: {force: 25, handle_speed: 0.2}", "limits: {force: 30}");
   for (const char* off :
@@ -233,7 +233,7 @@ TEST_F(ApplyMachineTest, UntestedPushesAreReportedForEachArm) {
   EXPECT_NE(reported()[0].find("arms.left was changed after"), std::string::npos) << reported()[0];
 }
 
-TEST_F(ApplyMachineTest, LoopsComeBeforeThePushesThatTheyWouldVoid) {
+TEST_F(ApplyMachineTest, LoopsAreMeasuredBeforeThePushTestsThatTheyInvalidate) {
   Machine machine = ParseMachine(kMachine, "lab.yaml");
   const auto reported = [&]() -> std::string {
     try {

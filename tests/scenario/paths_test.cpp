@@ -145,7 +145,7 @@ TEST_F(Paths, RemoteAddressesAreRefused) {
   EXPECT_SAYS(ErrorOf("model://box"), "remote address");
 }
 
-TEST_F(Paths, WhatIsMissingIsNamedWithItsNeighbour) {
+TEST_F(Paths, MissingFilesAreNamedWithASimilarName) {
   EXPECT_SAYS(ErrorOf("../assets/bax.urdf"), "does not exist");
   EXPECT_SAYS(ErrorOf("../assets/bax.urdf"), "Did you mean box.urdf?");
   EXPECT_SAYS(ErrorOf("package://arn/arm.urdf"), "Did you mean arm?");

@@ -109,7 +109,7 @@ TEST_F(SurveyServer, OpensItsWebSocketToItsOwnPageOnly) {
   EXPECT_EQ(Connect().status(), 101);
 }
 
-TEST_F(SurveyServer, AdmitsOneByTheCodeAndThatOneAgainByItsToken) {
+TEST_F(SurveyServer, AdmitsOneClientByTheCodeAndAgainByItsToken) {
   Start();
   {
     WebSocket wrong = Connect();
@@ -189,7 +189,7 @@ TEST_F(SurveyServer, ReportsErrorsAndAcceptsTheCorrection) {
   EXPECT_EQ(stored_[0].age, 42);
 }
 
-TEST_F(SurveyServer, TakesNoAnswerFromWhoWasNotAdmitted) {
+TEST_F(SurveyServer, AcceptsNoAnswerFromAClientThatWasNotAdmitted) {
   Start();
   WebSocket socket = Connect();
   socket.SendText(Answer().dump());

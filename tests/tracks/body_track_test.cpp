@@ -98,7 +98,7 @@ TEST_F(Mapping, CarriesOtherNumbers) {
   EXPECT_NEAR(fast.At(0.0015, 0.01), 3, 1e-12);  // the mean
 }
 
-TEST_F(Mapping, SaysWhatIsWrong) {
+TEST_F(Mapping, ReportsErrors) {
   const std::string table = std::string(kHalfSecond) + "0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n";
   const auto error = [&](const std::string& yaml) { return ErrorOf([&] { Load(yaml, table); }); };
   ExpectWords(error("head: {markers: [C]}\n"), {"a.csv", "C.x"});

@@ -30,7 +30,7 @@ TEST_F(Csv, HasNamesUnitsAndMissingNumbers) {
   EXPECT_EQ(file.comments, std::vector<std::string>{" made up"});
 }
 
-TEST_F(Csv, LeavesOutRepeatedTimesAndSaysSo) {
+TEST_F(Csv, OmitsAndReportsRepeatedTimes) {
   const SeriesFile file = ReadCsv(Write("a.csv", "time,x\n0,1\n0,2\n1,3\n"));
   EXPECT_EQ(file.At("x").values, (std::vector<double>{1, 3}));
   ASSERT_EQ(file.warnings.size(), 1u);
@@ -216,7 +216,7 @@ TEST_F(C3d, WithADamagedByteIsReadOrRefused) {
   EXPECT_GT(refused, 50);
 }
 
-TEST_F(C3d, OfAnotherKindIsRefusedWithWhatToDo) {
+TEST_F(C3d, OfAnotherKindIsRefusedWithTheRemedy) {
   ExpectWords(ErrorOf([&] { ReadC3d(Write("a.c3d", std::string(2000, 'x'))); }), {"not a C3D"});
   std::string vax = MadeC3d(true);
   vax[512 + 3] = 85;

@@ -29,7 +29,7 @@ TEST(Admission, TheCodeGivesControlAndATokenThatWorksAgain) {
   EXPECT_TRUE(admission.ByCode(admission.code()));
 }
 
-TEST(Admission, TheCodeIsGoodOnceWithRealArms) {
+TEST(Admission, TheCodeIsValidOnceWithRealArms) {
   Admission admission(true, NewAdmissionSecret());
   EXPECT_FALSE(admission.ByCode("wrong"));
   EXPECT_TRUE(admission.ByCode(admission.code()));
@@ -52,7 +52,7 @@ TEST(Admission, RefusesEverythingElse) {
   EXPECT_FALSE(admission.ByToken(other));
 }
 
-TEST(Admission, APinGivesItsRoleOnce) {
+TEST(Admission, APinGrantsItsRoleOnce) {
   Admission admission(false, NewAdmissionSecret());
   for (const Role role : {Role::kLook, Role::kOperator, Role::kControl}) {
     const std::string pin = admission.IssuePin(role, 0);
@@ -65,7 +65,7 @@ TEST(Admission, APinGivesItsRoleOnce) {
   }
 }
 
-TEST(Admission, APinIsGoodForTwoMinutes) {
+TEST(Admission, APinIsValidForTwoMinutes) {
   Admission admission(false, NewAdmissionSecret());
   const std::string early = admission.IssuePin(Role::kLook, 0);
   EXPECT_TRUE(admission.ByPin(early, kHere, 120 * kSecond - 1));
@@ -73,7 +73,7 @@ TEST(Admission, APinIsGoodForTwoMinutes) {
   EXPECT_FALSE(admission.ByPin(late, kHere, 120 * kSecond));
 }
 
-TEST(Admission, APinIsVoidAfterFiveWrongTries) {
+TEST(Admission, APinIsInvalidAfterFiveWrongAttempts) {
   Admission admission(false, NewAdmissionSecret());
   std::string pin = admission.IssuePin(Role::kControl, 0);
   for (int i = 0; i < 4; ++i) EXPECT_FALSE(admission.ByPin(OtherPin(pin), kHere, kSecond));
@@ -83,7 +83,7 @@ TEST(Admission, APinIsVoidAfterFiveWrongTries) {
   EXPECT_FALSE(admission.ByPin(pin, kHere, kSecond));
 }
 
-TEST(Admission, WrongTriesCountAgainstEveryPinThatWaits) {
+TEST(Admission, WrongAttemptsCountAgainstEveryValidPin) {
   Admission admission(false, NewAdmissionSecret());
   const std::string look = admission.IssuePin(Role::kLook, 0);
   const std::string control = admission.IssuePin(Role::kControl, 0);
@@ -96,7 +96,7 @@ TEST(Admission, WrongTriesCountAgainstEveryPinThatWaits) {
 
 // The viewer may die and restart. Clients that were admitted must stay admitted, but no others may
 // be.
-TEST(Admission, OutlivesAStartByItsSecret) {
+TEST(Admission, SurvivesARestartWithItsSecret) {
   const std::string secret = NewAdmissionSecret();
   const Admission before(false, secret);
   const std::string look = before.IssueToken(Role::kLook);
@@ -191,7 +191,7 @@ TEST(Admission, PinsAreUniform) {
 }
 
 // A client that guesses must use up its own attempts, not those of others.
-TEST(Admission, WrongTriesCountForTheirAddressAlone) {
+TEST(Admission, WrongAttemptsCountForTheirAddressOnly) {
   Admission admission(false, NewAdmissionSecret());
   const std::string pin = admission.IssuePin(Role::kLook, 0);
   for (int i = 0; i < 1000; ++i)
@@ -200,7 +200,7 @@ TEST(Admission, WrongTriesCountForTheirAddressAlone) {
   EXPECT_TRUE(admission.ByPin(pin, kHere, kSecond));
 }
 
-TEST(Admission, ANewPinGivesNewTriesAtItAlone) {
+TEST(Admission, ANewPinAllowsNewAttemptsAtThisPinOnly) {
   Admission admission(false, NewAdmissionSecret());
   const std::string control = admission.IssuePin(Role::kControl, 0);
   for (int i = 0; i < 5; ++i) admission.ByPin(OtherPin(control), kHere, kSecond);
@@ -213,7 +213,7 @@ TEST(Admission, ANewPinGivesNewTriesAtItAlone) {
 
 // The table of addresses must be bounded, and so must the number of guesses from many addresses
 // together.
-TEST(Admission, ManyAddressesDoNotGetManyTries) {
+TEST(Admission, ManyAddressesDoNotGetManyAttempts) {
   Admission admission(false, NewAdmissionSecret());
   const std::string pin = admission.IssuePin(Role::kLook, 0);
   EXPECT_FALSE(admission.ByPin(OtherPin(pin), kHere, kSecond));
@@ -249,7 +249,7 @@ TEST(Admission, CountsAnIpv6NetworkAsOneSource) {
   EXPECT_TRUE(admission.ByPin(pin, "2001:db8:0:1::77", kSecond));
 }
 
-TEST(Admission, ReportsOnceWhichAddressHasNoTriesLeft) {
+TEST(Admission, ReportsOnceWhichAddressHasNoAttemptsLeft) {
   Admission admission(false, NewAdmissionSecret());
   for (int k = 0; k < 9; ++k) admission.ByPin("x", kHere, 1);
   EXPECT_EQ(admission.TakeLockedOut(), "");  // no PIN had been issued

@@ -118,7 +118,7 @@ class ChooseTest : public testing::Test {
   pid_t pid_ = -1;
 };
 
-TEST_F(ChooseTest, KeepsSeedAndDurationAndSaysWhatIsDropped) {
+TEST_F(ChooseTest, KeepsSeedAndDurationAndReportsDroppedOptions) {
   const std::string url = After("Viewer: http://localhost:");
   const auto port = static_cast<std::uint16_t>(std::atoi(url.c_str()));
   std::string token;

@@ -86,7 +86,7 @@ TEST(FoxgloveLayout, PathsAreFoundAsAdvertised) {
   EXPECT_EQ(plots, 5);
 }
 
-TEST(FoxgloveLayout, OfAStopItShowsTheReasonForPowerOff) {
+TEST(FoxgloveLayout, ShowsTheReasonForPowerOffAfterAStop) {
   const Scenario scenario =
       LoadScenario(std::string(PREDICTOR_SOURCE_DIR) + "/scenarios/box_9kg.yaml");
   TickRecord record = {};

@@ -108,7 +108,7 @@ TEST(Foxglove, AdvertisesAndSendsSubscribedChannels) {
   }
 }
 
-TEST(Foxglove, CanDoNothing) {
+TEST(Foxglove, CannotControlTheRun) {
   TestServer server;
   const std::string token = server.WatchToken();
   WebSocket client(server.port(), Path(token), "foxglove.sdk.v1");
@@ -144,7 +144,7 @@ TEST(Foxglove, ItsTokenDoesNotAdmitPages) {
   EXPECT_FALSE(server.Do([&](ViewerApp& app) { return app.admission().ByToken(token); }));
 }
 
-TEST(Foxglove, TheConsoleThrowsItOutForGood) {
+TEST(Foxglove, TheConsoleDisconnectsItPermanently) {
   TestServer server;
   const std::string token = server.WatchToken();
   WebSocket one(server.port(), Path(token), "foxglove.sdk.v1");
@@ -160,7 +160,7 @@ TEST(Foxglove, TheConsoleThrowsItOutForGood) {
   EXPECT_EQ(WebSocket(server.port(), Path(server.WatchToken()), "foxglove.sdk.v1").status(), 101);
 }
 
-TEST(Foxglove, HearsThatTheRunHasEnded) {
+TEST(Foxglove, IsNotifiedThatTheRunHasEnded) {
   TestServer server;
   WebSocket client(server.port(), Path(server.WatchToken()), "foxglove.sdk.v1");
   NextJson(&client), NextJson(&client);

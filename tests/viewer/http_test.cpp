@@ -111,7 +111,7 @@ TEST(Http, TakesNoBody) {
   EXPECT_TRUE(both == 400 || both == 413) << both;
 }
 
-TEST(Http, AnswersToItsOwnNamesOnly) {
+TEST(Http, AcceptsOnlyItsOwnNames) {
   TestServer server;
   const std::string port = std::to_string(server.port());
   for (const std::string& host : {"localhost:" + port, "LOCALHOST:" + port, "127.0.0.1:" + port,

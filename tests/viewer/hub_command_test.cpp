@@ -76,7 +76,7 @@ TEST_F(HubTest, TheOperatorsHandReachesTheRun) {
   EXPECT_EQ(inputs[0].p[2], 0.3);
 }
 
-TEST_F(HubTest, AHandSpeaksAtMostNinetyTimesASecond) {
+TEST_F(HubTest, AHandSendsAtMostNinetyMessagesPerSecond) {
   auto page = Admit(Role::kOperator);
   page->Say({{"type", "lease"}, {"what", "operator"}, {"take", true}});
   std::size_t taken = 0;
@@ -91,7 +91,7 @@ TEST_F(HubTest, AHandSpeaksAtMostNinetyTimesASecond) {
   EXPECT_GE(taken, 800u);
 }
 
-TEST_F(HubTest, AScenarioWithAnotherOperatorTakesNoHands) {
+TEST_F(HubTest, AScenarioWithAnotherOperatorAcceptsNoHands) {
   HubSetup setup = TestSetup();
   setup.browser_operator = false;
   Make(setup);

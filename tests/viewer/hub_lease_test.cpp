@@ -6,7 +6,7 @@
 namespace predictor::viewer {
 namespace {
 
-TEST_F(HubTest, OneCommandsAtATime) {
+TEST_F(HubTest, OnlyOneClientCommandsAtATime) {
   auto first = Controller();
   auto second = Admit();
   second->Say({{"type", "lease"}, {"what", "control"}, {"take", true}});
@@ -43,7 +43,7 @@ TEST_F(HubTest, ALeaseEndsThreeSecondsAfterTheLastHeartbeat) {
 
 // A message arrives after a lease has ended and before the next tick. Whatever the message is, all
 // pages must be notified that the lease is free, and any of them may take it.
-TEST_F(HubTest, AnEndedLeaseIsReportedWhicheverClientSpeaksFirst) {
+TEST_F(HubTest, AnEndedLeaseIsReportedWhicheverClientSendsFirst) {
   const Json heartbeat = {{"type", "heartbeat"}};
   const Json other_lease = {{"type", "lease"}, {"what", "operator"}, {"take", true}};
   for (const Json& first : {heartbeat, other_lease}) {
@@ -108,7 +108,7 @@ TEST_F(HubTest, AClientThatReconnectsBeforeTheServerNoticesKeepsItsLease) {
 }
 
 // A second page of the same person must not take a lease that the first page still uses.
-TEST_F(HubTest, AnotherPageOfTheSameTokenTakesNothingFromOneThatTalks) {
+TEST_F(HubTest, AnotherPageOfTheSameTokenTakesNoLeaseFromAnActivePage) {
   auto page = Controller();
   const Json token = page->connection.Last("welcome")["token"];
   now_ += kSecond;

@@ -13,7 +13,7 @@
 namespace predictor::viewer {
 namespace {
 
-TEST_F(HubTest, WelcomesWhoHasTheCode) {
+TEST_F(HubTest, WelcomesClientsWithTheCode) {
   auto page = Connect();
   page->Say({{"type", "hello"}, {"code", admission_.code()}});
   const Json welcome = page->connection.Last("welcome");
@@ -29,7 +29,7 @@ TEST_F(HubTest, WelcomesWhoHasTheCode) {
   EXPECT_EQ(again->connection.Last("welcome")["server"], welcome["server"]);
 }
 
-TEST_F(HubTest, RefusesEverybodyElse) {
+TEST_F(HubTest, RefusesAllOtherClients) {
   for (const Json& hello :
        {Json{{"type", "hello"}, {"code", "wrong"}}, Json{{"type", "hello"}, {"pin", "123456"}},
         Json{{"type", "hello"}, {"token", "wrong"}}}) {
@@ -42,7 +42,7 @@ TEST_F(HubTest, RefusesEverybodyElse) {
   }
 }
 
-TEST_F(HubTest, NothingIsTakenBeforeHello) {
+TEST_F(HubTest, NothingIsAcceptedBeforeHello) {
   auto page = Connect();
   page->Say({{"type", "stop"}});
   EXPECT_EQ(page->connection.closed, CloseCode::kRefused);
@@ -90,7 +90,7 @@ TEST_F(HubTest, SixtyFourClientsAndNoMore) {
   Admit();
 }
 
-TEST_F(HubTest, TheConsoleThrowsAClientOutForGood) {
+TEST_F(HubTest, TheConsoleRemovesAClientPermanently) {
   auto page = Controller();
   auto other = Admit();
   const Json token = page->connection.Last("welcome")["token"];
@@ -140,7 +140,7 @@ TEST_F(HubTest, ARemovedClientHasNoOtherValidToken) {
   EXPECT_TRUE(bad->connection.Last("token").is_null());
 }
 
-TEST_F(HubTest, TheConsoleThrowsEverybodyOut) {
+TEST_F(HubTest, TheConsoleRemovesAllClients) {
   auto page = Controller();
   auto other = Admit();
   const Json token = other->connection.Last("welcome")["token"];
@@ -177,7 +177,7 @@ TEST_F(HubTest, OneTokenCannotTakeAllSeats) {
   EXPECT_EQ(pages.back()->connection.closed, CloseCode::kTryLater);
 }
 
-TEST_F(HubTest, LookersLeaveSeatsForOthers) {
+TEST_F(HubTest, ViewOnlyClientsLeaveSeatsForOthers) {
   std::vector<std::unique_ptr<Page>> pages;
   for (std::size_t k = 0; k < Hub::kMaxClients - Hub::kKeptSeats; ++k)
     pages.push_back(Admit(Role::kLook));
@@ -203,13 +203,13 @@ TEST_F(HubTest, TheEndIsReportedToPresentAndLaterClients) {
   EXPECT_EQ(late->connection.Last("ended")["results_follow"], false);
 }
 
-TEST_F(HubTest, PagesHearThatResultsFollow) {
+TEST_F(HubTest, PagesAreNotifiedThatResultsFollow) {
   auto page = Controller();
   hub_->EndRun("The run ended as planned.", true);
   EXPECT_EQ(page->connection.Last("ended")["results_follow"], true);
 }
 
-TEST_F(HubTest, EverybodyAdmittedSeesTheNewestState) {
+TEST_F(HubTest, EveryAdmittedClientReceivesTheNewestState) {
   auto early = Admit(Role::kLook);
   auto outside = Connect();
   hub_->Publish(std::make_shared<const std::string>("one"), RunState::kRun);
@@ -218,7 +218,7 @@ TEST_F(HubTest, EverybodyAdmittedSeesTheNewestState) {
   EXPECT_EQ(Admit(Role::kLook)->connection.newest, "one");
 }
 
-TEST_F(HubTest, EverybodyAdmittedSeesTheNewestStateOfThePerson) {
+TEST_F(HubTest, EveryAdmittedClientReceivesTheNewestStateOfThePerson) {
   const auto early = Admit();
   hub_->PublishPerson(std::make_shared<const std::string>("{\"type\":\"person\",\"tick\":1}"));
   hub_->PublishPerson(std::make_shared<const std::string>("{\"type\":\"person\",\"tick\":2}"));

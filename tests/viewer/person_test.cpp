@@ -27,7 +27,7 @@ TEST(PersonOnThePage, GetsTheNewestState) {
   EXPECT_NE(second->find(R"("tick":60,)"), std::string::npos) << *second;
 }
 
-TEST(PersonOnThePage, LearnsWhyNothingIsJudged) {
+TEST(PersonOnThePage, ReceivesTheReasonWhyNothingIsJudged) {
   TestServer::Setup setup;
   setup.app.why_not_judged = "The place is not known.";
   TestServer server(setup);

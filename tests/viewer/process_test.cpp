@@ -194,7 +194,7 @@ TEST_F(ProcessTest, AnswersTheConsole) {
 }
 
 // The disconnection is permanent, and the next process must know it as well.
-TEST_F(ProcessTest, ThrowsAClientOut) {
+TEST_F(ProcessTest, RemovesAClient) {
   Start();
   WebSocket page(viewer_->port());
   const auto welcome = nlohmann::json::parse(page.Hello(Code()));
@@ -217,7 +217,7 @@ TEST_F(ProcessTest, ThrowsAClientOut) {
 }
 
 // The request comes while there is no process, or while the process can no longer answer.
-TEST_F(ProcessTest, ThrowsAClientOutWhileItStartsAgain) {
+TEST_F(ProcessTest, RemovesAClientWhileItRestarts) {
   Start();
   WebSocket page(viewer_->port());
   const std::string token = nlohmann::json::parse(page.Hello(Code()))["token"];
@@ -230,7 +230,7 @@ TEST_F(ProcessTest, ThrowsAClientOutWhileItStartsAgain) {
   EXPECT_FALSE(Admits(token));
 }
 
-TEST_F(ProcessTest, ThrowsAClientOutAfterItsDeath) {
+TEST_F(ProcessTest, RemovesAClientAfterItsDeath) {
   Start();
   WebSocket page(viewer_->port());
   const std::string token = nlohmann::json::parse(page.Hello(Code()))["token"];
@@ -263,7 +263,7 @@ TEST_F(ProcessTest, AViewerThatDoesNotAnswerIsReplaced) {
   EXPECT_FALSE(Admits(token));
 }
 
-TEST_F(ProcessTest, SaysWhyItCannotStart) {
+TEST_F(ProcessTest, ReportsWhyItCannotStart) {
   Start();
   ViewerOptions same = options_;
   same.port = viewer_->port();
@@ -287,7 +287,7 @@ TEST_F(ProcessTest, SaysWhyItCannotStart) {
   EXPECT_NE(refused(half).find("a.pem"), std::string::npos);
 }
 
-TEST_F(ProcessTest, ToOtherMachinesItSpeaksTlsAndShowsItsFingerprint) {
+TEST_F(ProcessTest, UsesTlsWithOtherMachinesAndShowsItsFingerprint) {
   options_.tls = true;  // at first only for this machine
   Start();
   EXPECT_TRUE(viewer_->url().starts_with("https://localhost:")) << viewer_->url();

@@ -116,7 +116,7 @@ TEST_F(TlsTest, HandshakesOfOneAddressDoNotKeepOthersOut) {
   EXPECT_TRUE(ConnectTls(server.port(), "127.0.0.3"));
 }
 
-TEST_F(TlsTest, WhoDoesNotShakeHandsIsCutOff) {
+TEST_F(TlsTest, AClientWithoutAHandshakeIsDisconnected) {
   testing_client::Socket silent(server_->port());
   EXPECT_TRUE(silent.Ended());
   EXPECT_EQ(testing_client::Get(server_->port(), "/").status, 0);  // refused without encryption

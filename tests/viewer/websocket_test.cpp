@@ -164,7 +164,7 @@ TEST(WebSocketServer, TwoViewersAndOneController) {
   EXPECT_EQ(input.kind, InputKind::kStart);
 }
 
-TEST(WebSocketServer, AStopOfALookerReachesTheMailbox) {
+TEST(WebSocketServer, AStopOfAViewOnlyClientReachesTheMailbox) {
   TestServer server;
   WebSocket page(server.port());
   page.SendText(Hello("pin", server.Pin(Role::kLook)));
@@ -339,7 +339,7 @@ TEST(WebSocketServer, AClientThatNeverReadsIsCutOffInTheEnd) {
 }
 
 // A client sends but does not read. The number of waiting answers must be bounded.
-TEST(WebSocketServer, AClientThatSpeaksAndNeverReadsIsCutOff) {
+TEST(WebSocketServer, AClientThatSendsAndNeverReadsIsDisconnected) {
   TestServer::Setup setup;
   setup.server.max_waiting_text = 2000;
   TestServer server(setup);

@@ -23,14 +23,14 @@ TEST_F(WatchdogTest, DoesNotDisturbALoopThatTicks) {
   for (int i = 0; i < 1000; ++i) EXPECT_FALSE(Look(i % 9 == 0)) << i;  // 9 ms at the longest
 }
 
-TEST_F(WatchdogTest, BarksOnceAfterTenMilliseconds) {
+TEST_F(WatchdogTest, ActsOnceAfterTenMilliseconds) {
   EXPECT_FALSE(Look(true));
   for (int i = 1; i < 10; ++i) EXPECT_FALSE(Look(false)) << i;
   EXPECT_TRUE(Look(false));
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(Look(false)) << i;
 }
 
-TEST_F(WatchdogTest, BarksAgainWhenTheLoopHangsAgain) {
+TEST_F(WatchdogTest, ActsAgainWhenTheLoopHangsAgain) {
   EXPECT_FALSE(Look(true));
   for (int round = 0; round < 3; ++round) {
     int barks = 0;
