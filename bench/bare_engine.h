@@ -21,7 +21,7 @@ struct Still {
   std::vector<double> start;
 };
 
-// MuJoCo alone, with a model and a state of its own.
+// MuJoCo alone, with its own model and state.
 struct Bare {
   explicit Bare(const Scenario& scenario)
       : still(scenario),

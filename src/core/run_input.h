@@ -71,8 +71,8 @@ class InputQueue {
     head_.store(head + 1, std::memory_order_release);
     return true;
   }
-  // This function is for the reader. It returns false if the queue is empty. Even if the writer is
-  // dead or hostile, it ends: an impossible count empties the queue.
+  // This function is for the reader. It returns false if the queue is empty. It returns even if the
+  // writer is dead or malicious, because an impossible count empties the queue.
   bool Pop(RunInput* input) noexcept {
     const std::uint32_t tail = tail_.load(std::memory_order_relaxed);
     const std::uint32_t waiting = head_.load(std::memory_order_acquire) - tail;

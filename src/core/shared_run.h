@@ -50,8 +50,8 @@ struct WatchdogMailbox {
 
 inline constexpr std::size_t kPersonRing = 256;  // two and a half seconds
 
-// The evaluator's process writes this board. The run's recorder and the viewer read it and trust
-// nothing in it.
+// The evaluator's process writes this board. The run's recorder and the viewer read it and do not
+// trust its content.
 struct EvaluationBoard {
   RingStorage<PersonState, kPersonRing> states;
 };

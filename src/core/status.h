@@ -163,7 +163,7 @@ enum class Refusal : std::uint8_t {
   kNotAligned,    // a handle has moved away from its aligned pose
 };
 inline constexpr int kRefusals = 9;
-// Returns a sentence that says what the operator must do, or "" for kNone.
+// Returns a sentence with the action that the operator must take, or "" for kNone.
 const char* Sentence(Refusal refusal);
 
 }  // namespace predictor

@@ -35,7 +35,7 @@ void DieWithParent(const Json& start) {
   if (getppid() != start["parent"].get<pid_t>()) std::_Exit(kEnded);
 }
 
-// Call before anything is read.
+// Call this before any input is read.
 void LimitResources(const char* name) {
   prctl(PR_SET_NAME, name);
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);

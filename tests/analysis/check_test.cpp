@@ -91,7 +91,8 @@ TEST(Reach, WithShiftedBasesIsThatOfAScenarioWithThoseBases) {
   EXPECT_NEAR(a.pairs[0].distance.value, b.pairs[0].distance.value, 1e-3);
 }
 
-// A handle on a circle moves at the circle's speed, whatever the arms can do.
+// The reported speed of a handle on a circle must be that of the circle, regardless of the arms'
+// limits.
 TEST(Reach, HandleOnACircleHasItsSpeed) {
   const Scenario s = Load("bar_circle.yaml");
   const Reach reach = DeviceReach(s).Over(TaskPaths(s, StartOfObject(s), 0.1));
@@ -291,7 +292,7 @@ TEST(ShiftSearch, BringsTheSceneToFixedArms) {
   const std::string text = CheckText(report);
   const std::size_t at = text.find("  environment.shift: {");
   ASSERT_NE(at, std::string::npos) << text;
-  // The printed value can be copied into a scenario, which then has the promised comfort.
+  // A scenario with the printed value must have the predicted comfort.
   const std::string copied = text.substr(at + 21, text.find('}', at) - at - 20);
   const Scenario moved = Load("box_9kg.yaml", {"environment.shift=" + copied});
   const DeviceReach device(moved);

@@ -83,14 +83,15 @@ constexpr int kDraws = 39;
 TEST(ContinuationCoverage, ContainsWhatSimulatedPeopleWouldHaveDoneSoak) {
   const Coverage inside = Study(kInsideSeed, Count(8, 200), false, kDraws);
   inside.Print("Inside the prior");
-  // If the intervals are right, fewer than five of eight contain the true value with p = 0.005.
+  // If the intervals are correct, the probability that fewer than five of eight contain the true
+  // value is 0.005.
   EXPECT_GE(inside.share(), InFull() ? 0.84 : 0.6);
   EXPECT_LE(inside.share(), InFull() ? 0.96 : 1);
   EXPECT_LE(Median(inside.shares), 1);
 }
 
-// The prior hardly contains these arms and reflexes. The only requirement is that the intervals are
-// more often right than wrong.
+// The prior hardly contains these arms and reflexes. The only requirement is that more than half of
+// the intervals contain the true value.
 TEST(ContinuationCoverage, OfPeopleOutsideThePriorIsReportedSoak) {
   const Coverage outside = Study(kOutsideSeed, Count(4, 200), true, kDraws);
   outside.Print("Outside the prior");

@@ -78,8 +78,8 @@ double UpperBound(const std::vector<double>& x) {
   return mean + kQuantile * std::sqrt(squares / (n - 1) / n);
 }
 
-// The runs are made in pairs, and the order in a pair alternates. The interval is narrow only if
-// the computer does nothing else.
+// The runs are made in pairs, and the order in a pair alternates. The interval is narrow only on an
+// otherwise idle computer.
 TEST(LiveEvaluation, DoesNotDelayTheTickSoak) {
   const long pairs = Count(0, 20);
   if (pairs == 0) GTEST_SKIP() << "Only ./dev soak takes the time.";

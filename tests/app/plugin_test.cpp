@@ -129,7 +129,7 @@ TEST_F(FailingController, ThatHangsAsALibraryEndsARunInRealTime) {
   EXPECT_GT(TicksSaid(), 2000) << said_;
 }
 
-// In virtual time, the thread that hangs also writes the recording.
+// In virtual time, the thread that hangs is also the one that writes the recording.
 TEST_F(FailingController, ThatHangsAsALibraryEndsASimulation) {
   ASSERT_EQ(Run(Library("hang")), 3) << said_;
   for (const std::string& words : {std::string("has not returned for 10 s"),

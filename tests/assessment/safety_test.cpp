@@ -275,7 +275,7 @@ TEST(Safety, StatesWhatTheRigCannotRender) {
   EXPECT_NEAR(safety.rig[0].reached, 31, 1e-9);
   EXPECT_FALSE(safety.rig[1].censored());
   EXPECT_NE(SafetyText(safety).find("at least 31.00"), std::string::npos);
-  // Without masses, neither a fall nor a contact can be judged, and the output says so.
+  // Without masses, neither a fall nor a contact can be judged, and the output must state this.
   EXPECT_FALSE(safety.drop);
   const auto gap = [&](const std::string& what) {
     return std::ranges::any_of(safety.not_evaluable,

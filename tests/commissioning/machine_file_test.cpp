@@ -131,7 +131,7 @@ arms:
   EXPECT_EQ(HashOf(*LoadMachine(file_).left), hash);
 }
 
-// docs/tutorials/fake-rig.md asks the reader to copy this file.
+// The instructions in docs/tutorials/fake-rig.md use a copy of this file.
 TEST(MachineFileOfTheDocuments, IsOneAndFitsItsScenario) {
   const Machine machine = LoadMachine(PREDICTOR_SOURCE_DIR "/docs/rig-without-arms.yaml");
   const Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/dual_ur5.yaml");

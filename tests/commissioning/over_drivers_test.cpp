@@ -49,7 +49,7 @@ class OverDrivers : public testing::TestWithParam<Make> {
     station_ =
         std::make_unique<Station>(0, spec_, ConnectArm(spec_, ArmUse::kMove, &network_), nullptr);
   }
-  // The person sends a letter every 30 ms, or Enter if the program requests to let go of the
+  // The person sends a letter every 30 ms, or Enter if the prompt is to take the hands off the
   // handle.
   char Held(const std::string& last) {
     if (last.find("then press Enter") != std::string::npos) return kEnter;

@@ -56,7 +56,7 @@ TEST_F(LoadedHandsTest, AreReportedWithTheKeyOfThisRig) {
   EXPECT_NE(reported[0].find(HowToHold('r', true)), std::string::npos) << reported[0];
 }
 
-// One hand is caught later. The other one was free and is caught again.
+// One hand is trapped later. The other one was free and is trapped again.
 TEST_F(LoadedHandsTest, AreWatchedAsLongAsTheArmsStand) {
   EXPECT_TRUE(Pass(10'000, RunState::kHeld, 4.9).empty());
   EXPECT_EQ(Pass(600, RunState::kHeld, 30).size(), 1U);

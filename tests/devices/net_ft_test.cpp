@@ -201,7 +201,7 @@ TEST_F(NetFtTest, ANumberFarAheadDoesNotMakeOthersOld) {
 }
 
 // The largest jump that still counts as a loss delays the readings by some milliseconds. The driver
-// does not give up the sensor.
+// must continue to use the sensor.
 TEST_F(NetFtTest, ANumberSomewhatAheadCostsMilliseconds) {
   fake_ = MakeFakeNetFt({});
   network_.Add(kHost, fake_.get(), &mechanics_);

@@ -62,7 +62,7 @@ TEST_P(Severity, TheLesserHoldsAndTheWorseEndsWithoutPower) {
   const std::string first = bench.device().Trouble();
   GetParam().worse(bench);
   EXPECT_TRUE(bench.Await(RunState::kUnpowered, 0.1));
-  bench.Pass(0.2);  // by now the driver knows this as well
+  bench.Pass(0.2);  // by then, the driver also reports the worse fault
   const std::string both = bench.device().Trouble();
   EXPECT_NE(both.find(first.substr(0, first.find('.'))), std::string::npos) << both;
   EXPECT_NE(both.find(GetParam().message), std::string::npos) << both;

@@ -173,7 +173,8 @@ TEST(UrConnect, TheFlangeIsTheToolLessItsOffset) {
   EXPECT_LT(RotationError(reported.q, X_BF.q).norm(), 1e-9);
 }
 
-// The program runs but does not echo the registers, so the driver cannot know what it would follow.
+// The program runs but does not echo the registers, so the driver cannot determine which commands
+// it would follow.
 TEST(UrConnect, AControllerThatAcceptsNoRegistersIsRefused) {
   UrBench bench;
   bench.fake.Do("deaf");
@@ -213,14 +214,14 @@ TEST(UrConnect, LocalControlIsNamed) {
   UrBench bench;
   bench.fake.Do("local control");
   EXPECT_TRUE(Says(Refusal(&bench), "is in local control. Choose Remote Control"));
-  // Without the dashboard, the program does not start, and the driver cannot know why.
+  // The program does not start, and without the dashboard the driver cannot determine the reason.
   UrBench blind;
   blind.fake.Do("local control");
   EXPECT_TRUE(Says(Refusal(&blind, {.host = kUrHost, .dashboard_port = 0}),
                    "192.0.2.10:30002 does not start the program"));
 }
 
-// PolyScope X has no dashboard. The operator must know that our program cannot remove the power.
+// PolyScope X has no dashboard. The message must state that our program cannot remove the power.
 TEST(UrConnect, WithoutADashboardARemarkSaysThatPowerCannotBeSwitchedOff) {
   const std::uint16_t ports[] = {0, 30009, 30003};  // disabled; no listener; no greeting
   for (const bool listen : {true, false})

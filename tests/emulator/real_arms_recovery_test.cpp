@@ -1,5 +1,5 @@
-// Tests RECOVERY of real arms after a stop and from beyond a limit, also with drivers that bring
-// their arm to rest on a path of their own.
+// Tests RECOVERY of real arms after a stop and from beyond a limit, including drivers that choose
+// the path on which their arm comes to rest.
 #include "handle_speeds.h"
 #include "real_arms.h"
 
@@ -164,8 +164,8 @@ TEST_F(RealArms, AStopInRecoveryStops) {
   EXPECT_TRUE(Await(RunState::kUnpowered));
 }
 
-// A driver that brings its arm to rest on a path of its own. A state without motion may begin only
-// once the arm rests.
+// A driver that chooses the path on which its arm comes to rest. A state without motion must not
+// begin before the arm rests.
 class LedToRest : public RealArms {
  protected:
   LedToRest() {

@@ -17,7 +17,7 @@ struct ReferencePosture {
   std::map<std::string, int> rula, reba;  // score -> value
 };
 
-// Reads a file of this folder. Throws std::runtime_error on a line that it does not know.
+// Reads a file of this folder. Throws std::runtime_error if a line has an unknown format.
 std::vector<ReferencePosture> ReadPostures(const std::string& name);
 
 }  // namespace predictor::ergonomics

@@ -41,9 +41,9 @@ std::unique_ptr<FakeDevice> MakeFakeUr(const FakeOptions& options) {
   return fake;
 }
 
-// Options of a fake Franka: "panda" for the older arm; "patient" if its time waits for its client;
-// "payload" and "cog" as for a UR; "version=9" for an unknown interface version; "first=1" for the
-// number of the first state.
+// Options of a fake Franka: "panda" for the older arm; "patient" if its time stops until a command
+// arrives; "payload" and "cog" as for a UR; "version=9" for an unknown interface version; "first=1"
+// for the number of the first state.
 std::unique_ptr<FakeDevice> MakeFakeFranka(const FakeOptions& options) {
   FakeFrankaOptions franka;
   if (options.contains("panda")) franka.version = fci::kPandaVersion;

@@ -13,7 +13,7 @@ namespace predictor {
 // with a value.
 using FakeOptions = std::map<std::string, std::string>;
 
-// Throws std::runtime_error with the list of known names if it does not know the name.
+// Throws std::runtime_error with the list of known names if the name is unknown.
 std::unique_ptr<FakeDevice> MakeFake(const std::string& kind, const FakeOptions& options);
 
 }  // namespace predictor

@@ -1,7 +1,7 @@
 // Measures how late this computer is, in the process of the fakes. On each processor, a thread with
 // the highest priority wakes every half millisecond. One more thread has ordinary priority, and the
-// loop of the fakes is measured as well. As long as none of them is late, the program itself causes
-// any silence of the program.
+// loop of the fakes is measured as well. If none of them is late, the cause of a silence of the
+// program is the program itself.
 #pragma once
 
 #include <atomic>

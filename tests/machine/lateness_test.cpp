@@ -82,7 +82,7 @@ TEST_F(Lateness, OfAProgramThatStopsSendingIsItsOwn) {
   GIVE_UP_BUSY(attempts.Words());
 }
 
-// The process of the fakes detects its own stall, so the program is not blamed for the stop.
+// The process of the fakes detects its own stall, so the stop is not attributed to the program.
 TEST_F(Lateness, OfTheFarEndIsTheComputers) {
   Attempts attempts;
   while (attempts.Next()) {

@@ -211,8 +211,8 @@ class Terminal {
     if (pid_ > 0) kill(pid_, signal);
   }
   int pid() const { return pid_; }
-  // Returns the program's exit code, or −signal if a signal killed it. The waiting person kills it
-  // after two minutes.
+  // Returns the program's exit code, or −signal if a signal killed it. If the program does not end,
+  // the simulated person kills it after two minutes.
   int Wait() {
     if (pid_ < 0) return code_;
     int status = 0;

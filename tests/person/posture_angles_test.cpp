@@ -58,7 +58,7 @@ TEST(PostureAngles, OfTheArmsHaveTheSignsOfTheWorksheets) {
   }
 }
 
-// Checks by their places in space that fingers, thumb and palm move as the docstrings say.
+// Checks by their positions that fingers, thumb and palm move as documented.
 TEST(PostureAngles, OfTheHandMoveItAsTheirNamesSay) {
   for (int hand = 0; hand < kHands; ++hand) {
     const double side = hand == 0 ? 1 : -1;

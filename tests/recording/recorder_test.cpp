@@ -213,7 +213,7 @@ TEST_F(Live, RecordsEveryTickMarksAndSnapshots) {
   EXPECT_TRUE(messages().empty());
 }
 
-// This overrun is intended: the disk accepts no data until the queue of chunks and the ring are
+// The overrun is intentional: the disk accepts no data until the queue of chunks and the ring are
 // full.
 TEST_F(Live, ReportsLostTicksAndRequestsASnapshotAfterThem) {
   RecorderOptions options = Options();

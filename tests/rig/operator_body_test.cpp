@@ -167,7 +167,7 @@ TEST(OperatorBody, FatigueLowersStrengthMonotonically) {
   }
 }
 
-// The person must tire from a held load as the published closed form says.
+// The person must tire from a held load according to the published closed form.
 TEST(OperatorBody, TiresByTheClosedFormOfTheFatigueModel) {
   StandingBody person(Embodied());
   Wrench lift = Wrench::Zero();

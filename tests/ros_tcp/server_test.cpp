@@ -45,7 +45,7 @@ TEST_P(RosTcp, SendsOnlySubscribedTopics) {
              {{"topic", "/predictor/markers"}, {"message_name", "visualization_msgs/Marker"}});
   std::map<std::string, int> seen;
   for (int k = 0; k < 60; ++k) ++seen[unity.Receive().destination];
-  // For each joint state, the server sends four arrows and one circle.
+  // For each joint state, the server must send four arrows and one circle.
   EXPECT_NEAR(seen["/predictor/markers"], 5 * seen["/predictor/joint_states"], 5);
   EXPECT_EQ(seen.size(), 2u);
   unity.Send("__remove_subscriber", {{"topic", "/predictor/markers"}});

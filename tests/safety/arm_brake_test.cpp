@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kAcceleration = 5, kJerk = 250;
 
-// Returns the speeds [m/s] of a share that is asked in each tick to move faster by the value of
-// `behind`.
+// Returns the speeds [m/s] of an arm's share of a stop. In each tick, a request to move faster by
+// `behind` is made.
 template <class Behind>
 std::vector<double> Speeds(double speed, double rate, double hold, const Behind& behind) {
   StopProfile profile(kAcceleration, kJerk, kDt, 1);

@@ -107,7 +107,8 @@ TEST_F(ConsoleTalk, ReportsAKeyThatStopsARun) {
   ExpectInOrder(Tick(RunState::kStopping, {RunEvent::kReset}),
                 {Message("console.key_stops", {{"key", "z"}, {"name", "reset"}, {"state", "RUN"}}),
                  Now("STOPPING")});
-  // If the arms stop for another reason in the same tick, the message must not blame the key.
+  // If the arms stop for another reason in the same tick, the message must not give the key as the
+  // cause.
   Tick(RunState::kRun);
   Stop(StopCause::kForce, 0);
   EXPECT_EQ(Tick(RunState::kStopping, {RunEvent::kReset}), Now("STOPPING") + "\n");

@@ -289,8 +289,8 @@ TEST(StopController, IsNotDoneWhileItsCommandsBrake) {
   EXPECT_GT(ticks * kDt, 2 * StopController::kPatience);
 }
 
-// A driver brings its arm to rest on a path of its own, in steps that are not visible at the
-// handle.
+// A driver brings its arm to rest on a path that the driver chooses, in steps that are not visible
+// at the handle.
 TEST(StopController, AnArmThatIsBroughtToRestDoesNotRestYet) {
   const std::array<Pose, kHands> still;
   StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);

@@ -148,7 +148,7 @@ TEST(Machine, AnEnablingDeviceIsAtAnArmThatReportsItsInputs) {
       << MachineRefusal(one);
 }
 
-// Only a laboratory knows how high its handles are above the ground on which the person stands.
+// The height of the handles above the ground on which the person stands depends on the laboratory.
 TEST(Machine, ContainsTheGroundOnWhichThePersonStands) {
   Scenario scenario = LoadScenario(PREDICTOR_SOURCE_DIR "/scenarios/box_9kg.yaml",
                                    {"safety.force=20", "safety.handle_speed=0.2"});

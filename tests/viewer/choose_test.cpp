@@ -98,8 +98,8 @@ class ChooseTest : public testing::Test {
     return false;
   }
   // Takes the control and chooses a scenario until the server closes the connection because of it.
-  // The server may still hold the control for a page that has just left, so the page asks every
-  // second.
+  // The server may still hold the control for a page that has just left, so the page requests it
+  // every second.
   static bool Choose(WebSocket* page, const std::string& name) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point end = Clock::now() + std::chrono::minutes(1);

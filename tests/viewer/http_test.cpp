@@ -208,7 +208,7 @@ TEST(Http, AHeadThatDoesNotEndIsCutOff) {
 
 // There are more slow clients than the server has room for. It must still serve the newest request.
 TEST(Http, SlowClientsDoNotKeepOthersOut) {
-  TestServer server;  // patient, so that none of the clients times out
+  TestServer server;  // with long time-outs, so that no client times out
   std::vector<Socket> sockets;
   for (int i = 0; i < 600; ++i) {
     sockets.emplace_back(server.port());

@@ -193,7 +193,7 @@ TEST_F(ProcessTest, AnswersTheConsole) {
   EXPECT_TRUE(Reports("Foxglove: ws://localhost:" + std::to_string(viewer_->port()) + "/?token="));
 }
 
-// The disconnection is permanent, and the next process must know it as well.
+// The disconnection is permanent, and the next process must enforce it as well.
 TEST_F(ProcessTest, RemovesAClient) {
   Start();
   WebSocket page(viewer_->port());

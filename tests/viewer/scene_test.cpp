@@ -184,7 +184,7 @@ TEST(Assets, AModelIsServedWithItsMeshesAndNoPathOfThisMachine) {
   // The served model must still describe the same robot.
   const UrdfModel again = ParseUrdf(
       [&] {
-        // The parser checks that meshes exist. Any existing mesh will do.
+        // The parser checks that meshes exist. Any existing mesh is sufficient.
         std::string text = served->bytes;
         const std::string any = urdf.links[0].visuals.at(0).mesh.string();
         for (int i = 0; i < 64; ++i)

@@ -172,7 +172,7 @@ class Viewer {
   std::thread thread_;
 };
 
-// Connects repeatedly and then disconnects, sends nonsense, guesses codes, sends slowly, or
+// Connects repeatedly and then disconnects, sends invalid data, guesses codes, sends slowly, or
 // announces huge messages.
 class Attackers {
  public:

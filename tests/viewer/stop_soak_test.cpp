@@ -1,6 +1,6 @@
 // Measures how long a stop request takes from a page to the run's mailbox while the server is as
-// busy as possible. 64 viewers read, and strangers perform handshakes, guess codes and announce
-// huge messages as fast as they are allowed to.
+// busy as possible. 64 viewers read, and clients that were not admitted perform handshakes, guess
+// codes and announce huge messages as fast as the server permits.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/socket.h>

@@ -12,7 +12,7 @@ namespace {
 
 using fci::RobotMode;
 
-// Longest time for which a patient robot waits for a command [ms].
+// Longest time for which a robot with the option `patient` waits for a command [ms].
 constexpr int kPatience = 10'000;
 // The joint impedance control pulls a joint to its commanded position with this gain [1/s].
 constexpr double kStiffness = 20;

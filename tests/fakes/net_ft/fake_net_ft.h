@@ -11,7 +11,7 @@ namespace predictor {
 // The options are "onrobot" (default: ATI), "rate=HZ" (at most 7000, default 1000), "counts=N" per
 // newton and newton metre (1e6; OnRobot: 1e4 and 1e5), and "first=N" for the first sequence number.
 //
-// Do knows "saturate", "status HEX", "freeze" (the sequence continues, but the payload stays),
+// Do accepts "saturate", "status HEX", "freeze" (the sequence continues, but the payload stays),
 // "silent", "short" and "long" (datagrams one byte too short or too long), "repeat" (sends the last
 // number permanently), "back" (by 50 numbers), "skip" (three numbers), and "well" (ends all lasting
 // faults).
