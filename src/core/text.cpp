@@ -97,7 +97,7 @@ std::string DegreesHint(double x, double low, double high) {
   const double degree = std::numbers::pi / 180;
   const double meant = x * degree;
   if (!(std::abs(x) > 2 * std::numbers::pi) || meant < low || meant > high) return "";
-  return " A number alone is in rad. For degrees write " + FormatNumber(x) + " deg.";
+  return " A number without a unit is in rad. For degrees, write " + FormatNumber(x) + " deg.";
 }
 
 std::string Printable(std::string_view text, Lines lines) {

@@ -242,7 +242,7 @@ TEST(VibrationRun, NoScenarioIsStoppedSoak) {
     std::fflush(stdout);
   }
   for (const auto& [where, count] : left_out)
-    std::printf("%s: %ld runs left out for their margin\n", where.c_str(), count);
+    std::printf("%s: %ld runs omitted because of their margin\n", where.c_str(), count);
   // Only this loop has a margin that is too low.
   const long without = InFull() ? 100 : 1;
   EXPECT_EQ(left_out, (std::map<std::string, long>{{"bar_circle at 250 Hz", without}}));

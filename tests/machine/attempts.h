@@ -74,7 +74,7 @@ class Attempts {
     const Late late = Judge(screen, terminal.letter_was_late(), once, long_before.processor_sum);
     if (late != Late::kNothing) Note(screen, once, long_before.processor_sum);
     if (late == Late::kProgram)
-      ADD_FAILURE() << "The program was late while the computer was not:" << words_ << "\n"
+      ADD_FAILURE() << "The program was late although the computer was not:" << words_ << "\n"
                     << screen;
     return late == Late::kComputer;
   }

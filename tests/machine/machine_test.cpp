@@ -117,8 +117,8 @@ class OnMachine : public testing::TestWithParam<Rigging> {
       const double ours = 1e3 * real["tracking"][hand]["translation_m"]["mean"].get<double>(),
                    theirs =
                        1e3 * simulated["tracking"][hand]["translation_m"]["mean"].get<double>();
-      std::printf("%s, %s: off by %.3f mm in the mean over sockets, %.3f mm simulated\n",
-                  GetParam().name, hand, ours, theirs);
+      std::printf("%s, %s: mean error %.3f mm over sockets, %.3f mm simulated\n", GetParam().name,
+                  hand, ours, theirs);
       EXPECT_LT(ours, theirs + (GetParam().off[i] - kSimulated) + kByLag * kLag);
     }
   }
@@ -130,8 +130,9 @@ class OnMachine : public testing::TestWithParam<Rigging> {
     const double beside = Beside(real, simulated);
     simulated.resize(simulated.size() - kLater);
     const double missing = Beside(simulated, real);
-    std::printf("%s: object beside the simulated one's path by at most %.2f mm, that by %.2f mm\n",
-                GetParam().name, 1e3 * beside, 1e3 * missing);
+    std::printf(
+        "%s: largest distance from the simulated path %.2f mm, from the real path %.2f mm\n",
+        GetParam().name, 1e3 * beside, 1e3 * missing);
     EXPECT_LT(beside, kBeside);
     EXPECT_LT(missing, kBeside);
   }
@@ -242,8 +243,8 @@ TEST_P(OnMachine, OutlivesAKilledProgramSoak) {
   }
   ASSERT_EQ(std::ssize(speeds), wanted) << attempts.Words();
   std::nth_element(speeds.begin(), speeds.begin() + wanted / 2, speeds.end());
-  std::printf("%s: in half of %ld kills faster than %.0f mm/s\n", GetParam().name, wanted,
-              1e3 * speeds[static_cast<std::size_t>(wanted / 2)]);
+  std::printf("%s: in half of %ld kills, the handle was faster than %.0f mm/s\n", GetParam().name,
+              wanted, 1e3 * speeds[static_cast<std::size_t>(wanted / 2)]);
   EXPECT_GT(speeds[static_cast<std::size_t>(wanted / 2)], 0.75 * kBriskMedian);
 }
 

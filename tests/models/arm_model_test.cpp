@@ -62,7 +62,8 @@ TEST(ArmModel, RefusesAPostureBeyondItsLimitsAndSeesDegrees) {
   EXPECT_EQ(
       Refusal(arm),
       "arm.posture.3: joint \"panda_joint4\" at -90 rad is outside its limits, -3.0718 to -0.0698 "
-      "rad. Give a value within the limits. A number alone is in rad. For degrees write -90 deg.");
+      "rad. Give a value within the limits. A number without a unit is in rad. For degrees, write "
+      "-90 deg.");
   arm.posture[3] = 0.5;
   EXPECT_EQ(Refusal(arm).find("degrees"), std::string::npos) << Refusal(arm);
   EXPECT_NE(Refusal(arm).find("0.5 rad is outside its limits"), std::string::npos);

@@ -121,8 +121,10 @@ double KktViolation(const ActivationProblem& p, const ActivationResult& r) {
     const double slope = p.weight[i] * (p.power == 2 ? a : a * a + kSquareShare * a) +
                          p.trust[i] * (a - p.measured[i]) - p.torque.col(i).dot(r.multiplier);
     worst = std::max({worst, p.lower[i] - a, a - p.upper[i]});
-    if (a > p.lower[i] + 1e-12) worst = std::max(worst, slope);   // a smaller a would be better
-    if (a < p.upper[i] - 1e-12) worst = std::max(worst, -slope);  // a larger a would be better
+    if (a > p.lower[i] + 1e-12)
+      worst = std::max(worst, slope);  // a smaller activation would reduce the cost
+    if (a < p.upper[i] - 1e-12)
+      worst = std::max(worst, -slope);  // a larger activation would reduce the cost
   }
   return worst;
 }

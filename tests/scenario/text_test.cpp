@@ -38,7 +38,8 @@ TEST(Suggestion, ListsAllWhenNothingIsNear) {
 }
 
 TEST(DegreesHint, OnlyOfWhatMayHaveBeenMeant) {
-  EXPECT_EQ(DegreesHint(-90, -3, 3), " A number alone is in rad. For degrees write -90 deg.");
+  EXPECT_EQ(DegreesHint(-90, -3, 3),
+            " A number without a unit is in rad. For degrees, write -90 deg.");
   EXPECT_EQ(DegreesHint(90, -3, -0.1), "");  // would be out of range in degrees as well
   EXPECT_EQ(DegreesHint(4, -3, 3), "");      // an angle in rad
   EXPECT_EQ(DegreesHint(5000, -3, 3), "");

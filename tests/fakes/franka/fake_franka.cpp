@@ -74,7 +74,7 @@ void FakeFranka::Received(int link, std::span<const std::byte> bytes) {
   while (received_.size() >= sizeof header) {
     std::memcpy(&header, received_.data(), sizeof header);
     if (header.size < sizeof header || header.size > 4096) {
-      Log("nonsense on the stream");
+      Log("invalid data on the stream");
       wire().Close(link);
       return Closed(link);
     }

@@ -44,7 +44,7 @@ class Compiler {
     if (!Accept(text)) Fail("'" + text + "' expected, not '" + Peek().text + "'");
   }
   std::string Name() {
-    if (Peek().kind != Token::Kind::kName) Fail("a name expected, not '" + Peek().text + "'");
+    if (Peek().kind != Token::Kind::kName) Fail("a name was expected, not '" + Peek().text + "'");
     return tokens_[at_++].text;
   }
   void EndLine() {
