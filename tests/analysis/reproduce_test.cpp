@@ -192,7 +192,7 @@ TEST_F(ReproduceTest, ShowsTheRelativePoseKept) {
   for (const char* condition : {"near a singularity", "manipulability"}) {
     EXPECT_GT(Find(e, "left handle", condition).mean, 3 * plain) << condition;
     EXPECT_LE(Find(e, "distance between the handles", condition).mean, 0.1) << condition;
-    // No safety limit is relaxed for this result.
+    // The result must not depend on relaxed safety limits.
     EXPECT_EQ(Find(e, "distance between the handles", condition).command.find("safety"),
               std::string::npos);
   }

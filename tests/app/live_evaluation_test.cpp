@@ -1,4 +1,4 @@
-// The program judges the person during a run, without an effect on the run.
+// Tests that the program judges the person during a run without affecting the run.
 #include <gtest/gtest.h>
 
 #include <cmath>

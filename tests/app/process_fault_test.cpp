@@ -93,7 +93,7 @@ TEST(FileSizeLimit, IsReportedForASimulatedRun) {
   ExpectVerified(recording);
 }
 
-// Every command ignores the signal SIGXFSZ, whether it records or not.
+// Every command must ignore the signal SIGXFSZ, even if it records nothing.
 TEST(FileSizeLimit, IsAnErrorOfEveryCommand) {
   const test::TemporaryFolder folder;
   const FileSize limit(16);

@@ -153,7 +153,7 @@ TEST(KinematicsRefusal, OfAFrankaGoesByItsEndEffector) {
     }
 }
 
-// Every calibration begins with this check.
+// Every calibration must begin with this check.
 TEST(Station, RefusesADifferentArm) {
   for (const bool own : {true, false}) {
     FakeUrOptions options;

@@ -216,7 +216,7 @@ TEST(MeasureLoop, StopsAtTheMachinesForce) {
   EXPECT_LT(bench.hand.rig().true_handles()[0].V_W.norm(), 1e-3);
 }
 
-// Every command is limited again immediately before it is sent.
+// Every command must be limited again immediately before it is sent.
 TEST(MotionWatch, LetsNothingPastTheGuard) {
   Bench bench;
   bench.station.Watch();

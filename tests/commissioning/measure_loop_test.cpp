@@ -146,7 +146,8 @@ TEST(MeasureLoop, DoesNotMoveAnArmThatIsSetToAnotherPayload) {
   EXPECT_NE(why.find("is set to 3.00 kg"), std::string::npos) << why;
 }
 
-// The program notifies the watchdog every millisecond, and reports whether the arm moves.
+// The program must send the watchdog a notification every millisecond that states whether the arm
+// moves.
 TEST(MeasureLoop, ReportsAtEachStepWhetherTheArmMoves) {
   Bench bench;
   Holder holder(&bench.time);

@@ -166,7 +166,7 @@ TEST(WarningMessage, NamesTheArmThatStillHasPower) {
   EXPECT_EQ(NewWarnings(0b1111, hand, 0)[1], Message("danger.keeps_power", {{"SIDE", "LEFT"}}));
 }
 
-// No placeholder is left in any text that the program prints.
+// No text that the program prints may contain an unreplaced placeholder.
 TEST(WarningMessage, FillsInAllValues) {
   for (int w = 0; w < kWarnings; ++w) {
     const std::string text = WarningWords(static_cast<Warning>(w), 0, 0.5);

@@ -1,4 +1,4 @@
-// The settings of an arm in the machine file reach its driver.
+// Tests that the settings of an arm in the machine file reach its driver.
 #include "devices/connect.h"
 
 #include <gtest/gtest.h>

@@ -160,7 +160,7 @@ TEST_F(EnablingDevice, AfterAStopItMustBeReleasedFirst) {
   EXPECT_EQ(Ask(RunEvent::kAlignRequested), Refusal::kNone);
 }
 
-// The emulator would not have noticed a release during the silence.
+// A release during the silence would have remained undetected.
 TEST_F(EnablingDevice, AfterSilenceDuringAStopItMustBeReleasedToo) {
   ASSERT_TRUE(ToRun());
   Tick(500);

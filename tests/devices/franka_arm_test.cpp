@@ -161,7 +161,7 @@ TEST_P(FrankaDriver, EndsAMotionThatWasNotYetBegun) {
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kIdle);
 }
 
-// The arm has not come to rest, so its motion has not ended and need not be started again.
+// The arm has not come to rest, so its motion has not ended and must not be started again.
 TEST_P(FrankaDriver, ContinuesWhenCommandedBeforeItIsAtRest) {
   rig_.Connect();
   rig_.v.setConstant(0.2);

@@ -430,7 +430,7 @@ TEST_F(NetFtTest, RefusesRatesThatNoSensorSendsAt) {
   EXPECT_EQ(refusal(NetFtMake::kAti, 7000), "");
 }
 
-// The driver repeats a lost request, and the sensor then sends at the requested rate.
+// The driver must repeat a lost request. The sensor then sends at the requested rate.
 TEST_F(NetFtTest, RepeatsALostRequest) {
   fake_ = MakeFakeNetFt({{"onrobot", ""}});
   network_.Add(kHost, fake_.get(), &mechanics_);

@@ -169,7 +169,7 @@ const Case kCases[] = {
      "--set handles.right.xyz: handles.right.xyz is 1.81 m outside the object's shape"},
     {"device.arms.right.base.xyz=[5, 0, 0]",
      "box.yaml:45:13: device.arms.right.base: the arm cannot move its handle to the start"},
-    // The program reports an error in the model's contents at the key that names the model.
+    // The program must report an error in the model's contents at the key that names the model.
     {"device.arms.left={model: ../assets/bar.urdf, end_effector: bar, elbow: bar}",
      "--set device.arms.left:1:9: device.arms.left.model: "}};
 

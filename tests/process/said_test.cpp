@@ -1,4 +1,4 @@
-// The output of a helper process is limited to an amount that a person can read.
+// Tests that the output of a helper process is limited to an amount that a person can read.
 #include "process/said.h"
 
 #include <gtest/gtest.h>

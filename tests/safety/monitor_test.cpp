@@ -59,7 +59,7 @@ TEST_F(MonitorTest, RecoveryMayNotLoadAHandMore) {
   EXPECT_TRUE(press(29.9, 4.9).ok());
   ExpectStatus(press(30.1, 4.9), StopCause::kForce, 1, 30.1, 30);
   ExpectStatus(press(2, 5.1), StopCause::kTorque, 1, 5.1, 5);
-  // Each RECOVERY starts without a smallest load, and a NaN counts as too large.
+  // Each RECOVERY must start without a smallest load, and a NaN must count as too large.
   input_.recovers = false;
   EXPECT_EQ(press(60, 0).cause, StopCause::kForce);
   input_.recovers = true;

@@ -70,7 +70,7 @@ TEST(Schema, AcceptsWhatIsLoadedAndSaved) {
   EXPECT_TRUE(LoaderAccepts(FullTree()));
 }
 
-// Each scenario refers to this file in its second line, for editors.
+// Each scenario must refer to this file in its second line, which editors use.
 TEST(Schema, EqualsTheFileInTheScenariosFolder) {
   std::ifstream file(PREDICTOR_SOURCE_DIR "/scenarios/scenario.schema.json");
   std::ostringstream text;

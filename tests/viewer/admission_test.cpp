@@ -148,7 +148,7 @@ TEST(Admission, AnyNumberOfGenerationsEnds) {
   for (const std::string& token : tokens) EXPECT_FALSE(after.ByToken(token));
 }
 
-// No character of a token may be changed, in particular not that of the role.
+// A token must be refused if any of its characters is changed, in particular that of the role.
 TEST(Admission, ATokenIsSigned) {
   const Admission admission(false, NewAdmissionSecret());
   const std::string token = admission.IssueToken(Role::kLook);

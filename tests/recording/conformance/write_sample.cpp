@@ -21,7 +21,7 @@ using namespace recording_test;
 
 constexpr std::uint64_t kTicks = 1300;
 
-// JSON cannot represent a number that is not finite.
+// Returns a number, or its name if it is not finite, because JSON cannot represent it.
 Json Number(double x) {
   if (std::isnan(x)) return "nan";
   if (std::isinf(x)) return x > 0 ? "inf" : "-inf";
