@@ -1,6 +1,7 @@
 // The commands that convert, print and describe.
 #include <algorithm>
 
+#include "analysis/check/check.h"
 #include "analysis/continuation/continuation.h"
 #include "analysis/population/population.h"
 #include "assessment/output.h"
@@ -156,6 +157,7 @@ void AddSchema(CLI::App* app, Request* r) {
           ->require_subcommand(1);
   AddPrint(schema, "Commands", "scenario", "Schema of scenario files", r, ScenarioSchema);
   AddPrint(schema, "Commands", "machine", "Schema of machine files", r, MachineSchema);
+  AddPrint(schema, "Commands", "check", "Schema of the report of a check (--json)", r, CheckSchema);
   AddPrint(schema, "Commands", "summary", "Schema of the summary of a run (--json)", r,
            SummarySchema);
   AddPrint(schema, "Commands", "evaluation", "Schema of the evaluation of a person (--json)", r,

@@ -193,6 +193,18 @@ def result_rows(part, path=""):
         yield (f"`{name}`", value.get("unit", ""), kind, value["description"])
 
 
+def described_rows(part, path=""):
+    """Lists every member that has a description, and those within it."""
+    for key, value in part["properties"].items():
+        name = f"{path}.{key}" if path else key
+        if "description" in value:
+            unit, meaning = describe(value)
+            kind = value.get("type", "object")
+            yield (f"`{name}`", unit, " or ".join(kind) if isinstance(kind, list) else kind, meaning)
+        if "properties" in value:
+            yield from described_rows(value, name)
+
+
 def summary_page(schema):
     head = ("key", "unit", "value", "meaning")
     defined = schema["$defs"]
@@ -219,6 +231,22 @@ def evaluation_page(schema):
         "## quantities", table(("key", "quantity and SI unit"), quantities),
         "Each of them has these members:", table(head, result_rows(one)),
         "## worksheets", "`RULA`, `REBA` and `OWAS` have these members each:", table(head, result_rows(sheet))])
+
+
+def check_page(schema):
+    head = ("key", "unit", "value", "meaning")
+    properties = schema["properties"]
+    reach, stability = properties["reach"], properties["stability"]
+    contact = properties["contacts"]["items"]
+    simple = {key: value for key, value in properties.items() if key not in ("models", "reach", "proposal", "stability")}
+    return "\n\n".join([
+        "# Check JSON", "What `predictor check --json` writes, from `predictor schema check`. "
+        "[Check a scenario](../../how-to/check.md) explains it.",
+        table(head, described_rows({"properties": simple})),
+        "## reach", "`proposal` repeats these figures for better positions.", table(head, described_rows(reach)),
+        "## stability", table(head, described_rows(stability)),
+        "## contacts", "[Contact](../../how-to/fixtures.md#what-the-arms-can-render) explains these predictions.",
+        table(head, described_rows(contact))])
 
 
 def continuation_page(schema):
@@ -333,6 +361,7 @@ def main():
         "stop-causes": stop_causes_page(),
         "summary-json": summary_page(json_schema(program, "summary")),
         "evaluation-json": evaluation_page(json_schema(program, "evaluation")),
+        "check-json": check_page(json_schema(program, "check")),
         "continuation-json": continuation_page(json_schema(program, "continuation")),
         "population-json": population_page(json_schema(program, "population")),
         "cpp": "\n\n".join(["# C++ interface",

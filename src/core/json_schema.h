@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -41,6 +43,40 @@ inline Json Object(Json properties, const std::string& meaning) {
 
 inline Json Array(Json items, const std::string& meaning) {
   return {{"type", "array"}, {"description", meaning}, {"items", std::move(items)}};
+}
+
+// The meaning of each key, and the keys whose value can be null although it is not a number.
+struct Words {
+  std::map<std::string, const char*> meanings;
+  std::set<std::string> can_miss;
+};
+
+// Returns the schema of `example`, which has every member. Lists are not empty. Floating-point
+// numbers, and the keys in `can_miss`, can be null. `key` is that of the example.
+inline Json FromExample(const Json& example, const Words& words, const std::string& key = "") {
+  Json schema;
+  const bool can_miss =
+      example.is_number_float() || example.is_null() || words.can_miss.contains(key);
+  const auto type = [&](const char* name) { return can_miss ? Json({name, "null"}) : Json(name); };
+  if (example.is_object()) {
+    schema["type"] = type("object");
+    schema["required"] = Json::array();
+    for (const auto& [name, value] : example.items()) {
+      schema["required"].push_back(name);
+      schema["properties"][name] = FromExample(value, words, name);
+    }
+  } else if (example.is_array()) {
+    schema["type"] = type("array");
+    schema["items"] = FromExample(example.front(), words);
+  } else {
+    schema["type"] = type(example.is_string()           ? "string"
+                          : example.is_number_integer() ? "integer"
+                          : example.is_boolean()        ? "boolean"
+                                                        : "number");
+  }
+  if (const auto meaning = words.meanings.find(key); meaning != words.meanings.end())
+    schema["description"] = meaning->second;
+  return schema;
 }
 
 }  // namespace schema

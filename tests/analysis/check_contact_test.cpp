@@ -1,8 +1,12 @@
 // Tests what `check` reports about contact with fixtures.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "analysis/check/check.h"
-#include "scenarios.h"
+#include "analysis/scenarios.h"
+#include "scenario/json_schema.h"
+#include "simulation/world.h"
 
 namespace predictor {
 namespace {
@@ -26,7 +30,11 @@ TEST(CheckContact, HasAReportForEachSideOfTheObject) {
   for (const ContactReport& contact : report.contacts) {
     EXPECT_FALSE(contact.yields);
     EXPECT_TRUE(contact.stable);
+    // A rigid wall is compared with springs without its damping.
+    EXPECT_GT(contact.wall.damping, 0);
+    EXPECT_EQ(contact.Varying().damping, 0);
   }
+  EXPECT_NE(CheckText(report).find("stiffness        rigid"), std::string::npos);
   EXPECT_NE(CheckText(report).find("fixture 1, normal [0.00, -1.00, 0.00]: stable"),
             std::string::npos);
 }
@@ -65,6 +73,58 @@ TEST(CheckContact, AStiffnessThatTheLoopCannotRenderIsAWarning) {
   ASSERT_FALSE(report.warnings.empty());
   EXPECT_EQ(report.warnings.back().find("environment.fixtures.0: the haptic loop oscillates"), 0u)
       << report.warnings.back();
+}
+
+TEST(CheckContact, TheSpectrumGoesFromRestToTheOscillationsOfTheArms) {
+  const Scenario s = Load("box_9kg.yaml", {Plane("stiffness: 20000, damping: 60")});
+  const CheckReport report = Checked(s);
+  ASSERT_EQ(report.contacts.size(), 1u);
+  const ContactReport& contact = report.contacts[0];
+  ASSERT_EQ(contact.spectrum.size(), 54u);
+  EXPECT_EQ(contact.spectrum.front().frequency, 0.1);
+  EXPECT_EQ(contact.spectrum.back().frequency, 40);
+  const LinearModel touching = WithWall(World(s).Linearise(), contact.wall);
+  for (const std::size_t k : {0U, 20U, 53U}) {
+    const FeltAt& at = contact.spectrum[k];
+    const FeltImpedance felt = ImpedanceAt(touching, s, report.stability->lead, 1 / s.rate,
+                                           Vector3::UnitZ(), at.frequency);
+    EXPECT_LT(std::abs(at.felt.rendered - felt.rendered), 1e-9 * std::abs(felt.rendered));
+    EXPECT_LT(std::abs(at.felt.requested - felt.requested), 1e-9 * std::abs(felt.requested));
+  }
+}
+
+TEST(CheckContact, ADamperIsItsDamping) {
+  constexpr double kFrequency = 3, kDamping = 40;
+  const std::complex<double> impedance(700, 2 * std::numbers::pi * kFrequency * kDamping);
+  EXPECT_NEAR(DampingOf(impedance, kFrequency), kDamping, 1e-12);
+}
+
+// Which scenarios have contacts, two arms, proposals and problems differs.
+TEST(CheckJson, ConformsToItsSchema) {
+  const Json schema = Json::parse(CheckSchema());
+  const CheckReport report =
+      Checked(Load("box_9kg.yaml", {Plane("stiffness: 20000, damping: 60")}));
+  const Json json = Json::parse(CheckJson(report));
+  EXPECT_TRUE(Validates(schema, json));
+  ASSERT_EQ(json["contacts"].size(), 1u);
+  const Json& contact = json["contacts"][0];
+  EXPECT_EQ(contact["stiffness_n_m"], 20000);
+  EXPECT_EQ(contact["damping_ns_m"], 60);
+  EXPECT_EQ(contact["largest_stable_stiffness_n_m"], report.contacts[0].limit.stiffness);
+  EXPECT_EQ(contact["at_5_hz"]["rendered"]["imaginary_n_m"],
+            report.contacts[0].moving.rendered.imag());
+  EXPECT_EQ(contact["impedance"].size(), report.contacts[0].spectrum.size());
+  for (const char* name : {"single_arm.yaml", "slide_on_table.yaml", "linear_axis.yaml"})
+    EXPECT_TRUE(Validates(schema, Json::parse(CheckJson(Checked(Load(name)))))) << name;
+  EXPECT_TRUE(
+      Validates(schema, Json::parse(CheckJson(Checked(Load("single_arm.yaml", {"mode=direct"}))))));
+  const CheckReport lost =
+      Check(Load("single_arm.yaml", {"device.arms.left.base.xyz=[-2, 0, 0]"}), {});
+  ASSERT_TRUE(lost.proposal);
+  EXPECT_TRUE(Validates(schema, Json::parse(CheckJson(lost))));
+  Json broken = json;
+  broken["contacts"][0].erase("yields");
+  EXPECT_FALSE(Validates(schema, broken));
 }
 
 }  // namespace

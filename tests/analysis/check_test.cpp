@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "analysis/scenarios.h"
 #include "core/error.h"
@@ -107,6 +108,18 @@ TEST(Check, NamesTheArmThatLeavesItsReach) {
   EXPECT_FALSE(Mentions(report.problems, "The left arm"));
   EXPECT_TRUE(report.reach->arms[1]->lost);
   EXPECT_FALSE(report.reach->arms[0]->lost);
+  // The last postures before that say nothing about speeds.
+  const std::string text = CheckText(report);
+  const std::size_t line = text.find("right            CANNOT REACH ITS HANDLE from");
+  ASSERT_NE(line, std::string::npos) << text;
+  EXPECT_EQ(text.substr(line, text.find('\n', line) - line).find("rad"), std::string::npos);
+}
+
+TEST(Check, SaysThatAJointMayNotMoveAnyFurther) {
+  CheckReport report = Check(Load("single_arm.yaml"), NoSearch());
+  EXPECT_EQ(CheckText(report).find("blocked"), std::string::npos);
+  report.reach->arms[0]->joint_speed = {std::numeric_limits<double>::infinity(), 1.5, 2};
+  EXPECT_NE(CheckText(report).find("blocked at  1.50 s"), std::string::npos);
 }
 
 TEST(Check, AStartOutOfReachIsUnfitAndNoError) {

@@ -29,7 +29,10 @@ inline bool Validates(const Json& schema, const Json& value);
 inline bool MeetsKeyword(const std::string& keyword, const Json& is, const Json& schema,
                          const Json& value) {
   const auto any = [&](auto good) { return std::any_of(is.begin(), is.end(), good); };
-  if (keyword == "type") return HasType(is, value);
+  if (keyword == "type") {
+    return is.is_array() ? any([&](const Json& each) { return HasType(each, value); })
+                         : HasType(is, value);
+  }
   if (keyword == "enum") return any([&](const Json& each) { return each == value; });
   if (keyword == "anyOf") return any([&](const Json& each) { return Validates(each, value); });
   if (keyword == "minimum") return !value.is_number() || value >= is;

@@ -146,9 +146,7 @@ class Judge {
     std::string placement = PlacementRemedy(s_, static_cast<int>(h));
     placement[0] = static_cast<char>(std::toupper(placement[0]));
     const char* remedy = placement.c_str();
-    const auto joint = [&](int j) {
-      return j < 0 ? "" : report_->models.arms[h]->joint_names[static_cast<std::size_t>(j)].c_str();
-    };
+    const auto joint = [&](int j) { return report_->JointName(h, j); };
     if (r.lost) {
       Bad(
           Formatted("The %s arm cannot follow the operator's path: its handle is out of reach from "
@@ -165,13 +163,19 @@ class Judge {
       Bad(
           Formatted("The %s arm's joint %s comes within %.3f rad of its limit at %.2f s, but "
                     "rendering.joint_security requires %.3f rad. %s or choose another posture.",
-                    name, joint(r.joint_margin.joint), r.joint_margin.value, r.joint_margin.time,
-                    s_.rendering.joint_security, remedy));
-    if (r.joint_speed.value > 1)
-      Bad(Formatted(
-          "The %s arm's joint %s would need %.1f times its allowed speed at %.2f s. %s "
-          "or slow the script down.",
-          name, joint(r.joint_speed.joint), r.joint_speed.value, r.joint_speed.time, remedy));
+                    name, joint(r.joint_margin.joint).c_str(), r.joint_margin.value,
+                    r.joint_margin.time, s_.rendering.joint_security, remedy));
+    if (std::isinf(r.joint_speed.value))
+      Bad(
+          Formatted("The %s arm's joint %s would have to move beyond rendering.joint_security at "
+                    "%.2f s, where it may not move any further. %s or choose another posture.",
+                    name, joint(r.joint_speed.joint).c_str(), r.joint_speed.time, remedy));
+    else if (r.joint_speed.value > 1)
+      Bad(
+          Formatted("The %s arm's joint %s would need %.1f times its allowed speed at %.2f s. %s "
+                    "or slow the script down.",
+                    name, joint(r.joint_speed.joint).c_str(), r.joint_speed.value,
+                    r.joint_speed.time, remedy));
   }
 
   void Pair(const PairReach& pair) {

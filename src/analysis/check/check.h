@@ -82,6 +82,10 @@ struct CheckReport {
   std::vector<std::string> warnings;
 
   bool fit() const { return problems.empty(); }
+  // Returns the name of a joint of an arm, or "" for −1.
+  std::string JointName(std::size_t hand, int joint) const {
+    return joint < 0 ? "" : models.arms[hand]->joint_names[static_cast<std::size_t>(joint)];
+  }
 };
 
 struct CheckOptions {
@@ -113,5 +117,7 @@ StabilityReport CheckStability(const Scenario& scenario, const LinearModel& worl
 // These functions return the report as text for the user and as JSON in SI units.
 std::string CheckText(const CheckReport& report);
 std::string CheckJson(const CheckReport& report);
+// Returns the JSON Schema (draft-07) of CheckJson.
+std::string CheckSchema();
 
 }  // namespace predictor

@@ -1,23 +1,13 @@
-// Writes the report of a check as text for the user, and as JSON.
+// Writes the report of a check as text for the user.
 #include <cmath>
-#include <complex>
-#include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "analysis/check/check.h"
 #include "core/format.h"
-#include "core/json_schema.h"
 #include "core/text.h"
 #include "core/units.h"
 
 namespace predictor {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-std::string JointName(const CheckReport& report, std::size_t h, int joint) {
-  return joint < 0 ? "" : report.models.arms[h]->joint_names[static_cast<std::size_t>(joint)];
-}
 
 void AddModels(const CheckReport& report, std::string* text) {
   const ModelsReport& m = report.models;
@@ -41,19 +31,22 @@ void AddModels(const CheckReport& report, std::string* text) {
 
 void AddArm(const CheckReport& report, const Reach& reach, std::size_t h, std::string* text) {
   const ArmReach& r = *reach.arms[h];
+  // An arm that is about to lose its handle is stretched or at a joint limit. Its figures would say
+  // nothing about the task.
   if (r.lost) {
-    AppendLine(text, "  %-5s            OUT OF REACH from %.2f s (%.0f %% of the path reached)",
+    AppendLine(text,
+               "  %-5s            CANNOT REACH ITS HANDLE from %.2f s on (%.0f %% of the path)",
                kHandNames[h], *r.lost, 100 * r.reached);
-    if (r.reached <= 0) return;
+    return;
   }
   AppendLine(
       text,
-      "  %-5s            %8.3f m  at %5.2f s   %8.2f rad at %5.2f s (%s)   %4.0f %% at %5.2f s "
-      "(%s)",
+      "  %-5s            %8.3f m  at %5.2f s   %8.2f rad at %5.2f s (%s)   %s at %5.2f s (%s)",
       kHandNames[h], r.singular_value.value, r.singular_value.time, r.joint_margin.value,
-      r.joint_margin.time, JointName(report, h, r.joint_margin.joint).c_str(),
-      100 * r.joint_speed.value, r.joint_speed.time,
-      JointName(report, h, r.joint_speed.joint).c_str());
+      r.joint_margin.time, report.JointName(h, r.joint_margin.joint).c_str(),
+      std::isfinite(r.joint_speed.value) ? Formatted("%4.0f %%", 100 * r.joint_speed.value).c_str()
+                                         : "blocked",
+      r.joint_speed.time, report.JointName(h, r.joint_speed.joint).c_str());
 }
 
 void AddReach(const CheckReport& report, const Reach& reach, const char* title, std::string* text) {
@@ -163,28 +156,31 @@ std::string Numbers(const std::vector<std::size_t>& numbers) {
   return text;
 }
 
-// The damping that an impedance at kFeltFrequency contains [N·s/m].
-double DampingOf(const std::complex<double>& impedance) {
-  return impedance.imag() / (2 * std::numbers::pi * kFeltFrequency);
-}
-
 void AddContact(const ContactReport& r, std::string* text) {
   const Vector3& n = r.wall.normal;
   AppendLine(text, "  %s %s, normal [%.2f, %.2f, %.2f]: %s",
              r.fixtures.size() == 1 ? "fixture" : "fixtures", Numbers(r.fixtures).c_str(), n.x(),
              n.y(), n.z(), r.stable ? "stable" : "UNSTABLE");
-  if (!r.yields) return;
-  AppendLine(text, "    stiffness        %.3g N/m at each point", r.wall.stiffness);
-  if (r.limit.reached)
-    AppendLine(text, "    stable up to     %.3g N/m in all, then oscillates at %.1f Hz",
-               r.limit.stiffness, r.limit.frequency);
+  if (r.yields)
+    AppendLine(text, "    stiffness        %.3g N/m at each point", r.wall.stiffness);
   else
-    AppendLine(text, "    stable up to     more than %.3g N/m", kStiffestWall);
+    AppendLine(text, "    stiffness        rigid (in the simulation, %.3g N/m at each point)",
+               r.wall.stiffness);
+  const char* instead = r.yields ? "" : ", as a spring without damping";
+  if (!r.limit.reached)
+    AppendLine(text, "    stable up to     more than %.3g N/m%s", kStiffestWall, instead);
+  else if (r.limit.stiffness > 0)
+    AppendLine(text, "    stable up to     %.3g N/m in all%s; oscillates at %.1f Hz above",
+               r.limit.stiffness, instead, r.limit.frequency);
+  else
+    AppendLine(text, "    stable up to     0 N/m: oscillates at %.1f Hz even without a fixture",
+               r.limit.frequency);
   AppendLine(text, "    felt at rest     %.3g N/m of %.3g", r.at_rest.rendered.real(),
              r.at_rest.requested.real());
   AppendLine(text, "    felt at %.0f Hz     %.3g N/m of %.3g, %.3g N·s/m of %.3g%s", kFeltFrequency,
-             r.moving.rendered.real(), r.moving.requested.real(), DampingOf(r.moving.rendered),
-             DampingOf(r.moving.requested),
+             r.moving.rendered.real(), r.moving.requested.real(),
+             DampingOf(r.moving.rendered, kFeltFrequency),
+             DampingOf(r.moving.requested, kFeltFrequency),
              r.moving.rendered.imag() < 0 ? " (the arms' lag feeds energy in)" : "");
 }
 
@@ -193,105 +189,6 @@ void AddContacts(const CheckReport& report, std::string* text) {
              "\n"
              "Contact: what the hands feel while the object touches a fixture, at one point");
   for (const ContactReport& contact : report.contacts) AddContact(contact, text);
-}
-
-// ---- JSON --------------------------------------------------------------------------------------
-
-Json ToJson(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
-Json ToJson(const Extreme& e) { return {{"value", NumberOrNull(e.value)}, {"time_s", e.time}}; }
-Json ToJson(const StabilityMargin& m) { return {{"gain", m.gain}, {"frequency_hz", m.frequency}}; }
-
-Json ToJson(const ModelsReport& m) {
-  Json json = {
-      {"cobot", {{"joints", m.cobot_joints}, {"mass_kg", m.cobot_mass}}},
-      {"object",
-       {{"mass_kg", m.object_mass}, {"sag_m", ToJson(m.sag)}, {"position_m", ToJson(m.X_WO.p)}}},
-      {"static_torque",
-       {{"joint", m.torque_joint},
-        {m.torque_is_force ? "value_n" : "value_nm", m.torque},
-        {m.torque_is_force ? "limit_n" : "limit_nm", NumberOrNull(m.torque_limit)}}}};
-  for (std::size_t h = 0; h < kHands; ++h) {
-    json["arms"][kHandNames[h]] = nullptr;
-    if (m.arms[h])
-      json["arms"][kHandNames[h]] = {{"joints", m.arms[h]->joints},
-                                     {"mass_kg", m.arms[h]->mass},
-                                     {"handle_mass_kg", m.arms[h]->payload_mass}};
-  }
-  return json;
-}
-
-Json ToJson(const CheckReport& report, const Reach& reach, double comfort) {
-  Json json = {{"comfort", NumberOrNull(comfort)}};
-  for (std::size_t h = 0; h < kHands; ++h) {
-    json[kHandNames[h]] = nullptr;
-    if (!reach.arms[h]) continue;
-    const ArmReach& r = *reach.arms[h];
-    Json arm = {{"out_of_reach_s", r.lost ? Json(*r.lost) : Json(nullptr)},
-                {"reached_share", r.reached},
-                {"singular_value_m", ToJson(r.singular_value)},
-                {"joint_margin_rad", ToJson(r.joint_margin)},
-                {"joint_speed_share", ToJson(r.joint_speed)},
-                {"handle_speed_m_s", ToJson(reach.handles[h].speed)},
-                {"handle_rotation_rad_s", ToJson(reach.handles[h].rotation_speed)}};
-    arm["joint_margin_rad"]["joint"] = JointName(report, h, r.joint_margin.joint);
-    arm["joint_speed_share"]["joint"] = JointName(report, h, r.joint_speed.joint);
-    json[kHandNames[h]] = arm;
-  }
-  json["link_pairs"] = Json::array();
-  for (const PairReach& pair : reach.pairs)
-    json["link_pairs"].push_back({{"links", pair.name}, {"distance_m", ToJson(pair.distance)}});
-  return json;
-}
-
-Json ToJson(const CheckReport& report, const BaseProposal& p) {
-  Json json;
-  for (std::size_t h = 0; h < kHands; ++h)
-    json["base_xyz_m"][kHandNames[h]] = p.reach.arms[h] ? ToJson(p.xyz[h]) : Json(nullptr);
-  json["reach"] = ToJson(report, p.reach, p.comfort);
-  return json;
-}
-
-Json ToJson(const CheckReport& report, const ShiftProposal& p) {
-  return {{"shift", {{"xyz_m", ToJson(p.shift.xyz)}, {"yaw_rad", p.shift.rpy.z()}}},
-          {"reach", ToJson(report, p.reach, p.comfort)}};
-}
-
-Json ToJson(const StabilityReport& r) {
-  Json json = {{"lag_s", r.lag},
-               {"lead_s", r.lead},
-               {"lead_withheld", r.withheld},
-               {"margin", ToJson(r.margin)},
-               {"margin_without_lead", ToJson(r.without_lead)},
-               {"margin_full_lead", ToJson(r.full_lead)}};
-  json["table"] = Json::array();
-  for (std::size_t i = 0; i < r.table.size(); ++i) {
-    Json cell = {{"mass_kg", r.masses[i / r.stiffnesses.size()]},
-                 {"stiffness_n_m", r.stiffnesses[i % r.stiffnesses.size()]}};
-    cell.update(ToJson(r.table[i]));
-    json["table"].push_back(cell);
-  }
-  return json;
-}
-
-Json ToJson(const FeltImpedance& felt) {
-  const auto complex = [](const std::complex<double>& z) -> Json {
-    return {{"real_n_m", NumberOrNull(z.real())}, {"imaginary_n_m", NumberOrNull(z.imag())}};
-  };
-  return {{"requested", complex(felt.requested)}, {"rendered", complex(felt.rendered)}};
-}
-
-Json ToJson(const ContactReport& r) {
-  Json json = {{"fixtures", r.fixtures},
-               {"normal", ToJson(r.wall.normal)},
-               {"stiffness_n_m", r.wall.stiffness},
-               {"damping_ns_m", r.wall.damping},
-               {"yields", r.yields},
-               {"stable", r.stable},
-               {"largest_stable_stiffness_n_m", nullptr},
-               {"at_rest", ToJson(r.at_rest)},
-               {"at_5_hz", ToJson(r.moving)}};
-  if (r.yields && r.limit.reached) json["largest_stable_stiffness_n_m"] = r.limit.stiffness;
-  return json;
 }
 
 void AddStop(const CheckReport& report, std::string* text) {
@@ -333,28 +230,6 @@ std::string CheckText(const CheckReport& report) {
     AppendLine(&text, "Unfit: %s", problem.c_str());
   if (report.fit()) AppendLine(&text, "Fit.");
   return text;
-}
-
-std::string CheckJson(const CheckReport& report) {
-  Json json = {{"scenario", report.scenario},
-               {"fit", report.fit()},
-               {"problems", report.problems},
-               {"warnings", report.warnings},
-               {"models", ToJson(report.models)}};
-  json["reach"] = report.reach ? ToJson(report, *report.reach, report.comfort) : Json(nullptr);
-  json["proposal"] = report.proposal         ? ToJson(report, *report.proposal)
-                     : report.shift_proposal ? ToJson(report, *report.shift_proposal)
-                                             : Json(nullptr);
-  json["stop"] = report.stop ? Json{{"handle_speed", report.handle_speed},
-                                    {"time", report.stop->time},
-                                    {"way", report.stop->way},
-                                    {"longest_time", report.longest_stop->time},
-                                    {"longest_way", report.longest_stop->way}}
-                             : Json(nullptr);
-  json["stability"] = report.stability ? ToJson(*report.stability) : Json(nullptr);
-  json["contacts"] = Json::array();
-  for (const ContactReport& contact : report.contacts) json["contacts"].push_back(ToJson(contact));
-  return json.dump(2) + "\n";
 }
 
 }  // namespace predictor

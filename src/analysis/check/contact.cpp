@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "simulation/contact_law.h"
 
@@ -85,11 +87,27 @@ WallLimit StiffestStableWall(const LinearModel& world, const Scenario& scenario,
   return limit;
 }
 
-std::vector<ContactReport> CheckContacts(const Scenario& s, const LinearModel& world,
-                                         const Pose& X_WO, double lead) {
-  std::vector<ContactReport> reports;
-  const double dt = 1 / s.rate;
-  const HandSpec& hand = s.operator_.hand;
+Wall FixtureWall::Varying() const {
+  Wall varying = wall;
+  varying.inertia = 0;
+  if (!yields) varying.damping = 0;
+  return varying;
+}
+
+std::vector<double> FeltFrequencies() {
+  constexpr double kLowest = 0.1, kHighest = 40, kPerDecade = 20;
+  std::vector<double> frequencies;
+  for (int k = 0; frequencies.empty() || frequencies.back() < kHighest; ++k)
+    frequencies.push_back(std::min(kHighest, kLowest * std::pow(10, k / kPerDecade)));
+  return frequencies;
+}
+
+double DampingOf(const std::complex<double>& impedance, double frequency) {
+  return impedance.imag() / (2 * std::numbers::pi * frequency);
+}
+
+std::vector<FixtureWall> WallsOf(const Scenario& s, const LinearModel& world, const Pose& X_WO) {
+  std::vector<FixtureWall> walls;
   const auto& fixtures = s.environment.fixtures;
   for (std::size_t i = 0; i < fixtures.size() && s.hands().count() > 0; ++i) {
     if (!fixtures[i].Touches("object")) continue;
@@ -97,20 +115,29 @@ std::vector<ContactReport> CheckContacts(const Scenario& s, const LinearModel& w
     wall.hand = *s.hands().begin();
     wall.p_DC = X_WO.p - X_WO * s.handle(wall.hand).pose.xyz;
     wall.normal = NormalToward(fixtures[i], X_WO.p);
-    const auto same = std::find_if(reports.begin(), reports.end(), [&](const ContactReport& r) {
-      return r.wall.normal.dot(wall.normal) > kSameNormal &&
-             IsSameKind(fixtures[r.fixtures[0]], fixtures[i]);
+    const auto same = std::find_if(walls.begin(), walls.end(), [&](const FixtureWall& w) {
+      return w.wall.normal.dot(wall.normal) > kSameNormal &&
+             IsSameKind(fixtures[w.fixtures[0]], fixtures[i]);
     });
-    if (same != reports.end()) {
+    if (same != walls.end()) {
       same->fixtures.push_back(i);
       continue;
     }
     const ContactLaw law = ContactLawOf(fixtures[i], MassAt(world, wall));
     wall.stiffness = law.stiffness, wall.damping = law.damping, wall.inertia = law.inertia;
-    ContactReport report;
-    report.fixtures = {i};
-    report.wall = wall;
-    report.yields = fixtures[i].stiffness.has_value();
+    walls.push_back({{i}, wall, fixtures[i].stiffness.has_value()});
+  }
+  return walls;
+}
+
+std::vector<ContactReport> CheckContacts(const Scenario& s, const LinearModel& world,
+                                         const Pose& X_WO, double lead) {
+  std::vector<ContactReport> reports;
+  const double dt = 1 / s.rate;
+  const HandSpec& hand = s.operator_.hand;
+  for (const FixtureWall& at : WallsOf(s, world, X_WO)) {
+    ContactReport report{at};
+    const Wall& wall = report.wall;
     const auto is_stable = [&](double points) {
       Wall touched = wall;
       touched.stiffness *= points, touched.damping *= points, touched.inertia *= points;
@@ -118,11 +145,16 @@ std::vector<ContactReport> CheckContacts(const Scenario& s, const LinearModel& w
              HapticLoop::kGrowing;
     };
     report.stable = is_stable(1) && (!report.yields || is_stable(kPoints));
-    if (report.yields) report.limit = StiffestStableWall(world, s, hand, lead, wall);
+    report.limit = StiffestStableWall(world, s, hand, lead, report.Varying());
     const LinearModel touching = WithWall(world, wall);
-    report.at_rest = ImpedanceAt(touching, s, lead, dt, wall.normal, kAtRest);
-    report.moving = ImpedanceAt(touching, s, lead, dt, wall.normal, kFeltFrequency);
-    reports.push_back(report);
+    const auto felt = [&](double frequency) {
+      return ImpedanceAt(touching, s, lead, dt, wall.normal, frequency);
+    };
+    report.at_rest = felt(kAtRest);
+    report.moving = felt(kFeltFrequency);
+    for (const double frequency : FeltFrequencies())
+      report.spectrum.push_back({frequency, felt(frequency)});
+    reports.push_back(std::move(report));
   }
   return reports;
 }

@@ -11,6 +11,9 @@
 namespace predictor {
 namespace {
 
+constexpr double kBlocked = 1e-9;  // allowed speed that counts as none [rad/s]
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
 // Keeps the worse of two values.
 void Merge(const ArmReach& other, ArmReach* reach) {
   if (other.lost && (!reach->lost || *other.lost < *reach->lost)) reach->lost = other.lost;
@@ -105,7 +108,7 @@ void ArmFollower::JudgeSpeed(const JointVector& from, const JointVector& to, dou
     const double allowed = std::min(limits_.velocity[j], approach);
     // Tiny motions away from a limit that is already violated do not count as speed.
     if (std::fabs(v) > 1e-6)
-      reach->joint_speed.Raise(std::fabs(v) / std::max(allowed, 1e-9), time, j);
+      reach->joint_speed.Raise(allowed > kBlocked ? std::fabs(v) / allowed : kInfinite, time, j);
   }
 }
 

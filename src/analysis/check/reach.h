@@ -39,7 +39,7 @@ struct ArmReach {
   Extreme singular_value = Extreme::Smallest();
   Extreme joint_margin = Extreme::Smallest();  // distance to the nearest position limit [rad]
   Extreme joint_speed;  // share of the speed that the velocity limit and (near its end) the
-                        // position limit allow
+                        // position limit allow; infinite where they allow none
 };
 
 struct PairReach {
