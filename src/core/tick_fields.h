@@ -123,7 +123,8 @@ constexpr void VisitRun(V& v, R& r) {
           r.cobot_stop);
   v.Value({"attachment", "", "",
            "the cobot's grip on the object: 0 holds, 1 slips, 2 open, 3 open, because the object "
-           "was too far away to be grasped"},
+           "was too far away to be grasped",
+           "attachment"},
           r.attachment);
   v.Reserved(r.reserved);
   v.Value({"requests", "", "", "bits: requests handled in this tick"}, r.requests);

@@ -34,6 +34,8 @@ void AddToLine(const Result& result, std::string* line) {
     Append(line, "%.*f", result.unit.decimals, result.unit.factor * *number);
   else if (const auto* count = std::get_if<std::uint64_t>(&result.value))
     *line += std::to_string(*count);
+  else if (const auto* words = std::get_if<std::string>(&result.value))
+    *line += *words;
   for (const std::string& word : {std::string(result.unit.shown), result.label})
     if (!word.empty()) *line += " " + word;
 }

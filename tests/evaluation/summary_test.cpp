@@ -416,6 +416,34 @@ TEST(Summary, DoesNotCountEncoderNoiseAsDistance) {
   EXPECT_LE(log.stops().front().distance, 2e-5);
 }
 
+// Returns the summary of a run with this many ticks in each state of the grip, in their order.
+Summary WithGrip(const std::vector<std::pair<AttachmentState, int>>& states) {
+  SummaryBuilder builder(Named("name", 1));
+  for (const auto& [state, ticks] : states) {
+    TickRecord record = Running(0, 0, 10);
+    record.attachment = static_cast<std::uint8_t>(state);
+    for (int k = 0; k < ticks; ++k) builder.Add(record);
+  }
+  return builder.summary();
+}
+
+TEST(Summary, StatesTheGripOfTheCobot) {
+  using S = AttachmentState;
+  const Summary summary =
+      WithGrip({{S::kHolds, 5}, {S::kSlips, 20}, {S::kOpen, 100}, {S::kMissed, 30}});
+  const auto grip = nlohmann::json::parse(SummaryJson(summary))["gripper"];
+  EXPECT_EQ(grip["at_end"], "too far to grasp");
+  EXPECT_EQ(grip["slipped"], true);
+  EXPECT_NEAR(grip["slipping_s"], 0.02, 1e-12);
+  EXPECT_NEAR(grip["open_s"], 0.13, 1e-12);
+  EXPECT_NE(SummaryTable(summary).find("Gripper"), std::string::npos);
+  // A cobot that never lets go is not worth a line.
+  const Summary held = WithGrip({{S::kHolds, 5}});
+  EXPECT_EQ(nlohmann::json::parse(SummaryJson(held))["gripper"]["at_end"], "holding");
+  EXPECT_EQ(nlohmann::json::parse(SummaryJson(held))["gripper"]["slipped"], false);
+  EXPECT_EQ(SummaryTable(held).find("Gripper"), std::string::npos);
+}
+
 TEST(Summary, IsBuiltWithoutHeapInEachTick) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   SummaryBuilder builder(Named("name", 1));

@@ -88,6 +88,7 @@ TEST(Frame, HasTheFieldsOfTheProtocol) {
       {"events", "u16", 1},
       {"latest_event", "u8", 1},
       {"cobot_stop", "u8", 1},
+      {"attachment", "u8", 1},
       {"cobot_q", "f32", 16},
       {"object", "f32", 7},
       {"end_effector", "f32", 7},

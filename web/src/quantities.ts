@@ -46,6 +46,7 @@ export interface RunQuantities {
   events: number;  // bits: active entries of the scenario's events
   latestEvent: number;  // 1 + number of the hazard that began last; 0 none
   cobotStop: number;  // protective stop of the virtual cobot itself: 0 none, then: force, speed, momentum, joint torque (in a prismatic joint: force)
+  attachment: number;  // the cobot's grip on the object: 0 holds, 1 slips, 2 open, 3 open, because the object was too far away to be grasped
   harderCause: StopCause;
   harderCauseHand: number;  // 0 left, 1 right, -1 neither or both
   harderCauseQuantity: Quantity;  // quantity of that value and limit
@@ -79,6 +80,7 @@ export const kRunFields = {
   events: ['events', 'number', 'u16', 1],
   latest_event: ['latestEvent', 'number', 'u8', 1],
   cobot_stop: ['cobotStop', 'number', 'u8', 1],
+  attachment: ['attachment', 'number', 'u8', 1],
   harder_cause: ['harderCause', 'cause', 'u8', 1],
   harder_cause_hand: ['harderCauseHand', 'number', 'i8', 1],
   harder_cause_quantity: ['harderCauseQuantity', 'quantity', 'u8', 1],

@@ -232,6 +232,14 @@ export function level(value: number, threshold: number): Level {
 }
 export const kWarningLevel = 0.8;
 
+const kGripWords = ['holds the object', 'slips', 'is open', 'is open: the object was too far away to be grasped'];
+
+// Describes the cobot's grip on the object.
+export function gripWords(state: State): string {
+  const words = kGripWords[state.attachment];
+  return words === undefined ? '' : `The gripper ${words}.`;
+}
+
 // Describes what the event that began last does while an event acts, and whether the virtual cobot
 // has stopped itself.
 export function hazardWords(state: State, spec: SceneSpec): string {

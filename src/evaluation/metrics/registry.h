@@ -13,6 +13,7 @@
   add(kLinkDistance)           \
   add(kObjectHeight)           \
   add(kEnergy)                 \
+  add(kGrip)                   \
   add(kRendering)              \
   add(kDeadlines)              \
   add(kTiming)

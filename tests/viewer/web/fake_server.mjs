@@ -451,7 +451,7 @@ export class FakeServer {
       cause_value: value, cause_limit: limit,
       harder_cause: 0, harder_cause_hand: -1, harder_cause_quantity: 0, harder_cause_value: 0,
       harder_cause_limit: 0, action: this.state === 'RUN' ? action : -1,
-      events: this.options.events ?? 0, latest_event: 0, cobot_stop: 0,
+      events: this.options.events ?? 0, latest_event: 0, cobot_stop: 0, attachment: this.options.attachment ?? 0,
       cobot_q: this.cobotQ, object: seven(object), end_effector: seven(flange),
       elbow_distance: 0.47 + 0.05 * Math.sin(this.runTime), relative_slack: [0, 0, 0, 0, 0, 0],
       stage_us: [0.4, 0.3, 5.5, 4.2, 0.3, 0.2, 0.3, 11 + 1.2 * Math.sin(time / 3e8)],

@@ -189,6 +189,17 @@ test('Space and Esc stop the run from anywhere and press no button', async () =>
   server.state = 'RUN';
 });
 
+test('the state of the grip is shown once it has changed', async () => {
+  const grip = page.locator('#grip');
+  assert.ok(await grip.isHidden());
+  for (const [attachment, words] of [[2, /The gripper is open\./], [1, /The gripper slips\./],
+                                     [3, /too far away/], [0, /The gripper holds the object\./]]) {
+    server.options.attachment = attachment;
+    await waitForText(grip, words);
+    assert.ok(await grip.isVisible());
+  }
+});
+
 test('a slider requests a value and shows the value of the run', async () => {
   await page.locator('#parameter-stiffness_translation').fill('0.5');
   await waitFor(() => Math.abs(server.targets[0] - 0.5) < 0.02, 'the parameter message');

@@ -3,7 +3,7 @@ import {h, setAttribute, setText} from '../dom';
 import {SceneSpec, State} from '../protocol';
 import {Score} from '../score';
 import {kViews, View} from '../scene/camera';
-import {hazardWords} from '../words';
+import {gripWords, hazardWords} from '../words';
 
 const kViewWords: Record<View, string> = {
   free: 'Free', front: 'Front', side: 'Side', top: 'Top', operator: 'Operator',
@@ -48,6 +48,8 @@ export class Overlay {
   private readonly guidance = h('div', {class: 'guidance', id: 'guidance', hidden: true});
   private readonly score = h('div', {class: 'guidance', id: 'score', role: 'status', hidden: true});
   private readonly hazards = h('div', {class: 'guidance', id: 'hazards', role: 'status', hidden: true});
+  // Appears when the grip changes for the first time, because most cobots never let go.
+  private readonly grip = h('div', {class: 'guidance', id: 'grip', role: 'status', hidden: true});
   private readonly progressBar = h('i', {});
   private readonly progress = h(
       'div', {class: 'progress', id: 'progress', role: 'progressbar', 'aria-label': 'Script',
@@ -85,11 +87,12 @@ export class Overlay {
                    h('button', {class: 'small', id: 'save-picture', title: 'Save the scene as an image (PNG)',
                                 onclick: () => actions.picture()}, 'Save picture'));
     this.hud = h('div', {class: 'hud'}, this.banner, this.instruction, this.guidance, this.score,
-                 this.hazards, this.notice, this.warningBox);
+                 this.hazards, this.grip, this.notice, this.warningBox);
   }
 
   build(spec: SceneSpec) {
     setText(this.name, spec.name);
+    this.grip.hidden = true;
     document.title = `${spec.name} · PREDICTOR`;
     this.mode.hidden = spec.simulated && spec.mode === 'emulate';
     setText(this.mode, spec.simulated ? spec.mode : 'real arms');
@@ -121,6 +124,8 @@ export class Overlay {
     const hazards = hazardWords(state, spec);
     this.hazards.hidden = hazards === '';
     setText(this.hazards, hazards);
+    if (state.attachment > 0) this.grip.hidden = false;
+    setText(this.grip, gripWords(state));
     const part = Math.min(state.runTime / lengthOf(spec), 1);
     this.progressBar.style.width = `${100 * part}%`;
     setAttribute(this.progress, 'aria-valuenow', (100 * part).toFixed(0));
