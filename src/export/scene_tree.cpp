@@ -13,6 +13,7 @@
 #include "models/robot.h"
 #include "models/urdf.h"
 #include "models/urdf_xml.h"
+#include "scenario/obstacle_events.h"
 #include "scenario/paths.h"
 
 namespace predictor::scene_export {
@@ -373,8 +374,10 @@ class Composer {
     if (environment.table) {
       AddStatic("table", environment.table->top, environment.table->size, kTableColor);
     }
+    // A fixture that an event lets appear is absent at first, and the subject may see the scene.
     for (std::size_t i = 0; i < environment.fixtures.size(); ++i)
-      AddFixture(kFixturePrefix + std::to_string(i), environment.fixtures[i]);
+      if (EventsOfFixture(scenario_, i) == 0)
+        AddFixture(kFixturePrefix + std::to_string(i), environment.fixtures[i]);
   }
 
   const Scenario& scenario_;

@@ -111,7 +111,11 @@ void AssetStore::Add(const std::string& path, Asset asset) {
 }
 
 void AssetStore::AddPage() {
-  for (const PageFile& file : PageFiles()) Add(file.path, {std::string(file.bytes), file.type});
+  for (const PageFile& file : PageFiles()) {
+    Add(file.path, {std::string(file.bytes), file.type});
+    // The same page asks for the events to come if it is opened at this address.
+    if (file.path == "/") Add(kExperimenterPath, {std::string(file.bytes), file.type});
+  }
 }
 
 std::string AssetStore::AddModel(const UrdfModel& urdf) {

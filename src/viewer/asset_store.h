@@ -22,7 +22,11 @@ class AssetStore {
 
   explicit AssetStore(std::size_t max_bytes = kMaxBytes) : max_bytes_(max_bytes) {}
 
-  // Adds the page's three files as "/", "/app.js" and "/app.css", which need no token.
+  // The address of the page that shows the events to come, for the experimenter.
+  static constexpr const char* kExperimenterPath = "/experimenter";
+
+  // Adds the page's three files as "/" and kExperimenterPath, "/app.js" and "/app.css", which need
+  // no token.
   void AddPage();
 
   // Reads the URDF of a robot or object with its meshes. Replaces its file names by served names

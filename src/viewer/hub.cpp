@@ -52,6 +52,9 @@ class Hub::Client : public Session {
   Connection* connection() { return connection_; }
 
   void OnText(std::string_view text) override;
+  void SendEvents() {
+    if (experimenter_) connection_->SendText(hub_->events_);
+  }
   void SayGoodbye() {
     connection_->SendText(EndedText(hub_->how_ended_, hub_->results_follow_));
     End(CloseCode::kGoingAway, "The run has ended.");
@@ -97,6 +100,7 @@ class Hub::Client : public Session {
     hub_->mailbox_->stop_client.store(id_, std::memory_order_relaxed);
     hub_->mailbox_->stops.fetch_add(1, std::memory_order_release);
   }
+  void On(const ExperimenterRequest&);
   void On(const CommandRequest& request);
   void On(const ParameterRequest& request);
   void On(const ScenarioRequest& request);
@@ -114,6 +118,7 @@ class Hub::Client : public Session {
   }
   void On(const LatencyRequest& request);
   void On(const ImmersiveRequest& request) {
+    experimenter_ = experimenter_ && !request.active;  // the wearer is the subject
     hub_->See(id_, request);
     if (role_ == Role::kLook || !(request.has_head || !request.active)) return;
     if (heads_.Take(hub_->clock_())) hub_->ShowHead(id_, request);
@@ -127,6 +132,7 @@ class Hub::Client : public Session {
   Role role_ = Role::kLook;
   std::string token_;
   bool ended_ = false;
+  bool experimenter_ = false;
   LatencyRequest latency_;
   RateLimit messages_{kMessageRate}, flood_{kFloodRate}, pings_{kPingRate}, denials_{kDenialRate},
       latencies_{kLatencyRate}, heads_{kHeadRate}, marks_{kMarkRate};
@@ -221,10 +227,29 @@ void Hub::Client::On(const LeaseRequest& request) {
   }
   if (!Leases::MayHold(role_, request.what))
     return Deny("lease", std::string("The role ") + Name(role_) + " does not allow this.");
+  if (experimenter_ && request.what == LeaseKind::kOperator)
+    return Deny("lease",
+                "This page shows the events to come. To move the hands, open the page without "
+                "/experimenter.");
   const std::uint32_t before = leases.Holder(request.what);
   if (!leases.Take(request.what, id_, hub_->clock_()))
     return Deny("lease", "Client " + std::to_string(before) + " holds this lease.");
   if (before != id_) hub_->SendLeases();
+}
+
+// Only this request lets a page receive events that have not begun. A subject must not see them.
+void Hub::Client::On(const ExperimenterRequest&) {
+  if (hub_->events_.empty())
+    return Deny("experimenter", "There are no events to come: this run has ended.");
+  if (role_ != Role::kControl)
+    return Deny("experimenter", std::string("The role ") + Name(role_) +
+                                    " may not see the events to come. Get a pin with the role "
+                                    "control from the console.");
+  if (hub_->leases_.Holds(LeaseKind::kOperator, id_) || Status().headset)
+    return Deny("experimenter",
+                "A client that moves the hands or wears a headset may not see the events to come.");
+  experimenter_ = true;
+  SendEvents();
 }
 
 void Hub::Client::On(const CommandRequest& request) {
@@ -304,7 +329,7 @@ void Hub::Client::On(const LatencyRequest& request) {
 }
 
 ClientStatus Hub::Client::Status() const {
-  ClientStatus status{id_, role_, {}, false, latency_};
+  ClientStatus status{id_, role_, {}, false, experimenter_, latency_};
   for (const LeaseKind kind : {LeaseKind::kControl, LeaseKind::kOperator})
     status.holds[static_cast<std::size_t>(kind)] = hub_->leases_.Holds(kind, id_);
   for (const Headset& headset : hub_->headsets_)
@@ -353,6 +378,18 @@ void Hub::PublishPerson(std::shared_ptr<const std::string> text) {
   person_ = std::move(text);
   for (Client* client : sessions_)
     if (client->admitted()) client->connection()->SendNewest(kPerson, MessageKind::kText, person_);
+}
+
+void Hub::PublishEvents(const std::string& text) {
+  if (events_ == text) return;
+  events_ = text;
+  for (Client* client : sessions_)
+    if (client->admitted()) client->SendEvents();
+}
+
+void Hub::PublishFixtures(const Json& fixtures) {
+  setup_.scene["fixtures"] = fixtures;
+  SendToAll(FixturesText(fixtures));
 }
 
 void Hub::Tick() {
@@ -439,40 +476,6 @@ void Hub::ShowHead(std::uint32_t client, const ImmersiveRequest& request) {
   for (Client* other : sessions_)
     if (other->admitted() && other->id() != client)
       other->connection()->SendNewest(client, MessageKind::kText, text);
-}
-
-// A page that still sends messages may show a frozen picture, so the time of the drawn state
-// counts. With real arms, the end of a session also counts as silence for as long as the run needs
-// to detect it. The run decides whether there is any motion to stop.
-void Hub::See(std::uint32_t client, const ImmersiveRequest& request) {
-  const std::uint64_t now = clock_();
-  auto found = std::find_if(headsets_.begin(), headsets_.end(),
-                            [client](const Headset& h) { return h.client == client; });
-  if (request.active) {
-    if (found == headsets_.end()) found = headsets_.insert(headsets_.end(), {client, now, 0});
-    found->gone_ns = 0;
-    if (request.drawn_ns != 0) found->frame_ns = std::min(now, request.drawn_ns);
-  } else if (found != headsets_.end()) {
-    if (!setup_.rules.watches_headsets)
-      headsets_.erase(found);
-    else if (found->gone_ns == 0)
-      found->gone_ns = now;
-  }
-  PublishHeadsets();
-}
-
-// The run stops real arms when a headset falls silent. Therefore the headset with the oldest
-// picture counts, and a headset whose page has disconnected is kept for a while.
-void Hub::PublishHeadsets() {
-  const std::uint64_t now = clock_();
-  std::erase_if(headsets_, [now](const Headset& h) {
-    return h.gone_ns != 0 && now - h.gone_ns > kImmersiveLinger;
-  });
-  std::uint64_t oldest = now;
-  for (const Headset& headset : headsets_) oldest = std::min(oldest, headset.frame_ns);
-  if (!headsets_.empty()) mailbox_->immersive_frame_ns.store(oldest, std::memory_order_relaxed);
-  mailbox_->immersive.store(static_cast<std::uint32_t>(headsets_.size()),
-                            std::memory_order_release);
 }
 
 }  // namespace predictor::viewer

@@ -36,7 +36,8 @@ struct ClientStatus {
   Role role = Role::kLook;
   std::array<bool, kLeases> holds = {};
   bool headset = false;
-  LatencyRequest latency;  // delays that the client reported
+  bool experimenter = false;  // receives the events to come
+  LatencyRequest latency;     // delays that the client reported
 };
 
 class Hub {
@@ -59,6 +60,11 @@ class Hub {
   void Publish(std::shared_ptr<const std::string> frame, RunState state);
   // Sends the newest state of the person, as text, to all clients.
   void PublishPerson(std::shared_ptr<const std::string> text);
+  // Sends the message `events` to the experimenter's pages if it has changed. Until the first call,
+  // there are no such pages.
+  void PublishEvents(const std::string& text);
+  // Sends the fixtures that are there now to all clients. They belong to the scene from now on.
+  void PublishFixtures(const Json& fixtures);
   // Ends expired leases and waiting times. Call this at least ten times per second.
   void Tick();
   // The operator at the console uses this.
@@ -107,6 +113,7 @@ class Hub {
   std::uint32_t last_client_ = 0;
   std::shared_ptr<const std::string> frame_, person_;
   RunState state_ = RunState::kInit;
+  std::string events_;     // the last message `events`; only for the experimenter's pages
   std::string how_ended_;  // a sentence; empty: the run has not ended
   bool results_follow_ = false;
 };

@@ -169,6 +169,7 @@ std::optional<PageRequest> Read(const std::string& type, Reader* r) {
   if (type == "heartbeat") return HeartbeatRequest();
   if (type == "lease") return LeaseRequest{r->Named("what", LeaseNamed), r->Flag("take")};
   if (type == "stop") return StopRequest();
+  if (type == "experimenter") return ExperimenterRequest();
   if (type == "command") return CommandRequest{r->Named("command", CommandNamed)};
   if (type == "parameter")
     return ParameterRequest{r->Named("parameter", ParameterNamed), r->Number("value", 1e6)};
@@ -244,6 +245,10 @@ std::string LeasesText(const Leases& leases, std::size_t clients) {
   Json json = {{"type", "leases"}};
   json.update(LeasesJson(leases, clients));
   return json.dump();
+}
+
+std::string FixturesText(const Json& fixtures) {
+  return Json{{"type", "fixtures"}, {"fixtures", fixtures}}.dump();
 }
 
 Json FrameJson() {

@@ -31,6 +31,7 @@ struct LeaseRequest {
   bool take = false;
 };
 struct StopRequest {};
+struct ExperimenterRequest {};  // the page wants to show the events that are to come
 struct CommandRequest {
   InputKind command = InputKind::kAlign;  // align, start, reset or stop; stop: end as planned
 };
@@ -69,9 +70,9 @@ struct ImmersiveRequest {
   std::array<double, 4> q = {1, 0, 0, 0};  // unit, scalar first
 };
 using PageRequest =
-    std::variant<HelloRequest, HeartbeatRequest, LeaseRequest, StopRequest, CommandRequest,
-                 ParameterRequest, ScenarioRequest, MarkRequest, ReplayRequest, HandRequest,
-                 PingRequest, LatencyRequest, ImmersiveRequest>;
+    std::variant<HelloRequest, HeartbeatRequest, LeaseRequest, StopRequest, ExperimenterRequest,
+                 CommandRequest, ParameterRequest, ScenarioRequest, MarkRequest, ReplayRequest,
+                 HandRequest, PingRequest, LatencyRequest, ImmersiveRequest>;
 
 // Returns nothing if the text is invalid: no JSON, an unknown type, or a member that is missing,
 // has the wrong type, is not finite, or exceeds its plausible range. Ignores additional members.
@@ -91,6 +92,8 @@ std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset);
 // Returns {"control": 3 | null, ...}, as in `leases` and `welcome`.
 Json LeasesJson(const Leases& leases, std::size_t clients);
 std::string LeasesText(const Leases& leases, std::size_t clients);
+// Returns the message `fixtures`. `fixtures` are those that are there now, as in `scene`.
+std::string FixturesText(const Json& fixtures);
 Json FrameJson();  // FrameFields() as JSON
 
 }  // namespace predictor::viewer

@@ -109,25 +109,13 @@ Json DescribeHazards() {
   return json;
 }
 
-Json DescribeFixtures(const Scenario& scenario) {
-  Json json = Json::array();
-  const std::vector<FixtureSpec>& fixtures = scenario.environment.fixtures;
-  for (std::size_t i = 0; i < fixtures.size(); ++i)
-    json.push_back({{"shape", NameOf(fixtures[i].shape)},
-                    {"size", ToJson(fixtures[i].size)},
-                    {"pose", ToJson(fixtures[i].X_WG())},
-                    {"color", ToJson(fixtures[i].color)},
-                    {"events", EventsOfFixture(scenario, i)}});
-  return json;
-}
-
 Json DescribeSurroundings(const Scenario& scenario, const Vector3& object_start) {
   const auto& table = scenario.environment.table;
   const SafetySpec& safety = scenario.safety;
   return {{"floor", scenario.environment.floor},
           {"table", table ? Json{{"size", ToJson(table->size)}, {"top", ToJson(table->top)}}
                           : Json(nullptr)},
-          {"fixtures", DescribeFixtures(scenario)},
+          {"fixtures", DescribeFixtures(scenario, 0)},
           {"guidance",
            {{"type", scenario.guidance.type},
             {"center", ToJson(object_start + scenario.guidance.center)},
@@ -141,6 +129,20 @@ Json DescribeSurroundings(const Scenario& scenario, const Vector3& object_start)
 }
 
 }  // namespace
+
+nlohmann::ordered_json DescribeFixtures(const Scenario& scenario, std::uint16_t events) {
+  Json json = Json::array();
+  const std::vector<FixtureSpec>& fixtures = scenario.environment.fixtures;
+  for (std::size_t i = 0; i < fixtures.size(); ++i) {
+    const unsigned appears = EventsOfFixture(scenario, i);
+    if (appears != 0 && (appears & events) == 0) continue;
+    json.push_back({{"shape", NameOf(fixtures[i].shape)},
+                    {"size", ToJson(fixtures[i].size)},
+                    {"pose", ToJson(fixtures[i].X_WG())},
+                    {"color", ToJson(fixtures[i].color)}});
+  }
+  return json;
+}
 
 nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
                                      AssetStore* assets) {

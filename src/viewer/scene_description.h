@@ -1,6 +1,7 @@
 // The description of the scene for the page (docs/reference/viewer-protocol.md, "The scene").
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -10,8 +11,13 @@
 
 namespace predictor::viewer {
 
-// Reads the scenario's models into `assets` and describes the scene. `object_start` is the position
-// of the object's frame O in W at the start of the run [m]. Throws InputError.
+// Describes the fixtures that are there while `events` act (bits: entries of the scenario's
+// `events`). The description does not say that a fixture will appear or disappear.
+nlohmann::ordered_json DescribeFixtures(const Scenario& scenario, std::uint16_t events);
+
+// Reads the scenario's models into `assets` and describes the scene before any event.
+// `object_start` is the position of the object's frame O in W at the start of the run [m]. Throws
+// InputError.
 nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
                                      AssetStore* assets);
 

@@ -118,7 +118,9 @@ ViewerApp::ViewerApp(AppSetup setup, const Scenario& scenario, const Vector3& ob
   foxglove_ = std::make_unique<Foxglove>(scenario, object_start, clock_);
   HubSetup hub = HubSetupOf(scenario, std::move(scene));
   hub.last_client = setup_.last_client;
+  plans_ = !hub.replay && !setup_.results.is_object();
   hub_ = std::make_unique<Hub>(std::move(hub), &admission_, mailbox, clock_);
+  if (plans_) hub_->PublishEvents(plan_.Text());
 }
 
 ViewerApp::~ViewerApp() = default;
@@ -202,6 +204,7 @@ void ViewerApp::Tick() {
   const Peaks peaks = SeeRecords(std::exchange(shown_, written), written);
   ReportReset(record);
   ReportWarnings(record);
+  ShowEvents(record);
   hub_->Publish(
       std::make_shared<const std::string>(PackFrame(
           record, peaks, clock_(), board_->recording.load(std::memory_order_relaxed) != 0)),
@@ -228,9 +231,20 @@ Peaks ViewerApp::SeeRecords(std::uint64_t first, std::uint64_t end) {
   for (; first != end; ++first) {
     if (!board_->records.Get(first, &record)) continue;
     peaks.See(record);
+    plan_.See(record);
     ReportRefusal(record);
   }
   return peaks;
+}
+
+// Sends an event to the experimenter's pages at any time, and a fixture that an event lets appear
+// to the others only once the event acts.
+void ViewerApp::ShowEvents(const TickRecord& record) {
+  if (plans_) hub_->PublishEvents(plan_.Text());
+  const std::uint16_t before = std::exchange(events_, record.events);
+  if (before == record.events) return;
+  const Json now = DescribeFixtures(scenario_, record.events);
+  if (now != DescribeFixtures(scenario_, before)) hub_->PublishFixtures(now);
 }
 
 // If pages may not start a run, only the console reports why a request was refused.

@@ -13,6 +13,7 @@
 #include "viewer/admission.h"
 #include "viewer/asset_store.h"
 #include "viewer/connection.h"
+#include "viewer/event_plan.h"
 #include "viewer/foxglove.h"
 #include "viewer/frame.h"
 #include "viewer/hub.h"
@@ -73,6 +74,7 @@ class ViewerApp : public Application {
   UpgradeReply UpgradeFoxglove(const HttpRequest& request, std::string_view query);
   void ShowPerson();
   Peaks SeeRecords(std::uint64_t first, std::uint64_t end);
+  void ShowEvents(const TickRecord& record);
   void ReportRefusal(const TickRecord& record);
   void ReportReset(const TickRecord& record);
   void ReportWarnings(const TickRecord& record);
@@ -80,6 +82,9 @@ class ViewerApp : public Application {
   AppSetup setup_;
   Scenario scenario_;
   RefusalWords refusals_{scenario_.rate};
+  EventPlan plan_{scenario_};
+  bool plans_ = false;        // the run can still have events to come
+  std::uint16_t events_ = 0;  // bits: events that acted when a record was last shown
   AssetStore assets_;
   Admission admission_;
   const RunBoard* board_;

@@ -86,6 +86,7 @@ std::string StatusText(ViewerApp* app) {
         text += std::string(", holds ") +
                 (kind == LeaseKind::kControl ? "control" : "the operator's hands");
     if (client.headset) text += ", wears a headset";
+    if (client.experimenter) text += ", sees the events to come";
     char line[80];
     std::snprintf(line, sizeof line, ": states received after %.1f ms, drawn after %.1f ms",
                   client.latency.received_ms, client.latency.rendered_ms);

@@ -2,6 +2,7 @@
 // refuses.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "core/error.h"
@@ -156,6 +157,20 @@ TEST_F(Package, RenamesOnlyNamesThatTheSceneUses) {
                                              "fixture_3",
                                              "fixture_4"};
   EXPECT_EQ(urdf.LinkNames(), expected);
+}
+
+// A subject who sees the scene in Unity must not see the fixture before the event.
+TEST_F(Package, LeavesOutAFixtureThatAnEventLetsAppear) {
+  scenario.environment.fixtures[1].name = "wall";
+  EventSpec event;
+  event.event = "obstacle_appears";
+  event.Set("fixture=wall");
+  scenario.events = {event};
+  Exported();
+  const std::vector<std::string> links = ReadUrdf(folder.path() / "out/scene.urdf").LinkNames();
+  EXPECT_EQ(std::ranges::count(links, "fixture_0"), 1);
+  EXPECT_EQ(std::ranges::count(links, "fixture_1"), 0);
+  EXPECT_EQ(std::ranges::count(links, "fixture_2"), 1);
 }
 
 TEST_F(Package, RefusesAMeshThatUrdfImporterDoesNotRead) {

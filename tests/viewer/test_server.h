@@ -51,6 +51,7 @@ class TestServer {
       hand.real.pose.q[0] = hand.virtual_.pose.q[0] = 1, hand.wrench[0] = 20;
     board_->records.Publish(record);
   }
+  void Publish(const TickRecord& record) { board_->records.Publish(record); }
 
   // Calls `what(app)` in the server's thread.
   template <class What>

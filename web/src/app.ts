@@ -1,10 +1,11 @@
 // The application creates and connects all parts of the page.
-import {Connection, Phase} from './connection';
+import {Connection, isExperimentersAddress, Phase} from './connection';
 import {h} from './dom';
 import {Hands} from './hands';
 import {KeyboardHand} from './keyboard';
 import {LatencyLedger} from './latency';
 import {MouseHand} from './mouse';
+import {EventsCard} from './panel/events';
 import {Invitation} from './panel/invitation';
 import {Overlay} from './panel/overlay';
 import {PairingPage} from './panel/pairing';
@@ -34,6 +35,7 @@ export class App {
   readonly player = new StatePlayer();
   readonly person = new PersonPlayer();
   readonly personCard = new PersonCard();
+  readonly eventsCard = new EventsCard();
   readonly latency: LatencyLedger;
   readonly stage: Stage;
   readonly panel: Panel;
@@ -72,12 +74,15 @@ export class App {
       token: (token) => this.stage.setToken(token),
       headset: (headset) => this.headsetMoved(headset),
       person: (person, receivedMs) => this.person.add(person, receivedMs),
-    });
+      fixtures: (fixtures) => this.stage.setFixtures(fixtures),
+      plan: (plan) => this.eventsCard.show(plan),
+    }, isExperimentersAddress());
     this.latency = new LatencyLedger(this.connection.clock);
     this.hands = new Hands(this.connection);
     this.pairing = new PairingPage((pin) => this.connection.pair(pin));
     this.panel = new Panel(
-        this.connection, this.latency, () => this.stop(), () => this.results.show(true));
+        this.connection, this.latency, this.eventsCard.element, () => this.stop(),
+        () => this.results.show(true));
     this.results = new ResultsCard({
       run: (scenario) => this.panel.choose(scenario),
       saveReport: () => void this.saveReport(),
@@ -106,7 +111,9 @@ export class App {
     this.immersive = new Immersive(
         this.stage, this.hands, this.connection, () => this.mayGrip, () => this.stop(),
         () => this.trouble, () => this.setMirror(!this.stage.mirror.group.visible));
-    void Immersive.supported().then((yes) => (this.overlay.vrButton.hidden = !yes));
+    // A person with a headset must not see the events to come.
+    void Immersive.supported().then(
+        (yes) => (this.overlay.vrButton.hidden = !yes || this.connection.isExperimenter));
     this.theme = new ThemeSwitch((theme) => {
       this.stage.paint(theme);
       this.plots.repaint();
@@ -300,6 +307,7 @@ export class App {
     }
     this.results.build(welcome.scene);
     this.panel.build(welcome.scene);
+    this.eventsCard.clear();
     this.overlay.build(welcome.scene);
     this.personCard.build(welcome.scene);
     if (welcome.scene.notice) this.overlay.warn(welcome.scene.notice);

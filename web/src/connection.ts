@@ -1,8 +1,8 @@
 // Maintains the WebSocket connection to the server: admission, reconnection, heartbeat and clock.
 import {ServerClock} from './clock';
 import {
-  Credential, Headset, kSubprotocol, Leases, PageMessage, PersonState, Role, ServerMessage, State,
-  StateDecoder, Welcome,
+  Credential, EventPlan, FixtureSpec, Headset, kSubprotocol, Leases, PageMessage, PersonState, Role,
+  ServerMessage, State, StateDecoder, Welcome,
 } from './protocol';
 
 export type Phase =
@@ -32,6 +32,8 @@ export interface ConnectionEvents {
   token(token: string): void;  // the previous token is no longer valid
   headset(headset: Headset): void;
   person(person: PersonState, receivedMs: number): void;
+  fixtures(fixtures: FixtureSpec[]): void;
+  plan(plan: EventPlan): void;
 }
 
 export class Connection {
@@ -55,7 +57,8 @@ export class Connection {
   private resultsSinceMs = 0;
   private pings = 0;
 
-  constructor(private readonly events: ConnectionEvents) {
+  // `isExperimenter` states whether the page asks for the events to come.
+  constructor(private readonly events: ConnectionEvents, readonly isExperimenter = false) {
     window.setInterval(() => this.everySecond(), 1000);
     window.setInterval(() => this.quickPing(), 120);
   }
@@ -157,6 +160,8 @@ export class Connection {
         return this.events.token(message.token);
       case 'headset': return this.events.headset(message);
       case 'person': return this.events.person(message, nowMs);
+      case 'fixtures': return this.events.fixtures(message.fixtures);
+      case 'events': return this.events.plan(message);
     }
   }
 
@@ -173,6 +178,9 @@ export class Connection {
     this.pings = 0;
     this.events.welcome(welcome);
     this.enter('open', '');
+    // A run that is over, or a recording, has no events to come.
+    const {results, replay} = welcome.scene;
+    if (this.isExperimenter && !results && !replay) this.send({type: 'experimenter'});
     this.quickPing();
   }
 
@@ -248,4 +256,9 @@ export function takeCodeFromAddress(): string | null {
   const code = new URLSearchParams(location.hash.slice(1)).get('code');
   if (location.hash) history.replaceState(null, '', location.pathname + location.search);
   return code;
+}
+
+// Returns whether the page was opened at the experimenter's address. The subject must not see this page.
+export function isExperimentersAddress(): boolean {
+  return location.pathname === '/experimenter';
 }

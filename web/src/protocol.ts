@@ -41,7 +41,6 @@ export interface FixtureSpec {
   size: Vec3;
   pose: Pose;
   color: Vec3;
-  events?: number;  // bits: it is there only while one of these entries of the scenario's events acts; 0: always
 }
 
 export interface ParameterSpec {
@@ -75,7 +74,7 @@ export interface SceneSpec {
   arms: Record<Side, ArmSpec | null>;
   floor: boolean;
   table: {size: Vec3; top: Vec3} | null;
-  fixtures?: FixtureSpec[];  // older servers omit them
+  fixtures?: FixtureSpec[];  // those that are there now; older servers omit them
   guidance: {type: 'none' | 'circle'; center: Vec3; radius: number};
   thresholds: {
     force: number;
@@ -150,6 +149,21 @@ export interface Headset {
   q: Quat;
 }
 
+// An entry of the scenario's events.
+export interface PlannedEvent {
+  event: string;    // the hazard's name
+  meaning: string;  // what happens
+  trigger: string;  // when it begins, in words
+  begin: number | null;  // run time at which it began [s]; null: it is still to come
+  end: number | null;    // run time at which it ended [s]
+}
+
+export interface EventPlan {
+  type: 'events';
+  complete: boolean;  // false: events that ended before the server restarted are not known
+  events: PlannedEvent[];
+}
+
 export type ServerMessage =
   | Welcome
   | {type: 'refused'; reason: string}
@@ -160,6 +174,8 @@ export type ServerMessage =
   | {type: 'ended'; text: string; results_follow?: boolean}
   | {type: 'token'; token: string}
   | Headset
+  | {type: 'fixtures'; fixtures: FixtureSpec[]}
+  | EventPlan
   | PersonState;
 
 export type Credential = {code: string} | {pin: string} | {token: string};
@@ -170,6 +186,7 @@ export type PageMessage =
   | {type: 'heartbeat'}
   | {type: 'lease'; what: 'control' | 'operator'; take: boolean}
   | {type: 'stop'}
+  | {type: 'experimenter'}
   | {type: 'command'; command: Command}
   | {type: 'scenario'; name: string}
   | {type: 'mark'}

@@ -82,6 +82,7 @@ export class FakeServer {
     this.cause = {cause: 'none', hand: -1, value: 0, limit: 0};
     this.recording = true;
     this.results = null;   // the run's results, once it has ended
+    this.planned = [];     // the events, of which only the experimenter's page may learn
     this.runTime = 0;
     this.tick = 0;
     this.offset = [0, 0, 0];
@@ -174,7 +175,7 @@ export class FakeServer {
 
   async serve(request, response) {
     const path = request.url.split('?')[0];
-    const page = {'/': ['index.html', 'text/html'], '/app.js': ['app.js', 'text/javascript'],
+    const page = {'/': ['index.html', 'text/html'], '/experimenter': ['index.html', 'text/html'], '/app.js': ['app.js', 'text/javascript'],
                   '/app.css': ['app.css', 'text/css']}[path];
     response.setHeader('Content-Security-Policy',
                        "default-src 'none'; script-src 'self'; style-src 'self'; " +
@@ -295,6 +296,9 @@ export class FakeServer {
         return this.send(socket, {type: 'pong', page_ms: message.page_ms, server_ns: now()});
       case 'stop': return this.deaf ? undefined : this.stop('operator', -1, 0, 0);
       case 'lease': return this.lease(socket, message, denied);
+      case 'experimenter':
+        if (socket.role !== 'control') return denied('This role may not see the events to come.');
+        return this.send(socket, {type: 'events', complete: true, events: this.planned});
       case 'immersive':
         if (message.p) {
           this.broadcast({type: 'headset', client: socket.client, active: message.active,

@@ -68,7 +68,7 @@ export class Panel {
   readonly transport: Transport;
 
   constructor(private readonly connection: Connection, private readonly latency: LatencyLedger,
-              stop: () => void, private readonly showResults: () => void) {
+              events: HTMLElement, stop: () => void, private readonly showResults: () => void) {
     this.transport = new Transport(connection);
     this.stopButton = h(
         'button', {id: 'stop', class: 'stop', 'aria-keyshortcuts': 'Space Escape', onclick: stop},
@@ -77,8 +77,8 @@ export class Panel {
         'aside', {class: 'panel', 'aria-label': 'Run'},
         h('div', {class: 'pinned'}, this.stopButton, this.transport.element, this.emergency,
           this.buildState(), this.resultsButton),
-        h('div', {class: 'scroll', tabindex: 0, 'aria-label': 'Settings'}, this.buildCommands(),
-          this.buildLeases(), this.ofRun(h('section', {}, h('h3', {}, 'While running'), this.sliderBox)),
+        h('div', {class: 'scroll', tabindex: 0, 'aria-label': 'Settings'}, events,
+          this.buildCommands(), this.buildLeases(), this.ofRun(h('section', {}, h('h3', {}, 'While running'), this.sliderBox)),
           this.buildLedger()));
   }
 
@@ -250,7 +250,7 @@ export class Panel {
     const {leases, client, role, phase} = this.connection;
     const allowed = {
       control: role === 'control',
-      operator: role !== 'look' && spec?.operator === 'browser',
+      operator: role !== 'look' && spec?.operator === 'browser' && !this.connection.isExperimenter,
     };
     for (const what of ['control', 'operator'] as const) {
       const holder = leases[what];

@@ -70,7 +70,6 @@ export class Room {
       new CircleGeometry(1, 32), new MeshLambertMaterial({color: 0x5b8def})));
   private table: Mesh | null = null;
   private readonly fixtures = new Group();
-  private events: number[] = [];  // bits: those in which each fixture appears; 0: always present
 
   constructor() {
     this.floor.receiveShadow = true;
@@ -99,10 +98,7 @@ export class Room {
 
   build(spec: SceneSpec) {
     this.stand(spec);
-    this.fixtures.clear();
-    for (const fixture of spec.fixtures ?? []) this.fixtures.add(fixtureMesh(fixture));
-    this.events = (spec.fixtures ?? []).map(({events}) => events ?? 0);
-    this.show(0);
+    this.setFixtures(spec.fixtures ?? []);
     this.table?.removeFromParent();
     this.table = null;
     if (!spec.table) return;
@@ -115,15 +111,14 @@ export class Room {
     this.group.add(this.table);
   }
 
-  // Shows the fixtures that are there while these entries of the scenario's events (bits) act.
-  show(events: number) {
-    this.fixtures.children.forEach((fixture, i) => {
-      fixture.visible = this.events[i] === 0 || (this.events[i] & events) !== 0;
-    });
+  // Shows these fixtures and no others.
+  setFixtures(fixtures: FixtureSpec[]) {
+    this.fixtures.clear();
+    for (const fixture of fixtures) this.fixtures.add(fixtureMesh(fixture));
   }
 
   get fixtureBoxes(): {min: Vec3; max: Vec3}[] {
-    return this.fixtures.children.filter(({visible}) => visible).map((child) => {
+    return this.fixtures.children.map((child) => {
       const {geometry, matrix} = child as Mesh;
       child.updateMatrix();
       geometry.computeBoundingBox();

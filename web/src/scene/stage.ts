@@ -4,7 +4,7 @@ import {
   MeshStandardMaterial, Object3D, PCFShadowMap, Scene, SphereGeometry, Vector3, WebGLRenderer,
 } from 'three';
 import {BodyPoints} from '../person';
-import {kSides, PersonState, Pose, SceneSpec, Side, State, Vec3} from '../protocol';
+import {FixtureSpec, kSides, PersonState, Pose, SceneSpec, Side, State, Vec3} from '../protocol';
 import {kMeaning, kSceneColors, Theme} from '../theme';
 import {WrenchArrows} from './arrows';
 import {Body} from './body';
@@ -219,6 +219,10 @@ export class Stage {
     }
   }
 
+  setFixtures(fixtures: FixtureSpec[]) {
+    this.room.setFixtures(fixtures);
+  }
+
   setToken(token: string) {
     this.token = token;
   }
@@ -233,7 +237,6 @@ export class Stage {
     const thresholds = presentThresholds(this.spec, state);
     this.cobot?.setJoints(state.cobotQ);
     place(this.objectPlace, state.object);
-    this.room.show(state.events);
     this.guidance.set(state.object.p);
     const byHand = this.spec.operator === 'browser' && !this.renderer.xr.isPresenting;
     for (const side of kSides) {
