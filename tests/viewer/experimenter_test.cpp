@@ -67,26 +67,26 @@ class EventsOnThePage : public testing::Test {
 
 // Returns whether the bytes contain anything about an event: its name, its trigger, its duration,
 // or the fixture that it lets appear.
-bool Tell(const std::string& bytes) {
+bool MentionsAnEvent(const std::string& bytes) {
   for (const char* what : {"power_loss", "obstacle_appears", "3.217", "1.739", "12.39", "0.4321",
                            "\"wall\"", "trigger", "\"events\":["})
     if (bytes.find(what) != std::string::npos) return true;
   return false;
 }
 
-TEST_F(EventsOnThePage, NoByteTellsASubjectOfAnEventBeforeItBegins) {
+TEST_F(EventsOnThePage, NoByteForASubjectMentionsAnEventBeforeItBegins) {
   for (const Role role : {Role::kLook, Role::kOperator, Role::kControl}) {
     SCOPED_TRACE(Name(role));
     WebSocket page(server_.port()), experimenter(server_.port());
     page.SendText(R"({"type":"hello","token":")" + server_.Token(role) + "\"}");
     experimenter.Hello(server_.code());
-    EXPECT_TRUE(Tell(Ask(&experimenter, "events")));
+    EXPECT_TRUE(MentionsAnEvent(Ask(&experimenter, "events")));
     received_.clear();
     Tick(&page, 0, 0);
     Tick(&page, 2, 0);
     Tick(&page, 4, kPowerLoss);
     ASSERT_NE(received_.find("\"welcome\""), std::string::npos);
-    EXPECT_FALSE(Tell(received_)) << received_;
+    EXPECT_FALSE(MentionsAnEvent(received_)) << received_;
     // Now the wall is there, so it must be drawn.
     Tick(&page, 5, kWallAppears);
     EXPECT_NE(received_.find("0.4321"), std::string::npos);
@@ -94,7 +94,7 @@ TEST_F(EventsOnThePage, NoByteTellsASubjectOfAnEventBeforeItBegins) {
     WebSocket later(server_.port());
     const std::string welcome = later.Hello(server_.code());
     ASSERT_FALSE(welcome.empty());
-    EXPECT_FALSE(Tell(welcome)) << welcome;
+    EXPECT_FALSE(MentionsAnEvent(welcome)) << welcome;
   }
 }
 
@@ -135,7 +135,7 @@ TEST_F(EventsOnThePage, OnlyTheRoleControlMayAsk) {
     EXPECT_NE(denied.find("may not see the events to come"), std::string::npos) << denied;
     received_.clear();
     Tick(&page, 4, 0);
-    EXPECT_FALSE(Tell(received_)) << received_;
+    EXPECT_FALSE(MentionsAnEvent(received_)) << received_;
   }
 }
 
