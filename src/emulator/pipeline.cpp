@@ -222,16 +222,22 @@ StopGeometry Pipeline::GeometryForStop(const MotionOrder& order, const TickData&
 // Returns the number of joints changed.
 int Pipeline::KeepToCap(const MotionOrder& order, const std::array<Jacobian, kHands>& J,
                         std::array<JointVector, kHands>* v) const noexcept {
-  double factor = 1;
+  // The last command kept to the cap in the arms' posture of that time, but perhaps not in this
+  // one.
+  double factor = 1, last_factor = 1;
   for (const int i : hands_) {
     if ((*v)[i].size() != J[i].cols()) continue;
-    const Twist V = TwistOf(J[i], (*v)[i]);
-    factor = std::min({factor, order.cap.speed / std::max(1e-12, V.head<3>().norm()),
-                       order.cap.rotation / std::max(1e-12, V.tail<3>().norm())});
+    const auto allowed = [&](const JointVector& command) {
+      const Twist V = TwistOf(J[i], command);
+      return std::min(order.cap.speed / std::max(1e-12, V.head<3>().norm()),
+                      order.cap.rotation / std::max(1e-12, V.tail<3>().norm()));
+    };
+    factor = std::min(factor, allowed((*v)[i]));
+    last_factor = std::min(last_factor, allowed(guard_.last()[i]));
   }
   // Recovery ignores the joints' acceleration limits. If the guard limited each joint separately,
   // the handles would move in a different direction than commanded, and perhaps faster.
-  return factor < 1 || order.motion == Motion::kRecover ? guard_.Slow(factor, v) : 0;
+  return factor < 1 || order.motion == Motion::kRecover ? guard_.Slow(factor, v, last_factor) : 0;
 }
 
 void Pipeline::ApplyGuard(const MotionOrder& order, TickData* data) noexcept {

@@ -78,20 +78,23 @@ double Guard::Bound(int arm, int joint, double q, double v, int ticks) const noe
   return std::clamp(v, -down, up);
 }
 
-int Guard::Slow(double factor, std::array<JointVector, kHands>* v) const noexcept {
+int Guard::Slow(double factor, std::array<JointVector, kHands>* v,
+                double last_factor) const noexcept {
+  const double keep = std::max(last_factor, BrakingFactor());
   double share = 1;
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     if ((*v)[arm].size() != last_[arm].size()) return 0;
     for (Eigen::Index i = 0; i < last_[arm].size(); ++i) {
-      const double way = std::abs(factor * (*v)[arm][i] - last_[arm][i]);
-      const double step = bounds_[arm].acceleration[i] * dt_;
-      if (way > step) share = std::min(share, step / way);
+      const double from = keep * last_[arm][i], way = factor * (*v)[arm][i] - from;
+      const double braked = from - last_[arm][i];
+      const double room = bounds_[arm].acceleration[i] * dt_ - (way > 0 ? braked : -braked);
+      if (std::abs(way) > room) share = std::min(share, room / std::abs(way));
     }
   }
   int altered = 0;
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     for (Eigen::Index i = 0; i < last_[arm].size(); ++i) {
-      const double asked = (*v)[arm][i], goal = factor * asked, from = last_[arm][i];
+      const double asked = (*v)[arm][i], goal = factor * asked, from = keep * last_[arm][i];
       (*v)[arm][i] = share < 1 ? from + share * (goal - from) : goal;
       if ((*v)[arm][i] != asked) ++altered;
     }

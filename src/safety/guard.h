@@ -47,12 +47,15 @@ class Guard {
   // not use the heap or throw.
   int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
-  // Scales `v` by `factor`. Both arms move by the same share of the way from the last command to
-  // the scaled command. This share is 1 unless a joint would exceed its acceleration bound. If the
-  // handles stay below their speed cap at both ends, they stay below it in between. Returns the
+  // Scales `v` by `factor`, and the last command by `last_factor`, which is 1 unless the last
+  // command became too fast because the arms' posture has changed. Both arms move by the same share
+  // of the way from the scaled last command to the scaled `v`. This share is 1 unless a joint would
+  // exceed its acceleration bound. If the handles stay below their speed cap at both ends, they
+  // stay below it in between. The acceleration bound has priority over `last_factor`. Returns the
   // number of altered joints, or 0 if a number is missing. Call this before Apply. Does not use the
   // heap or throw.
-  int Slow(double factor, std::array<JointVector, kHands>* v) const noexcept;
+  int Slow(double factor, std::array<JointVector, kHands>* v,
+           double last_factor = 1) const noexcept;
   const std::array<JointVector, kHands>& last() const noexcept { return last_; }
   // Returns whether the last command is so slow that the next one may be zero.
   bool MayRestNext() const noexcept;

@@ -361,6 +361,50 @@ TEST(Guard, SlowsBothArmsByTheSameFraction) {
   EXPECT_GT(part, 100);
 }
 
+// If the posture of the arms made the last command too fast, the way begins at the last command
+// scaled by one factor. The factor yields to the joints' accelerations.
+TEST(Guard, SlowsFromALastCommandThatBecameTooFast) {
+  RandomStream random(8, "became too fast");
+  int kept = 0, yielded = 0;
+  for (int k = 0; k < 2000; ++k) {
+    Plant plant(&random, 7, 6);
+    Guard guard(plant.bounds, 0.001);
+    Arms v, goal;
+    for (int tick = 0; tick < 20; ++tick) {
+      for (std::size_t arm = 0; arm < kHands; ++arm)
+        v[arm] = JointVector::Constant(plant.q[arm].size(), 0.1 * random.Normal());
+      guard.Apply(plant.q, &v);
+    }
+    for (std::size_t arm = 0; arm < kHands; ++arm) {
+      for (auto& x : v[arm]) x += 0.1 * random.Normal();
+      goal[arm] = v[arm];
+    }
+    double least = 0;  // the smallest factor that the accelerations allow
+    for (std::size_t arm = 0; arm < kHands; ++arm)
+      for (int j = 0; j < v[arm].size(); ++j)
+        if (const double last = std::abs(guard.last()[arm][j]); last > 0)
+          least = std::max(least, 1 - plant.bounds[arm].acceleration[j] * 0.001 / last);
+    const double factor = random.Uniform(), keep = std::max(factor, least);
+    guard.Slow(1, &v, factor);
+    (factor > least ? kept : yielded)++;
+    double share = -1, tightest = 0;
+    for (std::size_t arm = 0; arm < kHands; ++arm)
+      for (int j = 0; j < v[arm].size(); ++j) {
+        const double last = guard.last()[arm][j], from = keep * last, way = goal[arm][j] - from;
+        if (share < 0) share = (v[arm][j] - from) / way;
+        EXPECT_NEAR(v[arm][j], from + share * way, 1e-12);
+        tightest = std::max(
+            tightest, std::abs(v[arm][j] - last) / (plant.bounds[arm].acceleration[j] * 0.001));
+      }
+    EXPECT_GE(share, -1e-9);
+    EXPECT_LE(share, 1 + 1e-9);
+    EXPECT_LE(tightest, 1 + 1e-9);
+    EXPECT_TRUE(share > 1 - 1e-9 || tightest > 1 - 1e-9);
+  }
+  EXPECT_GT(kept, 100);
+  EXPECT_GT(yielded, 100);
+}
+
 TEST(Guard, SlowsNothingThatIsReachedOrCannotBeRead) {
   Guard guard({OneJoint(-9, 9, 2, 10), OneJoint(-9, 9, 2, 10)}, 0.001);
   Arms v = {JointVector::Constant(1, 0.01), JointVector::Constant(1, -0.003)};

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <thread>
 
+#include "analysis/hazard_study/run_measures.h"
 #include "analysis/hazard_study/run_store.h"
 #include "analysis/parallel.h"
 #include "analysis/stability_map/store.h"
@@ -55,37 +56,11 @@ double ExcessOf(const TickRecord& record, double threshold) {
   return std::max(0.0, Norm(hand.true_wrench.data()) - threshold);
 }
 
-HazardRun Run(Scenario scenario, std::uint64_t seed) {
-  scenario.seed = seed;
-  HazardRun run;
-  run.seed = seed;
-  SummaryBuilder builder(scenario);
-  Emulator emulator(scenario);
-  Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
-    builder.Add(record);
-    if (run.excess < 0 && record.cause == StopCause::kForce && record.cause_hand >= 0)
-      run.excess = ExcessOf(record, scenario.safety.force);
-    if (record.ran == 0 || record.latest_event != 0) return;
-    for (const HandRecord& hand : record.hands)
-      if (hand.present != 0) run.before = std::max(run.before, Norm(hand.wrench.data()));
-  });
-  const Summary summary = builder.summary();
-  const EventSummary& event = summary.events.front();
-  const auto largest = [](const std::array<double, kHands>& values) {
-    return *std::max_element(values.begin(), values.end());
-  };
-  run.begin = event.begin.value_or(-1);
-  run.after = largest(event.force);
-  run.torque = largest(event.torque);
-  run.speed = largest(event.speed);
-  run.until_stop = event.until_stop.value_or(-1);
-  if (summary.cobot_stop) run.cobot_stop = summary.cobot_stop->reason;
-  if (summary.stops.empty()) return run;
-  const StopSummary& stop = summary.stops.front();
-  run.cause = stop.cause;
-  run.detection = stop.cause == StopCause::kForce ? stop.detection.value_or(-1) : -1;
-  run.travel = stop.distance;
-  return run;
+ClearCrossing CrossingOf(const Scenario& scenario) {
+  std::array<double, kHands> resolved = {};
+  for (const int i : scenario.hands())
+    resolved[static_cast<std::size_t>(i)] = ResolvedForce(scenario.arm(i).sensor);
+  return {scenario.safety.force, resolved};
 }
 
 // Gives the controller the mass and the centre of mass of the load.
@@ -114,15 +89,10 @@ Piece PieceOf(const std::filesystem::path& file, const StudyChoice& controller,
   piece.cell.scenario = file.stem().string();
   piece.cell.controller = controller.name;
   piece.cell.hazard = hazard.name;
-  std::vector<std::string> set = {Formatted("duration=%g", duration)};
-  for (const auto* more : {&controller.set, &hazard.set, &kCobotSafety})
-    set.insert(set.end(), more->begin(), more->end());
   try {
-    piece.scenario = LoadScenario(file, set);
-    if (controller.name == kLoadSharing) SetLoad(&piece.scenario);
-    if (hazard.name == kSlips) SetGrip(&piece.scenario);
+    piece.scenario = StudiedScenario(file, controller, hazard, duration);
     // The first run reveals the program's behaviour, so that no outdated run is reused.
-    piece.first = Run(piece.scenario, 1);
+    piece.first = RunWithHazard(piece.scenario, 1);
     piece.key = HashOf(SaveScenario(piece.scenario) + TextOf(piece.first));
   } catch (const InputError& error) {
     piece.cell.impossible = error.what();
@@ -155,6 +125,57 @@ std::vector<StudyChoice> StudiedHazards() {
           Hazard("wrong_friction"), Hazard("sensor_bias"),        Hazard("sensor_drift"),
           Hazard("control_delay"),  Hazard("control_freeze"),     takeover,
           Hazard(kSlips),           Hazard("object_breaks_loose")};
+}
+
+Scenario StudiedScenario(const std::filesystem::path& file, const StudyChoice& controller,
+                         const StudyChoice& hazard, double duration) {
+  std::vector<std::string> set = {Formatted("duration=%g", duration)};
+  for (const auto* more : {&controller.set, &hazard.set, &kCobotSafety})
+    set.insert(set.end(), more->begin(), more->end());
+  Scenario scenario = LoadScenario(file, set);
+  if (controller.name == kLoadSharing) SetLoad(&scenario);
+  if (hazard.name == kSlips) SetGrip(&scenario);
+  return scenario;
+}
+
+HazardRun RunWithHazard(Scenario scenario, std::uint64_t seed) {
+  scenario.seed = seed;
+  HazardRun run;
+  run.seed = seed;
+  SummaryBuilder builder(scenario);
+  ClearCrossing crossing = CrossingOf(scenario);
+  CommandedSpeeds commanded(scenario);
+  Emulator emulator(scenario);
+  Simulate(&emulator, scenario.duration, [&](const TickRecord& record) {
+    builder.Add(record);
+    crossing.Add(record);
+    commanded.Add(record);
+    if (run.excess < 0 && record.cause == StopCause::kForce && record.cause_hand >= 0) {
+      run.excess = ExcessOf(record, scenario.safety.force);
+      run.clear_detection = crossing.duration(record.cause_hand);
+    }
+    if (record.ran == 0 || record.latest_event != 0) return;
+    for (const HandRecord& hand : record.hands)
+      if (hand.present != 0) run.before = std::max(run.before, Norm(hand.wrench.data()));
+  });
+  const Summary summary = builder.summary();
+  const EventSummary& event = summary.events.front();
+  const auto largest = [](const std::array<double, kHands>& values) {
+    return *std::max_element(values.begin(), values.end());
+  };
+  run.begin = event.begin.value_or(-1);
+  run.commanded = commanded.share();
+  run.after = largest(event.force);
+  run.torque = largest(event.torque);
+  run.speed = largest(event.speed);
+  run.until_stop = event.until_stop.value_or(-1);
+  if (summary.cobot_stop) run.cobot_stop = summary.cobot_stop->reason;
+  if (summary.stops.empty()) return run;
+  const StopSummary& stop = summary.stops.front();
+  run.cause = stop.cause;
+  run.detection = stop.cause == StopCause::kForce ? stop.detection.value_or(-1) : -1;
+  run.travel = stop.distance;
+  return run;
 }
 
 HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
@@ -196,7 +217,7 @@ HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
           ++kept;
           return;
         }
-        run = seed == 1 ? piece.first : Run(piece.scenario, seed);
+        run = seed == 1 ? piece.first : RunWithHazard(piece.scenario, seed);
         store.Add(piece.key, piece.cell, run);
       },
       report);

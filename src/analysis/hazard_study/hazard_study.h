@@ -34,7 +34,12 @@ struct HazardRun {
   double detection = -1;  // from the time at which the true force crosses its threshold to the stop
                           // [s]
   double excess = -1;     // of the true force over its threshold at that stop [N]
-  double travel = -1;     // travel of the faster handle during the stop [m]
+  // From the time at which the true force exceeds its threshold clearly (ClearCrossing) to that
+  // stop [s]; −1: it did not.
+  double clear_detection = -1;
+  // The largest commanded speed of a handle, as a share of its cap (CommandedSpeeds).
+  double commanded = 0;
+  double travel = -1;  // travel of the faster handle during the stop [m]
   CobotStop cobot_stop = CobotStop::kNone;
 };
 
@@ -42,7 +47,7 @@ struct HazardRun {
 struct HazardCell {
   std::string scenario, controller, hazard;
   std::string impossible;       // why the cell is empty
-  double speed_cap = 0;         // limit of the handles' speed [m/s]
+  double speed_cap = 0;         // cap of the handles' commanded speed [m/s]
   double travel_budget = 0;     // travel allowed for a stop, as `check` computes it [m]
   std::vector<HazardRun> runs;  // by seed
 };
@@ -61,6 +66,14 @@ struct HazardStudyOptions {
   // Only the caller's thread calls this.
   std::function<void(double share)> progress = [](double) {};
 };
+
+// Returns the scenario of a cell's runs. Throws InputError if the controller and the hazard do not
+// fit, for example because the hazard would have no effect.
+Scenario StudiedScenario(const std::filesystem::path& file, const StudyChoice& controller,
+                         const StudyChoice& hazard, double duration);
+// Simulates one run with the operator that belongs to `seed`. The first event of the scenario is
+// the hazard.
+HazardRun RunWithHazard(Scenario scenario, std::uint64_t seed);
 
 // Executes the runs that the folder's runs.csv does not contain yet. Each finished run is appended
 // to it, with a hash of its scenario and of the program's behaviour. Writes hazards.csv and

@@ -13,8 +13,9 @@ namespace {
 
 constexpr const char* kHeader =
     "key,scenario,controller,hazard,seed,begin_s,force_before_N,force_after_N,torque_Nm,speed_m_s,"
-    "until_stop_s,cause,detection_s,travel_m,cobot_stop,excess_N";
-constexpr std::size_t kColumns = 16, kOfRun = 12;  // in all, and those of TextOf
+    "until_stop_s,cause,detection_s,travel_m,cobot_stop,excess_N,"
+    "clear_detection_s,commanded_share";
+constexpr std::size_t kColumns = 18, kOfRun = 14;  // in all, and those of TextOf
 
 std::vector<std::string> Split(const std::string& line) {
   std::vector<std::string> cells;
@@ -56,7 +57,8 @@ bool ReadRun(const std::vector<std::string>& cells, HazardRun* run) {
   run->seed = static_cast<std::uint64_t>(seed);
   return read && ReadName(at[7], kStopCauses, &run->cause) && ReadNumber(at[8], &run->detection) &&
          ReadNumber(at[9], &run->travel) && ReadName(at[10], kCobotStops, &run->cobot_stop) &&
-         ReadNumber(at[11], &run->excess);
+         ReadNumber(at[11], &run->excess) && ReadNumber(at[12], &run->clear_detection) &&
+         ReadNumber(at[13], &run->commanded);
 }
 
 }  // namespace
@@ -64,7 +66,8 @@ bool ReadRun(const std::vector<std::string>& cells, HazardRun* run) {
 std::string TextOf(const HazardRun& run) {
   return Join({std::to_string(run.seed), Short(run.begin), Short(run.before), Short(run.after),
                Short(run.torque), Short(run.speed), Short(run.until_stop), Name(run.cause),
-               Short(run.detection), Short(run.travel), Name(run.cobot_stop), Short(run.excess)},
+               Short(run.detection), Short(run.travel), Name(run.cobot_stop), Short(run.excess),
+               Short(run.clear_detection), Short(run.commanded)},
               ",");
 }
 

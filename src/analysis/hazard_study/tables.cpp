@@ -13,7 +13,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kInTime = 0.0035;  // 3 ms, in whole ticks of 1 ms [s]
+constexpr double kInTime = 0.003 + 1e-9;  // the times are rounded [s]
 
 // Returns the values of the runs in which the hazard began. Values below `least` are missing.
 std::vector<double> ValuesOf(const HazardCell& cell, double HazardRun::*value, double least = 0) {
@@ -106,7 +106,8 @@ std::string HazardStudyCsv(const HazardStudy& study) {
       "scenario,controller,hazard,impossible,runs,begun,stopped,causes,cobot_stops,"
       "until_stop_median_s,force_before_p95_N,force_after_median_N,force_after_p95_N,"
       "force_after_max_N,torque_after_max_Nm,speed_after_max_m_s,detection_max_s,travel_max_m,"
-      "force_after_median_is_bound,force_after_p95_is_bound,true_force_excess_max_N\n";
+      "force_after_median_is_bound,force_after_p95_is_bound,true_force_excess_max_N,"
+      "clear_detection_max_s,commanded_share_max\n";
   for (const HazardCell& cell : study.cells) {
     const std::vector<CensoredValue> after = ForcesOf(cell);
     const CensoredValue median = CensoredQuantile(after, 0.5), tail = CensoredQuantile(after, 0.95);
@@ -135,7 +136,9 @@ std::string HazardStudyCsv(const HazardStudy& study) {
                  largest(&HazardRun::travel),
                  std::to_string(median.at_least),
                  std::to_string(tail.at_least),
-                 largest(&HazardRun::excess)},
+                 largest(&HazardRun::excess),
+                 largest(&HazardRun::clear_detection),
+                 largest(&HazardRun::commanded)},
                 ",") +
            "\n";
   }
@@ -157,6 +160,8 @@ std::string HazardStudyJson(const HazardStudy& study) {
                       {"cause", Name(run.cause)},
                       {"detection_s", run.detection},
                       {"true_force_excess_N", run.excess},
+                      {"clear_detection_s", run.clear_detection},
+                      {"commanded_share", run.commanded},
                       {"travel_m", run.travel},
                       {"cobot_stop", Name(run.cobot_stop)}});
     json.push_back({{"scenario", cell.scenario},
@@ -169,38 +174,42 @@ std::string HazardStudyJson(const HazardStudy& study) {
 }
 
 std::string HazardStudyWords(const HazardStudy& study) {
-  std::size_t runs = 0, begun = 0, stopped = 0, by_force = 0, in_time = 0;
-  double detection = 0, force = 0, excess = 0, late_excess = 0, travel = 0, speed = 0;
+  std::size_t runs = 0, begun = 0, stopped = 0, by_force = 0, in_time = 0, crossed = 0;
+  double clear = 0, detection = 0, force = 0, excess = 0, travel = 0, speed = 0, commanded = 0;
   for (const HazardCell& cell : study.cells) {
     runs += cell.runs.size();
     for (const HazardRun& run : cell.runs) {
       begun += run.begin >= 0;
       stopped += run.begin >= 0 && run.until_stop >= 0;
-      by_force += run.detection >= 0;
-      in_time += run.detection >= 0 && run.detection <= kInTime;
+      by_force += run.cause == StopCause::kForce;
+      in_time += run.cause == StopCause::kForce && run.clear_detection <= kInTime;
+      crossed += run.detection >= 0;
+      clear = std::max(clear, run.clear_detection);
       detection = std::max(detection, run.detection);
       excess = std::max(excess, run.excess);
-      if (run.detection > kInTime) late_excess = std::max(late_excess, run.excess);
       force = std::max(force, run.after);
       travel = std::max(travel, run.travel / cell.travel_budget);
       speed = std::max(speed, run.speed / cell.speed_cap);
+      commanded = std::max(commanded, run.commanded);
     }
   }
   std::string text;
   AppendLine(&text, "%zu runs (%d from an earlier study); the hazard began in %zu; %zu stopped.",
              runs, study.kept, begun, stopped);
   AppendLine(&text,
-             "%zu of %zu force stops were decided within 3 ms after the true force crossed its "
-             "threshold, all within %.0f ms; the largest measured force was %.2f N.",
-             in_time, by_force, 1e3 * detection, force);
+             "%zu of %zu force stops were decided within 3 ms after the true force exceeded its "
+             "threshold by more than the sensor resolves, all within %.0f ms.",
+             in_time, by_force, 1e3 * clear);
   AppendLine(&text,
-             "At these stops, the true force exceeded its threshold by at most %.2f N, at those "
-             "after more than 3 ms by at most %.2f N.",
-             excess, late_excess);
+             "In %zu of them, the true force had crossed the threshold itself, at most %.0f ms "
+             "before and by at most %.2f N; the largest measured force was %.2f N.",
+             crossed, 1e3 * detection, excess, force);
   AppendLine(&text, "The longest stop used %.0f %% of its travel budget.", 100 * travel);
-  // An arm's posture changes until it follows a command.
-  AppendLine(&text, "The fastest handle reached %.1f %% of the cap on its commanded speed.",
-             100 * speed);
+  // An arm obeys a command later and not exactly, and the measured speed contains noise.
+  AppendLine(&text,
+             "The fastest command used %.1f %% of its cap; the measured speed of a handle reached "
+             "%.1f %% of the cap.",
+             100 * commanded, 100 * speed);
   return text;
 }
 

@@ -1,0 +1,92 @@
+// Tests whether the emulator keeps its promises in runs with hazards, and how this is measured.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "analysis/hazard_study/hazard_study.h"
+#include "analysis/hazard_study/run_measures.h"
+#include "analysis/scenarios.h"
+
+namespace predictor {
+namespace {
+
+// A reading deviates from the truth by the noise and, evenly distributed, by up to half a step. The
+// standard deviation of the latter is the step over sqrt(12).
+TEST(ResolvedForce, IsThreeStandardDeviationsOfAReading) {
+  SensorSpec sensor;
+  sensor.noise_force = 0.03;
+  sensor.force_resolution = 0.04 * std::sqrt(12);
+  EXPECT_DOUBLE_EQ(ResolvedForce(sensor), 3 * 0.05);
+}
+
+TickRecord With(double run_time, double left, double right) {
+  TickRecord record = {};
+  record.run_time = run_time;
+  record.hands[0].true_wrench = {0, 0, left};
+  record.hands[1].true_wrench = {0, right, 0};
+  return record;
+}
+
+TEST(ClearCrossing, CountsFromTheLastTimeAtWhichTheForceExceededTheThresholdClearly) {
+  ClearCrossing crossing(30, {0.15, 0.5});
+  const auto add = [&](double run_time, double left, double right) {
+    crossing.Add(With(run_time, left, right));
+  };
+  add(1.000, 29, 31);
+  EXPECT_EQ(crossing.duration(0), -1);
+  EXPECT_EQ(crossing.duration(1), 0);
+  add(1.001, 30.1, 31);  // the left force exceeds 30 N, but by less than its sensor resolves
+  EXPECT_EQ(crossing.duration(0), -1);
+  EXPECT_NEAR(crossing.duration(1), 0.001, 1e-12);
+  add(1.002, 30.2, 30.4);
+  EXPECT_EQ(crossing.duration(0), 0);
+  EXPECT_EQ(crossing.duration(1), -1);
+  add(1.005, 30.2, 31);
+  EXPECT_NEAR(crossing.duration(0), 0.003, 1e-12);
+  EXPECT_EQ(crossing.duration(1), 0);
+}
+
+HazardRun StudiedRun(const std::string& scenario, const std::string& controller,
+                     const std::string& hazard, std::uint64_t seed) {
+  const auto named = [](const std::vector<StudyChoice>& choices, const std::string& name) {
+    return *std::ranges::find(choices, name, &StudyChoice::name);
+  };
+  return RunWithHazard(
+      StudiedScenario(kScenarios / (scenario + ".yaml"), named(StudiedControllers(), controller),
+                      named(StudiedHazards(), hazard), 6),
+      seed);
+}
+
+// In these runs of the study, the force rose so slowly or fluctuated so much at the threshold that
+// the stop came 4 ms after the true force crossed it.
+TEST(HazardRuns, StopWithinThreeMillisecondsAfterTheForceExceedsItsThresholdClearly) {
+  const struct {
+    const char *scenario, *controller, *hazard;
+    std::uint64_t seed;
+  } kRuns[] = {{"box_9kg", "cartesian_impedance", "power_loss", 46},
+               {"box_9kg", "admittance", "object_breaks_loose", 13},
+               {"box_9kg", "variable_impedance", "takeover", 37},
+               {"bar_circle", "admittance", "power_loss", 39},
+               {"bar_circle", "load_sharing", "takeover", 6}};
+  for (const auto& [scenario, controller, hazard, seed] : kRuns) {
+    SCOPED_TRACE(std::string(scenario) + ", " + controller + ", " + hazard);
+    const HazardRun run = StudiedRun(scenario, controller, hazard, seed);
+    EXPECT_EQ(run.cause, StopCause::kForce);
+    EXPECT_LE(run.clear_detection, 0.003 + 1e-9);
+  }
+}
+
+// In these runs of the study, the handles were fastest.
+TEST(HazardRuns, CommandNoHandleFasterThanItsCap) {
+  for (const char* hazard : {"object_slips", "object_breaks_loose"})
+    for (const char* scenario : {"box_9kg", "bar_circle"}) {
+      SCOPED_TRACE(std::string(scenario) + ", " + hazard);
+      const HazardRun run = StudiedRun(scenario, "load_sharing", hazard, 49);
+      EXPECT_GT(run.commanded, 0.99);
+      EXPECT_LE(run.commanded, 1 + 1e-9);
+    }
+}
+
+}  // namespace
+}  // namespace predictor
