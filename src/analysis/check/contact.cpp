@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "simulation/contact_law.h"
+#include "simulation/mujoco/contact_law.h"
 
 namespace predictor {
 namespace {

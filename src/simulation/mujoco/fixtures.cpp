@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "simulation/contact_law.h"
+#include "simulation/mujoco/contact_law.h"
 #include "simulation/mujoco/shapes.h"
 
 namespace predictor {

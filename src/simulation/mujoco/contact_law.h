@@ -1,4 +1,4 @@
-// The force of a point of contact between a body and a fixture.
+// The force of a point of contact between a body and a fixture in MuJoCo. DART has rigid contacts.
 #pragma once
 
 #include "scenario/fixture_spec.h"
