@@ -5,18 +5,21 @@
 #include <dart/collision/CollisionFilter.hpp>
 #include <dart/collision/CollisionGroup.hpp>
 #include <dart/collision/CollisionObject.hpp>
-#include <dart/collision/bullet/BulletCollisionDetector.hpp>
 #include <dart/constraint/ConstraintSolver.hpp>
 #include <dart/dynamics/BallJoint.hpp>
 #include <dart/dynamics/BoxShape.hpp>
+#include <dart/dynamics/CapsuleShape.hpp>
 #include <dart/dynamics/CylinderShape.hpp>
 #include <dart/dynamics/PlaneShape.hpp>
 #include <dart/dynamics/PrismaticJoint.hpp>
 #include <dart/dynamics/RevoluteJoint.hpp>
 #include <dart/dynamics/SphereShape.hpp>
+#include <dart/dynamics/TranslationalJoint.hpp>
 #include <dart/dynamics/WeldJoint.hpp>
 #include <limits>
 #include <stdexcept>
+
+#include "contact_detector.h"
 
 namespace predictor::dart_engine {
 namespace {
@@ -30,6 +33,10 @@ using Eigen::Vector3d;
 // Accelerations that contacts and limits add count as rounding errors below this share of the
 // largest acceleration.
 constexpr double kRounding = 1e-9;
+// DART takes the smaller friction of two shapes and the product of their restitutions. With these
+// values for the object, those of the surroundings apply.
+constexpr double kObjectFriction = std::numeric_limits<double>::infinity();
+constexpr double kObjectRestitution = 1;
 
 Vector3d At(const double* xyz) { return Eigen::Map<const Vector3d>(xyz); }
 void Write(const Vector3d& from, double* to) { Eigen::Map<Vector3d>{to} = from; }
@@ -72,17 +79,23 @@ dart::dynamics::ShapePtr ShapeOf(const CollisionShape& shape) {
       return std::make_shared<dart::dynamics::CylinderShape>(size[0], size[1]);
     case ShapeKind::kSphere:
       return std::make_shared<dart::dynamics::SphereShape>(size[0]);
+    case ShapeKind::kCapsule:
+      return std::make_shared<dart::dynamics::CapsuleShape>(size[0], size[1]);
+    case ShapeKind::kPlane:
+      return std::make_shared<dart::dynamics::PlaneShape>(Vector3d::UnitZ(), 0.0);
   }
   throw std::runtime_error("unknown shape");
 }
 
-void AddShape(BodyNode* body, const dart::dynamics::ShapePtr& shape, const Isometry3d& at,
-              double friction) {
+dart::dynamics::ShapeNode* AddShape(BodyNode* body, const CollisionShape& shape, double friction,
+                                    double restitution) {
   auto* node =
       body->createShapeNodeWith<dart::dynamics::CollisionAspect, dart::dynamics::DynamicsAspect>(
-          shape);
-  node->setRelativeTransform(at);
+          ShapeOf(shape));
+  node->setRelativeTransform(IsometryOf(shape.at));
   node->getDynamicsAspect()->setFrictionCoeff(friction);
+  node->getDynamicsAspect()->setRestitutionCoeff(restitution);
+  return node;
 }
 
 template <class J>
@@ -107,8 +120,7 @@ DartWorld::DartWorld(const SceneData& scene)
     : scene_(scene), world_(dart::simulation::World::create()) {
   world_->setTimeStep(scene.step);
   world_->setGravity({0, 0, -scene.gravity});
-  world_->getConstraintSolver()->setCollisionDetector(
-      dart::collision::BulletCollisionDetector::create());
+  world_->getConstraintSolver()->setCollisionDetector(MakeContactDetector());
   cobot_ = dart::dynamics::Skeleton::create("cobot");
   AddCobot();
   AddObject();
@@ -161,6 +173,7 @@ void DartWorld::AddObject() {
   const Isometry3d at = IsometryOf(scene_.end_effector) * IsometryOf(scene_.object_at) * pivot;
   BodyNode* carrier = Carrier(scene_.carrier);
   const BodyNode::Properties body = BodyOf("object", scene_.object);
+  if (scene_.attachment == Attachment::kFree) return AddFreeObject(body);
   using dart::dynamics::BallJoint;
   using dart::dynamics::PrismaticJoint;
   using dart::dynamics::RevoluteJoint;
@@ -192,6 +205,8 @@ void DartWorld::AddObject() {
           WithAxis<PrismaticJoint>(Properties<PrismaticJoint>(name, at, pivot), At(scene_.axis)),
           body));
       break;
+    case Attachment::kFree:
+      break;  // above
   }
   for (std::size_t i = 0; i < joint->getNumDofs(); ++i) {
     joint->setDampingCoefficient(i, scene_.damping);
@@ -199,6 +214,22 @@ void DartWorld::AddObject() {
   }
   if (joint->getNumDofs() == 1)
     SetLimits(joint, scene_.lower, scene_.upper, std::numeric_limits<double>::infinity());
+}
+
+// DART's own free joint has velocities in axes of the body. A sliding joint along the axes of W,
+// whose body has no mass, and a ball joint have those of the protocol.
+void DartWorld::AddFreeObject(const BodyNode::Properties& body) {
+  using dart::dynamics::BallJoint;
+  using dart::dynamics::TranslationalJoint;
+  const Isometry3d same = Isometry3d::Identity();
+  const auto place = cobot_->createJointAndBodyNodePair<TranslationalJoint>(
+      nullptr, Properties<TranslationalJoint>("place", same, same), BodyOf("place", Inertia{}));
+  const auto turn = cobot_->createJointAndBodyNodePair<BallJoint>(
+      place.second, Properties<BallJoint>("turn", same, same), body);
+  object_ = turn.second;
+  for (const Joint* joint : {static_cast<Joint*>(place.first), static_cast<Joint*>(turn.first)})
+    for (std::size_t i = 0; i < 3; ++i)
+      dof_.push_back(static_cast<Eigen::Index>(joint->getIndexInSkeleton(i)));
 }
 
 void DartWorld::AddHands() {
@@ -218,10 +249,8 @@ void DartWorld::AddHands() {
 }
 
 void DartWorld::AddShapes() {
-  for (int i = 0; i < scene_.shapes; ++i) {
-    const CollisionShape& shape = scene_.shape[i];
-    AddShape(object_, ShapeOf(shape), IsometryOf(shape.at), scene_.friction);
-  }
+  for (int i = 0; i < scene_.shapes; ++i)
+    AddShape(object_, scene_.shape[i], kObjectFriction, kObjectRestitution);
 }
 
 void DartWorld::AddSurroundings() {
@@ -229,14 +258,10 @@ void DartWorld::AddSurroundings() {
   surroundings_->setMobile(false);
   BodyNode* body =
       surroundings_->createJointAndBodyNodePair<dart::dynamics::WeldJoint>(nullptr).second;
-  if (scene_.floor != 0)
-    AddShape(body, std::make_shared<dart::dynamics::PlaneShape>(Vector3d::UnitZ(), 0.0),
-             Isometry3d::Identity(), scene_.friction);
-  if (scene_.table == 0) return;
-  Isometry3d at = Isometry3d::Identity();
-  at.translation() = At(scene_.table_at);
-  AddShape(body, std::make_shared<dart::dynamics::BoxShape>(At(scene_.table_size)), at,
-           scene_.friction);
+  for (int i = 0; i < scene_.obstacles; ++i) {
+    const Obstacle& obstacle = scene_.obstacle[i];
+    obstacles_.push_back(AddShape(body, obstacle.shape, obstacle.friction, obstacle.restitution));
+  }
 }
 
 DartWorld::VectorX DartWorld::ToDart(const double* values) const {
@@ -249,7 +274,23 @@ void DartWorld::FromDart(const VectorX& values, double* to) const {
   for (std::size_t i = 0; i < dof_.size(); ++i) to[i] = values[dof_[i]];
 }
 
+bool DartWorld::HasBall() const {
+  return scene_.attachment == Attachment::kBall || scene_.attachment == Attachment::kFree;
+}
+
+void DartWorld::SetRemoved(std::uint64_t removed) {
+  if (removed == removed_) return;
+  removed_ = removed;
+  for (int i = 0; i < scene_.obstacles; ++i) {
+    const std::int32_t fixture = scene_.obstacle[i].fixture;
+    if (fixture < 0) continue;
+    obstacles_[static_cast<std::size_t>(i)]->getCollisionAspect()->setCollidable(
+        (removed >> fixture & 1U) == 0);
+  }
+}
+
 void DartWorld::SetState(const StateData& state) {
+  SetRemoved(state.removed);
   for (int hand = 0; hand < kHandCount; ++hand) {
     if (hands_[hand] == nullptr) continue;
     const double mass = state.hand_mass[hand];
@@ -258,28 +299,28 @@ void DartWorld::SetState(const StateData& state) {
     hands_[hand]->setInertia(
         dart::dynamics::Inertia(mass, Vector3d::Zero(), inertia * Matrix3d::Identity()));
   }
-  const auto joints = static_cast<std::size_t>(scene_.joints);
   VectorX q(static_cast<Eigen::Index>(dof_.size()));
   for (std::size_t i = 0; i < dof_.size(); ++i) q[dof_[i]] = state.q[i];
-  if (scene_.attachment == Attachment::kBall) {
+  if (HasBall()) {
+    const std::size_t ball = dof_.size() - 3;
     const Vector3d turn = dart::dynamics::BallJoint::convertToPositions(
-        QuaternionAt(state.q + joints).toRotationMatrix());
-    for (std::size_t i = 0; i < 3; ++i) q[dof_[joints + i]] = turn[static_cast<Eigen::Index>(i)];
+        QuaternionAt(state.q + ball).toRotationMatrix());
+    for (std::size_t i = 0; i < 3; ++i) q[dof_[ball + i]] = turn[static_cast<Eigen::Index>(i)];
   }
   cobot_->setPositions(q);
   cobot_->setVelocities(ToDart(state.v));
 }
 
 void DartWorld::ReadState(StateData* state) const {
-  const auto joints = static_cast<std::size_t>(scene_.joints);
   const VectorX q = cobot_->getPositions();
   FromDart(cobot_->getVelocities(), state->v);
-  if (scene_.attachment != Attachment::kBall) return FromDart(q, state->q);
-  for (std::size_t i = 0; i < joints; ++i) state->q[i] = q[dof_[i]];
+  if (!HasBall()) return FromDart(q, state->q);
+  const std::size_t ball = dof_.size() - 3;
+  for (std::size_t i = 0; i < ball; ++i) state->q[i] = q[dof_[i]];
   Vector3d turn;
-  for (std::size_t i = 0; i < 3; ++i) turn[static_cast<Eigen::Index>(i)] = q[dof_[joints + i]];
+  for (std::size_t i = 0; i < 3; ++i) turn[static_cast<Eigen::Index>(i)] = q[dof_[ball + i]];
   const Eigen::Quaterniond rotation(dart::dynamics::BallJoint::convertToRotation(turn));
-  Write(rotation.normalized(), state->q + joints);
+  Write(rotation.normalized(), state->q + ball);
 }
 
 void DartWorld::SetForces(const ForceData& forces) {
@@ -343,6 +384,13 @@ void DartWorld::WriteMotion(const StateData& at, MotionData* motion) const {
   FromDart(cobot_->getCoriolisAndGravityForces(), motion->bias);
 }
 
+std::int32_t DartWorld::FixtureOf(const dart::collision::Contact& contact) const {
+  for (const auto* touching : {contact.collisionObject1, contact.collisionObject2})
+    for (std::size_t i = 0; i < obstacles_.size(); ++i)
+      if (touching->getShapeFrame() == obstacles_[i]) return scene_.obstacle[i].fixture;
+  return -1;
+}
+
 bool DartWorld::WriteContacts(const dart::collision::CollisionResult& result,
                               MotionData* motion) const {
   motion->contacts = 0;
@@ -357,6 +405,7 @@ bool DartWorld::WriteContacts(const dart::collision::CollisionResult& result,
     Write(sign * from.normal, to.normal);
     Write(sign * from.force, to.force);
     to.depth = from.penetrationDepth;
+    to.fixture = FixtureOf(from);
   }
   return true;
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <dart/collision/CollisionResult.hpp>
 #include <dart/dynamics/BodyNode.hpp>
+#include <dart/dynamics/ShapeNode.hpp>
 #include <dart/dynamics/Skeleton.hpp>
 #include <dart/simulation/World.hpp>
 #include <vector>
@@ -29,11 +30,15 @@ class DartWorld {
   void AddCobot();
   void AddObject();
   void AddHands();
+  void AddFreeObject(const dart::dynamics::BodyNode::Properties& body);
   void AddShapes();
   void AddSurroundings();
   dart::dynamics::BodyNode* Carrier(int joint) const;
 
+  // Whether the last three coordinates are those of a ball.
+  bool HasBall() const;
   void SetState(const StateData& state);
+  void SetRemoved(std::uint64_t removed);
   void SetForces(const ForceData& forces);
   VectorX ToDart(const double* values) const;
   void FromDart(const VectorX& values, double* to) const;
@@ -43,6 +48,7 @@ class DartWorld {
   void WriteMotion(const StateData& at, MotionData* motion) const;
   void WriteBody(const dart::dynamics::BodyNode& body, const Eigen::Vector3d& point,
                  BodyMotion* to) const;
+  std::int32_t FixtureOf(const dart::collision::Contact& contact) const;
   bool WriteContacts(const dart::collision::CollisionResult& result, MotionData* motion) const;
   void WriteLoad(const VectorX& a, const ForceData& forces,
                  const std::vector<ContactData>& contacts, AccelerationData* to);
@@ -53,8 +59,10 @@ class DartWorld {
   std::vector<dart::dynamics::BodyNode*> links_;
   dart::dynamics::BodyNode* object_ = nullptr;
   dart::dynamics::BodyNode* hands_[kHandCount] = {};
-  std::vector<Eigen::Index> dof_;  // DART's index of each of our coordinates
-  VectorX damping_;                // in DART's order
+  std::vector<dart::dynamics::ShapeNode*> obstacles_;  // as in the scene
+  std::uint64_t removed_ = 0;                          // fixtures
+  std::vector<Eigen::Index> dof_;                      // DART's index of each of our coordinates
+  VectorX damping_;                                    // in DART's order
 };
 
 }  // namespace predictor::dart_engine

@@ -158,10 +158,6 @@ void Checker::Simulation() const {
          "simulation.engine",
          "is dart, but the arms are real. DART is not fast enough for them: its steps "
          "allocate memory and wait for another process. Set simulation.engine: mujoco.");
-  Unless(s_.simulation.engine == EngineKind::kMujoco || s_.environment.fixtures.empty(),
-         "simulation.engine",
-         "is dart, whose world has no fixtures. Set simulation.engine: mujoco, or remove "
-         "environment.fixtures.");
 }
 
 void Checker::Handles() const {

@@ -1,5 +1,6 @@
 #include "simulation/engine.h"
 
+#include "core/error.h"
 #include "simulation/dart/dart_engine.h"
 #include "simulation/mujoco/mujoco_engine.h"
 
@@ -11,6 +12,12 @@ std::unique_ptr<Engine> MakeEngine(const Scenario& scenario, const RobotModel& c
     case EngineKind::kMujoco:
       return MakeMujocoEngine(scenario, cobot, wrist_sensor, holding);
     case EngineKind::kDart:
+      if (holding == Holding::kFree)
+        throw InputError::At("simulation.engine",
+                             "simulation.engine is dart, in which the object cannot slip, break "
+                             "loose or be put down. Remove the events object_slips, "
+                             "object_breaks_loose and release_object, or set simulation.engine: "
+                             "mujoco.");
       return MakeDartEngine(scenario, cobot, holding);
   }
   return nullptr;

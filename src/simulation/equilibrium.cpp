@@ -115,8 +115,9 @@ class EquilibriumSearch {
   }
 
   // Returns how deep the object or the cobot is in a fixture that has a stiffness (`yields`), or in
-  // one that has none [m].
+  // one that has none [m]. It is 0 if the search does not include contacts.
   double Depth(bool yields) {
+    if (!engine_.has_contacts_at_rest()) return 0;
     engine_.Prepare();
     double depth = 0;
     for (int i = 0; i < engine_.contact_count(); ++i) {
@@ -127,6 +128,7 @@ class EquilibriumSearch {
   }
 
   bool TouchesFixture() const {
+    if (!engine_.has_contacts_at_rest()) return false;
     for (int i = 0; i < engine_.contact_count(); ++i)
       if (engine_.contact(i).fixture >= 0) return true;
     return false;
@@ -204,9 +206,9 @@ void CheckStart(Engine* engine) {
 void RefuseContact(Engine* engine) {
   if (engine->has_contacts_at_rest() || !engine->Prepare() || engine->contact_count() == 0) return;
   throw InputError::At("simulation.engine",
-                       "simulation.engine is dart, but the object touches the floor or the table "
-                       "at the start. Lift it with cobot.posture, or set simulation.engine: "
-                       "mujoco.");
+                       "simulation.engine is dart, but the object touches the floor, the table or "
+                       "a fixture at the start. Lift it with cobot.posture, or set "
+                       "simulation.engine: mujoco.");
 }
 
 }  // namespace

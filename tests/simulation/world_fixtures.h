@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <string>
 
+#include "core/error.h"
 #include "scenes.h"
 #include "simulation/world.h"
 
@@ -32,6 +34,16 @@ inline void Simulate(World* world, const WorldInput& input, double duration,
     ASSERT_TRUE(world->Step(input, kTick).ok()) << "at " << world->state().time << " s";
     if (each) each(world->state());
   }
+}
+
+// Returns the key and the message with which the world refuses a scenario, or "".
+inline std::string RefusalOf(const Scenario& s) {
+  try {
+    World world(s);
+  } catch (const InputError& error) {
+    return error.key() + " | " + error.what();
+  }
+  return "";
 }
 
 }  // namespace predictor

@@ -26,7 +26,8 @@ struct SharedScene {
   ObjectModel object;
   DartProcess process;
   std::string text;
-  bool is_ball = false, has_hands = false;
+  bool has_ball = false, has_hands = false;  // has_ball: a ball's coordinates are the last ones
+  std::uint64_t removed = 0;                 // fixtures
   std::array<DofFriction, kMaxCobotJoints> friction = {};
   std::array<double, kHands> hand_mass = {};
   Engine::Options options;
@@ -85,14 +86,21 @@ class DartEngine final : public Engine {
     read(forces_.joint, layout_.dof);
     read(forces_.object, 6);
   }
-  void MoveObject(const FrameMotion&) noexcept override {}  // there is no free object
+  void MoveObject(const FrameMotion& O) noexcept override {
+    double* q = state_.q + layout_.object_q;
+    Eigen::Map<Vector3>{q} = O.X_W.p;
+    WriteBall(O.X_W.q, q + 3);
+    double* v = state_.v + layout_.object_v;
+    Eigen::Map<Vector3>{v} = O.V_W.head<3>();
+    Eigen::Map<Vector3>{v + 3} = O.X_W.q.conjugate() * Vector3(O.V_W.tail<3>());
+  }
   void Clear() noexcept override {
     scene_->process.Revive();
     time_ = 0;
     state_ = {};
     forces_ = {};
     acceleration_ = {};
-    if (scene_->is_ball) state_.q[layout_.positions - 4] = 1;
+    if (scene_->has_ball) state_.q[layout_.positions - 4] = 1;
   }
 
   bool Prepare() noexcept override {
@@ -147,20 +155,19 @@ class DartEngine final : public Engine {
     Values(force, layout_.dof) =
         Mass().topLeftCorner(layout_.dof, layout_.dof).lazyProduct(ConstValues(a, layout_.dof));
   }
-  // These functions serve the attachment of a free object, which this engine lacks.
+  // These functions serve the attachment of a free object, which MakeEngine refuses.
   void StepMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept override { MassMatrix(M); }
   void Forces(Eigen::Ref<Eigen::VectorXd> forces) noexcept override { forces.setZero(); }
   bool has_reactions() const noexcept override { return false; }
   void AddReactions(Eigen::Ref<Eigen::MatrixXd>) const noexcept override {}
   void Displace(const double* change, double scale) noexcept override {
-    const int single = layout_.dof - (scene_->is_ball ? 3 : 0);
+    const int single = layout_.dof - (scene_->has_ball ? 3 : 0);
     for (int i = 0; i < single; ++i) state_.q[i] += scale * change[i];
-    if (!scene_->is_ball) return;
+    if (!scene_->has_ball) return;
     double* q = state_.q + single;
     const Quaternion turned = Quaternion(q[0], q[1], q[2], q[3]) *
                               RotationFromVector(scale * Vector3(VectorAt(change + single)));
-    const Quaternion unit = turned.normalized();
-    q[0] = unit.w(), q[1] = unit.x(), q[2] = unit.y(), q[3] = unit.z();
+    WriteBall(turned, q);
   }
 
   Wrench LoadWrench(Vector3* p_WA) const noexcept override {
@@ -171,7 +178,13 @@ class DartEngine final : public Engine {
   int contact_count() const noexcept override { return motion_.contacts; }
   Contact contact(int i) const noexcept override {
     const dart_engine::ContactData& from = motion_.contact[i];
-    return {VectorAt(from.p), VectorAt(from.normal), VectorAt(from.force), from.depth};
+    Contact contact;
+    contact.p_W = VectorAt(from.p);
+    contact.normal_W = VectorAt(from.normal);
+    contact.force_W = VectorAt(from.force);
+    contact.depth = from.depth;
+    contact.fixture = from.fixture;
+    return contact;
   }
   bool has_contacts_at_rest() const noexcept override { return false; }
 
@@ -181,7 +194,7 @@ class DartEngine final : public Engine {
   void SetJointFriction(int j, const DofFriction& friction) noexcept override {
     scene_->friction[static_cast<std::size_t>(j)] = friction;
   }
-  void RemoveFixtures(std::uint64_t) noexcept override {}  // scenarios with fixtures are refused
+  void RemoveFixtures(std::uint64_t which) noexcept override { scene_->removed = which; }
   double HandMass(int hand) const noexcept override {
     return scene_->hand_mass[static_cast<std::size_t>(hand)];
   }
@@ -199,6 +212,10 @@ class DartEngine final : public Engine {
   std::string Failure() const override { return scene_->process.Failure(); }
 
  private:
+  static void WriteBall(const Quaternion& turned, double* q) noexcept {
+    const Quaternion unit = turned.normalized();
+    q[0] = unit.w(), q[1] = unit.x(), q[2] = unit.y(), q[3] = unit.z();
+  }
   const BodyMotion& MotionData(SceneBody body) const noexcept {
     return motion_.body[body == SceneBody::kObject ? 1 : 0];
   }
@@ -210,17 +227,22 @@ class DartEngine final : public Engine {
 
   // Returns whether the present state is that of the last answer.
   bool IsPrepared() noexcept {
-    std::copy_n(scene_->hand_mass.data(), kHands, state_.hand_mass);
+    TakeShared();
     const auto same = [](const auto& a, const auto& b) {
       return std::equal(std::begin(a), std::end(a), std::begin(b));
     };
     const dart_engine::StateData& at = motion_.at;
     return is_prepared_ && same(state_.q, at.q) && same(state_.v, at.v) &&
-           same(state_.hand_mass, at.hand_mass);
+           same(state_.hand_mass, at.hand_mass) && state_.removed == at.removed;
+  }
+  // Takes over what all states of the scene share.
+  void TakeShared() noexcept {
+    std::copy_n(scene_->hand_mass.data(), kHands, state_.hand_mass);
+    state_.removed = scene_->removed;
   }
   bool Ask(Request kind) noexcept {
     DartProcess& process = scene_->process;
-    std::copy_n(scene_->hand_mass.data(), kHands, state_.hand_mass);
+    TakeShared();
     for (std::size_t j = 0; j < kMaxCobotJoints; ++j)
       forces_.coulomb[j] = scene_->options.coulomb_friction ? scene_->friction[j].torque : 0;
     process.memory().state = state_;
@@ -243,28 +265,24 @@ class DartEngine final : public Engine {
 
 std::unique_ptr<Engine> MakeDartEngine(const Scenario& scenario, const RobotModel& cobot,
                                        Holding holding) {
-  if (holding == Holding::kFree)
-    throw InputError::At("simulation.engine",
-                         "simulation.engine is dart, in which the object cannot slip, break loose "
-                         "or be put down. Remove the events object_slips, object_breaks_loose and "
-                         "release_object, or set simulation.engine: mujoco.");
   // Both engines refuse the same scenarios, with the same words.
   Scenario same = scenario;
   same.simulation = {};
-  const Scene checked = ComposeScene(same, cobot);
+  const Scene checked = ComposeScene(same, cobot, false, holding);
   const double step = checked.model->opt.timestep;
-  auto scene = std::make_shared<SharedScene>(checked.object_model,
-                                             DartScene(scenario, cobot, checked.object_model, step),
-                                             SceneText(checked));
-  scene->is_ball = scenario.object.attachment.joint == JointType::kSpherical;
+  auto scene = std::make_shared<SharedScene>(
+      checked.object_model, DartScene(scenario, cobot, checked.object_model, step, holding),
+      SceneText(checked));
+  const bool is_free = holding == Holding::kFree;
+  const JointType joint = scenario.object.attachment.joint;
+  scene->has_ball = is_free || joint == JointType::kSpherical;
   scene->has_hands = scenario.mode == Mode::kDirect;
   Engine::Layout layout;
   layout.step = step;
-  const int own = scene->is_ball                                          ? 3
-                  : scenario.object.attachment.joint == JointType::kFixed ? 0
-                                                                          : 1;
+  const int own = is_free ? 6 : scene->has_ball ? 3 : joint == JointType::kFixed ? 0 : 1;
   layout.dof = cobot.dof() + own;
-  layout.positions = layout.dof + (scene->is_ball ? 1 : 0);
+  layout.positions = layout.dof + (scene->has_ball ? 1 : 0);
+  if (is_free) layout.object_q = layout.object_v = cobot.dof();
   for (int j = 0; j < cobot.dof(); ++j) {
     const auto i = static_cast<std::size_t>(j);
     layout.q[i] = layout.v[i] = j;

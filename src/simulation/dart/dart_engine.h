@@ -8,6 +8,7 @@
 namespace predictor {
 
 // As MakeEngine. DART runs in a process of its own and in virtual time only: a step waits for it.
+// A free object cannot be attached: StepMatrix, Forces and AddReactions do not describe contacts.
 std::unique_ptr<Engine> MakeDartEngine(const Scenario& scenario, const RobotModel& cobot,
                                        Holding holding);
 

@@ -37,7 +37,7 @@ DartProcess::DartProcess(const dart_engine::SceneData& scene) : scene_(scene) {
         kEngineKey, "simulation.engine is dart, but PREDICTOR was built without it: there is no " +
                         Program().string() +
                         ". Install DART (Debian 12: apt-get install libdart-dev "
-                        "libdart-collision-bullet-dev) and run `./dev build`, or set "
+                        "libdart-collision-ode-dev) and run `./dev build`, or set "
                         "simulation.engine: mujoco.");
   Start();
 }

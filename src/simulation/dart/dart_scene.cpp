@@ -1,7 +1,9 @@
 #include "simulation/dart/dart_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <string>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -63,9 +65,22 @@ void AddJoints(const Scenario& scenario, const RobotModel& cobot, SceneData* sce
   }
 }
 
-void AddAttachment(const Scenario& scenario, const ObjectModel& object, SceneData* scene) {
+void AddAttachment(const Scenario& scenario, const ObjectModel& object, Holding holding,
+                   SceneData* scene) {
   const AttachmentSpec& spec = scenario.object.attachment;
   using Kind = dart_engine::Attachment;
+  scene->object = InertiaFor(object.mass, object.com, object.inertia);
+  scene->has_hand_masses = scenario.mode == Mode::kDirect ? 1 : 0;
+  scene->hand_radius = kBallRadius;
+  for (int hand = 0; hand < kHands; ++hand)
+    if (scenario.Has(hand)) CopyVector(scenario.handle(hand).pose.xyz, scene->handle[hand]);
+  scene->lower = -kUnlimited, scene->upper = kUnlimited;
+  CopyVector(Vector3::UnitZ(), scene->axis);
+  if (holding == Holding::kFree) {
+    scene->attachment = Kind::kFree;
+    scene->object_at = PoseFor(Pose::Identity());
+    return;
+  }
   scene->attachment = spec.joint == JointType::kFixed       ? Kind::kWeld
                       : spec.joint == JointType::kSpherical ? Kind::kBall
                       : spec.joint == JointType::kRevolute  ? Kind::kRevolute
@@ -73,31 +88,70 @@ void AddAttachment(const Scenario& scenario, const ObjectModel& object, SceneDat
   const Pose X_OA = spec.on_object.ToPose();
   scene->object_at = PoseFor(spec.on_end_effector.ToPose() * X_OA.Inverse());
   CopyVector(X_OA.p, scene->pivot);
-  const bool turns = spec.joint == JointType::kRevolute || spec.joint == JointType::kPrismatic;
-  CopyVector(turns ? Vector3((X_OA.q * spec.axis).normalized()) : Vector3::UnitZ(), scene->axis);
+  if (spec.joint == JointType::kRevolute || spec.joint == JointType::kPrismatic)
+    CopyVector((X_OA.q * spec.axis).normalized(), scene->axis);
   scene->damping = spec.damping;
-  const bool is_limited = spec.range && scenario.simulation.joint_limits != JointLimits::kNone;
-  scene->lower = is_limited ? (*spec.range)[0] : -kUnlimited;
-  scene->upper = is_limited ? (*spec.range)[1] : kUnlimited;
-  scene->object = InertiaFor(object.mass, object.com, object.inertia);
-  scene->has_hand_masses = scenario.mode == Mode::kDirect ? 1 : 0;
-  scene->hand_radius = kBallRadius;
-  for (int hand = 0; hand < kHands; ++hand)
-    if (scenario.Has(hand)) CopyVector(scenario.handle(hand).pose.xyz, scene->handle[hand]);
+  if (!spec.range || scenario.simulation.joint_limits == JointLimits::kNone) return;
+  scene->lower = (*spec.range)[0], scene->upper = (*spec.range)[1];
 }
 
-void AddCollisions(const Scenario& scenario, const ObjectModel& object, SceneData* scene) {
-  const EnvironmentSpec& environment = scenario.environment;
+// Refuses what a rigid contact cannot do, and contacts of the cobot, whose links are meshes.
+void CheckFixture(const FixtureSpec& fixture, std::size_t i) {
+  const std::string path = "environment.fixtures." + std::to_string(i);
+  const auto refuse = [&path](const std::string& key, const std::string& why,
+                              const std::string& remedy) {
+    throw InputError::At(path + key, path + key + " " + why + ", but simulation.engine is dart, " +
+                                         remedy + ", or set simulation.engine: mujoco.");
+  };
+  if (fixture.stiffness)
+    refuse(".stiffness", "is given", "whose contacts are rigid. Remove stiffness and damping");
+  if (fixture.time_constant != FixtureSpec{}.time_constant)
+    refuse(".time_constant", "is given", "whose contacts are rigid. Remove time_constant");
+  if (fixture.Touches("cobot"))
+    refuse(".touches", "contains cobot",
+           "in which only the object touches fixtures. Remove cobot from touches");
+}
+
+using ObstacleKind = dart_engine::ShapeKind;
+
+void AddObstacle(ObstacleKind kind, const Vector3& size, const Pose& at, double friction,
+                 SceneData* scene) {
+  dart_engine::Obstacle& obstacle = scene->obstacle[scene->obstacles++];
+  obstacle.shape.kind = kind;
+  CopyVector(size, obstacle.shape.size);
+  obstacle.shape.at = PoseFor(at);
+  obstacle.friction = friction;
+  obstacle.fixture = -1;
+}
+
+void AddSurroundings(const EnvironmentSpec& environment, SceneData* scene) {
+  constexpr ObstacleKind kKinds[] = {ObstacleKind::kBox, ObstacleKind::kCylinder,
+                                     ObstacleKind::kCapsule, ObstacleKind::kSphere,
+                                     ObstacleKind::kPlane};  // by FixtureShape
   scene->gravity = environment.gravity;
-  scene->friction = environment.friction;
-  scene->floor = environment.floor ? 1 : 0;
+  if (environment.floor)
+    AddObstacle(ObstacleKind::kPlane, Vector3::Zero(), Pose::Identity(), environment.friction,
+                scene);
   if (environment.table) {
-    scene->table = 1;
-    CopyVector(environment.table->size, scene->table_size);
-    CopyVector(environment.table->top - Vector3(0, 0, environment.table->size.z() / 2),
-               scene->table_at);
+    const TableSpec& table = *environment.table;
+    AddObstacle(ObstacleKind::kBox, table.size,
+                {table.top - Vector3(0, 0, table.size.z() / 2), Quaternion::Identity()},
+                environment.friction, scene);
   }
-  if (!environment.floor && !environment.table) return;
+  for (std::size_t i = 0; i < environment.fixtures.size(); ++i) {
+    const FixtureSpec& fixture = environment.fixtures[i];
+    CheckFixture(fixture, i);
+    if (!fixture.Touches("object")) continue;
+    AddObstacle(kKinds[static_cast<std::size_t>(fixture.shape)], fixture.size, fixture.X_WG(),
+                fixture.friction.value_or(environment.friction), scene);
+    dart_engine::Obstacle& obstacle = scene->obstacle[scene->obstacles - 1];
+    obstacle.restitution = RestitutionOf(fixture.damping_ratio);
+    obstacle.fixture = static_cast<std::int32_t>(i);
+  }
+}
+
+void AddShapes(const ObjectModel& object, SceneData* scene) {
+  if (scene->obstacles == 0) return;
   using Kind = dart_engine::ShapeKind;
   for (const ModelShape& shape : object.collisions) {
     if (shape.kind == ShapeKind::kMesh || scene->shapes == dart_engine::kMaxShapes)
@@ -107,8 +161,8 @@ void AddCollisions(const Scenario& scenario, const ObjectModel& object, SceneDat
               ": simulation.engine is dart, which lets only boxes, cylinders and spheres collide, "
               "at most " +
               std::to_string(dart_engine::kMaxShapes) +
-              ". Describe <collision> by them, remove floor and table from environment, or set "
-              "simulation.engine: mujoco.");
+              ". Describe <collision> by them, remove floor, table and fixtures from environment, "
+              "or set simulation.engine: mujoco.");
     dart_engine::CollisionShape& to = scene->shape[scene->shapes++];
     to.kind = shape.kind == ShapeKind::kBox        ? Kind::kBox
               : shape.kind == ShapeKind::kCylinder ? Kind::kCylinder
@@ -121,7 +175,7 @@ void AddCollisions(const Scenario& scenario, const ObjectModel& object, SceneDat
 }  // namespace
 
 SceneData DartScene(const Scenario& scenario, const RobotModel& cobot, const ObjectModel& object,
-                    double step) {
+                    double step, Holding holding) {
   if (scenario.simulation.joint_limits == JointLimits::kSoft)
     throw InputError::At("simulation.joint_limits",
                          "simulation.joint_limits is soft, but simulation.engine is dart, whose "
@@ -133,9 +187,19 @@ SceneData DartScene(const Scenario& scenario, const RobotModel& cobot, const Obj
   const FrameId E = cobot.Frame(scenario.cobot.end_effector);
   scene.carrier = E.body - 1;
   scene.end_effector = PoseFor(E.X_JF);
-  AddAttachment(scenario, object, &scene);
-  AddCollisions(scenario, object, &scene);
+  AddAttachment(scenario, object, holding, &scene);
+  AddSurroundings(scenario.environment, &scene);
+  AddShapes(object, &scene);
   return scene;
+}
+
+double RestitutionOf(double damping_ratio) {
+  const double zeta = damping_ratio;
+  const double root = std::sqrt(std::fabs(1 - zeta * zeta));
+  constexpr double kCritical = 1e-6;  // below this, both formulas have their common limit
+  if (root < kCritical) return std::exp(-2);
+  if (zeta > 1) return std::exp(-zeta / root * std::log((zeta + root) / (zeta - root)));
+  return std::exp(-zeta / root * (M_PI - std::atan2(2 * zeta * root, root * root - zeta * zeta)));
 }
 
 }  // namespace predictor

@@ -5,12 +5,19 @@
 #include "models/robot.h"
 #include "scenario/scenario.h"
 #include "simulation/dart/protocol.h"
+#include "simulation/engine.h"
 
 namespace predictor {
 
-// The object is attached to the cobot. Throws InputError with the key if the scene needs something
-// that this engine lacks: soft limits, or collisions of a mesh.
+// Throws InputError with the key if the scene needs something that this engine lacks: soft limits,
+// fixtures that yield or that touch the cobot, or collisions of a mesh.
 dart_engine::SceneData DartScene(const Scenario& scenario, const RobotModel& cobot,
-                                 const ObjectModel& object, double step);
+                                 const ObjectModel& object, double step,
+                                 Holding holding = Holding::kJoint);
+
+// Returns the share of its speed with which a body leaves a linear spring and damper that pushes
+// but does not pull, without gravity, for its damping ratio (Schwager and Pöschel, Granular Matter
+// 9:465, 2007, eqs. 20 and 21).
+double RestitutionOf(double damping_ratio);
 
 }  // namespace predictor

@@ -9,13 +9,14 @@
 
 namespace predictor::dart_engine {
 
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 inline constexpr int kDescriptor = 3;  // of the memory, in the program
 
 inline constexpr int kMaxJoints = 16;           // of the cobot
-inline constexpr int kMaxDof = kMaxJoints + 3;  // and of the attachment
-inline constexpr int kMaxPositions = kMaxJoints + 4;
+inline constexpr int kMaxDof = kMaxJoints + 6;  // and of the attachment, or of a free object
+inline constexpr int kMaxPositions = kMaxJoints + 7;
 inline constexpr int kMaxShapes = 64;
+inline constexpr int kMaxObstacles = 66;  // floor, table and fixtures
 inline constexpr int kMaxContacts = 64;
 inline constexpr int kHandCount = 2;
 inline constexpr int kTextSize = 256;
@@ -41,13 +42,24 @@ struct CobotJoint {
   double lower, upper, speed;  // limits; infinite: none
 };
 
-enum class Attachment : std::int32_t { kWeld, kBall, kRevolute, kPrismatic };
-enum class ShapeKind : std::int32_t { kBox, kCylinder, kSphere };
+// kFree: the object is a free body, whose coordinates are its place in W and then those of a ball.
+enum class Attachment : std::int32_t { kWeld, kBall, kRevolute, kPrismatic, kFree };
+enum class ShapeKind : std::int32_t { kBox, kCylinder, kSphere, kCapsule, kPlane };
 
 struct CollisionShape {
   ShapeKind kind;
-  double size[3];  // box: edges; cylinder: radius, length; sphere: radius [m]
-  FramePose at;    // in O
+  // Box: edges; cylinder and capsule: radius, length without caps; sphere: radius [m]. Axis of a
+  // cylinder or capsule, and normal of a plane: z.
+  double size[3];
+  FramePose at;  // in O, or in W
+};
+
+// A body of the surroundings, which never moves.
+struct Obstacle {
+  CollisionShape shape;
+  double friction;
+  double restitution;    // share of the speed that an impact returns
+  std::int32_t fixture;  // its number; −1: floor or table
 };
 
 struct SceneData {
@@ -67,11 +79,10 @@ struct SceneData {
   double hand_radius;            // of the ball that defines a hand's inertia [m]
   std::int32_t shapes;
   CollisionShape shape[kMaxShapes];
-  std::int32_t floor, table;          // present
-  double table_size[3], table_at[3];  // edges and centre [m]
-  double friction;                    // of contacts
-  double gravity;                     // along −z [m/s²]
-  double step;                        // [s]
+  std::int32_t obstacles;
+  Obstacle obstacle[kMaxObstacles];
+  double gravity;  // along −z [m/s²]
+  double step;     // [s]
 };
 
 // ---- a request -----------------------------------------------------------------------------
@@ -95,6 +106,7 @@ enum class Result : std::int32_t {
 struct StateData {
   double q[kMaxPositions], v[kMaxDof];
   double hand_mass[kHandCount];  // [kg]
+  std::uint64_t removed;         // fixtures that are not there; bit: number of the fixture
 };
 
 struct ForceData {
@@ -116,6 +128,7 @@ struct BodyMotion {
 struct ContactData {
   double p[3], normal[3], force[3];  // on the object; the normal points out of the surroundings
   double depth;
+  std::int32_t fixture;  // its number; −1: floor or table
 };
 
 struct MotionData {

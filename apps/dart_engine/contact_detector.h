@@ -1,0 +1,14 @@
+// Finds contacts with ODE, whose answers depend only on the shapes and their poses.
+#pragma once
+
+#include <dart/collision/CollisionDetector.hpp>
+#include <memory>
+
+namespace predictor::dart_engine {
+
+// Returns DART's collision detector with ODE, without DART's memory of earlier contacts. DART 6.12
+// adds up to two earlier contacts of a pair that touches at fewer than three points, even after the
+// bodies moved on. A restored state would then not continue bit for bit.
+std::shared_ptr<dart::collision::CollisionDetector> MakeContactDetector();
+
+}  // namespace predictor::dart_engine
