@@ -64,8 +64,8 @@ class Program {
   }
   ~Program() {
     if (pid_ > 0) End();
+    reads_.join();  // ends with the program, which is the leader of the terminal's session
     close(terminal_);
-    reads_.join();
   }
 
   std::uint16_t port() const { return port_; }
