@@ -1,8 +1,12 @@
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "analysis/contact_run/contact_run.h"
 #include "assessment/output.h"
 #include "commands.h"
 #include "core/error.h"
@@ -23,17 +27,40 @@ constexpr std::size_t kMaxRecordings = 8;  // the number of available colours
 // MB.
 constexpr double kDetail = 120;
 
-// Returns which joints of the recorded cobot are prismatic, or none if its model is lost.
-std::vector<bool> RecordedPrismaticJoints(const RecordingHeader& header) {
-  const TemporaryFolder folder;
-  try {
-    return PrismaticJoints(RestoreScenario(header, folder.path()));
-  } catch (const InputError&) {
-    return {};
+// What the report shows about one recording.
+struct ReportedRun {
+  RunData data;
+  ContactRun contact;
+};
+
+// The recorded scenario with its model files, as far as these are not lost.
+class RestoredScenario {
+ public:
+  explicit RestoredScenario(const RecordingHeader& header) {
+    try {
+      scenario_ = RestoreScenario(header, folder_.path());
+    } catch (const InputError& error) {
+      problem_ = error.what();
+    }
   }
+  const std::optional<Scenario>& scenario() const { return scenario_; }
+  const std::string& problem() const { return problem_; }
+
+ private:
+  TemporaryFolder folder_;
+  std::optional<Scenario> scenario_;
+  std::string problem_;
+};
+
+// Returns which joints of the recorded cobot are prismatic, or none if its model is lost.
+std::vector<bool> PrismaticJointsOf(const RestoredScenario& restored) try {
+  return restored.scenario() ? PrismaticJoints(*restored.scenario()) : std::vector<bool>();
+} catch (const InputError&) {
+  return {};
 }
 
-RunInfo Describe(const std::string& file, RecordingReader* reader) {
+RunInfo Describe(const std::string& file, const RestoredScenario& restored,
+                 RecordingReader* reader) {
   const RecordingHeader& header = reader->header();
   RunInfo info;
   info.name = std::filesystem::path(file).filename().string();
@@ -41,7 +68,7 @@ RunInfo Describe(const std::string& file, RecordingReader* reader) {
   info.scenario_yaml = header.scenario_yaml;
   info.program_version = header.program_version;
   info.labels = header.labels;
-  info.prismatic = RecordedPrismaticJoints(header);
+  info.prismatic = PrismaticJointsOf(restored);
   info.loop = header.loop;
   if (header.start_unix_ns > 0)
     info.date = LocalTime("%Y-%m-%d %H:%M:%S", header.start_unix_ns / 1'000'000'000);
@@ -58,14 +85,43 @@ RunInfo Describe(const std::string& file, RecordingReader* reader) {
   return info;
 }
 
-RunData Read(const std::string& file, double detail, bool quiet) {
+// Returns a collector for a scenario with contact, or null.
+std::unique_ptr<ContactCollector> MakeContactCollector(const RestoredScenario& restored,
+                                                       ContactRun* run) {
+  if (!HasContact(run->scenario)) return nullptr;
+  if (!restored.scenario()) {
+    run->problem = "Nothing is known about contact: " + restored.problem();
+    return nullptr;
+  }
+  run->scenario = *restored.scenario();
+  try {
+    return std::make_unique<ContactCollector>(run->scenario);
+  } catch (const InputError& error) {
+    run->problem = std::string("Nothing is known about contact: ") + error.what();
+    return nullptr;
+  }
+}
+
+ReportedRun Read(const std::string& file, double detail, bool quiet) {
   RecordingReader reader(file);
-  RunInfo info = Describe(file, &reader);
+  const RestoredScenario restored(reader.header());
+  RunInfo info = Describe(file, restored, &reader);
+  ReportedRun run;
+  run.contact.scenario = info.scenario;
+  const auto contacts = MakeContactCollector(restored, &run.contact);
+  const auto lead = info.loop ? std::optional(info.loop->lead) : std::nullopt;
   RunCollector collector(std::move(info), {.detail = detail});
-  ReadTicks(&reader, "Reading", quiet, [&](const TickRecord& record) { collector.Add(record); });
-  RunData run = collector.Finish();
-  if (run.records == 0)
+  ReadTicks(&reader, "Reading", quiet, [&](const TickRecord& record) {
+    collector.Add(record);
+    if (contacts) contacts->Add(record);
+  });
+  run.data = collector.Finish();
+  if (run.data.records == 0)
     throw InputError(file, "The recording has no ticks, so there is nothing to report.");
+  if (contacts) {
+    run.contact.facts = contacts->facts();
+    PredictContacts(lead, &run.contact);
+  }
   return run;
 }
 
@@ -99,9 +155,13 @@ int ReportCommand(const ReportOptions& options) {
   options.CheckWritable();
   options.RefuseToReplace(output);
   std::vector<RunData> runs;
-  for (const std::string& file : options.recordings)
-    runs.push_back(
-        Read(file, kDetail / static_cast<double>(options.recordings.size()), options.quiet));
+  std::vector<ContactRun> contacts;
+  for (const std::string& file : options.recordings) {
+    ReportedRun run =
+        Read(file, kDetail / static_cast<double>(options.recordings.size()), options.quiet);
+    runs.push_back(std::move(run.data));
+    contacts.push_back(std::move(run.contact));
+  }
   NameRuns(options.recordings, &runs);
   std::vector<assessment::PersonOfRun> persons;
   for (std::size_t k = 0; k < runs.size(); ++k) {
@@ -109,6 +169,7 @@ int ReportCommand(const ReportOptions& options) {
     if (runs.size() > 1) persons.back().name = runs[k].info.name;
   }
   const ReportDocument report = MakeReport(runs, PREDICTOR_VERSION, [&](ReportPage* page) {
+    if (contacts.size() == 1) AddContactChapter(contacts.front(), page);
     assessment::AddPersonChapter(persons, page);
   });
   WriteFile(output, report.html);

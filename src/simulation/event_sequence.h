@@ -25,6 +25,8 @@ class EventSequence {
   bool releases_object() const;     // an event opens the gripper
   // What all events together let appear: bit = number of the fixture.
   std::uint64_t obstacles() const;
+  // What event i lets appear.
+  std::uint64_t obstacles(std::size_t i) const { return events_[i].obstacles; }
 
   // Returns to a state in which no event has begun. Draws new times, because the person knows those
   // of the last run.

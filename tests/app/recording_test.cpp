@@ -76,6 +76,20 @@ TEST_F(RecordedProgram, StatesWhetherItsHapticLoopWasPredictedUnstable) {
   }
 }
 
+TEST_F(RecordedProgram, ReportsContactIfAFixtureCanTouchTheObject) {
+  for (const char* name : {"slide_on_table", "single_arm"}) {
+    const std::string file = folder_ / (std::string(name) + ".mcap"), page = file + ".html";
+    ASSERT_EQ(Do({"simulate", Scenario(name), "--quiet", "--duration", "3", "--record", file}), 0);
+    ASSERT_EQ(Do({"report", file, "-o", page, "--quiet"}), 0) << said_;
+    std::ifstream report(page);
+    const std::string html{std::istreambuf_iterator<char>(report), {}};
+    const bool has_fixture = std::string(name) == "slide_on_table";
+    EXPECT_EQ(html.find("Contact: what the device cannot render") != std::string::npos,
+              has_fixture);
+    EXPECT_EQ(html.find("impedance-2") != std::string::npos, has_fixture);  // two sides
+  }
+}
+
 TEST_F(RecordedProgram, IsNotOverwritten) {
   ASSERT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--duration", "1", "--record", file_}),
             0);

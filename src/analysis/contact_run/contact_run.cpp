@@ -1,0 +1,121 @@
+#include "analysis/contact_run/contact_run.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "haptics/stability.h"
+#include "models/robot.h"
+#include "simulation/world.h"
+
+namespace predictor {
+namespace {
+
+// The object as a free body among the fixtures. Its motion is that of the records, so any engine
+// finds the same contacts.
+std::unique_ptr<Engine> FreeObject(Scenario scenario) {
+  scenario.simulation.engine = EngineKind::kMujoco;
+  const auto cobot = RobotModel::Load({scenario.cobot.model, scenario.folder(),
+                                       scenario.cobot.remove_links, scenario.cobot.base.ToPose()});
+  return MakeEngine(scenario, *cobot, false, Holding::kFree);
+}
+
+std::uint64_t BitOf(std::size_t fixture) { return std::uint64_t{1} << fixture; }
+
+// Returns the force of all hands on their handles, in axes of W [N].
+Vector3 ForceOfHands(const TickRecord& record) {
+  Vector3 force = Vector3::Zero();
+  for (const HandRecord& hand : record.hands)
+    if (hand.present) force += Vector3(hand.wrench[0], hand.wrench[1], hand.wrench[2]);
+  return force;
+}
+
+}  // namespace
+
+bool HasContact(const Scenario& s) {
+  const auto& fixtures = s.environment.fixtures;
+  return std::any_of(fixtures.begin(), fixtures.end(),
+                     [](const FixtureSpec& fixture) { return fixture.Touches("object"); });
+}
+
+ContactCollector::ContactCollector(const Scenario& scenario)
+    : scenario_(scenario),
+      events_(scenario),
+      engine_(FreeObject(scenario)),
+      facts_(scenario.environment.fixtures.size()),
+      present_(~events_.obstacles()) {}
+
+// Moves the engine's bodies to their places in the record.
+void ContactCollector::Place(const TickRecord& record) {
+  const Engine::Layout& at = engine_->layout();
+  Engine::Values q = engine_->positions();
+  for (std::size_t j = 0; j < record.cobot_dof; ++j) q[at.q[j]] = record.cobot_q[j];
+  FrameMotion O;
+  O.X_W = FromRecord(record.object.pose);
+  O.V_W = Eigen::Map<const Vector6>(record.object.twist.data());
+  engine_->MoveObject(O);
+}
+
+void ContactCollector::AddPoint(const Contact& contact, const FrameMotion& O,
+                                std::vector<Touch>* touches) const {
+  if (contact.fixture < 0 || !contact.link.empty() || contact.depth <= 0) return;
+  const auto i = static_cast<std::size_t>(contact.fixture);
+  Touch& touch = (*touches)[i];
+  if (contact.depth > touch.depth) {
+    touch.depth = contact.depth;
+    touch.normal = contact.normal_W;
+  }
+  const FixtureSpec& fixture = scenario_.environment.fixtures[i];
+  if (!fixture.stiffness) return;
+  const Vector3 v = O.V_W.head<3>() + O.V_W.tail<3>().cross(contact.p_W - O.X_W.p);
+  touch.force +=
+      std::max(0.0, *fixture.stiffness * contact.depth - fixture.damping * contact.normal_W.dot(v));
+}
+
+// Returns the fixtures that are there. One that an event lets appear is added only when it does not
+// overlap the object, as in the simulation.
+std::uint64_t ContactCollector::Present(const TickRecord& record,
+                                        const std::vector<Touch>& touches) {
+  const std::uint64_t all = events_.obstacles();
+  if (all == 0) return present_;
+  std::uint64_t wanted = ~all;
+  for (std::size_t i = 0; i < events_.size(); ++i)
+    if ((record.events >> i & 1U) != 0) wanted |= events_.obstacles(i);
+  std::uint64_t blocked = 0;
+  for (std::size_t i = 0; i < touches.size(); ++i)
+    if (touches[i].depth > 0) blocked |= BitOf(i) & ~present_;
+  present_ = wanted & ~blocked;
+  return present_;
+}
+
+void ContactCollector::Add(const TickRecord& record) {
+  if (!record.ran) return;
+  Place(record);
+  if (!engine_->Prepare()) return;
+  const FrameMotion O = engine_->MotionOf(SceneBody::kObject);
+  std::vector<Touch> touches(facts_.size());
+  for (int k = 0; k < engine_->contact_count(); ++k) AddPoint(engine_->contact(k), O, &touches);
+  const std::uint64_t present = Present(record, touches);
+  for (std::size_t i = 0; i < facts_.size(); ++i) {
+    const Touch& touch = touches[i];
+    if (touch.depth <= 0 || (present & BitOf(i)) == 0) continue;
+    ContactFacts& facts = facts_[i];
+    facts.time += 1 / scenario_.rate;
+    facts.depth = std::max(facts.depth, touch.depth);
+    facts.force = std::max(facts.force, touch.force);
+    facts.pressing = std::max(facts.pressing, -touch.normal.dot(ForceOfHands(record)));
+  }
+}
+
+void PredictContacts(std::optional<double> lead, ContactRun* run) try {
+  const Scenario& s = run->scenario;
+  if (s.mode == Mode::kDirect) return;
+  const World world(s);
+  const LinearModel linear = world.Linearise();
+  const double dt = 1 / s.rate;
+  run->lead = lead ? *lead : ChooseLead(HapticLoop(linear, s, dt), s, dt).lead;
+  run->predictions = CheckContacts(s, linear, world.state().object.X_W, run->lead);
+} catch (const InputError& error) {
+  run->problem += std::string("What the arms can render could not be predicted: ") + error.what();
+}
+
+}  // namespace predictor

@@ -1,0 +1,76 @@
+// What a recorded run and the prediction of `check` say about contact with fixtures, and the
+// report's chapter about it.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/check/contact.h"
+#include "core/record.h"
+#include "report/page.h"
+#include "scenario/scenario.h"
+#include "simulation/engine.h"
+#include "simulation/event_sequence.h"
+
+namespace predictor {
+
+// Contact of the object with one fixture, from the recorded motion of the object.
+struct ContactFacts {
+  double time = 0;   // in contact [s]
+  double depth = 0;  // deepest penetration [m]
+  // Largest force at all points of contact together, by the fixture's stiffness and damping from
+  // depth and speed. Only for a fixture that yields [N].
+  double force = 0;
+  double pressing = 0;  // largest force with which the hands together pressed on the fixture while
+                        // the object touched it, by the force sensors [N]
+};
+
+// Returns whether a fixture of the scenario can touch the object.
+bool HasContact(const Scenario& scenario);
+
+// Collects the facts while records arrive.
+class ContactCollector {
+ public:
+  // `scenario` has its model files. Throws InputError.
+  explicit ContactCollector(const Scenario& scenario);
+  // Adds the next record.
+  void Add(const TickRecord& record);
+  const std::vector<ContactFacts>& facts() const { return facts_; }  // one for each fixture
+
+ private:
+  struct Touch {
+    double depth = 0, force = 0;  // deepest [m], sum [N]
+    Vector3 normal = Vector3::Zero();
+  };
+  void Place(const TickRecord& record);
+  void AddPoint(const Contact& contact, const FrameMotion& O, std::vector<Touch>* touches) const;
+  std::uint64_t Present(const TickRecord& record, const std::vector<Touch>& touches);
+
+  Scenario scenario_;
+  EventSequence events_;
+  std::unique_ptr<Engine> engine_;
+  std::vector<ContactFacts> facts_;
+  std::uint64_t present_;  // fixtures: bit = number
+};
+
+// The chapter's content.
+struct ContactRun {
+  Scenario scenario;
+  std::vector<ContactFacts> facts;         // one for each fixture; empty: not known
+  std::vector<ContactReport> predictions;  // empty: not known, or there are no arms
+  double lead = 0;                         // for the predictions [s]
+  std::string problem;                     // why something is not known, as sentences
+};
+
+// Predicts what the arms of the collected run could render, with its lead [s]; absent: the one that
+// `check` chooses.
+void PredictContacts(std::optional<double> lead, ContactRun* run);
+
+// Adds the chapter.
+void AddContactChapter(const ContactRun& run, ReportPage* page);
+
+}  // namespace predictor

@@ -1,0 +1,147 @@
+// What the report says about contact with fixtures.
+#include "analysis/contact_run/contact_run.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "analysis/scenarios.h"
+#include "emulator/emulator.h"
+#include "emulator/run_loop.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kHalfHeight = 0.1;  // of the box of 9 kg [m]
+constexpr double kPlane = -1;        // height of the fixture [m]
+
+std::string Fixtures(const std::string& keys) {
+  return "environment.fixtures=[{name: ground, shape: plane, xyz: [0, 0, -1], " + keys + "}]";
+}
+
+// Returns the record of a box whose lower face is `depth` [m] below the plane and moves at `speed`
+// [m/s] along z, while a hand presses down on it with 20 N.
+TickRecord Pressed(double depth, double speed) {
+  TickRecord record{};
+  record.ran = 1;
+  record.object.pose = {{0.5, 0.2, kPlane + kHalfHeight - depth}, {1, 0, 0, 0}};
+  record.object.twist = {0, 0, speed, 0, 0, 0};
+  record.hands[0].present = 1;
+  record.hands[0].wrench = {5, 0, -20, 0, 0, 0};
+  return record;
+}
+
+TEST(ContactCollector, FindsDepthForceAndTimeOfAPressedBox) {
+  ContactCollector collector(Load("box_9kg.yaml", {Fixtures("stiffness: 20000, damping: 60")}));
+  collector.Add(Pressed(-0.01, 0));  // above
+  EXPECT_EQ(collector.facts()[0].time, 0);
+  for (int k = 0; k < 100; ++k) collector.Add(Pressed(0.001, -0.01));
+  for (int k = 0; k < 20; ++k) collector.Add(Pressed(0.0005, 0.01));
+  TickRecord paused = Pressed(0.002, 0);
+  paused.ran = 0;
+  collector.Add(paused);
+  ASSERT_EQ(collector.facts().size(), 1U);
+  const ContactFacts& facts = collector.facts()[0];
+  EXPECT_NEAR(facts.time, 0.12, 1e-9);
+  EXPECT_NEAR(facts.depth, 0.001, 1e-6);
+  EXPECT_NEAR(facts.force, 4 * (20000 * 0.001 + 60 * 0.01), 0.1);  // at four points
+  EXPECT_NEAR(facts.pressing, 20, 1e-9);
+}
+
+TEST(ContactCollector, ARigidFixtureHasNoModelledForce) {
+  ContactCollector collector(Load("box_9kg.yaml", {Fixtures("friction: 0.2")}));
+  collector.Add(Pressed(0.001, -0.01));
+  EXPECT_EQ(collector.facts()[0].force, 0);
+  EXPECT_NEAR(collector.facts()[0].depth, 0.001, 1e-6);
+}
+
+// An obstacle counts from when it appears, and not while it overlaps the object and waits.
+TEST(ContactCollector, AnObstacleIsThereWhenItHasAppeared) {
+  const Scenario s = Load(
+      "box_9kg.yaml", {Fixtures("stiffness: 20000, damping: 60"),
+                       "events=[{event: obstacle_appears, fixture: ground, trigger: {after: 4}}]"});
+  ContactCollector collector(s);
+  TickRecord touching = Pressed(0.001, 0), away = Pressed(-0.01, 0);
+  collector.Add(touching);
+  EXPECT_EQ(collector.facts()[0].time, 0);
+  touching.events = away.events = 1;
+  collector.Add(touching);
+  EXPECT_EQ(collector.facts()[0].time, 0);
+  collector.Add(away);
+  collector.Add(touching);
+  EXPECT_NEAR(collector.facts()[0].time, 0.001, 1e-12);
+}
+
+// Returns the chapter about a run of a scenario.
+std::string ChapterOf(const Scenario& s, double seconds, ContactRun* run,
+                      std::vector<Plot>* plots) {
+  Emulator emulator(s);
+  ContactCollector collector(s);
+  Simulate(&emulator, seconds, [&](const TickRecord& record) { collector.Add(record); });
+  run->scenario = s;
+  run->facts = collector.facts();
+  PredictContacts(emulator.setup().lead.lead, run);
+  ReportPage page("Run");
+  AddContactChapter(*run, &page);
+  *plots = page.plots();
+  return page.Finish();
+}
+
+TEST(ContactChapter, StatesWhatTheDeviceCannotRender) {
+  const Scenario s = Load("slide_on_table.yaml");
+  ContactRun run;
+  std::vector<Plot> plots;
+  const std::string page = ChapterOf(s, 10, &run, &plots);
+  EXPECT_NE(page.find("<section id=\"contact\""), std::string::npos);
+  EXPECT_EQ(run.problem, "");
+  ASSERT_EQ(run.facts.size(), 2U);
+  EXPECT_GT(run.facts[0].time, 1);  // the table
+  EXPECT_LT(run.facts[0].depth, 2e-3);
+  EXPECT_GT(run.facts[0].pressing, 1);
+  for (const char* words : {"rigid", "not recorded", "(modelled)", "measured (simulated sensors)"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  ASSERT_EQ(run.predictions.size(), 2U);
+  ASSERT_EQ(plots.size(), 2U);
+  for (std::size_t k = 0; k < plots.size(); ++k) {
+    EXPECT_EQ(AxisTitle(plots[k].x), "Frequency [Hz]");
+    EXPECT_EQ(AxisTitle(plots[k].panels[0].y), "Magnitude [MN/m]");
+    for (const PlotSeries& series : plots[k].panels[0].series) {
+      EXPECT_EQ(series.x->front(), 0.1);
+      EXPECT_EQ(series.x->back(), 40);
+    }
+    EXPECT_EQ((*plots[k].panels[0].series[1].y)[10],
+              std::abs(run.predictions[k].spectrum[10].felt.rendered) / 1e6);
+  }
+}
+
+TEST(ContactChapter, NamesTheFixturesAndTheirStiffness) {
+  ContactRun run;
+  std::vector<Plot> plots;
+  const std::string page = ChapterOf(
+      Load("box_9kg.yaml", {Fixtures("stiffness: 20000, damping: 60")}), 0.1, &run, &plots);
+  ASSERT_EQ(run.predictions.size(), 1U);
+  EXPECT_NE(page.find("0 (ground)"), std::string::npos);
+  EXPECT_NE(page.find("20 kN/m, 60 N·s/m"), std::string::npos);
+  EXPECT_EQ(run.facts[0].time, 0);
+}
+
+TEST(ContactChapter, IsAbsentWithoutAFixture) {
+  ContactRun run;
+  std::vector<Plot> plots;
+  const std::string page = ChapterOf(Load("box_9kg.yaml"), 0.1, &run, &plots);
+  EXPECT_EQ(page.find("id=\"contact\""), std::string::npos);
+  EXPECT_TRUE(plots.empty());
+}
+
+TEST(ContactChapter, InDirectModeNoArmsRenderTheContact) {
+  ContactRun run;
+  std::vector<Plot> plots;
+  const std::string page =
+      ChapterOf(Load("slide_on_table.yaml", {"mode=direct"}), 0.1, &run, &plots);
+  EXPECT_TRUE(run.predictions.empty());
+  EXPECT_NE(page.find("no arms render the contact"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace predictor
