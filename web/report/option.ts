@@ -13,7 +13,8 @@ const kHeight = 170;  // of a panel of height 1
 const kRow = 18;      // of text
 const kGap = 12;
 const kKey = 30;      // of a line sample in the legend
-const kFont = 'system-ui, "Segoe UI", Helvetica, Arial, sans-serif';
+// The quotation marks are single, because ECharts does not escape double ones in a saved SVG.
+const kFont = "system-ui, 'Segoe UI', Helvetica, Arial, sans-serif";
 const kKeys = {
   solid: 'path://M0 0L22 0L22 3L0 3Z', dashed: 'path://M0 0L9 0L9 3L0 3ZM13 0L22 0L22 3L13 3Z',
   dotted: 'path://M0 0L4 0L4 3L0 3ZM9 0L13 0L13 3L9 3ZM18 0L22 0L22 3L18 3Z',
@@ -342,7 +343,7 @@ function titleOptions({panels, view}: Layout, color: Colors) {
     text: `${spec.title}   {far|${far}}`, left: grid.left, top, padding: 0,
     textStyle: {fontSize: 12, fontWeight: 500, color: color('ink'), rich: {far: {fontSize: 12, color: color('limit')}}},
   }));
-  const heading = {text: view.plot.title, left: panels[0].grid.left, top: 0, padding: 0,
+  const heading = {text: view.plot.title, left: panels[0].grid.left, top: 4, padding: 0,
                    textStyle: {fontSize: 13, fontWeight: 600, color: color('ink')}};
   return view.heading ? [heading, ...titles] : titles;
 }

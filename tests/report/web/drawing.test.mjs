@@ -54,6 +54,12 @@ const placeOf = (svg, words) => wordsOf(svg).filter((one) => one.words === words
 const pathOf = (svg) => (svg.match(/<path d="([^"]*)"[^>]*stroke="#0072b2"/) ?? ['', ''])[1];
 const pointsOf = (path) => [...path.matchAll(/(-?[0-9.]+)[ ,](-?[0-9.]+)/g)].map((m) => [Number(m[1]), Number(m[2])]);
 
+test('a saved picture is well-formed XML', () => {
+  const attributes = [...svgOf(simple()).matchAll(/<[a-z]+([^>]*)>/gi)].map((match) => match[1]);
+  assert.ok(attributes.length > 20);
+  for (const each of attributes) assert.match(each, /^(\s+[\w:-]+="[^"<]*")*\s*\/?$/);
+});
+
 test('a plot has units and limits, names are not markup, and a gap interrupts the line', () => {
   const svg = svgOf(simple());
   for (const words of ['Time [s]', 'Force [N]', 'stop above 30 N', 'left &lt;1&gt;', 'A &amp; B', 'far away ↑']) {
