@@ -9,10 +9,12 @@ let program, fake, real, made;
 let judges;  // the program judges the person during the run
 
 before(async () => {
-  program = await Program.run('box_9kg.yaml', {set: ['duration=3600']});
+  program = await Program.run(
+      'box_9kg.yaml', {set: ['duration=3600', 'events=[{event: power_loss, trigger: {after: 3600}}]']});
   real = await Client.join(program.url);
   judges = real.welcome.features.includes('person');
   fake = await new FakeServer({scene: 'box', older: !judges}).listen();
+  fake.planned = [{event: 'a', meaning: 'b', trigger: 'c', begin: null, end: null}];
   made = await Client.join(fake.url);
 });
 
@@ -48,10 +50,11 @@ test('welcomes have the same members, and scenes have the same keys', () => {
 });
 
 test('answers have the same members', async () => {
-  const kinds = ['pong', 'leases', 'denied'];
+  const kinds = ['pong', 'leases', 'denied', 'events'];
   const answers = async (client) => {
     client.send({type: 'ping', page_ms: 1});
     client.send({type: 'command', command: 'align'});  // without control
+    client.send({type: 'experimenter'});
     const all = () => kinds.map((type) => client.messages.find((m) => m.type === type));
     for (let k = 0; k < 200 && !all().every(Boolean); k++) await new Promise((r) => setTimeout(r, 50));
     return all();
