@@ -88,6 +88,18 @@ struct ControllerTuning {
   bool operator==(const ControllerTuning&) const = default;
 };
 
+// Motion of the frame of a movable object in the world.
+struct MovableMotion {
+  Pose X_W;                   // pose in W
+  Twist V_W = Twist::Zero();  // twist in W, about the frame's origin
+};
+
+// The scenario's movable objects (environment.objects), in its order.
+struct Movables {
+  int count = 0;
+  std::array<MovableMotion, kMaxMovables> motion;
+};
+
 // The virtual world after a step. The simulation writes it.
 struct WorldState {
   double time = 0;  // simulated time [s]
@@ -104,6 +116,7 @@ struct WorldState {
   std::uint8_t latest_event = 0;  // 1 + number of the hazard that began last; 0: none
   std::uint8_t cobot_stop = 0;    // protective stop of the cobot itself: CobotStop
   AttachmentState attachment = AttachmentState::kHolds;
+  Movables movables;
 };
 
 // The answer of a controller outside the program in a tick, from its record, for a replay.

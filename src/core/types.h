@@ -18,6 +18,7 @@ inline constexpr int kMaxEvents = 16;             // entries of a scenario's `ev
 inline constexpr int kMaxArmJoints = 10;          // of one arm of the device
 inline constexpr int kMaxCobotJoints = 16;        // of the virtual cobot
 inline constexpr int kMaxJoints = 16;             // of any robot
+inline constexpr int kMaxMovables = 8;            // entries of a scenario's `environment.objects`
 
 enum class Hand : int { kLeft = 0, kRight = 1 };
 inline constexpr std::array<const char*, kHands> kHandNames = {"left", "right"};

@@ -85,7 +85,7 @@ Vector3 UniformInertia(const PrimitiveSpec& p) {
   return Vector3::Constant(0.4 * p.mass * p.size.x() * p.size.x());
 }
 
-ModelShape ShapeOf(const PrimitiveSpec& p) {
+ModelShape ShapeOf(const PrimitiveSpec& p, const std::string& key) {
   ModelShape shape;
   shape.kind = p.shape == Shape::kBox        ? ShapeKind::kBox
                : p.shape == Shape::kCylinder ? ShapeKind::kCylinder
@@ -93,8 +93,8 @@ ModelShape ShapeOf(const PrimitiveSpec& p) {
   const int sizes = p.shape == Shape::kBox ? 3 : p.shape == Shape::kCylinder ? 2 : 1;
   shape.size.head(sizes) = p.size.head(sizes);
   if (!(p.size.head(sizes).minCoeff() > 0) || !p.size.head(sizes).allFinite()) {
-    throw InputError::At("object.primitive.size",
-                         "object.primitive.size has the entries " + FormatNumber(p.size.x()) +
+    throw InputError::At(key + ".primitive.size",
+                         key + ".primitive.size has the entries " + FormatNumber(p.size.x()) +
                              ", " + FormatNumber(p.size.y()) + ", " + FormatNumber(p.size.z()) +
                              " m. The entries that the shape uses must be greater than 0.");
   }
@@ -119,12 +119,12 @@ ObjectModel MakeObject(const UrdfModel& urdf) {
   return object;
 }
 
-ObjectModel MakeObject(const PrimitiveSpec& primitive) {
+ObjectModel MakeObject(const PrimitiveSpec& primitive, const std::string& key) {
   ObjectModel object;
   object.name = "primitive";
-  const ModelShape shape = ShapeOf(primitive);
+  const ModelShape shape = ShapeOf(primitive, key);
   if (!(primitive.mass > 0) || !std::isfinite(primitive.mass)) {
-    throw InputError::At("object.primitive.mass", "object.primitive.mass is " +
+    throw InputError::At(key + ".primitive.mass", key + ".primitive.mass is " +
                                                       FormatNumber(primitive.mass) +
                                                       " kg; it must be greater than 0.");
   }
@@ -135,23 +135,23 @@ ObjectModel MakeObject(const PrimitiveSpec& primitive) {
                                 ? WhatIsWrongWithInertia(object.inertia)
                                 : "must have three finite moments greater than 0.";
   if (!wrong.empty()) {
-    throw InputError::At("object.primitive.inertia", "object.primitive.inertia " + wrong);
+    throw InputError::At(key + ".primitive.inertia", key + ".primitive.inertia " + wrong);
   }
   object.visuals = object.collisions = {shape};
   return object;
 }
 
-ObjectModel LoadObject(const ObjectSpec& spec, const std::filesystem::path& folder) {
+ObjectModel LoadObject(const ObjectSpec& spec, const std::filesystem::path& folder,
+                       const std::string& key) {
   if (spec.model.empty()) {
-    if (spec.primitive) return MakeObject(*spec.primitive);
-    throw InputError::At("object",
-                         "object has neither a model nor a primitive. Give one of the two.");
+    if (spec.primitive) return MakeObject(*spec.primitive, key);
+    throw InputError::At(key, key + " has neither a model nor a primitive. Give one of the two.");
   }
   try {
     const std::filesystem::path from = folder.empty() ? "." : folder;
     return MakeObject(ReadUrdf(ResolveModelPath(spec.model, from), {}, from));
   } catch (const InputError& error) {
-    throw error.Within("object.model");
+    throw error.Within(key + ".model");
   }
 }
 

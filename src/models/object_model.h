@@ -31,10 +31,11 @@ ObjectModel ReadObject(const std::filesystem::path& file);
 ObjectModel MakeObject(const UrdfModel& urdf);
 
 // Makes an object from a shape of uniform density, unless an inertia is given. Throws InputError if
-// size, mass or inertia is impossible.
-ObjectModel MakeObject(const PrimitiveSpec& primitive);
+// size, mass or inertia is impossible. `key`: of the scenario, for errors.
+ObjectModel MakeObject(const PrimitiveSpec& primitive, const std::string& key = "object");
 
 // Loads the URDF or the primitive, whichever `spec` contains. `folder` is the scenario's folder.
-ObjectModel LoadObject(const ObjectSpec& spec, const std::filesystem::path& folder);
+ObjectModel LoadObject(const ObjectSpec& spec, const std::filesystem::path& folder,
+                       const std::string& key = "object");
 
 }  // namespace predictor

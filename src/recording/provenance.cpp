@@ -172,6 +172,8 @@ RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program
   std::set<fs::path> files;
   Describe(&named.cobot.model, named.cobot.remove_links, folder, &files);
   Describe(&named.object.model, {}, folder, &files);
+  for (MovableSpec& movable : named.environment.objects)
+    Describe(&movable.model, {}, folder, &files);
   for (auto* arm : {&named.device.left, &named.device.right})
     if (*arm) Describe(&(*arm)->model, (*arm)->remove_links, folder, &files);
 

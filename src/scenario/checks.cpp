@@ -19,7 +19,9 @@ namespace {
 constexpr double kMaxHandleDistance = 0.3;  // maximum distance of a handle's origin from its body
                                             // [m]
 
-constexpr double kMaxShift = 10;  // maximum displacement of the scene [m]
+constexpr double kMaxShift = 10;            // maximum displacement of the scene [m]
+constexpr double kMaxMovableDistance = 10;  // of a movable object from the origin of W [m]
+constexpr double kMaxDensity = 23000;       // above that of osmium, 22 590 [kg/m³]
 
 class Checker {
  public:
@@ -29,6 +31,7 @@ class Checker {
   void Object() const;
   void Environment() const;
   void Fixture(std::size_t i) const;
+  void Movable(std::size_t i) const;
   void Simulation() const;
   void Handles() const;
   void Device() const;
@@ -62,6 +65,8 @@ class Checker {
            "is " + FormatNumber(a) + " " + unit + "; it must be below " + path_b + ", which is " +
                FormatNumber(b) + " " + unit + ".");
   }
+  void Body(const std::string& model, const std::optional<PrimitiveSpec>& primitive,
+            const std::string& path) const;
   void RangeUnits(JointType joint) const;
   void Action(std::size_t i) const;
   void ActionOverlap(const std::vector<ActionSpan>& spans, std::size_t i) const;
@@ -81,6 +86,13 @@ double DistanceFrom(const PrimitiveSpec& body, const Vector3& p) {
   return std::hypot(radial, std::max(0.0, std::abs(p.z()) - body.size.y() / 2));
 }
 
+double VolumeOf(const PrimitiveSpec& body) {  // [m³]
+  const Vector3& size = body.size;
+  if (body.shape == Shape::kBox) return size.prod();
+  if (body.shape == Shape::kSphere) return 4.0 / 3 * M_PI * std::pow(size.x(), 3);
+  return M_PI * size.x() * size.x() * size.y();
+}
+
 void Checker::RangeUnits(JointType joint) const {
   for (int i = 0; i < 2; ++i) {
     const std::string path = "object.attachment.range." + std::to_string(i);
@@ -94,21 +106,28 @@ void Checker::RangeUnits(JointType joint) const {
   }
 }
 
+// Checks a body that is either a model or a primitive.
+void Checker::Body(const std::string& model, const std::optional<PrimitiveSpec>& primitive,
+                   const std::string& path) const {
+  Unless(!model.empty() || primitive, path,
+         "has neither a model nor a primitive. Give " + path + ".model, a URDF, or " + path +
+             ".primitive.");
+  Unless(model.empty() || !primitive, path + ".primitive",
+         "is given together with " + path + ".model. Remove one of them.");
+  if (!primitive) return;
+  const int used = primitive->shape == Shape::kBox        ? 3
+                   : primitive->shape == Shape::kCylinder ? 2
+                                                          : 1;
+  Unless(primitive->size.head(used).minCoeff() > 0, path + ".primitive.size",
+         "has a zero among the first " + std::to_string(used) + " entries, the dimensions of a " +
+             NamesOf(primitive->shape)[static_cast<std::size_t>(primitive->shape)] +
+             ". They must be greater than 0.");
+  if (primitive->inertia) Inertia(*primitive->inertia, path + ".primitive.inertia");
+}
+
 void Checker::Object() const {
   const ObjectSpec& object = s_.object;
-  Unless(!object.model.empty() || object.primitive, "object",
-         "has neither a model nor a primitive. Give object.model, a URDF, or object.primitive.");
-  Unless(object.model.empty() || !object.primitive, "object.primitive",
-         "is given together with object.model. Remove one of them.");
-  if (object.primitive) {
-    const PrimitiveSpec& body = *object.primitive;
-    const int used = body.shape == Shape::kBox ? 3 : body.shape == Shape::kCylinder ? 2 : 1;
-    Unless(body.size.head(used).minCoeff() > 0, "object.primitive.size",
-           "has a zero among the first " + std::to_string(used) + " entries, the dimensions of a " +
-               NamesOf(body.shape)[static_cast<std::size_t>(body.shape)] +
-               ". They must be greater than 0.");
-    if (body.inertia) Inertia(*body.inertia, "object.primitive.inertia");
-  }
+  Body(object.model, object.primitive, "object");
   const AttachmentSpec& joint = object.attachment;
   const bool has_axis = joint.joint == JointType::kRevolute || joint.joint == JointType::kPrismatic;
   Unless(!has_axis || joint.axis.norm() > 1e-3, "object.attachment.axis",
@@ -136,9 +155,32 @@ void Checker::Fixture(std::size_t i) const {
                std::to_string(other) + ". Choose another name.");
 }
 
+void Checker::Movable(std::size_t i) const {
+  const MovableSpec& movable = s_.environment.objects[i];
+  const std::string path = "environment.objects." + std::to_string(i);
+  Body(movable.model, movable.primitive, path);
+  Unless(!movable.name.empty(), path + ".name", "is empty. Give the object a name.");
+  for (std::size_t other = 0; other < i && !movable.name.empty(); ++other)
+    Unless(movable.name != s_.environment.objects[other].name, path + ".name",
+           "is " + Quote(movable.name) + ", as that of environment.objects." +
+               std::to_string(other) + ". Choose another name.");
+  Unless(movable.xyz.norm() <= kMaxMovableDistance, path + ".xyz",
+         "is " + FormatNumber(std::round(movable.xyz.norm() * 1000) / 1000) +
+             " m from the origin of W; it must be at most " + FormatNumber(kMaxMovableDistance) +
+             " m. Give metres.");
+  if (!movable.primitive) return;
+  const double volume = VolumeOf(*movable.primitive);
+  Unless(!(volume > 0) || movable.primitive->mass <= kMaxDensity * volume, path + ".primitive.mass",
+         "is " + FormatNumber(movable.primitive->mass) + " kg, more than " +
+             FormatNumber(std::round(kMaxDensity * volume * 1000) / 1000) +
+             " kg, which the densest metal of this size would weigh. Give the mass in kg and the "
+             "size in m.");
+}
+
 // Weight compensation and people assume that gravity points down in the rig too.
 void Checker::Environment() const {
   for (std::size_t i = 0; i < s_.environment.fixtures.size(); ++i) Fixture(i);
+  for (std::size_t i = 0; i < s_.environment.objects.size(); ++i) Movable(i);
   if (!s_.environment.shift) return;
   const std::string path = "environment.shift.";
   const PoseSpec& shift = *s_.environment.shift;
@@ -158,6 +200,10 @@ void Checker::Simulation() const {
          "simulation.engine",
          "is dart, but the arms are real. DART is not fast enough for them: its steps "
          "allocate memory and wait for another process. Set simulation.engine: mujoco.");
+  Unless(s_.simulation.engine == EngineKind::kMujoco || s_.environment.objects.empty(),
+         "simulation.engine",
+         "is dart, whose world has no movable objects. Set simulation.engine: mujoco, or remove "
+         "environment.objects.");
 }
 
 void Checker::Handles() const {

@@ -40,11 +40,32 @@ void Fields(V& v, FixtureSpec& s) {
 }
 
 template <class V>
+void Fields(V& v, MovableSpec& s) {
+  v("name", s.name, Required(Word("name by which events and messages refer to it")));
+  v("model", s.model, Word("URDF: package://..., or relative to this file; empty: the primitive"));
+  v("primitive", s.primitive, Part("a simple body, instead of a model"));
+  PoseFields(v, s);
+  v("friction", s.friction,
+    Number("",
+           "sliding friction of its contacts; if the other body has one too, the lower one; null: "
+           "that of the other body or environment.friction",
+           From(0, 10)));
+  v("touches", s.touches,
+    List(Word("what else collides with it, apart from floor, table, fixtures and other objects",
+              {"object", "cobot"}),
+         1, 2));
+  v("color", s.color, Number("", "red, green, blue of a primitive", From(0, 1)));
+}
+
+template <class V>
 void Fields(V& v, EnvironmentSpec& s) {
   v("gravity", s.gravity, Number("m/s²", "gravitational acceleration, along -z of W", From(0, 30)));
   v("floor", s.floor, Flag("a floor with contact at z = 0"));
   v("table", s.table, Part("a table with contact; null: none"));
   v("fixtures", s.fixtures, List(Part("bodies that never move and that others can touch"), 0, 64));
+  v("objects", s.objects,
+    List(Part("movable objects: bodies that nothing holds at the start and that others push"), 0,
+         kMaxMovables));
   v("friction", s.friction, Number("", "coefficient of sliding friction in contacts", From(0, 10)));
   v("shift", s.shift,
     Part("pose of W in the frame of the arms' bases: moved, and turned about the vertical; "

@@ -15,6 +15,7 @@
 #include "core/sex.h"
 #include "core/types.h"
 #include "scenario/fixture_spec.h"
+#include "scenario/movable_spec.h"
 #include "scenario/perturbation_spec.h"
 #include "scenario/yaml_tree.h"
 
@@ -142,18 +143,7 @@ struct EventSpec {
 
 // ---- what is carried -------------------------------------------------------------------------
 
-enum class Shape { kBox, kCylinder, kSphere };
 enum class JointType { kSpherical, kFixed, kRevolute, kPrismatic };
-
-// An object defined in the scenario itself, of uniform density unless an inertia is given.
-struct PrimitiveSpec {
-  Shape shape = Shape::kBox;
-  // Box: x y z; cylinder: radius, length, –; sphere: radius, –, – [m].
-  Vector3 size = {0.1, 0.1, 0.1};
-  double mass = 1;                           // [kg]
-  Vector3 center_of_mass = Vector3::Zero();  // centre of mass in O [m]
-  std::optional<Vector3> inertia;  // principal moments about the centre of mass, axes of O [kg·m²]
-};
 
 struct AttachmentSpec {
   JointType joint = JointType::kSpherical;
@@ -196,7 +186,8 @@ struct EnvironmentSpec {
   bool floor = true;      // plane z = 0 with contact
   std::optional<TableSpec> table;
   std::vector<FixtureSpec> fixtures;
-  double friction = 0.8;  // coefficient of sliding friction in contacts
+  std::vector<MovableSpec> objects;  // movable objects; at most kMaxMovables
+  double friction = 0.8;             // coefficient of sliding friction in contacts
   // X_RW, pose of the virtual world in the frame of the arms' bases. Roll and pitch are 0, so
   // gravity points down in both. If it is absent, W is R and the arms' bases may be chosen freely.
   std::optional<PoseSpec> shift;

@@ -315,6 +315,8 @@ void ControlledScene::Loosen() noexcept {
     v[to.v[j]] = carried_->velocities()[from.v[j]];
   }
   loose.MoveObject(O);
+  loose.movable_positions() = carried_->movable_positions();
+  loose.movable_velocities() = carried_->movable_velocities();
   is_loose_ = true;
   WriteTorque(&loose);
   Update(&loose);
@@ -463,7 +465,7 @@ double ControlledScene::Energy(double t) const noexcept {
   if (const ControllerAnswer* played = taped() ? taped()->played() : nullptr) return played->energy;
   const double kinetic = engine().KineticEnergy();
   double energy = kinetic + carried_->object_model().mass * gravity_ * engine().object_com().z() +
-                  Acting().StoredEnergy(Input(t));
+                  engine().MovablePotential() + Acting().StoredEnergy(Input(t));
   if (payload_) {
     const Pose X_WE = robot_data_.FramePose(*robot_, end_effector_);
     energy -= PayloadShare() * payload_->mass * gravity_ * (X_WE * payload_->center_of_mass).z();

@@ -115,9 +115,9 @@ class ControlledScene {
   void SetTorque(const JointVector& torque) noexcept { torque_ = torque; }
   FrameMotion EndEffector() const;  // X and V; A is zero
 
-  // Returns the kinetic energy, the potential energy of the object, and the energy stored in the
-  // controller's springs [J]. The cobot's own potential energy is excluded, because its controllers
-  // compensate its weight.
+  // Returns the kinetic energy, the potential energy of the object and of the movable objects, and
+  // the energy stored in the controller's springs [J]. The cobot's own potential energy is
+  // excluded, because its controllers compensate its weight.
   double Energy(double t) const noexcept;
 
  private:

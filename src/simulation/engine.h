@@ -30,20 +30,26 @@ struct DofFriction {
 };
 inline constexpr double kBrakeImpedance = 0.9999;  // of a closed brake
 
-// A point where the object or the cobot touches the surroundings.
+// A point where a body touches another one. The body is the object or the cobot if one of them
+// touches; otherwise, it is a movable object.
 struct Contact {
   Vector3 p_W = Vector3::Zero();       // [m]
-  Vector3 normal_W = Vector3::Zero();  // unit vector, out of the surroundings
-  Vector3 force_W = Vector3::Zero();   // on the object or the cobot [N]
+  Vector3 normal_W = Vector3::Zero();  // unit vector, out of the other one
+  Vector3 force_W = Vector3::Zero();   // on the body [N]
   double depth = 0;                    // of the penetration; negative: a gap [m]
-  int fixture = -1;                    // index in environment.fixtures; −1: floor or table
+  int fixture = -1;                    // the other's index in environment.fixtures; −1: none
   bool yields = false;                 // the fixture has a stiffness [N/m]
-  std::string_view link;               // of the cobot; empty: the object
+  int movable = -1;  // the other's index in environment.objects; −1: none. If both indices are
+                     // −1, the other one is the floor or the table
+  int body = -1;     // the body's index in environment.objects; −1: the object or the cobot
+  std::string_view link;  // of the cobot; empty: the object or a movable object
 };
 
 // The positions and velocities are those of the cobot's joints and of the attachment's joint or the
-// free object, in the engine's order (Layout). A rotation may have more positions than velocities.
-// A change of the positions is a vector as long as the velocities (tangent space).
+// free object, in the engine's order (Layout). Those of the movable objects are separate, so that
+// equilibrium, linearisation and attachment see the cobot and its object only. A rotation may have
+// more positions than velocities. A change of the positions is a vector as long as the velocities
+// (tangent space).
 //
 // A step has two stages. Prepare computes what follows from positions and velocities. Then forces
 // are set, and Advance computes the accelerations and integrates. Some functions use the state of
@@ -99,7 +105,14 @@ class Engine {
   virtual void Restore(std::span<const double> from) noexcept = 0;  // to be followed by Prepare
   // With Holding::kFree, gives the object this pose and twist (not the acceleration).
   virtual void MoveObject(const FrameMotion& O) noexcept = 0;
-  // Puts everything at rest at the model's zero. It also repairs the state after an error.
+  // Of all movable objects (environment.objects): positions and velocities in the engine's order,
+  // motions, and the potential energy of their weights, which is 0 at z = 0 [J].
+  virtual Values movable_positions() noexcept { return {nullptr, 0}; }
+  virtual Values movable_velocities() noexcept { return {nullptr, 0}; }
+  virtual Movables movables() const noexcept { return {}; }
+  virtual double MovablePotential() const noexcept { return 0; }
+  // Puts everything at rest at the model's zero, and the movable objects where they start. It also
+  // repairs the state after an error.
   virtual void Clear() noexcept = 0;
 
   // ---- a step ----------------------------------------------------------------------------------
@@ -116,7 +129,7 @@ class Engine {
   virtual Pose PoseOf(SceneBody body) const noexcept = 0;           // in W
   virtual FrameMotion MotionOf(SceneBody body) const noexcept = 0;  // A_W is zero
   virtual Vector3 object_com() const noexcept = 0;                  // in W [m]
-  virtual double KineticEnergy() noexcept = 0;                      // [J]
+  virtual double KineticEnergy() noexcept = 0;  // with that of movable objects [J]
   // For the point p_W of a body, writes its velocity and then the body's angular velocity, per
   // velocity of the joints.
   virtual void Jacobian(SceneBody body, const Vector3& p_W, Jacobian6 J) noexcept = 0;
@@ -165,11 +178,12 @@ class Engine {
   // Archives the sums of masses, including the rounding errors from changes of the hands' masses.
   virtual void ArchiveMasses(StateArchive& a) noexcept = 0;
 
-  // Options for searches outside the tick: whether the joints have Coulomb friction, and how
-  // precisely contacts are solved (relative).
+  // Options for searches outside the tick: whether the joints have Coulomb friction, how precisely
+  // contacts are solved (relative), and whether the movable objects touch anything.
   struct Options {
     bool coulomb_friction = true;
     double tolerance = 0;
+    bool movables_touch = true;
   };
   virtual Options options() const noexcept = 0;
   virtual void SetOptions(const Options& options) noexcept = 0;

@@ -39,7 +39,9 @@ class EquilibriumSearch {
  public:
   explicit EquilibriumSearch(ControlledScene* scene)
       : scene_(*scene), engine_(scene->engine()), options_(engine_.options()) {
-    engine_.SetOptions({.coulomb_friction = false, .tolerance = kContactTolerance});
+    // The movable objects stay where they start, and do not support the object.
+    engine_.SetOptions(
+        {.coulomb_friction = false, .tolerance = kContactTolerance, .movables_touch = false});
   }
   ~EquilibriumSearch() { engine_.SetOptions(options_); }
 
@@ -184,13 +186,51 @@ Obstacle ObstacleIn(const ControlledScene& scene) {
   return {};
 }
 
+std::string KeyOfMovable(int i) { return "environment.objects." + std::to_string(i); }
+
+std::string Millimetres(double metres) {
+  return FormatNumber(std::round(metres * 1e4) / 10) + " mm";
+}
+
+// Throws InputError for a movable object that overlaps its surroundings or another one.
+void RefuseOverlap(const Contact& contact) {
+  const std::string key = KeyOfMovable(contact.body);
+  const std::string other = contact.movable >= 0 ? KeyOfMovable(contact.movable)
+                            : contact.fixture >= 0
+                                ? "environment.fixtures." + std::to_string(contact.fixture)
+                                : "the floor or the table";
+  throw InputError::At(key + ".xyz", key + ".xyz: at the start, this object is " +
+                                         Millimetres(contact.depth) + " inside " + other +
+                                         ". Move it at least this far away.");
+}
+
+// The search does not include the movable objects. If one of them touched the object or the cobot,
+// the run would not begin at rest.
+void RefuseTouch(Engine* engine) {
+  if (engine->movables().count == 0) return;
+  engine->Prepare();
+  for (int i = 0; i < engine->contact_count(); ++i) {
+    const Contact contact = engine->contact(i);
+    if (contact.movable < 0 || contact.body >= 0) continue;
+    const std::string key = KeyOfMovable(contact.movable);
+    const std::string other =
+        contact.link.empty() ? "the object" : "the cobot's link " + Quote(contact.link);
+    throw InputError::At(
+        key + ".xyz", key + ".xyz: at the start, after the cobot sagged under its load, " + other +
+                          " touches this object, and is " + Millimetres(contact.depth) +
+                          " inside it. Leave a gap between them, for example 1 mm.");
+  }
+}
+
 // Without this check, the search would push the bodies apart, and the run would start elsewhere
 // than the scenario describes.
 void CheckStart(Engine* engine) {
   engine->Prepare();
   for (int i = 0; i < engine->contact_count(); ++i) {
     const Contact contact = engine->contact(i);
-    if (contact.fixture < 0 || contact.depth <= kDeepestStart) continue;
+    if (contact.depth <= kDeepestStart) continue;
+    if (contact.body >= 0) RefuseOverlap(contact);
+    if (contact.fixture < 0) continue;
     const std::string key = "environment.fixtures." + std::to_string(contact.fixture);
     const bool is_object = contact.link.empty();
     throw InputError::At(
@@ -222,7 +262,10 @@ void FindEquilibrium(ControlledScene* scene) {
   CheckStart(&engine);
   const double residual = EquilibriumSearch(scene).Run();
   Obstacle obstacle = ObstacleIn(*scene);
-  if (residual < kTolerance && obstacle.text.empty()) return RefuseContact(&engine);
+  if (residual < kTolerance && obstacle.text.empty()) {
+    RefuseTouch(&engine);
+    return RefuseContact(&engine);
+  }
   if (obstacle.text.empty()) obstacle = {"cobot.posture", "no static equilibrium was found"};
   throw InputError::At(obstacle.key,
                        obstacle.key +

@@ -27,7 +27,8 @@ class Linearisation {
         filtered_(scene->wrist().filtered()),
         memory_(scene->memory().begin(), scene->memory().end()),
         options_(engine->options()) {
-    engine_.SetOptions({.coulomb_friction = false, .tolerance = options_.tolerance});
+    engine_.SetOptions(
+        {.coulomb_friction = false, .tolerance = options_.tolerance, .movables_touch = false});
   }
   ~Linearisation() {
     engine_.SetOptions(options_);

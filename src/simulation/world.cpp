@@ -17,6 +17,8 @@ namespace {
 // Beyond these values, the simulation has diverged, because no arm or load moves that fast.
 constexpr double kMaxVelocity = 100;      // of a joint [rad/s, m/s]
 constexpr double kMaxAcceleration = 1e6;  // of a joint [rad/s², m/s²]
+// A small ball turns faster than any joint when it rolls.
+constexpr double kMaxMovableVelocity = 1000;  // [rad/s, m/s]
 
 double Largest(const Eigen::Ref<const Eigen::VectorXd>& values) {
   double largest = 0;
@@ -127,7 +129,9 @@ struct World::Impl {
     controlled.start_engine().ArchiveMasses(a);
     if (loose) loose->ArchiveMasses(a);
     a(controlled, events, object, end_effector, state);
-    if (state.cobot_dof != static_cast<int>(controlled.q().size())) a.Fail();
+    if (state.cobot_dof != static_cast<int>(controlled.q().size()) ||
+        state.movables.count != engine().movables().count)
+      a.Fail();
     if (a.saves() || !a.ok()) return;
     controlled.Resume(events.disturbance());
     Restore(Saved());
@@ -184,6 +188,8 @@ struct World::Impl {
     const double velocity = Largest(world.velocities());
     if (!(velocity <= kMaxVelocity)) return Failure(velocity, kMaxVelocity);
     if (!std::isfinite(Largest(world.positions()))) return Failure(std::nan(""), 0);
+    const double movable = Largest(world.movable_velocities());
+    if (!(movable <= kMaxMovableVelocity)) return Failure(movable, kMaxMovableVelocity);
     controlled.SenseWrist();
     if (!controlled.Update(&world)) return Failure(std::nan(""), 0);
     controlled.FollowObject();
@@ -233,6 +239,7 @@ struct World::Impl {
     state.latest_event = events.latest();
     state.cobot_stop = static_cast<std::uint8_t>(controlled.cobot_stop());
     state.attachment = controlled.attachment();
+    state.movables = engine().movables();
     state.energy = controlled.Energy(engine().time());
     state.controller = controlled.outcome();
   }

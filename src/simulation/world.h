@@ -40,9 +40,9 @@ class World {
 
   // Returns the state after the last Step: poses and twists at state().time, and accelerations
   // (A_W), torque and coupling of the last sub-step. A_W is the change of the twist over that
-  // sub-step. `energy` is the sum of the kinetic energy, the object's potential energy, and the
-  // energy of the controller's springs. It excludes the cobot's weight, which its controllers
-  // compensate.
+  // sub-step. `energy` is the sum of the kinetic energy, the potential energy of the object and of
+  // the movable objects, and the energy of the controller's springs. It excludes the cobot's
+  // weight, which its controllers compensate.
   const WorldState& state() const;
 
   // Returns to the initial equilibrium at time 0.
@@ -50,7 +50,9 @@ class World {
   void Archive(StateArchive& a) noexcept;
 
   // Returns a linear model about the present posture, at rest. It includes the controller, joint
-  // friction and contacts, but not the coupling, hands and Coulomb friction. x contains the
+  // friction and contacts, but not the coupling, hands, Coulomb friction and movable objects. At
+  // the start, no movable object touches the object or the cobot, so their motion neither affects
+  // the handles nor follows from a force on them. x contains the
   // tangent-space change of the coordinates (nv) and then their rates (nv). Allocates memory.
   LinearModel Linearise() const;
 

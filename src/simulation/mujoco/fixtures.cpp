@@ -64,30 +64,44 @@ void AddFixture(mjsBody* world, const FixtureSpec& fixture, std::size_t i) {
 
 std::string FixtureName(std::size_t i) { return "fixture/" + std::to_string(i); }
 
-bool TouchesCobot(const EnvironmentSpec& environment) {
-  return std::ranges::any_of(environment.fixtures,
-                             [](const FixtureSpec& fixture) { return fixture.Touches("cobot"); });
+double FrictionBetween(const EnvironmentSpec& environment, const std::optional<double>& a,
+                       const std::optional<double>& b) {
+  if (a && b) return std::min(*a, *b);
+  return a.value_or(b.value_or(environment.friction));
 }
 
+namespace {
+
+void AddPair(mjSpec* spec, const std::string& shape, const std::string& other, double friction,
+             const FixtureSpec& law) {
+  mjsPair* pair = mjs_addPair(spec, nullptr);
+  mjs_setString(pair->geomname1, shape.c_str());
+  mjs_setString(pair->geomname2, other.c_str());
+  pair->condim = 3;
+  std::fill_n(pair->friction, 2, friction);
+  pair->solref[0] = law.time_constant;
+  pair->solref[1] = law.damping_ratio;
+  pair->solreffriction[0] = kFixtureFrictionTime;
+  pair->solreffriction[1] = 1;
+  std::fill_n(pair->solimp, 2, kContactImpedance);
+  pair->solimp[2] = 0.001;
+  pair->solimp[3] = 0.5;
+  pair->solimp[4] = 2;
+  pair->margin = pair->gap = 0;
+}
+
+}  // namespace
+
 void AddContacts(mjSpec* spec, const EnvironmentSpec& environment, std::size_t i,
-                 const std::vector<std::string>& shapes) {
+                 const std::vector<std::string>& shapes, const std::optional<double>& friction) {
   const FixtureSpec& fixture = environment.fixtures[i];
-  for (const std::string& shape : shapes) {
-    mjsPair* pair = mjs_addPair(spec, nullptr);
-    mjs_setString(pair->geomname1, FixtureName(i).c_str());
-    mjs_setString(pair->geomname2, shape.c_str());
-    pair->condim = 3;
-    std::fill_n(pair->friction, 2, fixture.friction.value_or(environment.friction));
-    pair->solref[0] = fixture.time_constant;
-    pair->solref[1] = fixture.damping_ratio;
-    pair->solreffriction[0] = kFixtureFrictionTime;
-    pair->solreffriction[1] = 1;
-    std::fill_n(pair->solimp, 2, kContactImpedance);
-    pair->solimp[2] = 0.001;
-    pair->solimp[3] = 0.5;
-    pair->solimp[4] = 2;
-    pair->margin = pair->gap = 0;
-  }
+  for (const std::string& shape : shapes)
+    AddPair(spec, FixtureName(i), shape, FrictionBetween(environment, fixture.friction, friction),
+            fixture);
+}
+
+void AddContact(mjSpec* spec, const std::string& shape, const std::string& other, double friction) {
+  AddPair(spec, shape, other, friction, FixtureSpec());
 }
 
 namespace {
@@ -172,8 +186,9 @@ void AddSurroundings(mjSpec* spec, const EnvironmentSpec& environment) {
   }
   for (std::size_t i = 0; i < environment.fixtures.size(); ++i)
     AddFixture(world, environment.fixtures[i], i);
-  // Without fixtures, the engine's default remains, so that earlier recordings replay bit for bit.
-  if (!environment.fixtures.empty()) spec->option.impratio = kFrictionStiffness;
+  // Without them, the engine's default remains, so that earlier recordings replay bit for bit.
+  if (!environment.fixtures.empty() || !environment.objects.empty())
+    spec->option.impratio = kFrictionStiffness;
 }
 
 }  // namespace predictor

@@ -1,6 +1,7 @@
 // The fixed surroundings of the cobot and the object.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,17 @@ namespace predictor {
 // Adds floor, table and fixtures to the engine's world.
 void AddSurroundings(mjSpec* spec, const EnvironmentSpec& environment);
 
-// Returns whether a fixture can touch the cobot.
-bool TouchesCobot(const EnvironmentSpec& environment);
-
-// Makes fixture number i collide with the named shapes of a body.
+// Makes fixture number i collide with the named shapes of a body, which may have a friction.
 void AddContacts(mjSpec* spec, const EnvironmentSpec& environment, std::size_t i,
-                 const std::vector<std::string>& shapes);
+                 const std::vector<std::string>& shapes,
+                 const std::optional<double>& friction = std::nullopt);
+
+// Makes two shapes collide as a fixture does by default.
+void AddContact(mjSpec* spec, const std::string& shape, const std::string& other, double friction);
+
+// Returns the friction of a contact between two bodies: the lower one of those given.
+double FrictionBetween(const EnvironmentSpec& environment, const std::optional<double>& a,
+                       const std::optional<double>& b);
 
 // Gives the contacts of fixtures with a stiffness this stiffness and damping, in the compiled model
 // and, for its text, in `spec`. The engine's own values are relative to a mass that it knows only

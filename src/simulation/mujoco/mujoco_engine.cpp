@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "simulation/mujoco/full_vectors.h"
+#include "simulation/mujoco/movables.h"
 #include "simulation/mujoco/scene.h"
 
 namespace predictor {
@@ -22,9 +24,12 @@ void ForcesAndLoad(const mjModel* model, mjData* data) {
 class MujocoEngine final : public Engine {
  public:
   explicit MujocoEngine(std::shared_ptr<const Scene> scene)
-      : scene_(std::move(scene)), model_(scene_->model.get()), data_(mj_makeData(model_)) {
-    layout_ = {.positions = static_cast<int>(model_->nq),
-               .dof = static_cast<int>(model_->nv),
+      : scene_(std::move(scene)),
+        model_(scene_->model.get()),
+        data_(mj_makeData(model_)),
+        full_(*scene_) {
+    layout_ = {.positions = scene_->own_positions,
+               .dof = scene_->own_dof,
                .q = scene_->qpos,
                .v = scene_->dof,
                .object_q = scene_->object_qpos,
@@ -42,10 +47,10 @@ class MujocoEngine final : public Engine {
 
   double time() const noexcept override { return data_->time; }
   void SetTime(double time) noexcept override { data_->time = time; }
-  Values positions() noexcept override { return {data_->qpos, model_->nq}; }
-  Values velocities() noexcept override { return {data_->qvel, model_->nv}; }
-  Values joint_forces() noexcept override { return {data_->qfrc_applied, model_->nv}; }
-  ConstValues accelerations() const noexcept override { return {data_->qacc, model_->nv}; }
+  Values positions() noexcept override { return {data_->qpos, layout_.positions}; }
+  Values velocities() noexcept override { return {data_->qvel, dof()}; }
+  Values joint_forces() noexcept override { return {data_->qfrc_applied, dof()}; }
+  ConstValues accelerations() const noexcept override { return {data_->qacc, dof()}; }
   void SetObjectWrench(const Wrench& wrench) noexcept override {
     Eigen::Map<Vector6>(data_->xfrc_applied + 6 * scene_->object) = wrench;
   }
@@ -72,10 +77,28 @@ class MujocoEngine final : public Engine {
     Eigen::Map<Vector3>{V} = O.V_W.head<3>();
     Eigen::Map<Vector3>{V + 3} = q.conjugate() * Vector3(O.V_W.tail<3>());
   }
+  Values movable_positions() noexcept override {
+    return {data_->qpos + layout_.positions, model_->nq - layout_.positions};
+  }
+  Values movable_velocities() noexcept override {
+    return {data_->qvel + dof(), model_->nv - dof()};
+  }
+  Movables movables() const noexcept override { return MotionOfMovables(*scene_, *data_); }
+  double MovablePotential() const noexcept override {
+    double energy = 0;
+    for (const MovableBody& movable : scene_->movables)
+      energy -= model_->body_mass[movable.body] *
+                At(model_->opt.gravity).dot(At(data_->xipos + 3 * movable.body));
+    return energy;
+  }
   void Clear() noexcept override { mj_resetData(model_, data()); }
 
   bool Prepare() noexcept override { return Guarded(mj_step1, model_, data()) && IsComplete(); }
-  bool Advance() noexcept override { return Guarded(mj_step2, model_, data()) && IsComplete(); }
+  bool Advance() noexcept override {
+    if (!Guarded(mj_step2, model_, data()) || !IsComplete()) return false;
+    EndFalls(*scene_, data());
+    return true;
+  }
   bool ComputeAccelerations(bool load) noexcept override {
     return Guarded(load ? ForcesAndLoad : ForcesWithoutLoad, model_, data()) && IsComplete();
   }
@@ -99,42 +122,36 @@ class MujocoEngine final : public Engine {
   }
 
   void Jacobian(SceneBody body, const Vector3& p_W, Jacobian6 J) noexcept override {
-    mj_jac(model_, data(), J.data(), J.data() + 3 * J.outerStride(), p_W.data(), Index(body));
+    full_.Jacobian(mj_jac, model_, data(), p_W, Index(body), J);
   }
   void JacobianRate(SceneBody body, const Vector3& p_W, Jacobian6 J) noexcept override {
-    mj_jacDot(model_, data(), J.data(), J.data() + 3 * J.outerStride(), p_W.data(), Index(body));
+    full_.Jacobian(mj_jacDot, model_, data(), p_W, Index(body), J);
   }
   void MassMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept override {
-    mj_fullM(model_, data(), M.data());  // symmetric: the storage order does not matter
+    full_.MassMatrix(model_, data(), M);
   }
   void TimesMass(const double* a, double* force) const noexcept override {
-    mj_mulM(model_, data(), force, a);
+    full_.TimesMass(model_, data(), a, force);
   }
   void StepMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept override {
     MassMatrix(M);
     // The engine integrates the joints' damping implicitly.
-    for (int i = 0; i < model_->nv; ++i) M(i, i) += model_->opt.timestep * model_->dof_damping[i];
+    for (int i = 0; i < dof(); ++i) M(i, i) += model_->opt.timestep * model_->dof_damping[i];
   }
   void Forces(Eigen::Ref<Eigen::VectorXd> forces) noexcept override {
-    const auto map = [this](const double* x) { return ConstValues(x, model_->nv); };
+    const auto map = [this](const double* x) { return ConstValues(x, dof()); };
     forces = map(data_->qfrc_passive) - map(data_->qfrc_bias) + map(data_->qfrc_applied);
     if (data_->nefc > 0) forces += map(data_->qfrc_constraint);
     const double* wrench = data_->xfrc_applied + 6 * scene_->object;
-    mj_applyFT(model_, data(), wrench, wrench + 3, data_->xipos + 3 * scene_->object,
-               scene_->object, forces.data());
+    full_.AddWrench(model_, data(), wrench, data_->xipos + 3 * scene_->object, scene_->object,
+                    forces);
   }
   bool has_reactions() const noexcept override { return data_->nefc > 0; }
-  // Reactions that hold act like inertia. Each is a force of −efc_D times the acceleration along
-  // its row.
   void AddReactions(Eigen::Ref<Eigen::MatrixXd> M) const noexcept override {
-    for (int i = 0; i < data_->nefc; ++i) {
-      if (data_->efc_state[i] != mjCNSTRSTATE_QUADRATIC) continue;
-      const ConstValues row(data_->efc_J + i * model_->nv, model_->nv);
-      M += data_->efc_D[i] * row.lazyProduct(row.transpose());
-    }
+    full_.AddReactions(model_, data(), M);
   }
   void Displace(const double* change, double scale) noexcept override {
-    mj_integratePos(model_, data_->qpos, change, scale);
+    full_.Displace(model_, data(), change, scale);
   }
 
   Wrench LoadWrench(Vector3* p_WA) const noexcept override {
@@ -169,7 +186,8 @@ class MujocoEngine final : public Engine {
   }
 
   Options options() const noexcept override {
-    return {(model_->opt.disableflags & mjDSBL_FRICTIONLOSS) == 0, model_->opt.tolerance};
+    return {(model_->opt.disableflags & mjDSBL_FRICTIONLOSS) == 0, model_->opt.tolerance,
+            MovablesTouch(*scene_)};
   }
   void SetOptions(const Options& options) noexcept override {
     if (options.coulomb_friction)
@@ -177,6 +195,7 @@ class MujocoEngine final : public Engine {
     else
       model_->opt.disableflags |= mjDSBL_FRICTIONLOSS;
     model_->opt.tolerance = options.tolerance;
+    SetMovablesTouch(*scene_, options.movables_touch);
   }
   std::string SceneText() const override { return predictor::SceneText(*scene_); }
 
@@ -191,16 +210,24 @@ class MujocoEngine final : public Engine {
            data_->warning[mjWARN_CNSTRFULL].number == 0;
   }
 
+  // Of two bodies that touch, a Contact describes the one with the higher rank.
+  int Rank(int geom) const noexcept {
+    const int body = model_->geom_bodyid[geom];
+    return body == 0 ? 0 : scene_->movable_of[static_cast<std::size_t>(body)] >= 0 ? 1 : 2;
+  }
+
   std::shared_ptr<const Scene> scene_;
   mjModel* model_;
   DataPtr data_;
+  FullVectors full_;
 };
 
 Contact MujocoEngine::contact(int i) const noexcept {
   const mjContact& from = data_->contact[i];
   // The engine's normal points from the first shape to the second.
-  const int moving = model_->geom_bodyid[from.geom[1]] > 0 ? 1 : 0;
+  const int moving = Rank(from.geom[1]) >= Rank(from.geom[0]) ? 1 : 0;
   const int body = model_->geom_bodyid[from.geom[moving]];
+  const int other = model_->geom_bodyid[from.geom[1 - moving]];
   const double sign = moving == 1 ? 1 : -1;
   Contact contact;
   contact.p_W = At(from.pos);
@@ -213,7 +240,9 @@ Contact MujocoEngine::contact(int i) const noexcept {
   contact.fixture = scene_->fixture_of[static_cast<std::size_t>(from.geom[1 - moving])];
   contact.yields =
       contact.fixture >= 0 && scene_->fixture_yields[static_cast<std::size_t>(contact.fixture)];
-  if (body != scene_->object)
+  contact.movable = scene_->movable_of[static_cast<std::size_t>(other)];
+  contact.body = scene_->movable_of[static_cast<std::size_t>(body)];
+  if (body != scene_->object && contact.body < 0)
     contact.link = mj_id2name(model_, mjOBJ_BODY, body) + std::string_view(kCobotPrefix).size();
   return contact;
 }

@@ -11,6 +11,7 @@
 #include "scenario/paths.h"
 #include "simulation/mujoco/fixtures.h"
 #include "simulation/mujoco/mesh_holes.h"
+#include "simulation/mujoco/movables.h"
 #include "simulation/mujoco/shapes.h"
 
 namespace predictor {
@@ -40,6 +41,9 @@ void SetOptions(mjSpec* spec, const EnvironmentSpec& environment) {
   option.cone = mjCONE_ELLIPTIC;
   option.disableflags |= mjDSBL_AUTORESET | mjDSBL_SENSOR;
   SetVector(option.gravity, Vector3(0, 0, -environment.gravity));
+  // With many movable objects, the engine would otherwise choose sparse rows, which AddReactions
+  // does not read.
+  if (!environment.objects.empty()) option.jacobian = mjJAC_DENSE;
 }
 
 // The cobot alone, as loaded by the engine.
@@ -141,20 +145,26 @@ std::vector<std::string> AddCobotShapes(mjSpec* spec, const Scenario& scenario) 
 
 std::string ObjectShape(std::size_t i) { return "object/" + std::to_string(i); }
 
-// Adds the pairs of shapes that can touch. The shapes themselves have already been added.
-void AddFixtureContacts(mjSpec* spec, const Scenario& scenario, const ObjectModel& object) {
+bool TouchesAny(const EnvironmentSpec& environment, const char* what) {
+  const auto touches = [what](const auto& body) { return body.Touches(what); };
+  return std::ranges::any_of(environment.fixtures, touches) ||
+         std::ranges::any_of(environment.objects, touches);
+}
+
+// Adds the pairs of shapes that can touch. The shapes of the object have already been added.
+void AddAllContacts(mjSpec* spec, const Scenario& scenario, const ObjectModel& object,
+                    const MovableModels& movables) {
   const EnvironmentSpec& environment = scenario.environment;
   std::vector<std::string> cobot, carried;
-  if (TouchesCobot(environment)) cobot = AddCobotShapes(spec, scenario);
+  if (TouchesAny(environment, "cobot")) cobot = AddCobotShapes(spec, scenario);
   for (std::size_t i = 0; i < object.collisions.size(); ++i) carried.push_back(ObjectShape(i));
-  const bool touched = std::ranges::any_of(
-      environment.fixtures, [](const FixtureSpec& fixture) { return fixture.Touches("object"); });
-  if (touched)
+  if (TouchesAny(environment, "object"))
     for (const ModelShape& shape : object.collisions) CheckHull(shape, "object.model");
   for (std::size_t i = 0; i < environment.fixtures.size(); ++i) {
     if (environment.fixtures[i].Touches("object")) AddContacts(spec, environment, i, carried);
     if (environment.fixtures[i].Touches("cobot")) AddContacts(spec, environment, i, cobot);
   }
+  AddMovableContacts(spec, environment, movables, carried, cobot);
 }
 
 // Adds the attachment's joint, in frame A.
@@ -188,12 +198,7 @@ mjsBody* AddObject(mjSpec* spec, mjsBody* end_effector, const Scenario& scenario
   } else {
     mjs_setName(mjs_addFreeJoint(object)->element, kObjectJoint);
   }
-  object->explicitinertial = 1;
-  object->mass = model.mass;
-  SetVector(object->ipos, model.com);
-  const Matrix3& I = model.inertia;
-  const double inertia[6] = {I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)};
-  std::copy_n(inertia, 6, object->fullinertia);
+  SetInertia(object, model);
   for (std::size_t i = 0; i < model.collisions.size(); ++i) {
     // Named by index, since several shapes may use one file.
     SetContact(AddShape(spec, object, model.collisions[i], ObjectShape(i), "object.model"), false,
@@ -314,15 +319,19 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist
   for (int hand = 0; hand < kHands; ++hand) {
     if (scenario.Has(hand)) AddHandle(object, scenario, hand);
   }
-  AddFixtureContacts(spec, scenario, scene.object_model);
+  const MovableModels movables = LoadMovables(scenario);
+  AddMovables(spec, scenario.environment, movables);
+  AddAllContacts(spec, scenario, scene.object_model, movables);
   scene.model.reset(mj_compile(spec, nullptr));
   if (scene.model == nullptr) {
     const std::string why = FirstLine(spec);
     for (const ModelShape& shape : scene.object_model.collisions) CheckMesh(shape, "object.model");
+    CheckMeshes(movables);
     throw InputError("The physics engine cannot load the scene: " + why +
-                     ". Check masses, inertias and shapes of the cobot and the object.");
+                     ". Check masses, inertias and shapes of the cobot and the objects.");
   }
   FindAddresses(&scene, scenario, cobot);
+  FindMovables(scenario.environment.objects.size(), &scene);
   SetStiffness(scenario.environment, scene.fixture_of, spec, scene.model.get());
   if (carried) CheckHandles(scene, scenario);
   return scene;

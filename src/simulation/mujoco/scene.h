@@ -1,4 +1,5 @@
-// Composes cobot, object, handles, floor and table into one tree, the scene for MuJoCo.
+// Composes cobot, object, handles, surroundings and movable objects into one tree, the scene for
+// MuJoCo.
 #pragma once
 
 #include <array>
@@ -17,6 +18,11 @@ namespace predictor {
 // The prefix of the names of the cobot's links and joints.
 inline constexpr const char* kCobotPrefix = "cobot/";
 
+// A movable object in the compiled model.
+struct MovableBody {
+  int body = -1, qpos = -1, dof = -1;  // its index, and its addresses in qpos and qvel
+};
+
 struct Scene {
   ObjectModel object_model;
   SpecPtr spec;
@@ -31,15 +37,19 @@ struct Scene {
   std::vector<Vector3> fixture_place;          // of each fixture, in W [m]
   std::vector<bool> fixture_yields;            // whether it has a stiffness
   int object_qpos = -1, object_dof = -1;       // of a free object; −1: the cobot carries it
+  std::vector<MovableBody> movables;           // environment.objects
+  std::vector<int> movable_of;                 // body: index in environment.objects; −1: another
+  std::vector<int> movable_pairs;              // pairs of shapes with which movable objects touch
+  // Numbers of coordinates without those of the movable objects, which are the last ones.
+  int own_positions = 0, own_dof = 0;
 };
 
 // Composes and compiles the scene. The attachment's joint connects the object's body to the
 // end-effector's, so that only contacts need the constraint solver. The object collides with floor,
-// table and fixtures, and the cobot's links with the fixtures that touch them. In
-// direct mode, each handle has a body without weight whose mass is set at run time. Throws
-// InputError.
-// `wrist_sensor` states whether a sensor measures the wrench between the end-effector and the
-// object that it carries.
+// table and fixtures, and the cobot's links with the fixtures that touch them. The movable objects
+// are free bodies behind all others. In direct mode, each handle has a body without weight whose
+// mass is set at run time. Throws InputError. `wrist_sensor` states whether a sensor measures the
+// wrench between the end-effector and the object that it carries.
 Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor = false,
                    Holding holding = Holding::kJoint);
 

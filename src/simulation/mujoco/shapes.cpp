@@ -31,6 +31,15 @@ void SetPose(double* pos, double* quat, const Pose& X) {
   quat[3] = X.q.z();
 }
 
+void SetInertia(mjsBody* body, const ObjectModel& model) {
+  body->explicitinertial = 1;
+  body->mass = model.mass;
+  SetVector(body->ipos, model.com);
+  const Matrix3& I = model.inertia;
+  const double inertia[6] = {I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)};
+  std::copy_n(inertia, 6, body->fullinertia);
+}
+
 void SetContact(mjsGeom* geom, bool surroundings, double friction) {
   geom->contype = surroundings ? 1 : 0;
   geom->conaffinity = surroundings ? 0 : 1;

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "models/object_model.h"
 #include "models/urdf.h"
 #include "simulation/mujoco/library.h"
 
@@ -10,6 +11,9 @@ namespace predictor {
 
 void SetVector(double* to, const Vector3& from);
 void SetPose(double* pos, double* quat, const Pose& X);
+
+// Gives a body this mass, centre of mass and inertia.
+void SetInertia(mjsBody* body, const ObjectModel& model);
 
 // Floor and table collide with the object; the object does not collide with itself.
 void SetContact(mjsGeom* geom, bool surroundings, double friction);
