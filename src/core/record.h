@@ -93,19 +93,20 @@ struct TickRecord {
   double cause_value, cause_limit;  // SI
   Quantity cause_quantity;          // quantity of value and limit
   std::uint8_t ran;  // the tick began in RUN, so simulated time passed, even if it decided a stop
-  std::uint8_t rendered;      // a QP was solved or tried in this tick
-  std::uint8_t input_count;   // number of valid `inputs`
-  std::uint32_t missed;       // deadlines missed in a row, counted by the loop
-  std::uint16_t requests;     // requests handled in this tick: bit = RunEvent, or kEndRequest
-  std::uint16_t qp_rows;      // active rows of the limits: bit = row
-  std::uint8_t refused;       // 1 + RunEvent of the last refused request; 0: none
-  std::uint8_t why_refused;   // Refusal
-  std::uint8_t controller;    // ControllerOutcome of the virtual cobot's last step
-  std::uint8_t cobot_stop;    // protective stop of the virtual cobot itself: CobotStop
-  std::uint16_t events;       // active hazards: bit = entry of the scenario's `events`
-  std::uint8_t latest_event;  // 1 + number of the hazard that began last; 0: none
-  std::uint8_t attachment;    // AttachmentState of the cobot's grip on the object
-  std::array<std::uint8_t, 4> reserved;
+  std::uint8_t rendered;       // a QP was solved or tried in this tick
+  std::uint8_t input_count;    // number of valid `inputs`
+  std::uint32_t missed;        // deadlines missed in a row, counted by the loop
+  std::uint16_t requests;      // requests handled in this tick: bit = RunEvent, or kEndRequest
+  std::uint16_t qp_rows;       // active rows of the limits: bit = row
+  std::uint8_t refused;        // 1 + RunEvent of the last refused request; 0: none
+  std::uint8_t why_refused;    // Refusal
+  std::uint8_t controller;     // ControllerOutcome of the virtual cobot's last step
+  std::uint8_t cobot_stop;     // protective stop of the virtual cobot itself: CobotStop
+  std::uint16_t events;        // active hazards: bit = entry of the scenario's `events`
+  std::uint8_t latest_event;   // 1 + number of the hazard that began last; 0: none
+  std::uint8_t attachment;     // AttachmentState of the cobot's grip on the object
+  std::uint8_t movable_count;  // entries of the scenario's environment.objects
+  std::array<std::uint8_t, 3> reserved;
   StatusRecord read, written;  // result of the device's read and write
   // Fault that escalated a stop from hold (S2) to power-off (S1); latched.
   StatusRecord harder;
@@ -119,6 +120,7 @@ struct TickRecord {
   std::int32_t qp_iterations;
   std::array<double, kMaxCobotJoints> cobot_q, cobot_v, cobot_torque;  // [rad], [rad/s], [N·m]
   MotionRecord object, end_effector;                                   // O and E, in W
+  std::array<PoseRecord, kMaxMovables> movables;                       // movable objects, in W
   std::array<double, 6> relative_slack;                                // [m/s, rad/s]
   double limit_slack;    // largest relaxation of a limit by the QP [m/s]
   double link_distance;  // of the nearest link pair [m]; +inf without pairs and before the first QP

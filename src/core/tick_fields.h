@@ -10,6 +10,7 @@
 //   Presence   a Flag: 0 empties its group      Unchecked an enumeration that may hold any byte
 //   Values     numbers                          Named     numbers that have names
 //   Joints     a number per joint, dof of them  Pose, Twist, Wrench
+//   Poses      a list of poses, count of them
 //   Reserved   padding, always zero             Message   a group of rows with a name of its own
 //   Inputs     a list of messages, count of them
 #pragma once
@@ -39,7 +40,17 @@ struct TickField {
 };
 
 // The messages of one tick, in the order in which they are recorded.
-enum class TickGroup : int { kRun, kInputs, kLeft, kRight, kCobot, kObject, kQp, kTiming };
+enum class TickGroup : int {
+  kRun,
+  kInputs,
+  kLeft,
+  kRight,
+  kCobot,
+  kObject,
+  kMovables,
+  kQp,
+  kTiming
+};
 struct TickGroupRow {
   const char *topic, *type, *page;
 };
@@ -50,6 +61,7 @@ inline constexpr std::array kTickGroups = {
     TickGroupRow{"/hands/right", "predictor_msgs/msg/Hand", "right_"},
     TickGroupRow{"/cobot", "predictor_msgs/msg/Cobot", ""},
     TickGroupRow{"/object", "predictor_msgs/msg/Object", ""},
+    TickGroupRow{"/movables", "predictor_msgs/msg/Movables", ""},
     TickGroupRow{"/qp", "predictor_msgs/msg/Qp", ""},
     TickGroupRow{"/timing", "predictor_msgs/msg/Timing", ""},
 };
@@ -216,6 +228,13 @@ constexpr void VisitObject(V& v, R& r) {
 }
 
 template <class V, class R>
+constexpr void VisitMovables(V& v, R& r) {
+  v.Value({"count", "", "", "entries of the scenario's environment.objects"}, r.movable_count);
+  v.Poses({"poses", "", "W", "of the scenario's environment.objects, in their order", "movables"},
+          r.movables, r.movable_count);
+}
+
+template <class V, class R>
 constexpr void VisitQp(V& v, R& r) {
   v.Flag({"relaxed", "", "", "a slack is above its tolerance", "qp_relaxed"}, r.qp_relaxed);
   v.Flag({"failed", "", "", "no verified solution", "qp_failed"}, r.qp_failed);
@@ -253,6 +272,8 @@ constexpr void VisitGroup(TickGroup group, V& v, R& r) {
       return VisitCobot(v, r);
     case TickGroup::kObject:
       return VisitObject(v, r);
+    case TickGroup::kMovables:
+      return VisitMovables(v, r);
     case TickGroup::kQp:
       return VisitQp(v, r);
     case TickGroup::kTiming:
@@ -272,6 +293,7 @@ struct SizeVisitor {
   constexpr void Named(const TickField&, const auto&, const auto& x) { bytes += sizeof x; }
   constexpr void Joints(const TickField&, const auto& x, const auto&) { bytes += sizeof x; }
   constexpr void Pose(const TickField&, const auto& x) { bytes += sizeof x; }
+  constexpr void Poses(const TickField&, const auto& x, const auto&) { bytes += sizeof x; }
   constexpr void Twist(const TickField&, const auto& x) { bytes += sizeof x; }
   constexpr void Wrench(const TickField&, const auto& x) { bytes += sizeof x; }
   constexpr void Message(const TickField&, const char*, auto&& visit) { visit(*this); }

@@ -88,6 +88,9 @@ void FillWorld(const TickData& data, TickRecord* record) noexcept {
   Fill(data.after->torque, &r.cobot_torque);
   r.object = ToRecord(data.before.object);
   r.end_effector = ToRecord(data.before.end_effector);
+  r.movable_count = static_cast<std::uint8_t>(data.before.movables.count);
+  for (std::size_t i = 0; i < r.movable_count; ++i)
+    r.movables[i] = predictor::ToRecord(data.before.movables.motion[i].X_W);
   r.energy = data.after->energy;
   r.controller = static_cast<std::uint8_t>(data.after->controller);
   r.events = data.after->events;

@@ -41,6 +41,12 @@ class JsonVisitor {
     AddList(f, x, std::min<std::size_t>(dof, x.size()));
   }
   void Pose(const TickField& f, const PoseRecord& x) { Add(f.name, PoseJson(FromRecord(x))); }
+  void Poses(const TickField& f, const auto& x, std::uint8_t count) {
+    Json list = Json::array();
+    for (std::size_t i = 0; i < std::min<std::size_t>(count, x.size()); ++i)
+      list.push_back(PoseJson(FromRecord(x[i])));
+    Add(f.name, std::move(list));
+  }
   void Twist(const TickField& f, const std::array<double, 6>& x) {
     Add(f.name, {{"linear", Xyz(x.data())}, {"angular", Xyz(x.data() + 3)}});
   }
@@ -97,6 +103,7 @@ Json SchemaOf(const Json& value) {
 TickRecord Full() {
   TickRecord record = {};
   record.cobot_dof = kMaxCobotJoints;
+  record.movable_count = kMaxMovables;
   for (HandRecord& hand : record.hands) {
     hand.present = 1;
     hand.arm_dof = kMaxArmJoints;

@@ -204,6 +204,27 @@ Json FixturesEntity(const std::vector<DrawnFixture>& fixtures, const TickRecord&
   return entity;
 }
 
+std::vector<ObjectModel> MovablesOf(const Scenario& scenario) {
+  std::vector<ObjectModel> models;
+  for (const MovableSpec& movable : scenario.environment.objects) {
+    models.push_back(LoadObject({movable.model, movable.primitive, {}}, scenario.folder()));
+    if (!movable.model.empty()) continue;
+    const Vector3& c = movable.color;
+    for (ModelShape& shape : models.back().visuals) shape.color = {c.x(), c.y(), c.z(), 1};
+  }
+  return models;
+}
+
+Json MovablesEntity(const std::vector<ObjectModel>& models, const TickRecord& r, std::uint64_t ns) {
+  Json entity = Entity("movables", "world", ns);
+  for (std::size_t i = 0; i < std::min<std::size_t>(models.size(), r.movable_count); ++i)
+    for (ModelShape shape : models[i].visuals) {
+      shape.X_LG = FromRecord(r.movables[i]) * shape.X_LG;
+      AddShape(shape, &entity);
+    }
+  return entity;
+}
+
 // The joints and the segments between them. Meshes are too large for a message sent 50 times per
 // second.
 Json CobotEntity(const std::vector<Vector3>& points, std::uint64_t ns) {
@@ -256,12 +277,14 @@ FoxgloveChannel SceneChannel(const Scenario& scenario, const Vector3& object_sta
   const double radius = scenario.guidance.radius;
   const bool floor = scenario.environment.floor;
   const std::vector<DrawnFixture> fixtures = FixturesOf(scenario);
+  const std::vector<ObjectModel> movables = MovablesOf(scenario);
   return {"/scene", "foxglove.SceneUpdate", SceneUpdateSchema(),
-          [cobot, object, circle, center, radius, floor, fixtures](const TickRecord& r,
-                                                                   std::uint64_t ns) {
+          [cobot, object, circle, center, radius, floor, fixtures, movables](const TickRecord& r,
+                                                                             std::uint64_t ns) {
             Json entities = Json::array();
             if (floor) entities.push_back(FloorEntity(ns));
             if (!fixtures.empty()) entities.push_back(FixturesEntity(fixtures, r, ns));
+            if (!movables.empty()) entities.push_back(MovablesEntity(movables, r, ns));
             if (circle) entities.push_back(GuidanceEntity(center, radius, ns));
             cobot->Update(r);
             entities.push_back(CobotEntity(cobot->Points(), ns));

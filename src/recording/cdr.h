@@ -70,6 +70,15 @@ class CdrWriter {
     Values(f, x.p);
     for (const std::size_t k : {1U, 2U, 3U, 0U}) Put(x.q[k]);
   }
+  // Writes as many poses as there are, or more if later ones are not zero.
+  template <std::size_t N>
+  void Poses(const TickField& f, const std::array<PoseRecord, N>& x, std::uint8_t count) {
+    const PoseRecord none{};
+    std::size_t n = N;
+    while (n > count && SameBits(x[n - 1], none)) --n;
+    Put(static_cast<std::uint32_t>(n));
+    for (std::size_t i = 0; i < n; ++i) Pose(f, x[i]);
+  }
   void Twist(const TickField& f, const std::array<double, 6>& x) { Values(f, x); }
   void Wrench(const TickField& f, const std::array<double, 6>& x) { Values(f, x); }
   void Reserved(const auto&) {}
@@ -132,6 +141,12 @@ class CdrReader {
   void Pose(const TickField& f, PoseRecord& x) {
     Values(f, x.p);
     for (const std::size_t k : {1U, 2U, 3U, 0U}) Get(x.q[k]);
+  }
+  template <std::size_t N>
+  void Poses(const TickField& f, std::array<PoseRecord, N>& x, std::uint8_t count) {
+    const std::size_t n = Length(N);
+    if (count > N) ok_ = false;
+    for (std::size_t i = 0; i < n; ++i) Pose(f, x[i]);
   }
   void Twist(const TickField& f, std::array<double, 6>& x) { Values(f, x); }
   void Wrench(const TickField& f, std::array<double, 6>& x) { Values(f, x); }

@@ -59,6 +59,17 @@ class Surveyor {
     Axes(f, ".p", x.p.data(), "m");
     for (std::size_t i = 0; i < 4; ++i) Note(f.name + (std::string(".q.") + "wxyz"[i]), f, x.q[i]);
   }
+  void Poses(const TickField& f, const auto& x, const std::uint8_t& count) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const std::string name = Indexed(f.name, i);
+      TickField one = f;
+      one.name = name.c_str();
+      const std::size_t before = columns.size();
+      Pose(one, x[i]);
+      for (std::size_t k = before; k < columns.size(); ++k)
+        columns[k].conditions.push_back({OffsetOf(count), i});
+    }
+  }
   void Twist(const TickField& f, const std::array<double, 6>& x) {
     Axes(f, ".linear", x.data(), "m/s");
     Axes(f, ".angular", x.data() + 3, "rad/s");

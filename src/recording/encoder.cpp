@@ -25,6 +25,11 @@ bool IsZero(const HandRecord& hand) {
   return SameBits(hand, kNone);
 }
 
+bool HasMovables(const TickRecord& record) {
+  static constexpr std::array<PoseRecord, kMaxMovables> kNone{};
+  return record.movable_count != 0 || !SameBits(record.movables, kNone);
+}
+
 bool HasInputs(const TickRecord& record) {
   static const RunInput kNone;
   if (record.input_count != 0) return true;
@@ -117,6 +122,7 @@ void Encoder::Add(const TickRecord& record) {
     if (group == TickGroup::kInputs && !HasInputs(record)) continue;
     if (group == TickGroup::kLeft && IsZero(record.hands[0])) continue;
     if (group == TickGroup::kRight && IsZero(record.hands[1])) continue;
+    if (group == TickGroup::kMovables && !HasMovables(record)) continue;
     AddGroup(group, record, time);
   }
   chunk_.CountTick();

@@ -183,6 +183,10 @@ namespace {
 
 // Sides are used as indices: left, right, or neither.
 bool IsSide(std::int8_t hand) { return hand >= -1 && hand < kHands; }
+bool MayBeOmitted(TickGroup group) {
+  return group == TickGroup::kInputs || group == TickGroup::kLeft || group == TickGroup::kRight ||
+         group == TickGroup::kMovables;
+}
 bool HasSides(const TickRecord& r) {
   return IsSide(r.cause_hand) && IsSide(r.read.hand) && IsSide(r.written.hand) &&
          IsSide(r.harder.hand);
@@ -211,12 +215,8 @@ TickDecoder::Result TickDecoder::Take(const Message& message) {
   if (g < 0 || g >= kTickGroupCount) return next_ == 0 ? Result::kOther : Result::kBad;
   const auto group = static_cast<TickGroup>(g);
   if ((group == TickGroup::kRun) != (next_ == 0) || g < next_) return Result::kBad;
-  // Only groups that may be absent may be omitted.
   for (int skipped = next_; skipped < g; ++skipped)
-    if (skipped != static_cast<int>(TickGroup::kInputs) &&
-        skipped != static_cast<int>(TickGroup::kLeft) &&
-        skipped != static_cast<int>(TickGroup::kRight))
-      return Result::kBad;
+    if (!MayBeOmitted(static_cast<TickGroup>(skipped))) return Result::kBad;
   if (group == TickGroup::kRun) {
     std::memset(static_cast<void*>(&record_), 0, sizeof record_);
     record_.inputs.fill(RunInput{});

@@ -61,6 +61,12 @@ class SchemaVisitor {
   }
   void Joints(const TickField& f, const auto&, const auto&) { Line("float64[]", f); }
   void Pose(const TickField& f, const auto&) { Geometry("geometry_msgs/Pose", f, "m"); }
+  void Poses(const TickField& f, const auto&, const auto&) {
+    TickField list = f;
+    list.unit = "m";
+    Line("geometry_msgs/Pose[]", list);
+    DefineGeometry("geometry_msgs/Pose");
+  }
   void Twist(const TickField& f, const auto&) { Geometry("geometry_msgs/Twist", f, "m/s, rad/s"); }
   void Wrench(const TickField& f, const auto&) { Geometry("geometry_msgs/Wrench", f, "N, N m"); }
   void Reserved(const auto&) {}

@@ -12,7 +12,16 @@
 namespace predictor::viewer {
 
 // How the page interprets a field's numbers.
-enum class FrameKind : std::uint8_t { kNumber, kNumbers, kFlag, kPose, kState, kCause, kQuantity };
+enum class FrameKind : std::uint8_t {
+  kNumber,
+  kNumbers,
+  kFlag,
+  kPose,
+  kPoses,
+  kState,
+  kCause,
+  kQuantity
+};
 
 // An entry of `welcome.frame`: `count` values of `type` (u8 i8 u16 i32 u32 u64 f32 f64) at byte
 // `offset`.

@@ -33,6 +33,8 @@ TypeOf TypeScriptOf(FrameKind kind) {
       return {"flag", "boolean"};
     case FrameKind::kPose:
       return {"pose", "Pose"};
+    case FrameKind::kPoses:
+      return {"poses", "Pose[]"};
     case FrameKind::kState:
       return {"state", "RunState"};
     case FrameKind::kCause:

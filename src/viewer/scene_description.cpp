@@ -57,13 +57,25 @@ Json DescribeArm(const Scenario& scenario, int hand, AssetStore* assets) {
   return json;
 }
 
-Json DescribeObject(const Scenario& scenario, AssetStore* assets) {
-  const ObjectSpec& object = scenario.object;
-  if (!object.model.empty())
-    return {{"urdf", assets->AddModel(ReadUrdf(ResolveModelPath(object.model, scenario.folder()),
-                                               {}, scenario.folder()))}};
-  const PrimitiveSpec primitive = object.primitive.value_or(PrimitiveSpec());
-  return {{"shape", Name(primitive.shape)}, {"size", ToJson(primitive.size)}};
+// Describes a body, which is a model or a primitive.
+Json DescribeBody(const std::string& model, const std::optional<PrimitiveSpec>& primitive,
+                  const Scenario& scenario, AssetStore* assets) {
+  if (!model.empty())
+    return {{"urdf", assets->AddModel(ReadUrdf(ResolveModelPath(model, scenario.folder()), {},
+                                               scenario.folder()))}};
+  const PrimitiveSpec body = primitive.value_or(PrimitiveSpec());
+  return {{"shape", Name(body.shape)}, {"size", ToJson(body.size)}};
+}
+
+Json DescribeMovables(const Scenario& scenario, AssetStore* assets) {
+  Json json = Json::array();
+  for (const MovableSpec& movable : scenario.environment.objects) {
+    Json body = DescribeBody(movable.model, movable.primitive, scenario, assets);
+    body["name"] = Printable(movable.name);
+    if (movable.model.empty()) body["color"] = ToJson(movable.color);
+    json.push_back(std::move(body));
+  }
+  return json;
 }
 
 Json DescribeParameters(const Scenario& scenario) {
@@ -156,7 +168,7 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
   json["cobot"] =
       DescribeRobot(scenario.cobot.model, scenario.cobot.remove_links, scenario.cobot.base.ToPose(),
                     scenario.cobot.end_effector, scenario.file.parent_path(), assets);
-  json["object"] = DescribeObject(scenario, assets);
+  json["object"] = DescribeBody(scenario.object.model, scenario.object.primitive, scenario, assets);
   json["handles"] = Json::object();
   json["arms"] = Json::object();
   for (int h = 0; h < kHands; ++h) {
@@ -166,6 +178,7 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
     json["arms"][side] = DescribeArm(scenario, h, assets);
   }
   json.update(DescribeSurroundings(scenario, object_start));
+  json["movables"] = DescribeMovables(scenario, assets);
   json["parameters"] = DescribeParameters(scenario);
   const Viewpoint viewpoint = ViewpointOf(scenario, object_start);
   json["viewpoint"] = DescribeViewpoint(scenario, viewpoint);

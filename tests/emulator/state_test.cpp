@@ -106,6 +106,7 @@ INSTANTIATE_TEST_SUITE_P(
                                                        "cobot.controller.joint_stiffness=200"}},
                     std::pair{"push", std::vector<std::string>{}},
                     std::pair{"underdamped", std::vector<std::string>{}},
+                    std::pair{"push_boxes", std::vector<std::string>{}},
                     std::pair{"bar_circle", std::vector<std::string>{}},
                     std::pair{"single_arm", std::vector<std::string>{}},
                     std::pair{"dual_ur5", std::vector<std::string>{}},

@@ -38,6 +38,7 @@ TickRecord Random(std::mt19937_64* random, std::uint64_t tick) {
   }
   noise.input_count = static_cast<std::uint8_t>((*random)() % (kInputsPerTick + 1));
   noise.cobot_dof = static_cast<std::uint8_t>((*random)() % (kMaxCobotJoints + 1));
+  noise.movable_count = static_cast<std::uint8_t>((*random)() % (kMaxMovables + 1));
   for (HandRecord& hand : noise.hands) {
     hand.arm_dof = static_cast<std::uint8_t>((*random)() % (kMaxArmJoints + 1));
     hand.more_reserved = {};
@@ -64,6 +65,7 @@ struct MarkVisitor {
   void Named(const TickField&, const auto&, const auto& x) { Mark(x); }
   void Joints(const TickField&, const auto& x, std::size_t) { Mark(x); }
   void Pose(const TickField&, const auto& x) { Mark(x); }
+  void Poses(const TickField&, const auto& x, std::size_t) { Mark(x); }
   void Twist(const TickField&, const auto& x) { Mark(x); }
   void Wrench(const TickField&, const auto& x) { Mark(x); }
   void Reserved(const auto& x) { Mark(x); }

@@ -77,7 +77,7 @@ TEST(Foxglove, AdvertisesAndSendsSubscribedChannels) {
   }
   for (const char* topic :
        {"/tf", "/scene", "/joint_states", "/run", "/hands/left", "/hands/right", "/cobot",
-        "/object", "/qp", "/timing", "/wrench_left", "/wrench_right", "/tracking"})
+        "/object", "/movables", "/qp", "/timing", "/wrench_left", "/wrench_right", "/tracking"})
     EXPECT_TRUE(channels.contains(topic)) << topic;
   EXPECT_EQ(channels["/tf"]["schemaName"], "foxglove.FrameTransforms");
   EXPECT_EQ(channels["/scene"]["schemaName"], "foxglove.SceneUpdate");

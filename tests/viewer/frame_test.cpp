@@ -91,6 +91,7 @@ TEST(Frame, HasTheFieldsOfTheProtocol) {
       {"attachment", "u8", 1},
       {"cobot_q", "f32", 16},
       {"object", "f32", 7},
+      {"movables", "f32", 7 * kMaxMovables},
       {"end_effector", "f32", 7},
       {"elbow_distance", "f64", 1},
       {"relative_slack", "f32", 6},
@@ -129,6 +130,7 @@ TickRecord FilledRecord() {
   r.action = -1;
   r.cobot_q[15] = 2.5;
   r.object.pose = {{1, 2, 3}, {0.5, 0.5, -0.5, 0.5}};
+  r.movables[1] = {{7, 8, 9}, {1, 0, 0, 0}};
   r.hands[1].present = 1;
   r.hands[1].arm_fault = 1;
   r.hands[0].warnings = 1U << static_cast<unsigned>(Warning::kKeepsPower);
@@ -173,6 +175,8 @@ TEST(Frame, CarriesTheRecord) {
   EXPECT_EQ(v["right_peak"], (std::vector<double>{0, 0}));
   EXPECT_EQ(v["cobot_q"][15], 2.5);
   EXPECT_EQ(v["object"], (std::vector<double>{1, 2, 3, 0.5, 0.5, -0.5, 0.5}));
+  EXPECT_EQ(v["movables"][7], 7);
+  EXPECT_EQ(v["movables"][10], 1);
   EXPECT_EQ(v["right_present"][0], 1);
   EXPECT_EQ(v["left_present"][0], 0);
   EXPECT_EQ(v["right_arm_fault"][0], 1);

@@ -77,6 +77,24 @@ TEST(Scene, HasTheFixturesInTheWorld) {
   EXPECT_TRUE(DescribeScene(Load("box_9kg.yaml"), Vector3::Zero(), &assets)["fixtures"].empty());
 }
 
+TEST(Scene, HasTheMovableObjects) {
+  AssetStore assets;
+  Scenario scenario = Load("push_boxes.yaml");
+  scenario.environment.objects[1].model = scenario.object.model;
+  scenario.environment.objects[1].primitive.reset();
+  const auto movables = DescribeScene(scenario, Vector3::Zero(), &assets)["movables"];
+  ASSERT_EQ(movables.size(), 2u);
+  EXPECT_EQ(movables[0]["name"], "crate");
+  EXPECT_EQ(movables[0]["shape"], "box");
+  EXPECT_EQ(movables[0]["size"].dump(), "[0.24,0.16,0.14]");
+  EXPECT_EQ(movables[0]["color"].dump(), "[0.35,0.55,0.75]");
+  EXPECT_EQ(movables[1]["name"], "parcel");
+  EXPECT_FALSE(movables[1].contains("shape"));
+  const auto scene = DescribeScene(Load("box_9kg.yaml"), Vector3::Zero(), &assets);
+  EXPECT_EQ(movables[1]["urdf"], scene["object"]["urdf"]);
+  EXPECT_TRUE(scene["movables"].empty());
+}
+
 TEST(Scene, ContainsTheOperatorsPlace) {
   AssetStore assets;
   Scenario scenario = Load("box_9kg.yaml");

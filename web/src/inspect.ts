@@ -23,10 +23,11 @@ export function inspection(app: App) {
     // The newest state as received, and the drawn (interpolated) state.
     state: (): State | null => app.player.latest,
     shown: (): State | null => app.shown,
-    // Returns the drawn pose in W of a link of the cobot, of 'object', of 'left:LINK' (an arm), or
-    // of 'left:handle'.
+    // Returns the drawn pose in W of a link of the cobot, of 'object', of 'movable:NAME', of 'left:LINK'
+    // (an arm), or of 'left:handle'.
     linkPose: (name: string): Pose | null => stage.linkPose(name),
-    // Returns the bounding box in W of the visuals of a link of the cobot, or of 'object' [m].
+    // Returns the bounding box in W of the visuals of a link of the cobot, of 'object', or of
+    // 'movable:NAME' [m].
     meshBox: (name: string) => stage.meshBox(name),
     // Bounding boxes in W of the fixtures that are there [m].
     fixtureBoxes: () => stage.fixtureBoxes,

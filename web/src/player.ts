@@ -95,6 +95,7 @@ export function interpolate(a: State, b: State, t: number): State {
     cobotQ: mix(a.cobotQ, b.cobotQ, t),
     object: mixPose(a.object, b.object, t),
     endEffector: mixPose(a.endEffector, b.endEffector, t),
+    movables: a.movables.map((pose, i) => mixPose(pose, b.movables[i], t)),
     hands: {left: hand('left'), right: hand('right')},
     parameters: mix(a.parameters, b.parameters, t),
   };

@@ -32,7 +32,11 @@ export interface ArmSpec extends RobotSpec {
   handle: Pose;
 }
 
-export type ObjectSpec = {urdf: string} | {shape: 'box' | 'cylinder' | 'sphere'; size: number[]};
+// The colour is red, green, blue, from 0 to 1.
+export type ObjectSpec =
+    {urdf: string} | {shape: 'box' | 'cylinder' | 'sphere'; size: number[]; color?: Vec3};
+// A movable object. The states contain its pose.
+export type MovableSpec = ObjectSpec & {name: string};
 
 // Box: x, y, z; cylinder, capsule: radius, length (along z, of a capsule without its caps); sphere: radius; plane: x, y,
 // with its normal along z [m]. The colour is red, green, blue, from 0 to 1.
@@ -75,6 +79,7 @@ export interface SceneSpec {
   floor: boolean;
   table: {size: Vec3; top: Vec3} | null;
   fixtures?: FixtureSpec[];  // those that are there now; older servers omit them
+  movables?: MovableSpec[];  // older servers omit them
   guidance: {type: 'none' | 'circle'; center: Vec3; radius: number};
   thresholds: {
     force: number;
@@ -244,11 +249,19 @@ function toPose(v: number[]): Pose {
   return {p: [v[0], v[1], v[2]], q: [v[3], v[4], v[5], v[6]]};
 }
 
+const kPoseNumbers = 7;
+
+function toPoses(v: number[]): Pose[] {
+  return Array.from({length: v.length / kPoseNumbers},
+                    (_, i) => toPose(v.slice(kPoseNumbers * i, kPoseNumbers * (i + 1))));
+}
+
 const kConvert: Record<string, (v: number[]) => unknown> = {
   number: (v) => v[0],
   numbers: (v) => v,
   flag: (v) => v[0] !== 0,
   pose: toPose,
+  poses: toPoses,
   state: (v) => kRunStates[v[0]] ?? 'INIT',
   cause: (v) => kStopCauses[v[0]] ?? 'none',
   quantity: (v) => kQuantities[v[0]] ?? 'none',

@@ -56,6 +56,7 @@ export interface RunQuantities {
   cobotQ: number[];  // [rad] joint positions; in m for a prismatic joint
   endEffector: Pose;  // [m] in W
   object: Pose;  // [m] in W
+  movables: Pose[];  // [m] in W of the scenario's environment.objects, in their order
   qpRelaxed: boolean;  // a slack is above its tolerance
   qpFailed: boolean;  // no verified solution
   guardAltered: boolean;  // the guard changed the command
@@ -90,6 +91,7 @@ export const kRunFields = {
   cobot_q: ['cobotQ', 'numbers', 'f32', 16],
   end_effector: ['endEffector', 'pose', 'f32', 7],
   object: ['object', 'pose', 'f32', 7],
+  movables: ['movables', 'poses', 'f32', 56],
   qp_relaxed: ['qpRelaxed', 'flag', 'u8', 1],
   qp_failed: ['qpFailed', 'flag', 'u8', 1],
   guard_altered: ['guardAltered', 'flag', 'u8', 1],

@@ -62,7 +62,8 @@ export class FakeServer {
   // The options are `scene` ('box' | 'circle'), `operator`, `simulated`, `state`, `table` and
   // `light`. `object` contains the files of the object's model {name: text}, which must include
   // model.urdf. `ground` is where the operator stands in W. `person` is the reason why the person
-  // is not judged. An `older` server sends no data about the person.
+  // is not judged. An `older` server sends no data about the person. `movables` are movable objects, each with its
+  // `pose`.
   constructor(options = {}) {
     this.options = {scene: 'box', operator: 'virtual', simulated: true, state: 'RUN', ground: [1, 0, 0], ...options};
     this.preset = kScenes[this.options.scene];
@@ -154,6 +155,7 @@ export class FakeServer {
       arms: {left: arm('left', 2), right: arm('right', 3)}, floor: true,
       table: options.table ?? null,
       ...(!options.older && {fixtures: options.fixtures ?? []}),
+      ...(options.movables && {movables: options.movables.map(({pose: _, ...spec}) => spec)}),
       guidance: preset.guidance ? {
         type: 'circle', radius: preset.guidance.radius,
         center: this.start.map((v, i) => v + preset.guidance.offset[i]),
@@ -457,6 +459,7 @@ export class FakeServer {
       harder_cause_limit: 0, action: this.state === 'RUN' ? action : -1,
       events: this.options.events ?? 0, latest_event: 0, cobot_stop: 0, attachment: this.options.attachment ?? 0,
       cobot_q: this.cobotQ, object: seven(object), end_effector: seven(flange),
+      movables: (this.options.movables ?? []).flatMap(({pose: {p, q}}) => [...p, ...q]),
       elbow_distance: 0.47 + 0.05 * Math.sin(this.runTime), relative_slack: [0, 0, 0, 0, 0, 0],
       stage_us: [0.4, 0.3, 5.5, 4.2, 0.3, 0.2, 0.3, 11 + 1.2 * Math.sin(time / 3e8)],
       parameters: this.parameters, recording: this.recording ? 1 : 0,

@@ -2,7 +2,7 @@
 import {
   BufferGeometry, BoxGeometry, Color, CylinderGeometry, EdgesGeometry, Group, LineBasicMaterial,
   LineSegments, LoadingManager, Material, Mesh, MeshPhongMaterial, MeshStandardMaterial, Object3D,
-  SphereGeometry,
+  SphereGeometry, SRGBColorSpace,
 } from 'three';
 import {OBJLoader} from 'three/examples/jsm/loaders/OBJLoader.js';
 import {STLLoader} from 'three/examples/jsm/loaders/STLLoader.js';
@@ -173,11 +173,12 @@ function shapeGeometry(spec: {shape: string; size: number[]}): BufferGeometry {
   return new CylinderGeometry(x, x, y, 48).rotateX(Math.PI / 2);  // along Z, as in URDF
 }
 
-// Loads the carried object.
+// Loads the carried object or a movable one.
 export async function loadObject(spec: ObjectSpec, token: string,
                                  complain: Complaint): Promise<Object3D> {
   if ('urdf' in spec) return loadUrdf(spec.urdf, [], token, complain);
-  const mesh = new Mesh(shapeGeometry(spec), new MeshStandardMaterial({color: 0xc29a6b}));
+  const mesh = new Mesh(shapeGeometry(spec), new MeshStandardMaterial(
+      {color: spec.color ? new Color().setRGB(...spec.color, SRGBColorSpace) : 0xc29a6b}));
   finish(mesh);
   return mesh;
 }

@@ -14,6 +14,7 @@ import {Guidance} from './guidance';
 import {Handle} from './handles';
 import {Mirror} from './mirror';
 import {Complaint, kPlaceholder, loadObject, makeGhost, Robot} from './models';
+import {Movables} from './movables';
 import {Room} from './room';
 
 const kSlowFrameMs = 45;  // if frames take longer for a while: fewer pixels, then fewer shadows
@@ -105,6 +106,7 @@ export class Stage {
   ghosts = false;
   bodyWanted = true;
   private readonly room = new Room();
+  private readonly movables = new Movables();
   private readonly rubbers = {left: new Rubber('left'), right: new Rubber('right')};
   private cobot: Robot | null = null;
   private object: Object3D | null = null;
@@ -139,7 +141,7 @@ export class Stage {
     this.world.rotation.x = -Math.PI / 2;
     this.scene.add(this.root);
     this.root.add(this.world);
-    this.world.add(this.room.group, this.objectPlace, this.guidance.group, this.body.group, this.mirror.group);
+    this.world.add(this.room.group, this.movables.group, this.objectPlace, this.guidance.group, this.body.group, this.mirror.group);
     for (const side of kSides) {
       this.world.add(
           this.handles[side].group, this.arrows[side].group, this.rubbers[side].group);
@@ -170,6 +172,7 @@ export class Stage {
     const models = [
       cobot.load(this.token, complain).catch(this.toWords(complain)),
       this.loadObject(spec),
+      this.movables.build(spec.movables ?? [], this.token, (name) => this.oncePer(name)),
     ];
     const drawn = drawnOf(spec);
     void Promise.all(models).then(() => (this.modelsLoaded = this.isDrawn(drawn)));
@@ -237,6 +240,7 @@ export class Stage {
     const thresholds = presentThresholds(this.spec, state);
     this.cobot?.setJoints(state.cobotQ);
     place(this.objectPlace, state.object);
+    this.movables.set(state.movables);
     this.guidance.set(state.object.p);
     const byHand = this.spec.operator === 'browser' && !this.renderer.xr.isPresenting;
     for (const side of kSides) {
@@ -289,8 +293,8 @@ export class Stage {
   }
 
   // Returns the pose in W of a link of the cobot, from the scene graph, or null if it does not
-  // exist. Other names are 'object' for the object, 'left:LINK' for a link of an arm, and
-  // 'left:handle' for a virtual handle.
+  // exist. Other names are 'object' for the object, 'movable:NAME' for a movable object, 'left:LINK'
+  // for a link of an arm, and 'left:handle' for a virtual handle.
   linkPose(name: string): Pose | null {
     const node = this.node(name);
     return node ? poseIn(node, this.world) : null;
@@ -300,9 +304,10 @@ export class Stage {
     return this.room.fixtureBoxes;
   }
 
-  // Bounding box in W of only the visuals of a link of the cobot, or of 'object' [m].
+  // Bounding box in W of only the visuals of a link of the cobot, of 'object', or of 'movable:NAME'
+  // [m].
   meshBox(name: string): {min: Vec3; max: Vec3} | null {
-    const link = name === 'object' ? this.object : this.cobot?.link(name);
+    const link = name === 'object' ? this.object : this.node(name);
     if (!link) return null;
     const box = new Box3();
     const toWorld = this.world.matrixWorld.clone().invert();
@@ -400,6 +405,7 @@ export class Stage {
   private node(name: string): Object3D | null {
     if (name === 'object') return this.objectPlace;
     if (!name.includes(':')) return this.cobot?.link(name) ?? null;
+    if (name.startsWith('movable:')) return this.movables.place(name.split(':')[1]);
     const [side, link] = name.split(':') as [Side, string];
     return link === 'handle' ? this.handles[side].virtual : this.arms[side]?.link(link) ?? null;
   }

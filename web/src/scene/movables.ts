@@ -1,0 +1,37 @@
+// The movable objects of the surroundings, drawn where the states say.
+import {Group, Object3D} from 'three';
+import {MovableSpec, Pose} from '../protocol';
+import {place} from './frames';
+import {Complaint, loadObject} from './models';
+
+export class Movables {
+  readonly group = new Group();
+  private places = new Map<string, Group>();
+
+  // Replaces all objects. Their models appear as they are loaded. `complain` reports in words which
+  // parts of a model are not shown.
+  async build(specs: MovableSpec[], token: string, complain: (name: string) => Complaint) {
+    this.group.clear();
+    this.places = new Map(specs.map(({name}) => [name, new Group()]));
+    const places = [...this.places.values()];
+    for (const at of places) this.group.add(at);
+    await Promise.all(specs.map(async (spec, i) => {
+      const report = complain(`The object ${spec.name}`);
+      try {
+        places[i].add(await loadObject(spec, token, report));
+      } catch (error) {
+        report((error as Error).message);
+      }
+    }));
+  }
+
+  set(poses: Pose[]) {
+    let i = 0;
+    for (const at of this.places.values()) place(at, poses[i++]);
+  }
+
+  // The frame of an object, or null if there is none of this name.
+  place(name: string): Object3D | null {
+    return this.places.get(name) ?? null;
+  }
+}
