@@ -239,7 +239,7 @@ struct World::Impl {
     state.latest_event = events.latest();
     state.cobot_stop = static_cast<std::uint8_t>(controlled.cobot_stop());
     state.attachment = controlled.attachment();
-    state.movables = engine().movables();
+    if (engine().movable_positions().size() > 0) state.movables = engine().movables();
     state.energy = controlled.Energy(engine().time());
     state.controller = controlled.outcome();
   }

@@ -66,6 +66,12 @@ Quaternion Turn(const Vector3& turns) {
                     Eigen::AngleAxisd(turns.z(), Vector3::UnitZ()));
 }
 
+// The exported scene is one tree, without the movable objects.
+Scenario Exported(Scenario scenario) {
+  scenario.environment.objects.clear();
+  return scenario;
+}
+
 struct Poses {
   Pose end_effector, object;
   std::array<Pose, kHands> handle;
@@ -78,7 +84,7 @@ class ExportedScene : public testing::TestWithParam<std::string> {
         to(folder.path() / "package"),
         cobot(RobotModel::Load({scenario.cobot.model, scenario.folder(),
                                 scenario.cobot.remove_links, scenario.cobot.base.ToPose()})),
-        reference(ComposeScene(scenario, *cobot)),
+        reference(ComposeScene(Exported(scenario), *cobot)),
         truth(mj_makeData(reference.model.get())) {
     WriteScenePackage(MakeScenePackage(scenario), to, false);
     char error[1000] = "";
