@@ -17,9 +17,14 @@ void AddCheck(CLI::App* app, Request* r) {
       ->add_flag("--search,!--no-search", r->search,
                  "Search for better positions of the arms' bases [default: on]")
       ->group("Analysis");
-  AddOption(check, "Analysis", "--map", &r->map, "FOLDER",
-            "Also map the stable hand stiffnesses, predicted and simulated, into this folder "
-            "(takes minutes; continues an interrupted map)");
+  AddOption(check, "Analysis", "--map", &r->map.folder, "FOLDER",
+            "Also map the stable stiffnesses of hands, predicted and simulated, and of walls into "
+            "this folder (takes minutes; continues an interrupted map)");
+  check
+      ->add_flag("--only-walls", r->map.only_walls,
+                 "Map only the stable stiffnesses of walls, which takes seconds")
+      ->needs("--map")
+      ->group("Analysis");
   for (const auto& [name, value] :
        {std::pair{"--seed", &r->scenario.seed}, std::pair{"--duration", &r->scenario.duration}})
     AddOption(check, "Scenario", name, value, "NUMBER", "Use this value instead of the scenario's");

@@ -13,10 +13,12 @@ namespace predictor {
 namespace {
 
 // Writes a stability map and returns the message about it.
-std::string MakeMap(const Scenario& scenario, const std::filesystem::path& folder, bool quiet) {
+std::string MakeMap(const Scenario& scenario, const CheckMap& wanted, bool quiet) {
   Progress progress("Mapping", 1, quiet);
+  const std::filesystem::path folder = wanted.folder;
   MapOptions how;
   how.folder = folder;
+  how.only_walls = wanted.only_walls;
   how.progress = [&](double share, const std::string& what) { progress.Update(share, what); };
   const StabilityMap map = MakeStabilityMap(scenario, how);
   progress.Finish();
@@ -26,7 +28,7 @@ std::string MakeMap(const Scenario& scenario, const std::filesystem::path& folde
 
 }  // namespace
 
-int CheckCommand(const ScenarioOptions& options, bool search, const std::string& map) {
+int CheckCommand(const ScenarioOptions& options, bool search, const CheckMap& map) {
   std::optional<Machine> machine;
   if (!options.machine.empty()) machine = LoadMachine(options.machine);
   const Scenario scenario = options.Load(machine ? &*machine : nullptr);
@@ -40,7 +42,7 @@ int CheckCommand(const ScenarioOptions& options, bool search, const std::string&
   std::string text = CheckText(report);
   if (options.quiet)
     for (const std::string& problem : report.problems) TheScreen().Print("Unfit: " + problem);
-  if (!map.empty()) text += MakeMap(scenario, map, options.quiet);
+  if (!map.folder.empty()) text += MakeMap(scenario, map, options.quiet);
   options.Write(text, CheckJson(report));
   return report.fit() ? kFinished : kUnfit;
 }

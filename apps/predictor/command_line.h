@@ -36,7 +36,7 @@ struct Request {
   InitOptions init;
   std::vector<double> tip;
   bool search = true;
-  std::string map;
+  CheckMap map;
   std::vector<std::string> help;  // command whose help is requested
   std::function<int()> command;
 };

@@ -171,6 +171,12 @@ struct ExportPersonOptions : PersonOptions {
   std::string folder;  // empty: NAME.opensim
 };
 
+// A stability map that `check` makes.
+struct CheckMap {
+  std::string folder;  // empty: none
+  bool only_walls = false;
+};
+
 // Input and output of `import`.
 struct ImportOptions : OutputOptions {
   std::string file;    // of another system
@@ -234,8 +240,7 @@ void ShowProblem(const std::string& problem);
 // Every command throws InputError.
 int RunCommand(const ScenarioOptions& options, ServeOptions serve, RecordOptions record);
 int SimulateCommand(const ScenarioOptions& options, const RecordOptions& record);
-// `map` is the folder for a stability map; if it is empty, there is none.
-int CheckCommand(const ScenarioOptions& options, bool search, const std::string& map);
+int CheckCommand(const ScenarioOptions& options, bool search, const CheckMap& map);
 int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to);
 // Returns the exit code kUnfit if the scenario that it wrote does not pass its check.
 int InitCommand(const InitOptions& options);

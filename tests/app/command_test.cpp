@@ -34,8 +34,10 @@ TEST(ExitCode, ShowsHowItEnded) {
       {{"schema", "scenario"}, 0},
       {{"schema", "machine"}, 0},
       {{"schema", "summary"}, 0},
+      {{"schema", "check"}, 0},
       {{"check", Scenario("box_9kg"), "--no-search", "--quiet"}, 0},
       {{"check", Scenario("underdamped"), "--no-search", "--quiet"}, 1},
+      {{"check", Scenario("box_9kg"), "--only-walls"}, 2},  // needs --map
   };
   for (const auto& c : cases) {
     Child child(c.arguments);

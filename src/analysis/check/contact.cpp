@@ -10,8 +10,7 @@
 namespace predictor {
 namespace {
 
-constexpr double kSoftestWall = 100;  // [N/m]
-constexpr double kScanRatio = 1.6;    // of successive stiffnesses
+constexpr double kScanRatio = 1.6;  // of successive stiffnesses
 constexpr double kPrecision = 1.05;
 constexpr double kAtRest = 0.05;      // frequency that counts as rest [Hz]
 constexpr double kSameNormal = 0.99;  // cosine of the angle between normals that count as equal

@@ -12,8 +12,8 @@
 
 namespace predictor {
 
-// The largest stiffness for which the prediction searches [N/m].
-inline constexpr double kStiffestWall = 1e6;
+// The range of stiffnesses in which the prediction searches [N/m].
+inline constexpr double kSoftestWall = 100, kStiffestWall = 1e6;
 
 // The stiffest wall against which the loop does not oscillate.
 struct WallLimit {

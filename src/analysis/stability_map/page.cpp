@@ -4,6 +4,7 @@
 #include <string>
 
 #include "analysis/stability_map/stability_map.h"
+#include "analysis/stability_map/wall_map.h"
 #include "core/format.h"
 #include "core/text.h"
 
@@ -180,36 +181,47 @@ std::string HowItWasMade(const StabilityMap& map) {
       1e3 * map.base.lead, map.range.softest, map.range.stiffest, map.growth_time);
 }
 
+// Adds the chapters about the hands.
+void AddHands(const StabilityMap& map, ReportPage* page) {
+  page->Section("map", "Map");
+  for (const MapPicture& picture : map.pictures) {
+    Plot plot = MapPlot(map, picture);
+    plot.caption = Caption(map, picture);
+    page->Figure(plot);
+  }
+  page->Section("assumptions", "Where the prediction's assumptions hold");
+  page->Html(Assumptions(map));
+  page->Section("boundaries", "All boundaries");
+  for (const MapPicture& picture : map.pictures)
+    page->Html(std::string("<h3>") + TextOf(picture.axis).quantity + "</h3>\n" +
+               Table(map, picture));
+  page->Section("method", "How it was made");
+  page->Html(HowItWasMade(map));
+}
+
+std::string HandWords(const StabilityMap& map) {
+  return "<p>Stiffness of the hands up to which the haptic loop is stable. Below the line a "
+         "disturbance decays; above the line it grows.</p>\n"
+         "<p>" +
+         Verdict(map) + "</p>\n";
+}
+
 }  // namespace
 
 std::string MapPage(const StabilityMap& map) {
-  std::string words =
-      "<p>Stiffness of the hands up to which the haptic loop is stable. Below the line a "
-      "disturbance decays; above the line it grows.</p>\n"
-      "<p>" +
-      Verdict(map) + "</p>\n";
+  const bool hands = map.has_hands();
+  std::string words = hands ? HandWords(map) : "";
   words += Formatted("<p>Object of %.3g kg; lead %.1f ms of the arms' lag of %.1f ms; hand ",
                      map.base.object_mass, 1e3 * map.base.lead, 1e3 * map.base.lag) +
            HandInWords(map) + ".</p>\n";
   ReportPage page("Stability map: " + map.base.scenario.name, words);
-  page.Section("map", "Map");
-  for (const MapPicture& picture : map.pictures) {
-    Plot plot = MapPlot(map, picture);
-    plot.caption = Caption(map, picture);
-    page.Figure(plot);
-  }
-  page.Section("assumptions", "Where the prediction's assumptions hold");
-  page.Html(Assumptions(map));
-  page.Section("boundaries", "All boundaries");
-  for (const MapPicture& picture : map.pictures)
-    page.Html(std::string("<h3>") + TextOf(picture.axis).quantity + "</h3>\n" +
-              Table(map, picture));
-  page.Section("method", "How it was made");
-  page.Html(HowItWasMade(map));
+  if (hands) AddHands(map, &page);
+  AddWalls(map, &page);
   return page.Finish();
 }
 
 std::string MapText(const StabilityMap& map) {
+  if (!map.has_hands()) return WallText(map);
   std::string text;
   AppendLine(&text, "Stability map    stiffest stable hand [N/m]: predicted, simulated");
   for (const MapPicture& picture : map.pictures) {
@@ -226,8 +238,7 @@ std::string MapText(const StabilityMap& map) {
                  Stiffness(p.found.extent, p.found.extent.critical()).c_str());
     }
   }
-  text += Verdict(map) + "\n";
-  return text;
+  return text + Verdict(map) + "\n" + WallText(map);
 }
 
 }  // namespace predictor

@@ -11,6 +11,7 @@
 #include "analysis/check/check.h"
 #include "analysis/parallel.h"
 #include "analysis/stability_map/store.h"
+#include "analysis/stability_map/wall_map.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "emulator/emulator.h"
@@ -70,8 +71,12 @@ class Work {
           continue;
         }
         if (is_own) own = &point;
-        items_.push_back({&picture, &point});
+        items_.push_back({&point, picture.axis});
       }
+    for (WallPicture& picture : map->walls)
+      for (WallLine& line : picture.lines)
+        for (MapPoint& point : line.points)
+          items_.push_back({&point, MapAxis::kHandMass, &picture.at, &line});
     // Long jobs come first, so that no core is left with a long job at the end.
     std::stable_sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) {
       return a.point->simulated > b.point->simulated;
@@ -95,8 +100,10 @@ class Work {
 
  private:
   struct Item {
-    MapPicture* picture;
     MapPoint* point;
+    MapAxis axis;                       // of its value
+    const FixtureWall* wall = nullptr;  // for a point about a wall
+    const WallLine* line = nullptr;     // likewise
   };
 
   static int WorkOf(const MapPoint& point) { return point.simulated ? int(kSimulatedWork) : 1; }
@@ -116,15 +123,20 @@ class Work {
   // Returns the key under which the point must be stored, if it has not been stored yet.
   std::optional<std::string> Compute(const Item& item) {
     MapPoint& point = *item.point;
-    const Variant variant = VariantOf(map_.base, item.picture->axis, point.value);
-    const std::string key = KeyOf(variant, point.simulated);
+    const Variant variant = item.wall ? WallVariantOf(map_.base, *item.line, point.value)
+                                      : VariantOf(map_.base, item.axis, point.value);
+    const std::string key =
+        item.wall ? KeyOf(variant, item.wall->Varying()) : KeyOf(variant, point.simulated);
     const double value = point.value;
     if (store_.Find(key, &point)) {
       point.value = value;
       ++kept_;
       return {};
     }
-    Predict(variant, &point);
+    if (item.wall)
+      point.predicted = PredictWall(map_.base, variant, *item.wall);
+    else
+      Predict(variant, &point);
     if (point.simulated) Find(variant, &point);
     return key;
   }
@@ -133,6 +145,15 @@ class Work {
     return HashOf(fingerprint_ + SaveScenario(variant.scenario) + Exactly(variant.lead) +
                   Exactly(map_.range.softest) + Exactly(map_.range.stiffest) +
                   Exactly(simulated ? map_.growth_time : 0));
+  }
+
+  std::string KeyOf(const Variant& variant, const Wall& wall) const {
+    std::string text = fingerprint_ + "wall" + SaveScenario(variant.scenario);
+    for (const double x :
+         {variant.lead, static_cast<double>(wall.hand), wall.p_DC.x(), wall.p_DC.y(), wall.p_DC.z(),
+          wall.normal.x(), wall.normal.y(), wall.normal.z(), wall.damping, kStiffestWall})
+      text += Exactly(x);
+    return HashOf(text);
   }
 
   void Predict(const Variant& variant, MapPoint* point) const {
@@ -348,8 +369,9 @@ StabilityMap MakeStabilityMap(const Scenario& scenario, const MapOptions& option
   for (int k = 0; k < kMapAxes; ++k) {
     MapPicture& picture = map.pictures[static_cast<std::size_t>(k)];
     picture.axis = static_cast<MapAxis>(k);
-    picture.points = PointsOf(map.base, picture.axis);
+    if (!options.only_walls) picture.points = PointsOf(map.base, picture.axis);
   }
+  map.walls = WallPicturesOf(map.base);
   Work(&map, options).Do();
   return map;
 } catch (const InputError& error) {

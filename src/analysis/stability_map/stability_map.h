@@ -1,6 +1,6 @@
 // The stability map of a scenario shows the stiffness up to which the haptic loop does not
-// oscillate, as a function of masses, delay, bandwidth and lead. The linearised loop predicts it,
-// and simulation finds it.
+// oscillate: that of the hands, as a function of masses, delay, bandwidth and lead, and that of a
+// wall. The linearised loop predicts it. For the hands, simulation finds it too.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/check/contact.h"
 #include "analysis/stability_map/extent.h"
 #include "analysis/stability_map/variant.h"
 #include "report/plot.h"
@@ -43,14 +44,29 @@ struct MapPicture {
   std::vector<MapPoint> points;  // ascending
 };
 
+// The largest stable stiffness of a wall that the object touches, as a function of the mass of each
+// hand, for several delays of the arms' velocity loops. It is predicted only.
+struct WallLine {
+  double delay = 0;              // [s]
+  double lead = 0;               // that a run with this delay uses [s]
+  std::vector<MapPoint> points;  // by hand mass [kg], ascending; `predicted` concerns the wall
+};
+struct WallPicture {
+  FixtureWall at;               // no fixtures: it is assumed
+  std::vector<WallLine> lines;  // ascending
+};
+
 struct StabilityMap {
   MapBase base;
   StiffnessRange range;
-  std::array<MapPicture, kMapAxes> pictures;
+  std::array<MapPicture, kMapAxes> pictures;  // without points if only walls are mapped
+  std::vector<WallPicture> walls;
   std::vector<std::string> departures;  // deviations from the prediction's assumptions that concern
                                         // the whole scenario
   double growth_time = kGrowthTime;     // simulated time per growth rate [s]
   int kept = 0;                         // points that were loaded from an earlier run
+
+  bool has_hands() const { return !pictures[0].points.empty(); }
 };
 
 struct MapOptions {
@@ -58,6 +74,7 @@ struct MapOptions {
   StiffnessRange range;
   double growth_time = kGrowthTime;  // [s]
   int workers = 0;                   // 0: the number of cores
+  bool only_walls = false;           // takes seconds instead of minutes
   // Only the caller's thread calls this.
   std::function<void(double share, const std::string& what)> progress = [](double,
                                                                            const std::string&) {};

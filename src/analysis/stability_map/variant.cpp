@@ -83,9 +83,9 @@ MapBase BaseOf(const Scenario& scenario) {
         "mode", "--map: mode is direct, which has no arms and no haptic loop. Set mode: emulate.");
   const World world(scenario);
   const double dt = 1 / scenario.rate;
-  const HapticLoop loop(world.Linearise(), scenario, dt);
-  const LeadChoice choice = ChooseLead(loop, scenario, dt);
-  return {scenario, choice.lead, choice.lag, world.object_mass()};
+  const LinearModel linear = world.Linearise();
+  const LeadChoice choice = ChooseLead(HapticLoop(linear, scenario, dt), scenario, dt);
+  return {scenario, choice.lead, choice.lag, world.object_mass(), linear, world.state().object.X_W};
 }
 
 double OwnValue(const MapBase& base, MapAxis axis) {

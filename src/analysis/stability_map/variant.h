@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/messages.h"
 #include "scenario/scenario.h"
 
 namespace predictor {
@@ -27,6 +28,8 @@ struct MapBase {
   double lead = 0;         // chosen by `auto` or set by the scenario [s]
   double lag = 0;          // lag of the arms [s]
   double object_mass = 0;  // [kg]
+  LinearModel world;       // of the virtual world, at the start
+  Pose X_WO;               // of the object, at the start
 };
 // Throws InputError for a scenario that cannot be run or has no arms (mode: direct).
 MapBase BaseOf(const Scenario& scenario);
