@@ -61,14 +61,23 @@ std::string CobotStopWords(CobotStop stop) {
   return stop == CobotStop::kJointTorque ? "joint torque" : Name(stop);
 }
 
+std::string MeasuredWords(const Status& status) {
+  if (status.quantity == Quantity::kNone) return "";
+  const std::string measured = SeenAndAllowed(status.value, status.limit, status.quantity);
+  if (status.cause != StopCause::kPhysics) return measured;
+  if (status.quantity == Quantity::kCount)
+    return Message("value.torques", {{"count", Formatted("%.0f", status.value)}});
+  if (status.quantity == Quantity::kTime) return Message("value.silence", {{"value", measured}});
+  return Message("value.joint_speed", {{"value", measured}});
+}
+
 std::string CauseWords(const Status& status) {
   std::string text = StopCauseText(status.cause, status.quantity);
   if (status.hand == 0)
     text = Message("hand.left", {{"text", text}});
   else if (status.hand == 1)
     text = Message("hand.right", {{"text", text}});
-  if (status.quantity != Quantity::kNone)
-    text += " (" + SeenAndAllowed(status.value, status.limit, status.quantity) + ")";
+  if (status.quantity != Quantity::kNone) text += " (" + MeasuredWords(status) + ")";
   return Capitalised(text);
 }
 

@@ -28,6 +28,8 @@ std::string StopCauseText(StopCause cause, Quantity quantity = Quantity::kNone);
 // network."). "force" or "joint torque" is the quantity by which the virtual cobot stopped itself.
 std::string CobotStopWords(CobotStop stop);
 
+// Returns what was measured: "12.4 ms, limit 5 ms". It is "" without a quantity.
+std::string MeasuredWords(const Status& status);
 std::string CauseWords(const Status& status);
 std::string CauseAdvice(const Status& status);
 

@@ -1,6 +1,7 @@
 #include "evaluation/stops.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/words.h"
 
@@ -93,6 +94,23 @@ void StopLog::FollowEnd(const TickRecord& record) {
   if (same && count_ == stops_.size()) stops_.back().harder = record.harder;
 }
 
+namespace {
+
+// Returns −1 if no joint moves.
+int FastestJoint(const TickRecord& record) {
+  double fastest = 0;
+  int joint = -1;
+  for (int j = 0; j < std::min<int>(record.cobot_dof, kMaxCobotJoints); ++j) {
+    const double speed = std::fabs(record.cobot_v[static_cast<std::size_t>(j)]);
+    if (!(speed > fastest)) continue;
+    fastest = speed;
+    joint = j;
+  }
+  return joint;
+}
+
+}  // namespace
+
 void StopLog::Begin(const TickRecord& record) {
   StopSummary stop;
   stop.cause = record.cause;
@@ -102,6 +120,9 @@ void StopLog::Begin(const TickRecord& record) {
   stop.quantity = record.cause_quantity;
   stop.time = before_ + record.run_time;
   stop.harder = record.harder;
+  if (stop.cause == StopCause::kPhysics && stop.quantity != Quantity::kCount &&
+      stop.quantity != Quantity::kTime)
+    stop.fastest_joint = FastestJoint(record);
   const auto& crossed = stop.cause == StopCause::kForce ? force_crossed_ : torque_crossed_;
   if ((stop.cause == StopCause::kForce || stop.cause == StopCause::kTorque) && stop.hand >= 0 &&
       crossed[static_cast<std::size_t>(stop.hand)] >= 0)

@@ -23,6 +23,9 @@ struct StopSummary {
   // The time from the moment at which the true force (torque) crosses its threshold to the
   // decision, for a simulated rig only.
   std::optional<double> detection;  // [s]
+  // If the simulation diverged, the joint of the cobot that was the fastest in the last step
+  // before, counted from 0. Otherwise −1.
+  int fastest_joint = -1;
   StatusRecord harder = {};  // the fault that removed the power at the end of a stop that would
                              // otherwise have held
 };

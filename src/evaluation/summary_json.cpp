@@ -1,5 +1,6 @@
 // Writes the summary as JSON, and its schema. Both are made from lists of results.
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -40,6 +41,10 @@ std::vector<Result> ResultsOf(const StopSummary& stop) {
       Entry("hand", HandName(stop.hand), "hand that caused it"),
       Entry("value", stop.value, "measured value that caused the stop, SI"),
       Entry("limit", stop.limit, "its limit, SI"),
+      Entry("fastest_joint",
+            stop.fastest_joint >= 0 ? 1.0 + stop.fastest_joint
+                                    : std::numeric_limits<double>::quiet_NaN(),
+            "if the simulation diverged: number of the cobot's fastest joint, from 1"),
       Entry("time_s", stop.time, "emulated time until the stop", units::kSecond),
       Entry("stop_duration_s", stop.duration, "time from the decision to rest", units::kSecond),
       Entry("stop_distance_m", stop.distance,

@@ -84,17 +84,17 @@ void AddResults(const std::vector<ResultGroup>& groups, bool timing, std::string
 }
 
 void AddStop(const StopSummary& stop, std::string* text) {
+  const Status status{stop.cause, -1, stop.value, stop.limit, stop.quantity};
   std::string seen = ".";
-  if (stop.quantity != Quantity::kNone)
-    seen = ": " + SeenAndAllowed(stop.value, stop.limit, stop.quantity) + ".";
+  if (stop.quantity != Quantity::kNone) seen = ": " + MeasuredWords(status) + ".";
   AppendLine(text, "Stopped after %.3f s of emulation by cause '%s'%s%s%s", stop.time,
              Name(stop.cause), stop.hand < 0 ? "" : ", hand ",
              stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen.c_str());
-  if (stop.quantity != Quantity::kNone) {
-    const Status status{stop.cause, -1, stop.value, stop.limit, stop.quantity};
+  if (stop.fastest_joint >= 0)
+    AppendLine(text, "  The fastest joint of the cobot was its joint %d.", stop.fastest_joint + 1);
+  if (stop.quantity != Quantity::kNone || stop.cause == StopCause::kPhysics)
     AppendLine(text, "  Explanation: %s. %s", StopCauseText(stop.cause, stop.quantity).c_str(),
                CauseAdvice(status).c_str());
-  }
   if (DidNotRest(stop))
     AppendLine(text, "  The arms had not come to rest.");
   else

@@ -58,7 +58,7 @@ std::string StopSentence(const RunData& run) {
           EscapeMarkup(Name(stop.cause)) + "'";
   if (stop.hand >= 0) text += std::string(" (") + HandName(stop.hand & 1) + " hand)";
   if (stop.quantity != Quantity::kNone)
-    text += ": " + SeenAndAllowed(stop.value, stop.limit, stop.quantity);
+    text += ": " + MeasuredWords({stop.cause, -1, stop.value, stop.limit, stop.quantity});
   text += DidNotRest(stop) ? ". The arms did not come to rest."
                            : ". The arms came to rest after " + Round(1e3 * stop.duration) +
                                  " ms and " + Mm(stop.distance) + ".";
@@ -344,7 +344,8 @@ std::string StopWords(const RunData& run, const ReportedStop& stop) {
   std::string text =
       "This stop was decided at " + Round(s.time, 5) + " s with the cause '" + Name(s.cause) + "'";
   if (s.hand >= 0) text += std::string(" (") + HandName(s.hand & 1) + " hand)";
-  if (s.quantity != Quantity::kNone) text += ": " + SeenAndAllowed(s.value, s.limit, s.quantity);
+  if (s.quantity != Quantity::kNone)
+    text += ": " + MeasuredWords({s.cause, -1, s.value, s.limit, s.quantity});
   text += ". ";
   if (s.detection)
     text += "The true force or torque of the hand crossed the threshold " +

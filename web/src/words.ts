@@ -140,6 +140,14 @@ function beyond(value: number, limit: number, quantity: Quantity): string {
   return message('value', {value: is, limit: may});
 }
 
+// Describes what was measured, like MeasuredWords in the program.
+function measured({cause, value, limit, quantity}: Reason): string {
+  const numbers = beyond(value, limit, quantity);
+  if (cause !== 'physics') return numbers;
+  if (quantity === 'count') return message('value.torques', {count: fixed(value, 0)});
+  return message(quantity === 'time' ? 'value.silence' : 'value.joint_speed', {value: numbers});
+}
+
 function capital(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
@@ -152,7 +160,7 @@ export function sideWords(side: Side): string {
 function sentence(why: Reason): string {
   const id = stopId(why);
   const text = id ? message(`stop.${id}.cause`) : '';
-  const numbers = why.quantity === 'none' ? '' : ` (${beyond(why.value, why.limit, why.quantity)})`;
+  const numbers = why.quantity === 'none' ? '' : ` (${measured(why)})`;
   return (why.hand ? message(`hand.${why.hand}`, {text}) : capital(text)) + numbers + '.';
 }
 

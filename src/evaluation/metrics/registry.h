@@ -14,7 +14,9 @@
   add(kObjectHeight)           \
   add(kEnergy)                 \
   add(kGrip)                   \
+  add(kCobotLimits)            \
   add(kRendering)              \
+  add(kControllerAnswers)      \
   add(kDeadlines)              \
   add(kTiming)
 // clang-format on

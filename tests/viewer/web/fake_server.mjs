@@ -62,8 +62,8 @@ export class FakeServer {
   // The options are `scene` ('box' | 'circle'), `operator`, `simulated`, `state`, `table` and
   // `light`. `object` contains the files of the object's model {name: text}, which must include
   // model.urdf. `ground` is where the operator stands in W. `person` is the reason why the person
-  // is not judged. An `older` server sends no data about the person. `movables` are movable objects, each with its
-  // `pose`.
+  // is not judged. An `older` server sends no data about the person. `movables`
+  // are movable objects, each with its `pose`.
   constructor(options = {}) {
     this.options = {scene: 'box', operator: 'virtual', simulated: true, state: 'RUN', ground: [1, 0, 0], ...options};
     this.preset = kScenes[this.options.scene];
