@@ -43,21 +43,8 @@ class Linearisation {
     model.dof = n_;
     model.A.setZero(states, states);
     model.A.block(0, n_, n_, n_).setIdentity();
-    MatrixXd torque = MatrixXd::Zero(dof(), states);  // of the controller, by the states
-    const VectorXd zero = VectorXd::Zero(n_);
-    const VectorXd same = VectorXd::Zero(inner());
-    const auto set_column = [&](int i, const VectorXd& slope) {
-      model.A.block(n_, i, n_ + inner(), 1) = slope.head(n_ + inner());
-      torque.col(i) = slope.tail(dof());
-    };
-    for (int i = 0; i < n_; ++i) {
-      const VectorXd e = VectorXd::Unit(n_, i);
-      set_column(i, Slope(kPositionStep, e, zero, zero, same));
-      set_column(n_ + i, Slope(kVelocityStep, zero, e, zero, same));
-    }
-    for (int i = 0; i < inner(); ++i)
-      set_column(2 * n_ + i, Slope(i < sensed_ ? kWrenchStep : kMemoryStep, zero, zero, zero,
-                                   VectorXd::Unit(inner(), i)));
+    const MatrixXd slopes = SlopesByState();
+    model.A.bottomRows(n_ + inner()) = slopes.topRows(n_ + inner());
     model.B.setZero(states, J.rows());
     for (const int h : hands)
       for (int i = 0; i < 6; ++i)
@@ -65,8 +52,14 @@ class Linearisation {
             EffectOfWrench(J.row(6 * h + i), X_OD[h], i);
     model.C.setZero(J.rows(), states);
     model.C.middleCols(n_, n_) = J;
-    if (scene_.timing().mean_delay() > 0) AddDelay(torque, &model);
+    if (scene_.timing().mean_delay() > 0) AddDelay(slopes.bottomRows(dof()), &model);
     return model;
+  }
+
+  SceneSlopes Slopes() {
+    const MatrixXd slopes = SlopesByState();
+    return {slopes.topRows(n_ + inner()), SlopesByTorque(), slopes.bottomRows(dof()), sensed_,
+            sensed_ > 0 ? WristRate() : 0};
   }
 
  private:
@@ -74,6 +67,32 @@ class Linearisation {
   // Returns the number of states of the wrist sensor's filter plus those of the controller's
   // memory.
   int inner() const { return sensed_ + static_cast<int>(memory_.size()); }
+
+  // Returns the slopes of the rates and, below them, of the controller's torques.
+  MatrixXd SlopesByState() {
+    MatrixXd slopes(n_ + inner() + dof(), 2 * n_ + inner());
+    const VectorXd zero = VectorXd::Zero(n_), same = VectorXd::Zero(inner());
+    for (int i = 0; i < n_; ++i) {
+      const VectorXd e = VectorXd::Unit(n_, i);
+      slopes.col(i) = Slope(kPositionStep, e, zero, zero, same);
+      slopes.col(n_ + i) = Slope(kVelocityStep, zero, e, zero, same);
+    }
+    for (int i = 0; i < inner(); ++i)
+      slopes.col(2 * n_ + i) = Slope(i < sensed_ ? kWrenchStep : kMemoryStep, zero, zero, zero,
+                                     VectorXd::Unit(inner(), i));
+    return slopes;
+  }
+
+  // Returns the slopes of the rates.
+  MatrixXd SlopesByTorque() {
+    MatrixXd slopes(n_ + inner(), dof());
+    const VectorXd zero = VectorXd::Zero(n_), same = VectorXd::Zero(inner());
+    for (int j = 0; j < dof(); ++j) {
+      const VectorXd e = VectorXd::Unit(n_, engine_.layout().v[static_cast<std::size_t>(j)]);
+      slopes.col(j) = Slope(kWrenchStep, zero, zero, e, same).head(n_ + inner());
+    }
+    return slopes;
+  }
 
   // Returns the rates caused by component `i` of a wrench on a handle whose velocity is `row` times
   // v.
@@ -95,12 +114,7 @@ class Linearisation {
   void AddDelay(const MatrixXd& torque, LinearModel* model) {
     const Eigen::Index states = model->A.rows(), joints = dof();
     const double c = 4 / scene_.timing().mean_delay();
-    MatrixXd by_torque(n_ + inner(), joints);  // effect of a joint's torque
-    const VectorXd zero = VectorXd::Zero(n_), same = VectorXd::Zero(inner());
-    for (int j = 0; j < joints; ++j) {
-      const VectorXd e = VectorXd::Unit(n_, engine_.layout().v[static_cast<std::size_t>(j)]);
-      by_torque.col(j) = Slope(kWrenchStep, zero, zero, e, same).head(n_ + inner());
-    }
+    const MatrixXd by_torque = SlopesByTorque();
     MatrixXd A = MatrixXd::Zero(states + 2 * joints, states + 2 * joints);
     A.topLeftCorner(states, states) = model->A;
     A.block(n_, states, n_ + inner(), joints) = -2 * by_torque;
@@ -204,6 +218,10 @@ class Linearisation {
 LinearModel Linearise(ControlledScene* scene, Engine* engine, double t, const Hands& hands,
                       const std::array<Pose, kHands>& X_OD) {
   return Linearisation(scene, engine, t).Compute(hands, X_OD);
+}
+
+SceneSlopes SlopesOf(ControlledScene* scene, Engine* engine, double t) {
+  return Linearisation(scene, engine, t).Slopes();
 }
 
 }  // namespace predictor

@@ -15,4 +15,15 @@ namespace predictor {
 LinearModel Linearise(ControlledScene* scene, Engine* engine, double t, const Hands& hands,
                       const std::array<Pose, kHands>& X_OD);
 
+// The slopes of the scene without hands, with the states of Linearise (n velocities, m states of
+// sensor and memory), whose controller has no period and no delay.
+struct SceneSlopes {
+  Eigen::MatrixXd rates;      // of velocities and inner states, by the states (n + m x 2n + m)
+  Eigen::MatrixXd by_torque;  // of the same, by the joints' torques (n + m x joints)
+  Eigen::MatrixXd torque;     // of the controller, by the states (joints x 2n + m)
+  int sensed = 0;             // number of the inner states that belong to the wrist sensor: 0 or 6
+  double wrist_rate = 0;      // with which `rates` lets the sensor follow the wrench [rad/s]
+};
+SceneSlopes SlopesOf(ControlledScene* scene, Engine* engine, double t);
+
 }  // namespace predictor

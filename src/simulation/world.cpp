@@ -30,11 +30,12 @@ double Largest(const Eigen::Ref<const Eigen::VectorXd>& values) {
   return largest;
 }
 
-Status Failure(double value, double limit) {
+Status Failure(double value, double limit, Quantity quantity = Quantity::kNone) {
   Status status;
   status.cause = StopCause::kPhysics;
   status.value = value;
   status.limit = limit;
+  status.quantity = quantity;
   return status;
 }
 
@@ -57,6 +58,19 @@ struct World::Impl {
 
   void SetUp(bool begins) noexcept {
     if (TapedController* taped = controlled.taped()) taped->SetUp(begins);
+  }
+
+  // Returns the result of a function that may change the state of a copy of the engine.
+  template <class Function>
+  auto Examine(const Function& function) {
+    SetUp(true);
+    const std::unique_ptr<Engine> copy = engine().Copy();
+    const JointVector torque = controlled.torque();
+    auto result = function(copy.get());
+    controlled.Update(&engine());  // the workspace is shared
+    controlled.SetTorque(torque);
+    SetUp(false);
+    return result;
   }
 
   Engine& engine() const noexcept { return controlled.engine(); }
@@ -183,10 +197,10 @@ struct World::Impl {
     ApplyWrenches(input);
     if (!controlled.HoldObject()) return Failure(std::nan(""), 0);
     if (!world.Advance()) return Failure(std::nan(""), 0);
+    const double velocity = Largest(world.velocities());
+    if (!(velocity <= kMaxVelocity)) return Failure(velocity, kMaxVelocity, FastestQuantity());
     const double acceleration = Largest(world.accelerations());
     if (!(acceleration <= kMaxAcceleration)) return Failure(acceleration, kMaxAcceleration);
-    const double velocity = Largest(world.velocities());
-    if (!(velocity <= kMaxVelocity)) return Failure(velocity, kMaxVelocity);
     if (!std::isfinite(Largest(world.positions()))) return Failure(std::nan(""), 0);
     const double movable = Largest(world.movable_velocities());
     if (!(movable <= kMaxMovableVelocity)) return Failure(movable, kMaxMovableVelocity);
@@ -196,6 +210,19 @@ struct World::Impl {
     controlled.AdvanceController(world.time());
     UpdateMotion(1 / world.step());
     return Status::Ok();
+  }
+
+  // Returns what the largest velocity measures.
+  Quantity FastestQuantity() const noexcept {
+    const Engine::Values v = engine().velocities();
+    Eigen::Index i = 0;
+    if (!std::isfinite(v.cwiseAbs().maxCoeff(&i)) || !v.allFinite()) return Quantity::kNone;
+    const Engine::Layout& at = engine().layout();
+    const bool translates = at.object_v >= 0 && i >= at.object_v && i < at.object_v + 3;
+    const RobotModel& robot = controlled.robot();
+    for (int j = 0; j < robot.dof(); ++j)
+      if (at.v[static_cast<std::size_t>(j)] == i && robot.is_prismatic(j)) return Quantity::kSpeed;
+    return translates ? Quantity::kSpeed : Quantity::kAngularSpeed;
   }
 
   // Applies the wrenches of the hands and of the coupling, all at the handles D, as one wrench on
@@ -291,16 +318,16 @@ std::vector<double> World::ControllerTape() const {
 }
 
 LinearModel World::Linearise() const {
-  Impl& impl = *impl_;
-  impl.SetUp(true);
-  const std::unique_ptr<Engine> copy = impl.engine().Copy();
-  const JointVector torque = impl.controlled.torque();
-  LinearModel model =
-      predictor::Linearise(&impl.controlled, copy.get(), impl.state.time, impl.hands, impl.X_OD);
-  impl.controlled.Update(&impl.engine());  // the workspace is shared
-  impl.controlled.SetTorque(torque);
-  impl.SetUp(false);
-  return model;
+  return impl_->Examine([this](Engine* copy) {
+    return predictor::Linearise(&impl_->controlled, copy, impl_->state.time, impl_->hands,
+                                impl_->X_OD);
+  });
+}
+
+SampledLoop World::JudgeController() const {
+  return impl_->Examine([this](Engine* copy) {
+    return JudgeSampledLoop(&impl_->controlled, copy, impl_->state.time);
+  });
 }
 
 }  // namespace predictor

@@ -9,6 +9,7 @@
 #include "core/archive.h"
 #include "core/messages.h"
 #include "scenario/scenario.h"
+#include "simulation/sampled_loop.h"
 
 namespace predictor {
 
@@ -55,6 +56,9 @@ class World {
   // the handles nor follows from a force on them. x contains the
   // tangent-space change of the coordinates (nv) and then their rates (nv). Allocates memory.
   LinearModel Linearise() const;
+
+  // Judges the loop of the controller, as it is sampled, and the same scene. Allocates memory.
+  SampledLoop JudgeController() const;
 
   double object_mass() const;                    // [kg]
   std::vector<std::string> joint_names() const;  // of the cobot's joints

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "analysis/check/controller_advice.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "core/units.h"
@@ -76,6 +77,7 @@ class Judge {
   void All() {
     Commissioned();
     Torques();
+    Controller();
     LooseObject();
     Script();
     if (!report_->reach) return;
@@ -107,6 +109,10 @@ class Judge {
                   "is %.1f %s. Little torque is left for motion. Use a lighter object, start in a "
                   "posture closer to the base, or raise cobot.effort_limit.",
                   m.torque, unit, m.torque_joint.c_str(), m.torque_limit, unit));
+  }
+
+  void Controller() {
+    if (!report_->controller.is_stable()) Bad(ControllerProblem(s_, *report_));
   }
 
   void LooseObject() {
@@ -214,9 +220,8 @@ class Judge {
                                     : "";
     const std::string change =
         r.margin.frequency < kSlow
-            ? "This is an oscillation of the cobot with its load. Raise "
-              "cobot.controller.damping_ratio, use a heavier object, or reduce the hand's visual "
-              "correction (operator.hand.visual_stiffness)."
+            ? "This is an oscillation of the cobot with its load. " + MoreDamping(s_.cobot) +
+                  " or reduce the hand's visual correction (operator.hand.visual_stiffness)."
             : "Use a heavier object, a softer or lighter hand, faster arms (" +
                   std::string(machine_ ? "arms.*.arm.loop" : "device.arms.*.loop") +
                   ") or a faster loop (rate).";
@@ -290,6 +295,8 @@ CheckReport Check(const Scenario& s, const CheckOptions& options) try {
   report.direct = s.mode == Mode::kDirect;
   report.security_distance = s.rendering.security_distance;
   report.models = DescribeWorld(s, world);
+  report.controller = world.JudgeController();
+  report.controller_joint = world.joint_names()[static_cast<std::size_t>(report.controller.joint)];
   if (!report.direct) CheckDevice(s, world, options, &report);
   Judge(s, options.machine, &report).All();
   return report;

@@ -15,6 +15,7 @@
 #include "scenario/machine.h"
 #include "scenario/scenario.h"
 #include "scenario/stop_budget.h"
+#include "simulation/sampled_loop.h"
 
 namespace predictor {
 
@@ -62,9 +63,11 @@ struct CheckReport {
   std::string scenario;
   bool direct = false;
   ModelsReport models;
-  double security_distance = 0;             // of link pairs [m]
-  std::optional<Reach> reach;               // empty without a device
-  double comfort = 0;                       // comfort of the reach, see Comfort
+  SampledLoop controller;        // the cobot's controller as it is sampled, without hands
+  std::string controller_joint;  // name of its joint
+  double security_distance = 0;  // of link pairs [m]
+  std::optional<Reach> reach;    // empty without a device
+  double comfort = 0;            // comfort of the reach, see Comfort
   std::array<std::string, kHands> arm_key;  // key of an arm's base and loop
   std::array<Vector3, kHands> base = {Vector3::Zero(), Vector3::Zero()};  // current bases [m]
   PoseSpec shift;                                                         // current shift

@@ -131,6 +131,9 @@ const schema::Words kWords = {
      {"limit_nm", "its limit [N·m]; null: none"},
      {"value_n", "force of a prismatic joint [N]"},
      {"limit_n", "its limit [N]; null: none"},
+     {"controller", "the loop of cobot and controller at the controller's rate, without hands"},
+     {"growth_rate",
+      "of the oscillation that grows fastest [1/s]; negative: it decays; null: none"},
      {"arms", "the haptic arms; null: absent"},
      {"joints", "number of joints"},
      {"mass_kg", "mass [kg]"},
@@ -178,7 +181,7 @@ const schema::Words kWords = {
      {"stiffness_n_m", "stiffness [N/m]; of a contact: at each point, as simulated"},
      {"damping_ns_m", "damping at each point, as simulated [N·s/m]"},
      {"yields", "the fixture has a stiffness; false: it is rigid"},
-     {"stable", "the haptic loop is stable in contact"},
+     {"stable", "the loop is stable (of a contact: the haptic loop in contact)"},
      {"largest_stable_stiffness_n_m",
       "largest stiffness of such a wall for which the loop is stable [N/m], without damping if the "
       "fixture is rigid; null: 1e6 or more"},
@@ -191,7 +194,7 @@ const schema::Words kWords = {
      {"rendered", "force over displacement that the arms render"},
      {"real_n_m", "real part: a stiffness [N/m]"},
      {"imaginary_n_m", "imaginary part: 2π·frequency times a damping [N/m]"}},
-    {"left", "right", "reach", "stop", "stability", "out_of_reach_s"}};
+    {"left", "right", "reach", "stop", "stability", "out_of_reach_s", "growth_rate"}};
 
 // Returns a report in which nothing is missing.
 CheckReport Example() {
@@ -230,6 +233,10 @@ std::string CheckJson(const CheckReport& report) {
                {"problems", report.problems},
                {"warnings", report.warnings},
                {"models", ToJson(report.models)}};
+  json["controller"] = {{"stable", report.controller.is_stable()},
+                        {"joint", report.controller_joint},
+                        {"growth_rate", NumberOrNull(report.controller.growth)},
+                        {"frequency_hz", report.controller.frequency}};
   json["reach"] = report.reach ? ToJson(report, *report.reach, report.comfort) : Json(nullptr);
   json["proposal"] = report.proposal         ? ToJson(report, *report.proposal)
                      : report.shift_proposal ? ToJson(report, *report.shift_proposal)
