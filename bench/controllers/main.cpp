@@ -34,7 +34,7 @@ double Median(std::vector<float> x) {
 
 void Main() {
   setenv("PREDICTOR_PACKAGE_PATH", PREDICTOR_PLUGINS, 1);
-  const std::string none = "parameters: joint_stiffness=0 joint_damping=0";
+  const std::string none = "parameters: joint_stiffness=0 damping_rate=0";
   const std::array<const char*, 3> names = {"in the program", "library in C", "process in Python"};
   const std::array<std::string, 3> controllers = {
       "{type: gravity_compensation}",

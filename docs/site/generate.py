@@ -299,7 +299,7 @@ def controllers_page(schema):
     return "\n\n".join([
         "# Controllers",
         "The controller of the virtual cobot, `cobot.controller` in a scenario. "
-        "To write another one, see [Add a controller](../../developer/add-a-controller.md).",
+        "To write another one, see [Write a controller without changing the program](../../how-to/write-a-controller-plugin.md).",
         table(("type", "what it does"), rows), "## cobot.controller" +
         keys_page("", "", {"properties": {"cobot.controller": controller}}).partition("## cobot.controller")[2]])
 

@@ -1,8 +1,10 @@
 // A plug-in in C++ with memory and wrist sensor: a spring in the wrist whose set-point follows the
-// hand, tau = g + J' K (p_set - p) + K_j (posture - q) - d v, and dp_set/dt = (F - F_start) / D.
+// hand, tau = g + J' K (p_set - p) + K_j (posture - q) - d M v, and dp_set/dt = (F - F_start) / D.
+// joint_impedance.c explains why the damping is proportional to the mass matrix M.
 //
 // Parameters: stiffness K [N/m], yielding 1/D [m/(N·s)].
-// Build: c++ -std=c++17 -O2 -shared -fPIC -I include following_spring.cpp -o following_spring.so
+// Build, in the root of the repository, with the output -o following_spring.so:
+//   c++ -std=c++17 -O2 -shared -fPIC -I include examples/plugins/following_spring.cpp
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -16,7 +18,7 @@
 namespace {
 
 constexpr double kJointStiffness = 40;  // [N·m/rad]
-constexpr double kJointDamping = 8;     // [N·m·s/rad]
+constexpr double kDampingRate = 60;     // d [1/s]
 
 class FollowingSpring {
  public:
@@ -42,8 +44,8 @@ class FollowingSpring {
     std::array<double, 3> force;
     for (int i = 0; i < 3; ++i) force[i] = stiffness_ * (memory_[i] - input.X_WE[i]);
     for (int j = 0; j < dof_; ++j) {
-      torque[j] =
-          input.g[j] + kJointStiffness * (posture_[j] - input.q[j]) - kJointDamping * input.v[j];
+      torque[j] = input.g[j] + kJointStiffness * (posture_[j] - input.q[j]);
+      for (int k = 0; k < dof_; ++k) torque[j] -= kDampingRate * input.M[j + dof_ * k] * input.v[k];
       for (int i = 0; i < 3; ++i) torque[j] += input.J[i + 6 * j] * force[i];
     }
   }

@@ -1,7 +1,15 @@
-/* Springs and dampers in the joints, tau = g + K (posture - q) - D v, as a plug-in in C.
+/* Springs and dampers in the joints, tau = g + K (posture - q) - d M v, as a plug-in in C.
  *
- * Parameters, each for all joints: joint_stiffness [N·m/rad], joint_damping [N·m·s/rad].
- * Build: cc -std=c11 -O2 -shared -fPIC -I include joint_impedance.c -o joint_impedance.so */
+ * The damping is proportional to the mass matrix M, because the controller computes only once per
+ * period dt. A damper D turns unstable at a joint of inertia m if D dt / m > 2, so a D that suits
+ * the first joint lets a light last joint chatter. With D = d M, d dt decides for all joints alike.
+ * A spring turns unstable if K dt^2 / m > 4; `predictor check` names the joint.
+ *
+ * Parameters, each for all joints: joint_stiffness K [N·m/rad], damping_rate d [1/s].
+ * Build, in the root of the repository:
+ *   cc -std=c11 -O2 -shared -fPIC -I include examples/plugins/joint_impedance.c -o
+ * joint_impedance.so
+ */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,13 +19,13 @@
 typedef struct {
   int dof;
   double posture[PREDICTOR_MAX_JOINTS]; /* [rad] */
-  double stiffness;                     /* [N·m/rad] */
-  double damping;                       /* [N·m·s/rad] */
+  double stiffness;                     /* K [N·m/rad] */
+  double damping_rate;                  /* d [1/s] */
 } JointImpedance;
 
 static int read_parameter(JointImpedance* self, const PredictorParameter* parameter) {
   double* to = strcmp(parameter->key, "joint_stiffness") == 0 ? &self->stiffness
-               : strcmp(parameter->key, "joint_damping") == 0 ? &self->damping
+               : strcmp(parameter->key, "damping_rate") == 0  ? &self->damping_rate
                                                               : NULL;
   char* end = NULL;
   if (to == NULL) return 0;
@@ -30,13 +38,13 @@ static void* create(const PredictorControllerConfig* config, char* error, size_t
   if (self == NULL) return NULL;
   self->dof = config->dof;
   self->stiffness = 100;
-  self->damping = 5;
+  self->damping_rate = 50;
   memcpy(self->posture, config->posture, sizeof self->posture);
   for (int i = 0; i < config->parameter_count; ++i) {
     const PredictorParameter* parameter = &config->parameters[i];
     if (read_parameter(self, parameter)) continue;
     snprintf(error, error_size,
-             "\"%s=%s\" is not one of its parameters: joint_stiffness and joint_damping, numbers "
+             "\"%s=%s\" is not one of its parameters: joint_stiffness and damping_rate, numbers "
              "from 0.",
              parameter->key, parameter->value);
     free(self);
@@ -47,9 +55,12 @@ static void* create(const PredictorControllerConfig* config, char* error, size_t
 
 static void compute(void* self_, const PredictorControllerInput* input, double* torque) {
   const JointImpedance* self = self_;
-  for (int j = 0; j < self->dof; ++j)
+  for (int j = 0; j < self->dof; ++j) {
+    double momentum = 0; /* of joint j, (M v)_j */
+    for (int k = 0; k < self->dof; ++k) momentum += input->M[j + self->dof * k] * input->v[k];
     torque[j] = input->g[j] + self->stiffness * (self->posture[j] - input->q[j]) -
-                self->damping * input->v[j];
+                self->damping_rate * momentum;
+  }
 }
 
 static double stored_energy(void* self_, const PredictorControllerInput* input) {

@@ -1,12 +1,14 @@
-"""Springs and dampers in the joints, tau = g + K (posture - q) - D v, as a process in Python.
+"""Springs and dampers in the joints, tau = g + K (posture - q) - d M v, as a process in Python.
 
-It needs only the standard library. The parameters joint_stiffness [N·m/rad] and
-joint_damping [N·m·s/rad] apply to all joints. A scenario next to this file refers to it like this:
+It needs only the standard library. The parameters joint_stiffness K [N·m/rad] and damping_rate d
+[1/s] apply to all joints. joint_impedance.c explains why the damping is proportional to the mass
+matrix M. A scenario next to this file refers to it like this:
 
   cobot:
     controller: {type: process, command: [python3, joint_impedance.py]}
 """
 
+import math
 import mmap
 import os
 import struct
@@ -18,36 +20,48 @@ VERSION = 2
 # These are offsets in PredictorControllerMemory (predictor/controller.h).
 REQUEST, ANSWER, KIND, REFUSED = 8, 12, 16, 20
 TORQUE, ENERGY, INPUT, POSTURE, TEXT = 32, 160, 1192, 4880, 5072
-DOF, Q, V, G = INPUT + 16, INPUT + 24, INPUT + 152, INPUT + 280
+DOF, Q, V, G, M = INPUT + 16, INPUT + 24, INPUT + 152, INPUT + 280, INPUT + 1584
 
 BUSY_TIME = 0.01  # after a request, the next one is awaited without sleeping [s]
+
+
+def is_number_from_0(text):
+    try:
+        return 0 <= float(text) < math.inf
+    except ValueError:
+        return False
 
 
 class JointImpedance:
     def __init__(self, memory):
         self.memory = memory
-        self.numbers = struct.Struct("<7d")
-        self.stiffness, self.damping = 100.0, 5.0
+        self.numbers, self.matrix = struct.Struct("<7d"), struct.Struct("<49d")
+        self.stiffness, self.damping_rate = 100.0, 50.0
 
     def create(self):
         (dof,) = struct.unpack_from("<i", self.memory, DOF)
-        self.numbers = struct.Struct(f"<{dof}d")
+        self.dof, self.numbers, self.matrix = dof, struct.Struct(f"<{dof}d"), struct.Struct(f"<{dof * dof}d")
         self.posture = self.numbers.unpack_from(self.memory, POSTURE)
         text = self.memory[TEXT:].split(b"\0")[0].decode()
         for word in text.split("\n")[0].split():
-            key, value = word.split("=", 1)
-            if key == "joint_stiffness":
-                self.stiffness = float(value)
-            elif key == "joint_damping":
-                self.damping = float(value)
-            else:
-                raise ValueError(f'"{key}" is not one of its parameters: joint_stiffness, joint_damping.')
+            key, _, value = word.partition("=")
+            if key not in ("joint_stiffness", "damping_rate") or not is_number_from_0(value):
+                raise ValueError(
+                    f'"{word}" is not one of its parameters: joint_stiffness and damping_rate, numbers from 0.'
+                )
+            setattr(self, key.removeprefix("joint_"), float(value))
 
     def compute(self):
         read = self.numbers.unpack_from
         q, v, g = read(self.memory, Q), read(self.memory, V), read(self.memory, G)
+        mass = self.matrix.unpack_from(self.memory, M)
         offset = [p - x for p, x in zip(self.posture, q)]
-        torque = [gj + self.stiffness * x - self.damping * vj for gj, x, vj in zip(g, offset, v)]
+        torque = []
+        for j in range(self.dof):
+            momentum = 0.0  # of joint j, (M v)_j
+            for m, x in zip(mass[j :: self.dof], v):
+                momentum += m * x
+            torque.append(g[j] + self.stiffness * offset[j] - self.damping_rate * momentum)
         self.numbers.pack_into(self.memory, TORQUE, *torque)
         struct.pack_into("<d", self.memory, ENERGY, 0.5 * self.stiffness * sum(x * x for x in offset))
 

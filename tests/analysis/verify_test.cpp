@@ -123,10 +123,10 @@ TEST_F(VerifyTest, ARunWithAControllerOutsideTheProgramIsTheSameWithoutIt) {
     ControllerSpec controller;
     StopCause cause = StopCause::kNone;
   };
-  const std::string springs = "joint_stiffness=2000 joint_damping=40";
+  const std::string springs = "joint_stiffness=2000 damping_rate=60";
   OutsideCase cases[] = {{test::Plugin("joint_impedance", springs)},
                          {test::Plugin("following_spring", "stiffness=3000")},
-                         {test::PythonExample("joint_stiffness=800 joint_damping=20")},
+                         {test::PythonExample("joint_stiffness=800 damping_rate=40")},
                          {test::Plugin("at_time", "fault=nan at=1.5"), StopCause::kPhysics}};
   for (OutsideCase& c : cases) {
     test::FindPlugins();

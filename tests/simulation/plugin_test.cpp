@@ -65,7 +65,7 @@ TEST(Plugin, IsBitIdenticalToTheBuiltInController) {
   const auto built_in =
       BuiltIn("joint_impedance", {"joint_stiffness=300", "joint_damping_ratio=0"});
   Scenario a = BallScene(built_in);
-  Scenario b = BallScene(Plugin("joint_impedance", "joint_stiffness=300 joint_damping=0"));
+  Scenario b = BallScene(Plugin("joint_impedance", "joint_stiffness=300 damping_rate=0"));
   ExpectSameMotion(a, b, 0.5);
   for (Scenario* s : {&a, &b}) {
     s->cobot.control.rate = 500;
@@ -76,7 +76,7 @@ TEST(Plugin, IsBitIdenticalToTheBuiltInController) {
 }
 
 TEST(Plugin, AProcessInPythonIsBitIdenticalToTheOneInC) {
-  const std::string parameters = "joint_stiffness=300 joint_damping=4";
+  const std::string parameters = "joint_stiffness=300 damping_rate=40";
   ExpectSameMotion(BallScene(Plugin("joint_impedance", parameters)),
                    BallScene(PythonExample(parameters)), 0.3);
 }
@@ -109,7 +109,7 @@ TEST(Plugin, HasTheEnergyOfTheBuiltInController) {
   const auto built_in =
       BuiltIn("joint_impedance", {"joint_stiffness=300", "joint_damping_ratio=0"});
   World a(BallScene(built_in)),
-      b(BallScene(Plugin("joint_impedance", "joint_stiffness=300 joint_damping=0")));
+      b(BallScene(Plugin("joint_impedance", "joint_stiffness=300 damping_rate=0")));
   EXPECT_NEAR(a.state().energy, b.state().energy, 1e-12);
   EXPECT_TRUE(a.ControllerTape().empty());
   EXPECT_FALSE(b.ControllerTape().empty());
@@ -231,13 +231,13 @@ TEST(Plugin, IsRefusedWithRealArmsUnlessItHasPassedItsTrial) {
   EXPECT_NE(ErrorOf(s).find(refusal), std::string::npos) << ErrorOf(s);
   NoteTrial(mine, "", true);
   EXPECT_EQ(ErrorOf(s), "");
-  s.cobot.controller.Set("parameters=joint_damping=30");
+  s.cobot.controller.Set("parameters=damping_rate=30");
   EXPECT_NE(ErrorOf(s).find(refusal), std::string::npos) << ErrorOf(s);
-  NoteTrial(mine, "joint_damping=30", true);
+  NoteTrial(mine, "damping_rate=30", true);
   EXPECT_EQ(ErrorOf(s), "");
-  s.cobot.controller.Set("parameters=joint_damping=31");
+  s.cobot.controller.Set("parameters=damping_rate=31");
   EXPECT_NE(ErrorOf(s).find(refusal), std::string::npos) << ErrorOf(s);
-  s.cobot.controller.Set("parameters=joint_damping=30");
+  s.cobot.controller.Set("parameters=damping_rate=30");
   std::ofstream(mine, std::ios::app) << "\n";
   EXPECT_NE(ErrorOf(s).find(refusal), std::string::npos) << ErrorOf(s);
   s.cobot.controller = PythonExample();
