@@ -99,6 +99,7 @@ struct ParameterKind {
   const char* doc;
   std::unique_ptr<OwnParameters> (*parameters)();  // makes the parameters with their defaults
   ControllerPlace place = ControllerPlace::kProgram;
+  bool is_tunable = false;  // of a controller: a run may change its stiffness and damping
 };
 using ParameterKinds = std::span<const ParameterKind* const>;
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/archive.h"
@@ -114,7 +115,8 @@ struct ControllerKind : ParameterKind {
 template <class C, class P>
 constexpr ControllerKind ControllerKindOf(const char* name, const char* doc,
                                           ControllerPlace place = ControllerPlace::kProgram) {
-  return {{name, doc, NewParameters<P>, place},
+  constexpr bool is_tunable = !std::is_same_v<decltype(&C::Tune), decltype(&Controller::Tune)>;
+  return {{name, doc, NewParameters<P>, place, is_tunable},
           [](const ControllerContext& context,
              const OwnParameters& parameters) -> std::unique_ptr<Controller> {
             return std::make_unique<C>(context, ValueOf<P>(parameters));

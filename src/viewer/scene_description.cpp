@@ -8,6 +8,7 @@
 #include "scenario/actions/action.h"
 #include "scenario/obstacle_events.h"
 #include "scenario/operating_rules.h"
+#include "scenario/own_parameters.h"
 #include "scenario/paths.h"
 #include "scenario/stance.h"
 
@@ -78,10 +79,21 @@ Json DescribeMovables(const Scenario& scenario, AssetStore* assets) {
   return json;
 }
 
+// Returns whether a parameter changes the cobot's controller, but this controller has nothing to
+// change.
+bool HasNoEffect(Parameter parameter, const Scenario& scenario) {
+  if (parameter != Parameter::kStiffnessTranslation && parameter != Parameter::kStiffnessRotation &&
+      parameter != Parameter::kDampingRatio)
+    return false;
+  const ParameterKind* kind = FindKind(Controllers(), scenario.cobot.controller.type);
+  return kind != nullptr && !kind->is_tunable;
+}
+
 Json DescribeParameters(const Scenario& scenario) {
   Json json = Json::object();
   for (int k = 0; k < kParameters; ++k) {
     const auto parameter = static_cast<Parameter>(k);
+    if (HasNoEffect(parameter, scenario)) continue;
     const ParameterRange range = RangeOf(scenario, parameter);
     json[predictor::Name(parameter)] = {
         {"min", range.min}, {"max", range.max}, {"value", range.start}};
