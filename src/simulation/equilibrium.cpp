@@ -164,6 +164,7 @@ class EquilibriumSearch {
 // key that sets it, or "" if nothing prevents it.
 struct Obstacle {
   std::string key, text;
+  std::string remedy = "Increase the stiffness of cobot.controller, choose";
 };
 
 Obstacle ObstacleIn(const ControlledScene& scene) {
@@ -175,7 +176,10 @@ Obstacle ObstacleIn(const ControlledScene& scene) {
     if (std::fabs(scene.torque()[j]) < limit) continue;
     return {"cobot.effort_limit",
             "joint " + Quote(robot.joint_name(j)) + " would need more than its effort limit of " +
-                FormatNumber(limit) + " " + robot.effort_unit(j) + " (set by this key)"};
+                FormatNumber(limit) + " " + robot.effort_unit(j) +
+                (limit == robot.effort_limit()[j] ? " (from the cobot's model)"
+                                                  : " (set by this key; [] means the model's)"),
+            "Raise cobot.effort_limit, choose"};
   }
   for (int j = 0; j < robot.dof(); ++j) {
     const double q = scene.q()[j];
@@ -267,14 +271,13 @@ void FindEquilibrium(ControlledScene* scene) {
     return RefuseContact(&engine);
   }
   if (obstacle.text.empty()) obstacle = {"cobot.posture", "no static equilibrium was found"};
-  throw InputError::At(obstacle.key,
-                       obstacle.key +
-                           ": the cobot cannot hold the object at cobot.posture: " + obstacle.text +
-                           ". Increase the stiffness of cobot.controller, choose another "
-                           "cobot.posture, use a lighter object, or " +
-                           (engine.has_contacts_at_rest()
-                                ? "add a table."
-                                : "set simulation.engine: mujoco if a table should support it."));
+  throw InputError::At(
+      obstacle.key,
+      obstacle.key + ": the cobot cannot hold the object at cobot.posture: " + obstacle.text +
+          ". " + obstacle.remedy + " another cobot.posture, use a lighter object, or " +
+          (engine.has_contacts_at_rest()
+               ? "add a table."
+               : "set simulation.engine: mujoco if a table should support it."));
 }
 
 }  // namespace predictor

@@ -96,7 +96,8 @@ void SharedProcess::Start(const std::vector<std::string>& command,
     ended_ = false;
     return;
   }
-  Refuse(key_, ": " + Quote(command[0]) + " could not be started in " + folder.string() + ": " +
+  Refuse(key_, ": " + Quote(command[0]) + " could not be started in " +
+                   std::filesystem::absolute(folder).lexically_normal().string() + ": " +
                    std::strerror(error) + ". " + remedy);
 }
 
