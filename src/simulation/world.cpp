@@ -19,6 +19,7 @@ constexpr double kMaxVelocity = 100;      // of a joint [rad/s, m/s]
 constexpr double kMaxAcceleration = 1e6;  // of a joint [rad/s², m/s²]
 // A small ball turns faster than any joint when it rolls.
 constexpr double kMaxMovableVelocity = 1000;  // [rad/s, m/s]
+constexpr double kFloorHeight = 1e-3;  // contacts below it are with the floor, not a table [m]
 
 double Largest(const Eigen::Ref<const Eigen::VectorXd>& values) {
   double largest = 0;
@@ -271,6 +272,24 @@ struct World::Impl {
     state.controller = controlled.outcome();
   }
 
+  // Uses a copy, because a contact's solution depends on the previous ones.
+  ObjectSupport Support() const {
+    if (!controlled.start_engine().has_contacts_at_rest()) return {};
+    const std::unique_ptr<Engine> copy = controlled.start_engine().Copy();
+    copy->Restore(start);
+    for (int j = 0; j < state.cobot_dof; ++j)
+      copy->joint_forces()[copy->layout().v[static_cast<std::size_t>(j)]] = state.torque[j];
+    ObjectSupport support;
+    if (!copy->Prepare() || !copy->ComputeAccelerations(false)) return support;
+    for (int i = 0; i < copy->contact_count(); ++i) {
+      const Contact contact = copy->contact(i);
+      if (!contact.link.empty()) continue;
+      const bool is_floor = contact.fixture < 0 && contact.p_W.z() < kFloorHeight;
+      (is_floor ? support.floor : support.other) += contact.force_W.z();
+    }
+    return support;
+  }
+
   EventSequence events;
   ControlledScene controlled;
   Hands hands;
@@ -316,6 +335,8 @@ std::vector<double> World::ControllerTape() const {
   if (!taped) return {};
   return {taped->tape().begin(), taped->tape().end()};
 }
+
+ObjectSupport World::SupportAtStart() const { return impl_->Support(); }
 
 LinearModel World::Linearise() const {
   return impl_->Examine([this](Engine* copy) {

@@ -13,6 +13,12 @@
 
 namespace predictor {
 
+// The upward forces that carry the object at rest, in addition to the cobot [N].
+struct ObjectSupport {
+  double floor = 0;  // of the virtual floor
+  double other = 0;  // of the table and of fixtures
+};
+
 class World {
  public:
   // Composes the scene and moves it to its static equilibrium without hands. Throws InputError.
@@ -59,6 +65,9 @@ class World {
 
   // Judges the loop of the controller, as it is sampled, and the same scene. Allocates memory.
   SampledLoop JudgeController() const;
+  // Returns what carries the object in the start. To be called before the first Step, or after
+  // Reset. Allocates memory.
+  ObjectSupport SupportAtStart() const;
 
   double object_mass() const;                    // [kg]
   std::vector<std::string> joint_names() const;  // of the cobot's joints

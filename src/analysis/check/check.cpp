@@ -78,6 +78,7 @@ class Judge {
     Commissioned();
     Torques();
     Controller();
+    for (std::string& line : StartWarnings(report_->start)) Warn(std::move(line));
     LooseObject();
     Script();
     if (!report_->reach) return;
@@ -297,6 +298,7 @@ CheckReport Check(const Scenario& s, const CheckOptions& options) try {
   report.models = DescribeWorld(s, world);
   report.controller = world.JudgeController();
   report.controller_joint = world.joint_names()[static_cast<std::size_t>(report.controller.joint)];
+  report.start = DescribeStart(s, world);
   if (!report.direct) CheckDevice(s, world, options, &report);
   Judge(s, options.machine, &report).All();
   return report;

@@ -10,6 +10,7 @@
 #include "analysis/check/contact.h"
 #include "analysis/check/reach.h"
 #include "analysis/check/shift_search.h"
+#include "analysis/check/start.h"
 #include "core/messages.h"
 #include "haptics/stability.h"
 #include "scenario/machine.h"
@@ -63,6 +64,7 @@ struct CheckReport {
   std::string scenario;
   bool direct = false;
   ModelsReport models;
+  StartReport start;
   SampledLoop controller;        // the cobot's controller as it is sampled, without hands
   std::string controller_joint;  // name of its joint
   double security_distance = 0;  // of link pairs [m]

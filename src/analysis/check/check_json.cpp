@@ -134,6 +134,16 @@ const schema::Words kWords = {
      {"controller", "the loop of cobot and controller at the controller's rate, without hands"},
      {"growth_rate",
       "of the oscillation that grows fastest [1/s]; negative: it decays; null: none"},
+     {"start", "cobot and object at the start, at rest"},
+     {"flange_m", "origin of the end-effector in W [m]"},
+     {"last_link_direction", "unit vector from the last joint to the end-effector, axes of W"},
+     {"object_is_outside", "the object is on that side of the end-effector"},
+     {"nearest_link", "the cobot's link that is nearest to the object, except those of its hand"},
+     {"nearest_link_of_hand", "the link of the cobot's hand that is nearest to the object"},
+     {"link", "name of the link"},
+     {"clearance_m", "distance [m]; negative: they overlap; null: there is no such link"},
+     {"floor_force_n", "vertical force of the floor on the object [N]"},
+     {"other_support_n", "vertical force of table and fixtures on the object [N]"},
      {"arms", "the haptic arms; null: absent"},
      {"joints", "number of joints"},
      {"mass_kg", "mass [kg]"},
@@ -194,7 +204,8 @@ const schema::Words kWords = {
      {"rendered", "force over displacement that the arms render"},
      {"real_n_m", "real part: a stiffness [N/m]"},
      {"imaginary_n_m", "imaginary part: 2π·frequency times a damping [N/m]"}},
-    {"left", "right", "reach", "stop", "stability", "out_of_reach_s", "growth_rate"}};
+    {"left", "right", "reach", "stop", "stability", "out_of_reach_s", "growth_rate",
+     "clearance_m"}};
 
 // Returns a report in which nothing is missing.
 CheckReport Example() {
@@ -233,6 +244,7 @@ std::string CheckJson(const CheckReport& report) {
                {"problems", report.problems},
                {"warnings", report.warnings},
                {"models", ToJson(report.models)}};
+  json["start"] = Json::parse(StartJson(report.start));
   json["controller"] = {{"stable", report.controller.is_stable()},
                         {"joint", report.controller_joint},
                         {"growth_rate", NumberOrNull(report.controller.growth)},

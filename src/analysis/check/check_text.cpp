@@ -14,13 +14,15 @@ void AddModels(const CheckReport& report, std::string* text) {
   AppendLine(text, "Models");
   AppendLine(text, "  cobot            %d joints, %.1f kg", m.cobot_joints, m.cobot_mass);
   AppendLine(text,
-             "  object           %.2f kg; static equilibrium found %.0f mm below the set-point "
+             "  object           %.2f kg; static equilibrium found %.0f mm %s the set-point "
              "(%.0f mm to its side), %.3f m above the virtual floor",
-             m.object_mass, -1e3 * m.sag.z(), 1e3 * m.sag.head<2>().norm(), m.X_WO.p.z());
+             m.object_mass, 1e3 * std::fabs(m.sag.z()), m.sag.z() > 0 ? "above" : "below",
+             1e3 * m.sag.head<2>().norm(), m.X_WO.p.z());
   if (std::isfinite(m.torque_limit) && m.torque_limit > 0)
     AppendLine(text, "  torque at rest   at most %.0f %% of its limit (%s: %.1f of %.0f %s)",
                100 * m.torque_share, m.torque_joint.c_str(), m.torque, m.torque_limit,
                m.torque_is_force ? "N" : "N·m");
+  AddStart(report.start, text);
   for (std::size_t h = 0; h < kHands; ++h)
     if (m.arms[h])
       AppendLine(

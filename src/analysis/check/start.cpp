@@ -1,0 +1,109 @@
+#include "analysis/check/start.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/format.h"
+#include "core/json_schema.h"
+#include "core/text.h"
+#include "core/units.h"
+#include "models/last_link.h"
+#include "models/robot.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kTouching = 0.002;  // smaller overlaps are contacts [m]
+constexpr double kCarried = 0.01;  // share of the weight below which a support is a rounding error
+
+bool Overlaps(const LinkGap& gap) { return gap.distance < -kTouching; }
+
+std::string Millimetres(double length) { return Formatted("%.0f mm", kMillimetres * length); }
+
+bool RestsOn(double force, const StartReport& start) { return force > kCarried * start.weight; }
+
+}  // namespace
+
+double StartReport::tilt() const { return std::acos(std::clamp(-outward.z(), -1.0, 1.0)); }
+
+StartReport DescribeStart(const Scenario& s, const World& world) {
+  const auto cobot = RobotModel::Load(
+      {s.cobot.model, s.folder(), s.cobot.remove_links, s.cobot.base.ToPose(), "cobot"});
+  const WorldState& state = world.state();
+  const Pose& X_WE = state.end_effector.X_W;
+  const Pose& X_WO = state.object.X_W;
+  StartReport start;
+  start.flange = X_WE.p;
+  start.outward = X_WE.q * LastLinkDirection(*cobot, cobot->Frame(s.cobot.end_effector));
+  start.is_outside = (X_WO.p - X_WE.p).dot(start.outward) > 0;
+  start.gaps = LinkGaps(s).At(state.q, X_WO);
+  start.support = world.SupportAtStart();
+  start.weight = world.object_mass() * s.environment.gravity;
+  return start;
+}
+
+std::vector<std::string> StartWarnings(const StartReport& start) {
+  std::vector<std::string> warnings;
+  const auto inside = [&](const LinkGap& gap, const char* why) {
+    warnings.push_back(
+        Formatted("At the start, the object overlaps the cobot's link %s by %s%s. No contact acts "
+                  "between them, so the run would be possible only in the simulation. Choose "
+                  "another cobot.posture, or place the object further out with "
+                  "object.attachment.on_end_effector.",
+                  gap.link.c_str(), Millimetres(-gap.distance).c_str(), why));
+  };
+  if (Overlaps(start.gaps.links)) inside(start.gaps.links, "");
+  if (!start.is_outside && Overlaps(start.gaps.hand))
+    inside(start.gaps.hand, ", because it is on the inner side of the end-effector");
+  if (RestsOn(start.support.floor, start))
+    warnings.push_back(
+        Formatted("At the start, the object rests on the floor, which carries %.0f N of its weight "
+                  "of %.0f N. The cobot carries only the rest, so a person must lift more. Choose "
+                  "a higher cobot.posture, or raise cobot.base.",
+                  start.support.floor, start.weight));
+  return warnings;
+}
+
+void AddStart(const StartReport& start, std::string* text) {
+  const auto list = [](const Vector3& v) {
+    return Formatted("[%.2f, %.2f, %.2f]", v.x(), v.y(), v.z());
+  };
+  AppendLine(text,
+             "  flange           at %s m; the last link points along %s, %.0f° from straight "
+             "down",
+             list(start.flange).c_str(), list(start.outward).c_str(), kDegrees * start.tilt());
+  const LinkGap& gap = start.gaps.links;
+  if (!gap.link.empty() && gap.distance >= 0)
+    AppendLine(text, "  object to cobot  %s to the nearest link that does not hold it (%s)",
+               Millimetres(gap.distance).c_str(), gap.link.c_str());
+  else if (!gap.link.empty())
+    AppendLine(text, "  object to cobot  overlaps link %s by %s", gap.link.c_str(),
+               Millimetres(-gap.distance).c_str());
+  if (RestsOn(start.support.floor, start))
+    AppendLine(text, "  floor            the object rests on it; it carries %.0f of %.0f N",
+               start.support.floor, start.weight);
+  if (RestsOn(start.support.other, start))
+    AppendLine(text,
+               "  table            the object rests on it or on a fixture; they carry %.0f of "
+               "%.0f N",
+               start.support.other, start.weight);
+}
+
+std::string StartJson(const StartReport& start) {
+  using Json = nlohmann::ordered_json;
+  const auto list = [](const Vector3& v) { return Json{v.x(), v.y(), v.z()}; };
+  const auto gap = [](const LinkGap& g) {
+    return Json{{"link", g.link}, {"clearance_m", NumberOrNull(g.distance)}};
+  };
+  const Json json = {{"flange_m", list(start.flange)},
+                     {"last_link_direction", list(start.outward)},
+                     {"object_is_outside", start.is_outside},
+                     {"nearest_link", gap(start.gaps.links)},
+                     {"nearest_link_of_hand", gap(start.gaps.hand)},
+                     {"floor_force_n", start.support.floor},
+                     {"other_support_n", start.support.other}};
+  return json.dump();
+}
+
+}  // namespace predictor

@@ -1,0 +1,36 @@
+// How cobot and object stand at the start of a run, at rest.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+#include "scenario/scenario.h"
+#include "simulation/link_gaps.h"
+#include "simulation/world.h"
+
+namespace predictor {
+
+struct StartReport {
+  Vector3 flange = Vector3::Zero();    // origin of the end-effector E, in W [m]
+  Vector3 outward = Vector3::UnitZ();  // where the last link points (LastLinkDirection), in W
+  bool is_outside = true;              // the object is on that side of the end-effector
+  ObjectGaps gaps;                     // of the object and the cobot
+  ObjectSupport support;               // of the object [N]
+  double weight = 0;                   // of the object [N]
+
+  // Returns the angle between the last link and straight down [rad].
+  double tilt() const;
+};
+
+// `world` is at its start.
+StartReport DescribeStart(const Scenario& scenario, const World& world);
+
+// Returns sentences about an object that is inside the cobot or that the floor carries.
+std::vector<std::string> StartWarnings(const StartReport& start);
+
+// These functions append the lines of the report for the user, and return its JSON in SI units.
+void AddStart(const StartReport& start, std::string* text);
+std::string StartJson(const StartReport& start);
+
+}  // namespace predictor
