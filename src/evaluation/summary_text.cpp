@@ -5,6 +5,7 @@
 #include "core/format.h"
 #include "core/text.h"
 #include "core/text_table.h"
+#include "core/units.h"
 #include "core/words.h"
 #include "evaluation/summary.h"
 
@@ -140,6 +141,19 @@ void AddStops(const Summary& s, std::string* text) {
                static_cast<unsigned long long>(s.stop_count - listed), s.stops.size());
 }
 
+// An object that stays where it is, for example because it stands on the floor, makes the results
+// of a run meaningless.
+void AddLift(const Summary& s, std::string* text) {
+  constexpr double kLifted = 0.1;  // share of the intended height
+  const double intended = s.Get<double>("object.scripted_lift_m");
+  const double rise = s.Get<double>("object.scripted_rise_m");
+  if (!(rise < kLifted * intended)) return;
+  AppendLine(text,
+             "Warning: the script moves the object up by %.0f mm, but it rose by only %.0f mm. "
+             "`predictor check` says whether it rests on the floor at the start.",
+             kMillimetres * intended, kMillimetres * rise);
+}
+
 }  // namespace
 
 std::string LoopWords(const PredictedLoop& loop) {
@@ -166,6 +180,7 @@ std::string SummaryTable(const Summary& s) {
   text += '\n';
   const std::vector<ResultGroup> groups = GroupResults(s.results);
   if (s.ticks() > 0) AddResults(groups, false, &text), text += '\n';
+  AddLift(s, &text);
   AddEvents(s, &text);
   AddStops(s, &text);
   text += '\n';
