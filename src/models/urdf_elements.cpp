@@ -183,9 +183,11 @@ std::string WhatIsWrongWithInertia(const Matrix3& inertia) {
   const Vector3 moments =
       Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
   const double rounding = kMinMoment + kInertiaRounding * moments.cwiseAbs().maxCoeff();
+  constexpr double kNoise = 1e-12;  // share of the largest moment that is a rounding error
+  const Vector3 shown =
+      (moments.array().abs() < kNoise * moments.cwiseAbs().maxCoeff()).select(0, moments);
   std::array<char, 100> text;
-  std::snprintf(text.data(), text.size(), "%.6g, %.6g, %.6g kg·m²", moments[0], moments[1],
-                moments[2]);
+  std::snprintf(text.data(), text.size(), "%.6g, %.6g, %.6g kg·m²", shown[0], shown[1], shown[2]);
   const std::string values = text.data();
   if (moments[0] < -rounding) {
     return "has the principal moments " + values +

@@ -99,8 +99,12 @@ std::vector<double> Numbers(const UrdfSource& source, const XmlElement& element,
   const std::string text = element.Attribute(attribute);
   std::vector<double> numbers;
   if (!ParseNumbers(text, &numbers) || numbers.size() != count) {
+    const bool is_xacro = text.find("${") != std::string::npos;
     source.Fail(element, Of(element, attribute) + " is " + Quote(text) + "; it must be " +
-                             (count == 1 ? "a number." : std::to_string(count) + " numbers."));
+                             (count == 1 ? "a number." : std::to_string(count) + " numbers.") +
+                             (is_xacro ? " This is an expression of xacro. Expand the file first: "
+                                         "xacro FILE.urdf.xacro > FILE.urdf."
+                                       : ""));
   }
   for (const double x : numbers) {
     if (std::isfinite(x) && std::abs(x) <= largest) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 
 #include "core/error.h"
@@ -58,6 +59,20 @@ std::string DidYouMean(const std::string& word, const std::vector<std::string>& 
   return nearest.empty() ? "" : " Did you mean " + nearest + "?";
 }
 
+// As above for packages. Their common ending says nothing about similarity.
+std::string DidYouMeanPackage(const std::string& word, const std::vector<std::string>& names) {
+  constexpr std::string_view kEnding = "_description";
+  if (!word.ends_with(kEnding)) return DidYouMean(word, names);
+  const auto stem = [&](const std::string& name) {
+    return name.substr(0, name.size() - kEnding.size());
+  };
+  std::vector<std::string> stems;
+  for (const std::string& name : names)
+    if (name.ends_with(kEnding)) stems.push_back(stem(name));
+  const std::string nearest = Nearest(stem(word), stems);
+  return nearest.empty() ? "" : " Did you mean " + nearest + std::string(kEnding) + "?";
+}
+
 std::string ListOf(const std::vector<fs::path>& folders) {
   std::vector<std::string> names;
   names.reserve(folders.size());
@@ -103,8 +118,8 @@ fs::path FindInPackages(const std::string& uri, const std::vector<fs::path>& roo
     for (std::string& other : NamesIn(root)) known.push_back(std::move(other));
   }
   if (!package.empty()) return package / rest;
-  throw InputError(Quote(uri) + " is in the package " + Quote(name) +
-                   ", which was not found in: " + ListOf(roots) + "." + DidYouMean(name, known) +
+  throw InputError(Quote(uri) + " is in the package " + Quote(name) + ", which was not found in: " +
+                   ListOf(roots) + "." + DidYouMeanPackage(name, known) +
                    " Set PREDICTOR_PACKAGE_PATH to the folder that contains it.");
 }
 

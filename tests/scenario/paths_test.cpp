@@ -150,6 +150,9 @@ TEST_F(Paths, MissingFilesAreNamedWithASimilarName) {
   EXPECT_SAYS(ErrorOf("../assets/bax.urdf"), "Did you mean box.urdf?");
   EXPECT_SAYS(ErrorOf("package://arn/arm.urdf"), "Did you mean arm?");
   EXPECT_SAYS(ErrorOf("package://arn/arm.urdf"), "PREDICTOR_PACKAGE_PATH");
+  // The ending that all packages share does not make their names similar.
+  EXPECT_SAYS(ErrorOf("package://pandas_description/a.urdf"), "Did you mean panda_description?");
+  EXPECT_EQ(ErrorOf("package://my_description/a.urdf").find("Did you mean"), std::string::npos);
   EXPECT_SAYS(ErrorOf("package://arm/amr.urdf"), "Did you mean arm.urdf?");
   EXPECT_SAYS(ErrorOf("package://arm"), "does not name a file");
   EXPECT_SAYS(ErrorOf("package:///etc/passwd"), "does not name a file");
