@@ -2,7 +2,9 @@
 // two arms, a given cobot and an object. It places the object and the arms at the cobot's
 // end-effector.
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -14,6 +16,7 @@
 #include "core/format.h"
 #include "core/text.h"
 #include "core/types.h"
+#include "core/units.h"
 #include "init_cobot.h"
 #include "scenario/scenario_io.h"
 #include "screen.h"
@@ -26,6 +29,10 @@ namespace fs = std::filesystem;
 // Masses of the object to try [kg]; a smaller mass leaves too little stability margin.
 constexpr double kMasses[] = {9, 6};
 constexpr double kDampingRatios[] = {1, 1.5, 2};
+// Angles of the last link from straight down to try [rad].
+constexpr double kTilts[] = {0, 30 / kDegrees, 60 / kDegrees, 90 / kDegrees};
+// Where the handles are for a person who stands: in front of the feet, above the ground [m].
+constexpr double kHandsAhead = 0.45, kHandsHeight = 1.0;
 
 // A scenario that `init` may write.
 struct Draft {
@@ -37,16 +44,23 @@ struct Draft {
 
 struct Object {
   const char *name, *shape;
-  double half_height;  // height from the object's centre to the cobot above it [m]
-  double handle_y;     // distance of the left and right handle from the centre [m]
-  double handle_z;     // height of the handles above the centre [m]
+  PrimitiveSpec primitive;  // without its mass
+  double half_height;       // height from the object's centre to the cobot above it [m]
+  double handle_y;          // distance of the left and right handle from the centre [m]
+  double handle_z;          // height of the handles above the centre [m]
+
+  InitObject WithMass(double mass) const {
+    InitObject object{primitive, half_height};
+    object.primitive.mass = mass;
+    return object;
+  }
 };
 
 const Object& ObjectNamed(const std::string& name) {
-  static constexpr Object kObjects[] = {
-      {"box", "shape: box, size: [0.3, 0.3, 0.2]", 0.1, 0.12, -0.1},
-      {"bar", "shape: box, size: [0.2, 0.5, 0.1]", 0.05, 0.25, -0.05},
-      {"ball", "shape: sphere, size: [0.15, 0, 0]", 0.15, 0.1, -0.1}};
+  static const Object kObjects[] = {
+      {"box", "box", {Shape::kBox, {0.3, 0.3, 0.2}}, 0.1, 0.12, -0.1},
+      {"bar", "box", {Shape::kBox, {0.2, 0.5, 0.1}}, 0.05, 0.25, -0.05},
+      {"ball", "sphere", {Shape::kSphere, {0.15, 0, 0}}, 0.15, 0.1, -0.1}};
   return *std::ranges::find_if(kObjects, [&](const Object& o) { return name == o.name; });
 }
 
@@ -77,6 +91,11 @@ std::string CobotText(const InitOptions& o, const Draft& draft) {
                                   ? ""
                                   : "  remove_links: [" + Join(cobot.remove_links) +
                                         "]  # with all that is attached to them\n";
+  const std::string base =
+      cobot.base_height == 0
+          ? ""
+          : Formatted("  base: {xyz: [0, 0, %g]}  # on a pedestal, above the floor [m]\n",
+                      cobot.base_height);
   return Formatted(
       "# %s: a scenario to start from. Check it with `predictor check %s.yaml`, run it with\n"
       "# `predictor run %s.yaml`. `predictor schema scenario` lists all keys.\n"
@@ -88,7 +107,7 @@ std::string CobotText(const InitOptions& o, const Draft& draft) {
       "\n"
       "# The simulated cobot.\n"
       "cobot:\n"
-      "  model: %s\n%s"
+      "  model: %s\n%s%s"
       "  end_effector: %s  # link that holds the object\n"
       "  posture: %s  # at the start [rad]\n"
       "  joint_friction: {viscous: 1.0}\n"
@@ -98,8 +117,8 @@ std::string CobotText(const InitOptions& o, const Draft& draft) {
       "    damping_ratio: %g\n"
       "\n",
       o.name.c_str(), o.name.c_str(), o.name.c_str(), fs::path(o.name).filename().c_str(),
-      cobot.model.c_str(), removed.c_str(), cobot.end_effector.c_str(), List(cobot.posture).c_str(),
-      kInitStiffness, draft.damping_ratio);
+      cobot.model.c_str(), removed.c_str(), base.c_str(), cobot.end_effector.c_str(),
+      List(cobot.posture).c_str(), kInitStiffness, draft.damping_ratio);
 }
 
 std::string ObjectText(const InitOptions& o, const Draft& draft) {
@@ -108,15 +127,16 @@ std::string ObjectText(const InitOptions& o, const Draft& draft) {
   std::string text = Formatted(
       "# The object that the cobot holds from above, and the handles that people hold.\n"
       "object:\n"
-      "  primitive: {%s, mass: %g}  # [m], [kg]\n"
+      "  primitive: {shape: %s, size: %s, mass: %g}  # [m], [kg]\n"
       "  attachment:\n"
       "    joint: spherical\n"
       "    damping: 0.1  # of the ball joint [N·m·s/rad]\n"
       "    on_end_effector: {xyz: %s, rpy: %s}\n"
       "    on_object: {xyz: [0, 0, %.4g]}\n\n"
       "handles:  # on the object [m]\n",
-      object.shape, draft.mass, List(X_WE.q.conjugate() * Vector3(0, 0, -0.05)).c_str(),
-      List(RpyOf(X_WE.q.conjugate())).c_str(), object.half_height);
+      object.shape, List(object.primitive.size).c_str(), draft.mass,
+      List(draft.cobot.attachment).c_str(), List(RpyOf(X_WE.q.conjugate())).c_str(),
+      object.half_height);
   if (o.arms == 1) return text + Formatted("  left: {xyz: [0, 0, %.4g]}\n\n", object.handle_z);
   Append(&text, "  left: {xyz: [0, -%.4g, %.4g]}\n  right: {xyz: [0, %.4g, %.4g]}\n\n",
          object.handle_y, object.handle_z, object.handle_y, object.handle_z);
@@ -124,7 +144,8 @@ std::string ObjectText(const InitOptions& o, const Draft& draft) {
 }
 
 std::string DeviceText(const InitOptions& o, const InitCobot& cobot) {
-  const Vector3 shift = cobot.X_WE.p - PandaCobot().X_WE.p;
+  const InitCobot panda = PandaCobot();
+  const Vector3 shift = cobot.X_WE * cobot.attachment - panda.X_WE * panda.attachment;
   std::string text =
       "# The haptic arms; here they are simulated. Real ones: predictor run SCENARIO --machine "
       "FILE\n"
@@ -137,44 +158,59 @@ std::string DeviceText(const InitOptions& o, const InitCobot& cobot) {
          ArmText("right", shift + Vector3(0.1, y, -0.25)) + "\n";
 }
 
-constexpr const char* kOperatorText =
-    "# A simulated operator. To guide the object yourself, replace this section by `type: "
-    "browser`\n"
-    "# and take the operator's hands in the viewer.\n"
-    "operator:\n"
-    "  type: virtual\n"
-    "  # Who the operator is and where the operator stands, for `predictor evaluate`:\n"
-    "  # body: {height: 1.75, mass: 75, sex: female}\n"
-    "  # stance: {ground: [1.0, 0, -0.85], facing: 180 deg}\n"
-    "  script:\n"
-    "    - {action: grip, start: 0, duration: 0.5}\n"
-    "    - {action: move, start: 1, duration: 3, by: [0, 0, 0.05]}\n"
-    "    - {action: move, start: 4, duration: 4, by: [0, 0.08, 0]}\n"
-    "    - {action: move, start: 8, duration: 4, by: [0, -0.08, 0]}\n"
-    "    - {action: put_down, start: 12, duration: 3, by: [0, 0, -0.05]}\n";
-
-std::string TextOf(const InitOptions& o, const Draft& draft) {
-  return CobotText(o, draft) + ObjectText(o, draft) + DeviceText(o, draft.cobot) + kOperatorText;
+std::string OperatorText(const InitOptions& o, const Draft& draft) {
+  const Object& object = ObjectNamed(o.object);
+  Vector3 ground = draft.cobot.ObjectAt(object.WithMass(draft.mass));
+  ground += Vector3(kHandsAhead, 0, object.handle_z - kHandsHeight);
+  ground.z() -= draft.mass * kStandardGravity / kInitStiffness;  // the cobot sags
+  return Formatted(
+      "# A simulated operator. To guide the object yourself, replace this section by `type: "
+      "browser`\n"
+      "# and take the operator's hands in the viewer.\n"
+      "operator:\n"
+      "  type: virtual\n"
+      "  # Who the operator is and where the operator stands, for `predictor evaluate`:\n"
+      "  # body: {height: 1.75, mass: 75, sex: female}\n"
+      "  # stance: {ground: [%.2f, %.2f, %.2f], facing: 180 deg}\n"
+      "  script:\n"
+      "    - {action: grip, start: 0, duration: 0.5}\n"
+      "    - {action: move, start: 1, duration: 3, by: [0, 0, 0.05]}\n"
+      "    - {action: move, start: 4, duration: 4, by: [0, 0.08, 0]}\n"
+      "    - {action: move, start: 8, duration: 4, by: [0, -0.08, 0]}\n"
+      "    - {action: put_down, start: 12, duration: 3, by: [0, 0, -0.05]}\n",
+      ground.x(), ground.y(), ground.z());
 }
 
-// Reasons for which the scenario `text` would be refused or would fail its check.
+std::string TextOf(const InitOptions& o, const Draft& draft) {
+  return CobotText(o, draft) + ObjectText(o, draft) + DeviceText(o, draft.cobot) +
+         OperatorText(o, draft);
+}
+
+// Reasons for which the scenario `text` would be refused or would fail its check. An object that
+// the floor carries or that is inside the cobot is one of them.
 std::vector<std::string> ProblemsOf(const std::string& text, const fs::path& file) {
   try {
     CheckOptions how;
     how.search = false;
-    return Check(ParseScenario(text, file.string(), fs::absolute(file).parent_path()), how)
-        .problems;
+    const CheckReport report =
+        Check(ParseScenario(text, file.string(), fs::absolute(file).parent_path()), how);
+    std::vector<std::string> problems = report.problems;
+    std::ranges::move(StartWarnings(report.start), std::back_inserter(problems));
+    return problems;
   } catch (const InputError& error) {
     return {error.what()};
   }
 }
 
-// Returns the first draft that passes its check, or else the first draft with its problems.
-Draft Choose(const InitOptions& o, const fs::path& file) {
+// Returns the first draft that passes its check, or else the first draft with its problems, or
+// nothing if there is no draft. `tilt` is that of OwnCobots.
+std::optional<Draft> ChooseAt(double tilt, const InitOptions& o, const fs::path& file) {
   std::optional<Draft> first;
   for (const double mass : kMasses) {
+    const InitObject object = ObjectNamed(o.object).WithMass(mass);
     const std::vector<InitCobot> cobots =
-        o.urdf.empty() ? std::vector{PandaCobot()} : OwnCobots(o.urdf, o.end_effector, file, mass);
+        o.urdf.empty() ? std::vector{PandaCobot()}
+                       : OwnCobots(o.urdf, o.end_effector, file, object, tilt);
     for (const InitCobot& cobot : cobots)
       for (const double damping_ratio : kDampingRatios) {
         Draft draft{cobot, mass, damping_ratio, {}};
@@ -183,12 +219,19 @@ Draft Choose(const InitOptions& o, const fs::path& file) {
         if (!first) first = draft;
       }
   }
-  if (first) return *first;
+  return first;
+}
+
+Draft Choose(const InitOptions& o, const fs::path& file) {
+  for (const double tilt : kTilts)
+    if (std::optional<Draft> draft = ChooseAt(tilt, o, file)) return *draft;
   throw InputError(
       o.urdf,
       Formatted("No posture was found in which the arm of this robot can carry %g kg, the lightest "
-                "object that leaves enough stability margin. Check the effort limits of its "
-                "joints, or choose the link that holds the object: --end-effector LINK.",
+                "object that leaves enough stability margin, outside its links and with its last "
+                "link not above the horizontal. Check the effort limits of its joints, or choose "
+                "the link that holds the object: --end-effector LINK. If this is a small robot, "
+                "see docs/tutorials/own-cobot.md, \"A small cobot\".",
                 *std::ranges::min_element(kMasses)));
 }
 
@@ -198,6 +241,8 @@ std::string JsonOf(const Draft& draft, const std::string& file) {
                                          {"model", cobot.model},
                                          {"end_effector", cobot.end_effector},
                                          {"posture", cobot.posture},
+                                         {"base_height_m", cobot.base_height},
+                                         {"tilt_rad", cobot.tilt},
                                          {"removed_links", cobot.remove_links},
                                          {"removed_mass_kg", cobot.removed_mass},
                                          {"object_mass_kg", draft.mass},
@@ -218,6 +263,16 @@ std::string ResultText(const InitOptions& o, const Draft& draft, const std::stri
            "The scenario leaves out these links (%.2g kg), because other joints move them: %s. To "
            "choose another link for the object, use --end-effector.\n",
            cobot.removed_mass, Join(cobot.remove_links).c_str());
+  if (cobot.base_height > 0)
+    Append(&text,
+           "On the floor, the cobot could not hold the object freely with its last link pointing "
+           "down, so its base is %g m above the floor.\n",
+           cobot.base_height);
+  if (cobot.tilt > 0)
+    Append(&text,
+           "No posture was found in which the last link points down: it leans by %.0f° from "
+           "straight down, away from the base.\n",
+           kDegrees * cobot.tilt);
   if (!draft.problems.empty()) return text + "Wrote " + file + ", which does not pass its check.\n";
   return text + "Wrote " + file + ". Next: predictor check " + file + "; predictor run " + file +
          "\n";
@@ -225,7 +280,11 @@ std::string ResultText(const InitOptions& o, const Draft& draft, const std::stri
 
 }  // namespace
 
-int InitCommand(const InitOptions& options) {
+int InitCommand(const InitOptions& given) {
+  InitOptions options = given;
+  for (const char* ending : {".yaml", ".yml"})
+    if (options.name.ends_with(ending))
+      options.name.resize(options.name.size() - std::strlen(ending));
   const std::string file = options.name + ".yaml";
   options.CheckWritable();
   options.RefuseToReplace(file);

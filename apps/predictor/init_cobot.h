@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "scenario/scenario.h"
 
 namespace predictor {
 
@@ -13,22 +14,37 @@ inline constexpr const char* kPandaUrdf =
     "package://example-robot-data/robots/panda_description/urdf/panda.urdf";
 inline constexpr double kInitStiffness = 500;  // vertical stiffness of the controller [N/m]
 
+// The object that the cobot holds from above, by the centre of its upper face.
+struct InitObject {
+  PrimitiveSpec primitive;
+  double half_height = 0;  // [m]
+};
+
 // A cobot as in the scenario, and the pose of its end-effector.
 struct InitCobot {
   std::string model, end_effector;
   std::vector<std::string> remove_links;
-  double removed_mass = 0;      // mass of these links [kg]
-  std::vector<double> posture;  // [rad] or [m]
-  Pose X_WE;
+  double removed_mass = 0;               // mass of these links [kg]
+  std::vector<double> posture;           // [rad] or [m]
+  Pose X_WE = {};                        // before the cobot sags
+  double base_height = 0;                // of the cobot above the floor [m]
+  Vector3 attachment = Vector3::Zero();  // where the object is attached, in E [m]
+  double tilt = 0;                       // of the last link from straight down [rad]
+
+  // Returns the object's centre in W, before the cobot sags [m].
+  Vector3 ObjectAt(const InitObject& object) const;
 };
 
 InitCobot PandaCobot();
 
-// Returns the robot of a URDF in postures in which it can carry `mass` [kg], the most suitable one
-// first, or nothing if no posture was found. The result is the same in each call. `urdf` is a file
-// or package://..., in a folder from which the scenario may read it. For `end_effector`, see
+// Returns the robot of a URDF in postures in which it can carry the object, the most suitable one
+// first, or nothing if no posture was found. The last link leans by `tilt` from straight down
+// [rad]. The object is on its outer side, clear of the other links and of the floor. If the robot
+// is too small for this, its base stands higher. The result is the same in each call. `urdf` is a
+// file or package://..., in a folder from which the scenario may read it. For `end_effector`, see
 // FindArm. Throws InputError.
 std::vector<InitCobot> OwnCobots(const std::string& urdf, const std::string& end_effector,
-                                 const std::filesystem::path& scenario, double mass);
+                                 const std::filesystem::path& scenario, const InitObject& object,
+                                 double tilt);
 
 }  // namespace predictor
