@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/format.h"
-#include "core/json_schema.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "models/last_link.h"
@@ -94,7 +93,7 @@ std::string StartJson(const StartReport& start) {
   using Json = nlohmann::ordered_json;
   const auto list = [](const Vector3& v) { return Json{v.x(), v.y(), v.z()}; };
   const auto gap = [](const LinkGap& g) {
-    return Json{{"link", g.link}, {"clearance_m", NumberOrNull(g.distance)}};
+    return Json{{"link", g.link}, {"clearance_m", g.distance}};
   };
   const Json json = {{"flange_m", list(start.flange)},
                      {"last_link_direction", list(start.outward)},
