@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <dart/config.hpp>
 #include <exception>
 #include <iostream>
 #include <memory>
@@ -98,4 +99,10 @@ int Main() {
 }  // namespace
 }  // namespace predictor::dart_engine
 
-int main() { return predictor::dart_engine::Main(); }
+int main(int argc, char** argv) {
+  if (argc == 2 && std::strcmp(argv[1], predictor::dart_engine::kVersionOption) == 0) {
+    std::fputs("DART " DART_VERSION, stdout);
+    return 0;
+  }
+  return predictor::dart_engine::Main();
+}

@@ -98,7 +98,7 @@ std::string UnknownCommand(const CLI::App& app, const std::string& word);
 // Returns the error and hint for a command line that cannot be parsed.
 std::string UsageError(const CLI::App& app, const CLI::ParseError& error);
 
-// Returns "predictor 0.1.0 (a1b2c3d), recording format 2" and the like.
+// Returns "predictor 0.1.0 (a1b2c3d), recording format 2, MuJoCo 4.0.0, DART 6.12.1" and the like.
 std::string VersionText();
 
 }  // namespace predictor

@@ -50,7 +50,7 @@ int RunHelperProcess(int argc, char** argv) {
 void AddCommands(CLI::App* app, Request* r) {
   app->formatter(std::make_shared<HelpFormatter>());
   app->require_subcommand(1);
-  app->set_version_flag("-V,--version", VersionText());
+  app->set_version_flag("-V,--version", VersionText);
   AddRunCommands(app, r);
   AddAnalysisCommands(app, r);
   AddRigCommands(app, r);

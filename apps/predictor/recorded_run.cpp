@@ -16,6 +16,7 @@
 #include "report.h"
 #include "scenario/participant.h"
 #include "screen.h"
+#include "simulation/engine_version.h"
 
 namespace predictor {
 namespace {
@@ -58,6 +59,7 @@ std::map<std::string, std::string> RecordOptions::Labels() const {
 
 RecordingHeader HeaderOf(const Emulator& emulator, const RecordOptions& options) {
   RecordingHeader header = DescribeRun(emulator.scenario(), PREDICTOR_VERSION, options.Labels());
+  header.engine = EngineVersion(emulator.scenario().simulation.engine);
   header.machine_yaml = options.machine;
   header.loop = PredictedLoopOf(emulator);
   AddControllerTape(emulator.setup().controller_tape, &header);

@@ -198,8 +198,8 @@ void AddToolCommands(CLI::App* app, Request* r) {
   CLI::App* help = AddCommand(app, kToolGroup, "help", "Show the help of a command", r,
                               [app, r] { return ShowHelp(app, r->help); });
   help->add_option("command", r->help, "Command, for example survey report");
-  AddPrint(app, kToolGroup, "version", "Show version, commit and recording format", r,
-           [] { return VersionText() + "\n"; });
+  AddPrint(app, kToolGroup, "version", "Show version, commit, recording format and physics engines",
+           r, [] { return VersionText() + "\n"; });
   AddPrint(app, kToolGroup, "man", "Print the manual page: predictor man | man -l -", r,
            [app] { return ManPage(*app); });
   CLI::App* completion =

@@ -2,6 +2,7 @@
 
 #include "command_line.h"
 #include "recording/preamble.h"
+#include "simulation/engine_version.h"
 
 namespace predictor {
 
@@ -9,8 +10,12 @@ std::string VersionText() {
   const std::string commit =
 #include "commit.inc"
       ;
-  return std::string("predictor ") + PREDICTOR_VERSION +
-         (commit.empty() ? "" : " (" + commit + ")") + ", recording format " + recording::kFormat;
+  std::string text = std::string("predictor ") + PREDICTOR_VERSION +
+                     (commit.empty() ? "" : " (" + commit + ")") + ", recording format " +
+                     recording::kFormat;
+  for (const EngineKind engine : {EngineKind::kMujoco, EngineKind::kDart})
+    if (const std::string version = EngineVersion(engine); !version.empty()) text += ", " + version;
+  return text;
 }
 
 }  // namespace predictor

@@ -23,6 +23,7 @@ struct RecordingHeader {
   std::string scenario_name;
   std::string machine_yaml;  // may be empty
   std::string program_version;
+  std::string engine;  // name and version of the physics engine; empty in older recordings
   std::uint64_t seed = 0;
   double dt = 0;                      // duration of a tick [s]
   std::optional<PredictedLoop> loop;  // absent in mode `direct` and in older recordings

@@ -169,6 +169,7 @@ class OpeningReader {
     RecordingHeader& header = opening_.header;
     header.scenario_name = Entry(run, "scenario");
     header.program_version = Entry(run, "version");
+    header.engine = Entry(run, "engine");
     if (!ParseNumber(Entry(run, "seed"), &header.seed) ||
         !ParseNumber(Entry(run, "dt"), &header.dt) ||
         !ParseNumber(Entry(run, "start_unix_ns"), &header.start_unix_ns))

@@ -161,6 +161,7 @@ Preamble MakePreamble(const RecordingHeader& header, const std::vector<JsonChann
   mcap::Map run{{"format", kFormat},
                 {"scenario", header.scenario_name},
                 {"version", header.program_version},
+                {"engine", header.engine},
                 {"seed", std::to_string(header.seed)},
                 {"dt", FormatNumber(header.dt)},
                 {"start_unix_ns", std::to_string(header.start_unix_ns)},

@@ -144,6 +144,18 @@ TEST(ExitCode, OfARunWithoutOscillationDetectorsGivesTheReason) {
   EXPECT_EQ(simulate.Wait(), 0) << simulate.errors();
 }
 
+// DART's steps may be late.
+TEST(ExitCode, OfARunWithDartGivesTheReason) {
+  Child run({"run", Scenario("box_9kg"), "--no-viewer", "--no-record", "--set",
+             "simulation.engine=dart"});
+  EXPECT_EQ(run.Wait(), 2);
+  EXPECT_NE(run.errors().find("simulation.engine is dart, which runs in virtual time only: its "
+                              "steps allocate memory and wait for another process, so a step may "
+                              "be late. Set it to mujoco, or use `predictor simulate`."),
+            std::string::npos)
+      << run.errors();
+}
+
 TEST(ExitCode, OfARunWithoutAllRepairsGivesTheReason) {
   const std::vector<std::string> paper = {"--set", "rendering.formulation=paper"};
   Child run({"run", Scenario("box_9kg"), "--no-viewer", "--no-record", paper[0], paper[1]});

@@ -121,14 +121,14 @@ TEST(Help, OfEachCommandHasExamplesAndDefaultsAndFitsTheTerminal) {
     EXPECT_NE(run.output().find(text), std::string::npos) << text << run.output();
 }
 
-TEST(Version, NamesTheCommitAndTheFormatOfRecordings) {
+TEST(Version, NamesTheCommitTheFormatOfRecordingsAndTheEngines) {
   for (const char* how : {"version", "--version", "-V"}) {
     Child child({how});
     EXPECT_EQ(child.Wait(), 0);
     EXPECT_TRUE(std::regex_match(
         child.output(),
-        std::regex(
-            "predictor \\d+\\.\\d+\\.\\d+( \\([0-9a-f]{7}\\+?\\))?, recording format \\d+\n")))
+        std::regex("predictor \\d+\\.\\d+\\.\\d+( \\([0-9a-f]{7}\\+?\\))?, recording format \\d+, "
+                   "MuJoCo \\d+\\.\\d+\\.\\d+(, DART \\d+\\.\\d+\\.\\d+)?\n")))
         << child.output();
   }
 }

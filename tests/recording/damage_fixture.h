@@ -38,7 +38,7 @@ inline bool SameHeader(const RecordingHeader& a, const RecordingHeader& b) {
                  });
   return files && a.scenario_yaml == b.scenario_yaml && a.scenario_name == b.scenario_name &&
          a.machine_yaml == b.machine_yaml && a.program_version == b.program_version &&
-         a.seed == b.seed && a.dt == b.dt && a.labels == b.labels &&
+         a.engine == b.engine && a.seed == b.seed && a.dt == b.dt && a.labels == b.labels &&
          a.model_hashes == b.model_hashes && a.start_unix_ns == b.start_unix_ns;
 }
 inline bool SameEvent(const RecordingEvent& a, const RecordingEvent& b) {

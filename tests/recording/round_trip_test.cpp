@@ -154,6 +154,7 @@ TEST(Recording, KeepsItsHeader) {
   EXPECT_EQ(header.scenario_name, expected.scenario_name);
   EXPECT_EQ(header.machine_yaml, expected.machine_yaml);
   EXPECT_EQ(header.program_version, expected.program_version);
+  EXPECT_EQ(header.engine, expected.engine);
   EXPECT_EQ(header.seed, expected.seed);
   EXPECT_EQ(header.dt, expected.dt);
   ASSERT_TRUE(header.loop);

@@ -51,6 +51,7 @@ inline RecordingHeader SampleHeader() {
   header.scenario_name = "Box";
   header.machine_yaml = "device: here\n";
   header.program_version = "0.1.0";
+  header.engine = "MuJoCo 4.0.0";
   header.seed = 18446744073709551615U;
   header.dt = 0.001;
   header.loop = PredictedLoop{0.0181, 0.84};

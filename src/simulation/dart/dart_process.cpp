@@ -1,5 +1,12 @@
 #include "simulation/dart/dart_process.h"
 
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <exception>
 #include <new>
@@ -29,6 +36,27 @@ fs::path Program() {
 bool HasDart() {
   std::error_code error;
   return fs::exists(Program(), error);
+}
+
+std::string DartVersion() {
+  if (!HasDart()) return "";
+  std::array<int, 2> pipe{};
+  if (pipe2(pipe.data(), O_CLOEXEC) != 0) return "";
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, pipe[1], STDOUT_FILENO);
+  std::string program = Program().string(), option = dart_engine::kVersionOption;
+  char* arguments[] = {program.data(), option.data(), nullptr};
+  pid_t child = 0;
+  const bool started =
+      posix_spawn(&child, program.c_str(), &actions, nullptr, arguments, environ) == 0;
+  posix_spawn_file_actions_destroy(&actions);
+  close(pipe[1]);
+  std::array<char, 64> text{};
+  const ssize_t size = started ? read(pipe[0], text.data(), text.size()) : 0;
+  close(pipe[0]);
+  if (started) waitpid(child, nullptr, 0);
+  return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))};
 }
 
 DartProcess::DartProcess(const dart_engine::SceneData& scene) : scene_(scene) {

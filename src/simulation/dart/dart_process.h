@@ -45,4 +45,7 @@ class DartProcess {
 // Returns whether this build contains the program.
 bool HasDart();
 
+// Returns what the program says, "DART 6.12.1" for example, or "" if there is none.
+std::string DartVersion();
+
 }  // namespace predictor

@@ -10,7 +10,8 @@
 namespace predictor::dart_engine {
 
 inline constexpr std::uint32_t kVersion = 2;
-inline constexpr int kDescriptor = 3;  // of the memory, in the program
+inline constexpr int kDescriptor = 3;                       // of the memory, in the program
+inline constexpr const char* kVersionOption = "--version";  // lets the program say that of DART
 
 inline constexpr int kMaxJoints = 16;           // of the cobot
 inline constexpr int kMaxDof = kMaxJoints + 6;  // and of the attachment, or of a free object
