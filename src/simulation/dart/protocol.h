@@ -18,7 +18,7 @@ inline constexpr int kMaxDof = kMaxJoints + 6;  // and of the attachment, or of 
 inline constexpr int kMaxPositions = kMaxJoints + 7;
 inline constexpr int kMaxShapes = 64;
 inline constexpr int kMaxObstacles = 66;  // floor, table and fixtures
-inline constexpr int kMaxContacts = 64;
+inline constexpr int kMaxContacts = 192;  // a cylinder may touch a box at nine points
 inline constexpr int kHandCount = 2;
 inline constexpr int kTextSize = 256;
 
