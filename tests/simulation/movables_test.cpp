@@ -127,11 +127,11 @@ TEST(Movables, AStackStandsAndItsContactsCarryTheWeights) {
 
 // A sliding block stops after v²/(2 μ g).
 TEST(Movables, ABlockSlidesToAStop) {
-  constexpr double kSpeed = 1, kFriction = 0.3;
-  Bench bench({Cube("a", 2, {-0.5, 0, kSide / 2})}, {Table(kFriction)});
+  constexpr double kSpeed = 1, kSliding = 0.3;
+  Bench bench({Cube("a", 2, {-0.5, 0, kSide / 2})}, {Table(kSliding)});
   bench.Throw(0, {kSpeed, 0, 0});
   bench.Run(1);
-  const double path = kSpeed * kSpeed / (2 * kFriction * kGravity);
+  const double path = kSpeed * kSpeed / (2 * kSliding * kGravity);
   EXPECT_NEAR(bench.motion(0).X_W.p.x() - (kPlace.x() - 0.5), path, 0.02 * path);
 }
 
@@ -192,12 +192,12 @@ TEST(Movables, TwoBlocksThatSlideOnEachOtherFollowCoulombsLaw) {
 }
 
 TEST(Movables, TheirWeightHasAPotential) {
-  constexpr double kMass = 2;
-  Bench bench({Cube("a", kMass, {0, 0, 1})}, {});
-  EXPECT_NEAR(bench.engine().MovablePotential(), kMass * kGravity * 1, 1e-12);
+  constexpr double kCubeMass = 2;
+  Bench bench({Cube("a", kCubeMass, {0, 0, 1})}, {});
+  EXPECT_NEAR(bench.engine().MovablePotential(), kCubeMass * kGravity * 1, 1e-12);
   const double before = bench.engine().KineticEnergy();
   bench.Throw(0, {0.5, 0, 0});
-  EXPECT_NEAR(bench.engine().KineticEnergy() - before, kMass * 0.125, 1e-12);
+  EXPECT_NEAR(bench.engine().KineticEnergy() - before, kCubeMass * 0.125, 1e-12);
 }
 
 TEST(Movables, WithoutTouchingTheyFallThroughTheTable) {

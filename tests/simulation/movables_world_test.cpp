@@ -12,13 +12,13 @@
 namespace predictor {
 namespace {
 
-constexpr double kBrickMass = 4;   // [kg]
-constexpr double kFriction = 0.4;  // of the table
-constexpr double kGap = 0.02;      // between the carried box and the brick at the start [m]
+constexpr double kBrickMass = 4;        // [kg]
+constexpr double kBrickFriction = 0.4;  // of the table
+constexpr double kBrickGap = 0.02;      // between the carried box and the brick at the start [m]
 
 // A brick stands on a table beside the box that the cobot carries, in the direction x. The box is
 // above the table.
-Scenario WithABrick(double gap = kGap) {
+Scenario WithABrick(double gap = kBrickGap) {
   Scenario s = RigidBox();
   s.right_handle->pose.rpy.setZero();
   s.cobot.payload = PayloadSpec{2, {0, 0, 0.1}};
@@ -33,7 +33,7 @@ Scenario WithABrick(double gap = kGap) {
   FixtureSpec table;
   table.size = {2, 2, 0.1};
   table.xyz = box - Vector3(0, 0, 0.15 + 0.05);
-  table.friction = kFriction;
+  table.friction = kBrickFriction;
   s.environment.friction = 0;  // between box and brick: the box must not press it down or lift it
   s.environment.objects = {brick};
   s.environment.fixtures = {table};
@@ -49,7 +49,7 @@ Scenario WithoutObjects(Scenario s) {
 
 // The hands push the box against the brick, through a cobot that is soft to the sides (5 N/m).
 TEST(MovableObject, SlidesWhenTheHandsExceedItsFriction) {
-  const double limit = kFriction * kBrickMass * kGravity;
+  const double limit = kBrickFriction * kBrickMass * kGravity;
   for (const double share : {0.9, 1.3}) {
     const Scenario s = WithABrick(0.0005);  // so the box is still slow when it meets the brick
     World world(s);
