@@ -90,7 +90,8 @@ TEST(Start, OfAnObjectInsideTheCobotWarns) {
   s.object.attachment.on_end_effector.xyz = {0, 0, -0.15};  // above the flange, in the wrist
   const StartReport start = DescribeStart(s, World(s));
   EXPECT_LT(start.gaps.links.distance, -0.01);
-  EXPECT_EQ(StartWarnings(start).size(), 1u);
+  EXPECT_FALSE(start.is_outside);
+  EXPECT_EQ(StartWarnings(start).size(), 2u);  // the wrist, and the end-effector itself
 }
 
 }  // namespace
