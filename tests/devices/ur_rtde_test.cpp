@@ -208,7 +208,7 @@ TEST(Rtde, RefusalsNameTheValueAndTheRemedy) {
   };
   EXPECT_EQ(refusal(1, "DOUBLE,INT32"), "");
   EXPECT_NE(refusal(1, "DOUBLE,IN_USE").find("b is in use"), std::string::npos);
-  EXPECT_NE(refusal(1, "NOT_FOUND,INT32").find("does not know a"), std::string::npos);
+  EXPECT_NE(refusal(1, "NOT_FOUND,INT32").find("does not support a"), std::string::npos);
   EXPECT_NE(refusal(1, "DOUBLE,UINT32").find("is of type UINT32, not INT32"), std::string::npos);
   EXPECT_NE(refusal(1, "DOUBLE").find("1 types for 2 names"), std::string::npos);
   EXPECT_NE(refusal(1, "").find("0 types for 2 names"), std::string::npos);

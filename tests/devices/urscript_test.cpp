@@ -187,7 +187,7 @@ TEST(UrScriptLanguage, UnknownNamesAreErrors) {
   EXPECT_NE(ErrorOf("sync(1)").find("wrong number of arguments"), std::string::npos);
   EXPECT_NE(ErrorOf("def f(a):\nend\nf()").find("wrong number of arguments"), std::string::npos);
   EXPECT_NE(ErrorOf("if 1:\nend").find("wrong type"), std::string::npos);
-  EXPECT_NE(ErrorOf("x = 1 +").find("a name expected"), std::string::npos);
+  EXPECT_NE(ErrorOf("x = 1 +").find("a name was expected"), std::string::npos);
   EXPECT_NE(ErrorOf("while True\nend").find("':' expected"), std::string::npos);
   EXPECT_NE(ErrorOf("if True:").find("a block has no end"), std::string::npos);
   EXPECT_NE(ErrorOf("x = [1][1]").find("out of range"), std::string::npos);

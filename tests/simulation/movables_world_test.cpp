@@ -58,7 +58,8 @@ TEST(MovableObject, SlidesWhenTheHandsExceedItsFriction) {
     RunWith(&world, Push(s, {share * limit / 2, 0, 0}), 1.2);
     const double moved = Brick(world).X_W.p.x() - start;
     EXPECT_EQ(moved > 0.05, share > 1) << moved;
-    EXPECT_EQ(moved < 0.01, share < 1) << moved;
+    // MuJoCo's friction creeps below its limit.
+    EXPECT_EQ(moved < 0.02, share < 1) << moved;
     // The box is behind the brick and touches it.
     const double behind = Brick(world).X_W.p.x() - world.state().object.X_W.p.x();
     EXPECT_GT(behind, 0.28 - 1e-3);
