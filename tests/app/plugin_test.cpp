@@ -75,7 +75,8 @@ TEST_F(FailingController, ThatReturnsNoNumberStopsTheRun) {
 TEST_F(FailingController, ThatEndsAsAProcessStopsTheRun) {
   ASSERT_EQ(Run(Program("crash")), 1) << said_;
   ExpectStop(
-      "the cobot's controller ended, or did not answer in time. Read the output of the controller's program");
+      "the cobot's controller ended, or did not answer in time. Read the output of the "
+      "controller's program");
 }
 
 // The crash of the library also ends the program, whose message must state the cause. `repair` must

@@ -92,7 +92,9 @@ TEST(PluginHang, OfAProcessIsBridgedUntilTheRunStops) {
     EXPECT_EQ(verify.Wait(), 0) << verify.output();
     // On a busy computer, the answers come so irregularly that the cobot oscillates.
     if (said.find("by cause 'oscillation'") != std::string::npos) continue;
-    EXPECT_NE(said.find("the cobot's controller ended, or did not answer in time"), std::string::npos) << said;
+    EXPECT_NE(said.find("the cobot's controller ended, or did not answer in time"),
+              std::string::npos)
+        << said;
     Child data({"export", "data", file, "run.controller", "--quiet"});
     EXPECT_EQ(data.Wait(), 0) << data.errors();
     for (const char* outcome : {",1\n", ",2\n"})
