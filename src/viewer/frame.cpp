@@ -67,13 +67,13 @@ class PageVisitor {
   void Wrench(TickField f, const auto& x) { Values(WithUnit(f, "N, N m"), x); }
   void Pose(const TickField& f, const PoseRecord& X) {
     std::array<float, kPoseNumbers> floats;
-    PutPose(X, floats.data());
+    WritePose(X, floats.data());
     Send(WithUnit(f, "m"), FrameKind::kPose, floats);
   }
   template <std::size_t N>
   void Poses(const TickField& f, const std::array<PoseRecord, N>& X, std::uint8_t) {
     std::array<float, kPoseNumbers * N> floats;
-    for (std::size_t i = 0; i < N; ++i) PutPose(X[i], floats.data() + kPoseNumbers * i);
+    for (std::size_t i = 0; i < N; ++i) WritePose(X[i], floats.data() + kPoseNumbers * i);
     Send(WithUnit(f, "m"), FrameKind::kPoses, floats);
   }
   void Reserved(const auto&) {}
@@ -90,7 +90,7 @@ class PageVisitor {
 
  private:
   static constexpr std::size_t kPoseNumbers = 7;
-  static void PutPose(const PoseRecord& X, float* floats) {
+  static void WritePose(const PoseRecord& X, float* floats) {
     for (std::size_t i = 0; i < 3; ++i) floats[i] = static_cast<float>(X.p[i]);
     for (std::size_t i = 0; i < 4; ++i) floats[3 + i] = static_cast<float>(X.q[i]);
   }

@@ -1,4 +1,4 @@
-// What `check` says about cobot and object at the start must agree with geometry and statics.
+// What `check` says about cobot and object at the start must agree with geometry and equilibrium.
 #include "analysis/check/start.h"
 
 #include <gtest/gtest.h>
