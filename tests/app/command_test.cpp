@@ -149,11 +149,9 @@ TEST(ExitCode, OfARunWithDartGivesTheReason) {
   Child run({"run", Scenario("box_9kg"), "--no-viewer", "--no-record", "--set",
              "simulation.engine=dart"});
   EXPECT_EQ(run.Wait(), 2);
-  EXPECT_NE(run.errors().find("simulation.engine is dart, which runs in virtual time only: its "
-                              "steps allocate memory and wait for another process, so a step may "
-                              "be late. Set it to mujoco, or use `predictor simulate`."),
-            std::string::npos)
-      << run.errors();
+  for (const char* words : {"simulation.engine is dart, which runs in virtual time only",
+                            "Set it to mujoco, or use `predictor simulate`"})
+    EXPECT_NE(run.errors().find(words), std::string::npos) << run.errors();
 }
 
 TEST(ExitCode, OfARunWithoutAllRepairsGivesTheReason) {

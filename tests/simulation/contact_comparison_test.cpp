@@ -7,6 +7,7 @@
 
 #include "free_body.h"
 #include "simulation/dart/dart_process.h"
+#include "support/test_name.h"
 
 namespace predictor {
 namespace {
@@ -220,7 +221,11 @@ TEST_P(ContactComparison, DartAgreesWithTheClosedForm) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, ContactComparison,
-                         testing::Range(0, static_cast<int>(Cases().size())));
+                         testing::Range(0, static_cast<int>(Cases().size())),
+                         [](const testing::TestParamInfo<int>& each) {
+                           const Case c = Cases().at(static_cast<std::size_t>(each.param));
+                           return test::TestName(c.name + " " + c.quantity);
+                         });
 
 TEST(ContactPage, ShowsTheFiguresOfTheFile) {
   std::ifstream file(kPage);
