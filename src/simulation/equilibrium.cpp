@@ -219,10 +219,10 @@ void RefuseTouch(Engine* engine) {
     const std::string key = KeyOfMovable(contact.movable);
     const std::string other =
         contact.link.empty() ? "the object" : "the cobot's link " + Quote(contact.link);
-    throw InputError::At(
-        key + ".xyz", key + ".xyz: at the start, after the cobot sagged under its load, " + other +
-                          " touches this object, and is " + Millimetres(contact.depth) +
-                          " inside it. Leave a gap between them, for example 1 mm.");
+    std::string text = key + ".xyz: at the start, after the cobot sagged under its load, ";
+    text += other + " touches this object, and is " + Millimetres(contact.depth);
+    text += " inside it. Leave a gap between them, for example 1 mm.";
+    throw InputError::At(key + ".xyz", text);
   }
 }
 

@@ -1,6 +1,7 @@
 // Writes the report of a check as JSON, and its schema.
 #include <complex>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "analysis/check/check.h"
 #include "core/json_schema.h"
@@ -204,8 +205,7 @@ const schema::Words kWords = {
      {"rendered", "force over displacement that the arms render"},
      {"real_n_m", "real part: a stiffness [N/m]"},
      {"imaginary_n_m", "imaginary part: 2π·frequency times a damping [N/m]"}},
-    {"left", "right", "reach", "stop", "stability", "out_of_reach_s", "growth_rate",
-     "clearance_m"}};
+    {"left", "right", "reach", "stop", "stability", "out_of_reach_s", "growth_rate"}};
 
 // Returns a report in which nothing is missing.
 CheckReport Example() {
@@ -218,8 +218,8 @@ CheckReport Example() {
     reach.arms[h]->lost = 0.0;
   }
   reach.pairs = {{"links", {}}};
-  report.reach = reach;
   report.proposal.emplace().reach = reach;
+  report.reach = std::move(reach);
   report.stop = report.longest_stop = StopBudget();
   report.stability.emplace();
   report.stability->masses = report.stability->stiffnesses = {1.0};
