@@ -118,7 +118,7 @@ TEST(StopByPhysics, OfAControllerSaysWhatWasCounted) {
   EXPECT_EQ(SummaryTable(not_finite).find("limit 0"), std::string::npos);
   EXPECT_EQ(SummaryTable(not_finite).find("fastest joint"), std::string::npos);
   const Summary late = StoppedBy(Quantity::kTime, 0.102, 0.1);
-  ExpectText(late, "by cause 'physics': time without an answer in time: 102 ms, limit 100 ms.");
+  ExpectText(late, "by cause 'physics': no answer for 102 ms, limit 100 ms.");
   ExpectText(late, "Explanation: the cobot's controller ended, or did not answer in time.");
   EXPECT_TRUE(nlohmann::json::parse(SummaryJson(late))["stop"]["fastest_joint"].is_null());
 }

@@ -155,7 +155,7 @@ export class FakeServer {
       arms: {left: arm('left', 2), right: arm('right', 3)}, floor: true,
       table: options.table ?? null,
       ...(!options.older && {fixtures: options.fixtures ?? []}),
-      ...(options.movables && {movables: options.movables.map(({pose: _, ...spec}) => spec)}),
+      ...(!options.older && {movables: (options.movables ?? []).map(({pose: _, ...spec}) => spec)}),
       guidance: preset.guidance ? {
         type: 'circle', radius: preset.guidance.radius,
         center: this.start.map((v, i) => v + preset.guidance.offset[i]),
