@@ -107,7 +107,7 @@ TEST(StopByPhysics, NamesTheJointAndARemedyThatFits) {
   const Summary diverged = StoppedBy(Quantity::kAngularSpeed, 200, 100);
   ExpectText(diverged, "by cause 'physics': speed of a joint: ");
   ExpectText(diverged, "The fastest joint of the cobot was its joint 7.");
-  ExpectText(diverged, "Run `predictor check`, which names a joint");
+  ExpectText(diverged, "Run `predictor check`. Reduce the damping");
   EXPECT_EQ(nlohmann::json::parse(SummaryJson(diverged))["stop"]["fastest_joint"], 7);
   ExpectText(StoppedBy(Quantity::kNone, std::nan(""), 0), "Explanation: the simulation diverged.");
 }
