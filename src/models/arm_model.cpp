@@ -46,10 +46,28 @@ JointVector PostureOf(const std::vector<double>& posture, const RobotModel& mode
   return q;
 }
 
-std::vector<bool> PrismaticJoints(const Scenario& scenario) {
+std::shared_ptr<const RobotModel> LoadCobotModel(const Scenario& scenario) {
   const CobotSpec& cobot = scenario.cobot;
-  const auto model = RobotModel::Load(
+  return RobotModel::Load(
       {cobot.model, scenario.folder(), cobot.remove_links, cobot.base.ToPose(), "cobot"});
+}
+
+JointVector EffortLimit(const CobotSpec& spec, const RobotModel& robot) {
+  if (spec.effort_limit.empty()) return robot.effort_limit();
+  const int size = static_cast<int>(spec.effort_limit.size());
+  if (size != 1 && size != robot.dof()) {
+    throw InputError::At("cobot.effort_limit",
+                         "cobot.effort_limit has " + std::to_string(size) +
+                             " values. Give none to use the model's, one for all joints, or " +
+                             std::to_string(robot.dof()) + ".");
+  }
+  JointVector limit(robot.dof());
+  for (int j = 0; j < robot.dof(); ++j) limit[j] = OneOrEach(spec.effort_limit, j);
+  return limit;
+}
+
+std::vector<bool> PrismaticJoints(const Scenario& scenario) {
+  const auto model = LoadCobotModel(scenario);
   std::vector<bool> prismatic;
   for (int j = 0; j < model->dof(); ++j) prismatic.push_back(model->is_prismatic(j));
   return prismatic;

@@ -17,6 +17,14 @@ namespace predictor {
 JointVector PostureOf(const std::vector<double>& posture, const RobotModel& model,
                       const std::string& key);
 
+// Loads the model of a scenario's cobot, with its base in W. Throws InputError at the invalid key
+// within "cobot".
+std::shared_ptr<const RobotModel> LoadCobotModel(const Scenario& scenario);
+
+// Returns the effort limit of each joint: cobot.effort_limit, or else the model's [N·m]; prismatic:
+// [N]. Throws InputError if the number of values does not fit.
+JointVector EffortLimit(const CobotSpec& spec, const RobotModel& robot);
+
 // Returns for each joint of the cobot whether it is prismatic. Throws InputError if its model
 // cannot be loaded.
 std::vector<bool> PrismaticJoints(const Scenario& scenario);

@@ -12,11 +12,6 @@
 namespace predictor {
 namespace {
 
-RobotSource Source(const Scenario& scenario) {
-  return {scenario.cobot.model, scenario.folder(), scenario.cobot.remove_links,
-          scenario.cobot.base.ToPose(), "cobot"};
-}
-
 JointVector StartPosture(const Scenario& scenario, const RobotModel& robot) {
   const char* key = "cobot.posture";
   if (scenario.tree) CheckPostureUnits(*scenario.tree, robot, key);
@@ -29,20 +24,6 @@ FrameId EndEffectorOf(const CobotSpec& spec, const RobotModel& robot) {
   } catch (const InputError& error) {
     throw error.Within("cobot.end_effector");
   }
-}
-
-JointVector EffortLimit(const CobotSpec& spec, const RobotModel& robot) {
-  if (spec.effort_limit.empty()) return robot.effort_limit();
-  const int size = static_cast<int>(spec.effort_limit.size());
-  if (size != 1 && size != robot.dof()) {
-    throw InputError::At("cobot.effort_limit",
-                         "cobot.effort_limit has " + std::to_string(size) +
-                             " values. Give none to use the model's, one for all joints, or " +
-                             std::to_string(robot.dof()) + ".");
-  }
-  JointVector limit(robot.dof());
-  for (int j = 0; j < robot.dof(); ++j) limit[j] = OneOrEach(spec.effort_limit, j);
-  return limit;
 }
 
 Pose StartOfEndEffector(const RobotModel& robot, const FrameId& end_effector,
@@ -87,7 +68,7 @@ ControlledScene::LooseObject::LooseObject(const Scenario& scenario, const RobotM
       attachment(scenario.object.attachment, engine.get()) {}
 
 ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& events)
-    : robot_(RobotModel::Load(Source(scenario))),
+    : robot_(LoadCobotModel(scenario)),
       end_effector_(EndEffectorOf(scenario.cobot, *robot_)),
       gravity_(scenario.environment.gravity),
       posture_(StartPosture(scenario, *robot_)),

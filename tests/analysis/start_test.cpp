@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/scenarios.h"
-#include "models/robot.h"
+#include "models/arm_model.h"
 
 namespace predictor {
 namespace {
@@ -58,6 +58,10 @@ TEST(LinkGaps, UseBarsBetweenTheJointsForMeshesThatCannotBeRead) {
   EXPECT_GT(gaps.At(q, {elbow + Vector3(1.5, 0, 0), Quaternion::Identity()}).links.distance, 0.3);
 }
 
+StartReport Describe(const Scenario& s, const World& world) {
+  return DescribeStart(s, *LoadCobotModel(s), world);
+}
+
 Scenario Box() {
   Scenario s = Load("box_9kg.yaml");
   s.object.model.clear();
@@ -68,13 +72,13 @@ Scenario Box() {
 // The floor carries the part of the weight that the spring of the sagging cobot does not.
 TEST(Start, OfAnObjectOnTheFloorDividesItsWeight) {
   const World hanging(Box());
-  const StartReport free = DescribeStart(Box(), hanging);
+  const StartReport free = Describe(Box(), hanging);
   EXPECT_EQ(free.support.floor, 0);
   const double bottom = hanging.state().object.X_W.p.z() - 0.1;
   for (const double lower : {0.05, 0.1}) {
     Scenario s = Box();
     s.cobot.base.xyz.z() -= bottom + lower;
-    const StartReport start = DescribeStart(s, World(s));
+    const StartReport start = Describe(s, World(s));
     const double sag =
         free.weight / kStiffness + free.flange.z() - bottom - lower - start.flange.z();
     EXPECT_NEAR(start.support.floor, start.weight - kStiffness * sag, 0.05) << lower;
@@ -86,9 +90,9 @@ TEST(Start, OfAnObjectOnTheFloorDividesItsWeight) {
 
 TEST(Start, OfAnObjectInsideTheCobotWarns) {
   Scenario s = Box();
-  EXPECT_TRUE(StartWarnings(DescribeStart(s, World(s))).empty());
+  EXPECT_TRUE(StartWarnings(Describe(s, World(s))).empty());
   s.object.attachment.on_end_effector.xyz = {0, 0, -0.15};  // above the flange, in the wrist
-  const StartReport start = DescribeStart(s, World(s));
+  const StartReport start = Describe(s, World(s));
   EXPECT_LT(start.gaps.links.distance, -0.01);
   EXPECT_FALSE(start.is_outside);
   EXPECT_EQ(StartWarnings(start).size(), 2u);  // the wrist, and the end-effector itself

@@ -103,6 +103,15 @@ struct Plant {
   }
 };
 
+// Applies 20 random commands. `v` is the last one, as the guard left it.
+void ApplyRandomCommands(const Plant& plant, RandomStream* random, Guard* guard, Arms* v) {
+  for (int tick = 0; tick < 20; ++tick) {
+    for (std::size_t arm = 0; arm < kHands; ++arm)
+      (*v)[arm] = JointVector::Constant(plant.q[arm].size(), 0.1 * random->Normal());
+    guard->Apply(plant.q, v);
+  }
+}
+
 // Returns whether all values are finite and within the velocity bounds, and their number is right.
 bool Sendable(const Plant& plant, const Arms& v) {
   for (std::size_t arm = 0; arm < kHands; ++arm) {
@@ -332,11 +341,7 @@ TEST(Guard, SlowsBothArmsByTheSameFraction) {
     Plant plant(&random, 7, 6);
     Guard guard(plant.bounds, 0.001);
     Arms v, goal;
-    for (int tick = 0; tick < 20; ++tick) {
-      for (std::size_t arm = 0; arm < kHands; ++arm)
-        v[arm] = JointVector::Constant(plant.q[arm].size(), 0.1 * random.Normal());
-      guard.Apply(plant.q, &v);
-    }
+    ApplyRandomCommands(plant, &random, &guard, &v);
     const double factor = random.Uniform(), size = random.Next() % 2 ? 0.001 : 0.1;
     for (std::size_t arm = 0; arm < kHands; ++arm) {
       v[arm] = guard.last()[arm] / factor;
@@ -370,11 +375,7 @@ TEST(Guard, SlowsFromALastCommandThatBecameTooFast) {
     Plant plant(&random, 7, 6);
     Guard guard(plant.bounds, 0.001);
     Arms v, goal;
-    for (int tick = 0; tick < 20; ++tick) {
-      for (std::size_t arm = 0; arm < kHands; ++arm)
-        v[arm] = JointVector::Constant(plant.q[arm].size(), 0.1 * random.Normal());
-      guard.Apply(plant.q, &v);
-    }
+    ApplyRandomCommands(plant, &random, &guard, &v);
     for (std::size_t arm = 0; arm < kHands; ++arm) {
       for (auto& x : v[arm]) x += 0.1 * random.Normal();
       goal[arm] = v[arm];

@@ -9,6 +9,7 @@
 #include "core/format.h"
 #include "core/units.h"
 #include "emulator/stop_reach.h"
+#include "models/arm_model.h"
 #include "scenario/action_time.h"
 #include "scenario/located.h"
 #include "simulation/event_sequence.h"
@@ -33,24 +34,22 @@ Pose UnsaggedObject(const Scenario& s, const RobotModel& cobot) {
          attachment.on_end_effector.ToPose() * attachment.on_object.ToPose().Inverse();
 }
 
-ModelsReport DescribeWorld(const Scenario& s, const World& world) {
-  const auto cobot = RobotModel::Load(
-      {s.cobot.model, s.file.parent_path(), s.cobot.remove_links, s.cobot.base.ToPose()});
+ModelsReport DescribeWorld(const Scenario& s, const RobotModel& cobot, const World& world) {
   ModelsReport report;
-  report.cobot_mass = cobot->mass();
-  report.cobot_joints = cobot->dof();
+  report.cobot_mass = cobot.mass();
+  report.cobot_joints = cobot.dof();
   report.object_mass = world.object_mass();
   report.X_WO = world.state().object.X_W;
-  report.sag = report.X_WO.p - UnsaggedObject(s, *cobot).p;
-  for (int j = 0; j < cobot->dof(); ++j) {
+  report.sag = report.X_WO.p - UnsaggedObject(s, cobot).p;
+  for (int j = 0; j < cobot.dof(); ++j) {
     const double torque = std::fabs(world.state().torque[j]);
     const double share = torque / world.effort_limit()[j];
     if (!(share > report.torque_share)) continue;
     report.torque_share = share;
     report.torque = torque;
     report.torque_limit = world.effort_limit()[j];
-    report.torque_joint = cobot->joint_name(j);
-    report.torque_is_force = cobot->is_prismatic(j);
+    report.torque_joint = cobot.joint_name(j);
+    report.torque_is_force = cobot.is_prismatic(j);
   }
   return report;
 }
@@ -295,10 +294,11 @@ CheckReport Check(const Scenario& s, const CheckOptions& options) try {
   report.scenario = s.name;
   report.direct = s.mode == Mode::kDirect;
   report.security_distance = s.rendering.security_distance;
-  report.models = DescribeWorld(s, world);
+  const auto cobot = LoadCobotModel(s);
+  report.models = DescribeWorld(s, *cobot, world);
   report.controller = world.JudgeController();
   report.controller_joint = world.joint_names()[static_cast<std::size_t>(report.controller.joint)];
-  report.start = DescribeStart(s, world);
+  report.start = DescribeStart(s, *cobot, world);
   if (!report.direct) CheckDevice(s, world, options, &report);
   Judge(s, options.machine, &report).All();
   return report;

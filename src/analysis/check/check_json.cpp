@@ -87,6 +87,18 @@ Json ToJson(const StabilityReport& r) {
   return json;
 }
 
+Json ToJson(const LinkGap& gap) { return {{"link", gap.link}, {"clearance_m", gap.distance}}; }
+
+Json ToJson(const StartReport& start) {
+  return {{"flange_m", ToJson(start.flange)},
+          {"last_link_direction", ToJson(start.outward)},
+          {"object_is_outside", start.is_outside},
+          {"nearest_link", ToJson(start.gaps.links)},
+          {"nearest_link_of_hand", ToJson(start.gaps.hand)},
+          {"floor_force_n", start.support.floor},
+          {"other_support_n", start.support.other}};
+}
+
 Json ToJson(const FeltImpedance& felt) {
   const auto complex = [](const std::complex<double>& z) -> Json {
     return {{"real_n_m", NumberOrNull(z.real())}, {"imaginary_n_m", NumberOrNull(z.imag())}};
@@ -244,7 +256,7 @@ std::string CheckJson(const CheckReport& report) {
                {"problems", report.problems},
                {"warnings", report.warnings},
                {"models", ToJson(report.models)}};
-  json["start"] = Json::parse(StartJson(report.start));
+  json["start"] = ToJson(report.start);
   json["controller"] = {{"stable", report.controller.is_stable()},
                         {"joint", report.controller_joint},
                         {"growth_rate", NumberOrNull(report.controller.growth)},

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "core/format.h"
 #include "core/text.h"
 #include "core/units.h"
 #include "models/last_link.h"
-#include "models/robot.h"
 
 namespace predictor {
 namespace {
@@ -26,15 +24,13 @@ bool RestsOn(double force, const StartReport& start) { return force > kCarried *
 
 double StartReport::tilt() const { return std::acos(std::clamp(-outward.z(), -1.0, 1.0)); }
 
-StartReport DescribeStart(const Scenario& s, const World& world) {
-  const auto cobot = RobotModel::Load(
-      {s.cobot.model, s.folder(), s.cobot.remove_links, s.cobot.base.ToPose(), "cobot"});
+StartReport DescribeStart(const Scenario& s, const RobotModel& cobot, const World& world) {
   const WorldState& state = world.state();
   const Pose& X_WE = state.end_effector.X_W;
   const Pose& X_WO = state.object.X_W;
   StartReport start;
   start.flange = X_WE.p;
-  start.outward = X_WE.q * LastLinkDirection(*cobot, cobot->Frame(s.cobot.end_effector));
+  start.outward = X_WE.q * LastLinkDirection(cobot, cobot.Frame(s.cobot.end_effector));
   start.is_outside = (X_WO.p - X_WE.p).dot(start.outward) > 0;
   start.gaps = LinkGaps(s).At(state.q, X_WO);
   start.support = world.SupportAtStart();
@@ -87,22 +83,6 @@ void AddStart(const StartReport& start, std::string* text) {
                "  table            the object rests on it or on a fixture; they carry %.0f of "
                "%.0f N",
                start.support.other, start.weight);
-}
-
-std::string StartJson(const StartReport& start) {
-  using Json = nlohmann::ordered_json;
-  const auto list = [](const Vector3& v) { return Json{v.x(), v.y(), v.z()}; };
-  const auto gap = [](const LinkGap& g) {
-    return Json{{"link", g.link}, {"clearance_m", g.distance}};
-  };
-  const Json json = {{"flange_m", list(start.flange)},
-                     {"last_link_direction", list(start.outward)},
-                     {"object_is_outside", start.is_outside},
-                     {"nearest_link", gap(start.gaps.links)},
-                     {"nearest_link_of_hand", gap(start.gaps.hand)},
-                     {"floor_force_n", start.support.floor},
-                     {"other_support_n", start.support.other}};
-  return json.dump();
 }
 
 }  // namespace predictor

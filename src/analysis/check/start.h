@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "models/robot.h"
 #include "scenario/scenario.h"
 #include "simulation/link_gaps.h"
 #include "simulation/world.h"
@@ -23,14 +24,13 @@ struct StartReport {
   double tilt() const;
 };
 
-// `world` is at its start.
-StartReport DescribeStart(const Scenario& scenario, const World& world);
+// `cobot` is the scenario's, and `world` is at its start.
+StartReport DescribeStart(const Scenario& scenario, const RobotModel& cobot, const World& world);
 
 // Returns sentences about an object that is inside the cobot or that the floor carries.
 std::vector<std::string> StartWarnings(const StartReport& start);
 
-// These functions append the lines of the report for the user, and return its JSON in SI units.
+// Appends the lines of the report for the user.
 void AddStart(const StartReport& start, std::string* text);
-std::string StartJson(const StartReport& start);
 
 }  // namespace predictor

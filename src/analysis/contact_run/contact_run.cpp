@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "haptics/stability.h"
-#include "models/robot.h"
+#include "models/arm_model.h"
 #include "simulation/world.h"
 
 namespace predictor {
@@ -14,9 +14,7 @@ namespace {
 // finds the same contacts.
 std::unique_ptr<Engine> FreeObject(Scenario scenario) {
   scenario.simulation.engine = EngineKind::kMujoco;
-  const auto cobot = RobotModel::Load({scenario.cobot.model, scenario.folder(),
-                                       scenario.cobot.remove_links, scenario.cobot.base.ToPose()});
-  return MakeEngine(scenario, *cobot, false, Holding::kFree);
+  return MakeEngine(scenario, *LoadCobotModel(scenario), false, Holding::kFree);
 }
 
 std::uint64_t BitOf(std::size_t fixture) { return std::uint64_t{1} << fixture; }

@@ -3,16 +3,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/arm_model.h"
+
 namespace predictor {
 namespace {
 
 // If the joint may have been at rest for a larger share of the window's weight, the row contains
 // too little information about its friction.
 constexpr double kMaxRestShare = 0.1;
-
-RobotSource Source(const Scenario& s) {
-  return {s.cobot.model, s.folder(), s.cobot.remove_links, s.cobot.base.ToPose(), "cobot"};
-}
 
 int TicksOf(double window, double dt) {
   return std::max(4, 2 * static_cast<int>(std::lround(window / dt / 2)));
@@ -89,7 +87,7 @@ RowBuilder::RowBuilder(const Scenario& nominal, double window)
       dt_(1 / nominal.rate),
       ticks_(TicksOf(window, dt_)),
       hop_(ticks_ / 2),
-      robot_(RobotModel::Load(Source(nominal))),
+      robot_(LoadCobotModel(nominal)),
       load_(LoadObject(nominal.object, nominal.folder())),
       data_(*robot_),
       regressor_(*robot_, gravity_),

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "evaluation/metrics/registry.h"
-#include "models/robot.h"
+#include "models/arm_model.h"
 
 namespace predictor::metrics {
 namespace {
@@ -18,11 +18,8 @@ class CobotLimits final : public Metric {
   explicit CobotLimits(const Scenario& s) {
     if (s.cobot.model.empty()) return;
     try {
-      const auto robot = RobotModel::Load(
-          {s.cobot.model, s.file.parent_path(), s.cobot.remove_links, s.cobot.base.ToPose()});
-      limits_ = Limits{robot->effort_limit(), robot->velocity_limit()};
-      for (int j = 0; j < robot->dof() && !s.cobot.effort_limit.empty(); ++j)
-        limits_->effort[j] = OneOrEach(s.cobot.effort_limit, j);
+      const auto robot = LoadCobotModel(s);
+      limits_ = Limits{EffortLimit(s.cobot, *robot), robot->velocity_limit()};
     } catch (const InputError&) {
       // The model of a recording may be missing. Its limits are then unknown.
     }
