@@ -29,7 +29,7 @@ struct Bare {
         data(mj_makeData(scene.model.get())) {
     mj_setState(scene.model.get(), data.get(), still.start.data(), mjSTATE_INTEGRATION);
   }
-  // Constant torques do not hold an arm for long, so the scene is reset every 100 steps.
+  // Constant torques hold an arm only for a short time, so the scene is reset every 100 steps.
   void Step() {
     if (++steps % 100 == 0)
       mj_setState(scene.model.get(), data.get(), still.start.data(), mjSTATE_INTEGRATION);

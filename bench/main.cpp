@@ -1,6 +1,6 @@
-// Measures how a tick's time is spent, compared with the bare physics engine, and compares QP
-// solvers on the same problems. The options are --quick (fewer repetitions), --tick (only the
-// median tick) and those of google-benchmark.
+// Measures the computing time of the parts of a tick, compares this time with the bare physics
+// engine, and compares QP solvers on the same problems. The options are --quick (fewer
+// repetitions), --tick (only the median tick) and those of google-benchmark.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -39,7 +39,7 @@ void PrintRuns(const RunTimes& t, double mj_step) {
               verdict(t.start_up < 1));
 }
 
-// Removes an option from the arguments. Returns whether it was there.
+// Removes an option from the arguments. Returns whether the arguments contained the option.
 bool Take(const std::string& option, int* argc, char** argv) {
   char** end = std::remove(argv + 1, argv + *argc, option);
   const bool found = end != argv + *argc;

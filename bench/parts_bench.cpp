@@ -30,7 +30,8 @@ class Medians final : public benchmark::ConsoleReporter {
 class Cursor {
  public:
   explicit Cursor(const Recording& recording) : recording_(recording) {}
-  // Returns the next tick. Sets `wrapped` to true if it is the first one again.
+  // Returns the next tick. Sets `wrapped` to true if the returned tick is again the first tick of
+  // the recording.
   std::size_t Next(bool* wrapped) {
     *wrapped = k_ + 2 >= recording_.ticks.size();
     k_ = *wrapped ? 1 : k_ + 1;
@@ -156,8 +157,8 @@ void RegisterRig(const Recording& recording, const std::shared_ptr<Inputs>& inpu
   });
 }
 
-// Measures the complete tick from the middle of a run. When the script has ended, the
-// measurement starts again from the middle.
+// Measures the complete tick from the middle of a run. When the operator's script has ended, the
+// measurement starts again from the middle of the run.
 void RegisterTick(const Recording& recording) {
   auto emulator = std::make_shared<std::unique_ptr<Emulator>>();
   const Scenario scenario = recording.scenario;
@@ -194,7 +195,7 @@ std::map<std::string, double> TimeParts(const Recording& recording, int* argc, c
   RegisterRender(recording);
   RegisterRig(recording, inputs);
   // All repetitions run in random order, so that a disturbance affects them equally. The caller's
-  // options follow and therefore override these.
+  // options follow these options and therefore override them.
   std::vector<char*> arguments = {argv[0]};
   std::array<std::string, 3> defaults = {"--benchmark_repetitions=11", "--benchmark_min_time=0.03",
                                          "--benchmark_enable_random_interleaving=true"};

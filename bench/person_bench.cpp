@@ -1,5 +1,5 @@
-// Measures what the evaluation of the person costs: posture, loads, muscles, 64 possible people,
-// and all of it during a run.
+// Measures the computing time of the evaluation of the person: for posture, loads, muscles, 64
+// possible people, and the complete evaluation during a run.
 #include <cmath>
 
 #include "assessment/live_person.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRate = 100;  // [Hz]
 
-// Returns handles on a circle of 0.1 m, which they complete in 4 s. Each carries 40 N.
+// Returns the poses of handles that move on a circle of 0.1 m once every 4 s. Each carries 40 N.
 person::BodySample HandlesAt(const person::Stance& stance, double time) {
   person::BodySample sample;
   sample.time = time;
@@ -29,8 +29,8 @@ person::BodySample HandlesAt(const person::Stance& stance, double time) {
   return sample;
 }
 
-// Computes activations and stiffness of both arms. Returns their sum, so that nothing is optimised
-// away.
+// Computes activations and stiffness of both arms. Returns their sum, so that the compiler does not
+// remove the computation.
 double MusclesAt(const std::array<muscles::ArmModel, kHands>& arms,
                  const person::BodyMotion& motion, const person::BodyLoads& loads) {
   double sum = 0;
@@ -63,7 +63,7 @@ TickRecord TickAt(const person::Stance& stance, std::uint64_t tick) {
   return record;
 }
 
-// Measures the share of a core that the evaluator needs for the nominal person at 100 Hz and 64
+// Measures the share of a core that the evaluator needs for the nominal person at 100 Hz and for 64
 // people at 5 Hz.
 void TimeLive(bool quick) {
   Scenario scenario;

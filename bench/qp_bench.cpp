@@ -16,8 +16,8 @@ struct Score {
 
 constexpr std::size_t kBlock = 50;  // number of problems that a candidate solves consecutively
 
-// The candidates take turns after each block of problems. A disturbance then affects them equally,
-// and each one still finds its code in the cache.
+// The candidates take turns after each block of problems. A disturbance therefore affects all
+// candidates equally, and the code of each candidate stays in the cache.
 std::vector<Score> Run(const ProblemSet& set,
                        const std::vector<std::unique_ptr<Candidate>>& candidates, int repetitions) {
   const std::size_t count = set.problems.size();
@@ -43,7 +43,7 @@ std::vector<Score> Run(const ProblemSet& set,
   return scores;
 }
 
-// Prints how far the weighted solution is from the hard one, if that exists.
+// Prints the distance of the weighted solution from the hard solution, if a hard solution exists.
 void PrintYield(const ProblemSet& set) {
   const auto weighed = MakeDaqp(set.problems[0], false);
   const auto hard = MakeDaqp(set.problems[0], true);

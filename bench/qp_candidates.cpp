@@ -128,7 +128,7 @@ std::vector<std::unique_ptr<Candidate>> MakeCandidates(const Problem& example) {
 double Residual(const Problem& problem, bool hard, const Answer& answer) {
   if (!answer.solution.solved) return HUGE_VAL;
   if (!hard) return KktResidual(problem.weighed, answer.solution);
-  // With the equalities' multipliers known, their gradient is constant.
+  // Since the multipliers of the equalities are known, the gradient of the equalities is constant.
   Qp qp = problem.hard;
   qp.f() += problem.E.transpose() * answer.equality;
   const Eigen::Map<const Eigen::VectorXd> x(answer.solution.x.data(), qp.n());

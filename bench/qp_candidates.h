@@ -1,4 +1,4 @@
-// Puts the compared solvers behind one interface.
+// Defines one interface for all compared solvers.
 #pragma once
 
 #include <memory>
@@ -19,8 +19,8 @@ class Candidate {
   virtual ~Candidate() = default;
   virtual std::string name() const = 0;
   virtual bool hard() const = 0;  // solves Problem::hard with E x = e, otherwise Problem::weighed
-  // Solves the problem, starting from its matrices. The time includes any conversion that the
-  // solver needs.
+  // Solves the problem that the matrices describe. The time includes any conversion that the solver
+  // needs.
   virtual void Solve(const Problem& problem, Answer* answer) = 0;
 };
 

@@ -1,5 +1,5 @@
-// Measures the time that drivers and supervisor take in a tick, with and without the system's
-// sockets.
+// Measures the time that drivers and supervisor need in a tick, with and without sockets of the
+// operating system.
 #include <time.h>
 
 #include <cstdio>
@@ -133,7 +133,7 @@ std::uint64_t Now() {
          static_cast<std::uint64_t>(t.tv_nsec);
 }
 
-// Acts as an operator would in the present state.
+// Acts as an operator would act in the present state.
 void Hold(Emulator* emulator, int tick, FarEnd* far_end) {
   RunInput key;
   key.kind = InputKind::kEnable;

@@ -1,4 +1,4 @@
-// Measures the cost of a recording: CPU time per tick, and bytes per minute.
+// Measures the CPU time per tick and the bytes per minute that a recording needs.
 #include <unistd.h>
 
 #include <cstdio>

@@ -12,7 +12,7 @@
 
 namespace predictor::bench {
 
-// The times of whole runs in virtual time.
+// Measurements of whole runs in virtual time.
 struct RunTimes {
   std::array<double, kStages> p50{}, p99{};  // of ticks in RUN [µs], medians over the runs
   // Simulated time divided by CPU time, and by wall-clock time.
@@ -21,24 +21,26 @@ struct RunTimes {
 };
 RunTimes TimeRuns(const std::string& scenario, int runs);
 
-// Returns box_9kg on twenty posts, each of which touches it. The hands grip and hold.
+// Returns the scenario box_9kg with the box on twenty posts that all touch it. The hands grip and
+// hold.
 Scenario ContactScene();
 inline constexpr const char* kContactStep = "mj_step with 20 contact pairs";
 // Prints the time of this scene's ticks and compares it with the bare steps of the engine [µs].
 void TimeContact(double contact_step, double mj_step, int runs);
 
-// Prints the time per tick of the drivers, monitor and guard of real arms. If `quick`, it uses
-// fewer ticks and no sockets.
+// Prints the time per tick of the drivers, monitor and guard of real arms. If `quick` is true, the
+// measurement uses fewer ticks and no sockets.
 void TimeDriversAndSupervisor(bool quick);
 
-// Prints the time of the evaluation of the person. If `quick`, it uses fewer samples.
+// Prints the time of the evaluation of the person. If `quick` is true, the measurement uses fewer
+// samples.
 void TimePerson(bool quick);
 
-// Returns the results of isolated benchmarks of the stages' parts by google-benchmark, as name →
-// median [µs].
+// Runs isolated benchmarks of the parts of the stages with google-benchmark. Returns a map from the
+// name to the median time [µs].
 std::map<std::string, double> TimeParts(const Recording& recording, int* argc, char** argv);
 
-// Compares the costs of recording runs of these scenarios.
+// Measures the costs of recording for runs of these scenarios.
 void CompareRecordings(const std::vector<std::string>& names);
 
 // Compares solvers on the same problems.

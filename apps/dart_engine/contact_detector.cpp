@@ -37,7 +37,8 @@ struct Search {
 
 Eigen::Vector3d VectorOf(const dReal* xyz) { return {xyz[0], xyz[1], xyz[2]}; }
 
-// DART's filter looks at this property of bodies only, not at that of their shapes.
+// Returns whether a shape may have contacts. DART's own filter checks this only for bodies, not for
+// their shapes.
 bool IsCollidable(const CollisionObject& object) {
   return object.getShapeFrame()->asShapeNode()->getCollisionAspect()->isCollidable();
 }

@@ -1,4 +1,4 @@
-// Finds contacts with ODE, whose answers depend only on the shapes and their poses.
+// Finds contacts with ODE. The results depend only on the shapes and their poses.
 #pragma once
 
 #include <dart/collision/CollisionDetector.hpp>
@@ -6,9 +6,10 @@
 
 namespace predictor::dart_engine {
 
-// Returns DART's collision detector with ODE, without DART's memory of earlier contacts. DART 6.12
-// adds up to two earlier contacts of a pair that touches at fewer than three points, even after the
-// bodies moved on. A restored state would then not continue bit for bit.
+// Returns DART's ODE collision detector without DART's memory of earlier contacts. DART 6.12 adds
+// up to two earlier contacts of a pair that touches at fewer than three points, even after the
+// bodies moved on. With these additions, a run from a restored state would not match the original
+// run bit for bit.
 std::shared_ptr<dart::collision::CollisionDetector> MakeContactDetector();
 
 }  // namespace predictor::dart_engine

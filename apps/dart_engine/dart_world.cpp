@@ -30,11 +30,11 @@ using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Accelerations that contacts and limits add count as rounding errors below this share of the
-// largest acceleration.
+// If contacts and limits add less than this share of the largest acceleration, the addition counts
+// as a rounding error.
 constexpr double kRounding = 1e-9;
-// DART takes the smaller friction of two shapes and the product of their restitutions. With these
-// values for the object, those of the surroundings apply.
+// DART takes the smaller friction of two shapes and the product of their restitutions. Because of
+// these values for the object, the friction and restitution of the surroundings apply.
 constexpr double kObjectFriction = std::numeric_limits<double>::infinity();
 constexpr double kObjectRestitution = 1;
 
@@ -216,8 +216,8 @@ void DartWorld::AddObject() {
     SetLimits(joint, scene_.lower, scene_.upper, std::numeric_limits<double>::infinity());
 }
 
-// DART's own free joint has velocities in axes of the body. A sliding joint along the axes of W,
-// whose body has no mass, and a ball joint have those of the protocol.
+// DART's own free joint uses velocities in axes of the body, but the protocol does not. The object
+// therefore has a sliding joint along the axes of W, whose body has no mass, and a ball joint.
 void DartWorld::AddFreeObject(const BodyNode::Properties& body) {
   using dart::dynamics::BallJoint;
   using dart::dynamics::TranslationalJoint;
@@ -398,7 +398,7 @@ bool DartWorld::WriteContacts(const dart::collision::CollisionResult& result,
   for (std::size_t i = 0; i < result.getNumContacts(); ++i) {
     const dart::collision::Contact& from = result.getContact(i);
     const auto* first = from.collisionObject1->getShapeFrame()->asShapeNode();
-    // DART gives the normal and the force on the first body.
+    // DART reports the normal and the force that act on the first body.
     const double sign = first != nullptr && first->getBodyNodePtr().get() == object_ ? 1 : -1;
     ContactData& to = motion->contact[motion->contacts++];
     Write(from.point, to.p);

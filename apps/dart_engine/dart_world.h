@@ -1,4 +1,4 @@
-// Builds a world of DART from the scene that the run describes. It keeps no state between calls
+// A DART world, built from the scene that the run describes. The world keeps no state between calls
 // except the scene, so equal requests have equal answers.
 #pragma once
 
@@ -18,7 +18,8 @@ class DartWorld {
  public:
   explicit DartWorld(const SceneData& scene);
 
-  // Each reads state and forces from `memory` and writes the answer there.
+  // Each of these functions reads the state and the forces from `memory` and writes the answer
+  // there.
   Result Prepare(Memory* memory);
   Result Accelerations(Memory* memory);
   Result Advance(Memory* memory);
@@ -35,7 +36,7 @@ class DartWorld {
   void AddSurroundings();
   dart::dynamics::BodyNode* Carrier(int joint) const;
 
-  // Whether the last three coordinates are those of a ball.
+  // Returns whether the last three coordinates belong to a ball joint.
   bool HasBall() const;
   void SetState(const StateData& state);
   void SetRemoved(std::uint64_t removed);

@@ -1,6 +1,6 @@
-// predictor-dart: steps a world of DART for a run of PREDICTOR, which starts it. It is a separate
-// program because Debian's DART aborts on a diverged state, and because its libraries would
-// conflict with those of PREDICTOR.
+// predictor-dart: steps a world of DART for a run of PREDICTOR, which starts it. This engine is a
+// separate program because Debian's DART aborts on a diverged state, and because DART's libraries
+// would conflict with those of PREDICTOR.
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -23,7 +23,7 @@ namespace {
 
 enum : int { kEnded = 0, kBadStart = 2 };  // exit codes
 
-// Beyond this value, DART's own checks would end the process.
+// If a value exceeded this limit, DART's own checks would end the process.
 constexpr double kLargest = 1e9;
 
 bool IsUsable(const double* values, int size) {

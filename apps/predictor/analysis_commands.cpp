@@ -139,8 +139,8 @@ void AddContinue(CLI::App* app, Request* r) {
             "Page to write [default: NAME.continued.html]");
   AddOutput(go_on, o);
   go_on->footer(
-      "The command can ignore only a stop at a limit of the force, torque, coupling or tracking, "
-      "and only in a run with the simulated rig.\n"
+      "The command can continue only runs with the simulated rig that stopped at a limit of the "
+      "force, torque, coupling or tracking.\n"
       "Example:\n  predictor continue runs/push_2026-01-31_14-05-09.mcap --json continued.json\n");
 }
 

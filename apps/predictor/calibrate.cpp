@@ -37,10 +37,10 @@ std::string Date() { return LocalTime("%Y-%m-%dT%H-%M-%S", std::time(nullptr)); 
 
 using Json = nlohmann::ordered_json;
 
-// The terminal as the interface of a person beside the arms.
-// It prints lines, and reads keys without Enter and without showing them. The destructor restores
-// the terminal. The constructor throws InputError if standard input is not a terminal. Key also
-// throws it after Ctrl-C or if the terminal was closed.
+// The terminal through which a person beside the arms controls the calibration.
+// This class prints lines, and reads keys without Enter and without showing them. The destructor
+// restores the terminal. The constructor throws InputError if standard input is not a terminal. Key
+// also throws InputError after Ctrl-C or if the terminal was closed.
 class Terminal final : public commissioning::Person {
  public:
   Terminal();
@@ -75,8 +75,8 @@ char Terminal::Key() {
   return RawKeys::Read(key);
 }
 
-// A calibration session: a machine, its connected arms, and a person at the terminal. Each step
-// returns its result.
+// A calibration session: a machine, its connected arms, and a person at the terminal. Each step of
+// the calibration returns its result.
 class Commissioner {
  public:
   explicit Commissioner(const CalibrateOptions& options)
@@ -225,7 +225,7 @@ class Commissioner {
   }
 
   // Returns the contact of the enabling device, if the machine has one. Connects to the arm to
-  // which it is wired.
+  // which the enabling device is wired.
   commissioning::EnablingContact Contact() {
     if (!machine_.enabling) return {};
     const int hand = machine_.enabling->arm == kHandNames[0] ? 0 : 1;
@@ -266,8 +266,8 @@ class Commissioner {
     throw Located(error, machine_);
   }
 
-  // Runs however the session ended. `before` is the number of swings from earlier sessions. Their
-  // date is kept if this session added none.
+  // Runs at the end of every session, even after an error. `before` is the number of swings from
+  // earlier sessions. The date of these swings is kept if this session added no swings.
   void KeepSwings(const commissioning::SwingFile& file, int before,
                   commissioning::SwingFile::Kept* kept) {
     const commissioning::Swings& swings = kept->swings;
@@ -308,8 +308,8 @@ class Commissioner {
     Swing(&session, &station, options, swings);
   }
 
-  // Robots brake by themselves if the next command is late. If they accept a second channel, a
-  // watchdog process also brakes them when this process hangs.
+  // Robots brake by themselves if the next command is late. If the robots accept a second channel,
+  // a watchdog process also brakes them when this process hangs.
   void Swing(commissioning::Session* session, commissioning::Station* station,
              const commissioning::SwingOptions& options, commissioning::Swings* swings) {
     Shared<RunBoard> board;

@@ -1,5 +1,5 @@
-// The results of `calibrate` as JSON, with the half-widths of their 95 % intervals; the axes are
-// those of the commissioning module's structs.
+// Writes the results of `calibrate` as JSON, with the half-widths of their 95 % intervals. The axes
+// are the same as in the structs of the commissioning module.
 #pragma once
 
 #include <nlohmann/json.hpp>

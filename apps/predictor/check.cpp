@@ -12,7 +12,7 @@
 namespace predictor {
 namespace {
 
-// Writes a stability map and returns the message about it.
+// Writes a stability map and returns a message that describes it.
 std::string MakeMap(const Scenario& scenario, const CheckMap& wanted, bool quiet) {
   Progress progress("Mapping", 1, quiet);
   const std::filesystem::path folder = wanted.folder;

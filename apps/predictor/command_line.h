@@ -1,5 +1,5 @@
-// The command line: its commands and options, its help, and its error messages. commands.h declares
-// what the commands do.
+// The command line: its commands and options, its help, and its error messages. The functions that
+// execute the commands are declared in commands.h.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -50,7 +50,7 @@ void AddToolCommands(CLI::App* app, Request* r);
 // Adds a command, which `run` executes.
 CLI::App* AddCommand(CLI::App* app, const char* group, const char* name, const char* what,
                      Request* r, std::function<int()> run);
-// Adds an option. `type` is the name of its value in the help.
+// Adds an option. `type` is the name of the option's value in the help.
 template <class T>
 CLI::Option* AddOption(CLI::App* app, const char* group, const char* name, T* value,
                        const char* type, const char* what) {

@@ -36,17 +36,20 @@ struct OutputOptions {
   bool quiet = false;  // no progress and no result as text
   bool force = false;  // existing files may be replaced
 
-  // Throws InputError if `json` could not be written later, or exists and may not be replaced.
+  // Throws InputError if the file `json` cannot be written, or if it exists and may not be
+  // replaced.
   void CheckWritable() const;
   // Throws InputError if the file exists and may not be replaced; "" and "-" are not files.
   void RefuseToReplace(const std::string& file) const;
-  // The same, but also removes a file that may be replaced, for outputs that must be new files.
+  // Does the same as RefuseToReplace, and also removes an existing file that may be replaced. This
+  // is for outputs that must be new files.
   void MakeRoom(const std::string& file) const;
-  // Prints text for people unless quiet: to standard error if standard output gets the JSON.
+  // Prints text for the user unless quiet. The text is printed to standard error if standard output
+  // gets the JSON.
   void Print(const std::string& text) const;
   // Writes a command's result to `json`.
   void WriteJson(const std::string& result) const;
-  // Writes both the text and the result.
+  // Prints the text and writes the JSON result.
   void Write(const std::string& text, const std::string& result) const;
 };
 
@@ -61,15 +64,15 @@ struct ScenarioOptions : OutputOptions {
   std::string machine;  // machine file of the real arms; empty: the scenario's own device
 
   // Loads the scenario. Throws InputError if the scenario is invalid or the JSON file could not be
-  // written later. `on` is a machine whose arms replace the scenario's.
+  // written later. `on` is a machine whose arms replace the arms of the scenario.
   Scenario Load(const Machine* on = nullptr) const;
 };
 
 // The servers that `run` starts alongside the loop.
 struct ServeOptions {
   bool viewer = true;
-  // Whether the program continues at rest until it is asked to end. By default it does at a
-  // terminal, and while a page shows the results.
+  // Whether the program waits at rest after the run until the user ends it. By default, the program
+  // waits at a terminal, and while a page shows the results.
   std::optional<bool> stay;
   viewer::ViewerOptions page;
   bool evaluation = true;  // the person is judged live, if the scenario describes the person
@@ -108,7 +111,7 @@ struct ExportOptions {
 
 // Input and output of the `survey` commands.
 struct SurveyOptions : OutputOptions {
-  // The recording to ask about, or answers and folders with answers.
+  // The recording that the questionnaire is about, or answers and folders with answers.
   std::vector<std::string> places;
   std::string condition;      // "real", "emulated"; empty: the page asks the person
   std::uint16_t port = 8081;  // 0: any free port; the page of a run may use 8080
@@ -242,7 +245,7 @@ int RunCommand(const ScenarioOptions& options, ServeOptions serve, RecordOptions
 int SimulateCommand(const ScenarioOptions& options, const RecordOptions& record);
 int CheckCommand(const ScenarioOptions& options, bool search, const CheckMap& map);
 int ExportSceneCommand(const ScenarioOptions& options, const ExportOptions& to);
-// Returns the exit code kUnfit if the scenario that it wrote does not pass its check.
+// Returns the exit code kUnfit if the scenario that the command wrote does not pass its check.
 int InitCommand(const InitOptions& options);
 int ReportCommand(const ReportOptions& options);
 int CompareCommand(const CompareOptions& options);
@@ -255,11 +258,12 @@ int RepairCommand(const RecordingOptions& options);
 int ShareCommand(const RecordingOptions& options);
 // Returns the exit code kUnfit if data of the person remain, or if a place could not be searched.
 int ForgetCommand(const ForgetOptions& options);
-// Shows a recording in the viewer until asked to end.
+// Shows a recording in the viewer until the user ends the program.
 int ReplayCommand(const std::string& recording, const ServeOptions& options);
 // Returns the exit code kDeparted if the recomputed run differs.
 int VerifyCommand(const RecordingOptions& options);
-// Tries the library of a controller on a recorded run. Returns the exit code kUnfit if it fails.
+// Tries the library of a controller on a recorded run. Returns the exit code kUnfit if the library
+// fails the trial.
 int TrialCommand(const ScenarioOptions& options, const std::string& recording);
 // Returns the exit code kUnfit if a joint was rejected.
 int IdentifyCommand(const IdentifyCommandOptions& options);

@@ -48,7 +48,8 @@ Compared Read(const std::string& file, bool quiet) {
   return run;
 }
 
-// Reads the recordings: the first is compared, the others are its repeats.
+// Reads the recordings of one side: the first recording is compared, and the others are repeats of
+// it.
 std::vector<Compared> ReadAll(const std::vector<std::string>& files, bool quiet) {
   std::vector<Compared> runs;
   for (const std::string& file : files) runs.push_back(Read(file, quiet));

@@ -14,7 +14,7 @@
 namespace predictor {
 namespace {
 
-// `folder` is for the recorded models, which the continuation needs as well.
+// The recorded models, which the continuation needs as well, are written to `folder`.
 StoppedRun ReadStop(const ContinueCommandOptions& options, const TemporaryFolder& folder) {
   RecordingReader reader(options.recording);
   ShowProblem(reader.problem());

@@ -21,7 +21,8 @@ namespace {
 constexpr std::array kCrashes = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr int kReaderPatience = 1000;  // for the reader of standard error [ms]
 
-// The text is composed without the heap. A pipe accepts this many bytes at once (PIPE_BUF).
+// The text is composed without memory from the heap. A pipe accepts this many bytes at once
+// (PIPE_BUF).
 class CrashText {
  public:
   CrashText& operator<<(std::string_view more) {
@@ -30,7 +31,8 @@ class CrashText {
     size_ += n;
     return *this;
   }
-  // Waits for the reader, but not for long: the watchdog stops the arms when this process ends.
+  // Waits only briefly for the reader, because the watchdog stops the arms only when this process
+  // ends.
   void Write() const {
     pollfd ready{STDERR_FILENO, POLLOUT, 0};
     if (poll(&ready, 1, kReaderPatience) <= 0) return;
@@ -78,14 +80,14 @@ void WriteMessage(int signal) {
   text.Write();
 }
 
-// Only functions that POSIX allows in a signal handler may be called here.
+// This handler may call only functions that POSIX allows in a signal handler.
 void OnCrash(int signal, siginfo_t* info, void*) {
   if (getpid() == own_pid && !has_crashed.test_and_set()) {
     WriteMessage(signal);
     RawKeys::RestoreAtOnce();
   }
   // SA_RESETHAND has restored the default action. A faulty instruction is repeated on return, so a
-  // core dump shows it. A signal that was sent must be sent again.
+  // core dump shows it. A signal that another process sent must be raised again.
   if (info->si_code <= 0) raise(signal);
 }
 
@@ -95,8 +97,8 @@ void PrintMessageOnCrash() {
   if (kSanitized) return;
   own_pid = getpid();
   at_terminal = isatty(STDERR_FILENO) == 1;
-  // If the stack of the main thread, in which controllers run, is exhausted, the handler needs
-  // another one.
+  // The handler needs a stack of its own, because the stack of the main thread, in which
+  // controllers run, may be exhausted.
   static std::array<char, 1 << 16> memory;
   stack_t stack{};
   stack.ss_sp = memory.data();

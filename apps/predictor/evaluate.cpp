@@ -17,8 +17,8 @@
 namespace predictor {
 namespace {
 
-// Longest run of which a report computes the intervals, which take half of real time to compute on
-// a slow computer [s].
+// Duration of the longest run for which a report computes the intervals [s]. On a slow computer,
+// this computation takes half as long as the run.
 constexpr double kMaxIntervals = 120;
 
 void AddSafety(const EvaluatedRun& run, const EvaluateOptions& options,
@@ -66,8 +66,8 @@ assessment::PersonOfRun PersonIn(const std::string& file, double duration,
   const Scenario scenario = ParseScenario(header.scenario_yaml, file, ".", options.set);
   if (const auto missing = assessment::MissingForPosture(scenario); !missing.empty()) {
     person.why = Join(missing, " ") +
-                 " For this recording, give them to the report with --set, as "
-                 "for predictor evaluate.";
+                 " For this recording, pass the missing values to the report with --set, as for "
+                 "predictor evaluate.";
     return person;
   }
   EvaluateOptions evaluate;

@@ -1,4 +1,4 @@
-// Opens what the commands about the person read: recordings of the emulator and of other systems.
+// Opens recordings of the emulator and of other systems for the commands that judge the person.
 #pragma once
 
 #include <optional>

@@ -102,7 +102,8 @@ bool NextOrDamage(RecordingReader* reader, TickRecord* record, std::string* dama
   }
 }
 
-// Counting the ticks of a truncated recording requires reading all of it, which fails at damage.
+// To count the ticks of a truncated recording, the whole file must be read, which fails at damaged
+// parts.
 double CountOrNothing(RecordingReader* reader) {
   try {
     return static_cast<double>(reader->count());

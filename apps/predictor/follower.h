@@ -1,5 +1,5 @@
-// Follows a run's records like any other reader: it may be slow, and counts the records that it
-// missed.
+// Follows the records of a run. Like any other reader, the follower may be slow; it counts the
+// records that it missed.
 #pragma once
 
 #include <array>
@@ -24,19 +24,21 @@ struct FollowerOptions {
   bool quiet = false;
   std::string held;                   // printed when the arms have come to rest; may be empty
   RunRecording* recording = nullptr;  // may be null
-  // This may be null. With real arms, the person at the console, who holds a key or an enabling
-  // device, gets a message for each step.
+  // This may be null. With real arms, the follower prints a message for each step to the person at
+  // the console, who holds a key or an enabling device.
   const RealDevice* device = nullptr;
   bool enabling_device = false;
 };
 
 class Follower {
  public:
-  // `quit` is set if the run can no longer be followed, which ends it. All arguments are borrowed.
+  // If the follower can no longer follow the run, it sets `quit`, which ends the run. All arguments
+  // are borrowed.
   Follower(const RecordRing& ring, const Scenario& scenario, const FollowerOptions& options,
            std::atomic<bool>* quit);
 
-  // Returns whether the run ended for that reason. The summary is then incomplete.
+  // Returns whether the run ended because it could no longer be followed. In this case, the summary
+  // is incomplete.
   bool failed() const { return failed_; }
   Summary Finish();
   const ResultCurves& curves() const { return curves_; }  // complete after Finish

@@ -16,10 +16,10 @@ namespace predictor {
 namespace {
 
 constexpr const char* kNotReached =
-    "This command does not cover backups and snapshots of the file system, copies in other folders "
-    "and on other computers, exports under names of your own that do not contain the pseudonym, "
-    "and the blocks of a disk that are not yet overwritten (an SSD keeps some that no program can "
-    "reach).";
+    "This command does not remove backups and snapshots of the file system, copies in other "
+    "folders and on other computers, and exports under names of your own that do not contain the "
+    "pseudonym. It also does not overwrite deleted blocks of a disk (an SSD keeps some blocks that "
+    "no program can reach).";
 
 void PrintList(const std::string& title, const std::vector<PersonalFile>& list) {
   if (list.empty()) return;
@@ -48,7 +48,7 @@ PersonSearch Search(const ForgetOptions& options) {
   return result;
 }
 
-// The result keeps neither the names of the files nor the pseudonym.
+// The result contains neither the names of the files nor the pseudonym.
 void WriteResult(const ForgetOptions& options, std::size_t deleted, const PersonSearch& after) {
   const std::size_t left = after.found.size();
   std::string text = Formatted("Files deleted: %zu. ", deleted);

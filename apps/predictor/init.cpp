@@ -1,5 +1,5 @@
 // predictor init: writes a commented scenario that passes its check and runs unchanged, for one or
-// two arms, a given cobot and an object. It places the object and the arms at the cobot's
+// two arms, a given cobot and an object. The scenario places the object and the arms at the cobot's
 // end-effector.
 #include <algorithm>
 #include <cstring>
@@ -31,7 +31,8 @@ constexpr double kMasses[] = {9, 6};
 constexpr double kDampingRatios[] = {1, 1.5, 2};
 // Angles of the last link from straight down to try [rad].
 constexpr double kTilts[] = {0, 30 / kDegrees, 60 / kDegrees, 90 / kDegrees};
-// Where the handles are for a person who stands: in front of the feet, above the ground [m].
+// Position of the handles for a standing person: distance in front of the feet, and height above
+// the ground [m].
 constexpr double kHandsAhead = 0.45, kHandsHeight = 1.0;
 
 // A scenario that `init` may write.
@@ -186,8 +187,8 @@ std::string TextOf(const InitOptions& o, const Draft& draft) {
          OperatorText(o, draft);
 }
 
-// Reasons for which the scenario `text` would be refused or would fail its check. An object that
-// the floor carries or that is inside the cobot is one of them.
+// Returns the reasons for which the scenario `text` would be refused or would fail its check. An
+// object that the floor carries or that is inside the cobot is such a reason.
 std::vector<std::string> ProblemsOf(const std::string& text, const fs::path& file) {
   try {
     CheckOptions how;
@@ -202,8 +203,8 @@ std::vector<std::string> ProblemsOf(const std::string& text, const fs::path& fil
   }
 }
 
-// Returns the first draft that passes its check, or else the first draft with its problems, or
-// nothing if there is no draft. `tilt` is that of OwnCobots.
+// Returns the first draft that passes its check. If no draft passes, returns the first draft with
+// its problems; if there is no draft, returns nothing. `tilt` is passed to OwnCobots.
 std::optional<Draft> ChooseAt(double tilt, const InitOptions& o, const fs::path& file) {
   std::optional<Draft> first;
   for (const double mass : kMasses) {
@@ -227,12 +228,13 @@ Draft Choose(const InitOptions& o, const fs::path& file) {
     if (std::optional<Draft> draft = ChooseAt(tilt, o, file)) return *draft;
   throw InputError(
       o.urdf,
-      Formatted("No posture was found in which the arm of this robot can carry %g kg, the lightest "
-                "object that leaves enough stability margin, outside its links and with its last "
-                "link not above the horizontal. Check the effort limits of its joints, or choose "
-                "the link that holds the object: --end-effector LINK. If this is a small robot, "
-                "see docs/tutorials/own-cobot.md, \"A small cobot\".",
-                *std::ranges::min_element(kMasses)));
+      Formatted(
+          "The lightest object that leaves enough stability margin weighs %g kg. No posture was "
+          "found in which the arm of this robot can carry it outside its links and with its last "
+          "link not above the horizontal. Check the effort limits of its joints, or choose "
+          "the link that holds the object: --end-effector LINK. If this is a small robot, "
+          "see docs/tutorials/own-cobot.md, \"A small cobot\".",
+          *std::ranges::min_element(kMasses)));
 }
 
 std::string JsonOf(const Draft& draft, const std::string& file) {
@@ -270,8 +272,8 @@ std::string ResultText(const InitOptions& o, const Draft& draft, const std::stri
            cobot.base_height);
   if (cobot.tilt > 0)
     Append(&text,
-           "No posture was found in which the last link points down: it leans by %.0f° from "
-           "straight down, away from the base.\n",
+           "No posture was found in which the last link points straight down: the link leans away "
+           "from the base by %.0f°.\n",
            kDegrees * cobot.tilt);
   if (!draft.problems.empty()) return text + "Wrote " + file + ", which does not pass its check.\n";
   return text + "Wrote " + file + ". Next: predictor check " + file + "; predictor run " + file +
@@ -290,7 +292,7 @@ int InitCommand(const InitOptions& given) {
   options.RefuseToReplace(file);
   if (options.urdf.empty() && !options.end_effector.empty())
     throw InputError(
-        "--end-effector names a link of your own cobot. Give the URDF of this cobot as well: "
+        "--end-effector names a link of your own cobot. Also give the URDF of this cobot with "
         "--urdf FILE.");
   const Draft draft = Choose(options, file);
   WriteFile(file, TextOf(options, draft));

@@ -35,8 +35,8 @@ bool MaySag(const RobotModel& model, const FrameId& tip, const InitObject& objec
   return SolveInverseKinematics(model, tip, lowered, q, 0, &q);
 }
 
-// Attaches the object as close to the end-effector as the links permit. Returns whether it is then
-// clear of the links and, at rest, of the floor.
+// Attaches the object as close to the end-effector as the links permit. Returns whether the
+// attached object is clear of the links and, at rest, of the floor.
 bool Attach(const LinkGaps& gaps, const InitPosture& posture, const Vector3& outward,
             const InitObject& object, InitCobot* cobot) {
   return std::ranges::any_of(kAttachments, [&](double distance) {
@@ -48,7 +48,7 @@ bool Attach(const LinkGaps& gaps, const InitPosture& posture, const Vector3& out
   });
 }
 
-// Returns the robot of `base`, at its height, in suitable postures.
+// Returns the robot of `base`, at the height of `base`, in suitable postures.
 std::vector<InitCobot> InPostures(const InitCobot& base, const fs::path& folder,
                                   const InitObject& object, double tilt) {
   Scenario scenario;  // of which only cobot and object matter

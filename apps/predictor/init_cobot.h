@@ -1,4 +1,5 @@
-// The cobot of the scenario that `init` writes: which part of a URDF it is, and how it stands.
+// The cobot of the scenario that `init` writes: the part of the URDF to use, and the cobot's base
+// and posture.
 #pragma once
 
 #include <filesystem>
@@ -37,12 +38,12 @@ struct InitCobot {
 
 InitCobot PandaCobot();
 
-// Returns the robot of a URDF in postures in which it can carry the object, the most suitable one
-// first, or nothing if no posture was found. The last link leans by `tilt` from straight down
-// [rad]. The object is on its outer side, clear of the other links and of the floor. If the robot
-// is too small for this, its base stands higher. The result is the same in each call. `urdf` is a
-// file or package://..., in a folder from which the scenario may read it. For `end_effector`, see
-// FindArm. Throws InputError.
+// Returns the robot of a URDF in postures in which it can carry the object, beginning with the most
+// suitable posture. Returns nothing if no posture was found. The last link leans by `tilt` from
+// straight down [rad]. The object is on the outer side of the last link, clear of the other links
+// and of the floor. If the robot is too small for this, its base stands higher. The result is the
+// same in each call. `urdf` is a path or package://... URL of a file in a folder from which the
+// scenario may read. For `end_effector`, see FindArm. Throws InputError.
 std::vector<InitCobot> OwnCobots(const std::string& urdf, const std::string& end_effector,
                                  const std::filesystem::path& scenario, const InitObject& object,
                                  double tilt);

@@ -23,7 +23,7 @@ constexpr double kArm = 0.3;                 // length that compares angles with
 constexpr double kMaxStep = 0.3;             // of a joint in an iteration [rad] or [m]
 constexpr double kLinkHeight = 0.05;         // least height of the joints beyond the second one [m]
 
-// Where the end-effector may be, in W [m].
+// Permitted positions of the end-effector in W [m].
 struct Zone {
   Vector3 low, high;
 
@@ -39,14 +39,14 @@ Vector3 Target(double tilt, const Vector3& p) {
   return std::sin(tilt) * away - std::cos(tilt) * Vector3::UnitZ();
 }
 
-// Returns the rotation vector that turns the unit vector u into t [rad].
+// Returns the rotation vector that rotates the unit vector u onto t [rad].
 Vector3 Turn(const Vector3& u, const Vector3& t) {
   const Vector3 axis = u.cross(t);
   const double sine = axis.norm(), angle = std::atan2(sine, u.dot(t));
   return sine > 1e-6 ? Vector3(angle / sine * axis) : Vector3(angle * u.unitOrthogonal());
 }
 
-// Moves a posture towards the demands, within the joints' ranges.
+// Moves a posture towards the demanded pose, within the joints' ranges.
 class Search {
  public:
   Search(const RobotModel& model, const FrameId& end_effector, const PostureDemand& demand)
@@ -109,7 +109,8 @@ class Search {
     return false;
   }
 
-  // Completes a posture at the demanded pose. Returns whether it can carry the object.
+  // Completes a posture at the demanded pose. Returns whether the cobot can carry the object in
+  // this posture.
   bool Judge(InitPosture* posture) {
     data_.UpdateDynamics(model_, posture->q, rest_, kStandardGravity);
     data_.FrameJacobian(model_, end_effector_, &J_);

@@ -7,7 +7,7 @@
 
 namespace predictor {
 
-// What a posture must fulfil.
+// The requirements on a posture.
 struct PostureDemand {
   double mass = 0;                     // of the object [kg]
   Vector3 outward = Vector3::UnitZ();  // where the last link points (LastLinkDirection), in E
@@ -21,9 +21,10 @@ struct InitPosture {
   Pose X_WE;
 };
 
-// Returns postures with the end-effector in front of the base, and the last link in the demanded
-// direction, in which each joint carries the object with at most 60 % of its effort limit. The best
-// ones come first. Returns nothing if none was found. The result is the same in each call.
+// Returns postures in which the end-effector is in front of the base, the last link has the
+// demanded direction, and each joint carries the object with at most 60 % of its effort limit. The
+// best postures come first. Returns an empty list if no posture was found. The result is the same
+// in each call.
 std::vector<InitPosture> FindPostures(const RobotModel& model, const FrameId& end_effector,
                                       const PostureDemand& demand);
 

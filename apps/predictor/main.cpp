@@ -35,8 +35,9 @@ constexpr const char* kFooter =
     "\n"
     "No command replaces an existing file without --force.\n";
 
-// Runs the processes that a run starts for its page, for Unity, as its watchdog and to judge the
-// person. Users do not start them. Returns a negative value if the command line names none of them.
+// Runs the helper processes that a run starts: for its page, for Unity, as its watchdog and to
+// judge the person. Users do not start these processes. Returns a negative value if the command
+// line does not name a helper process.
 int RunHelperProcess(int argc, char** argv) {
   if (argc != 2) return -1;
   const std::string name = argv[1];
@@ -58,7 +59,7 @@ void AddCommands(CLI::App* app, Request* r) {
   app->footer(kFooter);  // at the end, because each new command inherits the footer
 }
 
-// Returns a negative value if the command should run.
+// Returns the exit code, or a negative value if the parsed command should be executed.
 int Parse(CLI::App* app, int argc, char** argv) {
   if (argc == 1) {
     std::fputs(app->help().c_str(), stderr);

@@ -1,4 +1,4 @@
-// The recording that the program is writing at present, for those who must end the program at once.
+// The recording that the program is writing at present, for code that must end the program at once.
 #pragma once
 
 #include <functional>
@@ -6,20 +6,20 @@
 
 namespace predictor {
 
-// While this object exists, the recording is open. There is at most one.
+// While this object exists, the recording is open. At most one recording is open at a time.
 class OpenRecording {
  public:
-  // `close` ends the recording. Another thread calls it, while the control loop is stuck. It is
-  // empty if only the control loop can end the recording.
+  // `close` ends the recording. Another thread calls `close` while the control loop is stuck.
+  // `close` is empty if only the control loop can end the recording.
   OpenRecording(const std::string& file, std::function<void()> close);
   ~OpenRecording();
   OpenRecording(const OpenRecording&) = delete;
   OpenRecording& operator=(const OpenRecording&) = delete;
 
-  // Returns how to restore the recording, as a sentence, or "" if none is open. A signal handler
-  // may call this.
+  // Returns a sentence that explains how to restore the recording, or "" if no recording is open. A
+  // signal handler may call this.
   static const char* Remedy() noexcept;
-  // Ends the recording. Returns false if none is open or nothing can end it.
+  // Ends the recording. Returns false if no recording is open or if the recording cannot be ended.
   static bool Close();
 };
 

@@ -92,7 +92,7 @@ void OutputOptions::MakeRoom(const std::string& target) const {
 }
 
 // Checks at the start, so that a long run does not end with a result that cannot be written.
-// Creates no file that did not exist.
+// The check does not create a file that did not exist.
 void OutputOptions::CheckWritable() const {
   if (json.empty() || json == "-") return;
   RefuseToReplace(json);
@@ -115,7 +115,8 @@ void OutputOptions::Write(const std::string& text, const std::string& result) co
 
 void OutputOptions::WriteJson(const std::string& result) const {
   if (json.empty()) return;
-  // A terminal must get no control characters. In JSON they are replaced by its escape sequences.
+  // A terminal must get no control characters. In JSON, control characters are replaced by escape
+  // sequences.
   if (json == "-")
     return WriteRaw(isatty(STDOUT_FILENO) == 1 ? Printable(result, Lines::kMany) : result);
   std::ofstream out(json);

@@ -35,7 +35,7 @@ class PatientFile {
   }
 
  private:
-  // Returns false if not all of it was accepted in time.
+  // Returns false if the reader did not accept the whole text in time.
   bool Put(std::string_view text, Clock::time_point end) {
     while (!text.empty()) {
       if (!TakesMore(end)) return false;
@@ -68,7 +68,8 @@ ssize_t WriteTo(void* file, const char* text, std::size_t size) {
 FILE* Bounded(int stream) {
   struct stat status {};
   if (fstat(stream, &status) != 0 || S_ISREG(status.st_mode)) return nullptr;
-  // Opens a separate description if possible, so that other users of the shared one still wait.
+  // Opens a separate file description if possible, so that other users of the shared description
+  // still wait.
   const char* const name = stream == STDERR_FILENO ? "/proc/self/fd/2" : "/proc/self/fd/1";
   const int own = S_ISSOCK(status.st_mode)
                       ? -1

@@ -34,10 +34,11 @@ double PatienceFor(const LongPluginCall& call) {
   return is_real_time ? kRealTime : kVirtualTime;
 }
 
-// The control loop is stuck in the library, so nothing can end in its usual order.
+// Ends the program without the usual order of destruction, because the control loop is stuck in the
+// library.
 [[noreturn]] void EndHungProgram(const LongPluginCall& call, double patience) {
-  // The library may have stopped anywhere, for example in the allocation of memory. The program
-  // must end even if one of these steps never ends.
+  // The library may be stuck anywhere, for example in the allocation of memory. The program must
+  // end even if one of the following steps blocks.
   std::signal(SIGALRM, [](int) { _exit(kDeviceFailure); });
   alarm(kLongestEnd);
   TheScreen().Bar("");

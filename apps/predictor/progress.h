@@ -12,11 +12,12 @@ std::string RemainingText(double share, double elapsed);
 
 class Progress {
  public:
-  // `total` is the value of Update at the end. If `quiet`, nothing is printed.
+  // `total` is the value that the last call of Update passes. If `quiet` is true, nothing is
+  // printed.
   Progress(std::string title, double total, bool quiet);
   ~Progress();
   // Redraws at most ten times per second. Without a terminal, prints a line for each tenth of the
-  // work. `note` is a few words after the bar.
+  // work. `note` is a short text that is shown after the bar.
   void Update(double done, const std::string& note = "");
   void Finish();
 

@@ -35,17 +35,17 @@ class RawKeys {
   RawKeys& operator=(const RawKeys&) = delete;
 
   // Restores the terminal before the program ends without destructors. A signal handler may call
-  // this. In the background, the program would be suspended.
+  // this. A program in the background would be suspended.
   static void RestoreAtOnce() noexcept {
     if (changed_ && tcgetpgrp(STDIN_FILENO) == getpgrp())
       tcsetattr(STDIN_FILENO, TCSANOW, &before_);
   }
 
-  // Ctrl-Space sends 0, which other code uses for no key.
+  // Ctrl-Space sends 0, but in other code 0 means that no key was pressed.
   static char Read(char byte) { return byte != 0 ? byte : '\x01'; }
 
  private:
-  // There is only one object at a time.
+  // Only one object of this class exists at a time.
   static inline termios before_{};
   static inline std::atomic<bool> changed_{false};
 };

@@ -88,13 +88,13 @@ void ConfirmPerturbation(const Scenario& scenario) {
   if (!scenario.perturbation) return;
   const PerturbationSpec& p = *scenario.perturbation;
   const std::string question = Formatted(
-      "During the run, the handles will move by themselves by up to %.0f mm, repeatedly, to "
-      "identify the operator's arms. A hand that resists with more than %.0f N ends such a motion. "
+      "To identify the operator's arms, the handles will repeatedly move by themselves by up to "
+      "%.0f mm during the run. A hand that resists with more than %.0f N ends such a motion. "
       "Does the person who will hold the handles know this and agree? Type yes to continue: ",
       1e3 * p.amplitude, p.force);
   std::fputs(question.c_str(), stderr);
   std::string answer;
-  // Single characters, so that keys for the run are not swallowed.
+  // Reads single characters, so that keys that are meant for the run are not lost.
   for (char c = 0; answer.size() < 16 && read(STDIN_FILENO, &c, 1) == 1 && c != '\n';) answer += c;
   if (answer == "yes") return;
   throw Located(InputError::At("perturbation.consent",

@@ -12,16 +12,17 @@ namespace predictor {
 // The models of a machine's arms; null for an arm that it does not have.
 using ArmModels = std::array<std::shared_ptr<const RobotModel>, kHands>;
 
-// Reads the models from their files. Call this before a device is connected, so that a file that
-// stops the program does so while no arm obeys it. Throws InputError with the machine file's line.
+// Reads the models from their files. Call this before a device is connected: if a file stops the
+// program, no arm may be under its control. Throws InputError with the machine file's line.
 ArmModels LoadArmModels(const Machine& machine);
 
 // Throws DeviceError if the system grants no real-time scheduling, because a loop that other
-// programs may delay must not move real arms. For fakes on this computer, only prints a warning.
+// programs may delay must not move real arms. For fake devices on this computer, the function only
+// prints a warning.
 void RequireRealTime(const Machine& machine);
 
-// Throws InputError if a growing oscillation in the scenario's hands is predicted, because such a
-// haptic loop must not move real arms. `scenario` has the machine's arms.
+// Throws InputError if the prediction for the scenario's hands is a growing oscillation, because
+// such a haptic loop must not move real arms. `scenario` contains the machine's arms.
 void RequireStability(const Machine& machine, const Scenario& scenario);
 
 // Before real arms displace a person's handles (`perturbation`), the person at the console must

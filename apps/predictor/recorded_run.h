@@ -21,7 +21,7 @@
 
 namespace predictor {
 
-// Whether, where and how a run is recorded.
+// The options that determine whether, where and how a run is recorded.
 struct RecordOptions {
   std::string file;                 // empty: the command's default
   bool off = false;                 // no recording, even if it is the default
@@ -29,7 +29,7 @@ struct RecordOptions {
   std::string participant;          // file of the person in a study; empty: none
   std::string machine;              // machine file of real arms, as YAML
 
-  // Returns all labels, including those of the participant. Throws InputError.
+  // Returns all labels, including the labels of the participant. Throws InputError.
   std::map<std::string, std::string> Labels() const;
 };
 
@@ -40,13 +40,13 @@ RecordingHeader HeaderOf(const Emulator& emulator, const RecordOptions& options)
 // folder.
 std::string NewRecordingName(const Scenario& scenario);
 
-// Reads the remaining ticks in another thread, because unpacking and checking take twice as long as
-// evaluating, and shows the progress. Throws InputError.
+// Reads the remaining ticks and shows the progress. Another thread reads, because unpacking and
+// checking take twice as long as evaluating. Throws InputError.
 void ReadTicks(RecordingReader* reader, const std::string& title, bool quiet,
                const std::function<void(const TickRecord&)>& add);
 
-// Records a run in virtual time. Nothing waits in virtual time, so it writes in the simulation's
-// own thread.
+// Records a run in virtual time. In virtual time, no device waits for the loop, so the recorder
+// writes in the simulation's own thread.
 class VirtualRecording {
  public:
   // Throws InputError if the file cannot be created.
@@ -68,9 +68,9 @@ class VirtualRecording {
 // Records a run in real time.
 class RunRecording final : public SnapshotSink {
  public:
-  // Records everything that is published on the board from now on to `options.file`, or to the file
-  // of NewRecordingName, and shows on the board whether it is recording. `person` is the board of
-  // the evaluator's states, which are recorded as well, or null. Both boards are borrowed. Throws
+  // Records everything that is published on the board from now on to `options.file` or to the file
+  // of NewRecordingName. The board shows whether the recorder is recording. `person` is the board
+  // of the evaluator's states, which are also recorded, or null. Both boards are borrowed. Throws
   // InputError.
   RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board,
                const EvaluationBoard* person);
@@ -81,10 +81,11 @@ class RunRecording final : public SnapshotSink {
   }
   // Updates the board's recording state. Call this regularly, but not in the tick's thread.
   void Look();
-  // Adds a marker for people who evaluate the recording.
+  // Adds a marker that helps people who evaluate the recording.
   void Mark(const std::string& text) { recorder_.Mark(text); }
   // Ends the recording and prints its result unless quiet. If the program does not make a report
-  // itself, it also prints how to make one. Returns whether the recording lasted until the end.
+  // itself, the function also prints the command that makes a report. Returns whether the recording
+  // lasted until the end.
   bool Close(bool quiet, bool has_report);
   const std::string& file() const { return file_; }
 
@@ -95,7 +96,7 @@ class RunRecording final : public SnapshotSink {
   std::optional<OpenRecording> open_;
 };
 
-// A folder for this process only, which its destructor removes.
+// A folder for this process only. The destructor removes the folder.
 class TemporaryFolder {
  public:
   TemporaryFolder();  // throws std::runtime_error

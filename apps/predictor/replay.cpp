@@ -27,7 +27,7 @@ namespace predictor {
 namespace {
 
 constexpr double kTurn = 0.01;  // time between two displayed states [s]
-// For distances up to this, reading on is cheaper than seeking [s].
+// For distances up to this value, continuing to read is faster than seeking [s].
 constexpr double kNear = 2;
 
 std::uint64_t Nanoseconds(std::chrono::steady_clock::time_point t) {
@@ -44,8 +44,8 @@ std::uint64_t LastTick(RecordingReader* reader, const TickRecord& first) {
   return last.tick;
 }
 
-// Plays a recording in the viewer: each state that a page shows is a recorded tick. Ticks between
-// two such states are published as well, because the evaluator needs them.
+// Plays a recording in the viewer: each state that a page shows is a recorded tick. The ticks
+// between two such states are also published, because the evaluator needs them.
 class Player {
  public:
   // All arguments are borrowed. Throws InputError if the recording contains no ticks.
@@ -60,7 +60,7 @@ class Player {
   void Play();
 
   // Advances by `dt` [s]. `now`, the monotonic clock [ns], replaces the recorded time, because
-  // pages determine a state's age from it.
+  // pages compute a state's age from this time.
   void Step(double dt, std::uint64_t now);
 
  private:
@@ -130,7 +130,7 @@ void Player::TakeInputs() {
   }
 }
 
-// Shows the last tick at or before `position`, or the next one after a gap.
+// Shows the last tick at or before `position`, or the next tick if `position` is in a gap.
 void Player::MoveTo(double position) {
   position_ = position;
   const std::uint64_t tick =

@@ -14,7 +14,7 @@ namespace predictor {
 // Prints device, lead and stability margin to standard error.
 void PrintSetup(const Emulator& emulator, bool quiet);
 
-// Returns the prediction about the haptic loop, or nothing if no arms are emulated.
+// Returns the prediction for the haptic loop, or no value if the run has no arms.
 std::optional<PredictedLoop> PredictedLoopOf(const Emulator& emulator);
 
 // Adds the measurements of the run to the summary, prints and writes it, and returns the exit code.

@@ -23,17 +23,17 @@ namespace predictor {
 namespace {
 
 constexpr std::size_t kMaxRecordings = 8;  // the number of available colours
-// Total time of all recordings for which every tick is kept [s], so that the page stays below 20
-// MB.
+// Largest total duration of all recordings for which the report keeps every tick [s], so that the
+// page stays below 20 MB.
 constexpr double kDetail = 120;
 
-// What the report shows about one recording.
+// The data that the report shows about one recording.
 struct ReportedRun {
   RunData data;
   ContactRun contact;
 };
 
-// The recorded scenario with its model files, as far as these are not lost.
+// The recorded scenario with those of its model files that are not lost.
 class RestoredScenario {
  public:
   explicit RestoredScenario(const RecordingHeader& header) {
@@ -52,7 +52,8 @@ class RestoredScenario {
   std::string problem_;
 };
 
-// Returns which joints of the recorded cobot are prismatic, or none if its model is lost.
+// Returns which joints of the recorded cobot are prismatic. If the model of the cobot is lost, the
+// list is empty.
 std::vector<bool> PrismaticJointsOf(const RestoredScenario& restored) try {
   return restored.scenario() ? PrismaticJoints(*restored.scenario()) : std::vector<bool>();
 } catch (const InputError&) {
@@ -85,7 +86,7 @@ RunInfo Describe(const std::string& file, const RestoredScenario& restored,
   return info;
 }
 
-// Returns a collector for a scenario with contact, or null.
+// Returns a collector for a scenario with contact, or null for a scenario without contact.
 std::unique_ptr<ContactCollector> MakeContactCollector(const RestoredScenario& restored,
                                                        ContactRun* run) {
   if (!HasContact(run->scenario)) return nullptr;
@@ -125,7 +126,7 @@ ReportedRun Read(const std::string& file, double detail, bool quiet) {
   return run;
 }
 
-// Names several runs by the values that differ between them.
+// Returns names of several runs, made from the values that differ between the runs.
 void NameRuns(const std::vector<std::string>& files, std::vector<RunData>* runs) {
   if (runs->size() < 2) return;
   std::vector<NamedRun> named;

@@ -99,7 +99,7 @@ void ResultCurves::Add(const TickRecord& record) {
   }
 }
 
-// Merges each pair of pieces into one.
+// Merges each pair of neighbouring pieces into one piece.
 void ResultCurves::Halve() {
   const std::size_t half = (pieces_.size() + 1) / 2;
   for (std::size_t k = 0; k < half; ++k) {

@@ -38,14 +38,14 @@ class ResultCurves {
 };
 
 // Returns the page's `scene.results`. `how` is a sentence about how the run ended. `recording` is
-// its file, or empty. `remark` is why there is no report, or empty.
+// the file of the recording, or empty. `remark` is the reason why there is no report, or empty.
 nlohmann::ordered_json ResultsJson(const Summary& summary, const ResultCurves& curves,
                                    const std::string& how, const std::string& recording,
                                    const std::string& remark);
 
-// Writes the report of a recording beside it. Returns the report's file, or an empty path and the
-// reason in `remark`. `duration` is that of the run [s]; reports of long runs must be made by
-// `predictor report`.
+// Writes the report of a recording to the folder of the recording. Returns the report's file, or an
+// empty path and the reason in `remark`. `duration` is the duration of the run [s]; reports of long
+// runs must be made by `predictor report`.
 std::filesystem::path WriteRunReport(const std::string& recording, double duration,
                                      std::string* remark);
 

@@ -44,8 +44,8 @@ constexpr CalibrateStep kCalibrateSteps[] = {
      "  predictor calibrate loop --machine rig.yaml --arm left"},
     {"push", "Check the direction of the force readings by pushing the handles; nothing moves",
      "Only this arm [default: all]",
-     "Take your hands off and press Enter. Then push each handle along +x, +y and +z of the world "
-     "with 5 to 25 N, when the program prompts you.\n"
+     "Take your hands off and press Enter. When the program prompts you, push each handle along "
+     "+x, +y and +z of the world with 5 to 25 N.\n"
      "Needs: final values of base, sensor.pose and payload. Repeat this test after any later "
      "change.\n"
      "Writes: commissioned.push_test. Without this entry, `predictor run` does not move real "

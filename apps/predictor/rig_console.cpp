@@ -23,12 +23,13 @@ double Now() {
 
 const char* RigConsole::Help() const {
   if (enabling_device_)
-    return "Hold the enabling device. a aligns, then s starts; r recovers. Releasing the device "
-           "stops the arms. z resets. : begins a command (Enter executes it; Esc stops the arms). "
+    return "Hold the enabling device. Key a aligns, then s starts; r recovers. Releasing the "
+           "device stops the arms. Key z resets. Key : begins a command (Enter executes it; Esc "
+           "stops the arms). "
            "Any other key stops the arms.";
   return "Keys: hold a to align, then hold s to start and run; hold r to recover. Releasing the "
-         "key stops the arms. z resets. : begins a command (Enter executes it; Esc stops the "
-         "arms). Any other key stops the arms.";
+         "key stops the arms. Key z resets. Key : begins a command (Enter executes it; Esc stops "
+         "the arms). Any other key stops the arms.";
 }
 
 RigConsole::RigConsole(std::function<void(RunEvent)> request,
@@ -66,7 +67,8 @@ void RigConsole::Listen() {
       // A closed terminal is treated as an absent operator.
       if (count <= 0) return request_(RunEvent::kStopRequested);
     }
-    // Queued input was typed at some earlier time. It is read at once and gets a common time.
+    // Queued input was typed at unknown earlier times. All queued keys are read at once and get the
+    // same time.
     const double now = Now();
     for (ssize_t i = 0; i < count; ++i) Key(RawKeys::Read(keys[static_cast<std::size_t>(i)]), now);
     for (Asking& asking : askings_) Hear(&asking, 0, now);
@@ -92,24 +94,26 @@ void RigConsole::Hear(Asking* asking, char key, double now) {
   ReportIgnored(*asking, sign);
 }
 
-// Reports why a key had no effect.
+// Prints why a key had no effect.
 void RigConsole::ReportIgnored(const Asking& asking, KeySign sign) {
   const char key = asking.key.key();
   if (sign == KeySign::kHeld && asking.by_touch)
-    TheScreen().Print(
-        Formatted("Key %c counts once, however long it is held. To repeat the request, release the "
-                  "key for a second, then tap it.",
-                  key));
+    TheScreen().Print(Formatted(
+        "Key %c counts once, even if it is held longer. To repeat the request, release the "
+        "key for a second, then tap it.",
+        key));
   if (sign == KeySign::kNotHeld && !asking.by_touch)
-    TheScreen().Print(Formatted("Not done: key %c was only tapped. Hold it down.", key));
+    TheScreen().Print(
+        Formatted("Key %c had no effect, because it was only tapped. Hold it down.", key));
   if (sign == KeySign::kLate)
     TheScreen().Print(
-        Formatted("Not done: the presses of key %c arrived late, all at once. %s it again. If the "
+        Formatted("Key %c had no effect, because its presses arrived late and all at once. %s it "
+                  "again. If the "
                   "connection stalls, use the keyboard of this computer.",
                   key, asking.by_touch ? "Tap" : "Hold"));
 }
 
-// Keys that do not belong to text (Esc, Tab, an arrow) stop the run here, too.
+// While a command is typed, keys that do not belong to text (Esc, Tab, an arrow) stop the run, too.
 void RigConsole::Type(char key) {
   if (typed_.Type(key)) return;
   typing_ = false;

@@ -1,4 +1,4 @@
-// The keyboard of the operator beside real arms, with the actions that only a person at the rig may
+// The keyboard of the operator beside real arms, for the actions that only a person at the rig may
 // perform.
 #pragma once
 
@@ -25,22 +25,22 @@ namespace predictor {
 //   any other key: stop; while a command is typed, any key that is not text (Esc)
 class RigConsole {
  public:
-  // `request` requests an event of the run, from this object's thread. `line` is called with each
-  // typed command. With an `enabling_device`, the operator holds one instead of a key. Standard
-  // input must be a terminal, which the destructor restores.
+  // This object's thread calls `request` to request an event of the run, and `line` with each typed
+  // command. With an `enabling_device`, the operator holds this device instead of a key. Standard
+  // input must be a terminal; the destructor restores its settings.
   RigConsole(std::function<void(RunEvent)> request, std::function<void(const std::string&)> line,
              bool enabling_device);
   ~RigConsole();
   RigConsole(const RigConsole&) = delete;
   RigConsole& operator=(const RigConsole&) = delete;
 
-  // Returns the number of signs of a held key so far.
+  // Returns how many signs of a held key this object has received so far.
   const std::atomic<std::uint32_t>& enabling() const { return enabling_; }
 
   const char* Help() const;
 
  private:
-  // A key, and its request when it is held or touched.
+  // A key, and the event that this key requests when it is held or touched.
   struct Asking {
     HeldKey key;
     RunEvent event;

@@ -108,11 +108,12 @@ class Commands {
   RunRecording* recording_;
 };
 
-// Reads commands from standard input if no real arm moves. A background process gets none.
+// Reads commands from standard input if no real arm moves. A process in the background receives no
+// commands.
 class Console {
  public:
   explicit Console(Commands* commands) : commands_(commands) {
-    // The result is −1 if standard input is not this process's controlling terminal.
+    // tcgetpgrp returns −1 if standard input is not this process's controlling terminal.
     const pid_t in_front = tcgetpgrp(STDIN_FILENO);
     if (in_front != -1 && in_front != getpgrp()) return;
     keys_.emplace(false);
@@ -147,7 +148,7 @@ class Console {
   std::thread thread_;
 };
 
-// Returns the text for the pages.
+// Returns the sentence about the end of the run for the pages.
 std::string HowItEnded(RunEnd end, const Summary& summary) {
   if (quit) return "The run was ended from the console.";
   if (summary.stop_count > 0) return "The run was stopped before its planned end.";
@@ -160,7 +161,7 @@ struct NextRun {
   bool by_itself;        // chosen after a run, so it starts without another button
 };
 
-// The run of one scenario, from its first tick to its table.
+// The run of one scenario, from the first tick to the table of results.
 class Run {
  public:
   // `device` and `machine` are the real arms, or null.
@@ -244,7 +245,7 @@ class Run {
     if (end == RunEnd::kNotStarted && (quit || report.scenario) && summary.ticks() == 0 &&
         summary.stop_count == 0) {
       if (follower.failed()) return kDeviceFailure;
-      if (quit) std::fprintf(stderr, "Ended on request before the run began.\n");
+      if (quit) std::fprintf(stderr, "The program was ended on request before the run began.\n");
       return kFinished;
     }
     summary.overruns = report.overruns;
@@ -260,7 +261,7 @@ class Run {
     return code == kFinished && (!recorded || follower.failed()) ? kDeviceFailure : code;
   }
 
-  // Hands on what the program's next run takes over: ports, and which clients were removed.
+  // Passes the ports and the list of removed clients on to the program's next run.
   void HandOn(ServeOptions* next) const {
     if (ros_) next->ros.port = ros_->port();
     if (!viewer_) return;
@@ -269,15 +270,16 @@ class Run {
   }
 
  private:
-  // Returns whether results may be shown: with simulated arms, while a page is connected or the
-  // program should stay.
+  // Returns whether results may be shown. This requires simulated arms, and that a page is
+  // connected or the program should stay.
   bool MayShowResults() {
     return viewer_ && emulator_.setup().rules.may_switch_scenario && !quit &&
            serve_.stay.value_or(mailbox_->clients.load(std::memory_order_relaxed) > 0);
   }
 
-  // Starts a new viewer with the results and the report, which replaces the run's viewer. A new one
-  // is needed because a viewer can read files only before it serves. Returns the choice of a page.
+  // Starts a new viewer with the results and the report, which replaces the run's viewer. A new
+  // viewer is needed because a viewer can read files only before it begins to serve pages. Returns
+  // the scenario that a page chose.
   std::optional<NextRun> ShowResults(const Summary& summary, const ResultCurves& curves,
                                      const std::string& how) {
     std::string remark;
@@ -302,8 +304,8 @@ class Run {
     return WaitForChoice();
   }
 
-  // Waits until a page chooses or the program is asked to end. Unless the program should stay, it
-  // also returns when no page is connected.
+  // Waits until a page chooses a scenario or the user ends the program. Unless the program should
+  // stay, the function also returns when no page is connected.
   std::optional<NextRun> WaitForChoice() {
     using Clock = std::chrono::steady_clock;
     constexpr std::chrono::seconds kPatience{10};  // a page may be reconnecting
@@ -364,8 +366,9 @@ ScenarioOptions OptionsFor(const std::filesystem::path& file, const ScenarioOpti
   return options;
 }
 
-// Loads the scenario for a run in real time. The detectors of oscillation and vibration stay on,
-// because a person may hold the handles. All repairs of the paper's formulation stay on too.
+// Loads the scenario for a run in real time. The detectors of oscillation and vibration stay
+// switched on, because a person may hold the handles. All repairs of the paper's formulation also
+// stay switched on.
 Scenario LoadForRealTime(const ScenarioOptions& options) {
   Scenario scenario = options.Load();
   if (!scenario.safety.oscillation.enabled)
@@ -388,7 +391,8 @@ Scenario LoadForRealTime(const ScenarioOptions& options) {
   return scenario;
 }
 
-// Prints the known settings of the arms. Throws DeviceError if they contradict the machine file.
+// Prints the known settings of the arms. Throws DeviceError if these settings contradict the
+// machine file.
 void CheckArms(const Machine& machine, const ArmModels& models, const RealDevice& device) {
   for (int hand = 0; hand < kHands; ++hand) {
     const DeviceFacts* facts = device.arm_facts(hand);
@@ -402,9 +406,9 @@ void CheckArms(const Machine& machine, const ArmModels& models, const RealDevice
   }
 }
 
-// Runs with real arms: one scenario, and a person at the console. Pages cannot choose scenarios.
-// Every file from elsewhere is read before the arms are connected (decisions.md); tests in
-// tests/machine/foreign_file_test.cpp rely on this order.
+// Runs one scenario with real arms and a person at the console. Pages cannot choose scenarios.
+// The program reads every file from elsewhere before it connects to the arms (decisions.md); tests
+// in tests/machine/foreign_file_test.cpp rely on this order.
 int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptions record) {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError(

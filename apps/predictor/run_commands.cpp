@@ -144,8 +144,8 @@ void AddInit(CLI::App* app, Request* r) {
       "  predictor init first && predictor run first.yaml\n"
       "  predictor init mine --arms 1 --urdf robot.urdf --object bar\n"
       "From a robot with grippers, several arms or wheels, the scenario uses only one arm, without "
-      "its gripper's joints. It lists the links that are left out.\n"
-      "Exit code 1: no scenario with this cobot passed its check. The file is written "
+      "its gripper's joints. The scenario lists the links that it leaves out.\n"
+      "Exit code 1: no scenario with this cobot passed its check. The command writes the file "
       "nevertheless.\n");
 }
 

@@ -1,5 +1,5 @@
-// Standard error: permanent lines, and below them one changing line (progress, or the command that
-// the operator is typing).
+// Writes permanent lines to standard error and, below them, one changing line (the progress, or the
+// command that the operator is typing).
 #pragma once
 
 #include <mutex>
@@ -7,15 +7,16 @@
 
 namespace predictor {
 
-// The terminal of the operator, for all threads. Without a terminal, or with TERM=dumb, it prints
-// only the permanent lines. It makes all text printable first, because some of it comes from files,
-// other processes and robots.
+// The terminal of the operator, shared by all threads. Without a terminal, or with TERM=dumb, the
+// screen prints only the permanent lines. The screen first makes all text printable, because some
+// texts come from files, other processes and robots.
 class Screen {
  public:
   Screen();
   // Prints a permanent line. `line` has no newline.
   void Print(const std::string& line);
-  // Shows progress, or hides it if `bar` is "". It is hidden while a command is being typed.
+  // Shows progress, or hides it if `bar` is "". The progress is hidden while a command is being
+  // typed.
   void Bar(const std::string& bar);
   // Shows the command being typed, or "" when typing has ended.
   void Typed(const std::string& text);
@@ -36,11 +37,12 @@ Screen& TheScreen();
 // A command that is typed letter by letter and shown at the bottom of the screen.
 class TypedLine {
  public:
-  // Adds a letter, or erases one. Returns false and ignores the key if it is neither.
+  // Adds a letter or erases the last letter. Returns false and ignores the key if the key neither
+  // adds nor erases a letter.
   bool Type(char key);
   // Shows that a command has begun or continues.
   void Show() const;
-  // Ends typing and returns the text. It stays on the screen, followed by `why`.
+  // Ends typing and returns the text. The text stays on the screen, followed by `why`.
   std::string Take(const std::string& why = "");
   bool empty() const { return text_.empty(); }
 

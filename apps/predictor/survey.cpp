@@ -37,7 +37,7 @@ std::vector<fs::path> PlacesOf(const SurveyOptions& options) {
   return {options.places.begin(), options.places.end()};
 }
 
-// The folder for the answer, and the run that it is about.
+// The folder for the answer, and the run that the answer is about.
 struct Destination {
   fs::path folder;
   std::string recording;  // file name; empty if the user named a folder
@@ -55,14 +55,15 @@ Destination DestinationOf(const SurveyOptions& options) {
     to.folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
     to.recording = place.filename().string();
   }
-  // The person must not answer in vain, so the folder is checked first.
+  // The folder is checked first, so that no answer is lost at the end.
   if (access(to.folder.c_str(), W_OK | X_OK) != 0)
     throw InputError(to.folder.string(),
                      "The answer cannot be stored here: the folder is not writable.");
   return to;
 }
 
-// Returns the condition in the recording, or nothing if the file is no recording of this version.
+// Returns the condition in the recording, or no value if the file is not a recording of this
+// version.
 std::optional<Condition> RecordedCondition(const Destination& to) {
   if (to.recording.empty()) return {};
   const fs::path file = to.folder / to.recording;
@@ -89,7 +90,7 @@ void WriteNewline(int) {
   [[maybe_unused]] const ssize_t written = write(signal_pipe, &newline, 1);
 }
 
-// Ctrl-C ends the server in the same way as a finished survey.
+// Makes Ctrl-C end the server in the same way as a finished survey.
 void StopAtSignal(viewer::Server* server) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0)
@@ -208,7 +209,7 @@ int SurveyRemoveCommand(const SurveyOptions& options) {
     throw InputError("There is no answer by " + options.pseudonym + " in " +
                      PlacesOf(options)[0].string() +
                      (options.places.size() > 1 ? " or the other folders." : "."));
-  // The result keeps no names of files, because they contain the pseudonym.
+  // The result contains no names of files, because these names contain the pseudonym.
   options.Write(
       Formatted("Removed %zu %s by %s. Copies in other places were not removed.\n", removed.size(),
                 removed.size() == 1 ? "answer" : "answers", options.pseudonym.c_str()),

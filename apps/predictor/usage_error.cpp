@@ -26,8 +26,8 @@ std::string Text(const std::string& error, const std::string& hint) {
   return "predictor: error: " + error + "\nhint: " + hint;
 }
 
-// Returns the parser's message in this program's wording. Arguments are named as in the help:
-// SCENARIO.
+// Returns the parser's message in this program's wording. The message names arguments as the help
+// does, for example SCENARIO.
 std::string Rephrased(std::string message) {
   static const std::array<std::pair<std::regex, const char*>, 6> kSentences = {{
       {std::regex("(.*) is required"), "$1 is missing."},

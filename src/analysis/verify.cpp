@@ -27,14 +27,14 @@ bool Resume(RecordingReader* reader, const TickRecord& record, Emulator* emulato
 }
 
 // Data about lost and refused packets and about power reports of real arms are displayed but not
-// recorded. Therefore the recorded warnings about them are used.
+// recorded. Therefore, the replay uses the recorded warnings about these data.
 TickRecord WithWarningsOf(const TickRecord& recorded, const TickRecord& computed) {
   TickRecord with = computed;
   for (std::size_t hand = 0; hand < kHands; ++hand) {
     const HandRecord& from = recorded.hands[hand];
     HandRecord& to = with.hands[hand];
     for (std::size_t w = 0; w < kWarnings; ++w) {
-      // This warning is derived from the readings, so it is computed.
+      // This warning is derived from the readings, so the replay computes it.
       if (static_cast<Warning>(w) == Warning::kBiasDrift) continue;
       const auto bit = static_cast<std::uint8_t>(1U << w);
       to.warnings = static_cast<std::uint8_t>((to.warnings & ~bit) | (from.warnings & bit));

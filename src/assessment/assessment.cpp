@@ -60,7 +60,7 @@ void AddIntervals(const SampledChain& sampled, std::span<const PersonSample> sam
   result->tail_interval = person::IntervalOf(sorted);
 }
 
-// Uses only the times that have a value. Without any, the results are not a number.
+// Uses only the times that have a value. If no time has a value, the results are not a number.
 void SummariseOverTime(QuantityResult* result) {
   std::vector<double> values;
   for (const double x : result->values)
@@ -196,10 +196,11 @@ void CheckPlace(std::span<const PersonSample> samples, Assessment* a) {
 
 void AddStopWarning(const PersonRun& run, Assessment* a) {
   if (!IsLimit(run.stopped)) return;
-  a->warnings.push_back(Formatted(
-      "The emulator stopped this run at a limit (%s). Its largest values are therefore only lower "
-      "bounds of what the person would have experienced; `predictor continue` predicts them.",
-      Name(run.stopped)));
+  a->warnings.push_back(
+      Formatted("The emulator stopped this run at a limit (%s). Its largest values are therefore "
+                "only lower bounds of what the person would have experienced; `predictor continue` "
+                "predicts the values of a run without this stop.",
+                Name(run.stopped)));
 }
 
 void AddBalanceWarning(const NominalChain& nominal, Assessment* a) {
@@ -245,14 +246,15 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
       std::string("For RULA and REBA, the postures are ") + (work.repeated ? "" : "not ") +
           "repeated four times a minute and " + (work.held ? "" : "not ") +
           "held for more than a minute, and the handles are easy to grip.",
-      "For the lifting index, lifts occur as often as in this run, and for at most one hour.",
+      "The lifting index assumes that lifts occur as often as in this run, and for at most one "
+      "hour.",
       std::string("Strength is the mean for the person's sex") +
           (work.strength == WorkPattern().strength ? "" : ", times operator.body.strength") +
           ", for flexion and extension only."};
   if (scenario.operator_.type == "virtual")
     a->assumptions.emplace_back(scenario.operator_.embodied
-                                    ? "The operator was simulated, with this body."
-                                    : "The operator was simulated, without a body.");
+                                    ? "The operator was simulated with this body."
+                                    : "The operator was simulated without a body.");
   if (scenario.operator_.type == "person")
     a->assumptions.emplace_back(
         "The hands held the handles throughout: real arms cannot sense whether a hand is there.");

@@ -1,6 +1,6 @@
-// What a recorded run means for the person: posture, loads, scores, lifts, damage and fatigue. Each
-// result states its origin and, where the measurements do not determine the posture, its
-// uncertainty.
+// Assesses what a recorded run means for the person: posture, loads, scores, lifts, damage and
+// fatigue. Each result states its origin and, where the measurements do not determine the posture,
+// its uncertainty.
 #pragma once
 
 #include <array>

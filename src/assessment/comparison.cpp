@@ -46,8 +46,8 @@ Comparison Compare(const Assessment& a, const Assessment& b) {
   constexpr double kSameLength = 0.1;
   if (std::abs(a.held - b.held) > kSameLength * std::max(a.held, b.held))
     comparison.warning = Formatted(
-        "The hands held the handles for %.1f s in one run and for %.1f s in the other. If one of "
-        "the runs ended early, it looks better than it is.",
+        "The hands held the handles for %.1f s in one run and for %.1f s in the other. A run that "
+        "ended early looks better than it is.",
         a.held, b.held);
   return comparison;
 }
@@ -78,8 +78,9 @@ std::string ComparisonText(const Comparison& comparison) {
                    (a.tool + ", " + a.part + ", reference day per run [%]").c_str(),
                    100 * a.day_share, 100 * b.day_share);
   text +=
-      "Values: 95th percentiles over time (5th percentile for balance). \"Better for\": the share "
-      "of 64 possible postures and bodies for which this recording has the better value.\n";
+      "The values are 95th percentiles over time (5th percentile for balance). \"Better for\" is "
+      "the share of 64 possible postures and bodies for which this recording has the better "
+      "value.\n";
   return text;
 }
 

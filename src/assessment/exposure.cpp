@@ -15,7 +15,7 @@ constexpr double kShift = 8 * 3600;              // [s]
 constexpr std::size_t kStride = 10;              // samples per step of the fatigue model
 constexpr double kStep = kStride / kSampleRate;  // [s]
 
-// Loads at 10 Hz: means of the samples at 100 Hz.
+// Returns loads at 10 Hz, which are means of the samples at 100 Hz.
 std::vector<double> Coarse(std::span<const double> load) {
   std::vector<double> coarse;
   for (std::size_t i = 0; i < load.size(); i += kStride) {
@@ -25,8 +25,8 @@ std::vector<double> Coarse(std::span<const double> load) {
   return coarse;
 }
 
-// Applies a first-order filter forward and backward, and therefore without delay. It begins and
-// ends at rest.
+// Applies a first-order filter forward and backward, and therefore without delay. The filter begins
+// and ends at rest.
 std::vector<double> Smooth(std::span<const double> values, double cutoff) {
   const auto rest = static_cast<std::size_t>(kSampleRate / cutoff);
   std::vector<double> smooth(values.size() + 2 * rest, 0);

@@ -1,4 +1,4 @@
-// Damage and fatigue that a run causes, from the moments and forces over time.
+// Computes the damage and the fatigue that a run causes, from the moments and forces over time.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ struct DamageResult {
   double probability = 0;  // probability of the tool's outcome after that shift
 };
 
-// `moment` [N·m] covers a run at 100 Hz and is 0 at rest. It is low-passed at kDamageCutoff in both
-// directions. Ranges smaller than kMinRange or than kMinRangeShare of the largest range are
+// `moment` [N·m] covers a run at 100 Hz and is 0 at rest. The moment is low-passed at kDamageCutoff
+// in both directions. Ranges smaller than kMinRange or than kMinRangeShare of the largest range are
 // ignored. Without these thresholds, tremor and noise would count as lifts, because in this method
 // each cycle causes some damage even without a load.
 DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
@@ -32,7 +32,7 @@ inline constexpr double kDamageCutoff = 1;     // [Hz]
 inline constexpr double kMinRange = 5;         // [N·m]
 inline constexpr double kMinRangeShare = 0.2;  // share of the largest range
 
-// Fatigue of one joint by the 3CC-r model, sample by sample.
+// Computes the fatigue of one joint sample by sample with the 3CC-r model.
 class FatigueTracker {
  public:
   explicit FatigueTracker(ergonomics::FatigueJoint kind)

@@ -14,7 +14,7 @@
 
 namespace predictor::assessment {
 
-// Assumptions about the work, which no recording contains.
+// Assumptions about the work that no recording contains.
 struct WorkPattern {
   bool repeated = false;  // the person takes the same posture at least four times a minute
   bool held = false;      // a posture is static for more than a minute

@@ -21,8 +21,8 @@ struct PersonSample {
   person::BodySample body;
   double recorded = 0;                         // time since the first tick of the recording [s]
   std::array<double, kHands> peak_force = {};  // largest over the ticks of the sample [N]
-  // False if, before this sample, simulated time was paused, ticks were lost, or a hand gripped or
-  // let go.
+  // False if simulated time was paused, ticks were lost, or a hand gripped or let go immediately
+  // before this sample.
   bool continues = true;
 };
 
@@ -30,13 +30,14 @@ struct PersonSample {
 // the middle tick. A hand is present if it grips in most of the ticks.
 PersonSample SampleOf(std::span<const TickRecord> ticks);
 
-// Builds a sample from every 10 ms of ticks (see SampleOf). It uses only ticks in RUN.
+// Builds a sample from every 10 ms of ticks (see SampleOf). The builder uses only ticks in RUN.
 class SampleBuilder {
  public:
   explicit SampleBuilder(const Scenario& scenario);
   // Returns the sample that this tick completes, if any.
   std::optional<PersonSample> Add(const TickRecord& record);
-  // Returns the record of the first tick in RUN. Its `tick` is 0 until then.
+  // Returns the record of the first tick in RUN. Before the first tick in RUN, the `tick` of this
+  // record is 0.
   const TickRecord& first() const { return first_; }
 
  private:
@@ -75,7 +76,8 @@ inline bool IsHeld(const PersonSample& sample) {
   return sample.body.hands[0].present || sample.body.hands[1].present;
 }
 
-// Passes on the samples in which a hand holds a handle. While no hand does, the posture is unknown.
+// Passes on the samples in which a hand holds a handle. While no hand holds a handle, the posture
+// is unknown.
 class HeldFilter {
  public:
   std::optional<PersonSample> Take(PersonSample sample);

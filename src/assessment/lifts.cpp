@@ -49,8 +49,8 @@ std::size_t DepartureAt(const std::vector<std::optional<Vector3>>& middle, std::
   return last;
 }
 
-// Finds rises between turning points. The search restarts where no hand, or a different hand,
-// holds.
+// Finds rises between turning points. The search restarts where no hand or a different hand holds a
+// handle.
 std::vector<Rise> RisesOf(const std::vector<std::optional<Vector3>>& middle,
                           std::span<const PersonSample> samples) {
   std::vector<Rise> rises;

@@ -1,4 +1,4 @@
-// The lifts of a run, and their assessment by lifting equations.
+// Finds the lifts of a run and assesses them with lifting equations.
 #pragma once
 
 #include <span>
@@ -28,7 +28,7 @@ inline constexpr double kMinLift = 0.05;
 inline constexpr double kReversal = 0.02;
 
 // Returns the lifts during which at least one hand gripped all the time. `object_mass` is in [kg].
-// The frequency of lifting is that of this run.
+// The frequency of lifting is the frequency in this run.
 std::vector<Lift> LiftsOf(std::span<const PersonSample> samples, const person::Stance& stance,
                           double object_mass, Sex sex);
 

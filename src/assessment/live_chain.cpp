@@ -8,8 +8,8 @@ void LiveChain::Add(const PersonSample& sample) {
   postures_.push_back(person_.Solve(sample));
 }
 
-// Drops samples that are no longer needed. This happens only occasionally, because the remaining
-// samples are then moved.
+// Drops samples that are no longer needed. Dropping samples moves the remaining samples, so it
+// happens only occasionally.
 void LiveChain::Forget() {
   if (next_ < 4 * kLiveHistory) return;
   const auto dropped = static_cast<std::ptrdiff_t>(next_ - kLiveHistory);

@@ -1,4 +1,4 @@
-// The nominal chain for a run in progress: sample by sample, with a fixed delay.
+// The nominal chain for a run in progress, which processes sample by sample with a fixed delay.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace predictor::assessment {
 
-// Accelerations need later postures, so loads and scores are judged this many samples late (design
-// choice: 0.1 s, which is five time constants of the smoothing filter, so later samples would
-// hardly change its result).
+// Accelerations need later postures, so loads and scores are judged this many samples late. The
+// design choice of 0.1 s is five time constants of the smoothing filter, so later samples would
+// hardly change its result.
 inline constexpr std::size_t kLiveDelay = 10;
 // Earlier postures that the filter uses. After 0.5 s, its initial state has no more influence.
 inline constexpr std::size_t kLiveHistory = 60;
@@ -23,9 +23,9 @@ struct JudgedSample {
   Frame frame;
 };
 
-// Postures, measured forces and force rates equal those of RunNominal. Motions are equal, too, if
-// the whole uninterrupted part is known and at most kLiveHistory samples long; otherwise, they are
-// approximately equal.
+// Postures, measured forces and force rates are the same as in RunNominal. Motions are exactly
+// equal if the whole uninterrupted part is known and has at most kLiveHistory samples; otherwise,
+// they are approximately equal.
 class LiveChain {
  public:
   LiveChain(const PersonSetup& setup, const WorkPattern& work)
@@ -35,8 +35,8 @@ class LiveChain {
   void Add(const PersonSample& sample);
   // Returns the posture of the newest sample.
   const person::Posture& newest() const { return postures_.back(); }
-  // Gets the next sample that can be judged. Set `all` if no later sample continues the known ones:
-  // all of them can then be judged. Returns false if no sample can be judged yet.
+  // Gets the next sample that can be judged. Set `all` if no later sample continues the known
+  // samples; then all of these can be judged. Returns false if no sample can be judged yet.
   bool Next(bool all, JudgedSample* judged);
 
   const person::BodyModel& model() const { return person_.model(); }

@@ -5,7 +5,7 @@
 namespace predictor::assessment {
 namespace {
 
-// Bounds the memory of a run that never ends.
+// Limits the memory that a run without an end needs.
 constexpr std::size_t kMaxSamples = 8 * 3600 * 100;  // a shift
 
 }  // namespace

@@ -17,8 +17,9 @@ class LiveExposure {
   explicit LiveExposure(const Scenario& scenario);
   // Adds the next sample. A null `frame` means that no hand holds a handle, so the arms rest.
   void Add(const Frame* frame);
-  // Writes damage and capacity into `state`. To bound the cost, the damage is computed again only
-  // when the number of samples has grown by 2 % and by at least 1 s, or immediately with `now`.
+  // Writes damage and capacity into `state`. To limit the computing time, the damage is computed
+  // again only when the samples have grown by 2 % and by at least 1 s. With `now`, the damage is
+  // computed immediately.
   void Write(bool now, PersonState* state);
 
  private:

@@ -131,7 +131,7 @@ void LivePerson::Judge(bool all) {
   }
 }
 
-// Judges the remaining samples. From then on, the posture is unknown.
+// Judges the remaining samples. From this time on, the posture is unknown.
 void LivePerson::Rest(PersonStatus status) {
   if (state_.status != status) {
     Judge(true);

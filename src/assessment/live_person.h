@@ -1,4 +1,4 @@
-// The person during a run in progress: a state at 100 Hz, from successive ticks.
+// Computes the state of the person at 100 Hz from successive ticks of a run in progress.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ class LivePerson {
   // Throws InputError if something is missing (MissingForPosture) or no adult has such a body.
   LivePerson(const Scenario& scenario, const WorkPattern& work);
 
-  // Takes the next tick of a run or of a replay. Returns whether state() is new. A repeated tick is
-  // ignored. If an earlier tick follows, damage and fatigue start again. Throws InputError if
-  // place, grips and handles contradict one another.
+  // Takes the next tick of a run or of a replay. Returns whether state() has changed. A repeated
+  // tick is ignored. If an earlier tick follows, damage and fatigue start again. Throws InputError
+  // if place, grips and handles contradict one another.
   bool Add(const TickRecord& record);
   const PersonState& state() const { return state_; }
 

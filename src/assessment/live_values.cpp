@@ -9,7 +9,7 @@
 namespace predictor::assessment {
 namespace {
 
-// How each value of PersonState follows from a frame, in the order of the enumerations.
+// Tables of how each value of PersonState follows from a frame, in the order of the enumerations.
 using GaugeValue = double (*)(const Moment&);
 
 constexpr std::array<GaugeValue, kPersonGauges> kGaugeValues = {
@@ -43,7 +43,7 @@ constexpr std::array<double (*)(const Frame&), kPersonWarnings> kWarningValues =
     [](const Frame& f) { return f.reached ? 0.0 : 1.0; },
 };
 
-// Returns the hand that the gauge belongs to: 0, 1, or −1 for none.
+// Returns the hand that the gauge belongs to: 0, 1, or −1 if it belongs to neither hand.
 constexpr int HandOf(std::size_t gauge) {
   if (gauge < static_cast<std::size_t>(PersonGauge::kLeftShoulderUse)) return -1;
   return static_cast<int>(gauge - static_cast<std::size_t>(PersonGauge::kLeftShoulderUse)) % 2;

@@ -10,7 +10,7 @@
 
 namespace predictor::assessment {
 
-// Writes gauges, scores and loads of the nominal person into `state`, whose intervals stay
+// Writes the gauges, scores and loads of the nominal person into `state`, and leaves the intervals
 // unchanged.
 void WriteFrame(const JudgedSample& judged, PersonState* state);
 
@@ -19,12 +19,12 @@ void WriteIntervals(std::span<const Frame> frames, const PersonSample& sample, P
 // Sets all values that WriteFrame and WriteIntervals write to unknown.
 void ForgetValues(PersonState* state);
 
-// Evaluates the possible people, a few at a time, so that the nominal person is never late.
+// Evaluates the possible people a few at a time, so that the nominal person is never delayed.
 class LiveIntervals {
  public:
   LiveIntervals(const PersonSetup& setup, const WorkPattern& work);
   // Call with each judged sample: every kSampledStride-th sample is evaluated for all people.
-  // Writes the results when they are complete.
+  // Writes the results when all people have been evaluated.
   void Add(const JudgedSample& judged, PersonState* state);
 
  private:
@@ -39,7 +39,8 @@ class LiveIntervals {
 // Warnings with hysteresis and a delay for each direction, so that they do not flicker.
 class WarningKeeper {
  public:
-  // Returns the bits of PersonState::warnings at the simulated time [s] of the judged sample.
+  // Returns the bits of PersonState::warnings. `time` is the simulated time [s] of the judged
+  // sample.
   std::uint16_t Update(const Frame& frame, double time);
   void Clear() { *this = {}; }
 

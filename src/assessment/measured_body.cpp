@@ -12,8 +12,8 @@
 namespace predictor::assessment {
 namespace {
 
-// Limits of what is possible, as shares of the height (design choices). They only have to reveal a
-// wrong unit, frame or marker.
+// Limits of what is possible, as shares of the height (design choices). These limits only need to
+// reveal a wrong unit, frame or marker.
 constexpr double kLowest = 0.1, kHighest = 1.25, kFarthest = 1.0;
 constexpr double kElbowToHandle = 0.4;
 
@@ -115,7 +115,7 @@ void AddSignals(const tracks::BodyTrack& track, const UsedTrack& used,
   }
 }
 
-// Returns the offset from the hand whose speeds agree better.
+// Returns the clock offset that was estimated with the hand whose speeds agree better.
 tracks::ClockOffset Estimate(const tracks::BodyTrack& track,
                              const std::vector<PersonSample>& samples) {
   std::vector<double> times;
@@ -168,20 +168,20 @@ void CheckOverlap(const tracks::BodyTrack& track, const UsedTrack& used,
       last + used.offset >= samples.front().recorded)
     return;
   throw InputError(track.source,
-                   Formatted("The file covers %.1f to %.1f s of the recording's time, and the "
+                   Formatted("The file covers %.1f to %.1f s of the recording's time, but the "
                              "hands hold the handles from %.1f to %.1f s. Check clock and offset "
                              "in the mapping.",
                              first + used.offset, last + used.offset, samples.front().recorded,
                              samples.back().recorded));
 }
 
-// Two measurements of one part would contradict each other.
+// Two measurements of the same part would contradict each other.
 void CheckUnique(const MeasuredBody& body) {
   for (const MeasuredPart& a : body.parts)
     for (const MeasuredPart& b : body.parts)
       if (&a < &b && a.what == b.what)
         throw InputError(b.source, "The " + b.what + " is also measured in " + a.source +
-                                       ". Map it in one of the files only.");
+                                       ". Map this part in only one of the files.");
 }
 
 }  // namespace
@@ -221,16 +221,17 @@ void AddMisfit(std::span<const person::Posture> postures, MeasuredBody* measured
     if (misfits.empty()) continue;
     part.misfit = Median(misfits);
     if (*part.misfit > kMaxMisfit)
-      warnings->push_back(Formatted(
-          "The body stays %.0f mm away from the measured %s in %s. Check the frame in the mapping, "
-          "operator.stance and operator.body.",
-          1e3 * *part.misfit, part.what.c_str(), Printable(part.source).c_str()));
+      warnings->push_back(
+          Formatted("The modelled body stays %.0f mm away from the measured %s in %s. Check the "
+                    "frame in the mapping, "
+                    "operator.stance and operator.body.",
+                    1e3 * *part.misfit, part.what.c_str(), Printable(part.source).c_str()));
   }
 }
 
 std::string MeasuredSentence(const MeasuredBody& measured) {
   if (measured.parts.empty())
-    return "Only the hands were measured: the rest of the posture is the most comfortable one.";
+    return "Only the hands were measured, so the rest of the posture is the most comfortable one.";
   std::vector<std::string> parts = {"the hands"};
   for (const MeasuredPart& part : measured.parts)
     parts.push_back(Formatted("the %s (%.0f %% of the time)", part.what.c_str(), 100 * part.share));

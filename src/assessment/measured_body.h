@@ -16,7 +16,7 @@
 
 namespace predictor::assessment {
 
-// A file with measurements, and how its clock was related to that of the recording.
+// A file with measurements, and the method that relates the file's clock to the recording's clock.
 struct UsedTrack {
   std::string source;
   double offset = 0;                            // added to the file's times [s]
@@ -56,15 +56,15 @@ struct MeasuredBody {
 MeasuredBody AddTracks(std::span<const tracks::BodyTrack> tracks, const PersonSetup& setup,
                        double start_unix, std::vector<PersonSample>* samples);
 
-// Computes the misfit of each measured part to the nominal postures. Warns if a misfit is larger
-// than kMaxMisfit (design choice) [m].
+// Computes the distance of each measured part from the nominal postures. Warns if a misfit is
+// larger than kMaxMisfit (design choice) [m].
 void AddMisfit(std::span<const person::Posture> postures, MeasuredBody* measured,
                std::vector<std::string>* warnings);
 inline constexpr double kMaxMisfit = 0.08;
 
 // Returns "These were measured: the hands, the head (98 % of the time), ...", for example.
 std::string MeasuredSentence(const MeasuredBody& measured);
-// Each of these functions returns one sentence.
+// Each of the following functions returns one sentence.
 std::string Sentence(const UsedTrack& track);
 std::string Sentence(const MeasuredPart& part);
 std::string Sentence(const MeasuredSignal& signal);

@@ -17,7 +17,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMaxShareAbove =
     0.01;  // share of the time with an envelope above mvc that causes no warning (D)
 
-// A part of a channel without a long gap.
+// A part of a channel that contains no long gap.
 struct Part {
   std::vector<double> times, values;
 
@@ -60,7 +60,7 @@ struct Activations {
   }
 };
 
-// Throws InputError if the sampling rate is too low for the band.
+// Throws InputError if the sampling rate is too low for the filter's pass band.
 void AddPart(const Part& part, const tracks::EmgMap& map, Activations* all) {
   muscles::EmgProcessing how;
   const double rate = static_cast<double>(part.times.size() - 1) / part.Duration();
@@ -86,7 +86,7 @@ void AddPart(const Part& part, const tracks::EmgMap& map, Activations* all) {
 // Throws InputError with the reason if the channel cannot be used.
 Activations ActivationsOf(const tracks::EmgTrack& track) {
   const std::vector<Part> parts = PartsOf(track);
-  if (parts.empty()) throw InputError("No value of the channel is a number.");
+  if (parts.empty()) throw InputError("The channel contains no numbers.");
   if (!Changes(parts))
     throw InputError("The channel has the same value throughout. Check the electrode.");
   Activations all;
@@ -129,7 +129,7 @@ void CheckUnique(const MeasuredEmg& added, const std::vector<MeasuredEmg>& chann
 }
 
 // Returns the text of the error without its full stop, because the text becomes part of a sentence
-// in the lists of gaps.
+// in the list of gaps.
 std::string ReasonOf(const InputError& error) {
   std::string text = error.what();
   if (text.ends_with('.')) text.pop_back();
@@ -142,10 +142,10 @@ void WarnAboutGaps(const tracks::EmgTrack& track, const std::string& name, Measu
   for (std::size_t i = 1; i < parts.size(); ++i)
     longest = std::max(longest, parts[i].times.front() - parts[i - 1].times.back());
   if (parts.size() > 1)
-    emgs->warnings.push_back(Formatted(
-        "%s has gaps that are not used: %zu, of up to %.2f s. If its recorder did not pause, its "
-        "clock jumped, and later times are wrong.",
-        name.c_str(), parts.size() - 1, longest));
+    emgs->warnings.push_back(
+        Formatted("%s has gaps that are not used: %zu, of up to %.2f s. If its recorder did not "
+                  "pause, the clock of the recorder jumped, and later times are wrong.",
+                  name.c_str(), parts.size() - 1, longest));
 }
 
 }  // namespace
@@ -184,7 +184,7 @@ void AddEmg(const tracks::BodyTrack& track, double offset, std::span<const Perso
     if (channel.above > kMaxShareAbove)
       emgs->warnings.push_back(Formatted(
           "%s exceeds mvc for %.1f %% of the time, up to %.2f times: the contraction that gave mvc "
-          "was not the maximum, or the channel has artefacts. The activation is limited to 1.",
+          "was not the maximum, or the channel has artefacts. Activations are limited to 1.",
           name.c_str(), 100 * channel.above, channel.largest));
     emgs->channels.push_back(std::move(channel));
   }
@@ -228,7 +228,8 @@ void AddEmgWords(const std::vector<MeasuredEmg>& channels, std::vector<std::stri
   }
   if (used)
     assumptions->emplace_back(
-        "The model keeps the activations of measured muscles close to the measured ones. The "
+        "The model keeps the activations of measured muscles close to the measured activations. "
+        "The "
         "torques "
         "of the joints stay the same, so the activations of the arm's other muscles change.");
 }

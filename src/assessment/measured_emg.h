@@ -1,5 +1,5 @@
-// Electromyograms of the arm muscles in a recording: the activations computed from them, and how
-// the model uses these.
+// Computes activations from electromyograms of the arm muscles in a recording, and describes how
+// the model uses these activations.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace predictor::assessment {
 
-// One channel. Its activation applies to each of its muscles.
+// One channel. Its activation applies to each muscle that is assigned to the channel.
 struct MeasuredEmg {
   std::string channel, source;  // source: file
   int hand = 0;                 // side of the arm
@@ -23,9 +23,9 @@ struct MeasuredEmg {
   double share = 0;             // share of the judged time in which the channel was measured
   double largest = 0;           // largest envelope over mvc; above 1, the activation is limited
   double above = 0;             // share of the channel's usable time with an envelope above mvc
-  // Activations at Assessment::times, 0 ... 1; NaN: missing. `modelled` is the mean over the
-  // muscles, computed with the measured activation. Values are missing for times at which the arm
-  // holds no handle.
+  // Activations at Assessment::times, 0 ... 1; NaN: missing. `modelled` is the mean activation of
+  // the muscles in the model, which takes the measured activation into account. Values are missing
+  // for times at which the arm holds no handle.
   std::vector<double> measured, modelled;
 };
 
@@ -37,9 +37,9 @@ struct MeasuredEmgs {
 
 // Converts the electromyograms of a file with muscles::EmgActivation and adds them. `offset` is
 // added to the times of the file [s]. A channel is split where values are missing for more than
-// PartTrack::kMaxGap. Shorter gaps are closed, since the envelope is slower than them. At both ends
-// of each part, one period of the low-pass (kEmgSettling) is left out, and so are parts shorter
-// than kShortestEmg (D).
+// PartTrack::kMaxGap. Shorter gaps are closed, because the envelope changes more slowly. At both
+// ends of each part, one period of the low-pass (kEmgSettling) is left out, and so are parts
+// shorter than kShortestEmg (D).
 //
 // A channel is left out if it is constant, has no part that is long enough, or has too low a
 // sampling rate for its band. `gaps` then contains the reason. Throws InputError with the file if a
@@ -55,15 +55,16 @@ std::array<MeasuredActivations, kHands> ActivationsAt(std::span<const MeasuredEm
 // Stores what the model computed for the muscles of the channels at the next sample.
 void AddModelled(const std::array<ArmMuscleUse, kHands>& use, std::vector<MeasuredEmg>* channels);
 
-// Adds to `gaps` the channels that had no influence, because their arm held no handle, or was
-// raised above 90°, while they were measured. Adds to `assumptions` how the model uses the others.
+// Adds to `gaps` the channels that had no influence because, during their measurement, their arm
+// held no handle or was raised above 90°. Adds to `assumptions` a description of how the model uses
+// the other channels.
 void AddEmgWords(const std::vector<MeasuredEmg>& channels, std::vector<std::string>* assumptions,
                  std::vector<NotEvaluable>* gaps);
 
 // Returns "right.biceps_long+biceps_short", for example.
 std::string PathOf(const MeasuredEmg& channel);
-// How measured and modelled activations of a channel agree, over the times at which both are known.
-// Without such times, the values are NaN.
+// The agreement between measured and modelled activations of a channel, over the times at which
+// both are known. If there are no such times, the values are NaN.
 struct EmgAgreement {
   double measured = 0, modelled = 0;  // means
   double rms = 0;                     // root mean square of the difference

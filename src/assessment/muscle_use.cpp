@@ -175,8 +175,9 @@ std::vector<QuantityKind> MuscleQuantities() {
 void AddMuscleWords(const NominalChain& chain, std::vector<std::string>* warnings,
                     std::vector<std::string>* assumptions, std::vector<NotEvaluable>* gaps) {
   assumptions->emplace_back(
-      "The torques are shared among the muscles with the least sum of squared activations and "
-      "without co-contraction, so activations and stiffness are lower bounds.");
+      "The model distributes the torques among the muscles such that the sum of squared "
+      "activations is smallest. It assumes no co-contraction, so activations and stiffness are "
+      "lower bounds.");
   gaps->push_back({"muscles that grip, and the muscle forces on the shoulder joint",
                    "the effort of the grip is not measured, and the shoulder girdle does not move "
                    "in the model"});
@@ -192,8 +193,8 @@ void AddMuscleWords(const NominalChain& chain, std::vector<std::string>* warning
     }
     if (weak > 0)
       warnings->push_back(Formatted(
-          "For %.1f %% of the time, the muscles of the %s arm cannot produce its torques in the "
-          "model: up to %.1f N·m are missing, and the activations shown are too low.",
+          "For %.1f %% of the time, the muscles of the %s arm cannot produce the torques of the "
+          "arm in the model: up to %.1f N·m are missing, and the activations shown are too low.",
           100 * weak / judged, HandName(hand), most));
     if (raised > 0)
       gaps->push_back({std::string("muscles of the ") + HandName(hand) + " shoulder for " +

@@ -1,5 +1,5 @@
-// What the muscles of the arms do at each time of a run, according to the built-in model of the
-// arm, or to another one, for the nominal person.
+// Computes the use of the arm muscles of the nominal person at each time of a run, with the
+// built-in model of the arm or with another model.
 #pragma once
 
 #include <array>
@@ -64,7 +64,7 @@ struct MeasuredActivations {
 // The muscles of both arms of the nominal person.
 class ArmMuscles {
  public:
-  // `paths` is another model of the arm; null: the built-in one.
+  // `paths` is another model of the arm; null selects the built-in model.
   explicit ArmMuscles(const PersonSetup& setup,
                       const std::shared_ptr<const muscles::ArmPaths>& paths = nullptr);
   // Fills in `muscles` of a frame whose angles and loads belong to this sample and motion.
@@ -84,8 +84,8 @@ void AddMuscles(const PersonSetup& setup, std::span<const PersonSample> samples,
 // Returns the rows of the table of quantities for the muscles of both arms.
 std::vector<QuantityKind> MuscleQuantities();
 
-// Adds sentences about the share of time in which an arm is too weak, and about what could not be
-// judged.
+// Adds sentences about the share of time in which an arm is too weak, and about results that could
+// not be judged.
 void AddMuscleWords(const NominalChain& chain, std::vector<std::string>* warnings,
                     std::vector<std::string>* assumptions, std::vector<NotEvaluable>* gaps);
 

@@ -1,4 +1,5 @@
-// An evaluated run as files for OpenSim: the scaled body, its motion, the forces of the handles.
+// Writes an evaluated run as files for OpenSim: the scaled body, its motion, and the forces of the
+// handles.
 #pragma once
 
 #include <span>
@@ -16,15 +17,15 @@ struct NamedFile {
 };
 
 // The nominal person of a run, over its longest part without interruption. Throws InputError if
-// that has fewer than ten samples.
+// this part has fewer than ten samples.
 //
 // person.osim: model (OpenSimModelOf); motion.mot: coordinates [rad, m]; hand_loads.sto: forces
 // [N], torques [N·m] and points [m] of the handles' action on the hands; hand_loads.xml: the bodies
 // on which they act; inverse_dynamics.xml: set-up of OpenSim's tool; torques.sto: our joint
-// torques, with the names that this tool uses. Times are those of the recording.
+// torques, with the names that this tool uses. All times are times of the recording.
 //
-// The torques contain the acceleration of the trunk, as OpenSim computes it from the coordinates.
-// The evaluation neglects this acceleration (RunNominal).
+// The torques include the effect of the trunk's acceleration, which OpenSim computes from the
+// coordinates. The evaluation neglects this acceleration (RunNominal).
 std::vector<NamedFile> OpenSimFiles(const PersonSetup& setup,
                                     std::span<const PersonSample> samples);
 

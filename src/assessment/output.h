@@ -1,4 +1,4 @@
-// Output of an assessment as text, JSON, CSV and as a page.
+// Writes an assessment as text, JSON, CSV and as a page.
 #pragma once
 
 #include <optional>
@@ -30,16 +30,16 @@ struct PersonOfRun {
   std::optional<Assessment> assessment;
   std::string why;
 };
-// Adds the chapter "person": for one run everything that AssessmentPage shows, for several runs a
-// table.
+// Adds the chapter "person". For one run, the chapter contains everything that AssessmentPage
+// shows; for several runs, it contains a table.
 void AddPersonChapter(std::span<const PersonOfRun> runs, ReportPage* page);
 
-// Returns a value as a number in the unit that is displayed, without the unit.
+// Returns a value as a number in its display unit, without the name of the unit.
 std::string NumberText(const Unit& unit, double x);
 std::string ValueText(const QuantityKind& kind, double x);
-// Returns "low … high" in the same unit, or "" if there is no interval.
+// Returns "low … high" in the display unit, or "" if there is no interval.
 std::string RangeText(const QuantityKind& kind, const std::optional<person::Interval>& range);
-// Returns "measured by ...", which explains the words for Origin.
+// Returns "measured by ...", an explanation of the words for Origin.
 std::string OriginWords();
 // These functions return one sentence for each lift, damage and fatigue result.
 std::string Sentence(const Lift& lift);

@@ -103,7 +103,7 @@ Json ToJson(const MeasuredSignal& signal) {
           {"share_of_time", signal.share}};
 }
 
-// One of the two activations of a channel.
+// Returns one of the two activations of a channel.
 Json ActivationOf(Origin origin, double mean) {
   return {{"origin", Name(origin)}, {"mean_activation", NumberOrNull(mean)}};
 }

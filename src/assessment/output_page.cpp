@@ -85,7 +85,8 @@ Plot GroupPlot(const Assessment& a, const std::string& group, const std::string&
     const auto lines = std::ranges::count(panel->series, SeriesKind::kLine, &PlotSeries::kind);
     AddCurve(a, q, static_cast<int>(lines), panel);
   }
-  if (intervals) plot.caption += "Areas: 90 % of the possible postures and bodies. ";
+  if (intervals)
+    plot.caption += "The shaded areas contain 90 % of the possible postures and bodies. ";
   plot.caption += OperatorSentence(a);
   return plot;
 }
@@ -95,8 +96,8 @@ Plot ScorePlot(const Assessment& a) {
   plot.id = "person-scores";
   plot.title = "Scores of the worksheets over time";
   plot.caption =
-      "Lines: the nominal posture. Areas: between the 5th and 95th percentile of the possible "
-      "postures.";
+      "Lines: the nominal posture. The shaded areas lie between the 5th and 95th percentile of the "
+      "possible postures.";
   plot.x = {.label = "Run time", .unit = "s"};
   plot.group = "time";
   int color = 0;
@@ -151,8 +152,8 @@ std::string QuantityTable(const Assessment& a) {
 
 std::string Percent(double share) { return Formatted("%.1f %%", 100 * share); }
 
-// Draws a bar of a worksheet's scores. Its segments are as wide as the scores' shares and have the
-// colour of the advised action.
+// Draws a bar of a worksheet's scores. The width of each segment is the share of its score, and its
+// colour stands for the advised action.
 std::string ScoreBar(const WorksheetResult& w, const std::vector<double>& shares) {
   const int levels = w.kind->action(w.kind->most).level;
   std::string html = "<div class=\"shares\">";
@@ -224,7 +225,7 @@ void AddCosts(const Assessment& a, Outline* outline) {
   page.Html(DamageTable(a));
   page.Html(
       "<p class=\"caption\">As shares of the reference day. With the damage of that day, the "
-      "method gives a probability of one half that the job is one of those with many injuries. "
+      "method gives a probability of one half that the job is a job with many injuries. "
       "This is not the risk of a person.</p>\n");
   outline->Begin("fatigue", "Fatigue by 3CC-r (modelled)");
   page.Html(FatigueTable(a));
@@ -285,8 +286,9 @@ void AddParts(const Assessment& a, Outline* outline) {
   outline->Begin("values", "Values");
   page.Html(QuantityTable(a));
   page.Paragraph(
-      "p5 and p95: percentiles over the judged time, of the nominal posture. Tail: 90 % interval "
-      "of p95 (of p5 for balance) over 64 possible postures and bodies.");
+      "p5 and p95: percentiles over the judged time, of the nominal posture. The column \"Tail\" "
+      "contains the 90 % interval of p95 (of p5 for balance) over 64 possible postures and "
+      "bodies.");
   page.Paragraph(OriginWords() + ".");
   outline->Begin("worksheets", "Scores (standard)");
   page.Html(ScoreBars(a));
@@ -304,8 +306,8 @@ void AddParts(const Assessment& a, Outline* outline) {
 
 void AddReason(const PersonOfRun& run, ReportPage* page) {
   page->Html("<p class=\"warning\">" + EscapeMarkup(run.name.empty() ? "" : run.name + ": ") +
-             "Not evaluable: posture, loads and scores of the person. " + EscapeMarkup(run.why) +
-             "</p>\n");
+             "Posture, loads and scores of the person cannot be evaluated. " +
+             EscapeMarkup(run.why) + "</p>\n");
 }
 
 void AddComparison(std::span<const PersonOfRun> runs, ReportPage* page) {
@@ -333,10 +335,10 @@ void AddComparison(std::span<const PersonOfRun> runs, ReportPage* page) {
   }
   page->Html(HtmlTable(rows));
   page->Paragraph(
-      "The 95th percentile over time (5th percentile for balance) of the nominal posture, and its "
-      "90 % interval over 64 possible postures and bodies. To compare two runs for the same "
-      "possible people, use predictor evaluate with --against: its intervals of the differences "
-      "are narrower.");
+      "The table shows the 95th percentile over time (5th percentile for balance) for the nominal "
+      "posture, and its 90 % interval over 64 possible postures and bodies. To compare two runs "
+      "for the same possible people, use predictor evaluate with --against, which gives narrower "
+      "intervals of the differences.");
 }
 
 }  // namespace

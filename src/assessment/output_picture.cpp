@@ -14,7 +14,8 @@ namespace {
 using person::Skeleton;
 using person::SkeletonSide;
 
-// A view of S: the directions that point right in the picture and away from the observer.
+// A view of frame S, given by the directions that point to the right in the picture and away from
+// the observer.
 struct View {
   const char* name;
   Vector3 right, away;
@@ -131,7 +132,7 @@ void DrawArm(const SkeletonSide& side, const std::string& upper, const std::stri
 
 void DrawTrunk(const Skeleton& s, const std::string& color, Drawing* d) {
   d->Limb(s.neck, s.head, breadth::kNeck, kNotJudged);
-  // The corners are inside the joints, so that the outline passes through these.
+  // The corners are moved inwards, so that the outline passes through the joints.
   const auto inside = [&](const Vector3& p, const Vector3& middle) {
     return Vector3(p +
                    (middle - p).normalized() * std::min(breadth::kTrunk / 3, (middle - p).norm()));
@@ -146,7 +147,7 @@ void DrawTrunk(const Skeleton& s, const std::string& color, Drawing* d) {
 }
 
 void DrawBody(const Skeleton& s, const Colors& colors, Drawing* d) {
-  // Draws the far side first: the left one if the person is seen from the right.
+  // Draws the far side first, which is the left side if the person is seen from the right.
   const std::size_t near = d->view().away.y() > 0 ? 1 : 0, far = 1 - near;
   const bool from_front = d->view().away.x() < 0;
   DrawLeg(s.sides[far], d);
@@ -194,7 +195,7 @@ void DrawForces(const BodyPicture& picture, Drawing* d) {
 
 std::string WholePercent(double share) { return Formatted("%.0f %%", 100 * share); }
 
-// Writes the loads next to the parts, seen from the front.
+// Writes the loads next to the body parts in the front view.
 void DrawWords(const Assessment& a, const BodyPicture& picture, Drawing* d) {
   const auto beside = [&](const Vector3& from, const Vector3& to, std::size_t hand, double least) {
     const double sign = hand == 0 ? 1 : -1;  // the person's left is on the right
@@ -278,20 +279,19 @@ std::string PicturesHtml(const Assessment& a) {
       "<div class=\"bodies\">" +
       PictureSvg(a, a.worst, kSide) + PictureSvg(a, a.worst, kFront) + "<div>" + LoadTable(a) +
       ColorScale() + "</div></div>\n";
-  html +=
-      "<p class=\"caption\">" +
-      EscapeMarkup(Formatted(
-          "The moment of the highest load, %.1f s after the start (modelled from the measured "
-          "handles and forces). Loads: compression of the lower back as a share of NIOSH's limit "
-          "(3.4 kN), torques of shoulders and elbows as shares of the mean strength of the "
-          "person's sex. Arrows: the force of the hands on the handles.%s %s",
-          a.worst.time,
-          a.worst.possible.empty()
-              ? ""
-              : " Thin lines: the possible postures and bodies, because the handles do not "
-                "determine the posture.",
-          OperatorSentence(a).c_str())) +
-      "</p>\n<div class=\"bodies\">";
+  html += "<p class=\"caption\">" +
+          EscapeMarkup(Formatted(
+              "The picture shows the moment of the highest load, %.1f s after the start (modelled "
+              "from the measured handles and forces). The loads are the compression of the lower "
+              "back as a share of NIOSH's limit (3.4 kN), and the torques of shoulders and elbows "
+              "as shares of the mean strength for the person's sex. Arrows: the force of the hands "
+              "on the handles.%s %s",
+              a.worst.time,
+              a.worst.possible.empty() ? ""
+                                       : " The thin lines show other possible postures and bodies, "
+                                         "because the handles do not determine the posture.",
+              OperatorSentence(a).c_str())) +
+          "</p>\n<div class=\"bodies\">";
   for (const BodyPicture& picture : a.pictures) html += SmallSvg(a, picture);
   return html + "</div>\n";
 }

@@ -1,4 +1,4 @@
-// Pictures of the body as HTML with SVG, coloured by load.
+// Draws pictures of the body, coloured by load, as HTML with SVG.
 #pragma once
 
 #include <string>

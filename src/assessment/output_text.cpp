@@ -101,8 +101,8 @@ std::string Sentence(const Lift& lift) {
         lift.begin, lift.end, lift.origin.height, lift.destination.height);
   return Formatted(
       "%.1f to %.1f s, from %.2f to %.2f m above the ground: the hands carry %.1f kg. Lifting "
-      "index %s (%s), %s without the cobot. %.0f %% of people of this sex accept this load for a "
-      "day (LM-MMH%s).",
+      "index %s (%s), %s without the cobot. This load for a day is acceptable to %.0f %% of people "
+      "of this sex (LM-MMH%s).",
       lift.begin, lift.end, lift.origin.height, lift.destination.height,
       lift.vertical_force / kStandardGravity, Index(lift.niosh.carried.index).c_str(),
       ergonomics::AssistedLift::kCarriedLabel, Index(lift.niosh.unassisted.index).c_str(),
@@ -140,8 +140,9 @@ std::string AssessmentText(const Assessment& a) {
   AppendSentences("Clocks", a.measured.tracks, &text);
   if (!a.measured.tracks.empty()) text += '\n';
   text +=
-      "p5, p95: percentiles over time, of the nominal posture. Tail: 90 % interval of p95 (of p5 "
-      "for balance) over 64 possible postures and bodies.\n\n";
+      "The columns p5 and p95 contain percentiles over time for the nominal posture. The column "
+      "Tail contains the 90 % interval of p95 (of p5 for balance) over 64 possible postures and "
+      "bodies.\n\n";
   AppendQuantities(a, &text);
   AppendWorksheets(a, &text);
   AppendSentences("Lifts (standard)", a.lifts, &text);

@@ -21,9 +21,9 @@ namespace predictor::assessment {
 class NominalPerson {
  public:
   NominalPerson(const PersonSetup& setup, const WorkPattern& work);
-  // Returns the posture of the next sample. The solver starts from the previous one.
+  // Returns the posture of the next sample. The solver starts from the previous posture.
   person::Posture Solve(const PersonSample& sample);
-  // `motion` is the smoothed motion of the sample's posture.
+  // `motion` is the smoothed motion of the posture at this sample.
   Frame Judge(const FrameInput& input, const person::BodyMotion& motion, bool reached) const;
   const person::BodyModel& model() const { return solver_.model(); }
   const PersonSetup& setup() const { return setup_; }
@@ -36,13 +36,13 @@ class NominalPerson {
   std::optional<person::BodyVector> last_;
 };
 
-// Returns the motions of the postures of an uninterrupted part. Trunk and head count as being at
-// rest at each time. The posture model assumes that they follow the hands immediately, but the
+// Returns the motions of the postures of an uninterrupted part. Trunk and head are treated as being
+// at rest at each time. The posture model assumes that they follow the hands immediately, but the
 // resulting acceleration was not observed.
 std::vector<person::BodyMotion> MotionsOfPart(std::span<const person::BodyVector> postures);
 
-// Returns the rate at which each hand's force changed before sample i, averaged over 0.1 s, so that
-// noise and tremor do not count [N/s]. It is 0 if the samples are interrupted there.
+// Returns the rate [N/s] at which each hand's force changed before sample i. The rate is averaged
+// over 0.1 s to suppress noise and tremor. It is 0 if the samples are interrupted in these 0.1 s.
 std::array<double, kHands> ForceRates(std::span<const PersonSample> samples, std::size_t i);
 
 // The nominal person at each sample.
@@ -58,7 +58,8 @@ NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> 
 Frame FrameOfPerson(const person::SampledPosture& person, const FrameInput& input, Sex sex,
                     const WorkPattern& work);
 
-// The number of samples between two evaluations of all possible people, which gives 5 Hz.
+// The number of samples from one evaluation of all possible people to the next, which gives a rate
+// of 5 Hz.
 inline constexpr std::size_t kSampledStride = 20;
 
 // All possible people at every `stride`-th sample: frames[time][person].

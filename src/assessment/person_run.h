@@ -18,11 +18,12 @@ struct PersonRun {
 };
 
 PersonRun RunOf(const SampleCollector& ticks);
-// A hand counts as holding only in rows in which it is measured and holds.
+// A hand counts as holding a handle only in rows that contain a measurement of the hand and state
+// that it holds.
 PersonRun RunOf(const tracks::PersonFile& file);
 
-// Returns the scenario that follows from the person, place and grips of an imported recording. The
-// type of the operator is `virtual` if the operator was simulated, and otherwise `imported`.
+// Returns a scenario made from the person, place and grips of an imported recording. The type of
+// the operator is `virtual` if the operator was simulated, and otherwise `imported`.
 Scenario ScenarioOf(const tracks::PersonHeader& header, const tracks::BodyTrack& track);
 
 }  // namespace predictor::assessment

@@ -1,4 +1,4 @@
-// The person of a recorded run: body, stance and grips, and which of them are unknown.
+// The person of a recorded run: body, stance and grips, and a list of unknown values.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace predictor::assessment {
 
-// Something that could not be computed, and why.
+// A result that could not be computed, and the reason.
 struct NotEvaluable {
   std::string what, why;
 };
 
-// Returns instructions to the user about what must be added to the scenario before a posture can be
-// judged. The list is empty if nothing is missing.
+// Returns instructions that state which keys the user must add to the scenario before a posture can
+// be judged. The list is empty if nothing is missing.
 std::vector<std::string> MissingForPosture(const Scenario& scenario);
 
 struct PersonSetup {
@@ -26,8 +26,8 @@ struct PersonSetup {
   std::array<person::Grip, kHands> grips;
 };
 
-// `handles` is X_WD at the start. The wrists are on the person's side of the handles. Throws
-// InputError if something is missing or no adult has such a body.
+// `handles` contains the poses X_WD at the start. The wrists are on the person's side of the
+// handles. Throws InputError if something is missing or no adult has such a body.
 PersonSetup SetupOf(const Scenario& scenario, const std::array<Pose, kHands>& handles);
 // `first` is a record with the initial places of the handles.
 PersonSetup SetupOf(const Scenario& scenario, const TickRecord& first);

@@ -1,4 +1,5 @@
-// The body at one time of a run, for pictures: its joints, and the loads on its parts.
+// The data for a picture of the body at one time of a run: the joints of the body, and the loads on
+// its parts.
 #pragma once
 
 #include <array>
@@ -19,9 +20,9 @@ struct PartKind {
 };
 const PartKind& KindOf(BodyPart part);
 
-// The loads as shares of a reference. For the compression of the lower back, this is
-// kCompressionLimit. For the torques of shoulder and elbow, it is the mean strength for the
-// person's sex.
+// The loads as shares of a reference. For the compression of the lower back, the reference is
+// kCompressionLimit. For the torques of shoulder and elbow, the reference is the mean strength for
+// the person's sex.
 using PartLoads = std::array<double, kBodyParts>;
 PartLoads LoadsOf(const Frame& frame);
 
@@ -35,10 +36,11 @@ struct BodyPicture {
   std::array<std::optional<person::Interval>, kBodyParts> intervals;
 };
 
-// Returns the sample with the highest load of any of these parts.
+// Returns the index of the sample with the highest load of any body part.
 std::size_t WorstSample(const NominalChain& nominal);
 
-// Returns the picture at one sample. `possible` states whether to include all possible people.
+// Returns the data of the picture at one sample. `possible` states whether to include all possible
+// people.
 BodyPicture PictureAt(const PersonSetup& setup, std::span<const PersonSample> samples,
                       const NominalChain& nominal, std::size_t i, bool possible);
 

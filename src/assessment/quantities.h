@@ -1,4 +1,4 @@
-// Table of the quantities reported for the person over time, for text, JSON, CSV and page.
+// Table of the quantities that are reported for the person over time, for text, JSON, CSV and page.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace predictor::assessment {
 
-// How a number was obtained. Every output shows it.
+// The origin of a number. Every output shows it.
 enum class Origin {
   kMeasured,  // measured by the sensors of the arms
   kModelled,  // computed by the model of the person's body
@@ -40,7 +40,7 @@ struct QuantityKind {
 };
 std::span<const QuantityKind> Quantities();
 
-// A worksheet computes the score of a frame, and the action for a score.
+// A worksheet, with the functions that compute the score of a frame and the action for a score.
 struct WorksheetKind {
   const char* name;
   int most;  // highest score

@@ -25,7 +25,8 @@ bool Fits(const Pose& X_BF, const Pose& reported) {
          RotationError(reported.q, X_BF.q).norm() <= kFlangeRotation;
 }
 
-// Larger errors noticeably affect the arm's protective stops and free-drive.
+// Tolerances of the payload. Larger errors noticeably affect the arm's protective stops and
+// free-drive.
 constexpr double kMass = 0.1;      // [kg]
 constexpr double kMassPart = 0.1;  // share of the handle's mass
 constexpr double kSensor = 1.0;    // largest mass of a separate sensor [kg]
@@ -37,13 +38,14 @@ Vector3 CentreOf(const ArmSpec& arm) {
   return arm.sensor.pose.ToPose() * arm.payload.center_of_mass;
 }
 
-// Returns an error if the arm's own wrench already excludes the weight configured in its
-// controller.
+// Returns an error if the handle's weight would be subtracted twice, because the arm's own wrench
+// already excludes the weight configured in its controller.
 std::string TakenOffTwice(const ReportedPayload& reported, const HandlePayloadSpec& handle) {
   if (!(reported.mass > kMass && handle.mass > kMass)) return "";
   return Formatted(
       "Its controller subtracts %.2f kg from its own wrench, and the machine file gives the handle "
-      "a mass of %.2f kg: the weight would be subtracted twice. Enter the handle either in Desk or "
+      "a mass of %.2f kg, so the weight would be subtracted twice. Enter the handle either in Desk "
+      "or "
       "as payload.mass in the machine file, and zero in the other place.",
       reported.mass, handle.mass);
 }
@@ -96,7 +98,7 @@ std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& machine) 
         "%.2f kg%s at the pendant; otherwise its protective stops and free-drive are wrong.",
         reported.mass, handle.mass, own ? "" : " without the sensor", handle.mass,
         own ? "" : " plus the sensor's mass");
-  // The effect of a separate sensor is unknown, but its upper bound is known.
+  // The mass of a separate sensor is unknown, but its upper bound is known.
   const double sensor = own ? 0 : kReach * std::max(0.0, reported.mass - handle.mass);
   const double moment = (reported.mass * reported.center_of_mass - handle.mass * c).norm();
   if (moment <= kMoment + sensor) return "";

@@ -9,8 +9,9 @@
 
 namespace predictor::commissioning {
 
-// Allowed difference. It exceeds the calibration differences of most arms but not the difference
-// between any two models of Universal Robots arms. (A Panda and a Research 3 have the same links.)
+// Allowed difference between the reported and the modelled pose. This value is larger than the
+// calibration differences of most arms, but smaller than the difference between any two models of
+// Universal Robots arms. (A Panda and a Research 3 have the same links.)
 inline constexpr double kFlangeSlack = 0.005;    // [m]
 inline constexpr double kFlangeRotation = 0.02;  // [rad]
 
@@ -24,8 +25,9 @@ std::string KinematicsRefusal(const DeviceFacts& facts, const ArmSpec& arm,
 // Describes a difference and the values to enter at the pendant. Returns "" if the payloads agree
 // or the arm does not report its payload. The flange carries the handle of the machine file and
 // possibly a separate sensor of unknown mass. The payload may therefore be heavier by up to a
-// sensor's weight, with its centre shifted accordingly towards the flange. If the arm subtracts
-// that payload from its own wrench, only one of the two may have a weight.
+// sensor's weight, with its centre shifted accordingly towards the flange. If the arm subtracts the
+// payload in its controller from its own wrench, either this payload or the handle in the machine
+// file must have no weight.
 std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& arm);
 
 }  // namespace predictor::commissioning

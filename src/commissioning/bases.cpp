@@ -12,10 +12,11 @@
 namespace predictor::commissioning {
 namespace {
 
-// Smallest rms distance of the points from their best-fitting line [m]. Points closer to a line
-// determine the rotation about that line too poorly.
+// Smallest permitted rms distance of the points from their best-fitting line [m]. If the points are
+// closer to a line, they determine the rotation about this line too poorly.
 constexpr double kMinSpread = 0.05;
-// The largest residual of touched points, because a person places a tip to within about 1 mm [m].
+// The largest permitted residual of touched points [m]. A person places a tip with an accuracy of
+// about 1 mm.
 constexpr double kMaxResidual = 0.005;
 
 using Points = std::span<const TouchedPoint>;
@@ -30,7 +31,7 @@ struct Centres {
   }
 };
 
-// Rms distance from the best-fitting line.
+// Returns the rms distance of the points from their best-fitting line.
 double SpreadOf(Points points, const Vector3& centre) {
   Matrix3 squares = Matrix3::Zero();
   for (const TouchedPoint& point : points) {

@@ -1,5 +1,5 @@
-// Finds the pose of one arm's base in the frame of the other arm's base, from points that both arms
-// have touched.
+// Computes the pose of one arm's base in the frame of the other arm's base from points that both
+// arms have touched.
 #pragma once
 
 #include <array>
@@ -29,10 +29,10 @@ struct BaseCalibration {
 
 inline constexpr int kMinBasePoints = 3;
 
-// Returns the rigid motion that best maps the p_B onto the p_A (least squares; Horn 1987, by the
-// largest eigenvector of a 4 × 4 matrix, so never a reflection), with a covariance from the
-// residuals. Throws InputError if there are too few points, if they are on a line or too close
-// together, or if they do not fit.
+// Returns the rigid motion that maps the points p_B onto the points p_A with the least squared
+// error, and its covariance from the residuals. The method of Horn 1987 uses an eigenvector of a 4
+// × 4 matrix, so the result is never a reflection. Throws InputError if there are too few points,
+// if they are on a line or too close together, or if they do not fit.
 BaseCalibration CalibrateBases(std::span<const TouchedPoint> points);
 
 // Returns the result as a table. `before` is the nominal X_AB.

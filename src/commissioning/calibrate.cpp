@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kPatience = 10;  // longest wait for the readings of one pose [s]
 
-// Collects readings for one second at rest. Returns why the pose cannot be used, or "".
+// Collects readings for one second at rest. Returns the reason why the pose cannot be used, or ""
+// if it can be used.
 std::string TakePose(Session* session, const Station& station, PoseRecorder* recorder) {
   recorder->Begin();
   const double begin = session->Now();
@@ -99,22 +100,25 @@ Wrench Feel(Feeler* feeler, const Station& station) {
   return hand.F_H_W;
 }
 
-// One misread push shows that there is an error, but only all three together show which error.
+// One push that is read incorrectly shows that there is an error, but only all three pushes
+// together show which error.
 void ShowReading(Session* session, const PushTest& test, int axis) {
   session->Show(Formatted("  reads %s.", Name(test.readings()[static_cast<std::size_t>(axis)])));
   if (const std::string wrong = test.Wrong(axis); !wrong.empty())
     session->Show(
         "  DIFFERS FROM THE PUSH. " + wrong +
-        (test.done() ? "" : " Continue anyway: all three pushes together show the reason."));
+        (test.done()
+             ? ""
+             : " Continue anyway, because only all three pushes together show the reason."));
 }
 
 }  // namespace
 
 HandleCalibration MeasureHandle(Session* session, const Station& station) {
   session->Show(
-      Formatted("The handle of the %s arm is measured in %d poses or more. For each pose, guide "
-                "the arm in free-drive and tilt the handle in a new direction (it is best if "
-                "each axis points down once). Then take your hands off.",
+      Formatted("The handle of the %s arm must be measured in at least %d poses. For each pose, "
+                "guide the arm in free-drive and tilt the handle in a new direction. It is best if "
+                "each axis of the handle points down once. Then take your hands off.",
                 station.name().c_str(), kMinHandlePoses));
   PoseRecorder recorder(station.spec().arm.sensor);
   std::vector<RestingPose> poses;
@@ -147,8 +151,8 @@ BaseCalibration MeasureBases(Session* session, const Station& a, const Station& 
   if (!given) AskForNoTip(session, a, b);
   const Vector3 tip = given.value_or(Vector3::Zero());
   session->Show(
-      "Mark three points or more (six are better) that both arms can reach. They must be far "
-      "apart, not on a line, and not all at one height. Guide the arms in free-drive.");
+      "Mark three points or more (six are better) that both arms can reach. The points must be far "
+      "apart, not on a line, and not all at the same height. Guide the arms in free-drive.");
   const std::vector<Vector3> by_a = TakePoints(session, a, tip, 0);
   const std::vector<Vector3> by_b = TakePoints(session, b, tip, by_a.size());
   std::vector<TouchedPoint> points;
@@ -177,7 +181,7 @@ void TestPushes(Session* session, const Station& pushed, const Station* other) {
                     pushed.name().c_str(), "xyz"[shown], shown == 2 ? " (up)" : ""));
       since = session->Now();
     }
-    // A persistent hint is shown, and repeated after a while.
+    // A hint is shown once it persists, and is repeated after a while.
     if (test.hint() != hint || test.hint() == PushTest::Hint::kNone) since = session->Now();
     hint = test.hint();
     if (session->Now() - since > 2) {

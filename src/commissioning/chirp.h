@@ -1,5 +1,5 @@
-// A small swing of one joint that reveals its velocity loop: from low to high frequency, and back
-// in the same way.
+// A small swing of one joint that reveals its velocity loop. The frequency rises from low to high
+// and then falls again in the same way.
 #pragma once
 
 namespace predictor::commissioning {
@@ -13,8 +13,8 @@ struct ChirpOptions {
 };
 
 // v(t) = w(t) a(f) sin φ(t), f = φ'/(2π) grows exponentially from low to high, a(f) is the speed or
-// what the acceleration allows, w is a window that begins and ends with zero. The way back is −v(2T
-// − t), so the swing begins and ends at rest, and ends where it began.
+// what the acceleration allows, w is a window that begins and ends with zero. The second half is
+// −v(2T − t), so the swing begins and ends at rest, and ends at its initial position.
 class Chirp {
  public:
   explicit Chirp(const ChirpOptions& options);

@@ -1,4 +1,4 @@
-// Estimates the wrench of the hand at a station's handle as a run would.
+// Estimates the wrench of the hand at a station's handle in the same way as a run.
 #pragma once
 
 #include "commissioning/session.h"
@@ -12,8 +12,8 @@ class Feeler {
   // Asks the person to take the hands off, and tares the sensor. Throws DeviceError if the sensor
   // is beyond its range.
   void Tare(Session* session);
-  // Uses the station's last reading. Returns kSensor if it cannot be used, in which case the wrench
-  // is zero.
+  // Uses the station's last reading. Returns kSensor, with a wrench of zero, if this reading cannot
+  // be used.
   Status Feel(HandWrench* hand) noexcept;
 
  private:

@@ -12,11 +12,12 @@
 namespace predictor::commissioning {
 namespace {
 
-// Spread of the directions of gravity about their mean, rms along the axis with the second largest
-// spread: about that of poses that tilt the handle by 20° in either direction.
+// Smallest permitted spread of the directions of gravity about their mean: the rms along the axis
+// with the second largest spread. Poses that tilt the handle by 20° in either direction have about
+// this spread.
 constexpr double kMinTilt = 0.2;
-// Residual of a pose that sensor and cables can cause: a constant, the resolution, and a share of
-// the weight [N], [N·m].
+// Largest residual of a pose that sensor and cables can cause: the sum of a constant, the
+// resolution, and a share of the weight [N], [N·m].
 constexpr double kResidualForce = 0.1;
 constexpr double kResidualTorque = 0.01;
 constexpr double kResidualPart = 0.02;
@@ -28,7 +29,8 @@ constexpr double kMaxCenterError = 0.005;       // [m]
 
 using Poses = std::span<const RestingPose>;
 
-// Fits rows b + d t + x for each pose, where x is the effect of gravity per parameter.
+// Fits the model b + d t + x p to the poses: b is a constant, d is a drift over the time t, and x
+// is the effect of gravity for each parameter p.
 template <int kColumns, class Gravity>
 LinearFit FitPart(Poses poses, double last, Eigen::Index first_axis, const Gravity& by_gravity) {
   const auto rows = static_cast<Eigen::Index>(3 * poses.size());
@@ -72,7 +74,8 @@ struct Allowed {
               kResidualPart * 9.81 * std::abs(fit.mass())),
         torque(kResidualTorque + sensor.torque_resolution +
                kResidualPart * 9.81 * fit.moment().norm()) {}
-  // Returns the larger ratio of an error to its allowed value. Above 1, the pose does not fit.
+  // Returns the ratio of an error to its allowed value: the larger of the ratios for force and
+  // torque. If the ratio is above 1, the pose does not fit.
   double Share(const HandleFit& fit, std::size_t pose) const {
     return std::max(fit.ForceError(pose) / force, fit.TorqueError(pose) / torque);
   }
@@ -97,8 +100,8 @@ double TiltOf(Poses poses) {
   return std::sqrt(std::max(0.0, modes.eigenvalues[1]));
 }
 
-// Returns the pose whose removal gives the best fit of the others, and the worst ratio to the
-// allowed value in that fit.
+// Returns the pose without which the other poses fit best, and the worst ratio to the allowed value
+// in this fit.
 std::pair<std::size_t, double> OddOne(Poses poses, const Allowed& allowed) {
   std::pair<std::size_t, double> odd{0, HUGE_VAL};
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -201,7 +204,7 @@ std::string PoseRecorder::Refusal() const {
   if (!complete()) return "The sensor sent too few readings.";
   if (!(moved_ <= kMoves))
     return Formatted(
-        "The arm moved (a joint by %.1f mrad). Take your hands off and let it come to rest.",
+        "The arm moved (a joint by %.1f mrad). Take your hands off and let the arm come to rest.",
         1e3 * moved_);
   const Wrench mean = sum_ / count_;
   const Wrench deviation = (squares_ / count_ - mean.cwiseProduct(mean)).cwiseMax(0).cwiseSqrt();
@@ -222,7 +225,7 @@ HandleCalibration CalibrateHandle(Poses poses, const SensorSpec& sensor) {
     throw InputError(
         Formatted("The poses are too alike (the direction of gravity at the handle varies by %.2f; "
                   "%.2f is needed about two axes). Tilt the handle far to the left, right, front "
-                  "and back. It is best if each of its axes points down once.",
+                  "and back. It is best if each axis of the handle points down once.",
                   tilt, kMinTilt));
   const HandleFit fit(poses);
   const Allowed allowed(fit, sensor);

@@ -1,11 +1,11 @@
-// Identifies the bias of a force/torque sensor, and mass and centre of gravity of the handle on it,
-// from poses at rest in which no one touches the handle.
+// Identifies the bias of a force/torque sensor, and the mass and centre of gravity of the handle on
+// this sensor. The data are poses at rest in which no one touches the handle.
 //
 // F = b_F + d_F t + m g        T = b_T + d_T t − g × (m c)        about S, axes of S
 //
 // g is gravity [m/s²], t the time since the last pose, b the bias at that time, and d its drift
-// (the sensor warms up). All unknowns enter linearly, separately for force and torque: two
-// least-squares problems.
+// (the sensor warms up). All unknowns enter linearly, and force and torque are separate, so there
+// are two least-squares problems.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ class PoseRecorder {
   // Adds a new reading F_S, with the joints [rad] and the gravity [m/s²] in S at that time.
   void Add(const JointVector& q, const Vector3& g_S, const Wrench& F_S, double time);
   bool complete() const { return count_ >= kReadings; }
-  // Returns why the pose cannot be used, with the remedy, or "" if it can be used.
+  // Returns the reason why the pose cannot be used, with the remedy, or "" if it can be used.
   std::string Refusal() const;
   RestingPose pose() const;
 

@@ -90,9 +90,9 @@ void ForBlocks(const std::vector<LoopRecord::Sample>& samples, const Use& use) {
 }
 
 // An arm applies each command in its own cycle, slightly earlier or later, and the resulting
-// position offset persists. Over a swing it drifts by up to the amplitude of the fast motion.
-// Positions are therefore compared with one another within a block only. `rows` has one row for
-// each sample.
+// position offset persists. During a swing, this offset drifts by up to the amplitude of the fast
+// motion. Positions are therefore compared with one another only within a block. `rows` has one row
+// for each sample.
 template <class Rows>
 void Centre(const LoopRecord& record, Rows* rows) {
   ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
@@ -131,7 +131,7 @@ Eigen::MatrixXd Slopes(const LoopRecord& record, const Parameters& p) {
   return J;
 }
 
-// Gauss–Newton with Levenberg–Marquardt damping, over all records.
+// Fits all records by the Gauss–Newton method with Levenberg–Marquardt damping.
 class Fitter {
  public:
   explicit Fitter(Records records) : records_(records) {}
@@ -183,7 +183,7 @@ class Fitter {
     return cost;
   }
 
-  // Returns the best of several initial loops.
+  // Returns the loop that fits best among several initial loops.
   Parameters Start() const {
     Parameters best;
     double least = HUGE_VAL;
@@ -262,9 +262,9 @@ LoopRecord FittableBlocks(const LoopRecord& record, double noise) {
 
 // Returns the unexplained share of the motion in the worst block. Blocks correspond to frequencies
 // of the chirp. An arm may apply each command one cycle earlier or later. Within a block, the
-// accumulated offset can be as large as the smallest motion of the fastest swings: some hundredths
-// of a milliradian, which contain no information about the loop. Therefore only blocks with a
-// sufficient share of the largest block's motion are evaluated.
+// accumulated offset can be as large as the smallest motion of the fastest swings. This is some
+// hundredths of a milliradian, so such blocks contain no information about the loop. Therefore,
+// only blocks are evaluated whose motion is a sufficient share of the largest block's motion.
 double Misfit(const LoopRecord& record, const Eigen::VectorXd& residual, double noise) {
   double largest = 0;
   ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
@@ -314,7 +314,7 @@ void Check(const LoopFit& fit) {
                      1e2 * fit.misfit));
   if (std::abs(fit.gain.value - 1) > kMaxGainError)
     Refuse(fit.gaps, Formatted("The joint moved by %.2f of the commanded distance. Something "
-                               "limits its speed, or another program moves it.",
+                               "limits its speed, or another program moves the joint.",
                                fit.gain.value));
   const bool sure = fit.bandwidth.half_width <= kMaxRelativeWidth * fit.bandwidth.value &&
                     fit.damping_ratio.half_width <= kMaxRelativeWidth * fit.damping_ratio.value &&

@@ -1,7 +1,8 @@
 // Identifies an arm's velocity loop from the commands to its joints and their motion.
 //
-// The model is that of rig/velocity_loop.h: v'' + 2 ζ ω v' + ω² v = ω² u(t − delay). Positions are
-// fitted, because it is not known how a controller filters the velocities that it reports.
+// The model is the same as in rig/velocity_loop.h: v'' + 2 ζ ω v' + ω² v = ω² u(t − delay).
+// Positions are fitted, because it is not known how a controller filters the velocities that it
+// reports.
 #pragma once
 
 #include <span>

@@ -7,7 +7,7 @@
 namespace predictor::commissioning {
 
 // Gaps in a measurement that are caused by a busy computer or a bad network. A command holds until
-// the next tick. How an arm responds to a late command is not known.
+// the next tick. The response of an arm to a late command is not known.
 struct Gaps {
   long ticks = 0, late = 0;    // late: ticks before which at least one step was skipped
   long samples = 0, lost = 0;  // lost: samples that never arrived, according to the arm's rate
@@ -46,13 +46,13 @@ struct Swings {
   bool complete() const { return joints > 0 && measured() == joints; }
 };
 
-// Makes a record from ticks at arbitrary times: a command holds until the next.
+// Makes a record from ticks at arbitrary times. A command holds until the next command.
 class LoopRecorder {
  public:
   // `period` is the sample period of the arm [s].
   LoopRecorder(int joint, double period) : period_(period) { record_.joint = joint; }
-  // `due` is the scheduled time in the session. `time` is the time of the command [s]. Both ascend.
-  // u is in [rad/s].
+  // `due` is the scheduled time in the session. `time` is the time of the command [s]. Both times
+  // must ascend. `u` is in [rad/s].
   void AddCommand(double due, double time, double u);
   // Adds a new sample measured at `time` [s].
   void AddSample(double time, double q) { record_.samples.push_back({time, q}); }
@@ -67,8 +67,8 @@ class LoopRecorder {
   std::vector<double> dues_, times_, commands_;
 };
 
-// Returns the noise of a sample [rad]: that of the joint at rest before its first command, or its
-// resolution.
+// Returns the noise of a sample [rad]: the noise of the joint at rest before its first command, or
+// the resolution of its encoder.
 double NoiseOf(const LoopRecord& record);
 
 }  // namespace predictor::commissioning

@@ -11,10 +11,10 @@
 
 namespace predictor::commissioning {
 
-// Reads the file again, changes it, and checks the result as a reader would. It then keeps the old
-// version as FILE.before-DATE (or FILE.before-DATE-2, ...) and replaces the file atomically. The
-// whole machine is written, so comments remain only in the copy. Returns the path of the copy.
-// Throws InputError, in which case the file is unchanged.
+// Reads the file again, changes it, and checks the result as a reader would. The function then
+// keeps the old version as FILE.before-DATE (or FILE.before-DATE-2, ...) and replaces the file
+// atomically. The whole file is written from scratch, so comments remain only in the copy. Returns
+// the path of the copy. Throws InputError, in which case the file is unchanged.
 std::filesystem::path ChangeMachine(const std::filesystem::path& file, const std::string& date,
                                     const std::function<void(Machine*)>& change);
 

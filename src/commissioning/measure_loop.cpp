@@ -18,7 +18,7 @@ constexpr double kAccelerationPart = 0.3;  // share of the joint's acceleration 
 constexpr double kHeldOn = 0.2;            // consent that lasts this long counts as not revoked [s]
 constexpr double kRemind = 3;  // interval between two reminders about keys without effect [s]
 
-// One joint's swing while the person consents.
+// The swing of one joint, which lasts only while the person consents.
 class Swing {
  public:
   Swing(Session* session, Station* station, int joint, const Chirp& chirp, Consent* consent,
@@ -153,7 +153,7 @@ void SwingJoints(Session* session, Station* station, const SwingOptions& options
   session->Show(Formatted(
       "THE %s ARM WILL MOVE: each joint oscillates by at most %.0f mrad for %.0f s. Keep your "
       "hands off the handle, keep everyone out of reach, and keep one hand on the emergency stop. "
-      "%s to let the arm move. Releasing it, or pressing any other key, stops the arm.",
+      "%s to let the arm move. To stop the arm, release the key or press any other key.",
       station->name() == "left" ? "LEFT" : "RIGHT", 1e3 * chirp_options.angle,
       2 * chirp_options.time,
       options.enabling.station == nullptr ? "Hold s" : "Hold the enabling device"));

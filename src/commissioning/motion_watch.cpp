@@ -30,7 +30,7 @@ std::array<SamplePeriods, kHands> PeriodsOf(const Station& station) {
   return periods;
 }
 
-// As with every real sensor, repeated identical readings mean that the sensor is frozen.
+// The station's sensor has noise, so repeated identical readings mean that the sensor is frozen.
 std::array<bool, kHands> HasNoise(const Station& station) {
   std::array<bool, kHands> noise = {};
   noise[static_cast<std::size_t>(station.hand())] = true;
@@ -145,7 +145,7 @@ void MotionWatch::Check(double due) {
   const Status wrong = monitor_.Check(input);
   if (wrong.ok()) return;
   std::string words = CauseWords(wrong) + ". " + Advice(wrong);
-  // A frozen sensor (kCount) and a silent one (power_off) are not merely late.
+  // A frozen sensor (kCount) or a silent sensor (power_off) is not merely late.
   const bool late = wrong.cause == StopCause::kStale && wrong.quantity != Quantity::kCount;
   if (!wrong.power_off && (late || wrong.cause == StopCause::kDeadline)) throw HeldUp(words);
   words += " Nothing was written to the machine file.";

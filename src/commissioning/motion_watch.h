@@ -1,5 +1,5 @@
-// Monitors an arm that commissioning moves with hands off. It uses the guard and the monitor of a
-// run, and the consent of a person.
+// Monitors an arm that commissioning moves with hands off. MotionWatch uses the guard and the
+// monitor of a run, and the consent of a person.
 #pragma once
 
 #include <string>
@@ -19,9 +19,9 @@ struct EnablingContact {
 };
 
 // A held key lets the arm move. If there is an enabling device, the held device lets the arm move
-// once the key has been pressed. Any other key revokes consent. A device that is already pressed at
-// first, or is still pressed after another key, counts only after it has been released, because it
-// may be jammed.
+// once the key has been pressed. Any other key revokes consent. A device that is pressed from the
+// beginning, or that is still pressed after another key, may be jammed. Such a device counts only
+// after it has been released.
 class Consent {
  public:
   Consent(char key, const EnablingContact& contact) : key_(key), held_(key), contact_(contact) {}
@@ -30,7 +30,8 @@ class Consent {
   // From `now` [s] on, there is no consent until the key has been silent and the device has been
   // released.
   void Revoke(double now);
-  // Returns what the person must do to consent, according to the last Update, such as "hold s".
+  // Returns the action by which the person consents, according to the last Update, such as "hold
+  // s".
   std::string Wanted() const;
 
  private:
@@ -45,8 +46,7 @@ class Consent {
   double silent_since_ = 0;  // while consent is revoked: start of the silence [s]
 };
 
-// Thrown if the arm must stop because of late readings or ticks, which may be on time again
-// immediately.
+// Thrown if the arm must stop because readings or ticks are late. Such a delay may end immediately.
 class HeldUp : public DeviceError {
  public:
   using DeviceError::DeviceError;
@@ -54,9 +54,10 @@ class HeldUp : public DeviceError {
 
 class MotionWatch {
  public:
-  // Above these limits, or the machine's if they are lower, a hand on the handle is detected.
+  // Above these limits, or above the machine's limits if they are lower, the watch assumes that a
+  // hand is on the handle.
   static constexpr double kTouch = 15, kTouchTorque = 3;  // [N], [N·m]
-  // Above these limits the motion does not start.
+  // If the wrench is above these limits, the motion does not start.
   static constexpr double kFree = 5, kFreeTorque = 1;  // [N], [N·m]
 
   // Throws InputError if the arm's limits do not fit its model, and DeviceError if the payload in
@@ -68,8 +69,8 @@ class MotionWatch {
   // Call this at rest. Throws InputError if something presses on the handle.
   void Begin();
   // Call this in each step after reading the arm. `due` [s] is the scheduled time of the session.
-  // If something would stop a run, throws an error with a sentence for the person: InputError for
-  // people's actions, DeviceError for devices, or HeldUp.
+  // If a condition would stop a run, throws an error with a sentence for the person: InputError for
+  // people's actions, DeviceError for devices, or HeldUp for delays.
   void Check(double due);
   // Returns the permitted part of a command [rad/s].
   JointVector Bounded(const JointVector& v);

@@ -173,7 +173,7 @@ class Prober {
   const ProbeOptions& options_;
 };
 
-// Compares measured rates, of which 0 means not measured.
+// Compares measured rates. A rate of 0 means that it was not measured.
 bool DiffersMuch(double rate, double said) {
   return rate > 0 && std::abs(rate - said) > kRatePart * said;
 }

@@ -1,5 +1,5 @@
-// Checks which of a machine's arms and sensors answer, how well (rates, ages, wrench, payload), and
-// whether each one matches the machine file. Nothing moves.
+// Checks which arms and sensors of a machine answer, measures rates, ages, wrench and payload, and
+// checks whether each device matches the machine file. Nothing moves.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@
 namespace predictor::commissioning {
 
 // The functions that connect to arms and sensors (devices/connect.h, but tests use other
-// functions). Each throws DeviceError. The sensor is null if the arm has its own.
+// functions). Each throws DeviceError. The sensor is null if the arm has a built-in sensor.
 struct Connector {
   std::function<std::unique_ptr<Arm>(const MachineArm&, Network*)> arm;
   std::function<std::unique_ptr<WrenchSensor>(const MachineArm&, Network*)> sensor;
@@ -29,7 +29,7 @@ struct SampleTimes {
   double age_p50 = 0, age_max = 0;   // age of the newest sample when it was polled [s]
 };
 
-// One device: an arm, or a separate sensor.
+// A device, which is an arm or a separate sensor.
 struct Probed {
   std::string place;                    // "left arm", "right sensor"
   std::string name;                     // name from its facts; empty if the device does not answer
@@ -50,8 +50,8 @@ struct ProbeOptions {
   double poll = 0.00025;  // interval of polling [s]
 };
 
-// Probes one device after the other, so that each can be identified. An error of one does not
-// affect the others.
+// Probes one device after the other, so that each device can be identified. An error of one device
+// does not affect the other devices.
 std::vector<Probed> ProbeMachine(const Machine& machine, const Connector& connector,
                                  Network* network, const ProbeOptions& options = {});
 

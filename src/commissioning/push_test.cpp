@@ -14,7 +14,7 @@ constexpr double kNoOne = 1;  // largest force at the pushed handle if the other
 
 using Readings = std::array<AxisReading, PushTest::kAxes>;
 
-// Returns the axis along which a force clearly points, or none.
+// Returns the axis along which a force clearly points, or no value if there is no such axis.
 AxisReading DirectionOf(const Vector3& force) noexcept {
   int axis = 0;
   const double most = force.cwiseAbs().maxCoeff(&axis);
@@ -52,11 +52,12 @@ std::string LooksLike(const Readings& readings) {
            "sensors are swapped.";
   if (std::any_of(readings.begin(), readings.end(), other))
     return "The other handle's sensor measured some of the pushes. Push one handle at a time, and "
-           "make sure that no one touches the other.";
+           "make sure that no one touches the other handle.";
   const Matrix3 R = MatrixOf(readings);
   if (R.isApprox(-Matrix3::Identity()))
-    return "All signs are reversed: the readings are the force of the sensor on the handle, not of "
-           "the handle on the sensor. Check sensor.make in the machine file, and check that the "
+    return "All signs are reversed: the readings are the force that the sensor exerts on the "
+           "handle, not the force that the handle exerts on the sensor. Check sensor.make in the "
+           "machine file, and check that the "
            "sensor is not mounted back to front.";
   const double determinant = R.determinant();
   if (determinant > 0.5)

@@ -19,7 +19,7 @@ struct AxisReading {
   bool operator==(const AxisReading&) const = default;
 };
 
-// The test of one handle: the person pushes along +x, +y and +z of W, one after the other. It
+// The test of one handle: the person pushes along +x, +y and +z of W, one after the other. The test
 // receives the estimated wrenches of the hands. Does not use the heap or throw.
 class PushTest {
  public:
@@ -32,20 +32,21 @@ class PushTest {
 
   enum class Hint : std::uint8_t { kNone, kPush, kSofter, kStraighter, kLetGo };
 
-  // `pushed` and `other` are the wrenches F_H_W of the pushed handle and of the other one (zero if
-  // there is none). `dt` is the time since the last call [s].
+  // `pushed` and `other` are the wrenches F_H_W of the pushed handle and of the other handle (zero
+  // if there is no other handle). `dt` is the time since the last call [s].
   void Update(const Wrench& pushed, const Wrench& other, double dt) noexcept;
 
-  // Returns the current axis, to be pushed in its + direction, or kAxes when done.
+  // Returns the axis along whose + direction the person must push now, or kAxes when the test is
+  // done.
   int axis() const noexcept { return axis_; }
   bool done() const noexcept { return axis_ == kAxes; }
-  // Returns whether every push was read correctly. It is valid only when done.
+  // Returns whether every push was read correctly. The result is valid only when the test is done.
   bool passed() const noexcept;
   const std::array<AxisReading, kAxes>& readings() const noexcept { return readings_; }
   Hint hint() const noexcept { return hint_; }  // the person's next action
 
-  // Returns how the push along this axis, 0 … 2, was misread, or "" if it was read correctly or has
-  // not been made yet. It must not be called in a tick.
+  // Describes how the push along this axis, 0 … 2, was read incorrectly. Returns "" if the push was
+  // read correctly or has not been made yet. Do not call this function in a tick.
   std::string Wrong(int axis) const;
   // Returns the pattern of the readings and the remedy, or "" if the test passed or is not done. It
   // must not be called in a tick.

@@ -18,8 +18,8 @@ class Person {
  public:
   virtual ~Person() = default;
   virtual void Show(const std::string& line) = 0;
-  // Returns a key that was pressed since the last call, or 0 for none. It never waits. Buffered
-  // keys are returned one per step, which is too fast for a HeldKey.
+  // Returns a key that was pressed since the last call, or 0 if no key was pressed. It never waits.
+  // Buffered keys are returned one per step, which is too fast for a HeldKey.
   virtual char Key() = 0;
 };
 
@@ -35,8 +35,8 @@ class Session {
       : network_(network), person_(person), stations_(std::move(stations)) {}
 
   // Sets a function that is called in each step before the arms are read, for a watchdog. `moves`
-  // states whether one of the arms moves. The function returns why no arm may continue to move, or
-  // "".
+  // is true if one of the arms moves. The function returns the reason why no arm may continue to
+  // move, or "".
   void OnStep(std::function<std::string(bool moves)> step) { on_step_ = std::move(step); }
 
   double Now() const { return 1e-9 * static_cast<double>(network_->Now()); }
@@ -45,8 +45,8 @@ class Session {
   double due() const { return 1e-9 * static_cast<double>(due_); }
   void Show(const std::string& line) { person_->Show(line); }
 
-  // Waits for the next millisecond of the clock, in which all arms rest and are read. This and the
-  // functions below throw DeviceError, and InputError if the person gives up.
+  // Waits for the next millisecond of the clock, reads all arms and commands them to rest. This
+  // function and the functions below throw DeviceError, and InputError if the person gives up.
   void Step();
   // Does the same as Step(), but one arm receives the joint velocities [rad/s] that `command`
   // computes from the latest reading. Exceptions of `command` are passed on. A caller that moves an
@@ -54,10 +54,10 @@ class Session {
   void Step(Station* moving, const std::function<JointVector()>& command);
   // Brings the arm to rest from its last commanded velocities. The fastest joint decelerates by
   // `deceleration` [rad/s²], and the others in proportion. Waits until the joints rest, and ends
-  // the motion. Does not ask the person anything, and does not throw. Returns the outcome as text
-  // for the person.
+  // the motion. This function does not ask the person anything and does not throw. Returns the
+  // outcome as text for the person.
   std::string BringToRest(Station* moving, double deceleration);
-  // Returns the key of the last step, or 0 for none.
+  // Returns the key that was pressed in the last step, or 0 if no key was pressed.
   char key() const { return key_; }
 
   // Waits for one of the keys.

@@ -16,23 +16,24 @@ class Station {
   static constexpr double kGravity = kStandardGravity;  // [m/s²]
   static constexpr double kOld = 0.2;                   // a sample this old cannot be used [s]
 
-  // `sensor` is null if the arm has its own. Throws DeviceError if there is no wrench or the arm's
-  // flange differs from the model, and InputError for an invalid model or a different number of
-  // joints.
+  // `sensor` is null if the arm has a built-in sensor. Throws DeviceError if there is no wrench or
+  // the arm's flange differs from the model, and InputError for an invalid model or a different
+  // number of joints.
   Station(int hand, const MachineArm& spec, std::unique_ptr<Arm> arm,
           std::unique_ptr<WrenchSensor> sensor);
 
-  // Call this once per millisecond. It reads the arm and commands it to rest. An arm that a person
-  // guides reports that it cannot move. This is accepted as long as its samples are new. Throws
-  // DeviceError.
+  // Call this once per millisecond. The function reads the arm and commands it to rest. An arm that
+  // a person guides reports that it cannot move. This report is accepted as long as the arm's
+  // samples are new. Throws DeviceError.
   void Watch();
-  // Reads an arm that is about to move. Here every fault of the arm is a DeviceError.
+  // Reads an arm that is about to move. In this function, every fault of the arm is a DeviceError.
   void Sense() { Read(true); }
   // Sends a command [rad/s]. Call this after Sense. Throws DeviceError if the arm does not accept
-  // it.
+  // the command.
   void Move(const JointVector& v);
-  // Brings the arm to rest in spite of any other fault. If `motion` is false, its motion ends.
-  // Returns false if the arm does not accept it or its samples are old.
+  // Brings the arm to rest in spite of any other fault. If `motion` is false, the arm also leaves
+  // its motion mode. Returns false if the arm does not accept the command or if its samples are
+  // old.
   bool Slow(const JointVector& v, bool motion) noexcept;
 
   int hand() const { return hand_; }

@@ -44,7 +44,7 @@ bool ReadRecord(std::istream& in, int joint, LoopRecord* record) {
   return !in.fail() && Ascend(record->samples);
 }
 
-// Reads everything after the header, including its last word.
+// Reads everything after the header, including the last word of the file.
 bool ReadSwings(std::istream& in, Swings* swings) {
   int measured = 0;
   if (!(in >> swings->joints >> measured) || swings->joints > kMaxSwingJoints || measured < 1 ||

@@ -1,5 +1,6 @@
-// Stores measured swings next to the machine file until its loop is written, so that an interrupted
-// session need not be repeated. Only `calibrate loop` reads them.
+// Stores measured swings next to the machine file until the arm's loop is written to the machine
+// file, so that an interrupted session need not be repeated. Only `calibrate loop` reads these
+// swings.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// Saves the state that the emulator keeps between ticks as bytes, after a tick, and loads it before
-// a tick.
+// Saves the state that the emulator keeps between ticks as bytes after a tick, and loads such a
+// state before a tick.
 //
 // A class with state lists it once, for both directions:
 //   void Archive(StateArchive& a) { a(x_, v_, count_); }
@@ -33,15 +33,15 @@ class StateArchive {
     return {const_cast<std::byte*>(from.data()), from.size(), false};
   }
 
-  // Saves or loads each field in turn. It does not use the heap and does not throw.
+  // Saves or loads each field in turn. The archive does not use the heap and does not throw.
   template <class... T>
   void operator()(T&... fields) noexcept {
     (Field(fields), ...);
   }
 
   bool saves() const noexcept { return saves_; }
-  // Returns false if the bytes were too few or did not describe this state. The loaded state is
-  // then invalid.
+  // Returns false if there were too few bytes or if they did not describe this state. The loaded
+  // state is then invalid.
   bool ok() const noexcept { return ok_; }
   void Fail() noexcept { ok_ = false; }
   std::size_t used() const noexcept { return used_; }
@@ -63,7 +63,7 @@ class StateArchive {
   template <class T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void Field(T& x) noexcept { Bytes(&x, sizeof x); }
-  // The bytes may be forged. Therefore every number that is used to compute, count or index is
+  // The bytes may be forged. Therefore, every number that is used to compute, count or index is
   // checked against bounds.
   void Field(double& x) noexcept {
     Bytes(&x, sizeof x);

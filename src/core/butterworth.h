@@ -1,4 +1,5 @@
-// Filters of second order with Butterworth's maximally flat pass band, for evenly sampled signals.
+// Second-order Butterworth filters, which have a maximally flat pass band, for evenly sampled
+// signals.
 #pragma once
 
 #include <cmath>
@@ -6,13 +7,13 @@
 
 namespace predictor {
 
-// Low-pass or high-pass by the bilinear transform with prewarped frequency. It starts as if it had
-// always received its first sample.
+// A low-pass or high-pass filter from the bilinear transform with a prewarped frequency. The filter
+// starts as if it had always received its first sample.
 template <class T>
 class Butterworth {
  public:
   enum class Pass { kLow, kHigh };
-  // `cutoff` is in [Hz], below half of the sampling rate. `dt` is in [s].
+  // `cutoff` is in [Hz] and must be below half of the sampling rate. `dt` is in [s].
   Butterworth(Pass pass, double cutoff, double dt, const T& start)
       : x1_(start), x2_(start), y1_(start), y2_(start) {
     const double w = std::tan(std::numbers::pi * cutoff * dt);

@@ -5,10 +5,11 @@
 
 namespace predictor {
 
-// RunInput::value of a kStop that ends a run as planned: the arms brake and no cause is recorded.
+// RunInput::value of a kStop input that ends a run as planned: the arms brake, and no cause is
+// recorded.
 inline constexpr double kEndAsPlanned = 1;
 
-// Returns whether a page may select the next scenario, which requires that nothing moves.
+// Returns whether a page may select the next scenario. This requires that nothing moves.
 constexpr bool MayChooseScenario(RunState state) noexcept {
   return state == RunState::kIdle || state == RunState::kHeld || state == RunState::kUnpowered;
 }

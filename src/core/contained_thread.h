@@ -1,4 +1,4 @@
-// Threads that run alongside the loop. An exception in one of them must not end the process while
+// Threads that run alongside the loop. An exception in such a thread must not end the process while
 // the arms move.
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace predictor {
 
-// Calls `work`. If it throws, `failed` receives the reason as text. Exceptions that `failed` itself
-// throws, for example when memory is exhausted, are discarded.
+// Calls `work`. If the body of the thread throws, `failed` receives the reason as text. Exceptions
+// that `failed` itself throws, for example when memory is exhausted, are discarded.
 template <class Work, class Failed>
 void Contain(const Work& work, const Failed& failed) noexcept {
   try {
@@ -26,8 +26,8 @@ void Contain(const Work& work, const Failed& failed) noexcept {
   }
 }
 
-// A thread that contains every exception of its body. `name` has at most 15 characters, and `ps -L`
-// shows it.
+// A thread that contains every exception of its body. `name` has at most 15 characters and appears
+// in `ps -L`.
 template <class Work, class Failed>
 std::thread ContainedThread(const char* name, Work work, Failed failed) {
   return std::thread([name, work = std::move(work), failed = std::move(failed)] {

@@ -1,4 +1,4 @@
-// The exception that loading throws. It states the error, its place, and the remedy.
+// The exception that loading throws. The exception states the error, its place, and the remedy.
 #pragma once
 
 #include <stdexcept>
@@ -15,21 +15,22 @@ class InputError : public std::runtime_error {
       : std::runtime_error(place.empty() ? sentence : place + ": " + sentence) {}
 
   // Returns an error in the value at `key` of a scenario ("device.arms.left.elbow"). Located
-  // (scenario/located.h) adds its place in the file. `sentence` begins with the key.
+  // (scenario/located.h) adds the place of the key in the file. `sentence` begins with the key.
   static InputError At(const std::string& key, const std::string& sentence) {
     InputError error(sentence);
     error.key_ = key;
     return error;
   }
   // Returns this error with its key placed within a group: "velocity_limit" in "device.arms.left".
-  // If the error has no key (an error in a model file, for example), it is attributed to `group`,
-  // and the sentence then names the group.
+  // An error without a key (for example, in a model file) is attributed to `group`, and its
+  // sentence names the group.
   InputError Within(const std::string& group) const {
     if (key_.empty()) return At(group, group + ": " + what());
     return At(group + "." + key_, group + "." + what());
   }
 
-  // The key in the scenario, or "" if the error has none or its message already gives the place.
+  // The key in the scenario, or "" if the error has no key or its message already contains the
+  // place.
   const std::string& key() const { return key_; }
 
  private:

@@ -6,7 +6,8 @@
 
 namespace predictor {
 
-// Zero of type T. A default-constructed Eigen vector would be uninitialised.
+// Zero of type T. The initial value is explicit, because a default-constructed Eigen vector would
+// be uninitialised.
 template <class T>
 T ZeroOf() {
   if constexpr (requires { T::Zero(); })
@@ -15,13 +16,14 @@ T ZeroOf() {
     return T{};
 }
 
-// First-order low-pass, y' = (x − y)·2π f, discretised exactly for a held input.
-// Its group delay at low frequency is 1/(2π f) plus half a sample.
+// First-order low-pass, y' = (x − y)·2π f, discretised exactly for an input that is constant
+// between samples.
+// The group delay of the filter at low frequency is 1/(2π f) plus half a sample.
 template <class T>
 class LowPass {
  public:
   LowPass() = default;
-  // `cutoff` is in [Hz], and 0 or below passes everything through. `dt` is in [s].
+  // `cutoff` is in [Hz]; 0 or less passes everything through. `dt` is in [s].
   LowPass(double cutoff, double dt, const T& start)
       : gain_(cutoff > 0 ? 1 - std::exp(-2 * 3.14159265358979323846 * cutoff * dt) : 1),
         y_(start) {}
@@ -58,7 +60,7 @@ class Delay {
     head_ = (head_ + 1) % (N + 1);
     return buffer_[static_cast<std::size_t>(tail)];
   }
-  // Archives only the samples still in the delay, the oldest first.
+  // Archives only the samples that are still in the delay, beginning with the oldest sample.
   template <class A>
   void Archive(A& a) {
     a(samples_);
@@ -108,7 +110,7 @@ template <class T>
 class RampLowPass {
  public:
   RampLowPass() = default;
-  // `cutoff` is in [Hz], and 0 or below passes everything through. `dt` is in [s].
+  // `cutoff` is in [Hz]; 0 or less passes everything through. `dt` is in [s].
   RampLowPass(double cutoff, double dt, const T& start) : x_(start), y_(start) {
     if (cutoff <= 0) return;
     const double samples = 1 / (2 * 3.14159265358979323846 * cutoff * dt);  // time constant

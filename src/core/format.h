@@ -1,4 +1,4 @@
-// printf into strings of any length. It is not for use in the tick.
+// printf into strings of any length. These functions are not for use in the tick.
 #pragma once
 
 #include <ctime>
@@ -18,7 +18,7 @@ __attribute__((format(printf, 2, 3))) void AppendLine(std::string* text, const c
 // Returns the local time in the format of strftime.
 std::string LocalTime(const char* format, std::time_t time);
 
-// Formats SI values in the unit that people read: "30.5 N, limit 30 N". Uses three digits, or as
+// Formats SI values in the units that the user sees: "30.5 N, limit 30 N". Uses three digits, or as
 // many more as are needed to distinguish the two values. Counts are plain numbers.
 std::string SeenAndAllowed(double seen, double allowed, Quantity quantity);
 

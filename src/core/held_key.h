@@ -13,18 +13,19 @@ enum class KeySign {
   kLate,       // the letters arrived together, and none followed within kFirstRepeat
 };
 
-// A key that is held sends its letter repeatedly. It counts as held from the second letter until it
-// has been silent for kSilence.
+// A key that is held sends its letter repeatedly. The key counts as held from the second letter
+// until no letter has arrived for kSilence.
 //
-// A letter shows when it arrives, not when its key was pressed. After a delay (a stalled network or
-// a busy computer), the queued letters arrive together, perhaps after the hand has moved elsewhere.
-// Neither a person nor a terminal repeats a letter within kTogether. Letters that follow each other
-// so closely are therefore a backlog, and none of them counts. The first letter of a backlog looks
-// like any other. Therefore, a letter counts only if no other letter follows within kTogether.
+// The program knows when a letter arrived, but not when its key was pressed. After a delay (a
+// stalled network or a busy computer), the queued letters arrive together, perhaps after the hand
+// has moved elsewhere. Neither a person nor a terminal repeats a letter within kTogether. Letters
+// that follow each other so closely are therefore a backlog and do not count. The first letter of a
+// backlog looks like any other. Therefore, a letter counts only if no other letter follows within
+// kTogether.
 //
 // A backlog does not release a key that is already held, because on a busy computer two letters
-// sometimes arrive together. They count as one event, provided that they arrived within kSilence of
-// the previous one.
+// sometimes arrive together. These letters count as one event, provided that they arrived within
+// kSilence of the previous letter.
 class HeldKey {
  public:
   static constexpr double kFirstRepeat = 0.8;  // delay before a terminal repeats a key [s]
@@ -33,9 +34,9 @@ class HeldKey {
 
   explicit HeldKey(char key) : key_(key) {}
 
-  // Call this at least every kTogether, and with each key received; `key` is 0 if there was none.
-  // Any other key releases the held one. `now` is the time at which the key was read [s]; keys read
-  // together have the same time.
+  // Call this at least every kTogether, and with each received key; `key` is 0 if no key was
+  // received. Any other key releases the held key. `now` is the time at which the key was read [s];
+  // keys read together have the same time.
   KeySign Update(char key, double now);
   bool held() const { return letters_ >= 2; }
   char key() const { return key_; }

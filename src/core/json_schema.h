@@ -11,7 +11,7 @@
 
 namespace predictor {
 
-// JSON has no infinity and no NaN. A number that is not finite therefore becomes null.
+// JSON has no infinity and no NaN. Therefore, a number that is not finite becomes null.
 inline nlohmann::ordered_json NumberOrNull(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr);
 }
@@ -22,7 +22,8 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr const char* kDraft = "http://json-schema.org/draft-07/schema#";
 
-// Returns a value of a type (or of one of several), with its meaning for the reader.
+// Returns the schema of a value with one or several permitted types, and with its meaning for the
+// reader.
 inline Json Value(Json type, const std::string& meaning) {
   return {{"type", std::move(type)}, {"description", meaning}};
 }
@@ -31,7 +32,7 @@ inline Json ValueOrNull(const char* type, const std::string& meaning) {
   return Value({type, "null"}, meaning);
 }
 
-// Returns an object that has all these properties.
+// Returns the schema of an object that has all these properties.
 inline Json Object(Json properties, const std::string& meaning) {
   Json required = Json::array();
   for (const auto& [key, value] : properties.items()) required.push_back(key);
@@ -52,7 +53,7 @@ struct Words {
 };
 
 // Returns the schema of `example`, which has every member. Lists are not empty. Floating-point
-// numbers, and the keys in `can_miss`, can be null. `key` is that of the example.
+// numbers, and the keys in `can_miss`, can be null. `key` is the key of the example.
 inline Json FromExample(const Json& example, const Words& words, const std::string& key = "") {
   Json schema;
   const bool can_miss =

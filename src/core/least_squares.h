@@ -1,5 +1,5 @@
-// Least-squares fits and the uncertainty of their results. They allocate memory, so the tick must
-// not use them.
+// Least-squares fits and the uncertainty of their results. These functions allocate memory, so the
+// tick must not use them.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,8 +30,8 @@ struct LinearFit {
   Estimate estimate(int i) const { return {value[i], half_width_95(i)}; }
 };
 
-// A has at least as many rows as columns. If A cannot distinguish its columns, the spread is very
-// large.
+// A has at least as many rows as columns. If the columns of A are nearly dependent, the spread is
+// very large.
 LinearFit FitLinear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 }  // namespace predictor

@@ -15,21 +15,23 @@ namespace predictor {
 bool ArmAtFault(const HandRecord& hand);
 bool ArmAtFault(const TickRecord& record);
 
-// Returns whether RECOVERY moves nothing after a stop: the power is off or an arm had a fault.
+// Returns whether RECOVERY cannot move the arms after a stop, because the power is off or an arm
+// had a fault.
 bool NothingMovesAnyMore(const TickRecord& record);
 
 // A stopped arm is held stiffly, and an arm without power is heavy, so a hand may be trapped at any
-// time after a stop. A message is issued once when a force has acted on a hand for kPatience. It is
-// issued again only after the handle has been free for kPatience or the arms have moved.
+// time after a stop. The message appears once when a force has acted on a hand for kPatience. It
+// appears again only after the handle has been free for kPatience or the arms have moved.
 class LoadedHands {
  public:
   static constexpr double kPatience = 0.5;  // [s]
 
   // A hand is loaded above `force` [N]. `rate` is the tick rate [Hz]. With an `enabling_device`,
-  // the person holds one instead of a key.
+  // the person holds this device instead of a key.
   LoadedHands(double force, double rate, bool enabling_device = false)
       : force_(force), patience_(kPatience * rate), enabling_device_(enabling_device) {}
-  // Call this with each record, in order. Returns sentences for the operator, usually none.
+  // Call this with each record, in order. Returns sentences for the operator; the list is usually
+  // empty.
   std::vector<std::string> See(const TickRecord& record);
 
  private:

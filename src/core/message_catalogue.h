@@ -1,4 +1,4 @@
-// Texts shown at the console, on the page, in the headset and in reports. Each has an ID in
+// Texts shown at the console, on the page, in the headset and in reports. Each text has an ID in
 // message_catalogue.json, which the page imports too. Not for use in the tick.
 #pragma once
 
@@ -23,11 +23,11 @@ constexpr std::string_view FindMessage(std::string_view id) {
   return {};
 }
 
-// This function has no definition and is not constexpr. A constant expression cannot call it, so an
-// unknown ID does not compile.
+// This function has no definition and is not constexpr. A constant expression cannot call such a
+// function, so code with an unknown ID does not compile.
 void RejectUnknownMessageId();
 
-// The ID of a text in the catalogue: an unknown literal does not compile.
+// The ID of a text in the catalogue. Code with an unknown literal does not compile.
 class MessageId {
  public:
   consteval MessageId(const char* id) : text_(FindMessage(id)) {  // NOLINT: converts a literal

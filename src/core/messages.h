@@ -1,4 +1,5 @@
-// Data that the modules pass to one another within a tick. Each struct names its writer.
+// Data that the modules pass to one another within a tick. The comment at each struct names the
+// module that writes it.
 #pragma once
 
 #include <array>
@@ -42,14 +43,15 @@ struct DeviceSample {
   std::array<ArmSample, kHands> arms;
 };
 
-// An operator's hand as a page sends it. The emulator writes it, for a simulated rig only.
+// An operator's hand as a page sends it. The emulator writes this struct, only for a simulated rig.
 struct HandInput {
   bool grip = false;
   Pose X_WH;         // set-point of the handle
   double age = 1e9;  // time since the page sent it [s]
 };
 
-// The command to a device. The guard writes it, as the last stage before the device.
+// The command to a device. The guard, which is the last stage before the device, writes this
+// command.
 struct DeviceCommand {
   RunState state = RunState::kInit;     // as shown on the page
   double run_time = 0;                  // time since RUN began [s]; constant while stopped
@@ -57,7 +59,7 @@ struct DeviceCommand {
   std::array<HandInput, kHands> hands;  // simulated rig: the operator's hands, if a page moves them
 };
 
-// Motion of one frame in the world. The modules that compute kinematics write it.
+// Motion of one frame in the world. The modules that compute kinematics write this struct.
 struct FrameMotion {
   Pose X_W;                       // pose in W
   Twist V_W = Twist::Zero();      // twist in W, about the frame's origin
@@ -79,8 +81,8 @@ struct WorldInput {
   std::array<double, kHands> hand_mass = {};  // direct mode: mass of the hand on D [kg]
 };
 
-// Live tuning of the virtual cobot's controller: factors of the scenario's values. The emulator
-// writes it.
+// Live tuning of the virtual cobot's controller: factors by which the scenario's values are
+// multiplied. The emulator writes it.
 struct ControllerTuning {
   double stiffness_translation = 1;
   double stiffness_rotation = 1;
@@ -94,7 +96,7 @@ struct MovableMotion {
   Twist V_W = Twist::Zero();  // twist in W, about the frame's origin
 };
 
-// The scenario's movable objects (environment.objects), in its order.
+// The movable objects (environment.objects), in the scenario's order.
 struct Movables {
   int count = 0;
   std::array<MovableMotion, kMaxMovables> motion;
@@ -119,7 +121,7 @@ struct WorldState {
   Movables movables;
 };
 
-// The answer of a controller outside the program in a tick, from its record, for a replay.
+// For a replay: the answer of a controller outside the program, from the record of the tick.
 struct ControllerAnswer {
   JointVector torque;  // torque that was applied [N·m]
   double energy = 0;   // energy of the virtual world [J]
@@ -139,18 +141,19 @@ struct RenderResult {
   bool relaxed = false;                                // a slack is above its tolerance
   bool failed = false;  // no verified solution: v decelerates from the previous one
   int iterations = 0;   // iterations of the solver
-  // Active bounds and rows (nonzero multiplier): bit = joint of an arm, or row.
+  // Active bounds and rows (nonzero multiplier). Each bit stands for a joint of an arm, or for a
+  // row.
   std::array<std::uint16_t, kHands> at_lower = {}, at_upper = {};
   std::uint16_t rows = 0;
   double kkt_residual = 0;                         // largest, scaled
   std::array<double, kHands> manipulability = {};  // sqrt(det(J Jᵀ)), translational
 };
 
-// Linear model of the virtual world about a state at rest: dx/dt = A x + B u, y = C x. x contains
-// positions (tangent space), then velocities, then the states of the wrist sensor, of the
-// controller's memory and of its delay, if there are any. The displacement of the handles is the
+// Linear model of the virtual world about a state at rest: dx/dt = A x + B u, y = C x. The state x
+// contains positions (tangent space), then velocities, then any states of the wrist sensor, of the
+// controller's memory and of the controller's delay. The displacement of the handles is the
 // velocity part of C times the positions. u contains the wrenches on the handles (left, right; 12),
-// y their twists (12). Entries of an absent side are zero.
+// and y contains the twists of the handles (12). Entries of an absent side are zero.
 struct LinearModel {
   Eigen::MatrixXd A, B, C;
   int dof = 0;  // number of positions, which is also that of velocities

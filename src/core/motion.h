@@ -7,20 +7,20 @@
 
 namespace predictor {
 
-// A handle slower than this counts as stationary. The speeds measured on arms at rest are lower
-// [m/s].
+// A handle slower than this counts as stationary [m/s]. The speeds that arms report at rest are
+// lower.
 inline constexpr double kStandstillSpeed = 0.01;
 
-// Lever arm at which a handle's rotation counts as motion [m]. A rotation about the handle's own
-// axis would otherwise not be detected.
+// Lever arm by which a handle's rotation is multiplied when motion is detected [m]. A rotation
+// about the handle's own axis would otherwise not be detected.
 inline constexpr double kHandleLength = 0.1;
 // Returns the larger of a handle's speed and its angular speed times `length` [m/s].
 inline double HandleSpeed(const Twist& V, double length = kHandleLength) {
   return std::max(V.head<3>().norm(), length * V.tail<3>().norm());
 }
 
-// Lever arm at which rotation counts towards the speed that a stop must brake [m]. A scenario
-// cannot change it: a longer lever arm would make stops longer.
+// Lever arm that converts rotation to the speed that a stop must brake [m]. A scenario cannot
+// change this value, because a longer lever arm would make stops longer.
 inline constexpr double kStopLength = 0.2;
 // Returns the speed of a handle as used for a stop [m/s].
 inline double StopSpeed(const Twist& V) { return HandleSpeed(V, kStopLength); }

@@ -8,8 +8,9 @@ namespace predictor {
 double NormalProbability(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
 double NormalQuantile(double probability) {
-  // Bisection is fast enough for a few calls per report and as accurate as the function above.
-  // Symmetry handles the upper half, because probabilities near one lose precision.
+  // Bisection is fast enough for a few calls per report, and its result is as accurate as the
+  // function above. The upper half follows from symmetry, because probabilities near one lose
+  // precision.
   if (probability > 0.5) return -NormalQuantile(1 - probability);
   double low = -39, high = 0;
   for (int i = 0; i < 100; ++i) {

@@ -20,8 +20,9 @@ enum class PersonStatus : std::uint8_t {
 inline constexpr std::array kPersonStatusNames = {"judged", "waiting", "no_hand", "below_ground"};
 inline constexpr std::size_t kPersonStatuses = kPersonStatusNames.size();
 
-// Points of the body, for drawing. Most are joints. Eyes and head are their centres, the hand is at
-// the knuckles, and the toes are at the front of the foot on the ground.
+// Points of the body, for drawing. Most are joints. The points of the eyes and the head are their
+// centres, the point of the hand is at the knuckles, and the point of the toes is at the front of
+// the foot on the ground.
 enum class BodyPoint : std::uint8_t {
   kPelvis,  // middle of the hip joints
   kL5S1,
@@ -53,7 +54,7 @@ inline constexpr std::array kBodyPointNames = {
 inline constexpr std::size_t kBodyPoints = kBodyPointNames.size();
 static_assert(kBodyPoints == static_cast<std::size_t>(BodyPoint::kRightToes) + 1);
 
-// Parts of the body that have a load.
+// Parts of the body for which a load is computed.
 enum class BodyPart : std::uint8_t {
   kLowerBack,
   kLeftShoulder,
@@ -136,7 +137,7 @@ inline constexpr std::array kPersonGaugeRows = {
 };
 inline constexpr std::size_t kPersonGauges = kPersonGaugeRows.size();
 
-// Worksheets. A class is an action level of the worksheet; 1 is the lowest.
+// Worksheets. A class is an action level of the worksheet; level 1 is the lowest.
 enum class PersonScore : std::uint8_t { kRula, kReba, kOwas };
 struct PersonScoreRow {
   const char* name;
@@ -168,7 +169,7 @@ struct PersonWarningRow {
   double on, off;  // if on < off, low values are bad
   const char* words;
 };
-// The warning about a joint begins at half of the mean strength. With a standard deviation of 0.3
+// The warning about a joint begins at half of the mean strength. If the standard deviation is 0.3
 // of the mean, one person in twenty has at most this strength. The warning of a worksheet begins at
 // its highest action level.
 inline constexpr double kUseWarning = 0.5, kUseCalm = 0.4;
@@ -195,7 +196,7 @@ inline constexpr std::array kPersonWarningRows = {
 inline constexpr std::size_t kPersonWarnings = kPersonWarningRows.size();
 inline constexpr double kWarnAfter = 0.1, kCalmAfter = 1;  // [s]
 
-// A value that is not known.
+// The representation of an unknown value.
 inline constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 struct GaugeState {
@@ -206,12 +207,13 @@ struct ScoreState {
   std::uint8_t score = 0;  // of the nominal posture; 0: not known
   std::uint8_t level = 0;  // its action level
   std::uint16_t reserved = 0;
-  // Probability of each action level among the possible people, at interval_time; first: level 1.
+  // Share of the possible people at each action level, at interval_time; the first element belongs
+  // to level 1.
   std::array<float, kMaxClasses> probability = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
 };
 struct PartState {
-  // For colouring: the compression of the lower back divided by its limit, and for other parts the
-  // torque divided by the mean strength.
+  // Loads that determine the colours: the compression of the lower back divided by its limit and,
+  // for other parts, the torque divided by the mean strength.
   float load = kUnknown;
   float capacity = kUnknown;   // strength that remains despite fatigue (3CC-r), as a share
   float damage = kUnknown;     // of the run so far: LiFFT for the lower back, Shoulder Tool

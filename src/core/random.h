@@ -10,7 +10,7 @@
 namespace predictor {
 
 // One stream of random numbers (xoshiro256++, Blackman & Vigna 2019). Each stream is named after
-// its use, so more draws from one do not change the others. It does not allocate.
+// its use, so additional draws from one stream do not change the others. It does not allocate.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::string_view use) {

@@ -6,8 +6,8 @@
 namespace predictor {
 
 inline constexpr int kLoopPriority = 80;  // SCHED_FIFO priority; the watchdog's is higher
-// The priority of a controller's process that requests real-time scheduling. It is lower than that
-// of the loop, so the process cannot delay the loop.
+// The priority of a controller's process that requests real-time scheduling. This priority is lower
+// than the priority of the loop, so the process cannot delay the loop.
 inline constexpr int kControllerPriority = 70;
 
 // Real-time scheduling of the calling thread and locked memory, for the lifetime of this object.
@@ -19,7 +19,7 @@ class RealTimeScheduling {
   RealTimeScheduling& operator=(const RealTimeScheduling&) = delete;
 
   bool prior() const { return prior_; }  // real-time scheduling was granted
-  // Returns what the system granted, as text to follow "Real-time scheduling: ".
+  // Returns what the system granted, as text that completes "Real-time scheduling: ".
   const std::string& got() const { return got_; }
 
  private:

@@ -18,7 +18,7 @@ inline constexpr int kStages = 8;
 inline constexpr std::array<const char*, kStages> kStageNames = {
     "read", "sense", "simulate", "render", "monitor", "guard", "write", "tick"};
 
-// Inputs accepted per tick. Further inputs wait for the next tick.
+// Inputs accepted per tick. Any further inputs wait for the next tick.
 inline constexpr int kInputsPerTick = 4;
 
 // Position [m], then quaternion, scalar first (Hamilton).
@@ -39,7 +39,8 @@ struct HandRecord {
   std::uint8_t sensor_saturated;
   std::uint8_t arm_fault;  // the arm reports a fault
   std::uint8_t warnings;   // active warnings, bit = Warning
-  // Joints whose position, velocity or acceleration bound limited the command: bit = joint.
+  // Joints whose position, velocity or acceleration bound limited the command. Each bit stands for
+  // a joint.
   std::uint16_t at_lower, at_upper;
   std::uint8_t arm_in_motion;  // the driver is still ramping the arm down
   std::uint8_t arm_waits;      // the arm's controller has not started the motion yet
@@ -55,9 +56,9 @@ struct HandRecord {
   double arm_age, sensor_age;                   // [s]
   std::uint64_t arm_sequence, sensor_sequence;  // counters of the device's samples
   double manipulability;
-  // Values by Warning, whether it is active or not: share of the arm's samples lost within a
-  // second, share of the sensor's samples lost within a second, packets refused [1/s], last
-  // measured drift of the bias [N/min].
+  // Values for each Warning, active or not: share of the arm's samples lost within a second, share
+  // of the sensor's samples lost within a second, packets refused [1/s], and last measured drift of
+  // the bias [N/min].
   std::array<double, kWarningValues> warning_values;
 };
 
@@ -76,11 +77,11 @@ struct StatusRecord {
   double value, limit;  // SI
 };
 
-// Bit of TickRecord::requests that ends the run; the other bits are those of RunEvent.
+// Bit of TickRecord::requests that ends the run; the other bits are the bits of RunEvent.
 inline constexpr std::uint16_t kEndRequest = 1U << 15U;
 
-// Trivially copyable and without padding bytes, so it can be placed in shared memory and compared
-// byte by byte. Together with the scenario it contains every input of a tick.
+// TickRecord is trivially copyable and has no padding bytes, so it can be placed in shared memory
+// and compared byte by byte. Together with the scenario, it contains every input of a tick.
 struct TickRecord {
   std::uint64_t tick;     // counted from the start of the process
   double run_time;        // simulated time since RUN began [s]
@@ -112,7 +113,7 @@ struct TickRecord {
   StatusRecord harder;
   std::array<RunInput, kInputsPerTick> inputs;  // from people and pages, taken in this tick
   std::array<double, kParameters> parameters;   // current values, by Parameter
-  // Commanded displacement of the real handles from the virtual ones, in W [m].
+  // Commanded displacement of the real handles relative to the virtual handles, in W [m].
   std::array<double, 3> perturbation;
   std::array<HandRecord, kHands> hands;
   std::uint8_t cobot_dof;

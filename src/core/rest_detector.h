@@ -11,16 +11,17 @@ namespace predictor {
 // Detects whether any handle moves.
 class RestDetector {
  public:
-  // A handle moves if it is further than this from its last position at rest. Rotation is
-  // multiplied by kHandleLength [m].
+  // A handle moves if its distance from its last pose at rest is larger than this value [m].
+  // Rotation is multiplied by kHandleLength.
   static constexpr double kMaxMotion = 5e-5;
 
-  // X_WH: poses of the handles; the poses of absent handles must be constant.
+  // X_WH contains the poses of the handles. The poses of absent handles must be constant.
   void Start(const std::array<Pose, kHands>& X_WH) noexcept {
     still_ = X_WH;
     mover_ = -1;
   }
-  // Returns whether a handle moved. `in_motion`: whether a driver reports that its arm still moves.
+  // Returns whether a handle moved. `in_motion` states whether a driver reports that its arm still
+  // moves.
   bool Update(const std::array<Pose, kHands>& X_WH, bool in_motion) noexcept {
     bool moved = in_motion;
     for (std::size_t i = 0; i < kHands; ++i) {

@@ -1,5 +1,5 @@
-// An overwriting ring: one writer that never waits, and any number of readers that may be slow or
-// dead.
+// An overwriting ring buffer with one writer that never waits and any number of readers, which may
+// be slow or dead.
 #pragma once
 
 #include <atomic>
@@ -36,7 +36,8 @@ class RingStorage {
 
   std::uint64_t written() const noexcept { return written_.load(std::memory_order_acquire); }
 
-  // Copies item `index`. Returns false if it has not been written yet or has been overwritten.
+  // Copies item `index`. Returns false if the item has not been written yet or has been
+  // overwritten.
   bool Get(std::uint64_t index, T* value) const noexcept {
     const Slot& slot = slots_[index & (N - 1)];
     if (slot.version.load(std::memory_order_acquire) != 2 * index + 2) return false;
@@ -63,7 +64,7 @@ class RingReader {
  public:
   explicit RingReader(const RingStorage<T, N>& ring) : ring_(&ring), next_(ring.written()) {}
 
-  // Copies the next item. Returns false if there is none.
+  // Copies the next item. Returns false if there is no new item.
   bool Next(T* value) noexcept {
     for (;;) {
       const std::uint64_t written = ring_->written();

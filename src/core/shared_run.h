@@ -1,5 +1,5 @@
-// Memory that a run shares with the processes alongside it: one piece that all of them read, and
-// one for each process that may send something.
+// Memory that a run shares with the processes alongside it. All of them read one piece, and each
+// process that may send something has a piece of its own.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,8 @@ namespace predictor {
 inline constexpr std::size_t kRecordRing = 8192;  // about eight seconds
 using RecordRing = RingStorage<TickRecord, kRecordRing>;
 
-// The run writes the board, and every process reads it. The others map it read-only.
+// The run writes the board, and every process reads the board. The other processes map it
+// read-only.
 struct RunBoard {
   static constexpr std::uint64_t kMagic = 0x3352'4f54'4349'4450;  // identifies this layout
   std::uint64_t magic = kMagic;
@@ -27,9 +28,11 @@ struct RunBoard {
 // The viewer's process writes the mailbox. The run validates everything it reads from it.
 struct RunMailbox {
   InputQueue inputs;
-  // Counts stop requests. It is separate from the queue, so a stop never waits behind other inputs.
+  // Counts stop requests. This counter is separate from the queue, so a stop never waits behind
+  // other inputs.
   std::atomic<std::uint32_t> stops{0};
-  // Client that sent the last stop request; 0: none of the viewer's clients.
+  // Client that sent the last stop request; 0 if the request did not come from a client of the
+  // viewer.
   std::atomic<std::uint32_t> stop_client{0};
   // Inputs of the viewer's clients.
   std::atomic<std::uint32_t> clients{0};
@@ -37,13 +40,13 @@ struct RunMailbox {
   std::atomic<std::uint64_t> immersive_frame_ns{0};  // monotonic clock at the headsets' last report
 };
 
-// The ROS-TCP server's process writes it, and the run reads it. The server's clients may only
-// request a stop.
+// The ROS-TCP server's process writes this mailbox, and the run reads it. The server's clients may
+// only request a stop.
 struct StopMailbox {
   std::atomic<std::uint32_t> stops{0};  // counts stop requests
 };
 
-// The watchdog's process writes it, and the run reads it.
+// The watchdog's process writes this mailbox, and the run reads it.
 struct WatchdogMailbox {
   std::atomic<std::uint32_t> beats{0};  // counts its signs of life, 1000 per second
 };
@@ -56,8 +59,8 @@ struct EvaluationBoard {
   RingStorage<PersonState, kPersonRing> states;
 };
 
-// A piece of shared memory that holds one T. It has no name: processes pass it on by its
-// descriptor.
+// A piece of shared memory that holds one T. The memory has no name; processes pass its descriptor
+// to one another.
 template <class T>
 class Shared {
  public:

@@ -1,18 +1,18 @@
 // Sines and cosines of several angles at once, without branches, so that the compiler computes two
-// or more at a time. A tick needs about fifty. With the C library, they would take a twentieth of
-// the tick's time.
+// or more at a time. A tick needs about fifty sines and cosines. If they were computed with the C
+// library, they would take a twentieth of the tick's time.
 #pragma once
 
 namespace predictor {
 
 // sines[i] = sin(angles[i]) and cosines[i] = cos(angles[i]) for i < n, angles in rad. The arrays
 // must not overlap. For |angle| ≤ 10 000 rad, which no joint reaches, the error is at most 2.3e-16.
-// An angle that is not finite gives NaN.
+// If an angle is not finite, the result is NaN.
 //
 // The angle is reduced to x = angle − k π/2 with |x| ≤ π/4. π/2 is written as a sum of three parts,
 // of which the first two have so few digits that their products with k are exact (Cody and Waite
-// 1980, Software Manual for the Elementary Functions). Taylor's series follow, whose first omitted
-// terms are below 5e-17.
+// 1980, Software Manual for the Elementary Functions). Sine and cosine of x are Taylor polynomials,
+// whose first omitted terms are below 5e-17.
 inline void SinesAndCosines(const double* __restrict angles, int n, double* __restrict sines,
                             double* __restrict cosines) noexcept {
   constexpr double kRounds = 0x1.8p52;  // adding and subtracting it rounds to an integer

@@ -1,12 +1,12 @@
-// Faults and states that a tick may report. They are enumerations and numbers, never exceptions or
-// text.
+// Faults and states that a tick may report. Faults and states are enumerations and numbers, never
+// exceptions or text.
 #pragma once
 
 #include <cstdint>
 
 namespace predictor {
 
-// Cause of a stop. The names, in this order, are those of the summary's "stop.cause".
+// Cause of a stop. The summary uses the names, in this order, for "stop.cause".
 enum class StopCause : std::uint8_t {
   kNone,
   kForce,         // hand force above its threshold
@@ -33,7 +33,7 @@ inline constexpr int kStopCauses = 19;
 // Returns the name as in the summary ("force", "torque", ...), or "none" for kNone.
 const char* Name(StopCause cause);
 
-// Quantity that a value and its limit measure.
+// Quantity that a measured value and its limit belong to.
 enum class Quantity : std::uint8_t {
   kNone,          // no number
   kCount,         // of ticks, readings or joints
@@ -50,7 +50,8 @@ enum class Quantity : std::uint8_t {
 };
 inline constexpr int kQuantities = 12;
 
-// Returns the quantity that measures a cause, unless its Status names another one.
+// Returns the quantity that belongs to a cause, unless the Status of the cause names another
+// quantity.
 constexpr Quantity UsualQuantity(StopCause cause) {
   switch (cause) {
     case StopCause::kForce:
@@ -79,8 +80,8 @@ constexpr Quantity UsualQuantity(StopCause cause) {
   }
 }
 
-// How the virtual cobot's controller obtained its torques. Values other than kComputed occur only
-// for a controller outside the program.
+// The way in which the virtual cobot's controller obtained its torques. Values other than kComputed
+// occur only for a controller outside the program.
 enum class ControllerOutcome : std::uint8_t {
   kComputed,
   kFellBack,  // the controller was late: gravity compensation and damping acted instead
@@ -101,7 +102,7 @@ struct [[nodiscard]] Status {
   static Status Ok() { return {}; }
 };
 
-// Conditions that are reported to the operator but do not stop the run. Each is a bit of
+// Conditions that are reported to the operator but do not stop the run. Each condition is a bit of
 // HandRecord::warnings.
 enum class Warning : std::uint8_t {
   kArmLoss,     // too many of the arm's samples were lost within a second
@@ -114,13 +115,13 @@ enum class Warning : std::uint8_t {
 inline constexpr int kWarnings = 6;
 inline constexpr int kWarningValues = 4;  // only the first warnings have a value
 
-// Why the virtual cobot's own safety functions stopped it.
+// The reason why the virtual cobot's own safety functions stopped the cobot.
 enum class CobotStop : std::uint8_t { kNone, kForce, kSpeed, kMomentum, kJointTorque };
 inline constexpr int kCobotStops = 5;
 const char* Name(CobotStop stop);  // "none", "force", ...
 
-// The attachment between cobot and object: it holds, slips, is open, or stayed open because the
-// object was too far away to be grasped.
+// State of the attachment between cobot and object: it holds, slips, is open, or stayed open
+// because the object was too far away for a grasp.
 enum class AttachmentState : std::uint8_t { kHolds, kSlips, kOpen, kMissed };
 
 // States of a run, as docs/concepts/states.md describes them.
@@ -141,7 +142,8 @@ inline constexpr int kRunStates = 10;
 // Returns "INIT", "SELFTEST", ...
 const char* Name(RunState state);
 
-// Returns whether arms follow a task in a state. STOPPING moves too, but only towards rest.
+// Returns whether arms follow a task in a state. In STOPPING, the arms move too, but only to come
+// to rest.
 constexpr bool FollowsTask(RunState state) noexcept {
   return state == RunState::kAlign || state == RunState::kRun || state == RunState::kRecovery;
 }
@@ -150,7 +152,7 @@ constexpr bool MayMove(RunState state) noexcept {
   return FollowsTask(state) || state == RunState::kStopping;
 }
 
-// Why a request was refused.
+// The reason why a request was refused.
 enum class Refusal : std::uint8_t {
   kNone,
   kNotEnabled,    // real arms: the enabling key is not held

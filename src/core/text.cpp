@@ -49,7 +49,7 @@ std::string Hex(char32_t number, int digits) {
 
 }  // namespace
 
-// Rejects overlong forms, surrogates and code points beyond U+10FFFF.
+// The function rejects overlong forms, surrogates and code points beyond U+10FFFF.
 Character FirstCharacter(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return {byte(0), 1};
@@ -121,7 +121,7 @@ std::string Printable(std::string_view text, Lines lines) {
 std::string Quote(std::string_view x) {
   constexpr std::size_t kMaxShown = 60;
   if (x.size() <= kMaxShown) return "\"" + Printable(x) + "\"";
-  // A multi-byte character that would be cut is omitted.
+  // A multi-byte character at the cut is omitted as a whole.
   std::size_t end = kMaxShown;
   while (end > kMaxShown - 3 && (static_cast<unsigned char>(x[end]) & 0xc0) == 0x80) --end;
   return "\"" + Printable(x.substr(0, end)) + "...\"";

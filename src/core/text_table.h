@@ -7,11 +7,12 @@
 
 namespace predictor {
 
-// The number of characters of a UTF-8 text: its bytes that do not continue a character.
+// Returns the number of characters of a UTF-8 text, which is the number of bytes that do not
+// continue a character.
 std::size_t CharactersIn(std::string_view utf8);
 
-// The text with spaces after or before it, up to `width` characters. A longer text is returned
-// unchanged.
+// Returns the text with spaces after or before it, up to `width` characters. A longer text is
+// returned unchanged.
 std::string LeftAligned(std::string_view utf8, std::size_t width);
 std::string RightAligned(std::string_view utf8, std::size_t width);
 

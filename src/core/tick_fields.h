@@ -1,9 +1,9 @@
 // The table of recorded quantities: name, unit, frame and meaning of every field of TickRecord.
 //
-// Everything that reads records by name is derived from it: the schema, writer and reader of
-// recordings, the columns of `export-data`, `replay --verify`, the states sent to pages with their
-// TypeScript types, and the topics for Foxglove. To add a quantity, add the member to TickRecord,
-// its row here, and the line that fills it in.
+// All code that reads records by name is derived from this table: the schema, writer and reader of
+// recordings, the columns of `export-data`, `replay --verify`, the states that pages receive with
+// their TypeScript types, and the topics for Foxglove. To add a quantity, add the member to
+// TickRecord, its row here, and the line that fills it in.
 //
 // A visitor V offers a method for each kind of row, called with the row and the member:
 //   Value      a number or an enumeration       Flag      0 or 1
@@ -33,8 +33,8 @@ struct TickField {
   const char* unit = "";   // "" for counts, ratios, flags and enumerations
   const char* frame = "";  // frame whose axes the components refer to
   const char* meaning = "";
-  // Name in the states sent to pages, appended to the names of its group and message. If it is
-  // null, the field is not sent.
+  // Name in the states sent to pages, appended to the names of its group and message. If the name
+  // is null, the field is not sent.
   const char* page = nullptr;
   bool of_clock = false;  // measured by the computer's clock, so a replay does not reproduce it
 };
@@ -311,6 +311,6 @@ constexpr std::size_t VisitedBytes() {
 }
 static_assert(
     VisitedBytes() == sizeof(TickRecord),
-    "A field of TickRecord has no row in this table, or there is padding between fields.");
+    "A field of TickRecord has no row in this table, or TickRecord has padding between fields.");
 
 }  // namespace predictor

@@ -52,7 +52,8 @@ struct Pose {
   Vector3 operator*(const Vector3& p_B) const { return p + q * p_B; }
 };
 
-// Returns a pose from a position [m] and roll, pitch, yaw [rad] about the fixed x, y, z (as URDF).
+// Returns a pose from a position [m] and roll, pitch, yaw [rad] about the fixed axes x, y, z (as in
+// URDF).
 Pose PoseFromXyzRpy(const Vector3& xyz, const Vector3& rpy);
 
 // Returns roll, pitch and yaw [rad] of a rotation, in the convention of PoseFromXyzRpy. Roll is 0
@@ -65,7 +66,8 @@ Vector3 RotationError(const Quaternion& to, const Quaternion& from);
 // Returns the quaternion of a rotation vector [rad].
 Quaternion RotationFromVector(const Vector3& w);
 
-// Returns set-point minus pose, in W: position [m], then rotation vector [rad] (impedance error).
+// Returns the difference of set-point and pose in W (impedance error): position [m], then rotation
+// vector [rad].
 Vector6 PoseError(const Pose& X_Wset, const Pose& X_W);
 
 // Returns the matrix S(a) with S(a) b = a × b.
@@ -74,7 +76,8 @@ Matrix3 Skew(const Vector3& a);
 // Returns the twist of C, fixed to B, from the twist of B. r_BC_W is the lever arm in W [m].
 Twist ShiftTwist(const Twist& V_WB, const Vector3& r_BC_W);
 
-// Returns the wrench about B's origin from that about C's origin; r_BC_W = p_C − p_B in W [m].
+// Returns the wrench about B's origin from the wrench about C's origin; r_BC_W = p_C − p_B in W
+// [m].
 Wrench ShiftWrench(const Wrench& F_C_W, const Vector3& r_BC_W);
 
 bool IsFinite(const Pose& X);

@@ -100,7 +100,8 @@ std::string StopCauseWords(const TickRecord& record) {
 }
 
 std::string RefusalWords::See(const TickRecord& record) {
-  // If the same tick decided a stop, the stop is more informative.
+  // If a stop was decided in the same tick, only the stop is reported, because it is more
+  // informative.
   if (record.refused == 0 || record.state == RunState::kStopping) return "";
   const auto why = static_cast<Refusal>(record.why_refused);
   const bool again = std::exchange(why_, why) == why && record.tick - tick_ < again_;
@@ -119,7 +120,7 @@ std::string HarderWords(const StatusRecord& harder) {
 std::string StopAdvice(const TickRecord& record) {
   if (record.cause == StopCause::kNone) return "";
   std::string advice = Advice(record.cause, record.cause_quantity);
-  // A device fault may follow the cause without replacing it.
+  // A device fault may follow the cause without replacing the cause.
   for (const std::string& more :
        {Advice(record.harder.cause, record.harder.quantity),
         ArmAtFault(record) ? Advice(StopCause::kDevice, Quantity::kNone) : std::string()})

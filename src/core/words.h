@@ -1,5 +1,5 @@
-// Messages about a run for the operator: the problem and the remedy. Their texts are in
-// message_catalogue.json. Not for use in the tick.
+// Messages about a run for the operator: the problem and the remedy. The texts of these messages
+// are in message_catalogue.json. Not for use in the tick.
 #pragma once
 
 #include <cstdint>
@@ -25,10 +25,12 @@ std::string StopCauseText(StopCause cause, Quantity quantity = Quantity::kNone);
 
 // Returns the cause, without a full stop ("Left hand: no new sample from the arm arrived in time
 // (12.4 ms, limit 5 ms)"), and the advice, as sentences ("Check the arm, its cable and its
-// network."). "force" or "joint torque" is the quantity by which the virtual cobot stopped itself.
+// network."). Returns the quantity whose value made the virtual cobot stop itself: "force" or
+// "joint torque".
 std::string CobotStopWords(CobotStop stop);
 
-// Returns what was measured: "12.4 ms, limit 5 ms". It is "" without a quantity.
+// Returns the measured value and its limit: "12.4 ms, limit 5 ms". Returns "" if there is no
+// quantity.
 std::string MeasuredWords(const Status& status);
 std::string CauseWords(const Status& status);
 std::string CauseAdvice(const Status& status);
@@ -44,7 +46,7 @@ std::string StopAdvice(const TickRecord& record);
 class RefusalWords {
  public:
   explicit RefusalWords(double rate) : again_(static_cast<std::uint64_t>(0.6 * rate)) {}
-  // Call this once per record, in order. It usually returns "". `rate` is that of ticks [Hz].
+  // Call this once per record, in order. It usually returns "". `rate` is the tick rate [Hz].
   std::string See(const TickRecord& record);
 
  private:
@@ -54,11 +56,11 @@ class RefusalWords {
 };
 
 // Returns the later fault that escalated the stop to power-off, as a sentence after a space, or ""
-// without such a fault. It is part of StopCauseWords.
+// without such a fault. StopCauseWords contains this sentence.
 std::string HarderWords(const StatusRecord& harder);
 
-// Returns whether a reset is not sufficient: after an arm fault or a frozen sensor the program must
-// be restarted.
+// Returns whether a reset is not sufficient, because the program must be restarted after an arm
+// fault or a frozen sensor.
 bool NeedsANewStart(const TickRecord& record);
 
 // Returns the message for a warning about this hand's devices, with the value of the record.

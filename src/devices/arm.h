@@ -1,5 +1,5 @@
 // The parts of a real device: a robot arm and a force/torque sensor. A driver is a class that
-// implements one of them, in a separate folder.
+// implements one of these interfaces. Each driver has its own folder.
 #pragma once
 
 #include <cstdint>
@@ -30,12 +30,13 @@ struct ArmReading {
   std::uint64_t sequence = 0;  // counts the arm's samples
   double age = 1e9;            // age of q and v [s]
   bool fault = false;  // the arm cannot move: no power, protective stop, emergency stop, …
-  // Whether the arm is being brought to rest in its own way: its driver still moves it, or it
-  // reports motion. A command to rest would not be sent immediately. This is always false for an
-  // arm that executes commands directly.
+  // Whether the arm is coming to rest in its own way, because its driver still moves it or the arm
+  // reports motion. In this state, a command to rest would not be sent immediately. The value is
+  // always false for an arm that executes commands directly.
   bool in_motion = false;
-  // Whether the arm does not obey commands yet: its controller either has not started the requested
-  // motion or has not received the request. Always false for an arm that needs no request.
+  // Whether the arm does not obey commands yet, because its controller has not received the request
+  // or has not started the requested motion. The value is always false for an arm that needs no
+  // request.
   bool waits = false;
   bool no_power_off = false;  // the channel for power-off requests existed, but is lost
   bool keeps_power = false;   // the arm still reports power one second after PowerOff
@@ -44,7 +45,7 @@ struct ArmReading {
   LinkCounts link;
 };
 
-// The payload configured in an arm's controller: everything on the flange.
+// The payload configured in an arm's controller, that is, everything mounted on the flange.
 struct ReportedPayload {
   double mass = 0;                           // [kg]
   Vector3 center_of_mass = Vector3::Zero();  // centre of mass in the flange [m]
@@ -81,15 +82,15 @@ class Arm {
   virtual ~Arm() = default;
   virtual const DeviceFacts& facts() const = 0;
   // Reads the newest sample. Returns kDevice if the connection is lost or the arm reports that it
-  // cannot move. The sample is then the last one, with its age.
+  // cannot move. In this case, the sample is the last one, with its age.
   virtual Status Read(ArmReading* reading) noexcept = 0;
-  // Sends joint velocities [rad/s], one set per tick, which are finite and limited by the guard.
-  // `motion` states whether the arm may move in this state. If not, v is zero, and the arm need not
-  // be in its motion mode.
+  // Sends joint velocities [rad/s], one set per tick. The guard ensures that they are finite and
+  // limited. `motion` states whether the arm may move in this state. If the arm may not move, v is
+  // zero, and the arm need not be in its motion mode.
   virtual Status Write(const JointVector& v, bool motion) noexcept = 0;
   // Call this in each tick. `wanted` states whether the run is UNPOWERED. When `wanted` becomes
-  // true, the robot is requested to cut its power. If it still reports power,
-  // ArmReading::keeps_power is set. A robot without such a request (a Franka) holds its position
+  // true, the driver requests the robot to cut its power. If the robot still reports power,
+  // ArmReading::keeps_power is set. A robot that has no such request (a Franka) holds its position
   // with power until someone uses its own enabling device or emergency stop.
   virtual void PowerOff(bool wanted) noexcept { static_cast<void>(wanted); }
   // Describes the last fault for the user ("protective stop"), or returns "" if there was no fault.

@@ -13,8 +13,8 @@
 namespace predictor {
 namespace {
 
-// Checks that the connected arm is the one in the file, because its rate determines how ages are
-// judged.
+// Checks that the connected arm is the arm in the machine file, because its rate determines how
+// ages are judged.
 void CheckFacts(const DeviceFacts& facts, const MachineArm& side) {
   if (std::abs(facts.rate - side.arm.sample_rate) > 1)
     throw DeviceError(facts.name + " sends " + std::to_string(static_cast<int>(facts.rate)) +

@@ -20,9 +20,9 @@ std::unique_ptr<Arm> ConnectArm(const MachineArm& side, ArmUse use, Network* net
 std::unique_ptr<WrenchSensor> ConnectSensor(const MachineArm& side, Network* network);
 
 // Connects to the arms and sensors of the hands in `scenario` (with the machine applied). Reduces
-// its joint velocities and accelerations to the limits of the drivers, because limiting only a
-// single joint would deflect the handle. Throws DeviceError that names the faulty device and the
-// remedy.
+// the joint velocities and accelerations in `scenario` to the limits of the drivers. If a driver
+// limited a single joint during the run, the handle would leave its path. Throws DeviceError with
+// the faulty device and the remedy.
 std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, Scenario* scenario,
                                            std::unique_ptr<Network> network);
 

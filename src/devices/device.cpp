@@ -24,7 +24,7 @@ std::unique_ptr<Device> MakeSimulatedDevice(const Scenario& scenario,
   if (scenario.device.type == "real")
     throw InputError::At("device.type",
                          "device.type is real, which needs a machine file with the addresses of "
-                         "the arms. Give it with --machine FILE.");
+                         "the arms. Give the machine file with --machine FILE.");
   throw InputError::At("device.type", "device.type is \"" + scenario.device.type +
                                           "\"; it must be simulated or real.");
 }

@@ -34,15 +34,15 @@ class Device {
   // device's own time-out, the arms stop by themselves.
   virtual Status Write(const DeviceCommand& command) noexcept = 0;
 
-  // Returns the state of its enabling device at the last Read. Does not use the heap or throw.
+  // Returns the state that the enabling device had at the last Read. Does not use the heap or
+  // throw.
   virtual Enabling enabling() const noexcept { return Enabling::kNone; }
 
   // Returns the current state of the simulated operator, for the record, or null if a person holds
   // the handles.
   virtual const OperatorOutput* truth() const noexcept { return nullptr; }
 
-  // Saves or loads the state of a simulated device. A real device has no state that could be
-  // restored.
+  // Saves or loads the state of a simulated device. The state of a real device cannot be restored.
   virtual void Archive(StateArchive&) noexcept {}
 
   // Returns one line for the user: name, rates, versions.
@@ -50,8 +50,8 @@ class Device {
 };
 
 // Makes the simulated rig of a scenario. Throws InputError if the scenario is for real arms or
-// lacks data for the rig. `start` contains the joints at which its arms are parked (absent sides
-// empty).
+// lacks data for the rig. `start` contains the joint positions at which the arms are parked (empty
+// for absent sides).
 std::unique_ptr<Device> MakeSimulatedDevice(const Scenario& scenario,
                                             const std::array<JointVector, kHands>& start);
 

@@ -1,4 +1,4 @@
-// The latched faults of an arm: the first one, and the most severe one after it.
+// The latched faults of an arm: the first fault, and a more severe fault that followed.
 #pragma once
 
 #include <atomic>
@@ -6,16 +6,17 @@
 namespace predictor {
 
 // Keeps the first fault, which is the cause of the stop, and the first later fault that forbids
-// holding, which determines how the stop ends. Fault() means no fault. bool EndsWithoutPower(Fault)
-// noexcept must be declared with the type. The tick writes it, and the reporting code reads it.
+// holding, which determines how the stop ends. Fault() means no fault. A function bool
+// EndsWithoutPower(Fault) noexcept must be declared next to the type. The tick writes this object,
+// and the reporting code reads it.
 template <class Fault>
 class FaultLatch {
  public:
   Fault first() const noexcept { return first_.load(std::memory_order_acquire); }
   Fault worse() const noexcept { return worse_.load(std::memory_order_acquire); }
   bool any() const noexcept { return first() != Fault(); }
-  // Returns whether the state of the arm is unknown or its own button stopped it, so that it must
-  // not remain powered.
+  // Returns whether the arm must not remain powered, because its state is unknown or its own button
+  // stopped it.
   bool ends_without_power() const noexcept {
     return EndsWithoutPower(first()) || worse() != Fault();
   }

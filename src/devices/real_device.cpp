@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kSilent = 0.05;  // a device that has been silent for longer is named [s]
 
-// Adds the fault of a hand's arm or sensor. The first fault is reported. A fault that forbids
-// holding takes precedence, because it determines how the stop ends.
+// Adds a fault of the arm or the sensor of a hand. The first fault is reported. A fault that
+// forbids holding takes precedence, because it determines how the stop ends.
 void Add(const Status& status, std::size_t hand, Status* all) noexcept {
   const bool severer = status.power_off && !all->power_off;
   if (status.ok() || !(all->ok() || severer)) return;
@@ -17,8 +17,8 @@ void Add(const Status& status, std::size_t hand, Status* all) noexcept {
   all->hand = static_cast<std::int8_t>(hand);
 }
 
-// Estimates the current joints from a sample that is `age` old, assuming that they have moved as
-// commanded.
+// Estimates the current joint positions from a sample with the age `age`, assuming that the joints
+// have moved as commanded.
 void Extrapolate(const ArmReading& reading, const JointVector& sent, ArmSample* sample) noexcept {
   sample->q = reading.q;
   sample->v = reading.v;
@@ -38,11 +38,11 @@ RealDevice::RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kH
           side.arm->facts().name +
           " does not measure a wrench at its handle. Add a force/torque sensor to this arm.");
   if (enabling_ && arm_facts(enabling_->hand) == nullptr)
-    throw DeviceError(
-        std::string("The enabling device is wired to the ") +
-        kHandNames[static_cast<std::size_t>(enabling_->hand)] +
-        " arm, but this scenario has no handle there. Wire it to the other arm. Otherwise, remove "
-        "enabling from the machine file and hold a key at the console.");
+    throw DeviceError(std::string("The enabling device is wired to the ") +
+                      kHandNames[static_cast<std::size_t>(enabling_->hand)] +
+                      " arm, but this scenario has no handle there. Wire the enabling device to "
+                      "the other arm. Otherwise, remove "
+                      "enabling from the machine file and hold a key at the console.");
 }
 
 RealDevice::~RealDevice() = default;

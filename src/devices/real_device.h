@@ -13,7 +13,7 @@
 
 namespace predictor {
 
-// One hand's arm, and its sensor if the arm does not measure the wrench itself.
+// The arm of one hand, and the sensor if the arm does not measure the wrench itself.
 struct RealSide {
   std::unique_ptr<Arm> arm;
   std::unique_ptr<WrenchSensor> sensor;
@@ -31,14 +31,16 @@ Enabling EnablingOf(const ArmReading& reading, int digital_input) noexcept;
 // An input counts as silent if its last report is older than this [s].
 inline constexpr double kInputAge = 0.025;
 
-// A tick is shorter than the period of most devices. Between two samples of an arm, its joints are
-// extrapolated by the last command as long as the sample is fresh, while a wrench is held.
+// A tick is shorter than the period of most devices. Between two samples of an arm, its joint
+// positions are extrapolated with the last command as long as the sample is fresh. A wrench,
+// however, keeps its value.
 class RealDevice final : public Device {
  public:
-  // A sample is extrapolated for at most this time [s]. Beyond it, the sample's age stops the run.
+  // A sample is extrapolated for at most this time [s]. After this time, the age of the sample
+  // stops the run.
   static constexpr double kMaxExtrapolation = 0.010;
 
-  // Absent sides have no arm. `network` connects to the devices. Throws DeviceError if an arm has
+  // An absent side has no arm. `network` connects to the devices. Throws DeviceError if an arm has
   // no wrench or an enabling device is wired to an absent arm.
   RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kHands> sides,
              std::optional<EnablingSource> enabling = std::nullopt);

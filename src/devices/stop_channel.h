@@ -22,10 +22,10 @@ class StopChannel {
   virtual bool Stop() noexcept = 0;
 };
 
-// Opens a stop channel to a UR at its program port. The channel sends a program that only brakes
-// and replaces the running one. Returns null for a robot that accepts only one client (Franka),
-// because it stops by itself when that client is silent. Throws DeviceError. `network` must outlive
-// the channel.
+// Opens a stop channel to a UR at its program port. To stop the arm, the channel sends a program
+// that only brakes; this program replaces the running program. Returns null for a robot that
+// accepts only one client (Franka), because such a robot stops by itself when its client is silent.
+// Throws DeviceError. `network` must outlive the channel.
 std::unique_ptr<StopChannel> OpenStopChannel(const ArmConnection& arm, Network* network);
 
 }  // namespace predictor

@@ -16,12 +16,13 @@ class ArmSide {
   // Loads the arm of hand `i`. Throws InputError.
   ArmSide(const Scenario& scenario, int i, double dt);
 
-  // Computes kinematics and wrench from a sample. Returns kSensor if the reading cannot be used, in
-  // which case the wrench is zero. Does not use the heap or throw.
+  // Computes kinematics and wrench from a sample. Returns kSensor, with a wrench of zero, if the
+  // reading cannot be used. Does not use the heap or throw.
   Status Update(const ArmSample& sample) noexcept;
 
-  // Predicts the kinematics at which the arm will obey the next command. An arm obeys a velocity
-  // after a lag, during which the joints continue to move. `last` is the command last sent [rad/s].
+  // Predicts the kinematics at the time when the arm will obey the next command. An arm obeys a
+  // velocity after a lag, during which the joints continue to move. `last` is the command last sent
+  // [rad/s].
   void LookAhead(const JointVector& last) noexcept;
   // Advances the prediction by `time` [s] when the latest joint sample is stale.
   void Extrapolate(const JointVector& last, double time) noexcept;

@@ -178,7 +178,7 @@ void Emulator::LoadState(std::span<const std::byte> from) {
   if (archive.ok() && archive.used() == from.size()) return;
   throw InputError("The saved state (" + std::to_string(from.size()) +
                    " bytes) belongs to another scenario or another version of the program. Use the "
-                   "version that wrote it.");
+                   "version of the program that wrote this state.");
 }
 const TickRecord& Emulator::record() const { return impl_->record; }
 RunState Emulator::state() const { return impl_->supervisor.state(); }

@@ -1,4 +1,5 @@
-// Parameters that people change during a run. Each ramps to its new value within one second.
+// Parameters that people change during a run. Each parameter ramps to its new value within one
+// second.
 #pragma once
 
 #include <array>
@@ -44,8 +45,8 @@ class ParameterRamps {
     return moved;
   }
 
-  // Restores the scenario's values. If the rules require it, tightened thresholds stay: only a
-  // person's decision may loosen them, never a reset.
+  // Restores the scenario's values. If the rules require it, a reset keeps thresholds that were
+  // tightened: only a person may decide to loosen them.
   void Reset() noexcept {
     for (int k = 0; k < kParameters; ++k) {
       const auto parameter = static_cast<Parameter>(k);

@@ -17,8 +17,8 @@ constexpr double kSmoothing = 2;  // cutoff of that smoothing [Hz]
 
 }  // namespace
 
-// With s = time/T, these are the polynomials that carry a unit of initial position, velocity and
-// acceleration to zero, and 10 s³ − 15 s⁴ + 6 s⁵ towards the goal.
+// With s = time/T, these polynomials bring an initial position, velocity and acceleration of 1 to
+// zero. The polynomial 10 s³ − 15 s⁴ + 6 s⁵ leads to the goal.
 QuinticMotion::Point QuinticMotion::At(double time) const noexcept {
   const double T = duration_;
   const double s = std::clamp(time / T, 0.0, 1.0);
@@ -41,13 +41,14 @@ Perturbation::Perturbation(const Scenario& scenario, double margin, double dt)
     : spec_(scenario.perturbation), dt_(dt), random_(scenario.seed, "perturbation") {
   if (!spec_) return;
   if (!(margin >= spec_->margin))
-    throw InputError("perturbation.margin",
-                     "perturbation.margin is " + FormatNumber(spec_->margin) +
-                         ", but the haptic loop's predicted stability margin is only " +
-                         FormatNumber(std::round(100 * margin) / 100) +
-                         ". Displacing the handles of a loop so close to instability could make it "
-                         "vibrate. Set rendering.lead: auto, make the cobot softer or the object "
-                         "heavier (see predictor check), or set perturbation: null.");
+    throw InputError(
+        "perturbation.margin",
+        "perturbation.margin is " + FormatNumber(spec_->margin) +
+            ", but the haptic loop's predicted stability margin is only " +
+            FormatNumber(std::round(100 * margin) / 100) +
+            ". Displacements could make a loop vibrate that is so close to instability. Set "
+            "rendering.lead: auto, make the cobot softer or the object "
+            "heavier (see predictor check), or set perturbation: null.");
   expected_force_ = PerturbationForce(*spec_, scenario.operator_.hand);
   plane_ = PerturbationPlane(*spec_);
   Reset();

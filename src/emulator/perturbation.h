@@ -52,12 +52,12 @@ class Perturbation {
 
   // Performs one tick of RUN. Does not use the heap or a lock, or throw.
   void Step(const PerturbationInput& input) noexcept;
-  // The handles are where the virtual ones are. Directions and times are drawn again, since a
+  // The real handles are at the virtual handles. Directions and times are drawn again, because a
   // person may remember those of the last run.
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept;
 
-  // Returns the displacement of the real handles from the virtual ones, in W [m], and its
+  // Returns the displacement of the real handles relative to the virtual handles, in W [m], and its
   // derivatives.
   Vector3 displacement() const noexcept { return now_.position * direction_; }
   Vector3 velocity() const noexcept { return now_.velocity * direction_; }
@@ -76,7 +76,7 @@ class Perturbation {
   std::array<Vector3, 2> plane_ = {Vector3::UnitX(), Vector3::UnitY()};  // axes of the plane
 
   RandomStream random_;
-  // The numbers of the directions, of which the last `left_` have not been used in this round.
+  // The numbers of the directions. The last `left_` numbers have not been used in this round.
   std::array<std::uint8_t, 16> order_{};
   int left_ = 0;
   Phase phase_ = Phase::kWait;

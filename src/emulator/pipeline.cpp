@@ -85,8 +85,8 @@ void Pipeline::SenseArm(const TickPlan& plan, int hand, TickData* data) noexcept
   data->wrench[hand] = plan.wrench_known ? arm.wrench() : HandWrench();
 }
 
-// A sensor between hand and handle would measure the hand's force minus the hand's inertia, which
-// is part of the scene here.
+// A sensor between hand and handle would measure the hand's force without the force of the hand's
+// inertia, because this inertia is part of the scene in direct mode.
 void Pipeline::SenseDirectly(const TickPlan& plan, TickData* data) noexcept {
   OperatorInput input;
   input.dt = dt_;
@@ -172,8 +172,8 @@ void Pipeline::Render(const TickPlan& plan, TickData* data) noexcept {
   const WorldState& after = world_.state();
   for (const int i : hands_) {
     arms_[i]->LookAhead(guard_.last()[i]);
-    // Poses are those at the time of the sample, so that their difference is the error. Velocities
-    // and accelerations are those after the step.
+    // Both poses belong to the time of the sample, so that their difference is the error.
+    // Velocities and accelerations are the values after the step.
     target.handle[i] = data->before.handle[i];
     target.handle[i].V_W = target.aligning ? Twist(Twist::Zero()) : after.handle[i].V_W;
     target.handle[i].A_W = after.handle[i].A_W;
@@ -218,12 +218,12 @@ StopGeometry Pipeline::GeometryForStop(const MotionOrder& order, const TickData&
   return geometry;
 }
 
-// Slows both arms by one factor so that no handle exceeds its cap, whatever computed the command.
-// Returns the number of joints changed.
+// Slows both arms by the same factor so that no handle exceeds its cap, regardless of which module
+// computed the command. Returns the number of joints changed.
 int Pipeline::KeepToCap(const MotionOrder& order, const std::array<Jacobian, kHands>& J,
                         std::array<JointVector, kHands>* v) const noexcept {
-  // The last command kept to the cap in the arms' posture of that time, but perhaps not in this
-  // one.
+  // In the previous posture of the arms, the last command did not exceed the cap, but it may exceed
+  // the cap in this posture.
   double factor = 1, last_factor = 1;
   for (const int i : hands_) {
     if ((*v)[i].size() != J[i].cols()) continue;
@@ -236,7 +236,7 @@ int Pipeline::KeepToCap(const MotionOrder& order, const std::array<Jacobian, kHa
     last_factor = std::min(last_factor, allowed(guard_.last()[i]));
   }
   // Recovery ignores the joints' acceleration limits. If the guard limited each joint separately,
-  // the handles would move in a different direction than commanded, and perhaps faster.
+  // the handles would move in another direction than commanded, and perhaps faster.
   return factor < 1 || order.motion == Motion::kRecover ? guard_.Slow(factor, v, last_factor) : 0;
 }
 
@@ -246,7 +246,7 @@ void Pipeline::ApplyGuard(const MotionOrder& order, TickData* data) noexcept {
   // Joint positions of the last valid sample. An invalid sample has already stopped the arms and
   // must not replace the stop's profile with the guard's own braking.
   std::array<JointVector, kHands> q;
-  // These are the Jacobians at the time when the command will take effect. Rendering and braking
+  // These Jacobians are valid at the time when the command will take effect. Rendering and braking
   // use the same prediction.
   std::array<Jacobian, kHands> J;
   for (int i = 0; i < kHands; ++i) {

@@ -1,5 +1,5 @@
-// The physical part of a tick: from the device's sample to joint velocities that may be sent. Its
-// only state is that of its models, and all other data are passed as values.
+// The physical part of a tick: from the device's sample to joint velocities that may be sent. The
+// pipeline has no state except the state of its models; all other data are passed as values.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ class Pipeline {
   void Simulate(const TickPlan& plan, TickData* data) noexcept;
   // Computes joint velocities by the QP if the plan requires rendering.
   void Render(const TickPlan& plan, TickData* data) noexcept;
-  // Computes joint velocities for all orders except braking.
+  // Computes joint velocities for every kind of motion except braking.
   void Command(const MotionOrder& order, TickData* data) noexcept;
   // Returns the handles at the time when the arms will follow a stop's next command.
   StopGeometry GeometryForStop(const MotionOrder& order, const TickData& data) noexcept;
@@ -49,7 +49,7 @@ class Pipeline {
 
   // Returns the condition that prevents the arms from starting at their current position.
   Beyond FindBeyond() const noexcept;
-  // Describes for the user the place of that condition and the remedy. It must not be called in a
+  // Describes the place of this condition and the remedy for the user. It must not be called in a
   // tick.
   std::string DescribeBeyond(Refusal refusal) const;
   void BeginTare() noexcept;
@@ -65,10 +65,10 @@ class Pipeline {
   World& world() { return world_; }
   const ArmsSpec& arms() const { return spec_; }
   const LeadChoice& lead() const { return lead_; }
-  // Returns the joint positions at which the real handles coincide with the virtual ones [rad].
+  // Returns the joint positions at which the real handles coincide with the virtual handles [rad].
   const std::array<JointVector, kHands>& start() const { return start_; }
-  // Returns those that place the handles `offset` [m] above and behind the virtual ones. Throws
-  // InputError.
+  // Returns the joint positions that place the real handles `offset` [m] above and behind the
+  // virtual handles. Throws InputError.
   std::array<JointVector, kHands> StartJoints(double offset) const;
 
  private:

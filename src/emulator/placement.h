@@ -9,9 +9,9 @@
 
 namespace predictor {
 
-// Returns the joint positions of each arm (empty for absent sides) that bring handle H to X_WD,
-// `offset` [m] above and behind it. Throws InputError that names the arm that cannot reach it and
-// the remedy.
+// Returns the joint positions of each arm (empty for absent sides) that place the handle H `offset`
+// [m] above and behind X_WD. Throws InputError, which names the arm that cannot reach this pose and
+// states the remedy.
 std::array<JointVector, kHands> PlaceArms(
     const Scenario& scenario, const std::array<std::shared_ptr<const RobotModel>, kHands>& models,
     const std::array<FrameId, kHands>& handles, const std::array<Pose, kHands>& X_WD,
@@ -26,8 +26,8 @@ bool PlaceArm(const ArmSpec& spec, const RobotModel& model, const FrameId& handl
 // do not fit the model.
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, int hand);
 
-// Returns joint positions from a list in a scenario. If the list is empty, they are zero, or the
-// middle of the range.
+// Returns joint positions from a list in a scenario. If the list is empty, each joint is in the
+// middle of its range, limited to ±3.
 JointVector StartingJoints(const ArmSpec& spec, const RobotModel& model);
 
 }  // namespace predictor

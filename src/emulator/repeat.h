@@ -9,10 +9,11 @@
 
 namespace predictor {
 
-// Stands in for real arms: returns the samples of arms and sensors from the record of a tick.
+// Replaces real arms in a replay: returns the samples of arms and sensors from the record of a
+// tick.
 class RecordedDevice final : public Device {
  public:
-  // Sets the record of the next tick. It must remain valid until that tick ends.
+  // Sets the record of the next tick. The record must remain valid until this tick ends.
   void Expect(const TickRecord* record) noexcept { record_ = record; }
 
   Status Read(DeviceSample* sample) noexcept override;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kStartTimeout = 30;  // longest time from the first tick to RUN [s]
 // The loop wakes up this long before a tick is due [ns]. Wake-ups are late by tens of microseconds,
-// and a core that has just slept is slow for about the same time.
+// and after sleep a core is slow for about the same time.
 constexpr std::uint64_t kAwakeBefore = 150'000;
 
 std::uint64_t TimeOf(clockid_t clock) {
@@ -51,8 +51,8 @@ RunEnd EndOf(const Emulator& e, bool began) {
 
 constexpr double kMaxScenarios = 1e6;  // maximum length of a list of scenarios
 
-// Submits a stop if the count `asked` has changed since `seen`. `client` is the page that requested
-// it last.
+// Submits a stop if the count `asked` has changed since `seen`. `client` is the page that sent the
+// last stop request.
 void TakeStop(const std::atomic<std::uint32_t>& asked, const std::atomic<std::uint32_t>* client,
               std::uint32_t* seen, Emulator* emulator) noexcept {
   const std::uint32_t now = asked.load(std::memory_order_acquire);
@@ -113,7 +113,7 @@ void WatchForSuspend(std::uint64_t now, SuspendWatch* watch, Emulator* emulator)
   if (input.value > 0) emulator->Submit(input);
 }
 
-// `seen` is the number of signs already processed.
+// `seen` is the number of signs of life that were already processed.
 void TakeEnabling(const std::atomic<std::uint32_t>& enabling, std::uint32_t* seen,
                   Emulator* emulator) noexcept {
   const std::uint32_t now = enabling.load(std::memory_order_acquire);
@@ -204,8 +204,8 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
       if (StartIsRefused(*emulator)) break;
       AutoStart(emulator);
     }
-    // The last record must show the arms at rest. Otherwise a viewer would mistake the end for a
-    // hang.
+    // The last record of a run must show the arms at rest. Otherwise, a viewer would mistake the
+    // end of the run for a hang.
     const bool may_move = MayMove(emulator->state()) || MayMove(emulator->record().state);
     const bool asked_to_end = quit.load(std::memory_order_relaxed);
     if (asked_to_end && !may_move) break;
@@ -217,7 +217,7 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
     if (asked_to_end || IsOver(*emulator, options.duration)) emulator->RequestEnd();
     if (options.auto_start && !began && emulator->setup().rules.auto_start && t > kStartTimeout)
       break;
-    // Missed periods are not repeated: the arms held their command meanwhile.
+    // Missed periods are not repeated, because the arms held their command meanwhile.
     due += period;
     missed = 0;
     const std::uint64_t now = Now();

@@ -1,4 +1,5 @@
-// The two loops around the tick: one as fast as the computer allows, the other paced by the clock.
+// The two loops that execute the tick: one runs as fast as the computer allows, the other is paced
+// by the clock.
 #pragma once
 
 #include <atomic>
@@ -17,15 +18,15 @@ namespace predictor {
 enum class RunEnd { kFinished, kStopped, kNotStarted };
 
 // Requests the steps from IDLE to RUN if the operating rules allow the program to do so. With real
-// arms, only a person may request them. Call this after each tick.
+// arms, only a person may request these steps. Call this after each tick.
 void AutoStart(Emulator* emulator) noexcept;
 
 // Returns whether a request of AutoStart was refused in the last tick. Because the arms do not
-// move, it would be refused every time.
+// move, the same request would be refused every time.
 bool StartIsRefused(const Emulator& emulator) noexcept;
 
-// Returns whether `duration` [s] of run time has passed in RUN, or false if it is 0. RECOVERY may
-// still free a hand afterwards.
+// Returns whether `duration` [s] of run time has passed in RUN. Returns false if `duration` is 0.
+// RECOVERY may still free a hand afterwards.
 bool IsOver(const Emulator& emulator, double duration) noexcept;
 
 // Executes ticks in virtual time until `duration` [s] of run time has passed, until a stop is at
@@ -48,7 +49,7 @@ struct RealTimeReport {
 class SnapshotSink {
  public:
   virtual ~SnapshotSink() = default;
-  // Returns a buffer for the next snapshot, or nothing if none is due.
+  // Returns a buffer for the next snapshot, or an empty buffer if no snapshot is due.
   virtual std::span<std::byte> AcquireBuffer() noexcept = 0;
   // Reports that the buffer contains `bytes` of the state after `tick`, or 0 if the state did not
   // fit.
@@ -62,20 +63,20 @@ struct RealTimeOptions {
   bool auto_start = true;             // call AutoStart until RUN is reached for the first time
   bool watch_headsets = false;        // a silent headset stops the run
   SnapshotSink* snapshots = nullptr;  // null without a recording
-  // Counts the signs of a held enabling key, or is null without real arms.
+  // Counts the signs of a held enabling key; null without real arms.
   const std::atomic<std::uint32_t>* enabling = nullptr;
   const StopMailbox* stops = nullptr;  // stop requests of ROS-TCP clients; null without the server
-  // Counts the watchdog's signs of life, or is null without real arms.
+  // Counts the watchdog's signs of life; null without real arms.
   const std::atomic<std::uint32_t>* watchdog = nullptr;
   bool allow_scenario_switch = false;  // a page may select the next scenario while the arms are at
                                        // rest
 };
 
-// Executes ticks in real time, one per period of the monotonic clock, in the calling thread, with
-// real-time scheduling and locked memory if permitted. Publishes each record to `ring`. Returns
-// when the arms are at rest after `duration` or a stop (with keep_running: only after `duration`,
-// and only with allow_scenario_switch), when `quit` is set, when a page has selected the next
-// scenario, or when an automatic start is refused.
+// Executes ticks in real time in the calling thread, one per period of the monotonic clock. If
+// permitted, the thread has real-time scheduling and locked memory. Publishes each record to
+// `ring`. Returns when the arms are at rest after `duration` or a stop, when `quit` is set, when a
+// page has selected the next scenario, or when an automatic start is refused. (With keep_running, a
+// stop does not end the loop, and `duration` ends it only with allow_scenario_switch.)
 RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
                    const std::atomic<bool>& quit, RecordRing* ring, RealTimeReport* report);
 

@@ -11,7 +11,7 @@ namespace predictor {
 class StageTimer {
  public:
   void Start() noexcept { start_ = lap_ = Clock::now(); }
-  // Ends `stage`. The time since the last lap is attributed to it.
+  // Ends `stage`. The time since the previous call is attributed to this stage.
   void Lap(Stage stage) noexcept {
     const Clock::time_point now = Clock::now();
     us_[static_cast<std::size_t>(stage)] = Microseconds(now - lap_);

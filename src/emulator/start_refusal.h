@@ -1,5 +1,5 @@
-// Explains to the user why the arms cannot start from their current position. It must not
-// be used in the tick.
+// Explains to the user why the arms cannot start from their current position. Do not use this in
+// the tick.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace predictor {
 
-// Names the two parts that are too near to each other, the key in the scenario's file, and the
-// remedy. If no parts are too near, returns the sentence of `refusal`.
+// Names the two parts that are too close to each other, the key in the scenario's file, and the
+// remedy. If no two parts are too close, returns the sentence of `refusal`.
 std::string StartRefusal(const Scenario& scenario, const BeyondPlace& at,
                          const std::array<RenderArm, kHands>& arms, Refusal refusal);
 

@@ -13,7 +13,7 @@
 namespace predictor {
 namespace {
 
-// The gain of the position loop of an arm that follows positions [1/s]. This is an assumption,
+// The gain of the position loop of an arm that follows positions [1/s]. The value is an assumption,
 // because no manufacturer publishes the gain.
 constexpr double kPositionGain = 20;
 constexpr double kMaxRestSpeed = 5e-3;  // [m/s]
@@ -21,7 +21,7 @@ constexpr double kSettlingTime = 2;     // time for the loop to settle before th
 constexpr double kPatience = 1.5;  // longest time from the end of the commands to the handle's rest
                                    // [s]
 
-// One direction of a handle, as its arm's velocity loop moves it.
+// The motion of a handle in one direction, as the arm's velocity loop executes it.
 class Handle {
  public:
   Handle(const ArmSpec& arm, double dt)
@@ -43,7 +43,7 @@ class Handle {
   double led_ = 0;  // integral of the commands [m]
 };
 
-// `hold` is the delay before it brakes [s].
+// `hold` is the delay before the arm brakes [s].
 StopBudget StopOf(const ArmSpec& arm, const StopProfile& profile, double hold, double dt) {
   Handle handle(arm, dt);
   for (double t = -kSettlingTime; t < 0; t += dt)

@@ -7,24 +7,24 @@
 
 namespace predictor {
 
-// Returns the overrun of an arm [s]: the distance travelled after the command reaches zero, divided
-// by the speed before. It equals the lag of the arm's loop, or one tick if the arm follows
-// positions. `dt` is the duration of a tick [s].
+// Returns the overrun of an arm [s]: the distance travelled after the command has reached zero,
+// divided by the speed before the command changed. The overrun equals the lag of the arm's loop, or
+// one tick if the arm follows positions. `dt` is the duration of a tick [s].
 double Overrun(const ArmSpec& arm, double dt);
 
 // Returns the longest time and distance of a stop from `safety.handle_speed`, from the decision
-// until no handle is faster than 5 mm/s. It is WorstStop executed by the velocity loops of the
-// scenario's arms (`arm.loop`, and the position loop of an arm that follows positions), including
-// the time that one arm waits for the other. `acceleration` is the deceleration of the handles
-// [m/s²].
+// until no handle is faster than 5 mm/s. This stop is WorstStop as executed by the velocity loops
+// of the scenario's arms (`arm.loop`, and the position loop of an arm that follows positions). It
+// includes the time for which one arm waits for the other. `acceleration` is the deceleration of
+// the handles [m/s²].
 StopBudget StopOfArms(const Scenario& scenario, double acceleration);
 // Uses `safety.stop_acceleration`, provided that no joint exceeds its acceleration limit.
 inline StopBudget StopOfArms(const Scenario& scenario) {
   return StopOfArms(scenario, scenario.safety.stop_acceleration);
 }
-// Returns the smallest deceleration of the handles in a stop [m/s²]. It is reached if a joint at
-// its velocity limit brakes with its share (StopController::kShareOfJoints) of its acceleration
-// limit. Throws InputError as LoadArm does.
+// Returns the smallest deceleration of the handles in a stop [m/s²]. A stop has this deceleration
+// if a joint at its velocity limit brakes with a share (StopController::kShareOfJoints) of its
+// acceleration limit. Throws the same InputError as LoadArm.
 double MinStopAcceleration(const Scenario& scenario);
 
 }  // namespace predictor

@@ -1,4 +1,5 @@
-// Checks of a tick, stops, and the transitions between states that need no person.
+// Performs the checks of a tick, the stops, and those transitions between states that do not need a
+// person.
 #include "emulator/supervisor.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 constexpr double kInitPatience = 0.2;  // longest wait for fresh samples in INIT [s]
 constexpr double kTareTime = 0.3;      // duration of averaging the sensors with hands off [s]
 constexpr int kMinTareTicks = HandEstimator::kTareSamples + 1;
-// ALIGN ends early if no handle's error exceeds this [m], [rad], ...
+// ALIGN ends early if the error of no handle exceeds these values [m], [rad], ...
 constexpr double kAlignedWell = 1e-4, kAlignedWellRotation = 1e-3;
 // ... and after this time [s] if all errors are within the scenario's tolerance.
 constexpr double kAlignPatience = 3;
@@ -42,7 +43,7 @@ std::array<SamplePeriods, kHands> PeriodsOf(const Scenario& s) {
   return periods;
 }
 
-// Returns whether a driver still moves its arm, whatever was commanded.
+// Returns whether a driver still moves its arm, regardless of the commands.
 bool InMotion(const DeviceSample& sample) {
   return sample.arms[0].in_motion || sample.arms[1].in_motion;
 }
@@ -152,8 +153,8 @@ void Supervisor::HandleFault(const Status& fault, const SentMotion& sent) noexce
 }
 
 // The first fault stops the arms in the same tick. A later fault may only raise the level of the
-// stop. At rest after a run that ended without a fault, a fault that would only hold the arms is
-// left to the reset.
+// stop. If a run ended without a fault and the arms are at rest, a fault that would only hold the
+// arms does not act before the reset.
 void Supervisor::HandleFault(const Status& fault, RunEvent stop, const SentMotion& sent) noexcept {
   if (fault.ok()) return;
   const RunState state = states_.state();
@@ -167,8 +168,8 @@ void Supervisor::HandleFault(const Status& fault, RunEvent stop, const SentMotio
   BeginStop(fault, stop, sent);
 }
 
-// Makes a stop that would have held the arms end without power. If a run ended without a fault,
-// this becomes its fault.
+// Makes a stop that would have held the arms end without power. If the run ended without a fault,
+// this fault becomes the fault of the run.
 void Supervisor::EscalateToPowerOff(const Status& fault) noexcept {
   if (states_.level() != StopLevel::kHold) return;
   states_.Handle(RunEvent::kStopAndPowerOff);
@@ -177,7 +178,8 @@ void Supervisor::EscalateToPowerOff(const Status& fault) noexcept {
   cause.power_off = true;
 }
 
-// A stop that is in progress continues. Its cause may become known later, and its level may rise.
+// A stop that is in progress continues. The cause of the stop may become known later, and its level
+// may rise.
 void Supervisor::BeginStop(const Status& cause, RunEvent stop, const SentMotion& sent) noexcept {
   if (states_.Handle(stop)) state_time_ = 0;
   if (states_.state() != RunState::kStopping) return;
@@ -186,8 +188,8 @@ void Supervisor::BeginStop(const Status& cause, RunEvent stop, const SentMotion&
 }
 
 // Returns the fault of an arm that still moves after the stop timed out: the arm that was last seen
-// moving, otherwise the arm whose driver reports motion. The speed is included if it is the only
-// evidence of motion.
+// moving, otherwise the arm whose driver reports motion. The result includes the speed if the speed
+// is the only evidence of motion.
 Status Supervisor::StillMoving(const TickData& data) const noexcept {
   const int hand = stopper_.mover() >= 0 ? stopper_.mover() : data.sample.arms[0].in_motion ? 0 : 1;
   const double speed = HandleSpeed(data.real[hand].V_W);
@@ -198,9 +200,9 @@ Status Supervisor::StillMoving(const TickData& data) const noexcept {
           Quantity::kTime};
 }
 
-// Returns the number of ticks since the last command. A stop needs it to keep its timing, because
-// the arms moved on meanwhile. A gap longer than the missed deadlines that stop a run is left to
-// the arms' own controllers.
+// Returns the number of ticks since the last command. A stop needs this number to keep its timing,
+// because the arms continued to move meanwhile. During longer gaps than those that stop a run, the
+// arms' own controllers stop the arms.
 int Supervisor::TicksPassed(const TickData& data) const noexcept {
   if (!rules_.arms_move_between_ticks) return 1;
   return 1 + std::min(static_cast<int>(data.missed), Monitor::kMissedDeadlines);
@@ -299,8 +301,8 @@ bool Supervisor::Within(double position, double rotation, const TickData& data) 
   return true;
 }
 
-// Returns whether the handles are in place. Once their errors were small, they may move within the
-// tolerance while the arms come to rest.
+// Returns whether the handles are at their virtual handles. After their errors were small once, the
+// handles may move within the tolerance while the arms come to rest.
 bool Supervisor::Aligned(const TickData& data) const noexcept {
   if (!Within(safety_.align_tolerance, safety_.align_tolerance_rotation, data)) return false;
   if (aligned_) return true;
@@ -309,9 +311,9 @@ bool Supervisor::Aligned(const TickData& data) const noexcept {
   return data.sent.may_rest_next;  // in ARMED nothing moves, not even to brake
 }
 
-// Returns whether the key is released (with a simulated rig: whether there is nothing left to do),
-// the arms are at rest, and no part is beyond its limit. After a stop, RECOVERY may end earlier,
-// because the reset checks this again.
+// Returns whether RECOVERY may end. The arms must be at rest, no part may be beyond its limit, and
+// the key must be released (with a simulated rig, nothing must be left to do). After a stop,
+// RECOVERY may end earlier, because the reset checks this again.
 bool Supervisor::Recovered(const TickData& data, Beyond beyond) const noexcept {
   for (const JointVector& v : data.sent.v)
     if ((v.array() != 0).any()) return false;

@@ -1,5 +1,6 @@
 // The decisions of a tick: the requests that are granted, the faults that stop the arms, and the
-// next state. It knows neither models nor physics and judges only the values of the tick.
+// next state. The supervisor knows neither models nor physics, and judges only the values of the
+// tick.
 #pragma once
 
 #include <array>
@@ -31,7 +32,7 @@ struct ArmsSpec {
                                              // divided by the speed before [s]
 };
 
-// A request that was refused in this tick, as recorded.
+// The request that was refused in this tick, in the form in which it is recorded.
 struct RefusedRequest {
   std::uint8_t event = 0;  // 1 + RunEvent; 0: none
   Refusal why = Refusal::kNone;
@@ -50,11 +51,11 @@ class Supervisor {
   // -- Steps of a tick, in this order. They do not use the heap or a lock, and do not throw. --
 
   RunRequests TakeRequests() noexcept;
-  // Grants or refuses the requests. `data` is that of the previous tick. `beyond` is the condition
-  // that prevents the arms from starting, if ALIGN is requested. Returns true if the run was reset,
-  // in which case the pipeline must be reset too.
+  // Grants or refuses the requests. `data` contains the values of the previous tick. `beyond` is
+  // the condition that prevents the arms from starting, if ALIGN is requested. Returns true if the
+  // run was reset. In this case, the pipeline must also be reset.
   bool HandleRequests(const TickData& data, Beyond beyond) noexcept;
-  // Returns the pipeline's work in this tick.
+  // Returns the work that the pipeline must do in this tick.
   TickPlan Plan(const DeviceSample& sample) noexcept;
   // Runs the safety monitor, checks enabling, and updates the warnings. A fault starts a stop.
   void Check(const TickPlan& plan, const TickData& data) noexcept;
@@ -69,11 +70,11 @@ class Supervisor {
   void HandleFault(const Status& fault, const SentMotion& sent) noexcept;
   // Advances the time.
   void EndTick(const TickPlan& plan) noexcept;
-  // The self-test ends in this tick: the pipeline must finish taring.
+  // Returns whether the self-test ends in this tick. In this case, the pipeline must finish taring.
   bool SelfTestEnds() const noexcept;
-  // Makes the transitions that need no person. `beyond` is as above, in RECOVERY. `self_test` is
-  // the result of taring, if the self-test ends. Returns true if the self-test begins, in which
-  // case the pipeline must start taring.
+  // Makes those transitions that do not need a person. `beyond` is the condition that prevents the
+  // arms from starting, in RECOVERY. If the self-test ends, `self_test` is the result of taring.
+  // Returns true if the self-test begins. In this case, the pipeline must start taring.
   bool Advance(const TickData& data, Beyond beyond,
                const std::optional<Status>& self_test) noexcept;
   void FollowEnablingDevice(Enabling now) noexcept;

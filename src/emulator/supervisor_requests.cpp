@@ -1,4 +1,4 @@
-// Inputs and requests of people, pages and enabling devices, and which of them are granted.
+// Decides which inputs and requests of people, pages and enabling devices are granted.
 #include <cmath>
 #include <utility>
 
@@ -67,7 +67,7 @@ bool Supervisor::Accept(const RunInput& input) noexcept {
   }
 }
 
-// The first fault of a tick counts. A fault without a duration is refused.
+// The first fault of a tick counts. If a fault has no duration, the request is refused.
 bool Supervisor::ReportFault(const Status& fault) noexcept {
   if (!(fault.value > 0)) return false;
   if (reported_.ok()) reported_ = fault;
@@ -99,8 +99,8 @@ RunRequests Supervisor::TakeRequests() noexcept {
   return requests;
 }
 
-// Stops are processed first, the most severe one before the others, and in any state. Other
-// requests in the same tick as a stop are dropped.
+// Stops are processed first and in any state, beginning with the most severe stop. Other requests
+// in the same tick as a stop are dropped.
 bool Supervisor::HandleRequests(const TickData& data, Beyond beyond) noexcept {
   const RunRequests& requests = data.requests;
   refused_ = {};
@@ -145,7 +145,8 @@ bool Supervisor::HandsFree(const TickData& data) const noexcept {
   return true;
 }
 
-// In direct mode there are no arms: the handles belong to the object, and simulated time is paused.
+// In direct mode, there are no arms. The handles belong to the object, and simulated time is
+// paused.
 bool Supervisor::ArmsStand(const TickData& data) const noexcept {
   if (direct_) return true;
   for (const int i : hands_)
@@ -153,7 +154,7 @@ bool Supervisor::ArmsStand(const TickData& data) const noexcept {
   return true;
 }
 
-// The reason why an event is refused although the table of states allows it.
+// Returns the reason why an event is refused although the table of states allows it.
 Refusal Supervisor::WhyRefused(RunEvent event, const TickData& data, Beyond beyond) const noexcept {
   const RunState state = states_.state();
   if (event == RunEvent::kReset) {
@@ -215,16 +216,16 @@ void Supervisor::ResetRun() noexcept {
 Status Supervisor::CheckEnabling() const noexcept {
   const RunState state = states_.state();
   if (Enabled() || (state != RunState::kAlign && state != RunState::kRun)) return Status::Ok();
-  // Released, not silent: there is no duration to report.
+  // The device was released and is not silent, so there is no duration to report.
   if (!std::isfinite(enabling_age_)) return {StopCause::kEnabling, -1, 0, 0, Quantity::kNone};
   return {StopCause::kEnabling, -1, enabling_age_, kEnablingSilence};
 }
 
-// Its signs are submitted as inputs of the next tick, like those of a key, and are therefore
-// recorded. A device that is already pressed when the program starts, or is still pressed after a
-// stop, may be jammed or taped down. It counts only after it has been released, even if it was
-// silent during the stop. While the device is silent there are no signs, and the time-out releases
-// it.
+// The signs of the device are submitted as inputs of the next tick, like the signs of a key, and
+// are therefore recorded. A device that is already pressed when the program starts, or is still
+// pressed after a stop, may be jammed or taped down. Such a device counts only after it has been
+// released, even if it was silent during the stop. While the device is silent, there are no signs,
+// and after the time-out the device counts as released.
 void Supervisor::FollowEnablingDevice(Enabling now) noexcept {
   if (states_.state() == RunState::kStopping) device_was_released_ = false;
   if (now == Enabling::kNone || now == Enabling::kSilent) return;

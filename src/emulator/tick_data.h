@@ -38,7 +38,7 @@ struct HandleCap {
   double speed = HUGE_VAL, rotation = HUGE_VAL;
 };
 
-// The pipeline's work in this tick. The supervisor writes it before sensing.
+// The work of the pipeline in this tick. The supervisor writes this value before sensing.
 struct TickPlan {
   RunState state = RunState::kInit;
   bool wrench_known = false;  // the tared sensors measure the wrenches of the hands
@@ -58,7 +58,7 @@ enum class Motion : std::uint8_t {
   kRecover,  // RECOVERY
 };
 
-// The motion of the arms in this tick. The supervisor writes it after its checks.
+// The motion of the arms in this tick. The supervisor writes this value after its checks.
 struct MotionOrder {
   Motion motion = Motion::kNone;
   bool holds = false;  // following or recovering, but with zero velocity commanded

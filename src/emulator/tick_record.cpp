@@ -121,7 +121,8 @@ void FillDecisions(const RecordSources& from, TickRecord* record) noexcept {
   std::copy_n(supervisor.parameters().values(), kParameters, r.parameters.begin());
 }
 
-// If a person's hands are not measured, the action is the current one in the script.
+// If the hands of a person are not measured, the recorded action is the current action in the
+// script.
 int ActionOf(const RecordSources& from) noexcept {
   if (from.simulated_operator) return from.data.person.action;
   if (from.supervisor.state() != RunState::kRun) return -1;

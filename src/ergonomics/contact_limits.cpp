@@ -37,7 +37,7 @@ std::vector<std::string> CellsOfLine(std::string_view line) {
   return cells;
 }
 
-// Parses the number in a cell. `least` is its smallest allowed value.
+// Parses the number in a cell. `least` is the smallest allowed value.
 double NumberIn(const std::string& cell, std::size_t column, double least, bool or_equal,
                 const std::string& place) {
   double x = 0;
@@ -68,8 +68,9 @@ ContactLimit LimitOf(const std::vector<std::string>& cells, const std::string& p
   limit.stiffness = above_zero(5) * kPerMillimetre;
   limit.mass = above_zero(6);
   if (limit.transient_factor > 0 && limit.transient_factor < 1)
-    throw InputError(place, "transient_factor is " + Quote(cells[4]) +
-                                ". Give 0 if the point must not be hit, otherwise at least 1.");
+    throw InputError(
+        place, "transient_factor is " + Quote(cells[4]) +
+                   ". Write 0 if the point must not be hit, and otherwise a value of at least 1.");
   return limit;
 }
 
@@ -82,8 +83,8 @@ void AddLimit(ContactLimit limit, const std::string& place, ContactLimits* limit
     if (other.force != limit.force || other.stiffness != limit.stiffness ||
         other.mass != limit.mass)
       throw InputError(place, "force, stiffness or mass of " + Quote(limit.region) +
-                                  " differ from an earlier row. They belong to the region: give "
-                                  "all of its points the same values.");
+                                  " differ from an earlier row. These values belong to the region, "
+                                  "so give all points of the region the same values.");
   }
   limits->points.push_back(std::move(limit));
 }
@@ -103,7 +104,7 @@ ContactLimits ParseContactLimits(const std::string& text, const std::string& nam
     if (limits.edition.empty()) {
       if (cells.size() < 2 || cells[0] != kEdition || cells[1].empty())
         throw InputError(place,
-                         "the file does not name its edition. Begin it with a line such as "
+                         "the file does not name its edition. Begin the file with a line such as "
                          "\"edition,ISO/TS 15066:2016 Annex A\".");
       limits.edition = std::string(Trimmed(content.substr(content.find(',') + 1)));
     } else if (!header) {

@@ -2,11 +2,12 @@
 // of ISO/TS 15066: a person lets go and is hit, is clamped against a fixture, or the cobot moves
 // unexpectedly.
 //
-// They never judge the forces at a handle, because holding a handle is intended contact (hand
-// guiding). Nor do they prove conformity: a real application must be measured (ISO/PAS 5672).
+// These limits never judge the forces at a handle, because holding a handle is intended contact
+// (hand guiding). They also do not prove conformity, because a real application must be measured
+// (ISO/PAS 5672).
 //
-// The limits come from a file that the user provides and that names its edition. The model (spring
-// and two masses) is verified.
+// The limits come from a file that the user provides. This file names the edition of the
+// specification. The formulas of the model (spring and two masses) are verified.
 #pragma once
 
 #include <filesystem>
@@ -53,11 +54,11 @@ double PressureLimit(const ContactLimit& limit, ContactKind kind);  // [Pa]
 // Returns m_R = M/2 + m_L [kg]: half of the moving mass of the robot, plus its load including the
 // object.
 double EffectiveRobotMass(double moving_mass, double load);
-// Returns 1 / (1/m_H + 1/m_R) [kg]. With a heavy load, it hardly depends on the robot.
+// Returns 1 / (1/m_H + 1/m_R) [kg]. With a heavy load, this mass hardly depends on the robot.
 double ReducedMass(double body_mass, double robot_mass);
 
-// A transient or clamping contact. `area` is the area of the contact [m²]. 0 means unknown: only
-// the force then counts.
+// A transient or clamping contact. `area` is the area of the contact [m²]. A value of 0 means that
+// the area is unknown; then only the force counts.
 struct Contact {
   ContactKind kind = ContactKind::kTransient;
   double robot_mass = 0;  // [kg] effective
@@ -72,7 +73,8 @@ struct ContactSpeed {
 // The speed is 0 if the point must not be hit.
 ContactSpeed MaxContactSpeed(const ContactLimit& limit, const Contact& contact);
 
-// A measured or simulated peak as a multiple of the limits. Infinite if the point must not be hit.
+// A measured or simulated peak as a multiple of the limits. The multiple is infinite if the point
+// must not be hit.
 struct ContactRatio {
   double force = 0, pressure = 0;
   bool within() const { return force <= 1 && pressure <= 1; }

@@ -2,19 +2,20 @@
 // forearm), Shoulder Tool. Each repetition causes damage, and the damages add up (Palmgren-Miner).
 //
 // In contrast to posture scores, the damage changes smoothly with load and lever arm, so it shows
-// how much a change of a design is worth. The methods may be used with measured moments, and
-// assistance reduces the damage (Zelik et al. 2022 do this for exoskeletons).
+// the benefit of a change of a design. The methods may be used with measured moments, so they
+// include the benefit of assistance (as in Zelik et al. 2022 for exoskeletons).
 //
-// Pitfalls, all of which were found in public code:
-// - Another form of LiFFT takes compression, e^(0.162 S) / 902416 with S in % of 10 kN. If it is
+// All of the following pitfalls were found in public code: - Another form of LiFFT uses the
+// compression, e^(0.162 S) / 902416 with S in % of 10 kN. If it is
 //   mixed up with the moment form below, the damage doubles.
-// - A second DUET (S = 10 OMNI, 0.766, 1.515) was fitted to two examples. It agrees with one
-//   published example and is wrong elsewhere, so agreement with one example is not sufficient.
-// - The probabilities are those of a *job* with many injuries in US car plants. They are not the
-//   risk of a person.
+// - A second DUET (S = 10 OMNI, 0.766, 1.515) was fitted to two examples. This formula agrees with
+// one published example and is wrong elsewhere, so agreement with one example is not sufficient.
+// - The probabilities are those of a *job* with many injuries in US car plants. These probabilities
+// are not the risk of a person.
 //
-// Omitted because no source could be verified: Potvin's maximum acceptable effort (public copies
-// differ in a constant), ACGIH's hand activity level, the revised strain index and RCRA.
+// Some methods are omitted because no source could be verified: Potvin's maximum acceptable effort
+// (public copies differ in a constant), ACGIH's hand activity level, the revised strain index and
+// RCRA.
 #pragma once
 
 #include <span>
@@ -48,7 +49,8 @@ double HandDamage(double effort);
 // ---- Shoulder Tool (Bani Hani et al. 2021; verified against published examples) ----
 // Outcome: first visit to the plant's clinic because of the shoulder.
 inline constexpr DamageRisk kShoulderRisk = {0.870, 0.932};
-// `moment` [N·m] is that of the shoulder. 76.9 N·m (681 in·lb) is the strength of the median man.
+// `moment` [N·m] is the moment at the shoulder. The strength of the median man is 76.9 N·m (681
+// in·lb).
 double ShoulderDamage(double moment);
 // Returns the moment [N·m] due to holding `force` [N] with one hand at the horizontal distance
 // `lever` [m] from the shoulder, with an arm of 8.6 lb at half the distance. For pushes and pulls,
@@ -57,16 +59,16 @@ double ShoulderMoment(double force, double lever);
 
 // ---- A run, and a shift ----
 
-// Returns the damage of a run, which is the sum over its rainflow cycles. A cycle counts with its
-// range, so a constant moment, or the mean of a cycle, causes no damage (design choice: the tools
+// Returns the damage of a run, which is the sum over its rainflow cycles. Only the range of a cycle
+// counts, so a constant moment or the mean of a cycle causes no damage (design choice: the tools
 // only consider loads that begin and end at zero).
 double DamageOf(std::span<const LoadCycle> cycles, double (*damage_per_cycle)(double));
 
 // The reference day (design choice): the day whose damage has a probability of one half on the
-// tool's own curve. A lift that causes 0.1 % of this damage may be done 1000 times before the job
-// is as likely as not to be one with the outcome.
+// tool's own curve. If each lift causes 0.1 % of this damage, the job has the outcome with a
+// probability of one half after 1000 lifts per day.
 inline constexpr double kReferenceProbability = 0.5;
-// Returns `damage` as a share of the reference day. 0.001 is 0.1 %.
+// Returns `damage` as a share of the reference day; 0.001 means 0.1 %.
 double ShareOfReferenceDay(double damage, const DamageRisk& risk);
 
 // Returns the damage of a shift in which the run is repeated without a break. Both durations are

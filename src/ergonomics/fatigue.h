@@ -1,8 +1,9 @@
-// Models of muscle fatigue by joint. All of them take the load as a share of strength, u = torque /
-// strength in that direction, 0 … 1. They have no memory beyond their state and do not allocate.
+// Models of muscle fatigue by joint. The load of all models is a share of strength, u = torque /
+// strength in that direction, 0 … 1. The models have no memory beyond their state and do not
+// allocate.
 //
-// They do not predict a person's own endurance without a trial (people differ by a factor of two or
-// more), eccentric or fast movement, or pain.
+// Without a trial, these models do not predict the endurance of a particular person, because people
+// differ by a factor of two or more. They also do not predict eccentric or fast movement, or pain.
 #pragma once
 
 #include <string_view>
@@ -51,25 +52,26 @@ double EnduranceTime(double load, const FatigueRates& rates);
 
 // ---- Endurance from experiments ----
 
-// Returns the power law b0 · load^b1 [s] of Frey-Law & Avin 2010 (194 publications; coefficients
-// verified in MyoSuite's test), which is infinite at 0.
+// Returns the endurance time [s] by the power law b0 · load^b1 of Frey-Law & Avin 2010 (194
+// publications; coefficients verified in MyoSuite's test). The time is infinite for a load of 0.
 double MeasuredEnduranceTime(double load, FatigueJoint joint);
 
-// Returns the time [s] of Rohmert 1960 for 0.15 < load ≤ 1, or infinity below (quoted from memory,
-// not verified).
+// Returns the endurance time [s] of Rohmert 1960 for 0.15 < load ≤ 1, and infinity for smaller
+// loads (quoted from memory, not verified).
 double RohmertEnduranceTime(double load);
 
 // ---- One state: Ma et al. 2009 ----
 
 struct CapacityRates {
-  // k [1/s] is 1 per minute (quoted from memory). In the elbows of 30 people, a later study found a
-  // mean of 0.96 and a standard deviation of 0.29 per minute (Ergonomics 61, 806, abstract;
-  // verified).
+  // k [1/s] is 1 per minute (quoted from memory). For the elbows of 30 people, a later study found
+  // a mean of 0.96 per minute and a standard deviation of 0.29 per minute (Ergonomics 61, 806,
+  // abstract; verified).
   double fatigue = 1.0 / 60;
   double recovery = 2.4 / 60;  // [1/s] 2.4 per minute (quoted from memory, not verified)
 };
-// Returns the remaining share of strength after `dt` [s] at constant load. It is exact for any dt:
-// under load it is c exp(−k load dt), and at rest it returns to 1 exponentially (form verified).
+// Returns the remaining share of strength after `dt` [s] at constant load. The result is exact for
+// any dt: under load, the share is c exp(−k load dt); at rest, it returns to 1 exponentially (form
+// verified).
 double Capacity(double capacity, double load, double dt, const CapacityRates& rates = {});
 // Returns −ln(load) / (k load) [s].
 double CapacityEnduranceTime(double load, const CapacityRates& rates = {});

@@ -9,13 +9,15 @@
 
 namespace predictor::ergonomics {
 
-// Returns a cell of a printed table that is stored as text: 0 … 9, then A = 10, B = 11, C = 12.
+// Returns a cell of a printed table that is stored as text. The characters are 0 … 9, then A = 10,
+// B = 11, C = 12.
 constexpr int Cell(std::string_view row, int column) {
   const char cell = row[static_cast<std::size_t>(column)];
   return cell >= 'A' ? cell - 'A' + 10 : cell - '0';
 }
 
-// Returns 1 within 20° of hanging, 2 up to 45° or stretched backwards, 3 up to 90°, and 4 above.
+// Returns 1 for an upper arm within 20° of hanging, 2 up to 45° or if stretched backwards, 3 up to
+// 90°, and 4 above.
 inline int UpperArmFlexionScore(double flexion) {
   if (flexion > Degrees(90)) return 4;
   if (flexion > Degrees(45)) return 3;
@@ -27,8 +29,9 @@ inline int ElbowScore(double flexion) {
   return flexion >= Degrees(60) && flexion <= Degrees(100) ? 1 : 2;
 }
 
-// Returns 1 upright, 2 up to 20° either way, 3 up to 60° or bent backwards by more than 20°, and 4
-// above. RULA's worksheet has no extension, which is scored as in REBA (design choice).
+// Returns 1 for an upright trunk, 2 up to 20° in either direction, 3 up to 60° or for more than 20°
+// backwards, and 4 above. RULA's worksheet does not include extension, so extension is scored as in
+// REBA (design choice).
 inline int TrunkFlexionScore(double flexion, const PostureThresholds& thresholds) {
   if (std::abs(flexion) <= thresholds.neutral) return 1;
   if (flexion > Degrees(60)) return 4;

@@ -73,7 +73,7 @@ Acceptable Vertical(const VerticalHandling& task, Sex sex, double reference, dou
   return a;
 }
 
-// Women's distance factor is a function of d, men's of ln d.
+// The distance factor of women is a function of d, and that of men is a function of ln d.
 struct HorizontalEquation {
   double reference, variation;
   const Factor &height, &distance;

@@ -2,21 +2,21 @@
 // share of women or men accepts for a working day.
 //
 // Source: Potvin, Ciriello, Snook, Maynard & Brogmus 2021, Ergonomics 64, 955–970. Two public
-// transcriptions in one repository agree with these constants, and so does our recollection
-// (verified), except that one of them has 0.6687 instead of 0.6887 for the sustained push of men.
-// Only 0.6887 makes that factor 1 under the reference condition, as all other factors are (tested).
+// transcriptions in one repository and our recollection agree with these constants (verified). The
+// exception is one transcription that has 0.6687 instead of 0.6887 for the sustained push of men.
+// Only 0.6887 gives a factor of 1 under the reference condition, like all other factors (tested).
 // The paper itself was not available.
 //
-// The method is not suitable for work with one hand or for sitting. It is not suitable for judging
-// injury risk either, because its limits are loads that people found acceptable, and not loads that
-// tissue bears.
+// The method is not suitable for work with one hand or for sitting. The method is also not suitable
+// for judging injury risk, because its limits are loads that people found acceptable, not loads
+// that tissue can bear.
 #pragma once
 
 #include "core/sex.h"
 
 namespace predictor::ergonomics {
 
-// Distribution of what people accept: a normal distribution.
+// The normal distribution of the loads that people accept.
 struct Acceptable {
   double mean = 0;       // [kg] for lift, lower and carry, [N] for push and pull
   double variation = 0;  // standard deviation / mean

@@ -27,7 +27,7 @@ constexpr double kVerticalLoss = 0.3;        // [1/m]
 constexpr std::array<double, 17> kFrequencies = {0.2, 0.5, 1,  2,  3,  4,  5,  6, 7,
                                                  8,   9,   10, 11, 12, 13, 14, 15};
 constexpr std::size_t kRows = 17;
-// Table 5 in hundredths. Low: hands below 0.75 m at the origin.
+// Table 5 in hundredths. A lift is low if the hands are below 0.75 m at the origin.
 struct FrequencyColumns {
   std::array<int, kRows> high;
   std::size_t rows_high, rows_low;  // rows that are not 0
@@ -77,7 +77,7 @@ RatedTask Rate(const LiftTask& task) {
           Ratio(task.mean_load, lift.limit)};
 }
 
-// Returns the lowest multiplier of these tasks at the sum of their frequencies.
+// Returns the lowest frequency multiplier of these tasks at the sum of their frequencies.
 double CombinedMultiplier(std::span<const RatedTask> tasks) {
   double frequency = 0, lowest = 1;
   for (const RatedTask& rated : tasks) frequency += rated.task->frequency;

@@ -7,8 +7,8 @@
 // and pounds gives slightly different limits for the same lift.
 //
 // The equation is not valid for one hand, sitting, kneeling, carrying, pushing, unstable loads,
-// motion faster than about 0.75 m/s, slippery floors, heat, or more than 8 h. It is defined for
-// lifts "without mechanical assistance"; see AssistedLift.
+// motion faster than about 0.75 m/s, slippery floors, heat, or more than 8 h. The equation is
+// defined for lifts "without mechanical assistance"; see AssistedLift.
 #pragma once
 
 #include <span>
@@ -38,8 +38,8 @@ struct LiftTask {
   double mean_load = 0;  // [kg]
   double max_load = 0;   // [kg]; used only in the composite index
   HandPlace origin, destination;
-  // Whether the person must regrasp, hold or carefully place the load at the destination. If so,
-  // the limit at the destination counts as well.
+  // Whether the person must regrasp, hold or carefully place the load at the destination. In this
+  // case, the limit at the destination counts as well.
   bool controlled_at_destination = false;
   double frequency = 0;  // [1/min] mean over 15 minutes
   LiftDuration duration = LiftDuration::kShort;
@@ -67,19 +67,21 @@ struct LiftAssessment {
 // This does not allocate.
 LiftAssessment AssessLift(const LiftTask& task);
 
-// Returns a value of the manual's table 5. The height is that at the origin, even for the limit at
-// the destination. It is linear between the rows, and 0 above the last row that is not 0 (the
-// manual does not say how to interpolate towards a 0). Frequencies below 0.2 count as 0.2.
+// Returns a value of the manual's table 5. The height is the height at the origin, even for the
+// limit at the destination. The value is linear between the rows, and 0 above the last row that is
+// not 0 (the manual does not state how to interpolate towards 0). Frequencies below 0.2 count as
+// 0.2.
 double FrequencyMultiplier(double per_minute, LiftDuration duration, double height_at_origin);
 
-// Returns the CLI of a job with several tasks. The frequencies of the tasks add up. For the sum,
-// the lowest multiplier among the heights and durations of these tasks is used (the manual does not
-// specify this; design choice). It is infinite if a limit is 0, and 0 without tasks.
+// Returns the composite lifting index (CLI) of a job with several tasks. The frequencies of the
+// tasks add up. For the sum, the lowest multiplier among the heights and durations of these tasks
+// is used (the manual does not specify this; design choice). The CLI is infinite if a limit is 0,
+// and 0 if there are no tasks.
 double CompositeLiftingIndex(std::span<const LiftTask> tasks);
 
 // A lift that a cobot assists. NIOSH's equation assumes that the person carries the whole load. The
-// first assessment uses the mass that the person carries, so every text about it must show its
-// label.
+// first assessment uses only the mass that the person carries, so every text about this assessment
+// must show its label.
 struct AssistedLift {
   LiftAssessment carried;     // adapted: mass = mean vertical force of both hands / g
   LiftAssessment unassisted;  // the same lift without assistance: the person carries the whole mass

@@ -1,11 +1,11 @@
 // OWAS, Ovako Working posture Analysing System (Karhu, Kansi & Kuorinka 1977).
 //
-// Source: a stored copy of the table (verified) and our recollection of it. They differ in one
-// cell: back 3, arms 3, legs 7, load 3 (recollection 1, stored copy 2). The larger value is used,
-// and `contested` marks it.
+// Source: a stored copy of the table (verified) and our recollection of it. The two sources differ
+// in one cell: back 3, arms 3, legs 7, load 3 (recollection 1, stored copy 2). The larger value is
+// used, and `contested` marks it.
 //
-// The method is not suitable for arms, of which it has only three classes, or for necks and wrists,
-// which it ignores.
+// The method is not suitable for judging arms, because it has only three classes for them, or for
+// judging neck and wrists, which it ignores.
 #pragma once
 
 #include "ergonomics/posture.h"
@@ -40,9 +40,9 @@ Action OwasAction(int category);
 
 OwasScore AssessOwas(OwasBack back, OwasArms arms, OwasLegs legs, OwasLoad load);
 
-// Returns the classes of a measured posture. Kneeling and walking cannot be detected from it, so
-// pass them to the function above. A knee counts as bent beyond 30° (design choice). Does not
-// allocate.
+// Returns the classes of a measured posture. Kneeling and walking cannot be detected from the
+// posture, so pass the classes to the function above in these cases. A knee counts as bent beyond
+// 30° (design choice). Does not allocate.
 OwasScore AssessOwas(const BodyPosture& body, const ArmPosture& left, const ArmPosture& right,
                      double load,  // [kg]
                      const PostureThresholds& thresholds = kDeclaredThresholds);

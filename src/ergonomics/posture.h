@@ -42,7 +42,7 @@ struct ArmPosture {
 
 enum class Coupling { kGood, kFair, kPoor, kUnacceptable };
 
-// What the person exerts, and how often.
+// The exertion of the person, and how often it occurs.
 struct Exertion {
   double load = 0;                  // [kg] mass held, or force / g
   bool shock = false;               // sudden or rapidly rising force
@@ -53,8 +53,8 @@ struct Exertion {
 };
 
 // The worksheets were made for observers who see "neutral", "twisted" or "abducted". A measured
-// angle is never exactly zero, so these limits are needed. They are a design choice, because no
-// source gives them. A report must state them with its scores.
+// angle is never exactly zero, so these limits are needed. The values of these limits are a design
+// choice, because no source states them. A report must state these limits with its scores.
 struct PostureThresholds {
   double neutral = Degrees(5);             // |wrist| flexion, trunk upright, neck not in extension
   double side_or_twist = Degrees(10);      // neck, trunk: side bend or twist; wrist: deviation

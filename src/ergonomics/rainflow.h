@@ -1,6 +1,7 @@
 // Rainflow counting: the load cycles of a signal.
 //
-// Source: ASTM E1049-85, section 5.4.4 (three points). Its worked example is a test.
+// Source: ASTM E1049-85, section 5.4.4 (three points). The worked example of this standard is one
+// of our tests.
 #pragma once
 
 #include <span>
@@ -15,7 +16,7 @@ struct LoadCycle {
 };
 
 // Returns the cycles in the order in which they close. A cycle with a range below `min_range` (in
-// the signal's unit) does not count. Otherwise noise alone would add a cycle for each pair of
+// the signal's unit) does not count. Otherwise, noise alone would add a cycle for each pair of
 // samples.
 std::vector<LoadCycle> CountRainflow(std::span<const double> signal, double min_range = 0);
 

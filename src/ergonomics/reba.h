@@ -13,7 +13,7 @@
 
 namespace predictor::ergonomics {
 
-// The worksheet, in its order.
+// The scores, in the order of the worksheet.
 struct RebaScores {
   // A: neck, trunk, legs
   int neck = 0;       // 1 … 3

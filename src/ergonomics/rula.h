@@ -5,8 +5,8 @@
 // worksheet that is also in circulation prints smaller values in some cells of table A, and limits
 // of 15° for the upper arm. The force score follows the text of the paper (verified in a stored
 // copy), while a common worksheet assigns 3 instead of 2 to an intermittent load above 10 kg.
-// "Static" means one minute, as in the paper, while a common worksheet says ten. Thresholds of
-// measured angles are a design choice (posture.h).
+// "Static" means a posture held for one minute, as in the paper, while a common worksheet requires
+// ten minutes. Thresholds of measured angles are a design choice (posture.h).
 //
 // RULA is not suitable for judging the risk of a person, loads that differ within a posture, or the
 // trend over a shift.
@@ -46,7 +46,7 @@ RulaScores AssessRula(const BodyPosture& body, const ArmPosture& arm, const Exer
 // These functions return the printed tables, for values within their axes.
 int RulaTableA(int upper_arm, int lower_arm, int wrist, int wrist_twist);
 int RulaTableB(int neck, int trunk, int legs);
-// Larger values count as the last row (8) or column (7).
+// Larger values are looked up in the last row (8) or column (7).
 int RulaTableC(int wrist_and_arm, int neck_trunk_legs);
 
 // Returns the action for a grand score of 1 … 7.

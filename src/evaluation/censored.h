@@ -1,7 +1,8 @@
-// Statistics of values of which some are only known to be at least as large as observed.
+// Statistics of values for some of which only a lower bound was observed.
 //
 // The emulator stops a run at its limit of force. The largest force of such a run is a lower bound
-// of what the person would have felt without the stop. This is a right-censored observation.
+// of what the person would have felt without the stop. Such a lower bound is a right-censored
+// observation.
 #pragma once
 
 #include <cstddef>
@@ -25,17 +26,17 @@ struct SurvivalStep {
   double standard_error = 0;  // standard error of share_above, by Greenwood's formula
 };
 
-// Returns the steps in ascending order. By convention, a bound that equals an observed value counts
-// as larger than it. The estimate assumes that whether a value is censored does not depend on what
-// the value would have been. That is true for a stop at a fixed limit, but doubtful for other
-// stops.
+// Returns the steps in ascending order. By convention, a bound counts as larger than an observed
+// value that equals it. The estimate assumes that whether a value is censored does not depend on
+// what the value would have been. This assumption is true for a stop at a fixed limit, but doubtful
+// for other stops.
 std::vector<SurvivalStep> KaplanMeier(std::span<const CensoredValue> values);
 
 // Returns the smallest observed value that is exceeded by a share of at most 1 − probability. If
-// too many values are censored, the estimate does not reach this probability. The result is then a
-// lower bound: the quantile of all values, censored or not (Quantile), or the largest exact value
-// if that is larger. Without censored values, the result is Quantile. Without any values, it is
-// kUndefined.
+// too many values are censored, the estimate does not reach this probability. In this case, the
+// result is a lower bound: the quantile of all values, censored or not (Quantile), or the largest
+// exact value if this value is larger. Without censored values, the result equals Quantile. Without
+// any values, the result is kUndefined.
 CensoredValue CensoredQuantile(std::span<const CensoredValue> values, double probability);
 
 // Returns "31.2 N" or "at least 31.2 N".

@@ -1,4 +1,5 @@
-// Finds the events of a scenario in the records of a run, and what the hands felt after them.
+// Finds the events of a scenario in the records of a run, and measures what the hands felt after
+// each event.
 #pragma once
 
 #include <array>

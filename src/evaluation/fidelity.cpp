@@ -59,8 +59,8 @@ double PeriodOf(const Run& run, std::size_t cycles) {
 
 using Repeats = std::vector<std::vector<double>>;
 
-// Returns the parts of one channel of one run that are compared: its cycles, or its first `length`
-// samples as a single part.
+// Returns those parts of one channel of one run that are compared: the cycles, or the first
+// `length` samples as a single part.
 Repeats RepeatsOf(const Run& run, const std::string& name, bool by_phase, std::size_t length) {
   const FidelityChannel* channel = FindChannel(*run.signals, name);
   if (!channel) return {};
@@ -101,7 +101,7 @@ double MeanPeak(const Repeats& repeats) {
   return repeats.empty() ? kUndefined : sum / static_cast<double>(repeats.size());
 }
 
-// How the first runs of the two sides are aligned.
+// The alignment of the first runs of the two sides.
 struct Alignment {
   bool by_phase = false;
   std::size_t cycles = 1;   // number of compared cycles
@@ -282,8 +282,8 @@ FidelityReport CompareFidelity(std::span<const FidelitySignals> a,
       ComparePerceived(a[0], PartsOf(runs_a[0], alignment), b[0], PartsOf(runs_b[0], alignment));
   if (std::any_of(report.perceived.begin(), report.perceived.end(), ErrorUnknown))
     report.warnings.emplace_back(
-        "A run has fewer than two cycles, so the standard errors are not known. Whether a person "
-        "would feel a difference is judged from single values.");
+        "A run has fewer than two cycles, so the standard errors are not known. The verdicts about "
+        "whether a person would feel a difference are based on single values.");
   return report;
 }
 

@@ -14,7 +14,8 @@
 
 namespace predictor {
 
-// The sampling rate of all compared signals [Hz]. Hand motion ends far below it.
+// The sampling rate of all compared signals [Hz]. The frequencies of hand motion are far below this
+// rate.
 inline constexpr double kFidelityRate = 100;
 
 struct FidelityChannel {
@@ -34,13 +35,13 @@ struct FidelitySignals {
 const FidelityChannel* FindChannel(const FidelitySignals& signals, const std::string& name);
 
 // Converts records, in order, to signals: the position of the end-effector and the force of each
-// present hand in the axes of W, each averaged over a step. Only ticks in which simulated time
-// passed count. If the run starts again, earlier samples are discarded. At the edges of a step, a
-// tolerance of one millionth of a step keeps rounded times in their step.
+// present hand in the axes of W, each averaged over a step. Only those ticks count in which
+// simulated time passed. If the run starts again, earlier samples are discarded. At the edges of a
+// step, a tolerance of one millionth of a step keeps rounded times in their step.
 class FidelityCollector {
  public:
-  // Throws InputError beyond six hours. Memory grows with the run time, which an untrusted file may
-  // overstate.
+  // Throws InputError beyond six hours. The limit exists because memory grows with the run time,
+  // which an untrusted file may overstate.
   void Add(const TickRecord& record);
   FidelitySignals signals() const;
 
@@ -56,8 +57,8 @@ class FidelityCollector {
   std::array<bool, kHands> present_ = {};
 };
 
-// One channel of run b, compared with the same channel of run a. A result that needs more cycles or
-// repeats than exist is NaN.
+// One channel of run b, compared with the same channel of run a. If a result needs more cycles or
+// repeats than exist, it is NaN.
 struct ChannelFidelity {
   std::string name, unit;
   double range = 0;               // largest minus smallest value of a [unit]
@@ -77,7 +78,7 @@ struct ChannelFidelity {
 inline constexpr double kHighestCoherence = 3;  // [Hz]
 
 // The just noticeable difference (JND) as a share of the first of two stimuli. Published values lie
-// between the two numbers.
+// between these two numbers.
 struct NoticeableDifference {
   double low = 0, high = 0;
 };
@@ -93,8 +94,9 @@ struct PerceivedQuantity {
   double difference = 0;            // (b − a) / |a|
   double error = 0;                 // standard error of the difference
   NoticeableDifference jnd;
-  // The verdict is kUndecided if the standard error of a or of the difference reaches the JND. If
-  // the standard errors are unknown, the values alone decide, and the report contains a warning.
+  // The verdict is kUndecided if the standard error of the quantity in run a or of the difference
+  // reaches the JND. If the standard errors are unknown, the values alone decide, and the report
+  // contains a warning.
   Noticed noticed = Noticed::kUndecided;
 };
 
@@ -115,18 +117,19 @@ struct FidelityReport {
 };
 
 // Compares the first run of `a` with the first run of `b`, each channel with the channel of the
-// same name. The other runs of each side must be of the same kind, and they show how much repeats
-// differ. The comparison is by phase if the path of every run has at least two cycles, unless
-// `by_phase` is set. Throws InputError if a side is empty, if no channel name occurs on both sides,
-// or if a run is shorter than one second.
+// same name. The other runs of each side must be repeats of the same task; they show how much
+// repeats differ. The comparison is by phase if the path of every run has at least two cycles,
+// unless `by_phase` is set. Throws InputError if a side is empty, if no channel name occurs on both
+// sides, or if a run is shorter than one second.
 FidelityReport CompareFidelity(std::span<const FidelitySignals> a,
                                std::span<const FidelitySignals> b,
                                std::optional<bool> by_phase = {});
 
-// Returns the report for people. `name_a` and `name_b` are names such as "real" and "emulated".
+// Returns the report as text for the user. `name_a` and `name_b` are names such as "real" and
+// "emulated".
 std::string FidelityText(const FidelityReport& report, const std::string& name_a,
                          const std::string& name_b);
-// Returns the report for scripts, in SI units, with null for undefined values.
+// Returns the report as JSON for scripts, in SI units, with null for undefined values.
 std::string FidelityJson(const FidelityReport& report, const std::string& name_a,
                          const std::string& name_b);
 

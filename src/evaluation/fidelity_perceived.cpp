@@ -21,7 +21,8 @@ constexpr NoticeableDifference kMass = {0.20, 0.20};
 constexpr NoticeableDifference kStiffness = {0.22, 0.23};
 constexpr NoticeableDifference kViscosity = {0.34, 0.34};
 
-// Returns the sum of the forces of both hands along an axis, or nothing without hands.
+// Returns the sum of the forces of both hands along an axis, or an empty result if there are no
+// hands.
 std::vector<double> TotalForce(const FidelitySignals& signals, const std::string& axis) {
   std::vector<double> total;
   for (const char* hand : {"left", "right"}) {
@@ -33,7 +34,7 @@ std::vector<double> TotalForce(const FidelitySignals& signals, const std::string
   return total;
 }
 
-// Returns |F| of one hand, or nothing if the hand is absent.
+// Returns |F| of one hand, or an empty result if the hand is absent.
 std::vector<double> ForceSize(const FidelitySignals& signals, const std::string& hand) {
   std::vector<double> size;
   for (const char* axis : {"x", "y", "z"}) {
@@ -52,13 +53,15 @@ std::span<const double> Part(const std::vector<double>& samples, const SampleRan
   return std::span(samples).subspan(begin, end - begin);
 }
 
-// A hand that moves the object less than this (standard deviation) [m] yields and does not lead.
-// Motion and force then show the stiffness and mass of the hand itself, with the opposite sign.
+// If the standard deviation of the motion is below this value [m], the hand yields and does not
+// lead the object. In this case, motion and force show the stiffness and mass of the hand itself,
+// with the opposite sign.
 constexpr double kLed = 5e-3;
 
-// Smooths with w = (1 − cos)² and differentiates by integration by parts: the means of x' and x''
-// under w equal those of −x under w' and of x under w'' (modulating functions). Motion and force
-// therefore pass through exactly the same filter, and no noise is differentiated sample by sample.
+// Smooths with w = (1 − cos)² and differentiates through integration by parts. The means of x' and
+// x'' weighted with w equal the means of −x weighted with w' and of x weighted with w'' (modulating
+// functions). Motion and force therefore pass through exactly the same filter, and no noise is
+// differentiated sample by sample.
 class Kernels {
  public:
   explicit Kernels(std::size_t length) : values_(3, std::vector<double>(length)) {
@@ -89,7 +92,7 @@ struct Estimate {
   double mean = kUndefined, error = kUndefined;
 };
 
-// Returns the mean over the parts and its standard error. The parts are the independent repeats,
+// Returns the mean over the parts and its standard error. The independent repeats are the parts,
 // not the samples.
 Estimate OverParts(std::span<const SampleRange> parts,
                    const std::function<double(const SampleRange&)>& figure) {

@@ -1,4 +1,4 @@
-// Estimates from motion and force the dynamics of the object that a hand on it would feel.
+// Estimates the dynamics of the object that a hand on the object would feel, from motion and force.
 #pragma once
 
 #include <span>
@@ -14,16 +14,16 @@ struct ApparentImpedance {
   double mass = 0;       // [kg]
   double viscosity = 0;  // [N·s/m]
   double stiffness = 0;  // [N/m]
-  // How far the acceleration deviates from proportionality to the position, from 0 to 1. For a
-  // single sine it is 0, and mass and stiffness cannot be distinguished.
+  // Deviation of the acceleration from proportionality to the position, from 0 to 1. For a single
+  // sine, the deviation is 0, and mass and stiffness cannot be distinguished.
   double separable = 0;
 };
 inline constexpr double kSeparable = 0.05;  // below this value, mass and stiffness cannot be
                                             // distinguished: mass is set to 0
 
 // position [m] and force [N] are sampled at kFidelityRate and smoothed over `span` [s]. The result
-// is NaN if there are too few samples or if the axis moves less than 5 mm (standard deviation). In
-// that case, the person does not lead the object, and the result would describe the hand.
+// is NaN if there are too few samples or if the axis moves less than 5 mm (standard deviation). If
+// the axis moves less, the person does not lead the object, and the result would describe the hand.
 ApparentImpedance FitImpedance(std::span<const double> position, std::span<const double> force,
                                double span = 0.4);
 
@@ -38,7 +38,8 @@ std::vector<PerceivedQuantity> ComparePerceived(const FidelitySignals& a,
                                                 const FidelitySignals& b,
                                                 std::span<const SampleRange> parts_b);
 
-// Computes the difference, its error and the verdict from means and standard errors.
+// Computes the difference, the error of the difference and the verdict from means and standard
+// errors.
 PerceivedQuantity Perceive(PerceivedQuantity quantity);
 
 }  // namespace predictor

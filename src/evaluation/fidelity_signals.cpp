@@ -23,8 +23,8 @@ struct Circle {
   double x = 0, y = 0, radius = 0;
 };
 
-// Computes the least squares of x² + y² = 2 x_c x + 2 y_c y + c over the samples near the circle
-// (Kåsa 1976).
+// Solves x² + y² = 2 x_c x + 2 y_c y + c by least squares over the samples near the circle (Kåsa
+// 1976).
 Circle FitOnce(std::span<const double> x, std::span<const double> y, const Circle* before) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -153,7 +153,7 @@ Lag LagOf(std::span<const double> a, std::span<const double> b, std::size_t long
   if (n < 2) return best;
   std::ptrdiff_t place = 0;
   for (std::ptrdiff_t step = 0; step <= 2 * most; ++step) {
-    // The order is 0, 1, −1, 2, −2, ..., so that the shortest lag wins among equals.
+    // The order is 0, 1, −1, 2, −2, ..., so that the shortest of equally good lags is chosen.
     const std::ptrdiff_t lag = step % 2 == 0 ? -step / 2 : (step + 1) / 2;
     const double correlation = at(lag);
     if (best.correlation != best.correlation || correlation > best.correlation)

@@ -1,4 +1,4 @@
-// Compares two signals with pure functions of samples at one constant rate.
+// Compares two signals. All functions are pure and take samples at one constant rate.
 #pragma once
 
 #include <cstddef>
@@ -7,20 +7,21 @@
 
 namespace predictor {
 
-// Returns the number of turns of a planar path up to each sample, starting at 0 [cycles]. This is
-// the unwrapped angle about the centre of the best-fitting circle, increasing in either direction
-// of rotation. The phase never decreases: while the path moves backwards, the phase is constant.
-// Samples far inside the circle (before the path is reached) do not change it. All values are 0 for
-// a path without extent. x and y have the same length [m].
+// Returns the number of turns of a planar path up to each sample, starting at 0 [cycles]. The
+// number of turns follows from the unwrapped angle about the centre of the best-fitting circle, and
+// increases in both directions of rotation. The phase never decreases: while the path moves
+// backwards, the phase is constant. Samples far inside the circle (before the path is reached) do
+// not change the phase. All values are 0 for a path without extent. x and y have the same length
+// [m].
 std::vector<double> CyclePhase(std::span<const double> x, std::span<const double> y);
 
-// Returns the number of whole cycles in a phase. The last cycle may be up to 2 % short, and its
-// last value is then held.
+// Returns the number of whole cycles in a phase. The last cycle may be up to 2 % too short; in this
+// case, its last value is held.
 std::size_t CyclesIn(std::span<const double> phase);
 
 // Returns the last time at which the phase has the value `at`, interpolated between samples
-// [samples]. If the phase pauses before a cycle, this is the end of the pause. `at` is within the
-// range of the phase.
+// [samples]. If the phase pauses before a cycle, the result is the end of the pause. `at` is within
+// the range of the phase.
 double PlaceOfPhase(std::span<const double> phase, double at);
 
 // Returns one cycle of a signal, from phase `cycle` to `cycle` + 1, at `points` equal steps of the
@@ -52,9 +53,10 @@ struct Coherence {
   double chance = 0;  // unrelated noise stays below this value at one frequency in 95 % of cases
   std::size_t segments = 0;
 };
-// Computes Welch's estimate from 0 (excluded) to `highest` [Hz], with Hann windows of `segment`
-// samples that overlap by half and have their mean removed. Returns NaN if there are fewer than two
-// segments or no power. `chance` treats only non-overlapping segments as independent.
+// Computes Welch's estimate from 0 (excluded) to `highest` [Hz]. The segments of `segment` samples
+// overlap by half, have their mean removed, and are weighted with a Hann window. Returns NaN if
+// there are fewer than two segments or no power. `chance` treats only non-overlapping segments as
+// independent.
 Coherence CoherenceOf(std::span<const double> a, std::span<const double> b, double rate,
                       std::size_t segment, double highest);
 

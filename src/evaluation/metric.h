@@ -1,6 +1,6 @@
 // The interface of a metric, which accumulates the records of a run and lists its results. The
 // printed summary, its JSON and JSON Schema, the report and the comparison of runs are made from
-// that list. To add a metric, see docs/developer/add-a-metric.md.
+// this list. To add a metric, see docs/developer/add-a-metric.md.
 #pragma once
 
 #include <cstdint>
@@ -43,8 +43,8 @@ struct Quantiles {
 };
 Quantiles QuantilesOf(const Histogram& histogram);
 
-// A number that is not finite, statistics without samples, and monostate are missing values. They
-// are null in files and are omitted from text.
+// A number that is not finite, statistics without samples, and monostate are missing values.
+// Missing values are null in files and are omitted from text.
 using ResultValue =
     std::variant<std::monostate, double, std::uint64_t, bool, std::string, Statistics, Quantiles>;
 
@@ -52,7 +52,7 @@ using ResultValue =
 enum class Chapter { kSummary, kTracking, kForces, kRendering, kTiming };
 
 struct Result {
-  // The keys in the summary JSON, ending in the SI unit: "wrench.left.force_n".
+  // The path of keys in the summary JSON, which ends in the SI unit: "wrench.left.force_n".
   std::string path;
   // The following texts are for people. Adjacent results of one group form a table of statistics or
   // of quantiles, or a line of single values.
@@ -62,7 +62,7 @@ struct Result {
   Unit unit = units::kNone;
   std::string meaning;  // description for the reference
   ResultValue value;
-  // Whether the printed summary and the report of one run show it in a table or line.
+  // Whether the printed summary and the report of one run show the result in a table or line.
   bool shown = true;
   bool compared = true;                 // whether it is shown in the comparison of runs
   Chapter chapter = Chapter::kSummary;  // set from the metric's kind
@@ -71,10 +71,11 @@ struct Result {
 class Metric {
  public:
   virtual ~Metric() = default;
-  // Adds the next record. It is called for every tick, in order, even while simulated time is
-  // paused (`ran` is 0). It must not use the heap.
+  // Adds the next record. This function is called for every tick, in order, even while simulated
+  // time is paused (`ran` is 0). It must not use the heap.
   virtual void Add(const TickRecord& record) noexcept = 0;
-  // Appends the results so far. Their number and paths must not depend on the records.
+  // Appends the results so far. The number of results and their paths must not depend on the
+  // records.
   virtual void AppendTo(std::vector<Result>* results) const = 0;
 };
 
@@ -94,8 +95,8 @@ std::span<const MetricKind* const> Metrics();
 
 bool IsMissing(const ResultValue& value);
 
-// The results of one group in the form that text and report show. Missing values and empty rows are
-// omitted.
+// The results of one group, in the form in which text and report show them. Missing values and
+// empty rows are omitted.
 struct ResultGroup {
   struct Row {
     std::string label;

@@ -1,4 +1,4 @@
-// Measures how much of a force oscillates faster than intentional human motion.
+// Measures the share of a force that oscillates faster than intentional human motion.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 namespace predictor {
 
 // Divides the power from 3 to 10 Hz by the power from 0 to 10 Hz, in windows of 4 s that overlap by
-// half. The mean is removed, the window is a Hann window, and the axes are summed (similar to the
-// index of Dimeas and Aspragathos, 2016). The index does not detect oscillations below 3 Hz. An
-// underdamped cobot at 1 Hz is detected by the growth of its cycles.
+// half. In each window, the mean is removed and a Hann window is applied; the powers of the axes
+// are summed (similar to the index of Dimeas and Aspragathos, 2016). The index does not detect
+// oscillations below 3 Hz. An underdamped cobot at 1 Hz is detected by the growth of its cycles.
 class OscillationIndex {
  public:
   static constexpr double kWindow = 4;               // [s]
@@ -26,16 +26,16 @@ class OscillationIndex {
     double index = 0;  // 0 to 1
     double rms = 0;    // rms of the force from 3 to 10 Hz [N]
     double total = 0;  // rms up to 10 Hz, with the mean removed [N]
-    // Returns false if the force hardly varies: the index is then meaningless.
+    // Returns false if the force hardly varies, because the index then has no meaning.
     bool IsMeaningful() const { return total > kMinForce; }
     bool IsStrong() const { return total > kStopForce; }
   };
 
   explicit OscillationIndex(double dt);
-  // `force` [N] is in axes of W, and `time` is that of the tick [s]. Returns the window that this
-  // force completes, or null. Does not use the heap.
+  // `force` [N] is in axes of W, and `time` is the time of the tick [s]. Returns the window that
+  // this force completes, or null. Does not use the heap.
   const Window* Add(double time, const Vector3& force) noexcept;
-  // Call this if the next force does not immediately follow the last one.
+  // Call this if the next force does not follow the last force immediately.
   void Break() noexcept;
 
  private:

@@ -1,4 +1,4 @@
-// Computes the energy through a port between two systems.
+// Computes the energy that flows through a port between two systems.
 #pragma once
 
 #include <array>

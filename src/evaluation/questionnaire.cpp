@@ -44,7 +44,7 @@ std::string ReadText(const Json& object, const char* key) {
   return value->get<std::string>();
 }
 
-// Returns true only for a whole JSON number from `least` to `most`.
+// Returns true only if the JSON value is a whole number from `least` to `most`.
 bool IsWhole(const Json& value, int least, int most) {
   if (value.is_number_unsigned())
     return most >= 0 && value.get<std::uint64_t>() <= static_cast<std::uint64_t>(most) &&
@@ -104,7 +104,8 @@ SurveyAnswer ReadFields(const Json& object) {
   SurveyAnswer answer;
   const auto condition = ConditionNamed(ReadText(object, "condition"));
   if (!condition)
-    throw InputError::At("condition", "Choose what you used: the real system or the emulated one.");
+    throw InputError::At(
+        "condition", "Choose the system that you used: the real system or the emulated system.");
   answer.condition = *condition;
   ReadScores(object, &answer);
   answer.age = ReadAge(object);
@@ -114,9 +115,10 @@ SurveyAnswer ReadFields(const Json& object) {
   answer.comment = ReadComment(object);
   answer.pseudonym = ReadText(object, "pseudonym");
   if (!answer.pseudonym.empty() && !IsPseudonym(answer.pseudonym))
-    throw InputError::At("pseudonym",
-                         "This is not a pseudonym from this questionnaire. Check what you wrote "
-                         "down, or leave the field empty if you have none yet.");
+    throw InputError::At(
+        "pseudonym",
+        "This is not a pseudonym from this questionnaire. Check the pseudonym that you wrote down, "
+        "or leave the field empty if you have no pseudonym yet.");
   return answer;
 }
 

@@ -14,7 +14,7 @@ inline constexpr std::size_t kStatements = 8;
 inline constexpr int kLowestScore = -2, kHighestScore = 2;
 inline constexpr std::size_t kScores = 5;
 
-// How often each score of a statement was given, starting with the lowest score.
+// The number of people who gave each score of a statement, starting with the lowest score.
 using ScoreCounts = std::array<int, kScores>;
 
 struct Statement {
@@ -27,14 +27,15 @@ const std::array<Statement, kStatements>& Statements();
 // Returns "Strongly disagree" and so on, starting with the lowest score.
 const std::array<const char*, kScores>& ScoreNames();
 
-// The system used before answering: the real system (mode: direct) or its emulation.
+// The system that the person used before answering: the real system (mode: direct) or its
+// emulation.
 enum class Condition : int { kReal, kEmulated };
 inline constexpr std::size_t kConditions = 2;
 const char* Name(Condition condition);  // "real", "emulated"
 std::optional<Condition> ConditionNamed(std::string_view name);
 
-// Returns the consent that a person gives before the first question. Stored answers contain its
-// version.
+// Returns the text of the consent that a person gives before the first question. Stored answers
+// contain the version of this text.
 const char* ConsentText();
 inline constexpr int kConsentVersion = 1;
 
@@ -53,8 +54,8 @@ struct SurveyAnswer {
 };
 
 // Parses the text that the page sends: {"consent": true, "condition", "answers": {"S1": 2, ...},
-// "age", "sex", "comment", "pseudonym"}. A statement, age and sex may be null. Throws InputError
-// with a sentence for the person, whose key() names the field.
+// "age", "sex", "comment", "pseudonym"}. The answer to a statement, the age and the sex may be
+// null. Throws InputError with a sentence for the person. The key() of the error names the field.
 SurveyAnswer ParseSurveyForm(std::string_view json);
 
 // Converts a stored answer to text and back. Parsing throws InputError.

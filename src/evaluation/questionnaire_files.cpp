@@ -25,7 +25,7 @@ InputError CannotWrite(const fs::path& file, int error) {
                     std::string("The answer cannot be stored: ") + std::strerror(error) + ".");
 }
 
-// Writes all of `text` to `descriptor` and to the disk. Returns errno if that fails.
+// Writes all of `text` to `descriptor` and to the disk. Returns errno if writing fails.
 int WriteAll(int descriptor, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = write(descriptor, text.data(), text.size());
@@ -36,7 +36,7 @@ int WriteAll(int descriptor, std::string_view text) {
   return fsync(descriptor) == 0 ? 0 : errno;
 }
 
-// Makes sure that the new file name is on the disk.
+// Synchronises the folder, so that the new file name is on the disk.
 void SyncFolder(const fs::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -78,7 +78,7 @@ std::vector<fs::path> FindFiles(const std::vector<fs::path>& places) {
     else
       throw InputError(place.string(), "There is no such file or folder.");
   }
-  // A folder and one of its own files may both be given.
+  // The user may name both a folder and a file in this folder.
   for (fs::path& file : files) file = file.lexically_normal();
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());

@@ -1,4 +1,4 @@
-// Answers to the questionnaire as files. Each answer has its own file, so it can be removed
+// Stores answers to the questionnaire as files. Each answer has its own file, so it can be removed
 // separately.
 #pragma once
 
@@ -11,13 +11,13 @@
 namespace predictor {
 
 // Returns "RECORDING.PSEUDONYM.CONDITION.survey.json", with the recording's name without its
-// extension. Without a recording, the first part is omitted.
+// extension. If there is no recording, the first part of the name is omitted.
 std::string SurveyFileName(const SurveyAnswer& answer);
 
 // Writes the answer into `folder`, readable only by the owner, and waits until it is on the disk.
 // Returns its path. Throws InputError with key "pseudonym" if this person has already answered for
-// this recording and condition. Throws InputError without a key if the file cannot be written, in
-// which case no partial file remains.
+// this recording and condition. Throws InputError without a key if the file cannot be written. In
+// this case, no partial file remains.
 std::filesystem::path StoreSurveyAnswer(const std::filesystem::path& folder,
                                         const SurveyAnswer& answer);
 
@@ -27,12 +27,13 @@ struct StoredAnswer {
 };
 
 // Reads the answers in these files and in these folders with their subfolders (links are not
-// followed). They are sorted by pseudonym. Throws InputError that names a missing or invalid file.
+// followed). The answers are sorted by pseudonym. Throws InputError, which names a missing or
+// invalid file.
 std::vector<StoredAnswer> ReadSurveyAnswers(const std::vector<std::filesystem::path>& places);
 
-// Removes the files with this pseudonym in their names. It does not read them, so damaged files are
-// removed too. Returns the removed files. Throws InputError if the pseudonym is invalid, a place is
-// missing, or a file cannot be removed.
+// Removes the files with this pseudonym in their names. The function does not read the files, so it
+// also removes damaged files. Returns the removed files. Throws InputError if the pseudonym is
+// invalid, a place is missing, or a file cannot be removed.
 std::vector<std::filesystem::path> RemoveSurveyAnswers(
     const std::vector<std::filesystem::path>& places, const std::string& pseudonym);
 

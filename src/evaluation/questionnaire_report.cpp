@@ -95,7 +95,7 @@ ConditionSummary SummariseCondition(const Answers& people, std::size_t condition
   return summary;
 }
 
-// Formats a value with "%+.2f", for example, or as a dash if it is undefined.
+// Formats a value, for example with "%+.2f". An undefined value becomes a dash.
 std::string Figure(const char* format, double value) {
   if (value != value) return "–";
   char text[32];
@@ -157,8 +157,8 @@ std::string NeutralTable(const ConditionSummary& c, Condition condition) {
 
 std::string PairedTable(const SurveyReport& report) {
   if (report.paired_people == 0)
-    return "No one answered exactly once for each system, so the answers are compared with neutral "
-           "only.\n";
+    return "No one answered exactly once for each system, so the answers are compared only with "
+           "the neutral score.\n";
   return "Emulated minus real, " + std::to_string(report.paired_people) +
          (report.paired_people == 1 ? " person" : " people") + " who answered for both\n" +
          ShiftTable("pairs", report.paired);
@@ -190,7 +190,7 @@ StatementSummary SummariseCounts(const ScoreCounts& counts) {
 }
 
 SurveyReport SummariseSurvey(const std::vector<StoredAnswer>& answers) {
-  if (answers.empty()) throw InputError("There are no answers here (*.survey.json).");
+  if (answers.empty()) throw InputError("There are no answers (*.survey.json) in these places.");
   const Answers people = ByPerson(answers);
   SurveyReport report;
   report.people = static_cast<int>(people.size());

@@ -1,4 +1,4 @@
-// Summarises the answers of many people to the questionnaire, also as a table.
+// Summarises the answers of many people to the questionnaire, and writes the summary as a table.
 #pragma once
 
 #include <array>
@@ -55,7 +55,7 @@ struct SurveyReport {
 StatementSummary SummariseCounts(const ScoreCounts& counts);
 
 // Throws InputError if there is no answer, or if a person answered twice in one condition (after
-// two runs), because two answers of one person must not count as two people.
+// two runs). Two answers of one person must not count as two people.
 SurveyReport SummariseSurvey(const std::vector<StoredAnswer>& answers);
 
 // Returns "0.0312" or "<0.0001". A probability is never shown as zero.

@@ -19,8 +19,8 @@ struct RoundedFigures {
 };
 
 // Uses integers only. A half is rounded away from zero. (With 17 answers, no half can occur, so
-// every rule that rounds to the nearest gives the same result, but truncation does not.) Needs at
-// least two answers.
+// every rule that rounds to the nearest value gives the same result, but truncation does not.) At
+// least two answers are required.
 RoundedFigures FiguresOf(const ScoreCounts& counts);
 
 // Returns all distributions of `people` answers that have these rounded values and no score below
@@ -34,7 +34,7 @@ double MedianOf(const ScoreCounts& counts);
 
 struct PaperRow {
   RoundedFigures figures;
-  // The lower bound stated in the paper's text: "for the statements S2–S4, there was no degree of
+  // The lower bound that the paper's text states: "for the statements S2–S4, there was no degree of
   // agreement below Neutral", and "no level of agreement below Agree" for S8.
   int lowest = kLowestScore;
 };

@@ -36,7 +36,7 @@ Eigen::MatrixXd DistancesOf(const std::vector<std::span<const double>>& repeats)
 }
 
 // Returns one divided by the number of ways to divide the repeats into the two sets. If the sets
-// have the same size and are therefore interchangeable, returns twice this value.
+// have the same size, they are interchangeable, and the function returns twice this value.
 double MinP(std::size_t a, std::size_t b, int draws) {
   double ways = 1;
   for (std::size_t k = 1; k <= a; ++k) ways *= static_cast<double>(b + k) / static_cast<double>(k);

@@ -10,7 +10,7 @@ namespace predictor {
 inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 // Without samples, the result is undefined, and each function returns kUndefined. SampleDeviation
-// also returns it for a single sample.
+// also returns kUndefined for a single sample.
 double Mean(std::span<const double> samples);
 // The denominator is n − 1.
 double SampleDeviation(std::span<const double> samples);
@@ -19,11 +19,12 @@ double Median(std::span<const double> samples);
 // Hyndman & Fan). `probability` is from 0 to 1.
 double Quantile(std::span<const double> samples, double probability);
 
-// Returns Pearson's correlation, or NaN if either side is constant. Both have the same length.
+// Returns Pearson's correlation, or NaN if either side is constant. Both sides have the same
+// length.
 double Correlation(std::span<const double> a, std::span<const double> b);
 
 // Applies Holm's step-down adjustment to several p values and returns them in the given order.
-// Compare each adjusted value with the common significance level.
+// The caller must compare each adjusted value with the common significance level.
 std::vector<double> HolmAdjusted(std::span<const double> p);
 
 }  // namespace predictor

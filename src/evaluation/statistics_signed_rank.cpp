@@ -12,8 +12,8 @@
 namespace predictor {
 namespace {
 
-// Returns twice the mean rank of each absolute value, so that ranks are integers. The values are
-// ascending.
+// Returns twice the mean rank of each absolute value, so that the results are integers. The values
+// are ascending.
 std::vector<std::size_t> DoubledRanks(const std::vector<double>& sizes) {
   std::vector<std::size_t> ranks(sizes.size());
   for (std::size_t begin = 0; begin < sizes.size();) {
@@ -27,7 +27,7 @@ std::vector<std::size_t> DoubledRanks(const std::vector<double>& sizes) {
 }
 
 // Entry s is the number of the 2^n sign assignments for which the positive (doubled) ranks sum to
-// s. These are integers up to 2^50, which a double represents exactly.
+// s. The entries are integers up to 2^50, which a double represents exactly.
 std::vector<double> CountSums(const std::vector<std::size_t>& ranks) {
   std::vector<double> counts(1 + std::accumulate(ranks.begin(), ranks.end(), std::size_t{0}));
   counts[0] = 1;
@@ -46,8 +46,8 @@ double ExactTwoSided(const std::vector<std::size_t>& ranks, std::size_t smaller_
   return std::min(1.0, std::ldexp(2 * tail, -static_cast<int>(ranks.size())));
 }
 
-// The Walsh averages that bound the interval, as one plus the number of those outside it on each
-// side, and the confidence.
+// Selects the Walsh averages that bound the interval: one plus the number of Walsh averages outside
+// the interval on each side. Also contains the confidence.
 struct CriticalPlace {
   std::size_t place = 1;  // counted from 1
   double confidence = 0;

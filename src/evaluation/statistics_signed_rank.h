@@ -12,8 +12,8 @@ enum class ZeroRule {
   kPratt,    // Pratt (1959): ranked with the others, then dropped
 };
 
-// Up to this number of differences, the distribution is enumerated. Beyond it, the normal
-// approximation is used.
+// Up to this number of differences, the distribution is enumerated. For more differences, the
+// normal approximation is used.
 inline constexpr std::size_t kMaxEnumerated = 50;
 
 struct SignedRankTest {
@@ -40,8 +40,8 @@ struct ShiftEstimate {
   double estimate = 0;          // median of the Walsh averages (Hodges & Lehmann 1963)
   double lower = 0, upper = 0;  // confidence interval, closed
   // Lower bound of the interval's confidence, also for tied or discrete differences (Noether 1967).
-  // It is below the requested confidence if there are too few differences; the interval is then
-  // their range.
+  // If there are too few differences, this bound is below the requested confidence, and the
+  // interval is the range of the differences.
   double confidence = 0;
 };
 

@@ -20,24 +20,24 @@ struct StopSummary {
   double time = 0;      // emulated time until the stop, including the time before resets [s]
   double duration = 0;  // time from the decision to rest [s]
   double distance = 0;  // path of the faster handle from the decision to rest [m]
-  // The time from the moment at which the true force (torque) crosses its threshold to the
-  // decision, for a simulated rig only.
+  // For a simulated rig only: the time from the moment at which the true force (torque) crosses its
+  // threshold to the decision to stop.
   std::optional<double> detection;  // [s]
-  // If the simulation diverged, the joint of the cobot that was the fastest in the last step
-  // before, counted from 0. Otherwise −1.
+  // If the simulation diverged: the joint of the cobot that was fastest in the last step before the
+  // divergence, counted from 0. Otherwise −1.
   int fastest_joint = -1;
   StatusRecord harder = {};  // the fault that removed the power at the end of a stop that would
                              // otherwise have held
 };
 
-// Returns whether the arms failed to come to rest although they were commanded to. This follows
-// from the stop's final fault or, if the run had ended without a cause, from its cause. Duration
-// and distance are then only the values observed so far.
+// Returns whether the arms did not come to rest although they were commanded to stop. The result
+// follows from the final fault of the stop or, if the run had ended without a cause, from the cause
+// of the stop. In this case, duration and distance are only the values that were observed so far.
 bool DidNotRest(const StopSummary& stop);
 
-// Returns whether a stop censors what the person feels: a stop by the force or the torque of a
-// hand, by the coupling, or by tracking, which ends runs in which the handles would have to exceed
-// their speed cap. The largest values of such a run are lower bounds.
+// Returns whether a stop censors what the person feels. Such stops are caused by the force or the
+// torque of a hand, by the coupling, or by tracking. (A stop by tracking ends runs in which the
+// handles would have to exceed their speed cap.) The largest values of such a run are lower bounds.
 bool IsLimit(StopCause cause);
 
 // Measures the lengths of the handles' paths in steps of kStep, because the encoders' quantisation
@@ -46,7 +46,7 @@ class HandleOdometer {
  public:
   static constexpr double kStep = 1e-4;  // [m]
 
-  // X_WH contains the poses of the handles. Those of absent handles must be constant.
+  // X_WH contains the poses of the handles. The poses of absent handles must be constant.
   void Start(const std::array<Pose, kHands>& X_WH) noexcept;
   // Returns the longer of the two handles' paths so far [m].
   double Add(const std::array<Pose, kHands>& X_WH) noexcept;
@@ -63,8 +63,8 @@ class StopLog {
   explicit StopLog(const Scenario& scenario);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // Returns the stops with a cause, in order. Only the first kMaxStops are kept, but count() counts
-  // all.
+  // Returns the stops with a cause, in order. Only the first kMaxStops stops are kept, but count()
+  // counts all stops.
   const std::vector<StopSummary>& stops() const { return stops_; }
   std::uint64_t count() const { return count_; }
 
@@ -86,7 +86,7 @@ class StopLog {
   double before_ = 0, run_time_ = 0;  // emulated time before the last reset, and since then [s]
   StopCause cause_ = StopCause::kNone;
 
-  // For the last stop, the path and time of the handles from the decision to rest.
+  // For the last stop, the path and time of the handles from the decision to stop until they rest.
   bool stopping_ = false;
   HandleOdometer odometer_;
   RestDetector rest_;

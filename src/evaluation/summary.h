@@ -1,5 +1,5 @@
-// The summary of a run contains the results of its metrics and its stops. It is computed only from
-// its TickRecords.
+// The summary of a run contains the results of its metrics and its stops. The summary is computed
+// only from the TickRecords of the run.
 #pragma once
 
 #include <cstdint>
@@ -62,14 +62,14 @@ class SummaryBuilder {
   EventLog events_;
 };
 
-// Returns JSON for scripts, which depend on its format. `timing` states whether to include the
-// values that depend on the computer's speed.
+// Returns the summary as JSON for scripts, which depend on this format. `timing` states whether to
+// include the values that depend on the computer's speed.
 std::string SummaryJson(const Summary& summary, bool timing = true);
 
 // Returns the JSON Schema of SummaryJson.
 std::string SummarySchema();
 
-// Returns the summary for people, as tables in mm, degrees and N.
+// Returns the summary as text for the user, with tables in mm, degrees and N.
 std::string SummaryTable(const Summary& summary);
 
 // Describes lead, margin and prediction in a sentence.

@@ -1,4 +1,4 @@
-// Writes the summary as JSON, and its schema. Both are made from lists of results.
+// Writes the summary as JSON, and its schema. JSON and schema are made from lists of results.
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -123,7 +123,7 @@ struct ToJson {
   }
 };
 
-// Below the top level, an object without any value is null.
+// Below the top level, an object that contains no value becomes null.
 void Collapse(Json* json) {
   if (!json->is_object()) return;
   bool any = false;

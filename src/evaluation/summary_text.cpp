@@ -1,4 +1,4 @@
-// Writes the summary for people.
+// Writes the summary as text for the user.
 #include <algorithm>
 #include <cmath>
 
@@ -67,8 +67,8 @@ void AddQuantiles(const ResultGroup& group, std::string* text) {
   }
 }
 
-// Adds only the results that depend on the computer's speed, or only the others if `timing` is
-// false.
+// If `timing` is true, adds only the results that depend on the computer's speed; otherwise, adds
+// only the other results.
 void AddResults(const std::vector<ResultGroup>& groups, bool timing, std::string* text) {
   const ResultGroup* above = nullptr;
   for (const ResultGroup& group : groups) {
@@ -99,12 +99,13 @@ void AddStop(const StopSummary& stop, std::string* text) {
   if (DidNotRest(stop))
     AppendLine(text, "  The arms had not come to rest.");
   else
-    AppendLine(text, "  At rest after %.0f ms and %.1f mm.", 1e3 * stop.duration,
+    AppendLine(text, "  The handles came to rest after %.0f ms and %.1f mm.", 1e3 * stop.duration,
                1e3 * stop.distance);
   if (const std::string harder = HarderWords(stop.harder); !harder.empty())
     AppendLine(text, " %s", harder.c_str());
   if (stop.detection)
-    AppendLine(text, "  Decided %.0f ms after the hand's true value crossed the threshold.",
+    AppendLine(text,
+               "  The stop was decided %.0f ms after the hand's true value crossed the threshold.",
                1e3 * *stop.detection);
 }
 
@@ -118,7 +119,8 @@ void AddEvents(const Summary& s, std::string* text) {
                event.meaning.c_str());
     if (event.missed)
       AppendLine(text, "  The gripper stayed open, because the object was too far away.");
-    AppendLine(text, "  Largest force afterwards %.1f N, torque %.2f N·m, speed %.0f mm/s%s.",
+    AppendLine(text,
+               "  Largest values afterwards: force %.1f N, torque %.2f N·m, speed %.0f mm/s%s.",
                *std::max_element(event.force.begin(), event.force.end()),
                *std::max_element(event.torque.begin(), event.torque.end()),
                1e3 * *std::max_element(event.speed.begin(), event.speed.end()),
@@ -137,7 +139,7 @@ void AddStops(const Summary& s, std::string* text) {
   const std::size_t listed = std::min(s.stops.size(), kMaxListed);
   for (std::size_t i = 0; i < listed; ++i) AddStop(s.stops[i], text);
   if (s.stop_count > listed)
-    AppendLine(text, "And %llu more; --json FILE.json lists %zu.",
+    AppendLine(text, "There are %llu more stops; --json FILE.json lists %zu.",
                static_cast<unsigned long long>(s.stop_count - listed), s.stops.size());
 }
 
@@ -148,10 +150,11 @@ void AddLift(const Summary& s, std::string* text) {
   const double intended = s.Get<double>("object.scripted_lift_m");
   const double rise = s.Get<double>("object.scripted_rise_m");
   if (!(rise < kLifted * intended)) return;
-  AppendLine(text,
-             "Warning: the script moves the object up by %.0f mm, but it rose by only %.0f mm. "
-             "`predictor check` says whether it rests on the floor at the start.",
-             kMillimetres * intended, kMillimetres * rise);
+  AppendLine(
+      text,
+      "Warning: the script moves the object up by %.0f mm, but the object rose by only %.0f mm. "
+      "`predictor check` reports whether it rests on the floor at the start.",
+      kMillimetres * intended, kMillimetres * rise);
 }
 
 }  // namespace
@@ -167,9 +170,8 @@ std::string SummaryTable(const Summary& s) {
   std::string text;
   AppendLine(&text, "%s", Printable(s.scenario).c_str());
   if (s.ticks() == 0)
-    AppendLine(
-        &text,
-        "Not run: the state RUN was never reached, so there are no errors or forces to report.");
+    AppendLine(&text,
+               "The state RUN was never reached, so there are no errors or forces to report.");
   else
     AppendLine(&text, "%.2f s emulated in %llu ticks, %s, seed %llu", s.duration(),
                static_cast<unsigned long long>(s.ticks()),

@@ -34,7 +34,7 @@ class Evaluator {
   }
 
  private:
-  // A contradiction persists, so it is reported once, and nothing is judged from then on.
+  // A contradiction would persist, so the evaluator reports it once and stops judging.
   bool Add(const TickRecord& record) {
     try {
       return person_.Add(record);

@@ -50,7 +50,8 @@ std::string Trim(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
-// In COLLADA, image file names are in <init_from> (version 1.4) or in its <ref> (version 1.5).
+// In COLLADA, the name of an image file is in <init_from> (version 1.4) or in the <ref> of
+// <init_from> (version 1.5).
 std::string RewriteCollada(const std::string& text, const Rename& rename) {
   std::string out;
   std::size_t at = 0;
@@ -72,7 +73,7 @@ std::string RewriteCollada(const std::string& text, const Rename& rename) {
 }
 
 // Returns the file name at the end of a line of an OBJ file or of its material library, or "" if
-// there is none.
+// the line contains no file name.
 std::string FileOfLine(const std::string& line, bool is_library) {
   std::istringstream words(line);
   std::string word;
@@ -108,10 +109,11 @@ std::string NameOnly(const std::string& uri) { return uri.substr(uri.find_last_o
 std::string PackageMeshes::Add(const ModelShape& shape, const std::string& role) {
   const std::string extension = Extension(shape.mesh);
   if (extension != ".dae" && extension != ".stl" && extension != ".obj") {
-    throw InputError(shape.place,
-                     "The mesh " + shape.mesh.string() + " has the format " + Quote(extension) +
-                         ", but Unity's URDF-Importer reads only .dae, .stl and .obj. Save it in "
-                         "one of these formats, or give the link a box, cylinder or sphere.");
+    throw InputError(
+        shape.place,
+        "The mesh " + shape.mesh.string() + " has the format " + Quote(extension) +
+            ", but Unity's URDF-Importer reads only .dae, .stl and .obj. Save the mesh in one of "
+            "these formats, or give the link a box, cylinder or sphere.");
   }
   return kFolder + AddReferring(shape.mesh, role);
 }
@@ -146,7 +148,7 @@ std::string PackageMeshes::AddReferring(const fs::path& file, const std::string&
   return name;
 }
 
-// A file that cannot be copied only causes a wrong colour, so the scene is exported nevertheless.
+// If a file cannot be copied, only a colour is wrong, so the scene is exported nevertheless.
 std::string PackageMeshes::AddReferred(const std::string& uri, const fs::path& by) {
   try {
     const fs::path file = ResolveModelPath(uri, by.parent_path(), scenario_folder_);

@@ -1,4 +1,5 @@
-// The mesh and texture files of a package: their names in it and the files that they refer to.
+// The mesh and texture files of a package: their names in the package, and the files that they
+// refer to.
 #pragma once
 
 #include <filesystem>
@@ -12,20 +13,20 @@
 
 namespace predictor::scene_export {
 
-// All files are in the package's folder "meshes". Their names differ even without extension and
-// when case is ignored, because Unity's URDF-Importer names assets and MuJoCo names meshes by the
-// file name without its extension.
+// All files are in the package's folder "meshes". The names differ even without extension and if
+// case is ignored, because Unity's URDF-Importer and MuJoCo use the file name without its extension
+// as the name of an asset or mesh.
 class PackageMeshes {
  public:
-  // `scenario_folder` is the scenario's folder. Textures must be in a place that the scenario may
-  // read (scenario/paths.h).
+  // `scenario_folder` is the folder of the scenario. Textures must be in a place that the scenario
+  // may read (scenario/paths.h).
   explicit PackageMeshes(std::filesystem::path scenario_folder)
       : scenario_folder_(std::move(scenario_folder)) {}
 
   // Adds a shape's mesh and returns its path in the package. `role` ("visual", "collision") is the
-  // prefix of a new file's name. Files that the mesh refers to (textures, material libraries) are
-  // added too. Throws InputError if URDF-Importer does not read the format or if the file cannot be
-  // read.
+  // prefix of a new file's name. The function also adds files that the mesh refers to (textures,
+  // material libraries). Throws InputError if URDF-Importer does not read the format or if the file
+  // cannot be read.
   std::string Add(const ModelShape& shape, const std::string& role);
   // Adds a texture that a URDF refers to, and returns its path in the package.
   std::string AddTexture(const std::filesystem::path& file);

@@ -67,7 +67,7 @@ void AddGeometry(XmlElement* parent, const ModelShape& shape, const std::string&
   }
 }
 
-// URDF-Importer keeps materials by name, even across imports. Therefore the name describes the
+// URDF-Importer keeps materials by name, even across imports. Therefore, the name describes the
 // material.
 void AddMaterial(XmlElement* visual, const SceneShape& shape, PackageMeshes* meshes) {
   if (!shape.texture.empty()) {
@@ -144,7 +144,8 @@ void AddMujoco(XmlElement* robot, double gravity) {
 // Returns the URDF. Gravity [m/s²] is in MuJoCo's element, which other readers ignore. The text
 // contains what URDF-Importer requires beyond the format's rules: an axis on every moving joint,
 // effort and velocity in every limit, a name for every material, and the same name only for the
-// same colour. Meshes and textures are added to `meshes`. Throws InputError as PackageMeshes does.
+// same colour. Meshes and textures are added to `meshes`. Throws the same InputError as
+// PackageMeshes.
 std::string UrdfText(const SceneTree& tree, double gravity, PackageMeshes* meshes) {
   tinyxml2::XMLDocument doc;
   doc.InsertEndChild(doc.NewDeclaration());

@@ -1,5 +1,5 @@
-// A scenario's virtual scene as a package of one URDF and its meshes, for Unity's URDF-Importer and
-// other readers, or of one SDF file and its meshes, for Gazebo.
+// Exports a scenario's virtual scene as a package. The package contains a URDF and its meshes, for
+// Unity's URDF-Importer and other readers, or an SDF file and its meshes, for Gazebo.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace predictor::scene_export {
 
-// A file of the package: text, or a copy of `source` if that is set.
+// A file of the package: a copy of `source` or, if `source` is empty, text.
 struct PackageFile {
   std::string text = {};
   std::filesystem::path source = {};
@@ -30,16 +30,17 @@ enum class SceneFormat {
   kSdf,   // SDF for Gazebo
 };
 
-// The package: scene.urdf, meshes/…, package.xml and README.txt. The URDF is beside the folder of
-// meshes and refers to them by relative paths. This is the only form that URDF-Importer (which
-// looks for package:// and ../ below the URDF's own folder), MuJoCo and plain readers all resolve.
-// The same scenario always gives the same bytes. Throws InputError if loading a model does, or if
-// URDF-Importer does not read a mesh format. For kSdf: scene.sdf, meshes/… and README.txt.
+// The package: scene.urdf, meshes/…, package.xml and README.txt. The URDF is next to the folder of
+// meshes, and refers to the meshes by relative paths. Only relative paths work in URDF-Importer
+// (which looks for package:// and ../ below the URDF's own folder), in MuJoCo and in plain readers.
+// Exports of the same scenario always contain the same bytes. Throws InputError if a model cannot
+// be loaded or if URDF-Importer does not support a mesh format. For kSdf: scene.sdf, meshes/… and
+// README.txt.
 ScenePackage MakeScenePackage(const Scenario& scenario, SceneFormat format = SceneFormat::kUrdf);
 
 // Writes the package into `folder`, which is created if necessary. A folder that is not empty is
 // refused unless `force` is set. With `force`, files of an earlier export are replaced, or removed
-// if the package no longer contains them. Other files stay. If one of them is in the way, the
+// if the package no longer contains them. Other files stay. If such a file is in the way, the
 // export is refused. Throws InputError.
 void WriteScenePackage(const ScenePackage& package, const std::filesystem::path& folder,
                        bool force);

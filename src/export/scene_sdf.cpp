@@ -71,7 +71,8 @@ class SdfWriter {
     const auto found = above_.find(link.name);
     return found != above_.end() && found->second->type != UrdfJointType::kFixed;
   }
-  // Returns the first of this link and its ancestors that is "world" or a <link>.
+  // Returns the first link that is "world" or a <link>, beginning with this link and continuing
+  // with its ancestors.
   std::string CarrierOf(const std::string& name) const {
     const SceneLink& link = *links_.at(name);
     if (name == "world" || IsLink(link)) return name;
@@ -185,7 +186,7 @@ class SdfWriter {
 
   void AddShapes(XmlElement* element, const SceneLink& link) {
     AddVisuals(element, link, "");
-    // Only the object, floor and table collide.
+    // Only the object, the floor and the table have collision shapes.
     if (link.name != "object" && !IsSurroundings(link)) return;
     int count = 0;
     for (const SceneShape& shape : link.collisions) {

@@ -19,8 +19,8 @@
 namespace predictor::scene_export {
 namespace {
 
-// Returns the robot's material of the same name, which supplies the values that the visual's own
-// material omits.
+// Returns the material of the robot that has the same name. It supplies the values that the
+// visual's own material omits.
 const XmlElement* GlobalMaterial(const XmlElement& robot, const XmlElement& material) {
   const char* name = material.Attribute("name");
   for (const XmlElement* global = robot.FirstChildElement("material");
@@ -54,8 +54,8 @@ SceneShape Read(const XmlElement& robot, const XmlElement& visual, const ModelSh
 }
 
 // Returns the shapes of the <visual> elements of each link of a URDF, and whether they have their
-// own material. A mesh without one shows the colours of its file. `scenario_folder` is the folder
-// of the scenario that refers to the URDF.
+// own material. A mesh without its own material has the colours of its file. `scenario_folder` is
+// the folder of the scenario that refers to the URDF.
 std::vector<std::vector<SceneShape>> VisualsOf(const UrdfModel& urdf,
                                                const std::filesystem::path& scenario_folder) {
   std::vector<std::vector<SceneShape>> visuals(urdf.links.size());
@@ -167,8 +167,8 @@ class Composer {
   }
 
  private:
-  // Returns a name for a joint that the scene adds. It avoids the names of the cobot's joints,
-  // which the topics use.
+  // Returns a name for a joint that the scene adds. The name differs from the names of the cobot's
+  // joints, which the topics use.
   std::string JointName(std::string name) {
     while (!joint_names_.insert(name).second) name += '_';
     return name;
@@ -258,7 +258,7 @@ class Composer {
     tree_.joints.push_back(joint);
   }
 
-  // Adds a moving joint of the attachment. It has no drive, and only `range` bounds it.
+  // Adds a moving joint of the attachment. The joint has no drive, and only `range` bounds it.
   void AddAxis(const std::string& name, const std::string& parent, const std::string& child,
                const Pose& X_PJ, const Vector3& axis) {
     const AttachmentSpec& spec = scenario_.object.attachment;
@@ -335,7 +335,7 @@ class Composer {
   }
 
   void AddHandles() {
-    // The grip is along Y, as on the page.
+    // The grip of a handle is along Y, as in the viewer.
     const Pose X_DG = PoseFromXyzRpy(Vector3::Zero(), {M_PI / 2, 0, 0});
     for (const int hand : scenario_.hands()) {
       const auto h = static_cast<std::size_t>(hand);
@@ -374,7 +374,8 @@ class Composer {
     if (environment.table) {
       AddStatic("table", environment.table->top, environment.table->size, kTableColor);
     }
-    // A fixture that an event lets appear is absent at first, and the subject may see the scene.
+    // A fixture that an event lets appear is left out, because it is absent at first and the
+    // participant may see the scene.
     for (std::size_t i = 0; i < environment.fixtures.size(); ++i)
       if (EventsOfFixture(scenario_, i) == 0)
         AddFixture(kFixturePrefix + std::to_string(i), environment.fixtures[i]);

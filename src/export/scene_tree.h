@@ -14,11 +14,11 @@
 
 namespace predictor::scene_export {
 
-// The mass [kg] and principal moments [kg·m²] of links that have none, or that only connect others.
-// URDF has no joint with three axes, so three single-axis joints need two links between them.
-// MuJoCo and our own reader refuse a moving link without mass. Unity's URDF-Importer would give it
-// 0.1 kg, or 1 kg if it has no <inertial>. All of them accept these values, which change any sum by
-// less than 1e-9.
+// The mass [kg] and principal moments [kg·m²] of links that have no mass or that only connect other
+// links. URDF has no joint with three axes, so the ball joint becomes three single-axis joints with
+// two links between them. MuJoCo and our own reader refuse a moving link without mass. Unity's
+// URDF-Importer would give it 0.1 kg, or 1 kg if it has no <inertial>. All these programs accept
+// these values, which change any sum by less than 1e-9.
 inline constexpr double kTinyMass = 1e-10;
 inline constexpr double kTinyInertia = 1e-11;
 
@@ -64,8 +64,8 @@ struct SceneTree {
 // own links ("world", "floor", "table", "object", "left_handle", "right_handle",
 // "attachment…_link") gets the prefix "cobot_". A spherical attachment becomes three continuous
 // joints about x, y and z of A, in this order. The object's frame is O, and the handles' frames are
-// D. Throws InputError if loading a model does, or if the length of a list differs from the number
-// of joints.
+// D. Throws InputError if a model cannot be loaded, or if the length of a list differs from the
+// number of joints.
 SceneTree ComposeTree(const Scenario& scenario);
 
 }  // namespace predictor::scene_export

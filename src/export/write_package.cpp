@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The list of files that an export wrote. Its name begins with a dot, so Unity ignores it.
+// The name of the list of files that an export wrote. The name begins with a dot, so Unity ignores
+// the list.
 constexpr const char* kManifest = ".predictor-scene";
 constexpr const char* kManifestHeader = "# What predictor export scene wrote here";
 
@@ -30,7 +31,8 @@ bool IsInside(const fs::path& path) {
          std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; });
 }
 
-// Returns the paths that an earlier export wrote, or nothing without an earlier export.
+// Returns the paths that an earlier export wrote. If there was no earlier export, the list is
+// empty.
 std::set<std::string> ReadManifest(const fs::path& folder) {
   std::set<std::string> mine;
   std::ifstream stream(folder / kManifest);

@@ -1,6 +1,6 @@
-// The topics, in Foxglove's well-known schemas where they exist. Topics of recorded quantities are
-// derived from core/tick_fields.h. This file contains the topics that combine or compare
-// quantities.
+// The topics, which use Foxglove's well-known schemas where they exist. Topics of recorded
+// quantities are derived from core/tick_fields.h. This file contains the topics that combine or
+// compare quantities.
 #include <cmath>
 #include <utility>
 

@@ -1,4 +1,5 @@
-// A run as topics in JSON for Foxglove and its forks, used by the live protocol and in recordings.
+// Publishes a run as JSON topics for Foxglove and its forks, for the live protocol and for
+// recordings.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +26,8 @@ struct FoxgloveChannel {
 std::vector<FoxgloveChannel> FoxgloveChannels(const Scenario& scenario,
                                               const Vector3& object_start);
 
-// Returns the topics that show poses and shapes, "/tf" and "/scene". The parameters are those of
-// FoxgloveChannels.
+// Returns the topics that show poses and shapes, "/tf" and "/scene". The parameters are the same as
+// for FoxgloveChannels.
 std::vector<FoxgloveChannel> FoxgloveSceneChannels(const Scenario& scenario,
                                                    const Vector3& object_start);
 

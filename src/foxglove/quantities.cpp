@@ -1,4 +1,4 @@
-// The recorded quantities as topics in JSON, with the same names as in a recording.
+// Publishes the recorded quantities as JSON topics, with the same names as in a recording.
 #include <cmath>
 #include <string>
 #include <type_traits>

@@ -22,7 +22,8 @@ constexpr int kCirclePoints = 72;
 
 Json Xyzw(const Quaternion& q) { return {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}; }
 
-// Returns green below half of the limit, orange up to 80 %, and then red, as on the page.
+// Returns the colour green below half of the limit, orange up to 80 %, and red above, as in the
+// viewer.
 Json WarningColor(double share) {
   if (share < 0.5) return Color(0.2, 0.7, 0.3, 1);
   if (share <= 0.8) return Color(0.95, 0.6, 0.1, 1);
@@ -39,7 +40,7 @@ class Cobot {
         links_(model_->link_names()) {
     for (const std::string& link : links_) frames_.push_back(model_->Frame(link));
     const FrameId end_effector = model_->Frame(scenario.cobot.end_effector);
-    // Only the joints that move the end-effector are drawn, not those of a gripper.
+    // Only the joints that move the end-effector are drawn; the joints of a gripper are not drawn.
     Jacobian J(6, model_->dof());
     const JointVector zero = JointVector::Zero(model_->dof());
     data_.UpdateKinematics(*model_, zero, zero);
@@ -57,7 +58,7 @@ class Cobot {
   }
   const std::vector<std::string>& links() const { return links_; }
   Pose LinkPose(std::size_t link) const { return data_.FramePose(*model_, frames_[link]); }
-  // Positions in W of the base, the joints and the end-effector, in this order [m].
+  // Positions of the base, the joints and the end-effector in W, in this order [m].
   std::vector<Vector3> Points() const {
     std::vector<Vector3> points;
     points.reserve(chain_.size());

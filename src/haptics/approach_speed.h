@@ -6,12 +6,12 @@
 namespace predictor {
 
 // Returns the largest speed [1/s] at which a distance [·] may shrink so that it never falls below
-// zero when deceleration is at most `acceleration`. It is proportional near zero (velocity damper
-// with slope `gain` [1/s]) and a parabola beyond, joined smoothly. It is zero where the distance is
-// negative.
+// zero if the deceleration is at most `acceleration`. For small distances, the speed is
+// proportional to the distance (velocity damper with slope `gain` [1/s]). A parabola continues
+// smoothly at larger distances. For negative distances, the speed is zero.
 double ApproachSpeed(double distance, double gain, double acceleration) noexcept;
 
-// The velocity damper of a limit, as printed in the paper or with our repairs.
+// The velocity damper of a limit, either as printed in the paper or with our repairs.
 struct VelocityDamper {
   double gain = 0;          // slope [1/s]
   double influence = 0;     // distance beyond which the paper's damper does not act [·]
@@ -21,8 +21,8 @@ struct VelocityDamper {
 
   VelocityDamper() = default;
   VelocityDamper(double gain, double influence, double acceleration, const RepairSet& repairs);
-  // Returns the largest speed [·/s] at which the distance may shrink, or kUnlimited if it is not
-  // limited.
+  // Returns the largest speed [·/s] at which the distance may shrink, or kUnlimited if this speed
+  // is not limited.
   double Speed(double distance) const noexcept;
   static constexpr double kUnlimited = 1e30;
 };

@@ -59,7 +59,7 @@ Assembler::Assembler(const RenderSetup& setup, std::span<const char* const> task
   };
   check("limits", limit_rows_, kMaxLimitRows, "Remove some of rendering.link_pairs.");
   check("tasks with precedence", precedence_rows_, kMaxPrecedenceRows,
-        "Register fewer of them (src/haptics/registry.h).");
+        "Register fewer tasks or limits (src/haptics/registry.h).");
 }
 
 Qp Assembler::MakeQp(Precedence form) const {
@@ -127,7 +127,7 @@ void AddByWeight(const TaskTerm& term, Qp* qp) noexcept {
 }
 
 // Adds six rows J x + s/√w = rate starting at `row`, each with a slack variable s. For an inactive
-// term, s = 0. The hard form has no slack and no row for an inactive term.
+// term, s is 0. The hard form has no slack, and has no row for an inactive term.
 void Assembler::AddRows(const TaskTerm& term, int row, Precedence form, Qp* qp) const noexcept {
   const bool in_force = term.J.cols() > 0;
   const bool hard = form == Precedence::kHard;

@@ -25,7 +25,8 @@ enum class Precedence {
 
 class Assembler {
  public:
-  // Uses all registered tasks and limits. Throws InputError, also if the limits need too many rows.
+  // Uses all registered tasks and limits. Throws InputError, for example if the limits need too
+  // many rows.
   explicit Assembler(const RenderSetup& setup);
   // Uses only the named tasks and limits, for tests and benchmarks.
   Assembler(const RenderSetup& setup, std::span<const char* const> tasks,
@@ -38,8 +39,8 @@ class Assembler {
   // Writes the whole problem. Call this after Update, any number of times.
   void Assemble(const RenderContext& context, Precedence form, Qp* qp) noexcept;
 
-  // Writes the values that tasks and limits publish. `x` is the solution, or null if none was
-  // found.
+  // Writes the values that tasks and limits publish. `x` is the solution, or null if no solution
+  // was found.
   void Publish(const double* x, RenderResult* result) const noexcept;
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept;

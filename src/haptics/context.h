@@ -13,9 +13,9 @@
 
 namespace predictor {
 
-// Constant during a run. Tasks and limits are created from it.
+// Constant during a run. Tasks and limits are created from this setup.
 struct RenderSetup {
-  // `models` have a handle frame each, and absent sides are null. lead and dt are in [s]. Throws
+  // Each of the `models` has a handle frame; absent sides are null. lead and dt are in [s]. Throws
   // InputError.
   RenderSetup(const Scenario& scenario,
               const std::array<std::shared_ptr<const RobotModel>, kHands>& models, double lead,
@@ -33,7 +33,8 @@ struct RenderSetup {
 // State of one tick. The joints of both arms, left before right, are the variables x of the QP.
 struct RenderContext {
   RenderContext() = default;
-  // `last` contains the joint velocities last sent [rad/s]. Does not use the heap or throw.
+  // `last` contains the joint velocities [rad/s] that were sent last. Does not use the heap or
+  // throw.
   RenderContext(const std::array<RenderArm, kHands>& arms, const RenderTarget& target,
                 const std::array<JointVector, kHands>& last, double dt) noexcept;
 

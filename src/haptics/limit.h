@@ -25,7 +25,7 @@ class LimitRows {
         A(qp->A().data() + first * qp->n(), count, joints, Eigen::OuterStride<>(qp->n())),
         b(qp->b().data() + first, count) {}
 
-  // Restricts joint velocity `k` to this range, as far as earlier limits allow.
+  // Restricts joint velocity `k` to this range as far as earlier limits allow.
   void Narrow(int k, double lowest, double highest) noexcept {
     const double low = lower_[k], high = upper_[k];
     lower_[k] = std::clamp(lowest, low, high);
@@ -46,8 +46,8 @@ class Limit {
   // Returns the number of rows that the limit needs. Each row has its own slack, so the problem
   // stays solvable. RenderResult::slack_by_limit publishes the largest slack.
   virtual int rows() const { return 0; }
-  // Narrows the bounds and fills the limit's rows. It is called at least once per tick. It must not
-  // use the heap or throw.
+  // Narrows the bounds and fills the limit's rows. This function is called at least once per tick,
+  // and must not use the heap or throw.
   virtual void AddTo(const RenderContext& context, LimitRows* out) noexcept = 0;
   // Writes the values that the limit publishes per tick.
   virtual void Publish(RenderResult*) const noexcept {}

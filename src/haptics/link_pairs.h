@@ -20,12 +20,12 @@ struct LinkPair {
   std::string name;  // as written in the scenario: "LINK and LINK"
 };
 
-// Returns the vector from b's origin to a's, in W [m].
+// Returns the vector from the origin of b to the origin of a, in W [m].
 Vector3 Between(const std::array<RenderArm, kHands>& arms, const LinkPair& pair) noexcept;
 
-// Returns the pairs that a scenario keeps apart: rendering.link_pairs, or the two elbows if that is
-// not set. For real arms the elbows are always included. Throws InputError (unknown link, too many
-// pairs).
+// Returns the pairs that a scenario keeps apart: rendering.link_pairs or, if this key is not set,
+// the two elbows. For real arms, the elbows are always included. Throws InputError if a link is
+// unknown or if there are too many pairs.
 std::vector<LinkPair> LinkPairs(
     const Scenario& scenario, const std::array<std::shared_ptr<const RobotModel>, kHands>& models);
 

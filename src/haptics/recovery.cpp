@@ -77,7 +77,7 @@ bool Recovery::JointsBack(const std::array<RenderArm, kHands>& arms,
       const double low = lower_[i][j] + kInside - q, high = upper_[i][j] - kInside - q;
       if (!(low > kInside || high < -kInside)) continue;
       any = true;
-      // The target is inside the limit, not on it, and the speed has a minimum.
+      // The target is inside the limit instead of on it, and the speed has a minimum.
       const double way = low > 0 ? low : high;
       (*v)[i][j] = std::copysign(std::max(kGain * std::abs(way), 0.02), way);
     }
@@ -109,7 +109,8 @@ bool Recovery::LinksApart(const std::array<RenderArm, kHands>& arms,
   return true;
 }
 
-// Sets v = Jᵀ F · c. Then Fᵀ J v = c |Jᵀ F|² ≥ 0, so the handle yields to the hand in any posture.
+// The velocity is v = Jᵀ F · c. Because Fᵀ J v = c |Jᵀ F|² ≥ 0, the handle yields to the hand in
+// any posture.
 void Recovery::WithTheHands(const std::array<RenderArm, kHands>& arms,
                             const std::array<HandWrench, kHands>& wrench, bool goes_back,
                             std::array<JointVector, kHands>* v) noexcept {

@@ -1,6 +1,6 @@
-// RECOVERY: the only motion without a simulation. It moves joints back into their permitted range,
-// moves links apart, or moves a handle away from an obstacle that presses the hand. It never does
-// anything else.
+// RECOVERY: the only motion without a simulation. RECOVERY only moves joints back into their
+// permitted range, moves links apart, or moves a handle away from an obstacle that presses the
+// hand.
 #pragma once
 
 #include <array>
@@ -28,31 +28,32 @@ struct BeyondPlace {
 
 class Recovery {
  public:
-  // The maximum speed of a point of a handle [m/s]. With the overshoot of the arms, it stays below
-  // 50 mm/s.
+  // The maximum speed of a point of a handle [m/s]. Even with the overshoot of the arms, the speed
+  // stays below 50 mm/s.
   static constexpr double kHandleSpeed = 0.049;
   static constexpr double kLength = 0.2;      // weight of rotation relative to translation [m]
   static constexpr double kJointSpeed = 0.2;  // maximum speed of a joint [rad/s]
   static constexpr double kInside = 0.002;    // distance that a joint moves inside its limit [rad]
-  // Rendering stops a joint at its security distance to within the encoder's resolution. Therefore
-  // a joint counts as beyond its limit only from this distance on [rad].
+  // Rendering stops a joint at its security distance with the accuracy of the encoder's resolution.
+  // Therefore, a joint counts as beyond its limit only if it is beyond by more than this distance
+  // [rad].
   static constexpr double kJointMargin = 0.001;
   static constexpr double kForce = 5;  // smaller forces of the hand are ignored [N]
 
-  // `models` are null for absent sides. Throws InputError.
+  // The elements of `models` are null for absent sides. Throws InputError.
   Recovery(const Scenario& scenario,
            const std::array<std::shared_ptr<const RobotModel>, kHands>& models);
 
   // Returns the first violation found: a joint nearer to its limit than rendering.joint_security,
-  // or a pair of links nearer than rendering.security_distance. Rendering never moves the arms
-  // there and could not move them back. Does not use the heap or throw.
+  // or a pair of links nearer than rendering.security_distance. Rendering never moves the arms into
+  // such a position, and could not move them back. Does not use the heap or throw.
   BeyondPlace Where(const std::array<RenderArm, kHands>& arms) const noexcept;
   Beyond Find(const std::array<RenderArm, kHands>& arms) const noexcept { return Where(arms).what; }
 
   // Computes joint velocities [rad/s] that reduce the violation found by Where. Without a
-  // violation, each handle yields to a hand that presses on it, so the power of the motion with the
-  // hand's wrench is never negative. They are zero if there is nothing to do. Does not use the heap
-  // or throw.
+  // violation, each handle yields to a hand that presses on it. The power of this motion and the
+  // hand's wrench is therefore never negative. The velocities are zero if no motion is necessary.
+  // Does not use the heap or throw.
   void Step(const std::array<RenderArm, kHands>& arms, const std::array<HandWrench, kHands>& wrench,
             std::array<JointVector, kHands>* v) const noexcept;
 
@@ -61,8 +62,8 @@ class Recovery {
                   std::array<JointVector, kHands>* v) const noexcept;
   bool LinksApart(const std::array<RenderArm, kHands>& arms,
                   std::array<JointVector, kHands>* v) const noexcept;
-  // Arms with loaded hands yield to them. An arm that is already moving back yields only if its
-  // motion would press on the hand more.
+  // Arms on which a hand presses yield to this hand. An arm that is already moving back yields only
+  // if its motion would increase the pressure on the hand.
   static void WithTheHands(const std::array<RenderArm, kHands>& arms,
                            const std::array<HandWrench, kHands>& wrench, bool goes_back,
                            std::array<JointVector, kHands>* v) noexcept;

@@ -1,4 +1,5 @@
-// The list of the tasks and limits of rendering. To add one, see docs/developer/add-a-limit.md.
+// The list of the tasks and limits of rendering. To add a task or a limit, see
+// docs/developer/add-a-limit.md.
 #pragma once
 
 #include <memory>
@@ -25,7 +26,8 @@
 
 namespace predictor {
 
-// A kind of task or limit (Made). Its own parameters are the group rendering.NAME of a scenario.
+// A kind of task or limit; Made is the type of the object. The parameters of a kind are the group
+// rendering.NAME of a scenario.
 template <class Made>
 struct RenderingKind : ParameterKind {
   std::unique_ptr<Made> (*make)(const RenderSetup&, const OwnParameters&);  // throws InputError
@@ -33,7 +35,8 @@ struct RenderingKind : ParameterKind {
 using TaskKind = RenderingKind<Task>;
 using LimitKind = RenderingKind<Limit>;
 
-// The kind of a task or limit M. Its constructor takes the setup and its parameters P, if any.
+// The kind of a task or limit M. The constructor of M takes the setup and, if M has parameters, the
+// parameters P.
 template <class Made, class M, class P>
 constexpr RenderingKind<Made> RenderingKindOf(const char* name, const char* doc) {
   return {{name, doc, NewParameters<P>},

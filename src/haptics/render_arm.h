@@ -1,4 +1,4 @@
-// Input of haptic rendering in a tick: the state of the arms and the target of the handles.
+// The input of haptic rendering in a tick: the state of the arms, and the target of the handles.
 #pragma once
 
 #include <array>

@@ -56,9 +56,9 @@ const Qp& Renderer::qp() const { return impl_->qp; }
 const Assembler& Renderer::assembler() const { return impl_->assembler; }
 
 // The weighted form takes half the time to solve. If many joints are at their limits, however, a
-// condition number of 1e10 may prevent the solver from finding a solution. The form with rows is
-// then solved, and finally the same with the joint damping used at a singularity. Only a verified
-// solution is accepted. The paper's formulation has one form only.
+// condition number of 1e10 may prevent the solver from finding a solution. In this case, the form
+// with rows is solved and, if this fails, the same form with the joint damping that is used at a
+// singularity. Only a verified solution is accepted. The paper's formulation has only one form.
 void Renderer::Impl::Solve(RenderResult* result) noexcept {
   assembler.Update(context);
   assembler.Assemble(context, form, &qp);
@@ -96,7 +96,7 @@ void Renderer::Impl::PublishActive(const Qp& solved, RenderResult* result) const
     if (multiplier(solved.n() + r) != 0) result->rows |= bit(r);
 }
 
-// Within the solver's tolerance, the solution may violate a bound, but the command must not.
+// The solution may violate a bound within the solver's tolerance, but the command must not.
 void Renderer::Impl::PublishCommand(RenderResult* result) const noexcept {
   for (int i = 0; i < kHands; ++i) {
     if (!context.Has(i)) continue;
@@ -109,9 +109,9 @@ void Renderer::Impl::PublishCommand(RenderResult* result) const noexcept {
   }
 }
 
-// Without a solution, slows the last command by one common factor, at the rate at which a stop of
-// the faster handle begins. The common factor keeps the handles' relative pose to first order.
-// Stronger braking would cause a jerk that a subsequent stop could not undo.
+// If there is no solution, multiplies the last command by a common factor, so that the faster
+// handle slows down as at the beginning of a stop. The common factor keeps the handles' relative
+// pose to first order. Stronger braking would cause a jerk that a subsequent stop could not undo.
 void Renderer::Impl::SlowDown(RenderResult* result) const noexcept {
   double speed = 0;
   for (int i = 0; i < kHands; ++i)

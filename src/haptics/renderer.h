@@ -1,10 +1,11 @@
-// Haptic rendering: a QP computes joint velocities that make the real handles follow the virtual
-// ones.
+// In haptic rendering, a QP computes joint velocities that make the real handles follow the virtual
+// handles.
 //
 // Priorities, highest first: joint position and velocity limits (hard); joint acceleration; link
-// pairs; relative pose of the handles; tracking. Each level outweighs the next so far that, within
-// numerical precision, it does not yield to it. The amount by which a level yields is published as
-// slack. The paper's formulation (scenario/formulation.h) has no slacks.
+// pairs; relative pose of the handles; tracking. The weight of each level is so much larger than
+// that of the next level that, within numerical precision, the higher level does not yield. The
+// amount by which a level yields is published as slack. The paper's formulation
+// (scenario/formulation.h) has no slacks.
 #pragma once
 
 #include <array>
@@ -23,18 +24,18 @@ class Qp;
 
 class Renderer {
  public:
-  // `models` have a handle frame each, and absent sides are null. `lead` is that of the scenario,
-  // resolved from `auto` [s]. `dt` is the duration of a tick [s]. Throws InputError (link pair of
-  // an unknown link, too many pairs).
+  // Each of the `models` has a handle frame; absent sides are null. `lead` is the lead of the
+  // scenario, with `auto` replaced by its value [s]. `dt` is the duration of a tick [s]. Throws
+  // InputError if a link of a pair is unknown or if there are too many pairs.
   Renderer(const Scenario& scenario,
            const std::array<std::shared_ptr<const RobotModel>, kHands>& models, double lead,
            double dt);
   ~Renderer();
 
-  // Computes joint velocities for this tick. `last` is the command last sent. Returns kQp after
-  // three consecutive ticks without a verified solution, and kTracking when the relative slack has
-  // exceeded its limit for longer than the safety settings allow. Does not use the heap or a lock,
-  // and does not throw.
+  // Computes joint velocities for this tick. `last` is the command that was sent last. Returns kQp
+  // after three consecutive ticks without a verified solution. Returns kTracking if the slack of
+  // the relative pose has exceeded its limit for longer than the safety settings allow. Does not
+  // use the heap or a lock, and does not throw.
   Status Render(const std::array<RenderArm, kHands>& arms, const RenderTarget& target,
                 const std::array<JointVector, kHands>& last, RenderResult* result) noexcept;
   void Reset() noexcept;

@@ -15,8 +15,8 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kSmallestGain = 1.0 / 16;
 constexpr double kPrecision = 1.02;
 
-// All-pass (s² − b s + c)/(s² + b s + c), or (b − s)/(b + s) if c is 0. Times are in units of the
-// delay to which it belongs.
+// An all-pass section (s² − b s + c)/(s² + b s + c), or (b − s)/(b + s) if c is 0. Times are in
+// units of the delay to which the section belongs.
 struct AllPass {
   double b, c;
 };
@@ -26,9 +26,9 @@ std::vector<AllPass> EqualSections(int order) {
   return std::vector<AllPass>(static_cast<std::size_t>(order), {2.0 * order, 0});
 }
 
-// Returns the Padé approximation of e^−sT of an even order n, exact to 0.01 rad up to |sT| = 3.7 (n
-// = 4), 6.4 (6) and 12 (10). Its denominator is Σ c_k (sT)^k with c_k = (2n − k)! n! / ((2n)! k! (n
-// − k)!).
+// Returns the Padé approximation of e^−sT of an even order n. Its phase error is below 0.01 rad up
+// to |sT| = 3.7 (n = 4), 6.4 (n = 6) and 12 (n = 10). The denominator is Σ c_k (sT)^k with c_k =
+// (2n − k)! n! / ((2n)! k! (n − k)!).
 std::vector<AllPass> PadeSections(int order) {
   const double scale = order;  // scale of the roots, so that the matrix entries have similar
                                // magnitudes
@@ -46,7 +46,7 @@ std::vector<AllPass> PadeSections(int order) {
   return sections;
 }
 
-// A linear system under construction. A signal is a row of weights of the states.
+// A linear system that is built step by step. A signal is a row of weights of the states.
 class System {
  public:
   using Signal = Eigen::RowVectorXd;
@@ -105,8 +105,8 @@ struct LoopDelays {
   std::vector<AllPass> reflex, sight;
   double reserve;  // [ticks]
 
-  // Returns the states per axis of one hand: handle position, lead filter, loop delay, arm loop,
-  // reflex, sight, sensor.
+  // Returns the number of states per axis of one hand, which belong to handle position, lead
+  // filter, loop delay, arm loop, reflex, sight and sensor.
   int StatesPerAxis() const {
     return 1 + 1 + OrderOf(arm) + 2 + OrderOf(reflex) + OrderOf(sight) + 1;
   }
@@ -126,7 +126,7 @@ struct HandleAxis {
   System::Signal position, velocity, acceleration;
 };
 
-// Adds the real handle, which follows the motion of the virtual one.
+// Adds the real handle, which follows the motion of the virtual handle.
 HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
                   const LoopDelays& delays, double lead, bool turn, double dt,
                   const System::Signal& x_d, const System::Signal& v_d) {
@@ -135,8 +135,8 @@ HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
   const System::Signal a_d = lead_cutoff * (v_d - s->LowPass(v_d, lead_cutoff));
   const double gain = turn ? rendering.ko / 2 : rendering.kp;  // (9) uses half the angle
   const System::Signal command = v_d + lead * a_d + gain * (x_d - s->State(h));
-  // This is the sum of all pure delays of the chain. The hold of the force adds half a tick, and
-  // the virtual handles are half a tick ahead of the sample, so these cancel.
+  // This value is the sum of all pure delays of the chain. The hold of the force adds half a tick,
+  // and the virtual handles are half a tick ahead of the sample, so these two effects cancel.
   const double delay = arm.loop.delay + arm.sensor.delay + delays.reserve * dt;
   const System::Signal u = s->Delay(command, delay, delays.arm);
   const int v = s->AddState();
@@ -149,7 +149,8 @@ HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
 }
 
 // Adds the hand's reaction to the handle's motion along one axis (0–2 translation, 3–5 rotation).
-// `seen` is the displacement of the object along this axis, which the hand corrects by sight.
+// `seen` is the displacement of the object along this axis; the hand corrects this displacement by
+// sight.
 System::Signal AddHand(System* s, const HandSpec& hand, const LoopDelays& delays, int axis,
                        const HandleAxis& handle, const System::Signal& seen) {
   const bool turn = axis >= 3;

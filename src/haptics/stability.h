@@ -1,4 +1,5 @@
-// Stability of the haptic loop: hand → sensor → virtual world → rendering → arm → hand.
+// Computes the stability of the haptic loop: hand → sensor → virtual world → rendering → arm →
+// hand.
 //
 // The hand's impedance (mass, spring, damper, reflex, sight) acts on the motion of the real handle.
 // The sensor's reading drives the virtual handles, and the arm follows them with its lag and the
@@ -15,9 +16,10 @@
 namespace predictor {
 
 struct StabilityMargin {
-  // The factor by which the hands' impedance may grow before the loop becomes unstable. Below 1,
-  // the loop is unstable with the nominal impedance. At 0, it is unstable even with soft and light
-  // hands. It is at most HapticLoop::kLargestGain.
+  // The factor by which the hands' impedance may grow before the loop becomes unstable. If the
+  // factor is below 1, the loop is unstable with the nominal impedance. If the factor is 0, the
+  // loop is unstable even with soft and light hands. The factor is at most
+  // HapticLoop::kLargestGain.
   double gain = 0;
   double frequency = 0;  // frequency of the oscillation at that gain [Hz]
 };
@@ -40,20 +42,20 @@ class HapticLoop {
              LoopModel model = LoopModel::kWithReserve);
 
   // Returns the largest real part [1/s] of the loop's eigenvalues with the hands' impedance
-  // multiplied by `gain` and the reference's lead [s]. This is the growth rate of a disturbance.
-  // `frequency` is that of the mode [Hz].
+  // multiplied by `gain` and the reference's lead [s]. This value is the growth rate of a
+  // disturbance. `frequency` is the frequency of the fastest growing mode [Hz].
   double GrowthRate(const HandSpec& hand, double lead, double gain,
                     double* frequency = nullptr) const;
 
-  // Returns the stability margin for a hand and a lead [s], to 2 %.
+  // Returns the stability margin for a hand and a lead [s], with a precision of 2 %.
   StabilityMargin Margin(const HandSpec& hand, double lead) const;
 
-  // Returns the lag of an arm's velocity loop at low frequency [s]: 2ζ/ω plus delay, minus the half
-  // tick by which the reference is ahead.
+  // Returns the lag of an arm's velocity loop at low frequency [s]. The lag is 2ζ/ω plus the delay,
+  // minus the half tick by which the reference is ahead.
   static double Lag(const VelocityLoopSpec& loop, double dt);
 
   // Returns the cutoff of the filter of the lead's acceleration [rad/s]. Without a filter, the
-  // acceleration is the change over one tick, which is late by half a tick.
+  // acceleration is computed from the change over one tick, which delays it by half a tick.
   static double LeadCutoff(const RenderingSpec& rendering, double dt);
 
  private:
@@ -65,9 +67,9 @@ class HapticLoop {
   const LoopDelays& delays_;
 };
 
-// The scenario's lead. For `auto`, it is the longest of six steps, from the device's lag down to
-// zero, whose margin is at least `margin`. If no step has this margin, it is the one with the
-// largest margin.
+// The scenario's lead. For `auto`, the lead is the longest of six steps from the device's lag down
+// to zero whose margin is at least `margin`. If no step has this margin, the lead is the step with
+// the largest margin.
 struct LeadChoice {
   double lead = 0;  // [s]
   StabilityMargin margin;

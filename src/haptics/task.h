@@ -1,5 +1,5 @@
-// A task of haptic rendering: a goal of the arms, expressed as terms of the QP's objective. To add
-// one, see docs/developer/add-a-limit.md.
+// A task of haptic rendering is a goal of the arms, expressed as terms of the QP's objective. To
+// add one, see docs/developer/add-a-limit.md.
 #pragma once
 
 #include <span>
@@ -33,13 +33,13 @@ class Task {
  public:
   virtual ~Task() = default;
 
-  // Updates terms() and adds to the objective of single joints. It is called once per tick and must
-  // not use the heap or throw.
+  // Updates terms() and adds to the objective of single joints. This function is called once per
+  // tick and must not use the heap or throw.
   virtual void Update(const RenderContext& context, JointObjective* joints) noexcept = 0;
   std::span<const TaskTerm> terms() const { return terms_; }
-  // Returns whether the terms far outweigh those of ordinary tasks, so that they yield only to
-  // limits. If the solver finds no precise solution with such weights, the terms become rows with
-  // slack.
+  // Returns whether the weights of the terms are so much larger than those of ordinary tasks that
+  // the terms yield only to limits. If the solver finds no precise solution with such weights, the
+  // terms become rows with slack.
   virtual bool has_precedence() const { return false; }
 
   // Writes the values that the task publishes per tick. `x` is the solution, or null if none was
@@ -53,16 +53,17 @@ class Task {
   std::vector<TaskTerm> terms_;
 };
 
-// Returns the vector part of the quaternion that rotates `from` into `to` by the shorter path,
-// which is half the angle for small rotations. It equals η ε^d − η^d ε − S(ε^d) ε of (9). If
-// `nearer` is false, it takes the path that the quaternions' signs determine, as (9) does.
+// Returns the vector part of the quaternion that rotates `from` into `to` by the shorter path. For
+// small rotations, this vector is half of the rotation vector. The result equals η ε^d − η^d ε −
+// S(ε^d) ε of (9). If `nearer` is false, the signs of the quaternions determine the path, as in
+// (9).
 Vector3 QuaternionError(const Quaternion& to, const Quaternion& from, bool nearer = true) noexcept;
 
 // Returns the weights of a handle's twist: 1 for translation, and the square of
 // `rendering.characteristic_length` for rotation, or 1 in the paper's (7).
 Vector6 TwistWeight(const RenderSetup& setup);
 
-// Returns a factor in (0, 1] that reduces a twist to the caps of a handle.
+// Returns a factor in (0, 1] that reduces a twist to the speed caps of a handle.
 double ScaleToCaps(const Twist& V, const RenderTarget& target) noexcept;
 
 }  // namespace predictor

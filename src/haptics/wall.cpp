@@ -13,16 +13,16 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-// Returns the wrench about the handle's origin of a unit force along the normal. It also maps the
-// handle's twist to the point's velocity along the normal.
+// Returns the wrench, about the handle's origin, that a unit force along the normal exerts. The
+// transpose of this wrench maps the handle's twist to the point's velocity along the normal.
 Vector6 UnitForce(const Wall& wall) {
   Vector6 w;
   w << wall.normal, wall.p_DC.cross(wall.normal);
   return w;
 }
 
-// Returns the row that maps the states to a displacement, given the one that maps them to its
-// velocity.
+// Returns the row that maps the states to a displacement, given the row that maps the states to the
+// velocity of this displacement.
 RowVectorXd Displacement(const LinearModel& world, const RowVectorXd& velocity) {
   RowVectorXd row = RowVectorXd::Zero(velocity.size());
   row.head(world.dof) = velocity.segment(world.dof, world.dof);
@@ -47,7 +47,7 @@ Complex Output(const RowVectorXd& row, const Eigen::VectorXcd& states) {
   return {row.dot(states.real()), row.dot(states.imag())};
 }
 
-// Returns the motion of the real handle per motion of the virtual one.
+// Returns the ratio of the real handle's motion to the virtual handle's motion.
 Complex Following(const ArmSpec& arm, const RenderingSpec& rendering, double lead, double dt,
                   Complex s) {
   const double w = 2 * std::numbers::pi * arm.loop.bandwidth;
@@ -58,7 +58,7 @@ Complex Following(const ArmSpec& arm, const RenderingSpec& rendering, double lea
   return loop * (s * ahead + rendering.kp) / (s + loop * rendering.kp);
 }
 
-// Returns the force in the virtual world per force of the hand.
+// Returns the ratio of the force in the virtual world to the force of the hand.
 Complex Sensing(const SensorSpec& sensor, Complex s) {
   const Complex late = std::exp(-s * sensor.delay);
   if (sensor.cutoff_frequency <= 0) return late;
@@ -74,7 +74,7 @@ LinearModel WithWall(const LinearModel& world, const Wall& wall) {
   const RowVectorXd velocity = w.transpose() * world.C.middleRows(6 * wall.hand, 6);
   LinearModel model = world;
   model.A -= b * (wall.stiffness * Displacement(world, velocity) + wall.damping * velocity);
-  // The force of the inertia is proportional to the acceleration: (1 + m b c) dx/dt = A x + B u.
+  // The inertial force is proportional to the acceleration: (1 + m b c) dx/dt = A x + B u.
   const double share = wall.inertia / (1 + wall.inertia * velocity.dot(b));
   const RowVectorXd rate = velocity * model.A, input = velocity * model.B;
   model.A -= share * b * rate;
@@ -93,7 +93,8 @@ FeltImpedance ImpedanceAt(const LinearModel& world, const Scenario& scenario, do
   const double omega = 2 * std::numbers::pi * frequency;
   const Complex s(0, omega);
   const double share = 1.0 / scenario.hands().count();
-  // Each hand's part of the force acts through its own sensor.
+  // The force is divided equally among the hands, and each part acts through the sensor of its
+  // hand.
   Eigen::VectorXcd requested = Eigen::VectorXcd::Zero(world.A.rows()), sensed = requested;
   for (const int h : scenario.hands()) {
     const VectorXd force = share * world.B.middleCols(6 * h, 3) * direction;

@@ -9,8 +9,9 @@
 
 namespace predictor {
 
-// A spring, a damper and an inertia that act on one point of the object, along one direction. They
-// push and pull: the model describes small motions while the object stays in contact.
+// A spring, a damper and an inertia that act on one point of the object, along one direction. The
+// wall can push and pull, because the model describes small motions while the object stays in
+// contact.
 struct Wall {
   int hand = 0;                       // handle from which the point is measured
   Vector3 p_DC = Vector3::Zero();     // from the handle's origin to the point, axes of W [m]
@@ -27,8 +28,8 @@ double MassAt(const LinearModel& world, const Wall& wall);
 
 // The impedance that the hands feel if all of them press along `direction`: their total force
 // divided by the mean displacement of their handles [N/m] at one frequency. The real part is a
-// stiffness. The imaginary part divided by 2π·frequency is a damping. If it is negative, the device
-// feeds energy into the hands.
+// stiffness. The imaginary part divided by 2π·frequency is a damping. If this damping is negative,
+// the device feeds energy into the hands.
 struct FeltImpedance {
   std::complex<double> requested;  // of the virtual world
   std::complex<double> rendered;   // by the arms, through the force sensors

@@ -31,7 +31,8 @@ bool IsGripper(const UrdfJoint& joint, const UrdfModel& urdf) {
          Contains(joint.name, std::array{"finger", "thumb", "jaw", "knuckle", "gripper"});
 }
 
-// Determines which joints and links of a robot belong to arms. Indices are those of the model.
+// Determines which joints and links of a robot belong to arms. All indices refer to the joints and
+// links of the model.
 class Arms {
  public:
   explicit Arms(const UrdfModel& urdf)
@@ -57,8 +58,8 @@ class Arms {
   int carriers(int link) const { return at(carriers_, link); }  // number of movable joints
   int above(int link) const { return at(above_, link); }        // joint; −1 at the root
 
-  // Returns the link that most joints of an arm carry: the last of them that is not part of a
-  // finger.
+  // Returns the link that is carried by the largest number of an arm's joints. If several links
+  // are, it is the last one that is not part of a finger.
   int EndEffector() const {
     int best = urdf_.root;
     const auto rank = [this](int link) {

@@ -16,12 +16,13 @@ struct ArmChain {
   double removed_mass = 0;                // mass of these links and all attached to them [kg]
 };
 
-// `end_effector` is the link that is to carry the object. If it is empty, the link that most joints
-// of an arm carry is chosen. Two kinds of joints do not count as joints of an arm. The first are
-// the joints of grippers: joints with such a name, and joints that are coupled by mimic, if no
-// joint of an arm follows. The second are all joints after a branch that is carried by
-// kMinArmJoints joints or more (the fingers of a hand; a branch closer to the base leads to several
-// arms). Throws InputError if there is no such link, or no joint moves it.
+// `end_effector` is the link that will carry the object. If `end_effector` is empty, the link that
+// is carried by the largest number of an arm's joints is chosen. Two kinds of joints are not
+// treated as joints of an arm. The first kind are the joints of grippers. A joint belongs to a
+// gripper if its name says so or if it is coupled by mimic, and if no joint of an arm follows it.
+// The second kind are all joints after a branch that is carried by at least kMinArmJoints joints.
+// Such a branch leads to the fingers of a hand, whereas a branch closer to the base leads to
+// several arms. Throws InputError if there is no such link, or no joint moves it.
 inline constexpr int kMinArmJoints = 4;
 ArmChain FindArm(const UrdfModel& urdf, const std::string& end_effector = "");
 

@@ -6,8 +6,8 @@
 
 namespace predictor {
 
-// One entry per joint: position [rad], velocity [rad/s] (80 % of the vendor's limit unless the
-// scenario sets a lower one) and acceleration [rad/s²].
+// Each list has one entry per joint. The quantities are position [rad], velocity [rad/s] (80 % of
+// the vendor's limit unless the scenario sets a lower one) and acceleration [rad/s²].
 struct ArmLimits {
   JointVector lower, upper, velocity, acceleration;
 };

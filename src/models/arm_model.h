@@ -21,8 +21,8 @@ JointVector PostureOf(const std::vector<double>& posture, const RobotModel& mode
 // within "cobot".
 std::shared_ptr<const RobotModel> LoadCobotModel(const Scenario& scenario);
 
-// Returns the effort limit of each joint: cobot.effort_limit, or else the model's [N·m]; prismatic:
-// [N]. Throws InputError if the number of values does not fit.
+// Returns the effort limit of each joint, from cobot.effort_limit or otherwise from the model [N·m]
+// (prismatic joints: [N]). Throws InputError if the number of values does not fit.
 JointVector EffortLimit(const CobotSpec& spec, const RobotModel& robot);
 
 // Returns for each joint of the cobot whether it is prismatic. Throws InputError if its model
@@ -33,10 +33,10 @@ std::vector<bool> PrismaticJoints(const Scenario& scenario);
 // the tree from which a scenario was read. Throws InputError at the entry.
 void CheckPostureUnits(const YamlNode& tree, const RobotModel& model, const std::string& key);
 
-// Loads the model of an arm and checks its links and posture. `base` is its pose in the frame in
-// which the model is to compute, which is W for an emulation (Scenario::X_WB) and the rig's frame R
-// for commissioning (BaseSpec::X_RB). Relative paths start at `folder`. Throws InputError at the
-// invalid key within `key` ("device.arms.left").
+// Loads the model of an arm and checks its links and posture. `base` is the pose of the arm's base
+// in the frame in which the model computes. This frame is W for an emulation (Scenario::X_WB) and
+// the rig's frame R for commissioning (BaseSpec::X_RB). Relative paths are resolved from `folder`.
+// Throws InputError at the invalid key within `key` ("device.arms.left").
 std::shared_ptr<const RobotModel> LoadArmModel(const ArmSpec& spec, const Pose& base,
                                                const std::filesystem::path& folder,
                                                const std::string& key);

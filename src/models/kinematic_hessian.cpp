@@ -39,7 +39,7 @@ void RobotData::ManipulabilityGradient(const RobotModel& model, const FrameId& f
   *m = std::sqrt(std::max(0.0, A.determinant()));
   if (*m < 1e-9) return;
   // dm/dq_i = m Σ_j b_j · H_i,j, where b_j are the columns of A^-1 J_v. By the triple product, the
-  // sum over j ≥ i is w_i · Σ v_j × b_j, and the one over j < i is v_i · Σ b_j × w_j. Two sweeps
+  // sum over j ≥ i is w_i · Σ v_j × b_j, and the sum over j < i is v_i · Σ b_j × w_j. Two sweeps
   // compute these sums.
   const Matrix3 A_inverse = A.inverse();
   Vector3 before = Vector3::Zero();

@@ -10,7 +10,8 @@
 
 namespace predictor {
 
-// A rigid object. Its frame O is the frame of the root link or the geometric centre of a primitive.
+// A rigid object. The frame O of the object is the frame of the root link, or lies at the geometric
+// centre of a primitive.
 struct ObjectModel {
   std::string name;
   double mass = 0;                              // [kg]
@@ -19,19 +20,19 @@ struct ObjectModel {
   std::vector<ModelShape> visuals, collisions;  // X_LG in O
 };
 
-// The limit for all collision meshes of an object together. At start-up, the physics engine
-// computes the convex hull of each mesh. In the worst case (every vertex on the hull), this takes
-// 0.7 s for this number of triangles and 4 s for 100 000.
+// The largest total number of triangles in all collision meshes of an object. At start-up, the
+// physics engine computes the convex hull of each mesh. In the worst case (every vertex on the
+// hull), the computation takes 0.7 s for this number of triangles and 4 s for 100 000.
 inline constexpr std::size_t kMaxCollisionTriangles = 20000;
 
-// Reads an object's URDF. It has one link, or several that are connected by fixed joints and
-// merged. Throws InputError if ReadUrdf does, if a joint is movable, if mass or inertia is missing,
-// or if there are too many triangles.
+// Reads an object's URDF. The URDF has one link, or several links that are connected by fixed
+// joints and are merged here. Throws InputError if ReadUrdf does, if a joint is movable, if mass or
+// inertia is missing, or if there are too many triangles.
 ObjectModel ReadObject(const std::filesystem::path& file);
 ObjectModel MakeObject(const UrdfModel& urdf);
 
 // Makes an object from a shape of uniform density, unless an inertia is given. Throws InputError if
-// size, mass or inertia is impossible. `key`: of the scenario, for errors.
+// size, mass or inertia is impossible. `key` is the scenario's key, which error messages name.
 ObjectModel MakeObject(const PrimitiveSpec& primitive, const std::string& key = "object");
 
 // Loads the URDF or the primitive, whichever `spec` contains. `folder` is the scenario's folder.

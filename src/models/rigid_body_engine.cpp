@@ -8,8 +8,8 @@ namespace predictor {
 namespace {
 
 // Writes the same body in another frame, in which its present frame is at (R, p). By Steiner's rule
-// with the first moment h, this is R I Rᵀ − [p][h] − [h][p] − m [p][p], where −[a][b] = (a·b) 1 − b
-// aᵀ.
+// with the first moment h, the inertia is R I Rᵀ − [p][h] − [h][p] − m [p][p], where −[a][b] =
+// (a·b) 1 − b aᵀ.
 void Transform(const BodyInertia& body, const Matrix3& R, const Vector3& p, BodyInertia* out) {
   const Vector3 h = R * body.moment;
   out->mass = body.mass;

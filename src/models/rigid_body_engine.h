@@ -1,5 +1,5 @@
-// Computes kinematics and dynamics of a tree of joints. All quantities are in W, where the results
-// are plain sums along the tree (Featherstone 2008, "Rigid body dynamics algorithms").
+// Computes kinematics and dynamics of a tree of joints. All quantities are in W, because there the
+// results are plain sums along the tree (Featherstone 2008, "Rigid body dynamics algorithms").
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace predictor {
 
-// The inertia of a body about the origin of a frame, in its axes. Inertias of several bodies add
-// up.
+// The inertia of a body about the origin of a frame, in its axes. Inertias about the same origin
+// can be added.
 struct BodyInertia {
   double mass = 0;                    // [kg]
   Vector3 moment = Vector3::Zero();   // mass times centre of mass [kg·m]
@@ -72,12 +72,12 @@ void ComputeKinematics(const EngineModel& model, const JointVector& q, EngineSta
 // allocation. `gravity` [m/s²] acts along −z of W. The model must outlive the next call of Bias.
 void ComputeDynamics(const EngineModel& model, const JointVector& q, const JointVector& v,
                      double gravity, EngineState* state) noexcept;
-// Returns the bias torques at (q, v) of the last ComputeDynamics [N·m]. They are computed at the
-// first request, because most controllers do not need them. Does not allocate.
+// Returns the bias torques at (q, v) of the last ComputeDynamics [N·m]. The bias torques are
+// computed at the first request, because most controllers do not need them. Does not allocate.
 const JointVector& Bias(EngineState* state) noexcept;
 
-// A twist [m/s, rad/s] or a wrench [N, N·m] at W's origin. Its halves are separate, because
-// operations on them are faster than on a Vector6 that was just composed of them.
+// A twist [m/s, rad/s] or a wrench [N, N·m] at W's origin. The linear and the angular half are
+// stored separately, because this is faster than composing a Vector6 before each operation.
 struct Spatial {
   Vector3 linear, angular;
 

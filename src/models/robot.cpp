@@ -46,7 +46,7 @@ void CheckJointCount(const UrdfModel& urdf) {
   }
 }
 
-// A point of a body. Only the joints in `support` move it.
+// A point of a body. Only the joints in `support` move this point.
 struct LinkPoint {
   std::uint32_t support;
   Vector3 p;  // p_WF [m]
@@ -71,8 +71,8 @@ std::shared_ptr<const RobotModel> RobotModel::Load(const RobotSource& source) {
     return Build(ReadUrdf(file, source.remove_links, folder), source.X_WB);
   } catch (const InputError& error) {
     if (source.key.empty()) throw;
-    // Errors of the model's reader have the key remove_links or none. Without a key, they concern
-    // the file.
+    // Errors from the model's reader have the key remove_links or no key. Errors without a key
+    // concern the file.
     throw error.Within(error.key().empty() ? source.key + ".model" : source.key);
   }
 }

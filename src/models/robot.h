@@ -25,8 +25,8 @@ struct RobotSource {
                          // be empty
 };
 
-// A frame that moves with a robot: a link's origin or a point fixed to a link. It is a plain value
-// made by RobotModel::Frame. Any number of frames may be made at any time.
+// A frame that moves with a robot: a link's origin or a point fixed to a link. A FrameId is a plain
+// value that RobotModel::Frame makes. Any number of frames may be made at any time.
 struct FrameId {
   int body = -1;  // the movable joint that carries it, counted from 1; 0: the base
   Pose X_JF;      // pose in the frame of that joint; in W if fixed to the base
@@ -35,10 +35,10 @@ struct FrameId {
 
 class RobotModel {
  public:
-  // Reads and checks a URDF (see models/urdf.h) and builds the model. The base is fixed. There are
-  // 1 to kMaxJoints revolute, continuous or prismatic joints, ordered depth-first in the file's
-  // order. A mimic joint is treated as an independent joint (see models/urdf.h). Throws InputError
-  // that names file, link or joint and the remedy.
+  // Reads and checks a URDF (see models/urdf.h) and builds the model. The base is fixed. The model
+  // has 1 to kMaxJoints revolute, continuous or prismatic joints. They are ordered depth-first and,
+  // for each link, in the file's order. A mimic joint is treated as an independent joint (see
+  // models/urdf.h). Throws InputError that names file, link or joint and the remedy.
   static std::shared_ptr<const RobotModel> Load(const RobotSource& source);
   // Builds the model from a URDF that has already been read.
   static std::shared_ptr<const RobotModel> Build(const UrdfModel& urdf, const Pose& X_WB);
@@ -94,8 +94,8 @@ class RobotData {
 
   // Computes the gradient with respect to the joints of a frame's translational manipulability m =
   // sqrt(det(J_v J_vᵀ)), from the kinematic Hessian (Haviland & Corke 2021): dm/dq_i = m tr((J_v
-  // J_vᵀ)^-1 H_i J_vᵀ). Also writes m. At a singularity (m < 1e-9), the gradient is zero. This
-  // function uses the last Update.
+  // J_vᵀ)^-1 H_i J_vᵀ). Also writes m. At a singularity (m < 1e-9), the gradient is zero. The
+  // function uses the state of the last Update.
   void ManipulabilityGradient(const RobotModel& model, const FrameId& frame, double* m,
                               JointVector* gradient) const;
 
@@ -109,9 +109,10 @@ class RobotData {
 // W.
 void KinematicHessian(const Jacobian& J, std::vector<Jacobian>* H);
 
-// Finds joints q within limits that bring frame F to X_WF (damped least squares from `start`, then
-// from `restarts` random starts, the same ones each time). Returns whether the position error is
-// below 1e-6 m and the rotation error below 1e-6 rad. Otherwise, q is the best solution found.
+// Finds joint positions q within the limits that bring frame F to X_WF. The search uses damped
+// least squares, first from `start` and then from `restarts` random starts, which are the same in
+// each call. Returns whether the position error is below 1e-6 m and the rotation error below 1e-6
+// rad. If they are not, q is the best solution found.
 bool SolveInverseKinematics(const RobotModel& model, const FrameId& frame, const Pose& X_WF,
                             const JointVector& start, int restarts, JointVector* q);
 

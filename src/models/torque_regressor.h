@@ -24,7 +24,7 @@ class TorqueRegressor {
   // Hollerbach 1986). The result is valid until the next call.
   const Eigen::MatrixXd& Compute(const JointVector& q, const JointVector& v, const JointVector& a);
 
-  // Returns π of the model. Fixed links are included in the bodies that carry them.
+  // Returns the parameters π of the model. Fixed links are included in the bodies that carry them.
   const Eigen::VectorXd& parameters() const { return parameters_; }
 
  private:

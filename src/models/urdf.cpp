@@ -38,7 +38,7 @@ std::string ReadText(const std::filesystem::path& file) {
   return text;
 }
 
-// The index of each name. Duplicate names are refused.
+// Maps each name to its index. Duplicate names are refused.
 using Names = std::unordered_map<std::string, int>;
 
 std::string UniqueName(const UrdfSource& source, const XmlElement& element, Names* names) {
@@ -98,8 +98,8 @@ void ReadJointNames(const UrdfSource& source, XmlElement* robot, const Names& li
   }
 }
 
-// Requires mass and inertia of everything that moves as one body. Otherwise a joint's acceleration
-// would be undefined.
+// Checks that everything that moves as one body has mass and inertia. Without them, the
+// acceleration of a joint would be undefined.
 void CheckMovingMasses(const UrdfSource& source, const UrdfModel& model) {
   std::vector<double> mass(model.links.size()), inertia(model.links.size());
   for (std::size_t i = 0; i < model.links.size(); ++i) {

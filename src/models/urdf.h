@@ -72,8 +72,8 @@ struct UrdfModel {
 // mass, moving links without mass or inertia, inertia that is not positive semidefinite or violates
 // the triangle inequality, zero axes, missing limits, lower ≥ upper, shapes without size, missing
 // mesh files, mesh paths outside the readable folders (scenario/paths.h), and unsupported joint
-// types. `scenario_folder` is the folder of the scenario that refers to the URDF. If empty, it is
-// the URDF's own folder.
+// types. `scenario_folder` is the folder of the scenario that refers to the URDF. If `folder` is
+// empty, the URDF's own folder is used.
 //
 // A planar joint becomes two prismatic joints and a continuous one (models/urdf_planar.h).
 //

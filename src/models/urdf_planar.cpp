@@ -30,8 +30,8 @@ class Splitter {
   void Split() {
     for (const char* ending : {"_x", "_y", "_yaw"}) RefuseTaken("joint", name_ + ending);
     for (const char* ending : {"_x_link", "_y_link"}) RefuseTaken("link", name_ + ending);
-    // The joint is read as a prismatic one, so that its axis and limits are checked where they are
-    // written.
+    // The planar joint is read as a prismatic joint, so that errors in its axis and limits refer to
+    // its place in the file.
     joint_->SetAttribute("type", "prismatic");
     UrdfJoint plane;
     plane.name = name_;
@@ -87,7 +87,7 @@ class Splitter {
     InsertBefore(slide);
   }
 
-  // Adds the rest of the planar joint.
+  // Turns the planar joint itself into the continuous joint about the plane's normal.
   void TurnAbout(const Vector3& normal) {
     joint_->SetAttribute("name", (name_ + "_yaw").c_str());
     joint_->SetAttribute("type", "continuous");

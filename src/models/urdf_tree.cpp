@@ -31,7 +31,7 @@ Indices JointsAbove(const UrdfSource& source, const UrdfModel& model) {
 
 [[noreturn]] void FailCycle(const UrdfSource& source, const UrdfModel& model, const Indices& above,
                             int link) {
-  // After as many steps upwards as there are links, the walk is inside the cycle.
+  // If the walk goes upwards by as many steps as there are links, it ends inside the cycle.
   const auto parent = [&](int i) {
     return model.joints[static_cast<std::size_t>(above[static_cast<std::size_t>(i)])].parent;
   };

@@ -36,14 +36,15 @@ std::size_t EndOfTag(const std::string& text, std::size_t at, const std::string&
     } else if (c == '=' && ++attributes > kMaxAttributes) {
       FailAt(text, at, name,
              "An element has more than " + std::to_string(kMaxAttributes) +
-                 " attributes. No element of a URDF needs that many.");
+                 " attributes. No element of a URDF needs that many attributes.");
     }
   }
   return text.size();
 }
 
-// Refuses, before parsing, content that makes a small file slow or large. Entities do so and can
-// read other files, so only comments and character data may begin with "<!".
+// Refuses, before parsing, content with which a small file would take much time or memory. Entities
+// can do so, and they can also read other files. Therefore only comments and character data may
+// begin with "<!".
 void RefuseHostile(const std::string& text, const std::string& name) {
   const std::size_t zero = text.find('\0');
   if (zero != std::string::npos) {

@@ -32,7 +32,7 @@ struct UrdfSource {
   // throws if `missing` is NaN.
   double Number(const XmlElement& element, const char* attribute, double missing = kNone,
                 double largest = kLargest) const;
-  // Reads three or four such numbers.
+  // Reads three or four finite numbers.
   Vector3 Triple(const XmlElement& element, const char* attribute, const Vector3& missing) const;
   std::array<double, 4> Color(const XmlElement& element, const char* attribute) const;
   // Returns the pose of the child <origin>, or the identity without one.

@@ -10,7 +10,7 @@ namespace {
 constexpr int kMaxIterations = 200;
 constexpr double kTolerance = 1e-10;  // tolerance of the slope, relative to the largest torque
 
-// The dual at one λ, negated so that it can be minimised.
+// The value of the dual function at one λ, negated so that it can be minimised.
 struct Dual {
   double value = 0;
   ArmVector slope;

@@ -7,8 +7,8 @@
 namespace predictor::muscles {
 
 // Minimises Σ w a^p / p + Σ v (a - e)² / 2 + c Σ (s / r)² / 2 subject to B a + s = τ and lower ≤ a
-// ≤ upper. The reserve s is what the muscles cannot produce. It makes every problem solvable, and
-// must be shown wherever activations are shown.
+// ≤ upper. The reserve s is the part of the torques that the muscles cannot produce. The reserve
+// makes every problem solvable, and must be shown wherever activations are shown.
 struct ActivationProblem {
   MomentArms torque = MomentArms::Zero();  // B: torques of each muscle at full activation [N·m]
   ArmVector target = ArmVector::Zero();    // τ: torques minus those of the passive forces [N·m]
@@ -36,10 +36,10 @@ struct ActivationResult {
   bool converged = false;
 };
 
-// Applies a semismooth Newton method to the dual, which has one unknown for each joint: a(λ)
-// minimises the cost minus λᵀ B a within the bounds, s = λ r² / c, and the slope of the strictly
-// convex dual is B a(λ) + s(λ) - τ. A line search makes it converge from any start. It is
-// deterministic and does not use the heap.
+// Applies a semismooth Newton method to the dual problem, which has one unknown λ for each joint.
+// a(λ) minimises the cost minus λᵀ B a within the bounds, and s = λ r² / c. The slope of the
+// strictly convex dual is B a(λ) + s(λ) - τ. With a line search, the method converges from any
+// start. The method is deterministic and does not use the heap.
 ActivationResult Activate(const ActivationProblem& problem) noexcept;
 
 }  // namespace predictor::muscles

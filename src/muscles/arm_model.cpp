@@ -104,8 +104,8 @@ std::optional<Contact> ContactOf(const ArmPlacement& arm, Wrap wrap, double radi
   }
 }
 
-// Returns the strength of the person's muscles of a group, as a multiple of the mean (D: the mean
-// of the person's multiples where none is given).
+// Returns the strength of a group of the person's muscles, as a multiple of the mean. If no
+// multiple is given for the group, the mean of the person's other multiples is used (D).
 double StrengthOf(const BodySpec& spec, MuscleGroup group) {
   const auto& given = spec.strength;
   switch (group) {
@@ -221,8 +221,9 @@ MuscleLines ArmModel::OwnLinesAt(const ArmVector& q) const noexcept {
       const Point to = place(node);
       int level = 0;
       if (const auto contact = ContactOf(arm, node.wrap, node.radius, from.p, to.p, &level)) {
-        // The path is a shortest one, so its length does not change to first order when the ends of
-        // the contact slide. These ends count as points of the obstacle.
+        // The path is the shortest one, so its length does not change to first order when the ends
+        // of the contact slide. The ends of the contact are treated as points that are fixed to the
+        // obstacle.
         AddStraight(arm, from, {contact->begin, level}, &length, &moment_arm);
         length += contact->length;
         from = {contact->end, level};

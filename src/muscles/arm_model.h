@@ -1,5 +1,4 @@
-// An arm with muscles across the joints of the body: lengths, moment arms and forces in one
-// posture.
+// Computes the lengths, moment arms and forces of the muscles of an arm in one posture of the body.
 #pragma once
 
 #include <array>
@@ -35,14 +34,15 @@ struct MuscleForces {
   MuscleVector fibre_length;  // relative to the optimal length; 0: slack
 };
 
-// The muscles of another arm model, with the same names and joints. Both arms are mirror images, so
-// it describes them with the same angles. All lengths are those of an upper arm of kTableUpperArm.
+// The muscles of another arm model, with the same names and joints. The two arms are mirror images,
+// so the model describes both with the same angles. All lengths apply to an upper arm of the length
+// kTableUpperArm.
 class ArmPaths {
  public:
   virtual ~ArmPaths() = default;
-  // Returns the model's name, for the reader of results.
+  // Returns the model's name, which is shown with the results.
   virtual const char* name() const = 0;
-  // q is in [rad]. Does not use the heap. One object serves one thread.
+  // q is in [rad]. Does not use the heap. Only one thread may use an object of this type.
   virtual MuscleLines LinesAt(const ArmVector& q) const noexcept = 0;
   virtual const MuscleParameters& muscle(int i) const = 0;
 };
@@ -50,14 +50,14 @@ class ArmPaths {
 class ArmModel {
  public:
   // An arm of the body (hand 0: left). The paths scale with the lengths of upper arm, forearm and
-  // hand. Forces scale with mass times height over length, relative to 75 kg and 1.75 m (a muscle's
-  // volume is proportional to mass times height, R), are multiplied by 0.7 for women (D), and are
-  // multiplied by the person's own strength. Tendon lengths are chosen so that the longest fibres
-  // over the corners of the working range have kLongestFibre: flexion 0 to 90°, abduction 0 to 60°
-  // and so on (D).
+  // hand. Forces scale with mass times height over length, relative to 75 kg and 1.75 m, because a
+  // muscle's volume is proportional to mass times height (R). They are also multiplied by 0.7 for
+  // women (D), and by the person's own strength. Tendon lengths are chosen so that the longest
+  // fibre at all corners of the working range has the length kLongestFibre. This range comprises
+  // flexion from 0 to 90°, abduction from 0 to 60° and so on (D).
   //
-  // With `paths`, lines and parameters are those of another model, and all lengths scale with the
-  // upper arm. Forces are scaled in the same way.
+  // With `paths`, the paths and parameters of the muscles are those of another model, and all
+  // lengths scale with the upper arm. Forces are scaled in the same way.
   ArmModel(const BodySpec& spec, int hand, std::shared_ptr<const ArmPaths> paths = nullptr);
 
   int hand() const { return hand_; }

@@ -15,17 +15,17 @@ struct EmgProcessing {
   double delay = 0.04;  // delay from the electrical to the mechanical onset, 0.01 to 0.08 [s]
 };
 
-// Applies a band-pass, takes the absolute value, and applies a low-pass. Each filter is of second
-// order and runs forward and backward, so it has no delay. The result is at least 0, in the unit of
-// the input. Throws InputError for an impossible rate or band.
+// Applies a band-pass filter to the signal, takes the absolute value, and applies a low-pass
+// filter. Each filter is of second order and runs forward and backward, so it has no delay. The
+// result is at least 0, in the unit of the input. Throws InputError for an impossible rate or band.
 std::vector<double> EmgEnvelope(std::span<const double> raw, const EmgProcessing& processing);
 
 // Returns a = (e^(A u) - 1) / (e^A - 1) for an envelope u relative to MVC, limited to 0 ... 1.
 // `shape` is A, from -3 (curved) to 0 (straight).
 double ActivationOfEmg(double u, double shape);
 
-// Returns the activations of a raw signal, one for each sample: the envelope over mvc, shaped by
-// ActivationOfEmg, and delayed.
+// Returns the activation at each sample of a raw signal. The envelope is divided by mvc, converted
+// by ActivationOfEmg, and delayed.
 std::vector<double> EmgActivation(std::span<const double> raw, const EmgProcessing& processing);
 
 }  // namespace predictor::muscles

@@ -1,7 +1,7 @@
 // A muscle with a stiff tendon: the force that its fibres can produce at a given length and
 // velocity.
 //
-// Marks at the figures state their origin. V: agrees with an independent copy. R: quoted from
+// A letter at each figure states its origin. V: agrees with an independent copy. R: quoted from
 // memory of the literature. D: our choice.
 #pragma once
 
@@ -14,8 +14,8 @@ struct MuscleParameters {
   double tendon_slack = 0;  // length of the tendon, which does not stretch [m]
 };
 
-// The fibres at one time. A path shorter than the tendon leaves them slack, so that length and
-// forces are zero.
+// The state of the fibres at one time. If the path is shorter than the tendon, the fibres are
+// slack, so their length and forces are zero.
 struct Fibre {
   double length = 0;         // relative to the optimal length
   double velocity = 0;       // positive while lengthening, relative to kMaxVelocity
@@ -24,8 +24,8 @@ struct Fibre {
 // path_length [m] and its rate [m/s] are those of the whole path from origin to insertion.
 Fibre FibreOf(const MuscleParameters& muscle, double path_length, double path_rate);
 
-// The shortening velocity at which no force is left, in optimal lengths per second (Thelen 2003, V:
-// the default of a public simulator).
+// The shortening velocity at which the force is zero, in optimal lengths per second (Thelen 2003,
+// V: the default of a public simulator).
 inline constexpr double kMaxVelocity = 10;
 
 // Returns the active force of fibres at full activation over max_force, exp(-(l - 1)² / 0.45)

@@ -6,8 +6,8 @@ namespace {
 using enum MuscleGroup;
 using enum Part;
 
-// The factor of MyoArm's forces of wrist and fingers (D). With the full forces, the moments of the
-// wrist are more than twice the measured ones.
+// The factor by which MyoArm's forces of wrist and fingers are multiplied (D). With the full
+// forces, the moments of the wrist would be more than twice the measured moments.
 constexpr double kWrist = 0.5;
 
 constexpr PathPoint OverHead(Part part, double x, double y, double z, double radius) {

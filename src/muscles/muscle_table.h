@@ -1,14 +1,15 @@
 // The muscles of an arm: their names, paths and strengths.
 //
 // Sources of the paths: attachments and via points were read from the MyoArm model of the package
-// myo-sim 0.2.4 (Apache-2.0) in the posture of zero angles, expressed in the segments of our body,
-// rounded to millimetres and reduced to a few points (V for what was read, D for what was omitted
-// or moved). Wraps are D, chosen so that moment arms agree with measured ones
-// (docs/concepts/muscles.md). Sources of the forces: Holzbaur, Murray & Delp 2005 for shoulder and
-// elbow (triceps, biceps and brachialis V, compared with the public model arm26; the others R), and
-// MyoArm (V) for the forearm. MyoArm's forces are larger. The four paths of each finger muscle are
-// added up, and wrist and fingers have half of the forces (D). Source of fibre lengths and
-// pennation: Holzbaur et al. 2005 (the same six V, the others R).
+// myo-sim 0.2.4 (Apache-2.0) in the posture of zero angles. They were expressed in the segments of
+// our body, rounded to millimetres and reduced to a few points. What was read is V, and what was
+// omitted or moved is D. The wrapping obstacles are D. They were chosen so that the moment arms
+// agree with measured ones (docs/concepts/muscles.md). Sources of the forces: Holzbaur, Murray &
+// Delp 2005 for shoulder and elbow, and MyoArm (V) for the forearm. In the former, triceps, biceps
+// and brachialis are V (compared with the public model arm26), and the others are R. MyoArm's
+// forces are larger. The forces of the four paths of each finger muscle are added up. The muscles
+// of wrist and fingers have half of MyoArm's forces (D). Source of fibre lengths and pennation:
+// Holzbaur et al. 2005 (V for the same six muscles, R for the others).
 #pragma once
 
 #include <array>
@@ -34,8 +35,8 @@ constexpr bool ActsAtShoulder(int group) {
   return group <= static_cast<int>(MuscleGroup::kRotatorCuff);
 }
 
-// A rigid part to which a muscle is attached. Coordinates are those of a right arm in the zero
-// posture (hanging, straight, thumb forward): x forward, y to the left, z up.
+// A rigid part to which a muscle is attached. The coordinates apply to a right arm in the zero
+// posture (hanging, straight, thumb forward), with x forward, y to the left and z up.
 enum class Part : int {
   kNone,
   kTorso,     // origin at the shoulder joint; the shoulder girdle does not move relative to it

@@ -19,7 +19,7 @@ using person::ArmJoint;
 
 constexpr int kMaxDofs = 256;
 
-// MyoArm's muscles that form one of ours.
+// The muscles of MyoArm that together form one of our muscles.
 struct Strands {
   const char* key;  // key in MuscleTable
   std::vector<const char*> names;
@@ -88,8 +88,8 @@ struct Strand {
   double share = 0;
 };
 
-// Rotations about the axis of the plane of elevation, about the axis of elevation, and about the
-// first axis again.
+// The rotations about the axis of the plane of elevation, about the axis of elevation, and about
+// the first axis again.
 struct ShoulderAngles {
   double plane = 0, elevation = 0, rotation = 0;
 };
@@ -121,8 +121,9 @@ class MyoArm final : public ArmPaths {
   MyoModel model_;
   MyoData data_;
   MyoJoint plane_, elevation_, rotation_, elbow_, pronation_, flexion_, deviation_;
-  // Three more joints at the centre of the shoulder. Their axes are never in one plane, unlike
-  // those of plane, elevation and rotation, with which a hanging upper arm is singular.
+  // Three additional joints at the centre of the shoulder. The axes of these joints are never in
+  // one plane. The axes of plane, elevation and rotation are, if the upper arm hangs, which makes
+  // this posture singular.
   std::array<MyoJoint, 3> ball_;
   std::vector<Coupling> couplings_;
   std::vector<Strand> strands_;
@@ -264,8 +265,8 @@ void MyoArm::SetPosture(const ArmVector& q, const Matrix3& R_upper_arm) const no
   const ShoulderAngles shoulder = ShoulderAt(R_upper_arm);
   qpos[plane_.q] = shoulder.plane;
   qpos[elevation_.q] = shoulder.elevation;
-  // A coupled joint turns the upper arm back by the angle of the plane (see couplings_), which is
-  // therefore added.
+  // A coupled joint turns the upper arm back by the angle of the plane (see couplings_), so this
+  // angle is added here.
   qpos[rotation_.q] = shoulder.rotation + shoulder.plane;
   const auto at = [&](ArmJoint joint) { return q[static_cast<int>(joint)]; };
   qpos[elbow_.q] = at(ArmJoint::kElbowFlexion);

@@ -19,16 +19,16 @@ namespace predictor::muscles {
 // MJCF file that contains the whole arm (with or without _r at the end of the names). The shapes of
 // the bones are not loaded.
 //
-// The joints correspond as follows. The shoulder has the same orientation of the upper arm relative
-// to the torso, in MyoArm as plane of elevation, elevation and rotation. If the upper arm hangs
-// vertically, the shoulder girdle counts as not moving. Elbow, pronation and wrist have the same
-// angles, with opposite signs of the wrist's deviation. Fingers and thumb are in the middle of
-// their ranges, because the hand holds a bar (D).
+// The joints correspond as follows. At the shoulder, the upper arm has the same orientation
+// relative to the torso. MyoArm describes this orientation by plane of elevation, elevation and
+// rotation. If the upper arm hangs vertically, the shoulder girdle is assumed not to move. Elbow,
+// pronation and wrist have the same angles, except that the wrist's deviation has the opposite
+// sign. Fingers and thumb are in the middle of their ranges, because the hand holds a bar (D).
 //
-// Each of our muscles consists of one or several of MyoArm's. Their forces are added, and their
-// lengths are averaged with the forces as weights. Palmaris longus and the muscles of thumb and
-// palm are left out (D). Optimal fibre length and tendon length follow from the operating range of
-// MuJoCo's muscle: l0 = Δlengthrange/Δrange, slack = lengthrange[0] - range[0] l0.
+// Each of our muscles consists of one or several muscles of MyoArm. Their forces are added, and
+// their lengths are averaged with the forces as weights. Palmaris longus and the muscles of thumb
+// and palm are left out (D). Optimal fibre length and tendon length follow from the operating range
+// of MuJoCo's muscle: l0 = Δlengthrange/Δrange, slack = lengthrange[0] - range[0] l0.
 //
 // Throws InputError if the model cannot be read or lacks a joint, a muscle or its tendon.
 std::shared_ptr<const ArmPaths> LoadMyoArm(const std::filesystem::path& model);

@@ -22,7 +22,7 @@ void DeleteAll(mjSpec* spec, mjtObj kind) {
 }
 
 // The file contains the inertias of the bodies, so the shapes of the bones are needed only for
-// pictures. Tendons run around other shapes.
+// pictures. Tendons wrap around other shapes than those of the bones.
 void DeletePictures(mjSpec* spec) {
   for (mjsElement* element = mjs_firstElement(spec, mjOBJ_GEOM); element != nullptr;) {
     mjsElement* next = mjs_nextElement(spec, element);
@@ -59,7 +59,7 @@ std::string Include(const std::filesystem::path& file) {
   return "<include file=\"" + EscapeMarkup(file.string()) + "\"/>";
 }
 
-// The torso carries the origins of some muscles, and the place of the arm.
+// The torso carries the origins of some muscles and the site to which the arm is attached.
 std::string TorsoAssets(const std::filesystem::path& folder) {
   return "<compiler angle=\"radian\"/>" +
          Include(folder / "torso" / "assets" / "myotorso_assets.xml") +

@@ -19,7 +19,7 @@ ArmMatrix JointStiffness(const ArmModel& arm, const ArmVector& q, const MuscleVe
     K.col(j) -=
         (arm.LinesAt(q + step).moment_arm - arm.LinesAt(q - step).moment_arm) * force / (2 * kStep);
   }
-  // Second derivatives commute, so only rounding makes the matrix asymmetric.
+  // Second derivatives commute, so any asymmetry of the matrix is due to rounding.
   return (K + K.transpose()) / 2;
 }
 

@@ -1,4 +1,4 @@
-// Computes the stiffness of the arm's joints and of its hand from the forces of the muscles.
+// Computes the stiffness of the arm's joints and of the hand from the forces of the muscles.
 #pragma once
 
 #include <optional>
@@ -7,21 +7,22 @@
 
 namespace predictor::muscles {
 
-// The stiffness of a muscle along its path, over force per optimal fibre length: k = 23 F / l0
-// (short-range stiffness of active fibres, Rack & Westbury 1974, Cui et al. 2008, R). The tendon
-// counts as rigid, so k is too large for muscles with a long tendon.
+// The factor of a muscle's stiffness along its path, k = 23 F / l0, where l0 is the optimal fibre
+// length (short-range stiffness of active fibres, Rack & Westbury 1974, Cui et al. 2008, R). The
+// tendon is assumed to be rigid, so k is too large for muscles with a long tendon.
 inline constexpr double kShortRangeStiffness = 23;
 
 // Returns K = -∂τ/∂q [N·m/rad] at constant activations: Rᵀ diag(k) R - (∂Rᵀ/∂q) F, where R is the
 // matrix of moment arms with one row for each muscle. Only `active_force` [N] contributes to the
-// stiffness k, while all of `force` [N] contributes to the second term. That term is a central
-// difference of the moment arms.
+// stiffness k, while all of `force` [N] contributes to the second term. The second term is a
+// central difference of the moment arms.
 ArmMatrix JointStiffness(const ArmModel& arm, const ArmVector& q, const MuscleVector& active_force,
                          const MuscleVector& force) noexcept;
 
 // A point of the hand, in a posture of the whole body.
 struct HandPoint {
-  // The twist of the frame at the point, per velocity of the arm's joints.
+  // The Jacobian that maps the velocities of the arm's joints to the twist of the frame at the
+  // point.
   Eigen::Matrix<double, 6, person::kArmJoints> J;
   // ∂(JᵀF)/∂q for the force F on the hand [N·m/rad].
   ArmMatrix turning;
@@ -30,19 +31,21 @@ struct HandPoint {
 HandPoint HandPointAt(const person::BodyModel& body, const person::Placement& at, int hand,
                       const Vector3& p, const Vector3& force) noexcept;
 
-// Returns the stiffness [N/m] of the hand's point for small displacements without rotation, as with
-// a handle that keeps its orientation. It is the block of the position in (J (K - ∂(JᵀF)/∂q)⁻¹
-// Jᵀ)⁻¹. Weights and the moment on the hand are neglected. Returns no value if the posture is not
-// stable, or if the arm cannot move the hand in all directions.
+// Returns the stiffness [N/m] of the hand's point for small displacements without rotation, as if
+// the hand held a handle that keeps its orientation. This stiffness is the translational block of
+// (J (K - ∂(JᵀF)/∂q)⁻¹ Jᵀ)⁻¹. The weight of the arm and the moment on the hand are neglected.
+// Returns no value if the posture is not stable, or if the arm cannot move the hand in all
+// directions.
 std::optional<Matrix3> EndpointStiffness(const ArmMatrix& joint_stiffness,
                                          const HandPoint& point) noexcept;
 
 // Returns the principal stiffnesses in ascending order [N/m].
 Vector3 PrincipalStiffness(const Matrix3& stiffness) noexcept;
 
-// Returns the smallest common lower bound of all activations, in steps of 1/256, at which the
-// smallest principal stiffness of the hand's point reaches `target` [N/m], or 1 if no bound
-// suffices. `problem` has that bound afterwards. `forces` are those of the problem.
+// Returns the smallest common lower bound of all activations at which the smallest principal
+// stiffness of the hand's point reaches `target` [N/m], or 1 if no bound suffices. The bound is
+// searched in steps of 1/256. Afterwards, `problem` contains that bound. `forces` are the muscle
+// forces of `problem`.
 double CoContractionFor(const ArmModel& arm, const ArmVector& q, const MuscleForces& forces,
                         const HandPoint& point, double target, ActivationProblem* problem) noexcept;
 

@@ -7,11 +7,11 @@
 namespace predictor::muscles {
 namespace {
 
-// Returns the angle at the centre between a point at distance rho and the point at which its
-// tangent touches.
+// Returns the angle at the centre between a point at distance rho and the point at which the
+// tangent from it touches the circle.
 double TangentAngle(double radius, double rho) { return std::acos(std::min(1.0, radius / rho)); }
 
-// Returns the distance from the point to the point at which its tangent touches.
+// Returns the distance from a point to the point at which the tangent from it touches the circle.
 double TangentLength(double radius, double rho) {
   return std::sqrt(std::max(0.0, rho * rho - radius * radius));
 }
@@ -49,8 +49,8 @@ std::optional<Contact> AroundCylinder(const Vector3& from, const Vector3& to, co
   double turn = between - before - TangentAngle(radius, rho_b);
   if (turn <= kMaxTurn - 2 * kPi) turn += 2 * kPi;
   if (!(turn > 0)) return {};
-  // On the unrolled surface, the path is a straight line. It rises along the axis in proportion to
-  // its flat length.
+  // On the unrolled surface, the path is a straight line. The path rises along the axis in
+  // proportion to its length in the plane normal to the axis.
   const double first = TangentLength(radius, rho_a), arc = radius * turn;
   const double flat = first + arc + TangentLength(radius, rho_b);
   const double slope = (z_b - z_a) / flat;

@@ -15,14 +15,14 @@ struct Contact {
 };
 
 // Returns the path around the ball about `center`, on the shorter side, or no value if the straight
-// line misses the ball. A point inside the ball counts as if it were on the surface.
+// line misses the ball. A point inside the ball is treated as if it were on the surface.
 std::optional<Contact> AroundBall(const Vector3& from, const Vector3& to, const Vector3& center,
                                   double radius);
 
-// Returns the path around the cylinder about the line through `center` along the unit vector
-// `axis`, turning in the positive sense about `axis`, by at most 210°. Returns no value if the
-// straight line passes on that side. A point inside the cylinder counts as if it were on the
-// surface.
+// Returns the path around the cylinder whose axis is the line through `center` along the unit
+// vector `axis`. The path turns in the positive sense about `axis`, by at most 210°. Returns no
+// value if the straight line passes the cylinder on that side without touching it. A point inside
+// the cylinder is treated as if it were on the surface.
 std::optional<Contact> AroundCylinder(const Vector3& from, const Vector3& to, const Vector3& center,
                                       const Vector3& axis, double radius);
 

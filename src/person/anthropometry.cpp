@@ -14,7 +14,7 @@ namespace {
 
 // A row of de Leva's table. The mass is a fraction of the body's mass. The centre of mass (from the
 // proximal end) and the radii of gyration (about the sagittal, transverse and longitudinal axes)
-// are fractions of the length. The length is that at the table's mean height [m].
+// are fractions of the length. The length applies to a person of the table's mean height [m].
 struct Row {
   double mass, com;
   Vector3 radii;
@@ -57,10 +57,10 @@ const Table kFemaleTable = {1.735,
 constexpr double kMinHeight = 1.2, kMaxHeight = 2.4;              // [m]
 constexpr double kMinMass = 30, kMaxMass = 250;                   // [kg]
 constexpr double kMinBodyMassIndex = 12, kMaxBodyMassIndex = 70;  // [kg/m²]
-// The range of a measured length, as factors of the estimate.
+// The permitted range of a measured length, relative to the estimated length.
 constexpr double kMinLengthFactor = 0.7, kMaxLengthFactor = 1.4;
-// The possible heights of the head, which remain after the other lengths, as a fraction of the
-// body's height.
+// The possible heights of the head, as fractions of the body's height. The height of the head is
+// what remains of the body's height after the other lengths.
 constexpr double kMinHeadHeight = 0.08, kMaxHeadHeight = 0.2;
 
 [[noreturn]] void Refuse(const std::string& key, const std::string& sentence) {
@@ -95,7 +95,7 @@ Segment Make(const Row& row, double mass, double length) {
   return s;
 }
 
-// Makes a segment whose centre of mass the table measures from the distal end.
+// Makes a segment for which the table gives the centre of mass from the distal end.
 Segment FromFarEnd(const Row& row, double mass, double length) {
   Segment s = Make(row, mass, length);
   s.com = length - s.com;
@@ -172,7 +172,7 @@ Anthropometry AnthropometryOf(const BodySpec& spec) {
   a.upper_arm = limb("upper_arm", spec.upper_arm, t.upper_arm);
   a.forearm = limb("forearm", spec.forearm, t.forearm);
   a.hand = limb("hand", spec.hand, t.hand);
-  // The table's sagittal axis is normal to the palm, which faces the body here.
+  // The table's sagittal axis is normal to the palm, and in this model the palm faces the body.
   std::swap(a.hand.inertia.x(), a.hand.inertia.y());
   a.thigh = limb("thigh", spec.thigh, t.thigh);
   a.shank = limb("shank", spec.shank, t.shank);

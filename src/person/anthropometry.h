@@ -1,4 +1,5 @@
-// A person's segment masses, centres of mass, inertias and lengths, from height, mass and sex.
+// Computes the masses, centres of mass, inertias and lengths of a person's segments from height,
+// mass and sex.
 //
 // Marks at the figures state their origin. V: agrees with an independent copy (the biobuddy 0.3.2
 // package). R: quoted from memory of the literature. D: our choice.
@@ -9,8 +10,8 @@
 
 namespace predictor::person {
 
-// A rigid segment. Its axes in the upright posture, with hanging arms and thumbs forward, are x
-// forward, y left, z up.
+// A rigid segment. In the upright posture, with hanging arms and thumbs forward, the segment's axes
+// are x forward, y left, z up.
 struct Segment {
   double mass = 0;                    // [kg]
   double length = 0;                  // [m]
@@ -18,9 +19,9 @@ struct Segment {
   Vector3 inertia = Vector3::Zero();  // about the axes x, y, z through the centre of mass [kg·m²]
 };
 
-// The pelvis is de Leva's lower trunk (mid hip to omphalion), the torso de Leva's middle and upper
-// trunk (omphalion to C7). The proximal end of the head is C7, that of the torso the omphalion,
-// that of the pelvis the midpoint of the hip joints, and that of the foot the heel.
+// The pelvis is de Leva's lower trunk (mid hip to omphalion), and the torso is de Leva's middle and
+// upper trunk (omphalion to C7). The proximal ends are C7 for the head, the omphalion for the
+// torso, the midpoint of the hip joints for the pelvis, and the heel for the foot.
 struct Anthropometry {
   double height = 0;  // [m]
   double mass = 0;    // [kg]
@@ -39,13 +40,14 @@ struct Anthropometry {
 // Masses, centres of mass, radii of gyration and lengths are those of de Leva, "Adjustments to
 // Zatsiorsky-Seluyanov's segment inertia parameters", J. Biomech. 29 (1996) 1223-1230 (V; shoulder
 // height R). Lengths scale with the height; inertia = m (r L)². Masses are scaled by at most 0.01 %
-// so that they sum to the person's mass. The centre of mass of the upper arm is 0.5772 (0.5754) of
-// its length from the shoulder; biobuddy measures this fraction from the elbow, Winter gives 0.436.
-// The trunk is upright and straight, so the head has the height that the other lengths leave.
-// Further lengths, as fractions of the height: ankle 0.039 (Winter, R), hip joints 0.05 and
-// shoulder joints 0.105 from the midplane (D), L5/S1 0.058 above (Chaffin & Andersson: a fifth of
-// the way from hip to shoulder, R) and 0.018 behind the hips (D), eyes at 0.936 (Drillis & Contini,
-// R). Throws InputError, with the key of BodySpec, for values that no adult has.
+// so that they sum to the person's mass. The distance of the upper arm's centre of mass from the
+// shoulder is 0.5772 (0.5754) of its length. biobuddy measures this fraction from the elbow, and
+// Winter gives 0.436. The trunk is upright and straight, so the height of the head is what remains
+// of the body's height after the other lengths. Further lengths, as fractions of the height: ankle
+// 0.039 (Winter, R), hip joints 0.05 and shoulder joints 0.105 from the midplane (D), L5/S1 0.058
+// above (Chaffin & Andersson: a fifth of the way from hip to shoulder, R) and 0.018 behind the hips
+// (D), eyes at 0.936 (Drillis & Contini, R). Throws InputError, with the key of BodySpec, for
+// values that no adult has.
 Anthropometry AnthropometryOf(const BodySpec& spec);
 
 }  // namespace predictor::person

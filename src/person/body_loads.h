@@ -1,4 +1,4 @@
-// The loads of the body in one posture and motion: joint torques, lower back, balance.
+// Computes the loads of the body in one posture and motion: joint torques, lower back and balance.
 #pragma once
 
 #include <array>
@@ -10,13 +10,13 @@
 
 namespace predictor::person {
 
-// A posture and its derivatives [rad, rad/s, rad/s²; m for the pelvis's position].
+// A posture and its derivatives [rad, rad/s, rad/s²; for the pelvis's position m, m/s, m/s²].
 struct BodyMotion {
   BodyVector q = BodyVector::Zero(), v = BodyVector::Zero(), a = BodyVector::Zero();
 };
 
-// The loads of the disc between the fifth lumbar vertebra and the sacrum, which carries everything
-// above it.
+// The loads of the disc between the fifth lumbar vertebra and the sacrum. This disc carries the
+// whole body above it.
 struct DiscLoads {
   double flexion_moment = 0;  // moment that the back muscles must produce, positive: extensors
                               // [N·m]
@@ -44,11 +44,12 @@ struct BodyLoads {
 };
 
 // The model is a single equivalent extensor (Chaffin & Andersson; marks R). The disc is
-// perpendicular to a direction fixed to the pelvis, which leans kSacralAngle forward from the
-// pelvis's long axis. Compression = force along this direction + √(flexion² + lateral moment²) /
-// muscle_arm; shear = force across it, forward. The muscle pulls along the compression. Abdominal
-// pressure and co-contraction are neglected, so the loads of upright standing are underestimated.
-// Compare with 3.4 kN (NIOSH, R) and with a shear of 0.7 to 1 kN (Gallagher & Marras 2012, R).
+// perpendicular to a direction that is fixed to the pelvis and leans forward by kSacralAngle from
+// the pelvis's long axis. Compression = force along this direction + √(flexion² + lateral moment²)
+// / muscle_arm. Shear = forward force perpendicular to this direction. The muscle pulls along the
+// compression. Abdominal pressure and co-contraction are neglected, so the loads of upright
+// standing are underestimated. Compare with 3.4 kN (NIOSH, R) and with a shear of 0.7 to 1 kN
+// (Gallagher & Marras 2012, R).
 inline constexpr double kSacralAngle = 0.698;   // 40° [rad]
 inline constexpr double kBackMuscleArm = 0.06;  // 0.05 to 0.07 [m]
 
@@ -86,9 +87,9 @@ void ForEachBodyValue(Loads& loads, F f) {
 // Smooths postures at the constant interval dt [s] without phase shift and computes their
 // derivatives. It runs a second-order Butterworth filter forward and backward, with the overall
 // cutoff `cutoff` [Hz] (Winter 2009: each pass has 1/0.802 of it), and then takes central
-// differences. There is no delay, but the last half second changes when samples are added. The
-// cutoff is at most half of the Nyquist frequency. Fewer than three postures have derivatives of
-// zero.
+// differences. The filter causes no delay, but the results of the last half second change when
+// samples are added. The cutoff is at most half of the Nyquist frequency. With fewer than three
+// postures, the derivatives are zero.
 std::vector<BodyMotion> SmoothMotion(std::span<const BodyVector> q, double dt, double cutoff = 6);
 
 }  // namespace predictor::person

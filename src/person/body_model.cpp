@@ -63,7 +63,8 @@ void BodyModel::Carry(int joint, const Segment& segment, const Vector3& com) {
   j.com = com;
 }
 
-// The limits of the torso come from the reference (R). Those of neck and pelvis are our choice (D).
+// The limits of the torso come from the reference (R). The limits of the neck and the pelvis are
+// our choice (D).
 void BodyModel::AddTrunk() {
   const Anthropometry& a = anthropometry_;
   const Vector3 none = Vector3::Zero(), x = Vector3::UnitX(), y = Vector3::UnitY(),

@@ -1,4 +1,4 @@
-// The body as a tree of rigid segments: joints, kinematics, inverse dynamics.
+// Models the body as a tree of rigid segments, with its joints, kinematics and inverse dynamics.
 //
 // The body is described in S, the frame on the ground between the feet: x is the direction that the
 // person faces, y points left, and z points up. S does not move. In the zero posture, the person
@@ -15,7 +15,7 @@
 
 namespace predictor::person {
 
-// The joints, in order along the chains. The first six are those of the pelvis in S. A joint moves
+// The joints, in the order of the chains. The first six joints move the pelvis in S. A joint moves
 // all joints after it in its chain. Arms and neck begin at the torso.
 enum Joint : int {
   kPelvisX,       // forward [m]
@@ -36,8 +36,9 @@ inline constexpr int kArmJoints = 7;
 inline constexpr int kRightArm = kLeftArm + kArmJoints;
 inline constexpr int kBodyJoints = kRightArm + kArmJoints;
 
-// The joints of an arm. Of() gives their index in the body. The shoulder is a sequence of flexion,
-// abduction and rotation. It is singular at an abduction of 90°, but not for a hanging upper arm.
+// The joints of an arm. Of() returns the index of such a joint in the body. The shoulder is a
+// sequence of flexion, abduction and rotation. This sequence is singular at an abduction of 90°,
+// but not for a hanging upper arm.
 enum class ArmJoint : int {
   kShoulderFlexion,    // positive forward
   kShoulderAbduction,  // positive away from the body
@@ -72,9 +73,9 @@ struct BodyJoint {
 };
 
 // Returns the grip frame G in the axes of the hand: x along the bar towards the thumb, z from the
-// knuckles to the wrist. Its origin is the centre of the bar. In a power grip, this is at 0.9 of
-// the hand's length from the wrist and 0.025 m from it on the palm's side. In a hook grip, it is at
-// 1.2 of the length and 0.02 m (D).
+// knuckles to the wrist. The origin of G is the centre of the bar. In a power grip, the centre of
+// the bar is at 0.9 of the hand's length from the wrist, and 0.025 m from the hand on the palm's
+// side. In a hook grip, these values are 1.2 of the hand's length and 0.02 m (D).
 Pose GripInHand(const Anthropometry& a, int hand, GripKind kind);
 
 class BodyModel {
@@ -87,7 +88,7 @@ class BodyModel {
   BodyVector lower() const;
   BodyVector upper() const;
 
-  // Returns the mass of the segments above the hip joints [kg]. The legs are not part of the tree,
+  // Returns the mass of the segments above the hip joints [kg]. The legs are not part of the tree;
   // see person/legs.h.
   double mass_above_hips() const;
 
@@ -112,11 +113,11 @@ struct Placement {
 };
 Placement Place(const BodyModel& model, const BodyVector& q);
 
-// Returns J with V_S = J v, where V_S is the twist, in the axes of S, of the frame at p [m, in S]
-// that moves with `joint`.
+// Returns J with V_S = J v. V_S is the twist, in the axes of S, of the frame at p [m, in S] that
+// moves with `joint`.
 BodyJacobian JacobianAt(const BodyModel& model, const Placement& at, int joint, const Vector3& p);
 
-// An external wrench on the body, about the point p of S, in the axes of S.
+// An external wrench on the body, about the point p, in S.
 struct ExternalWrench {
   int joint = 0;  // joint that moves with the segment on which the wrench acts
   Vector3 p = Vector3::Zero();
@@ -125,8 +126,8 @@ struct ExternalWrench {
 
 struct JointLoads {
   // The generalised forces of the joints [N·m; N for the pelvis's translations], which the muscles
-  // must produce, positive in the direction of the joint. The first six are the legs' action on the
-  // pelvis.
+  // must produce, positive in the direction of the joint. The first six are the forces that the
+  // legs exert on the pelvis.
   BodyVector torque;
   // The force [N] and moment [N·m] that the inner segment exerts on the outer segment at each
   // joint's origin, in the axes of S.
@@ -143,8 +144,8 @@ JointLoads InverseDynamics(const BodyModel& model, const BodyVector& q, const Bo
 // upright and do not move.
 std::string MjcfOf(const BodyModel& model);
 
-// A part of the body that moves as one. The joints first ... last are at one place, and the last
-// carries its mass.
+// A part of the body that moves as one rigid body. The joints first ... last are at one place, and
+// the last carries its mass.
 struct BodyPart {
   const char* name;  // "pelvis", "left_hand"
   int first, last;
@@ -152,8 +153,8 @@ struct BodyPart {
 std::span<const BodyPart> BodyParts();
 
 // Returns the body as an OpenSim model (4.x) with the same joints, names, limits and masses,
-// without legs and muscles. Forces and torques of its pelvis are the legs' action. As is usual in
-// OpenSim, x points forward, y up and z to the right.
+// without legs and muscles. The forces and torques at the pelvis in this model are those that the
+// legs exert on it. As is usual in OpenSim, x points forward, y up and z to the right.
 std::string OpenSimModelOf(const BodyModel& model);
 // Converts a vector of S to OpenSim's axes.
 inline Vector3 InOpenSim(const Vector3& v) { return {v.x(), v.z(), -v.y()}; }

@@ -1,5 +1,5 @@
-// The legs extend from the pelvis to the feet, which stay on the ground. They are not part of the
-// body's tree.
+// The legs extend from the pelvis to the feet, which stay on the ground. The legs are not part of
+// the body's tree.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ struct BodyLegs {
   std::array<std::array<Vector3, 3>, kHands> joints;
   std::array<double, kHands> knee_flexion = {};  // 0 straight [rad]
   // The amount by which the distance from hip joints to ankles exceeds the length of the legs [m],
-  // or 0 if the legs reach.
+  // or 0 if the legs are long enough.
   double stretched = 0;
 };
 
@@ -25,11 +25,12 @@ struct BodyLegs {
 // inertia.
 BodyLegs LegsOf(const BodyModel& model, const BodyVector& q, double width);
 
-// The rectangle around both feet, which are parallel to x of S. The heel is 0.25 of the foot's
-// length behind the ankle, and the foot is 0.055 of the height wide (Drillis & Contini, R).
+// The rectangle around both feet, which are parallel to x of S. The heel is behind the ankle by
+// 0.25 of the foot's length, and the width of the foot is 0.055 of the body's height (Drillis &
+// Contini, R).
 struct Footprint {
   double back = 0, front = 0, half_width = 0;  // x = back ... front, |y| ≤ half_width [m]
-  // Returns the distance of (x, y) from the nearest edge [m], positive inside.
+  // Returns the distance of (x, y) from the nearest edge of the rectangle [m], positive inside.
   double MarginOf(double x, double y) const;
 };
 Footprint FootprintOf(const Anthropometry& a, double width);

@@ -8,8 +8,8 @@
 namespace predictor::person {
 
 struct ArmAngles {
-  // The angle of the upper arm to the torso, in the torso's midplane: 0 along the torso, positive
-  // forward, negative behind (RULA and REBA: flexion, extension) [rad].
+  // The angle between the upper arm and the torso, in the torso's midplane [rad]. It is 0 along the
+  // torso, positive in front of it and negative behind it (RULA and REBA: flexion, extension).
   double upper_arm_flexion = 0;
   // The angle of the upper arm to the torso's midplane, positive away from the body [rad].
   double upper_arm_abduction = 0;
@@ -20,9 +20,9 @@ struct ArmAngles {
   double wrist_flexion = 0;       // positive towards the palm, negative extension [rad]
   double wrist_deviation = 0;     // positive ulnar, negative radial [rad]
   double forearm_twist = 0;       // 0 with the thumb up, positive pronation (palm down) [rad]
-  // The distance of the knuckles from the torso's midplane, towards the arm's own side [m]. It is
-  // negative if the forearm crosses the midline, and larger than the shoulder's distance if the
-  // forearm is out to the side.
+  // The distance of the knuckles from the torso's midplane, towards the arm's own side [m]. This
+  // distance is negative if the forearm crosses the midline, and larger than the shoulder's
+  // distance if the forearm points outwards.
   double hand_beside_midline = 0;
   // hand_beside_midline minus the distance of the shoulder joint from the midplane [m]. Positive if
   // the hand is further out to the side than the shoulder.

@@ -1,4 +1,4 @@
-// A posture that follows the handles, under the rules of the control loop.
+// Computes a posture that follows the handles and satisfies the rules of the control loop.
 #pragma once
 
 #include <memory>

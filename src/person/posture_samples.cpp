@@ -59,7 +59,7 @@ void ForEachLoad(BodyLoads& loads, F f) {
 }  // namespace
 
 Interval IntervalOf(std::span<double> values) {
-  if (values.empty()) throw std::invalid_argument("There are no values for an interval.");
+  if (values.empty()) throw std::invalid_argument("The interval needs at least one value.");
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
   const std::size_t outside = n >= 20 ? n / 20 - 1 : 0;

@@ -12,8 +12,8 @@
 
 namespace predictor::person {
 
-// The standard deviations of everything that must be assumed. All of them are our choice (D). The
-// project's reference also gives ±15° for the swivel.
+// The standard deviations of all quantities that must be assumed. All these values are our choice
+// (D). The project's reference also states ±15° for the swivel angle.
 struct PostureSpread {
   double swivel = 0.262;  // swivel of each elbow, 15°; half of the variance is common to both [rad]
   double pelvis_forward = 0.03;    // [m]
@@ -67,9 +67,9 @@ class PostureSampler {
                  const PosturePrior& prior = DefaultPrior(), const PostureSpread& spread = {},
                  std::uint64_t seed = 1);
 
-  // `nominal` is the motion of the nominal posture. All samples use its velocities and
-  // accelerations. Their postures are solved for this time alone, starting from the nominal
-  // posture.
+  // `nominal` is the motion of the nominal posture. All samples use the velocities and
+  // accelerations of the nominal motion. The postures of the samples are solved for this time
+  // alone, starting from the nominal posture.
   SampledBody Evaluate(const BodySample& sample, const BodyMotion& nominal) const;
   // Evaluates one of the kPostureSamples people.
   SampledPosture EvaluatePerson(std::size_t i, const BodySample& sample,
@@ -92,10 +92,10 @@ inline constexpr int kPriorVariations = 3 + 4 + 4 + 2 + kHands * kArmJoints;
 PosturePrior VariedPrior(const PosturePrior& prior, std::span<const double> z,
                          const PostureSpread& spread);
 
-// Returns a person with different lengths and masses. Each segment has the factor 1 + spread · z
-// (z: 9 standard normal numbers for upper arm, forearm, hand, shoulder distance, trunk, and the
-// masses of torso, upper arm, forearm, hand). Lengths that are measured in `spec` are unchanged.
-// The mass of the whole body is unchanged, because the pelvis takes the difference.
+// Returns a person with different lengths and masses. Each length or mass is multiplied by 1 +
+// spread · z. The 9 standard normal numbers z are for upper arm, forearm, hand, shoulder distance,
+// trunk, and the masses of torso, upper arm, forearm and hand. Lengths that are measured in `spec`
+// are unchanged. The mass of the whole body is unchanged, because the pelvis takes the difference.
 Anthropometry VariedBody(const BodySpec& spec, std::span<const double> z, double length,
                          double mass);
 inline constexpr int kBodyVariations = 9;

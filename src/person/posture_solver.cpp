@@ -17,7 +17,8 @@ constexpr double kPriorWeight = 1e-3;
 constexpr double kLargestStep = 0.4;  // largest step of a joint [rad] or [m]
 constexpr double kMaxDamping = 1e4;
 
-// One stage: which tasks count, whether the prior counts, and when the stage ends.
+// One stage of the solver: the tasks that count, whether the prior counts, and the condition that
+// ends the stage.
 struct Stage {
   bool hands_only;
   double damping, min_damping;  // initial and smallest damping
@@ -29,7 +30,7 @@ constexpr Stage kCompromise = {false, 1e-3, 1e-9, 1e-6, 0, 80};
 constexpr Stage kExact = {true, 1e-6, 1e-10, 1e-13, 1e-10, 60};
 constexpr Stage kFollow = {false, 1e-5, 1e-9, 1e-6, 0, kFollowIterations};
 
-// All memory that a descent needs.
+// All memory that the descent needs.
 struct Workspace {
   TaskRows rows;
   Qp qp{kBodyJoints, 0};

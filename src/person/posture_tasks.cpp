@@ -186,7 +186,7 @@ void PostureTasks::Judge(Posture* posture) const {
       posture->oblique[k] = 2 * std::asin(std::min(1.0, posture->rotation_error[k] / 2));
       posture->rotation_error[k] = std::max(0.0, posture->oblique[k] - kMaxOblique);
     }
-    // The condition is also false if measurements are not finite.
+    // The comparison is written so that it is also false if measurements are not finite.
     if (!(posture->position_error[k] <= 1e-6 && posture->rotation_error[k] <= 1e-6))
       posture->reached = false;
   }

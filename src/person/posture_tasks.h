@@ -9,8 +9,8 @@
 namespace predictor::person {
 
 inline constexpr double kRotationLength = 0.2;  // weighs rotation against translation [m/rad]
-// The weight for a bar that lies obliquely in a hand that turns about it [1/rad²], and the largest
-// angle (D).
+// The weight of the oblique angle between the bar and a hand that can turn about the bar [1/rad²],
+// and the largest such angle (D).
 inline constexpr double kObliqueWeight = 5e-3, kMaxOblique = 0.7;
 inline constexpr int kMaxTaskRows = 28;
 

@@ -1,4 +1,4 @@
-// The run as seen by a process alongside it.
+// The access of a process alongside the run to the run's data.
 #pragma once
 
 #include "core/shared_run.h"
@@ -7,8 +7,8 @@
 
 namespace predictor {
 
-// Descriptors that such a process inherits. Each kind of process may write only into its own
-// mailbox. The last one is that of the evaluator's states, for reading.
+// The file descriptors that such a process inherits. Each kind of process may write only into its
+// own mailbox. The last descriptor is for reading the evaluator's states.
 enum : int {
   kBoardDescriptor = 3,
   kMailboxDescriptor = 4,
@@ -20,7 +20,7 @@ enum : int {
 // at the start [m in W].
 Json RunLine(const Scenario& scenario, const Vector3& object_start);
 
-// The run as seen by a process alongside it, built from the board and that first line.
+// The run as seen by a process alongside it, constructed from the board and the first line.
 struct AttachedRun {
   // Throws std::runtime_error if the memory does not belong to a run of this version.
   explicit AttachedRun(const Json& start);

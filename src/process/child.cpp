@@ -27,15 +27,15 @@ void Limit(int resource, rlim_t most) {
     throw std::runtime_error("The process cannot limit its resources.");
 }
 
-// Makes the process end with the run, however the run ends. (The kernel discards this setting when
-// the user changes.)
+// Makes the process end when the run ends, whatever ends the run. (The kernel discards this setting
+// when the user changes.)
 void DieWithParent(const Json& start) {
   if (start.contains(kOutlivesTheRun)) return;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != start["parent"].get<pid_t>()) std::_Exit(kEnded);
 }
 
-// Call this before any input is read.
+// Call this function before any input is read.
 void LimitResources(const char* name) {
   prctl(PR_SET_NAME, name);
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);

@@ -1,4 +1,5 @@
-// Limits the messages that a process alongside the run shows to the user to a readable amount.
+// Limits the number of messages that a process alongside the run shows to the user, so that the
+// user can read them.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +23,8 @@ class SaidFilter {
   }
 
   // Returns the messages to show for `text`, received at `now`: none if there were too many
-  // messages recently, otherwise the text. It is shortened if necessary, and a message with the
-  // number of previously omitted messages precedes it.
+  // messages recently, otherwise the text. The text is shortened if necessary. If messages were
+  // omitted before, a message with their number precedes the text.
   std::vector<std::string> Take(const std::string& text, Time now) {
     const std::chrono::duration<double> since = now - std::exchange(last_, now);
     room_ = std::min(kMaxAtOnce, room_ + kPerSecond * since.count());

@@ -23,7 +23,8 @@ namespace {
 
 // ---- Landlock: restricts what a process may access in the file system and on the network
 
-// The numbers are the same on every architecture, but older headers lack them.
+// The numbers of these system calls are the same on every architecture, but older headers do not
+// define them.
 constexpr long kCreateRuleset = 444, kAddRule = 445, kRestrictSelf = 446;
 constexpr std::uint32_t kAskVersion = 1;
 constexpr int kPathBeneath = 1;
@@ -95,9 +96,11 @@ bool EnterLandlock(const Preparation& may) {
 // ---- seccomp: restricts the system calls
 
 // The lists come from traces, with glibc 2.36, of a run with viewer, TLS and ROS-TCP, and of the
-// questionnaire. They also include calls that other versions of glibc use for the same functions.
+// questionnaire. The lists also include calls that other versions of glibc use for the same
+// functions.
 
-// Calls of a server, and calls that the C library needs to allocate, wait, read the time and abort.
+// The calls that a server needs, and the calls that the C library needs to allocate memory, wait,
+// read the time and abort.
 constexpr const char* kServing =
     "read write readv writev recvfrom recvmsg close shutdown accept accept4 getsockname "
     "getpeername getsockopt setsockopt poll ppoll epoll_wait epoll_pwait epoll_pwait2 "
@@ -124,7 +127,7 @@ class List {
   List() : context_(seccomp_init(SCMP_ACT_ERRNO(EPERM)), &seccomp_release) {
     good_ = context_ &&
             seccomp_attr_set(context_.get(), SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_KILL_PROCESS) == 0;
-    // The filter searches the calls by bisection.
+    // The filter finds a call by binary search.
     seccomp_attr_set(context_.get(), SCMP_FLTATR_CTL_OPTIMIZE, 2);
   }
 

@@ -8,7 +8,8 @@
 
 namespace predictor {
 
-// Sanitizers need additional memory, processes and files. With them, no process enters the sandbox.
+// Sanitizers need additional memory, processes and files. In builds with sanitizers, no process
+// enters the sandbox.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kSanitized = true;
 #else
@@ -23,14 +24,14 @@ struct Preparation {
   bool give_up_more = false;                 // change its user, and enter the second stage
 };
 
-// Both functions restrict this process permanently and do not need root. They return a description
-// of the protections that this system lacks, or "" if it lacks none. Each uses Landlock and a list
-// of allowed system calls (seccomp). A call that is not on the list fails with EPERM and does not
-// end the process. If a C library uses a different call for the same purpose, the user therefore
-// sees an error message, whereas a killed process would only restart and be killed again. A call of
-// another architecture ends the process. Both functions refuse: executing programs, new processes
-// and threads, connections, signals to other processes, tracing, shared memory, and changing file
-// attributes.
+// The two functions below restrict this process permanently and do not need root. Both functions
+// return a description of the protections that this system lacks, or "" if it lacks none. Each of
+// these functions uses Landlock and a list of allowed system calls (seccomp). A call that is not on
+// the list fails with EPERM and does not end the process. If a C library uses a different call for
+// the same purpose, the user therefore sees an error message, whereas a killed process would only
+// restart and be killed again. A call of another architecture ends the process. Both functions
+// refuse: executing programs, new processes and threads, connections, signals to other processes,
+// tracing, shared memory, and changing file attributes.
 //
 // First stage, entered before any foreign data is read. Paths that do not exist are ignored.
 std::string EnterPreparation(const Preparation& may);

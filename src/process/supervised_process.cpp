@@ -255,7 +255,7 @@ bool SupervisedProcess::Impl::Pause(std::chrono::milliseconds time) {
   return wait.revents == 0;
 }
 
-// Runs until the run ends. Errors are reported, and the process is started again.
+// This function returns when the run ends. Errors are reported, and the process is started again.
 void SupervisedProcess::Impl::Supervise() noexcept {
   pthread_setname_np(pthread_self(), "supervisor");
   while (!over) {
@@ -294,8 +294,8 @@ void SupervisedProcess::Impl::StartAgain() {
   Start();
 }
 
-// Ends the process if it still runs and returns its wait status. Concurrent calls of Ask do not
-// block.
+// Ends the process if it is still running, and returns its wait status. Concurrent calls of Ask do
+// not block.
 int SupervisedProcess::Impl::Reap() {
   pid_t child = 0;
   {

@@ -1,5 +1,6 @@
-// The run's side of a process alongside the run. It starts the process, listens to it, and restarts
-// it if it dies or falls silent. Neither its messages nor its death can move the arms.
+// Implements the run's side of the connection to a process alongside the run. The run starts the
+// process, listens to it, and restarts it if it dies or falls silent. Neither the messages nor the
+// death of this process can move the arms.
 #pragma once
 
 #include <atomic>
@@ -21,16 +22,16 @@ struct ChildSetup {
   Json start;
   int board = -1;    // descriptor; not owned
   int mailbox = -1;  // likewise: the only memory that the process may write; -1: none
-  // Receives messages for the user, of one or several lines. Like `hear`, it is called by a
-  // separate thread, and before that by the constructor.
+  // Receives messages for the user, of one or several lines. A separate thread calls this function,
+  // as it calls `hear`. Before that thread starts, the constructor calls it.
   std::function<void(const std::string& text)> notify;
   // Receives each line from the process except {"say": …} and {"error": …}, which go to `notify`.
-  // The content is not trusted.
+  // The content of these lines is not trusted.
   std::function<void(const Json& line)> hear;
   // Longest pause before a restart. The pause grows after each short-lived start.
   std::chrono::milliseconds longest_pause{60'000};
-  // Counts the process's signs of life in shared memory, or null if it gives none. A short silence
-  // is reported, and a longer one ends the process.
+  // The counter of the process's signs of life in shared memory, or null if the process gives none.
+  // A short silence is reported, and a longer one ends the process.
   const std::atomic<std::uint32_t>* beats = nullptr;
   std::string without = "the run continues";  // describes the state of the run while there is no
                                               // such process
@@ -50,10 +51,10 @@ class SupervisedProcess {
   int pid() const;             // 0: there is no process at present
   std::uint16_t port() const;  // 0: the process reported no port
   // Sends a line from any thread, without waiting. Returns false if there is no process at present
-  // or if it does not read. In the latter case part of the line may have been sent, so no further
-  // lines should be sent.
+  // or if it does not read. If the process does not read, part of the line may have been sent, so
+  // no further lines should be sent.
   bool Ask(const Json& line);
-  // Ends the process immediately. It is then started again.
+  // Ends the process immediately. The process is then started again.
   void Kill();
   // Sets `key` of ChildSetup::start to `value`, so the process receives it if it is started again.
   void Remember(const std::string& key, const Json& value);

@@ -28,7 +28,8 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
   const auto A = qp.A();
   double scale = std::max(1.0, qp.f().lpNorm<Eigen::Infinity>());
   for (int k = 0; k < n + m; ++k) scale = std::max(scale, std::abs(y[k]));
-  // The rows of the symmetric H are also its columns, so all elements are summed together.
+  // H is symmetric, so its rows are also its columns, and the sums for all elements are computed
+  // together.
   Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMaxQpVariables> gradient(n);
   for (int i = 0; i < n; ++i) gradient[i] = qp.f()[i] + y[i];
   for (int j = 0; j < n; ++j) gradient += x[j] * H.row(j);
@@ -54,7 +55,8 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
       upper = qp.b_upper()[k - n];
     }
     residual = std::max({residual, lower - value, value - upper});
-    // A multiplier pushes away from its bound and is nonzero only if the bound is active.
+    // A multiplier has the sign that pushes away from its bound, and it is nonzero only if the
+    // bound is active.
     sum += y[k];
     const double push = std::abs(y[k]) / scale;
     const double gap = y[k] > 0 ? upper - value : value - lower;
@@ -65,18 +67,19 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
 
 struct QpSolver::Impl {
   Impl(int variables, int rows) : problem(variables, rows) {
-    // The setup solves nothing. It allocates the memory for these sizes and types of constraint.
+    // The setup solves no problem. The setup only allocates the memory for these sizes and types of
+    // constraint.
     problem.H().setIdentity();
     if (variables > 1)
-      // Without this, the solver would assume a diagonal matrix.
+      // Without a nonzero element off the diagonal, the solver would assume a diagonal matrix.
       problem.H()(0, 1) = problem.H()(1, 0) = 0.5;
     sense.fill(0);
     Point();
     daqp_default_settings(&settings);
     settings.primal_tol = 1e-9;
     // Widely differing weights make active bounds nearly parallel in the solver's metric. With the
-    // default tolerance the solver treats them as dependent and reports the problem as infeasible,
-    // which it cannot be.
+    // default tolerance, the solver treats these bounds as dependent and wrongly reports the
+    // problem as infeasible.
     settings.sing_tol = 1e-14;
     settings.iter_limit = 300;
     settings.eq_reduction = DAQP_EQ_REDUCTION_OFF;

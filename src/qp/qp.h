@@ -1,4 +1,4 @@
-// A small dense quadratic program and its solver (DAQP, behind this interface).
+// A small dense quadratic program and an interface to its solver (DAQP).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// The largest problem is that of haptic rendering (haptics/limit.h). Its variables are the joints
-// of two arms and one slack for each of its rows.
+// Haptic rendering solves the largest problem (haptics/limit.h). The variables of this problem are
+// the joint velocities of two arms and one slack for each row.
 inline constexpr int kMaxQpRows = 28;
 inline constexpr int kMaxQpVariables = kHands * kMaxArmJoints + kMaxQpRows;
 
@@ -63,10 +63,10 @@ struct QpSolution {
   int iterations = 0;
 };
 
-// Returns the largest violation of the optimality conditions of (qp, solution): stationarity
-// relative to max(1, |f|∞, |multipliers|∞); primal feasibility [unit of x]; and signs and
-// complementarity of the multipliers, also relative. Returns +inf if the solver found no solution.
-// It is independent of the solver.
+// Returns the largest violation of the optimality conditions of (qp, solution). The conditions are
+// stationarity relative to max(1, |f|∞, |multipliers|∞), primal feasibility [unit of x], and the
+// signs and the complementarity of the multipliers, also relative. Returns +inf if the solver found
+// no solution. This check does not use the solver.
 double KktResidual(const Qp& qp, const QpSolution& solution) noexcept;
 
 class QpSolver {

@@ -16,8 +16,8 @@ namespace predictor::recording {
 
 static_assert(std::endian::native == std::endian::little);
 inline constexpr std::size_t kCdrHead = 4;  // marks little-endian data
-// The upper bound of a tick's messages. Each value costs at most its alignment in addition to its
-// size.
+// The upper bound of the size of a tick's messages. Each value costs at most its alignment in
+// addition to its size.
 inline constexpr std::size_t kLongestTickMessage = 2 * sizeof(TickRecord) + 64;
 
 // Compares bitwise, so −0 differs from 0, and a NaN equals itself.

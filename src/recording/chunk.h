@@ -33,7 +33,8 @@ class ChunkBuilder {
   std::size_t size() const { return size_; }  // uncompressed size [bytes]
   std::uint64_t start_time() const { return start_time_; }
 
-  // Returns space for a message of at most `most` bytes. Fill it, then report the message's length.
+  // Returns space for a message of at most `most` bytes. The caller writes the message into this
+  // space and then reports the message's length.
   std::byte* Begin(std::size_t most);
   void End(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns, std::size_t bytes);
   void Add(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns,

@@ -1,5 +1,5 @@
-// The numbers of a record by name. Tables use them, and so does the message that names the quantity
-// in which two records differ.
+// Gives access to the numbers of a record by name. Tables use these names, and so does the message
+// that states in which quantity two records differ.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct Column {
   std::vector<Condition> conditions = {};
 
   bool ExistsIn(const TickRecord& record) const;
-  // Uses all digits, so that the text reads back as the same number.
+  // Writes as many digits as are needed to read the same number back from the text.
   std::string Text(const TickRecord& record) const { return text(At(record)); }
   std::uint64_t Bits(const TickRecord& record) const;
   const std::byte* At(const TickRecord& record) const {

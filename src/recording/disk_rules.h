@@ -1,5 +1,5 @@
-// Determines how a recording uses its disk: when it warns, when it ends, and how often it
-// synchronises.
+// Determines when a recording warns about a full disk, when it ends, and how often it synchronises
+// the disk.
 #pragma once
 
 #include <chrono>
@@ -15,8 +15,8 @@ struct DiskRules {
   // The interval of synchronisation, to which half a second and the duration of the synchronisation
   // are added.
   std::chrono::milliseconds sync_period{2000};
-  // Receives sentences for the user: little space is left, or the recording has ended. A thread of
-  // the recorder calls it.
+  // Receives sentences for the user, which say that little space is left or that the recording has
+  // ended. A thread of the recorder calls this function.
   std::function<void(const std::string&)> notify;
 };
 

@@ -87,8 +87,8 @@ Encoder::Encoder(const RecordingHeader& header, std::vector<JsonChannel> scene)
       person_channel_ = static_cast<std::uint16_t>(kFirstJsonChannel + i);
 }
 
-// Uses the clock if the record contains it, and otherwise (in virtual time) the tick. The time
-// never decreases.
+// Uses the clock time if the record contains one, and otherwise (in virtual time) the number of the
+// tick. The time never decreases.
 std::uint64_t Encoder::TimeOf(const TickRecord& record) {
   std::uint64_t since = 0;
   if (record.wall_ns == 0) {
@@ -142,7 +142,7 @@ void Encoder::AddScene(const TickRecord& record, std::uint64_t time) {
   }
 }
 
-// The state has the time of its tick, whose messages were added before.
+// The state has the time of its tick. The messages of this tick were added before.
 void Encoder::AddPerson(const PersonState& state) {
   if (person_channel_ == 0) return;
   std::uint64_t time = now_ns_;

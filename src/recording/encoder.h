@@ -23,7 +23,7 @@ inline constexpr std::uint64_t kScenePeriod = 40'000'000;    // period of JSON m
 inline constexpr std::size_t kLargestSnapshot = 32U << 20U;  // [bytes]
 inline constexpr std::size_t kLargestChunk = 2 * kLargestSnapshot;  // uncompressed [bytes]
 
-// Starts a tick's CRC with its log time [ns].
+// Starts the CRC of a tick with the tick's log time [ns].
 std::uint32_t CrcOf(std::uint64_t time);
 
 std::string EventText(const RecordingEvent& event);

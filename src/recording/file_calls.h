@@ -1,4 +1,4 @@
-// The system calls that write a recording. Tests can make them fail.
+// The system calls that write a recording. Tests replace these calls by calls that fail.
 #pragma once
 
 #include <sys/types.h>

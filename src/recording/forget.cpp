@@ -104,7 +104,7 @@ std::string StemOfRun(const fs::path& file) {
   return "";
 }
 
-// Returns whether this is a default name of the files that this program makes from the run STEM.
+// Returns whether this is a default name of a file that the program makes from the run STEM.
 bool IsMadeFrom(const std::string& stem, const fs::path& file) {
   const std::string name = file.filename().string();
   if (!name.starts_with(stem + ".") || name.ends_with(".survey.json")) return false;

@@ -39,7 +39,8 @@ struct RecordingHeader {
 struct JsonChannel {
   std::string topic, schema_name;
   std::string schema;  // JSON Schema
-  // Converts a record to a message. Empty if the messages do not follow from ticks.
+  // Converts a record to a message. This function is empty if the messages do not follow from
+  // ticks.
   std::function<std::string(const TickRecord& record, std::uint64_t unix_ns)> message;
 };
 
@@ -51,9 +52,9 @@ JsonChannel PersonChannel();
 struct RecordingEvent {
   std::uint64_t tick = 0;  // the newest tick when the event was recorded
   std::uint64_t unix_ns = 0;
-  // "event"; "marker": a person set it; "loss": ticks before `tick` are missing. These are derived
-  // from the ticks: "state", "stop", "reset", "parameter", "hazard", and "omitted" (number of
-  // events above the limit).
+  // "event"; "marker": a person set it; "loss": ticks before `tick` are missing. The following
+  // kinds are derived from the ticks: "state", "stop", "reset", "parameter", "hazard", and
+  // "omitted" (number of events above the limit).
   std::string kind;
   std::string text;
   std::uint64_t lost = 0;  // number of lost ticks

@@ -1,5 +1,5 @@
-// Reads untrusted files: records, chunks, messages, ticks. It allocates no memory for data that the
-// file does not contain, and never more than fixed limits.
+// Reads untrusted files: records, chunks, messages, ticks. Never allocates memory for data that the
+// file does not contain, or more memory than fixed limits allow.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace predictor::recording {
 
 inline constexpr std::uint64_t kLargestSummary = 64U << 20U;  // [bytes]
 
-// A regular file. It may change or shrink while it is being read.
+// A regular file. The file may change or shrink while it is being read.
 class InputFile {
  public:
   // Throws InputError.
@@ -37,14 +37,15 @@ class InputFile {
   std::uint64_t size_ = 0;
 };
 
-// The header of the record at `offset`. It is plausible if opcode and length fit into the file.
+// The header of the record at `offset`. The header is plausible if the whole record fits into the
+// file.
 struct RecordHead {
   mcap::Op op = {};
   std::uint64_t length = 0;  // length of the content
 };
 std::optional<RecordHead> ReadHead(const InputFile& file, std::uint64_t offset);
 
-// Finds the possible starts of records in order. It reads each byte only once.
+// Finds the possible starts of records in order. Each byte is read only once.
 class MarkFinder {
  public:
   // Searches for records `op` that have `mark` at `mark_at` bytes after their start, before
@@ -68,8 +69,8 @@ class MarkFinder {
   std::string bytes_;
 };
 
-// Returns the index of the chunk at `offset`, as far as the chunk itself contains it (no message
-// indexes). Returns no value if there is no complete chunk of our format.
+// Returns the part of the index of the chunk at `offset` that the chunk itself contains, without
+// message indexes. Returns no value if there is no complete chunk of our format.
 std::optional<mcap::ChunkIndex> ChunkAt(const InputFile& file, std::uint64_t offset);
 
 // Returns a chunk's messages, uncompressed. Throws InputError that names the chunk and its offset
@@ -82,7 +83,8 @@ struct Message {
   std::uint64_t time = 0;  // [ns]
   std::string_view data;
 };
-// Takes the next message from `rest`. Returns false at the end or if the message is incomplete.
+// Removes the next message from `rest` and returns it in `message`. Returns false at the end or if
+// the message is incomplete.
 bool TakeMessage(std::string_view* rest, Message* message);
 
 // Assembles a tick from its messages.

@@ -45,8 +45,8 @@ bool McapFile::Fail(const char* what) {
   return false;
 }
 
-// If the file system cannot reserve space, the file is written nevertheless. There may then be no
-// space for the end of the file.
+// If the file system cannot reserve space, the file is written without a reservation. There may
+// then be no space for the end of the file.
 bool McapFile::Reserve(std::uint64_t bytes) {
   const std::uint64_t size = size_.load();
   if (!can_reserve_ || size + bytes <= reserved_) return true;

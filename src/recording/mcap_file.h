@@ -34,10 +34,10 @@ class McapFile {
   McapFile(const McapFile&) = delete;
   McapFile& operator=(const McapFile&) = delete;
 
-  // Returns false if it fails. The file is then as before, and error() gives the reason.
+  // Returns false if it fails. In this case, the file is unchanged, and error() gives the reason.
   bool Put(Chunk chunk);
-  // Writes index and footer. Nothing can be added afterwards. Returns false if that fails, but the
-  // chunks can still be read.
+  // Writes index and footer. No data can be added afterwards. Returns false if the end of the file
+  // cannot be written. The chunks can still be read in this case.
   bool End();
   // Ends the file early. Returns the outcome of the recording as sentences for the user.
   std::string EndBecause(const std::string& why);

@@ -67,7 +67,7 @@ std::optional<std::uint64_t> FindCopy(const InputFile& file) {
   return {};
 }
 
-// Describes for the user what the loss of a part means.
+// Describes the consequences of the loss of a part to the user.
 std::string Consequence(const std::string& name) {
   if (name == kScenarioFile)
     return "without it, the run cannot be shown, recomputed, reported or used to identify "

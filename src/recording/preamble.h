@@ -55,7 +55,7 @@ const std::string& Beginning();
 // Returns the CRC of all entries except the CRC entry itself.
 std::string CrcOfRun(mcap::Map run);
 
-// Returns the CRC of the layout of a tick's bytes, with which ticks can be read even if their
+// Returns the CRC of the layout of a tick's bytes. With this CRC, ticks can be read even if their
 // schemas are lost.
 std::string LayoutCrc();
 

@@ -25,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folders of the recorded files. Their relative positions are kept, so that references between
-// the scenario and the URDFs remain valid.
+// The folders of the recorded files. The relative positions of these folders are kept, so that
+// references between the scenario and the URDFs remain valid.
 constexpr const char* kScenarioFolder = "scenario";
 constexpr const char* kAssetsFolder = "assets";
 constexpr const char* kPackagesFolder = "packages";
@@ -152,7 +152,7 @@ std::string ScenarioText(const RecordingHeader& header, const std::string& file)
   return is_earlier ? WriteYaml(tree) : header.scenario_yaml;
 }
 
-// A replay never runs a program. It uses the controller's recorded answers instead.
+// A replay never runs a program. A replay uses the controller's recorded answers instead.
 void UseTape(const RecordingHeader& header, Scenario* scenario) {
   std::vector<double> tape;
   for (const RecordingAttachment& file : header.attachments) {

@@ -11,10 +11,10 @@
 
 namespace predictor {
 
-// Returns the header of a recording that starts now: the scenario with all its values, its model
-// files (every URDF, and all other files that no pinned package contains), and the hashes of all of
-// them. File references in COLLADA files (textures) are not followed. Throws InputError if a model
-// cannot be read.
+// Returns the header of a recording that starts now. It contains the scenario with all its values,
+// its model files (every URDF, and all other files that no pinned package contains), and the hashes
+// of all these files. File references in COLLADA files (textures) are not followed. Throws
+// InputError if a model cannot be read.
 RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program_version,
                             const std::map<std::string, std::string>& labels);
 
@@ -22,8 +22,9 @@ RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program
 // (EmulatorSetup::controller_tape), so that the run can be repeated without the controller.
 void AddControllerTape(const std::vector<double>& tape, RecordingHeader* header);
 
-// Returns the recorded scenario from its text. `file` is the recording's name for errors. Relative
-// model paths start at `folder`. Throws InputError, for example if the scenario is damaged.
+// Returns the recorded scenario from its text. `file` is the name of the recording, which error
+// messages state. Relative model paths start at `folder`. Throws InputError, for example if the
+// scenario is damaged.
 Scenario RecordedScenario(const RecordingHeader& header, const std::string& file,
                           const std::filesystem::path& folder);
 

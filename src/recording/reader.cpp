@@ -126,7 +126,7 @@ bool RecordingReader::Impl::ParseSummary(std::string_view summary, std::uint64_t
   return from.ok && count.has_value();
 }
 
-// Reads chunk by chunk until the first incomplete one.
+// Reads the chunks in order up to the first incomplete chunk.
 void RecordingReader::Impl::Scan() {
   chunks.clear();
   count.reset();

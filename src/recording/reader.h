@@ -17,8 +17,9 @@ struct RecordedSnapshot {
   std::vector<std::byte> bytes;
 };
 
-// Compares all data with their CRC. Data that cannot be trusted are never returned, but cause an
-// InputError that names their position. Memory is limited whatever the file claims.
+// Compares all data with their CRC. Data that cannot be trusted are never returned. Instead, an
+// InputError states their position. The memory that is used is limited, whatever sizes the file
+// claims.
 class RecordingReader {
  public:
   // Throws InputError if the file is not a recording, has another version, or its description is
@@ -29,8 +30,9 @@ class RecordingReader {
   RecordingReader& operator=(const RecordingReader&) = delete;
 
   const RecordingHeader& header() const;
-  // Returns whether the recording was closed, so that its index exists and is valid. Otherwise it
-  // was truncated (or its index is damaged), and it is read up to its last complete chunk.
+  // Returns whether the recording was closed, so that its index exists and is valid. A recording
+  // that was not closed is truncated, or its index is damaged. It is read up to its last complete
+  // chunk.
   bool complete() const;
   // Returns sentences for the user: whether the recording is incomplete, which parts of its header
   // were read from the copy, and which are lost. The text is empty if there has been no problem so

@@ -223,7 +223,7 @@ void Recorder::Impl::Encode() {
   queue.NoMore();
 }
 
-// The queue is written completely. Then the recording ends.
+// All chunks in the queue are still written. Then the recording ends.
 void Recorder::Impl::EncodingFailed(const char* why) {
   {
     const std::scoped_lock lock(mutex);
@@ -247,8 +247,8 @@ void Recorder::Impl::Drain() {
   }
 }
 
-// A recorder with too little processor time finds many gaps. One event covers all gaps within a
-// second.
+// A recorder with too little processor time finds many gaps. Therefore one event reports all gaps
+// within a second.
 void Recorder::Impl::FollowLoss(const TickRecord& record) {
   if (reader.lost() > seen) {
     seen = reader.lost();
@@ -284,7 +284,8 @@ void Recorder::Impl::TakeMarks() {
 }
 
 // A state that was read before its tick waits for that tick, because it is stored with the tick's
-// time. Overwritten states are missing without notice, because nothing depends on them.
+// time. States that were overwritten are missing from the recording without a notice, because
+// nothing depends on them.
 void Recorder::Impl::TakePersons(bool all) {
   for (std::size_t k = 0; persons && k < kPersonRing; ++k) {
     PersonState state;

@@ -34,13 +34,13 @@ struct RecorderOptions : DiskRules {
       nullptr;  // source of the person's states to record; null: none; borrowed
 };
 
-// One thread reads the ring, encodes and compresses, another writes, and a third synchronises the
-// disk. A slow disk therefore delays the second and third thread, and the first only after
-// `max_queued`.
+// The first thread reads the ring, encodes and compresses; the second writes; the third
+// synchronises the disk. A slow disk therefore delays the second and the third thread. It delays
+// the first thread only when `max_queued` is reached.
 class Recorder {
  public:
-  // Records everything that is published from now on. `ring` and `calls` are borrowed. Throws
-  // InputError if the file exists or cannot be created.
+  // Records everything that is published from now on. `ring` and `calls` must outlive this object.
+  // Throws InputError if the file exists or cannot be created.
   Recorder(const std::string& path, const RecordingHeader& header, const RecordRing& ring,
            RecorderOptions options = {}, std::vector<JsonChannel> scene = {},
            FileCalls* calls = nullptr);
@@ -48,9 +48,10 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  // These functions are wait-free and only for the thread that ticks. If a snapshot of the complete
-  // state is wanted, SnapshotBuffer returns its buffer, and otherwise an empty span. SnapshotTaken
-  // then reports the tick after which it was taken, and its size (0 if it could not be taken).
+  // The following functions are wait-free, and only the thread of the control loop may call them.
+  // If a snapshot of the complete state is wanted, SnapshotBuffer returns its buffer, and otherwise
+  // an empty span. SnapshotTaken then reports the tick after which it was taken, and its size (0 if
+  // it could not be taken).
   std::span<std::byte> SnapshotBuffer() noexcept;
   void SnapshotTaken(std::uint64_t tick, std::size_t bytes) noexcept;
 
@@ -58,7 +59,8 @@ class Recorder {
   void Mark(const std::string& text);
   RecorderStatus status() const;  // may be called from the same threads as Mark
 
-  // Takes everything from the ring and ends the file. Blocks until all data are on the disk.
+  // Records all remaining data of the ring and ends the file. Blocks until all data are on the
+  // disk.
   void Close();
 
  private:

@@ -19,16 +19,16 @@ namespace predictor {
 namespace recording {
 namespace {
 
-// The name of its compression identifies a chunk among arbitrary bytes. It is at this distance from
-// the start of the chunk.
+// Among arbitrary bytes, a chunk is identified by the name of its compression. This name is at the
+// following distance from the start of the chunk.
 constexpr std::string_view kMark{"\4\0\0\0zstd", 8};
 constexpr std::uint64_t kMarkAt = mcap::kHead + 8 + 8 + 8 + 4;
-// The limits for bytes that are read or decompressed without result: a hostile file may contain
-// many apparent chunks, each of which seems to contain the rest of the file.
+// The limits for bytes that are read or decompressed in vain. A hostile file may contain many
+// apparent chunks, each of which seems to contain the rest of the file.
 constexpr std::uint64_t kMaxWasted = 2 * kLargestChunk, kMaxWastedPerByte = 16;  // [bytes]
 
 // Returns the part of the chunk at `offset` (which ends before `end`) that can be decompressed,
-// whatever length its header claims.
+// regardless of the length in its header.
 std::string DecompressSome(const InputFile& file, std::uint64_t offset, std::uint64_t end) {
   const std::uint64_t start = offset + mcap::kHead + mcap::kChunkHead;
   if (start >= end) return {};
@@ -147,7 +147,7 @@ class Recovery {
   }
 
   // Returns whether a message is a state of the person, or an event with a text of a person or a
-  // program. The others are derived from the ticks.
+  // program. All other messages are derived from the ticks.
   bool IsOfPerson(const Message& message) const {
     if (message.channel == states_) return true;
     RecordingEvent event;

@@ -32,8 +32,8 @@ struct Rewriting {
   bool person = true;  // keep events with free text, and the states of the person
 };
 
-// Writes all intact parts of `in` to `out`, with a new index. From a damaged chunk, it keeps only
-// ticks with a valid CRC. `in` is not changed. Throws InputError if `in` is not a recording or is
+// Writes all intact parts of `in` to `out`, with a new index. Only ticks with a valid CRC are taken
+// from a damaged chunk. `in` is not changed. Throws InputError if `in` is not a recording or is
 // damaged before its first tick, or if `out` exists. Throws RecordingError if `out` cannot be
 // written. `calls` is borrowed.
 RecoverReport Recover(const std::string& in, const std::string& out, FileCalls* calls = nullptr,

@@ -53,7 +53,7 @@ void RunEvents::NewSecond(const TickRecord& record, std::uint64_t unix_ns) {
   Log(record, "omitted", count + " events before this one were omitted", kMaxPerSecond);
 }
 
-// The cause comes before the state that it leads to.
+// The event of the cause precedes the event of the state to which the cause leads.
 void RunEvents::FollowRun(const TickRecord& record) {
   if (record.cause != cause_) {
     if (record.cause != StopCause::kNone)

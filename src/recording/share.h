@@ -14,10 +14,10 @@ namespace predictor {
 // (operator.embodied): the run could not be repeated without it, and it describes no person.
 std::vector<std::string> RemovePerson(RecordingHeader* header);
 
-// Writes all of `in` to the new file `out`, but without the person (RemovePerson), without the
-// states of the person, which follow from the body, and without markers, whose text a person wrote.
-// The ticks stay the same, so a replay repeats them. Throws InputError and RecordingError as
-// Recover does. Returns what was removed.
+// Writes all of `in` to the new file `out` except the person (RemovePerson), the states of the
+// person, which follow from the body, and the markers, whose text a person wrote. The ticks stay
+// the same, so a replay repeats them. Throws InputError and RecordingError as Recover does. Returns
+// what was removed.
 std::vector<std::string> WriteShared(const std::string& in, const std::string& out);
 
 }  // namespace predictor

@@ -15,8 +15,8 @@
 
 namespace predictor {
 
-// A recording could not continue: the disk is full or nearly full, or writing failed. what() gives
-// the reason and the amount of data kept, and states that the file can be read up to there.
+// A recording could not continue, because the disk is full or nearly full or writing failed. what()
+// gives the reason and the amount of data kept, and states that the file can be read up to there.
 class RecordingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

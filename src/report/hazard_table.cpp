@@ -1,4 +1,4 @@
-// Tabulates what the hands felt after the events of a scenario.
+// Makes the table of what the hands felt after the events of a scenario.
 #include <algorithm>
 #include <array>
 

@@ -58,7 +58,7 @@ Json List(const Items& items, Function function) {
 }
 
 // Time axes have a resolution of a tenth of a millisecond, so that no point moves by a pixel.
-// Logarithmic axes need the same resolution, because their values start small.
+// Logarithmic axes need the same resolution, because their smallest values are small.
 double StepOfX(const Plot& plot) { return plot.x.unit == "s" || plot.x.log ? 1e-4 : 0; }
 
 Json ToJson(const Plot& plot, PageData* data) {
@@ -105,7 +105,7 @@ double StepOf(const std::vector<double>& values, double step) {
   return std::max(step, least);
 }
 
-// Titles may come from files, so a reader must see everything that they contain.
+// Titles may come from files, so all their characters must be visible to the reader.
 std::string Heading(const std::string& title) { return EscapeMarkup(Printable(title)); }
 
 }  // namespace

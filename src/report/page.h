@@ -1,5 +1,5 @@
-// One self-contained HTML page with text, tables and plots. It needs no network, has light and dark
-// themes, and can be printed.
+// Writes one self-contained HTML page with text, tables and plots. The page needs no network, has a
+// light and a dark theme, and can be printed.
 #pragma once
 
 #include <map>
@@ -34,10 +34,11 @@ class PageData {
   std::string html_;
 };
 
-// A page that contains its plots as data. Its script draws them on the screen and on paper.
+// A page that contains its plots as data. The script of the page draws the plots on the screen and
+// on paper.
 class ReportPage {
  public:
-  // `words` is HTML that appears below the title.
+  // `words` is the HTML that appears below the title.
   explicit ReportPage(std::string title, std::string words = "");
 
   // Starts a chapter. `id` is unique within the page.

@@ -64,8 +64,8 @@ std::vector<Plot> PathPlots(const Runs& runs) {
   plots.push_back(PathPlot(runs, "path-top", "The path from above", 0, 1));
   plots.push_back(PathPlot(runs, "path-side", "The path from the side", 0, 2));
   plots.back().caption =
-      "In the world frame, every 50 ms. The object is shown by its origin, the handles at their "
-      "measured positions. Both axes have the same scale.";
+      "The paths are in the world frame, with one point every 50 ms. The object is shown by its "
+      "origin, the handles at their measured positions. Both axes have the same scale.";
   return plots;
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 std::string Fixed(double x, int decimals) {
   const std::string text = Formatted("%.*f", decimals, x);
-  // Zero must have no minus sign.
+  // A value that is rounded to zero must have no minus sign.
   return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1)
                                                                               : text;
 }

@@ -46,7 +46,7 @@ struct PlotSeries {
   PlotSymbol symbol = PlotSymbol::kDot;
   Samples base;   // lower edge of an area
   Samples error;  // of markers: half the length of the error bars; null: none
-  // For a line, every sample of some parts of it. The page draws these samples when the reader
+  // For a line, all samples of some of its parts. The page draws these samples when the reader
   // zooms in.
   Samples x_detail, y_detail;
   double resolution = 0;   // step to which the page rounds y; 0: 1/50000 of the range

@@ -159,7 +159,7 @@ void RunCollector::Impl::FollowEvents(const TickRecord& record) {
        true);
 }
 
-// Uses the summary's result, because the summary has already processed this record.
+// The result of the summary is used here, because the summary has already processed this record.
 void RunCollector::Impl::FollowStop(const TickRecord& record) {
   const std::vector<StopSummary>& stops = summary_.stops().stops();
   if (d_.stops.size() != stops.size()) {

@@ -40,7 +40,8 @@ void AddStops(const RunCurves& curves, ReportPage* page) {
                     " more stops; see the events.");
 }
 
-// Describes which limits were active and how often, and the joints that were most often limited.
+// Describes which limits were active, how often they were active, and which joints were limited
+// most often.
 std::string ActiveWords(const RunData& run) {
   const auto share = [&run](std::uint64_t ticks) {
     const auto solved = static_cast<double>(run.summary.Get<std::uint64_t>("qp.solved"));

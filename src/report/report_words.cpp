@@ -26,8 +26,8 @@ std::string Count(std::uint64_t n) {
 }
 std::string Times(std::uint64_t n) { return n == 1 ? "once" : Count(n) + " times"; }
 
-// Returns "0.098 ± 0.088", for example. Both numbers have the decimals that the larger one needs
-// for three digits.
+// Returns "0.098 ± 0.088", for example. Both numbers have the same number of decimal places, which
+// gives the larger number three significant digits.
 std::string Spread(double mean, double deviation, int decimals) {
   const double larger = std::max(std::abs(mean), deviation);
   const int exponent = larger > 0 ? static_cast<int>(std::floor(std::log10(larger))) : 0;
@@ -129,7 +129,7 @@ std::string OscillationWords(const RunData& run) {
            "from 3 to 10 Hz was at most " +
            Significant(rms, 2) + " N.";
   if (index == 0) return "The hands' forces were too small for an oscillation between 3 and 10 Hz.";
-  // A small share of a large force may still be a large force.
+  // Even a small share of a large force may be a large force.
   return "From 3 to 10 Hz, each hand's force had an rms of at most " + Significant(rms, 2) +
          " N, which is small compared with slower changes of the force (index at most " +
          Significant(index, 2) + " while the force varied by more than " +

@@ -101,7 +101,7 @@ struct ReportedEvent {
   bool marker = false;  // set by a person; otherwise caused by the run
 };
 
-// A part of the run that is not in RUN.
+// A part of the run in which the state is not RUN.
 struct ReportedPart {
   std::uint64_t from = 0, to = 0;  // ticks
   RunState state = RunState::kInit;
@@ -149,7 +149,8 @@ struct RunData {
   double dissipated = 0;  // energy dissipated by the virtual world: input minus stored [J]
   double stored = 0;      // change of the virtual world's energy [J]
   std::array<std::vector<OscillationIndex::Window>, kHands> oscillation;
-  // Ticks in which a bound of each joint, a bound of any joint, or a row of the limits was active.
+  // The numbers of ticks in which a bound of each joint, a bound of any joint, or a row of the
+  // limits was active.
   std::array<std::array<std::uint64_t, kMaxArmJoints>, kHands> bound_ticks = {};
   std::uint64_t bounded_ticks = 0, row_ticks = 0;
   double slack_max = 0, slack_rotation_max = 0, limit_slack_max = 0;  // [m/s], [rad/s], [m/s]

@@ -12,9 +12,9 @@ struct NamedRun {
   std::string condition;  // the run's label "condition"; may be empty
 };
 
-// Returns a distinct name for each run. It is the condition if that is short and distinguishes the
-// runs. Otherwise it is the file name with as many of its folders as are needed to distinguish the
-// runs, without the part that all have in common.
+// Returns a distinct name for each run. The name is the run's condition if the conditions are short
+// and distinguish the runs. Otherwise the name is the file name with as many of its folders as are
+// needed to distinguish the runs, without the part that all names have in common.
 std::vector<std::string> ShortNames(const std::vector<NamedRun>& runs);
 
 }  // namespace predictor

@@ -88,8 +88,8 @@ PlotPanel RunPanel(const Runs& runs, const std::string& title, const PlotAxis& a
   return panel;
 }
 
-// Adds a line that concerns both handles. For a single run, it is in the same panel as the handles'
-// own lines.
+// Adds a line that concerns both handles. For a single run, this line is in the same panel as the
+// lines of the handles.
 void AddPair(const Runs& runs, const std::string& title, const std::string& label,
              const PlotAxis& axis, RunChannel channel, double resolution, Plot* plot) {
   if (!First(runs).Present(0) || !First(runs).Present(1)) return;
@@ -291,8 +291,8 @@ Plot OscillationPlot(const Runs& runs) {
       for (const auto& window : windows) {
         t.push_back(window.time);
         force.push_back(window.rms);
-        // The bar extends to half the distance of the next window's middle on each side, so that a
-        // single window is visible too.
+        // The bar extends on each side to half the distance to the middle of the next window, so
+        // that a single window is also visible.
         const double half = window.IsMeaningful() ? OscillationIndex::kWindow / 4 : 0;
         for (const double at : {window.time - half, window.time + half}) {
           steps.push_back(at);

@@ -26,7 +26,8 @@ std::string MeanText(const StatementSummary& s) {
   return Figure("%.2f", s.mean) + " ± " + Figure("%.2f", s.deviation);
 }
 
-// `counted` is the name of the counted items. `zero` is the meaning of a zero.
+// `counted` is the name of the counted items. `zero` is the heading of the column that counts the
+// zeros.
 std::string ShiftTable(const char* counted, const char* zero, const ShiftSummaries& summaries) {
   Rows rows = {{"", counted, zero, "shift", "interval", "its confidence", "p", "p (Holm)"}};
   for (std::size_t i = 0; i < kStatements; ++i) {

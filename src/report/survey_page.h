@@ -1,4 +1,4 @@
-// Makes the page about a questionnaire: plot, tables, comments and methods.
+// Makes the page about a questionnaire, with a plot, tables, comments and methods.
 #pragma once
 
 #include <array>
@@ -15,8 +15,9 @@ struct LikertSeries {
   std::string name;
   std::array<ScoreCounts, kStatements> counts{};
 };
-// Makes a plot like Fig. 11 of the paper for one or two series. It has a cross for each answer
-// (equal answers side by side), and a dot with a bar for mean and standard deviation.
+// Makes a plot like Fig. 11 of the paper for one or two series. The plot has a cross for each
+// answer, with equal answers side by side, and a dot with a bar for the mean and the standard
+// deviation.
 Plot LikertPlot(const std::vector<LikertSeries>& series);
 
 // Returns one self-contained page.

@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-// The units are those of the axes: each statement is 1 wide, and each score is 1 high.
+// Lengths are in units of the axes. Each statement is 1 wide, and each score is 1 high.
 constexpr double kMarginX = 0.06, kMeanWidth = 0.2;  // space beside the crosses of a series
 constexpr double kStepX = 0.085, kStepY = 0.11;      // distance of neighbouring crosses
 constexpr double kHighest = 2.6;                     // largest y; the smallest is its negative

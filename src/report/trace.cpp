@@ -12,12 +12,12 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-// The maximum number of interests, so that a recording with a thousand markers does not cause a
-// thousand searches per second.
+// The maximum number of interests. Without this limit, a recording with a thousand markers would
+// cause a thousand searches per second.
 constexpr std::size_t kMaxInterests = 64;
 // The maximum number of blocks whose lowest and highest values are kept (350 MB for all channels).
-// This is eight hours if no ticks are missing. A hostile recording may have a single tick in each
-// block.
+// These blocks cover eight hours if no ticks are missing. A hostile recording may have a single
+// tick in each block.
 constexpr std::size_t kMaxBlocks = 8 * 3600;
 
 // Writes the lowest and highest of n values, in order of occurrence.
@@ -84,8 +84,8 @@ void Trace::Range(const TraceInterest& interest, std::uint64_t* first, std::uint
   *last = (interest.tick + after) / block_ticks_;
 }
 
-// Returns the numbers of the blocks around the interests in ascending order, as far as there is
-// room.
+// Returns the numbers of the blocks around the interests in ascending order, up to the largest
+// number of blocks for which there is room.
 std::vector<std::uint64_t> Trace::Wanted(std::size_t room) const {
   std::vector<const TraceInterest*> order;
   for (const TraceInterest& interest : interests_) order.push_back(&interest);

@@ -1,5 +1,5 @@
-// Stores channels of a run over time, in bounded memory and one pass: the lowest and highest value
-// of each 50 ms, and every tick of the important parts.
+// Stores channels of a run over time, in bounded memory and in one pass. It keeps the lowest and
+// the highest value of each 50 ms, and every tick of the important parts.
 #pragma once
 
 #include <cstddef>
@@ -27,12 +27,12 @@ class Trace {
   static constexpr double kBefore = 10;     // longest `before` of an interest [s]
 
   // `dt` is the duration of a tick [s]. `detail` is the longest time for which every tick is kept
-  // [s]. A run that is not longer is kept completely.
+  // [s]. A run of at most this length is kept completely.
   Trace(std::size_t channels, double dt, double detail);
 
-  // Adds a tick with a value of each channel (NaN if there is none). Ticks must ascend, and missing
-  // ticks are gaps. Throws InputError if the ticks cover more time than memory allows (eight
-  // hours).
+  // Adds a tick with a value of each channel (NaN if there is none). The numbers of the ticks must
+  // ascend. Missing ticks become gaps. Throws InputError if the ticks cover more time than memory
+  // allows (eight hours).
   void Add(std::uint64_t tick, const float* values);
   // Keeps every tick near a given time, which may be at most kBefore in the past. Returns the
   // interest's number.
@@ -46,7 +46,7 @@ class Trace {
   Samples Values(std::size_t channel) const;
   Samples DetailTimes(std::uint64_t origin) const;
   Samples DetailValues(std::size_t channel) const;
-  // Returns the ticks in (from, to) with their times, as far as they were kept.
+  // Returns the ticks in (from, to) that were kept, with their times.
   void Part(std::uint64_t from, std::uint64_t to, std::uint64_t origin, std::size_t channel,
             std::vector<double>* times, std::vector<double>* values) const;
   // Returns the interests for which every tick was kept. Interests without room are omitted.

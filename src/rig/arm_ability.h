@@ -1,4 +1,5 @@
-// What an arm of the simulated operator can do in the present posture, and the limits that follow.
+// Computes the limits of the simulated operator's motions and forces from what an arm can do in the
+// present posture.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +10,9 @@
 
 namespace predictor {
 
-// Returns the largest share, 0 to 1, of a load for which at_rest + share · load stays within lower
-// ... upper. If at_rest is outside, returns 1 if the load brings the value back, and otherwise 0.
+// Returns the largest share of a load, from 0 to 1, for which at_rest + share · load is between
+// lower and upper. If at_rest is outside this range, returns 1 if the load moves the value back
+// towards the range, and otherwise 0.
 inline double LargestShare(double at_rest, double load, double lower, double upper) {
   if (load == 0) return 1;
   return std::clamp(((load > 0 ? upper : lower) - at_rest) / load, 0.0, 1.0);
@@ -59,7 +61,7 @@ inline Vector3 WithinReach(const Vector3& p, const Vector3& shoulder, double sho
                            double longest) {
   const Vector3 arm = p - shoulder;
   const double length = arm.norm();
-  // The result is exactly p, because callers compare it with p.
+  // If p is within reach, the result is exactly p, because callers compare the result with p.
   if ((length >= shortest && length <= longest) || !(length > 1e-9)) return p;
   return shoulder + arm * (std::clamp(length, shortest, longest) / length);
 }
@@ -80,10 +82,10 @@ struct Standing {
 struct HandForce {
   Vector3 p = Vector3::Zero(), F = Vector3::Zero();
 };
-// The shares of the forces' x and y components at which the centre of pressure stays within the
-// footprint. Static: N = W + Σ Fz carries c = (x W + Σ (px Fz - pz Fx)) / N along x, and likewise
-// along y. A force along y does not move the centre of pressure along x, so a person who stands at
-// the front edge of the feet can still push sideways.
+// The largest shares of the forces' x and y components for which the centre of pressure stays
+// within the footprint. Static: N = W + Σ Fz carries c = (x W + Σ (px Fz - pz Fx)) / N along x, and
+// likewise along y. A force along y does not move the centre of pressure along x, so a person who
+// stands at the front edge of the feet can still push sideways.
 struct BalanceShares {
   double x = 1, y = 1;
 };

@@ -21,7 +21,7 @@ Matrix3 OfEigenvalues(const Matrix3& symmetric, F f) {
 }
 
 // Returns ∂Jᵀ/∂q F, the second derivatives of the hand's position along F. The lateral joint is the
-// outermost one.
+// first joint of the chain, so it also rotates the axes of the other two.
 Matrix3 Bending(const ArmPoints& arm, const ArmAxes& axes, const Matrix3& J, const Vector3& F) {
   const Vector3 upper = arm.hand - arm.shoulder, fore = arm.hand - arm.elbow;
   const auto across = [&](int joint) { return axes.lateral.cross(J.col(joint)).dot(F); };

@@ -1,4 +1,4 @@
-// Computes the stiffness of the hand from that of the arm's joints, by posture.
+// Computes the stiffness of the hand from the stiffness of the arm's joints and from the posture.
 //
 // Marks at the figures state their origin. V: checked against a copy. R: quoted from memory of the
 // literature. D: our choice.
@@ -27,16 +27,17 @@ Matrix3 HandJacobian(const ArmPoints& arm, const ArmAxes& axes);
 
 // Returns K_J = -∂τ/∂q [N·m/rad] of muscles that produce the torques τ [N·m], in the order above.
 // Shoulder and elbow are the symmetric part of Tee, Burdet, Chew & Milner, Biol. Cybern. 90 (2004)
-// 368, after Gomi & Osu 1998 (R). It was measured in the horizontal plane with a supported arm, and
-// includes reflexes. The lateral joint is assumed to be as stiff as
+// 368, after Gomi & Osu 1998 (R). This stiffness was measured in the horizontal plane with a
+// supported arm, and includes reflexes. The lateral joint is assumed to be as stiff as
 // the shoulder (D).
 Matrix3 JointStiffness(const Vector3& torque);
 
 // Returns the symmetric part of K_x = J⁻ᵀ (K_J - ∂Jᵀ/∂q F) J⁻¹ [N/m], computed as the inverse of
 // the compliance J (K_J - ∂Jᵀ/∂q F)⁻¹ Jᵀ, so that a straight arm needs no special case. F is the
 // force of the handle on the hand [N]. The joints' part is at least kMinJointStiffness, and the
-// hand's eigenvalues are within kMinHandStiffness to kMaxHandStiffness: 50 to 600 in relaxed and
-// 1000 in co-contracted arms (Mussa-Ivaldi 1985; Tsuji 1995; R).
+// hand's eigenvalues are limited to the range from kMinHandStiffness to kMaxHandStiffness. Measured
+// values are 50 to 600 in relaxed and 1000 in co-contracted arms (Mussa-Ivaldi 1985; Tsuji 1995;
+// R).
 Matrix3 HandStiffness(const ArmPoints& arm, const Matrix3& joint_stiffness, const Vector3& F);
 inline constexpr double kMinJointStiffness = 1;                            // [N·m/rad] (D)
 inline constexpr double kMinHandStiffness = 50, kMaxHandStiffness = 1000;  // [N/m]

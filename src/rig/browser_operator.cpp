@@ -1,6 +1,6 @@
 // A person who moves the handles by mouse or VR controllers. The page sends the hand's pose. This
 // file computes the resulting force: a spring and a damper between hand and handle, with a limit.
-// The hand lets go when the page stops sending messages.
+// The hand releases its handle when the page stops sending messages.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@
 namespace predictor {
 namespace {
 
-// After this time without a message from a page, its hands let go [s].
+// After this time without a message from a page, its hands release the handles [s].
 constexpr double kSilence = 0.250;
 constexpr double kMaxForce = 25;          // maximum force of a hand [N]
 constexpr double kMaxTorque = 2;          // [N·m]
@@ -71,7 +71,7 @@ class BrowserOperator final : public Operator {
 
   void Step(const OperatorInput& input, OperatorOutput* output) noexcept override {
     *output = OperatorOutput();
-    // The script is not executed: it only shows the person what to do and when.
+    // The script does not move the hands. It only shows the person what to do and when.
     if (input.running) output->action = ActionAt(script_, input.run_time);
     if (input.dt != dt_) {
       dt_ = input.dt;

@@ -22,7 +22,7 @@ class ForceSensor {
   // `dt` is the sampling time [s], at least 1 ms. `random` draws the noise.
   ForceSensor(const SensorSpec& spec, const Wrench& bias, double dt, RandomStream random);
 
-  // Resets to the steady state under the wrench F_S.
+  // Resets the sensor to its steady state under the wrench F_S.
   void Reset(const Wrench& F_S) noexcept;
   // Advances by one sampling time under the true wrench F_S about S, in axes of S.
   void Step(const Wrench& F_S) noexcept;

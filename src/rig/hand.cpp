@@ -98,7 +98,7 @@ Wrench HandModel::Intend(const HandGoal& goal, const FrameMotion& handle,
   Wrench F = impedance + reflex_.Update(spec_.reflex_gain * impedance);
   F.head<3>() += spec_.visual_stiffness.cwiseProduct(goal.object_error) + goal.force;
 
-  // The levels are the root mean square of a vector, and each axis has a third of its power.
+  // Each level is the root mean square of a vector, so each axis has a third of the power.
   const double axis = arm ? 1 / (std::sqrt(3.0) * arm->capacity) : 1 / std::sqrt(3.0);
   const double level = spec_.force_noise * F.head<3>().norm() + spec_.force_noise_floor;
   const double torque_level = spec_.force_noise * F.tail<3>().norm();

@@ -1,4 +1,4 @@
-// One hand of the virtual operator: a delayed impedance with mass, noise and a grip.
+// Models one hand of the virtual operator as a delayed impedance with mass, noise and a grip.
 #pragma once
 
 #include <array>
@@ -24,13 +24,13 @@ struct HandGoal {
   Vector3 force = Vector3::Zero();         // feed-forward, in W [N]
 };
 
-// F = s · (sat[K e + D de/dt + reflex + visual + feed-forward + noise + tremor] − M a), where e is
-// the reference minus the handle's pose. The reflex is a delayed share of K e + D de/dt. The torque
-// about H follows the same law. With the ability of an arm, noise and tremor are divided by the
-// capacity that is left after fatigue: muscles work harder for the same force. Its stiffness K_x
-// and its damping D_x = 2 ζ √(M K_x) were measured with reflexes. A reflex of gain g and delay τ
-// adds g (K e + D de/dt) - g τ K de/dt to a slow motion, so
-// K = K_x / (1 + g) and D = (D_x + g τ K) / (1 + g).
+// The force is F = s · (sat[K e + D de/dt + reflex + visual + feed-forward + noise + tremor] − M
+// a), where e is the reference minus the handle's pose. The reflex is a delayed share of K e + D
+// de/dt. The torque about H follows the same law. If the arm's ability is modelled, noise and
+// tremor are divided by the capacity that is left after fatigue, because tired muscles work harder
+// for the same force. The stiffness K_x and the damping D_x = 2 ζ √(M K_x) of the arm were measured
+// with reflexes. In a slow motion, a reflex of gain g and delay τ adds the force g (K e + D de/dt)
+// - g τ K de/dt. Therefore K = K_x / (1 + g) and D = (D_x + g τ K) / (1 + g).
 class HandModel {
  public:
   static constexpr double kMaxDelay = 0.5;  // maximum delay of reflex and vision [s]
@@ -38,14 +38,14 @@ class HandModel {
   // `name` identifies the hand's random streams.
   HandModel(const HandSpec& spec, HandInertia inertia, std::uint64_t seed, const std::string& name);
 
-  // Resets to a free hand. `dt` is the step time [s].
+  // Resets the hand to a state in which it is free. `dt` is the step time [s].
   void Reset(double dt) noexcept;
   // Advances by one step and returns the wrench F_H_W on the handle, whose motion is `handle`.
   Wrench Step(const HandGoal& goal, const FrameMotion& handle) noexcept {
     return Deliver(Intend(goal, handle, nullptr), handle);
   }
-  // These functions are the two parts of Step, so that a body can limit the muscles' wrench between
-  // them. `arm` is null if the stiffness does not depend on a posture.
+  // The following functions are the two parts of Step. They are separate, so that a body can limit
+  // the muscles' wrench between them. `arm` is null if the stiffness does not depend on a posture.
   Wrench Intend(const HandGoal& goal, const FrameMotion& handle, const ArmAbility* arm) noexcept;
   Wrench Deliver(const Wrench& muscles, const FrameMotion& handle) const noexcept;
 

@@ -18,7 +18,7 @@ double NextGrip(const Scenario& scenario, double time) {
   return next;
 }
 
-// Minimum-jerk motion of an object that no hand holds.
+// The minimum-jerk motion of an object that no hand holds.
 struct Return {
   Pose from, to;
   double begin = 0, end = 0;  // [s]

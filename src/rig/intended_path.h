@@ -15,7 +15,8 @@ struct IntendedSample {
   bool held = false;           // whether any hand holds the object
 };
 
-// What happens to an object that no hand holds. Without a simulation, only two extremes are known.
+// The behaviour of an object that no hand holds. Without a simulation, only two extreme cases are
+// known.
 enum class AfterRelease {
   kStays,    // stays where it was released
   kReturns,  // returns smoothly to its start until a hand grips it again or the run ends
@@ -26,8 +27,8 @@ enum class AfterRelease {
 std::vector<IntendedSample> IntendedPath(const Scenario& scenario, const Pose& X_WO,
                                          AfterRelease after, double step);
 
-// Returns whether a hand grips again after all hands have let go. Only then does the motion in
-// between matter.
+// Returns whether a hand grips again after all hands have released the object. The motion of the
+// released object matters only in this case.
 bool GripsAgain(const Scenario& scenario);
 
 }  // namespace predictor

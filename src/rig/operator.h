@@ -50,12 +50,12 @@ class Operator {
   virtual void Archive(StateArchive& a) noexcept = 0;
 };
 
-// How the hand's inertia acts. In emulation, its force −M_h·a is part of the wrench. In direct
-// mode, the hand's mass is part of the scene, and the wrench excludes it.
+// How the hand's inertia acts. In emulation, the inertial force −M_h·a of the hand is part of the
+// wrench. In direct mode, the hand's mass is part of the scene, and the wrench excludes it.
 enum class HandInertia { kInWrench, kInScene };
 
-// Makes the operator of the scenario: one that follows the script, or a person at a page. Throws
-// InputError.
+// Makes the operator of the scenario, who is either simulated and follows the script or a person at
+// a page. Throws InputError.
 std::unique_ptr<Operator> MakeOperator(const Scenario& scenario, HandInertia inertia);
 
 std::unique_ptr<Operator> MakeVirtualOperator(const Scenario& scenario, HandInertia inertia);

@@ -24,7 +24,7 @@ constexpr StrengthDirection kExtension[kJudgedJoints] = {StrengthDirection::kElb
 
 std::size_t At(int index) { return static_cast<std::size_t>(index); }
 
-// The hand closes at any angle about its bar, so only the bar's direction matters.
+// The hand may grip at any angle about its bar, so only the bar's direction matters.
 person::Grip HeldBy(const GripSpec& spec) {
   person::Grip grip;
   grip.kind = spec.kind;
@@ -153,7 +153,7 @@ void OperatorBody::UpdateStiffness(int hand, const person::Placement& at) noexce
   const ArmPoints points = {at.p[shoulder], at.p[elbow], GripOf(hand, at)};
   const ArmAxes axes = AxesOf(points);
   // `torque` contains the joint torques that balance the hand's wrench. The stiffness was measured
-  // with a supported arm, so the torques that carry the arm do not count.
+  // with a supported arm, so the torques that carry the arm are excluded.
   const Vector3 force = q_WS.conjugate() * exerted_[At(hand)].head<3>();
   const Vector3 moment = q_WS.conjugate() * exerted_[At(hand)].tail<3>();
   const auto about = [&](std::size_t joint) -> Vector3 {
@@ -181,7 +181,7 @@ void OperatorBody::Tire(double time) noexcept {
     for (std::size_t j = 0; j < kJudgedJoints; ++j) {
       const JointAbility& joint = next_[hand].joints[j];
       const double torque = joint.TorqueFor(force);
-      // The load counts against the strength of the rested muscles.
+      // The load is compared with the strength of the rested muscles.
       const double strength = (torque > 0 ? joint.upper : -joint.lower) /
                               std::max(kMinCapacity, muscles_[hand][j].capacity());
       const double load = std::min(1.0, std::abs(torque) / std::max(strength, 1e-9));

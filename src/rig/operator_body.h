@@ -1,4 +1,4 @@
-// The simulated operator's body: posture, stiffness, strength, balance and fatigue from the
+// Computes the posture, stiffness, strength, balance and fatigue of the simulated operator from the
 // handles.
 #pragma once
 
@@ -16,8 +16,8 @@
 
 namespace predictor {
 
-// The posture is computed from the held handles every kPosturePeriod. In between, the stiffness
-// approaches its new value with the time constant kStiffnessTime.
+// The posture is computed from the held handles at intervals of kPosturePeriod. Between these
+// times, the stiffness approaches its new value with the time constant kStiffnessTime.
 class OperatorBody {
  public:
   static constexpr double kPosturePeriod = 0.04;  // [s]
@@ -26,7 +26,7 @@ class OperatorBody {
   // The scenario must have a body and a stance. Throws InputError if no adult has such a body.
   explicit OperatorBody(const Scenario& scenario);
 
-  // Returns to a rested person (except for body.fatigue) in a comfortable posture.
+  // Restores the initial state: a rested person (except for body.fatigue) in a comfortable posture.
   void Reset() noexcept;
   // Advances by dt [s]. `holds` are the hands that hold their handles.
   void Step(const std::array<FrameMotion, kHands>& handle, const std::array<bool, kHands>& holds,
@@ -37,13 +37,13 @@ class OperatorBody {
   // Returns the point nearest to p that the hand can reach from the present position of the
   // shoulder.
   Vector3 Reachable(int hand, const Vector3& p) const noexcept;
-  // Reduces each hand's force on its handle at p, in W, to what the joints can exert, then the
-  // parts ahead and sideways of all forces to what the person can exert without falling in that
-  // direction.
+  // Reduces each hand's force on its handle at p, in W, to the force that the joints can exert.
+  // Then reduces the forward and the lateral components of all forces to those that the person can
+  // exert without falling in these directions.
   void LimitForces(const std::array<FrameMotion, kHands>& handle,
                    std::array<Vector3, kHands>* forces) const noexcept;
-  // Records the wrenches that the hands exert. They determine the stiffness and fatigue of the
-  // muscles.
+  // Records the wrenches that the hands exert. The wrenches determine the stiffness and fatigue of
+  // the muscles.
   void Feel(const std::array<Wrench, kHands>& F_H_W) noexcept;
 
   void Archive(StateArchive& a) {

@@ -1,4 +1,5 @@
-// Stationary random signals of unit standard deviation, exact at any sampling time.
+// Generates stationary random signals of unit standard deviation, which are exact at any sampling
+// time.
 #pragma once
 
 #include <cmath>
@@ -8,7 +9,8 @@
 
 namespace predictor {
 
-// Ornstein-Uhlenbeck process: white noise through a first-order low-pass, correlation exp(−|t|/τ).
+// Ornstein-Uhlenbeck process: white noise that has passed a first-order low-pass filter, with the
+// correlation exp(−|t|/τ).
 class OrnsteinUhlenbeck {
  public:
   // `time_constant` is in [s], and 0 gives white noise. The process starts in its stationary
@@ -36,8 +38,8 @@ class OrnsteinUhlenbeck {
   double dt_ = 0, keep_ = 0, kick_ = 0;
 };
 
-// Oscillation about a centre frequency whose amplitude and phase drift: an Ornstein-Uhlenbeck
-// process in a rotating frame, with the correlation exp(−|t|/τ) cos(2π f t).
+// An oscillation near a centre frequency, whose amplitude and phase drift. It is an
+// Ornstein-Uhlenbeck process in a rotating frame, with the correlation exp(−|t|/τ) cos(2π f t).
 class NarrowBandNoise {
  public:
   // `frequency` is in [Hz], and time_constant in [s].

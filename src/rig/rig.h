@@ -1,5 +1,5 @@
-// The simulated hardware: two arms in velocity mode, sensors, handles and a person. It contains the
-// poses of its handles, but no information about the simulated task.
+// The simulated hardware: two arms in velocity mode, sensors, handles and a person. The rig knows
+// the poses of its handles, but nothing about the simulated task.
 #pragma once
 
 #include <array>
@@ -36,9 +36,9 @@ class Rig {
 
   void Archive(StateArchive& a) noexcept;
 
-  // These functions return the ground truth, for tests and evaluation only: the handles' motion,
-  // the hands' wrench F_H_W (the reading of a perfect sensor at the grip), the grip, and the
-  // script's action.
+  // The following functions return the ground truth, for tests and evaluation only. They return the
+  // handles' motion, the hands' wrench F_H_W (the reading of a perfect sensor at the grip), the
+  // grip, and the script's action.
   const std::array<FrameMotion, kHands>& true_handles() const;
   const OperatorOutput& true_operator() const;
 

@@ -1,4 +1,5 @@
-// One joint in velocity mode: second-order loop, pure delay, and limits of speed and acceleration.
+// Models one joint in velocity mode: a second-order loop with a pure delay and limits of speed and
+// acceleration.
 #pragma once
 
 #include "core/filters.h"
@@ -17,10 +18,10 @@ class VelocityLoop {
   VelocityLoop(const VelocityLoopSpec& spec, double delay, double dt, double velocity_limit,
                double acceleration_limit);
 
-  // Resets to rest at q [rad], with no command in transit.
+  // Resets the joint to rest at q [rad], without commands in the delay.
   void Reset(double q) noexcept;
-  // Advances by dt with the command u [rad/s]. At a limit, the acceleration ramps linearly to its
-  // limit, and the speed stays at its limit.
+  // Advances by dt with the command u [rad/s]. If a limit is reached, the acceleration ramps
+  // linearly to its limit, and the speed stays at its limit.
   void Step(double u) noexcept;
 
   template <class A>

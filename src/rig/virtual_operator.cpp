@@ -96,7 +96,7 @@ void VirtualOperator::Reset() noexcept {
   if (body_) body_->Reset();
 }
 
-// Every run uses the same random draws, regardless of draws before it began.
+// Every run uses the same random numbers, however many were drawn before it began.
 void VirtualOperator::BeginRun() noexcept {
   Reset();
   drift_ = fresh_drift_;
@@ -115,8 +115,9 @@ Pose VirtualOperator::SeenObject(const OperatorInput& input) const noexcept {
 }
 
 void VirtualOperator::Anchor(const OperatorInput& input, const Pose& X_WO) noexcept {
-  // If no hand holds yet, the first hand starts from the object's present pose. A hand that joins
-  // the other one takes over its reference. In both cases, the new hand's force starts at zero.
+  // If no hand holds the object yet, the first hand starts from the object's present pose. A hand
+  // that joins the other hand uses the same reference. In both cases, the force of the hand that
+  // begins to hold starts at zero.
   if (!held_[0] && !held_[1] && intent_.AnyHold()) intent_.X_WO = X_WO;
   for (std::size_t i = 0; i < kHands; ++i) {
     if (intent_.hold[i] && !held_[i]) X_OH_[i] = intent_.X_WO.Inverse() * input.handle[i].X_W;

@@ -16,7 +16,8 @@ struct RosFrame {
 std::string Encode(std::string_view destination, std::string_view payload);
 
 // Converts a byte stream into frames. Removes trailing NULs from destinations and from commands'
-// payloads, because ROS 2 clients send them. Skips keep-alives, in which both are empty.
+// payloads, because ROS 2 clients send them. Skips keep-alives, in which destination and payload
+// are empty.
 class FrameReader {
  public:
   static constexpr std::uint32_t kLongestDestination = 1024;

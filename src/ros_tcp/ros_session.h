@@ -1,4 +1,5 @@
-// The protocol state of one ROS-TCP client: its messages and the answers to it. It uses no sockets.
+// Keeps the protocol state of one ROS-TCP client, interprets its messages and answers them. It uses
+// no sockets.
 #pragma once
 
 #include <functional>
@@ -20,7 +21,7 @@ class RosSession {
 
   // Returns the first frame that the server sends.
   std::string Greeting() const;
-  // Returns the encoded answers to a frame, or "" without any.
+  // Returns the encoded answers to a frame, or "" if the frame needs no answer.
   std::string OnFrame(const RosFrame& frame);
   // Returns the encoded frames of the publications to which this client has subscribed.
   std::string Select(const std::vector<RosPublication>& publications) const;

@@ -1,4 +1,5 @@
-// The ROS-TCP server as a separate process: if it dies, the run continues unaffected.
+// Runs the ROS-TCP server as a separate process. If this process dies, the run continues
+// unaffected.
 #pragma once
 
 #include <cstdint>

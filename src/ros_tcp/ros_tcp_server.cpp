@@ -38,7 +38,7 @@ struct Network {
   bool Has(std::uint32_t other) const { return (other & mask) == (address & mask); }
 };
 
-// Shortest prefix [bits]: no private network is larger than 10.0.0.0/8.
+// Shortest prefix [bits]. No private network is larger than 10.0.0.0/8.
 constexpr int kWidestNetwork = 8;
 
 std::string Everybody(const std::string& text) {
@@ -151,7 +151,7 @@ void RosTcpServer::Impl::Open() {
   port = ntohs(address.sin_port);
 }
 
-// Returns whether a new client gets a seat. It may take the seat of an idle client.
+// Returns whether a new client gets a seat. The new client may take the seat of an idle client.
 bool RosTcpServer::Impl::MakeRoom(std::uint32_t address) {
   std::vector<Seat> taken;
   for (const Client& client : clients) taken.push_back({client.address, client.session.idle()});

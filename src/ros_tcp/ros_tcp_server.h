@@ -1,5 +1,5 @@
-// A ROS-TCP server for Unity's ROS-TCP-Connector 0.7.0, which needs no ROS. Its clients may read
-// and may stop the run.
+// A ROS-TCP server for Unity's ROS-TCP-Connector 0.7.0, which needs no ROS. The clients of this
+// server may read data and may stop the run.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@ namespace predictor::ros_tcp {
 
 struct RosTcpOptions {
   std::uint16_t port = 10000;  // 0: any free port
-  // Networks such as 192.0.2.0/24 (/8 or narrower). Loopback is always allowed.
+  // Networks such as 192.0.2.0/24, with a prefix of at least 8 bits. Loopback is always allowed.
   std::vector<std::string> allow;
   RosDialect dialect = RosDialect::kRos1;
   double rate = 60;  // maximum [Hz]; the connector's queue is unbounded
@@ -29,8 +29,8 @@ struct RosTcpOptions {
 
 class RosTcpServer {
  public:
-  // Opens the port, on all addresses only if networks are allowed. All arguments are borrowed.
-  // Throws InputError if the port is not available or a network is invalid.
+  // Opens the port. It is open on all addresses of the machine only if networks are allowed. All
+  // arguments are borrowed. Throws InputError if the port is not available or a network is invalid.
   RosTcpServer(const RosTcpOptions& options, const RosTopics* topics, const RunBoard* board,
                StopMailbox* mailbox);
   ~RosTcpServer();

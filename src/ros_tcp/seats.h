@@ -24,7 +24,7 @@ struct Seating {
 };
 
 // Finds a seat for a new client from `address`. `taken` is in order of arrival. The idle client
-// that connected first loses its seat. An address that already holds its share of the seats gets
+// that connected first loses its seat. If an address already has its share of the seats, it gets
 // another seat only from one of its own idle clients. A client that is not idle never loses its
 // seat.
 Seating SeatFor(std::uint32_t address, const std::vector<Seat>& taken, const Seats& seats);

@@ -34,8 +34,8 @@ double ArmBrake::Next(double common, double rate, double behind) noexcept {
     rate_ = rate;
     return factor_ = common;
   }
-  // The rate is between braking as hard as allowed and releasing the brake, both within the jerk
-  // bound.
+  // The rate lies between that of braking as hard as allowed and that of releasing the brake. Both
+  // respect the jerk bound.
   const double step = brake_.jerk() * dt_;
   const double soft_rate = rate_ < 0 ? std::min(0.0, rate_ + step) : std::max(0.0, rate_ - step);
   const double soft = speed + (rate_ + soft_rate) / 2 * dt_;

@@ -1,4 +1,4 @@
-// Braking of one arm during a stop.
+// Computes the braking of one arm during a stop.
 #pragma once
 
 #include "core/archive.h"
@@ -6,8 +6,9 @@
 
 namespace predictor {
 
-// Brakes one arm during a stop: along the common profile, or later while the other arm lags behind.
-// The arm never accelerates in order to wait, and it stays within the profile's bounds.
+// Brakes one arm during a stop along the common profile, or less while the other arm lags behind.
+// The arm never accelerates in order to wait for the other arm, and it stays within the profile's
+// bounds.
 class ArmBrake {
  public:
   ArmBrake() = default;
@@ -17,8 +18,8 @@ class ArmBrake {
   // the profile's rate in that tick [m/s²]. `behind` is the share of the initial speed by which
   // this arm must exceed the profile's speed in order to keep up with the other arm.
   double Next(double common, double rate, double behind) noexcept;
-  // Returns the distance from now to rest if the arm brakes as hard as the profile's bounds allow
-  // [m].
+  // Returns the distance that the arm still moves until it rests if it brakes as hard as the
+  // profile's bounds allow [m].
   double RemainingDistance() const noexcept;
   bool done() const noexcept { return factor_ == 0; }
   double factor() const noexcept { return factor_; }  // factor of the last tick

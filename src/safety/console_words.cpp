@@ -65,8 +65,9 @@ std::vector<std::string> ConsoleWords::See(const TickRecord& record,
   return std::exchange(lines_, {});
 }
 
-// An arm's fault after a stop changes neither state nor cause, but it changes the operator's
-// options. HELD and UNPOWERED report it when they begin. In any other state it causes a stop.
+// A fault of an arm after a stop changes neither the state nor the cause of the stop, but it
+// changes what the operator can do. The messages at the beginning of HELD and UNPOWERED report a
+// fault that already exists. In any other state, such a fault causes a stop.
 void ConsoleWords::AddFaults(const TickRecord& record,
                              const std::function<std::string()>& trouble) {
   if (record.state != RunState::kStopping && record.state != RunState::kHeld &&
@@ -80,7 +81,7 @@ void ConsoleWords::AddFaults(const TickRecord& record,
   }
 }
 
-// A held key repeats its request. One message is shown until the key is released.
+// A key that is held down repeats its request. One message is shown until the key is released.
 bool ConsoleWords::Again(RunEvent event, std::uint64_t tick) {
   std::uint64_t& reported = reported_[static_cast<std::size_t>(event)];
   const bool again = reported != 0 && tick - reported < again_;
@@ -110,7 +111,7 @@ void ConsoleWords::AddRefusal(const TickRecord& record,
 void ConsoleWords::AddWrongTime(const TickRecord& record) {
   const bool begins = record.state == RunState::kStopping && state_ != RunState::kStopping;
   const bool stops = begins && FollowsTask(state_);
-  // Any other stop in this tick has its own message.
+  // Any other stop in this tick is reported by its own message.
   if (begins && (record.cause != StopCause::kOperator || Asks(record, RunEvent::kStopRequested) ||
                  Asks(record, RunEvent::kStopAndPowerOff)))
     return;
@@ -145,7 +146,7 @@ std::string ConsoleWords::Possible(const TickRecord& record) const {
   return fault ? text + " " + Message("console.arm_fault_free") : text;
 }
 
-// The danger comes first, then the cause, the advice and the keys.
+// The message states first the danger, then the cause, the advice and the keys.
 void ConsoleWords::AddState(const TickRecord& record, const std::function<std::string()>& trouble) {
   const MessageValue state{"state", Name(record.state)};
   if (record.state == RunState::kSelfTest || record.state == RunState::kIdle ||

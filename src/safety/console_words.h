@@ -1,5 +1,5 @@
-// Derives messages for the operator at the console of real arms from the records. It is not for the
-// tick.
+// Derives messages for the operator at the console of real arms from the records. The functions of
+// this file must not be called in the control loop.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace predictor {
 
 class ConsoleWords {
  public:
-  // A request made by a key, and the states which show that it was granted.
+  // A request made by a key, and the states that show that the request was granted.
   struct Request {
     RunEvent event;
     char key;
@@ -29,8 +29,8 @@ class ConsoleWords {
       : enabling_device_(enabling_device), again_(static_cast<std::uint64_t>(0.6 * rate)) {}
 
   // Call this once per record, in order. Returns lines to print (usually none). `trouble` returns
-  // the devices' own description of their present fault, or "" if there is none. It is called only
-  // if the description is printed.
+  // the devices' own description of their present fault, or "" if there is none. `trouble` is
+  // called only if the description is printed.
   std::vector<std::string> See(const TickRecord& record,
                                const std::function<std::string()>& trouble);
 

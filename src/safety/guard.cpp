@@ -8,9 +8,9 @@ namespace predictor {
 
 double BrakingSpeed(double distance, double acceleration, double reaction, double dt) noexcept {
   if (!(distance > 0)) return 0;
-  // Solves v dt + v²/2a = distance. After this tick at v, the remaining distance suffices for
-  // v²/2a, and the bound for the remaining distance is at least v − a dt. Braking along the bound
-  // therefore never needs more than `acceleration`.
+  // Solves v dt + v²/2a = distance. After a tick at the speed v, the remaining distance is at least
+  // v²/2a, and the speed bound for the remaining distance is at least v − a dt. Braking along the
+  // bound therefore never needs more than `acceleration`.
   const double step = acceleration * dt;
   const double v = std::sqrt(step * step + 2 * acceleration * distance) - step;
   return std::max(0.0, v - acceleration * reaction);
@@ -18,7 +18,7 @@ double BrakingSpeed(double distance, double acceleration, double reaction, doubl
 
 double ReactionTime(const VelocityLoopSpec& loop) noexcept {
   const double w = 2 * std::numbers::pi * loop.bandwidth, zeta = loop.damping_ratio;
-  // Cumulants of 1/(1 + 2ζ s/w + s²/w²). The second one is negative if the loop overshoots
+  // Cumulants of 1/(1 + 2ζ s/w + s²/w²). The second cumulant is negative if the loop overshoots
   // strongly.
   const double mean = loop.delay + 2 * zeta / w;
   const double variance = std::max(0.0, (4 * zeta * zeta - 2) / (w * w));
@@ -51,7 +51,7 @@ bool Guard::Trusted(const std::array<JointVector, kHands>& q,
 }
 
 // Returns the smallest factor by which the last command of both arms can be scaled in one tick
-// without any joint exceeding its acceleration bound.
+// without exceeding the acceleration bound of any joint.
 double Guard::BrakingFactor() const noexcept {
   double relative = 1;
   for (std::size_t arm = 0; arm < kHands; ++arm) {

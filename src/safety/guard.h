@@ -16,23 +16,24 @@ struct JointBounds {
   JointVector acceleration;  // [rad/s²], > 0
 };
 
-// Returns the largest speed [rad/s] towards a limit at `distance` [rad] from which a joint,
-// commanded every dt [s], can stop before the limit with `acceleration` [rad/s²] and a reaction
-// time of `reaction` [s]. Until the joint reacts, it follows earlier commands, which are faster by
+// Returns the largest speed [rad/s] from which a joint can stop before a limit at `distance` [rad].
+// The joint is commanded every dt [s], brakes with `acceleration` [rad/s²] and has a reaction time
+// of `reaction` [s]. Until the joint reacts, it follows earlier commands, whose speed is higher by
 // at most acceleration · reaction. Beyond the limit, the result is 0.
 double BrakingSpeed(double distance, double acceleration, double reaction, double dt) noexcept;
 
 // Returns the reaction time [s] of a joint's velocity loop, which is the root mean square delay of
-// its impulse response. A joint that brakes at a constant rate overruns as far as a joint with this
-// pure delay. With a damping ratio below 0.8, the joint may still overshoot its limit by up to 1
-// mrad.
+// its impulse response. A joint that brakes at a constant rate overruns by the same distance as a
+// joint with this pure delay. With a damping ratio below 0.8, the joint may still overshoot its
+// limit by up to 1 mrad.
 double ReactionTime(const VelocityLoopSpec& loop) noexcept;
 
 // Clamps a command so that it is finite, stays within the velocity bounds, differs from the last
 // command by at most one tick's acceleration, and always allows each joint to stop before its
-// limit. Beyond a limit, only motion back is allowed. If these conflict, the acceleration bound
-// yields. The guard computes with the nominal tick, so that a late or early tick cannot widen the
-// bounds. Only braking after missed ticks may use more. If a tick may be late by x, increase the
+// limit. Beyond a limit, only motion back towards the permitted range is allowed. If these
+// conditions conflict, the acceleration bound is exceeded. The guard computes with the nominal
+// tick, so that a late or early tick cannot widen the bounds. Only braking after missed ticks may
+// use more acceleration than that of one nominal tick. If a tick may be late by x, increase the
 // reaction time by x.
 class Guard {
  public:
@@ -40,18 +41,19 @@ class Guard {
   // `dt` is the nominal tick [s]. `reaction` is the time from measuring a position until the joint
   // reaches the resulting velocity [s], for the slower arm (ReactionTime plus other delays).
   Guard(const std::array<JointBounds, kHands>& bounds, double dt, double reaction = 0);
-  // Bounds `v` at the measured q. Both have one number per joint. Returns the number of altered
-  // joints (0 in normal operation). If any number is missing or not finite, the whole command is
-  // discarded, and both arms brake along the last command by one common factor. `ticks` is the
-  // number of ticks since the last command. Braking may use the acceleration of all of them. Does
-  // not use the heap or throw.
+  // Bounds `v` at the measured q. `v` and q have one number per joint. Returns the number of
+  // altered joints (0 in normal operation). If any number is missing or not finite, the whole
+  // command is discarded. Both arms then brake in the direction of the last command, which is
+  // scaled by one common factor. `ticks` is the number of ticks since the last command. Braking may
+  // use the acceleration of all these ticks. Does not use the heap or throw.
   int Apply(const std::array<JointVector, kHands>& q, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
   // Scales `v` by `factor`, and the last command by `last_factor`, which is 1 unless the last
-  // command became too fast because the arms' posture has changed. Both arms move by the same share
-  // of the way from the scaled last command to the scaled `v`. This share is 1 unless a joint would
-  // exceed its acceleration bound. If the handles stay below their speed cap at both ends, they
-  // stay below it in between. The acceleration bound has priority over `last_factor`. Returns the
+  // command became too fast because the arms' posture has changed. The commands of both arms change
+  // by the same share of the difference between the scaled last command and the scaled `v`. This
+  // share is 1 unless a joint would exceed its acceleration bound. If the handles are below their
+  // speed cap with the scaled last command and with the scaled `v`, they are below it with every
+  // command between these two. The acceleration bound has priority over `last_factor`. Returns the
   // number of altered joints, or 0 if a number is missing. Call this before Apply. Does not use the
   // heap or throw.
   int Slow(double factor, std::array<JointVector, kHands>* v,

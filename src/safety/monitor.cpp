@@ -142,8 +142,9 @@ void Monitor::FollowSensors(const MonitorInput& input) noexcept {
   }
 }
 
-// A hand that RECOVERY frees may be loaded beyond the usual thresholds, but these must not prevent
-// freeing it. Any load above the smallest one since RECOVERY began is caused by the motion.
+// A hand that RECOVERY frees may be loaded beyond the usual thresholds. These thresholds must not
+// prevent the motion that frees the hand. Any load above the smallest load since RECOVERY began is
+// caused by the motion.
 void Monitor::FollowRecovery(const MonitorInput& input) noexcept {
   for (int hand = 0; hand < kHands; ++hand) {
     Load& least = least_[hand];
@@ -155,8 +156,8 @@ void Monitor::FollowRecovery(const MonitorInput& input) noexcept {
   }
 }
 
-// Divides by the time between two different samples, not between ticks: a repeated sample shows no
-// motion.
+// Divides by the time between two different samples, not between ticks, because a repeated sample
+// shows no motion.
 Status Monitor::FollowJoints(const MonitorInput& input) noexcept {
   Status worst;
   if (!input.sample) return worst;

@@ -15,21 +15,21 @@
 
 namespace predictor {
 
-// Everything that the monitor checks. The supervisor writes it.
+// All data that the monitor checks. The supervisor writes it.
 struct MonitorInput {
   Hands present;
   const DeviceSample* sample = nullptr;            // null in direct mode
   std::array<HandWrench, kHands> wrench;           // absent hands are not checked
   std::array<FrameMotion, kHands> real, virtual_;  // handles H and D
   const WorldState* world = nullptr;
-  // Null in direct mode and in ticks in which the renderer did not run.
+  // This pointer is null in direct mode and in ticks in which the renderer did not run.
   const RenderResult* render = nullptr;
   std::array<JointVector, kHands> lower, upper;  // joint limits of the arms [rad]
   std::array<JointVector, kHands> velocity;      // maximum that may be commanded [rad/s]
   Status device, sensing, simulation, haptics;   // reported by the stages
   bool running = false;  // RUN: thresholds of tracking, coupling and oscillation apply
   bool follows = true;   // ALIGN, RUN: distances to joint and link limits are checked
-  // RECOVERY: a hand may be loaded, but the motion must not increase the load.
+  // In RECOVERY, a hand may be loaded, but the motion must not increase the load.
   bool recovers = false;
   int missed_deadlines = 0;  // number of consecutive missed deadlines
 };
@@ -39,8 +39,8 @@ struct SamplePeriods {
   double arm = 0, sensor = 0;
 };
 
-// Most checks look only at the present tick; frozen readings, jumps, oscillation, vibration and
-// runaway need past ticks. The supervisor latches the fault.
+// Most checks use only the present tick. The checks for frozen readings, jumps, oscillation,
+// vibration and runaway also use past ticks. The supervisor then latches the fault.
 //
 // Of several faults in one tick, the first of these is reported:
 //   1. faults of the stages, in the order device, sensing, simulation, haptics: each invalidates
@@ -55,9 +55,10 @@ struct SamplePeriods {
 //      intended (RUN only);
 //   8. deadline: missed ticks that have had no other effect so far.
 // Some faults mean that an arm or sensor can no longer be trusted to hold: silence, saturation, a
-// jump, or a stage that requests power-off. The stop then ends without power, even if another fault
-// is reported. Of two hands, the one that exceeds its limit more is reported. NaN counts as
-// exceeding every threshold; the status then gives zero for value and limit.
+// jump, or a stage that requests power-off. A stop with such a fault ends without power, even if
+// another fault is reported. If both hands exceed their limits, the hand that exceeds its limit
+// more is reported. NaN is treated as exceeding every threshold. In this case, value and limit in
+// the status are zero.
 class Monitor {
  public:
   // The run stops if two links are closer than the security distance by more than this margin [m].
@@ -67,11 +68,11 @@ class Monitor {
   // The run stops if a joint exceeds its limit by this margin [rad]. The margin is a hundred
   // encoder quanta, and a twentieth of the distance that rendering keeps.
   static constexpr double kJointMargin = 0.001;
-  // The run stops after this many consecutive missed deadlines, or if this share of one second's
-  // deadlines is missed.
+  // The run stops after this number of consecutive missed deadlines, or if this share of the
+  // deadlines of one second is missed.
   static constexpr int kMissedDeadlines = 3;
   static constexpr double kMissedShare = 0.01;
-  // An arm or sensor without a sample for this long counts as silent, not only as late [s].
+  // An arm or sensor without a sample for this time is treated as silent and not only as late [s].
   static constexpr double kSilence = 0.020;
   // A joint has jumped if it moved between two samples by more than this factor times the largest
   // commanded motion, plus this tolerance for the encoder [rad].
@@ -135,7 +136,7 @@ class Monitor {
   Status FollowOscillation(const MonitorInput& input) noexcept;
   Status FollowRunaway(const MonitorInput& input) noexcept;
   Status PowerOffFault(const MonitorInput& input, const Status& jump) const noexcept;
-  // Age above which a sample of a device with this period counts as silence [s].
+  // Returns the age [s] above which a device with this period is treated as silent.
   static constexpr double SilenceOf(double period) noexcept {
     return std::max(kSilence, kMaxPeriods * period);
   }

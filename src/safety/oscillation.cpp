@@ -61,9 +61,9 @@ double OscillationDetector::UpdateAxis(double force, Axis* axis) const noexcept 
   return found;
 }
 
-// Returns whether y has passed −h, which completes the peak that began when it passed +h. The peak
-// lies in the middle of the time above +h. By symmetry, half of the sums over that time belong to
-// it.
+// Returns whether y has passed −h. This completes the peak that began when y passed +h. The peak
+// lies in the middle of the time above +h. By symmetry, half of the sums over the time above +h
+// belong to the cycle that ends at the peak.
 bool OscillationDetector::FindPeak(double y, Axis* axis) const noexcept {
   if (y > hysteresis_) {
     if (!axis->above) axis->at_rise = axis->now;
@@ -73,8 +73,8 @@ bool OscillationDetector::FindPeak(double y, Axis* axis) const noexcept {
   }
   if (!axis->above || y >= -hysteresis_) return false;
   axis->above = false;
-  // A half cycle longer than that of the slowest oscillation ends the previous oscillation: earlier
-  // cycles do not count towards one that begins now.
+  // A half cycle that is longer than that of the slowest oscillation ends the previous oscillation,
+  // so earlier cycles do not count towards an oscillation that begins now.
   if ((axis->now.samples - axis->at_fall.samples) * dt_ > 0.5 / spec_.low) {
     axis->now = {};
     axis->after_peak = false;

@@ -10,21 +10,23 @@
 namespace predictor {
 
 // Each axis of the force is band-passed between spec.low and spec.high, which removes the slow
-// motion of the task. The detector follows successive cycles on each axis. It reports an
+// motion of the task. The detector follows successive cycles on each axis. The detector reports an
 // oscillation after `cycles` consecutive cycles if each has a larger amplitude than the previous
 // one, each period is inside the band, and the last amplitude is at least spec.amplitude.
 //
 // A cycle runs from peak to peak. A peak lies in the middle between rising above +h and falling
-// below it, provided that −h is passed afterwards (h is an eighth of spec.amplitude, which is more
-// than tremor and noise leave after the filter). The amplitude of a cycle is √2 times the standard
-// deviation over it. This averages the noise, whereas the extreme values would include it. What
-// remains of a slow motion hardly contributes, since a ramp and a cosine are uncorrelated from peak
-// to peak. The amplitude is corrected by the filter's gain at the cycle's frequency. An amplitude
-// counts as larger only if it grew by at least kGrowth: a smaller growth cannot be distinguished
-// from the beat of an oscillation with tremor. Successive periods must agree within kPeriodRatio:
-// those of an oscillation do, those of single jolts do not. An oscillation along a diagonal is
-// detected by its components, in the worst case at √3 times the amplitude. Near tremor's 10 Hz,
-// detecting a growth of 5 % may take up to four times the amplitude.
+// below +h, provided that the signal passes −h afterwards. The threshold h is an eighth of
+// spec.amplitude, which is more than the filter passes of tremor and noise. The amplitude of a
+// cycle is √2 times the standard deviation of the force during this cycle. The standard deviation
+// averages the noise, whereas the extreme values would include it. The remainder of a slow motion
+// hardly contributes to the amplitude, since a ramp and a cosine are uncorrelated from peak to
+// peak. The amplitude is corrected by the filter's gain at the cycle's frequency. An amplitude is
+// treated as larger only if it grew by at least kGrowth, because a smaller growth cannot be
+// distinguished from the beat of an oscillation with tremor. Successive periods must agree within
+// kPeriodRatio. The periods of an oscillation do, whereas the intervals between single jolts do
+// not. An oscillation along a diagonal is detected by its components, in the worst case at √3 times
+// the amplitude. Near tremor's 10 Hz, detecting a growth of 5 % may take up to four times the
+// amplitude.
 class OscillationDetector {
  public:
   static constexpr double kGrowth = 0.03;      // smallest relative growth of a cycle that counts
@@ -42,8 +44,8 @@ class OscillationDetector {
   void Archive(StateArchive& a) noexcept { a(axes_, started_); }
 
  private:
-  // Second-order Butterworth section in state-variable form. It is exact at low frequencies and
-  // easy to start in a steady state.
+  // Second-order Butterworth section in state-variable form. This form is exact at low frequencies
+  // and easy to start in a steady state.
   struct Section {
     double g = 0;           // tan(π f dt)
     double s1 = 0, s2 = 0;  // states
@@ -59,8 +61,8 @@ class OscillationDetector {
   struct Axis {
     Section high_pass, low_pass;
     bool above = false;  // has passed +h, but not yet −h since then
-    // Sums up to this sample, up to passing +h, up to falling below it, and up to the peak in
-    // between.
+    // The sums up to this sample, up to passing +h, up to falling below +h, and up to the peak
+    // between these two.
     Sums now, at_rise, at_fall, at_peak;
     bool after_peak = false;  // the sums begin at a peak
     double period = 0;        // period of the last cycle [s]; 0: no cycle yet

@@ -7,17 +7,18 @@
 namespace predictor {
 
 // A hand resists displacement like a spring: its force along the motion falls as the handle moves
-// with it. If a sensor reads a direction other than that of the push, the handle moves against the
-// hand. The hand resists more, so the force grows with the motion that it causes, and both grow as
-// e^{λt} until a threshold stops the run. This detector reports a runaway if two conditions hold:
-// the force along the motion and the speed have grown in this way for kGrowing, and for kTime of
-// this period they exceeded kForce and the share kSpeed of the handle's cap.
+// with it. If a sensor reports a different direction from that of the push, the handle moves
+// against the hand. The hand resists more, so the force grows with the motion that it causes, and
+// both grow as e^{λt} until a threshold stops the run. This detector reports a runaway under two
+// conditions. The force along the motion and the speed must have grown in this way for kGrowing.
+// For kTime of this period, they must have exceeded kForce and the share kSpeed of the handle's
+// cap.
 //
 // A person's own motion does not last that long: a sudden push grows faster than kMaxGrowth, and in
 // a large motion the force peaks before the handle reaches that speed. A runaway that grows faster
-// than kMaxGrowth soon reaches the force thresholds, however the sensor is mounted. If the other
-// hand or the virtual cobot prevents a mirrored sensor from causing a runaway, only the push test
-// finds it.
+// than kMaxGrowth soon reaches the force thresholds, whatever the orientation of the sensor. If the
+// other hand or the virtual cobot prevents a mirrored sensor from causing a runaway, only the push
+// test finds it.
 class RunawayDetector {
  public:
   static constexpr double kMinGrowth = 3, kMaxGrowth = 10;  // λ [1/s]
@@ -31,8 +32,9 @@ class RunawayDetector {
   RunawayDetector() = default;
   // `cap` is the limit of a handle's speed [m/s]. `dt` is the time between calls of Update [s].
   RunawayDetector(double cap, double dt) : cap_(cap), dt_(dt) {}
-  // `force` is that of the hand on its handle. `velocity` is that of the handle. Both are in W and
-  // finite. Returns whether the handle runs away. Does not use the heap.
+  // `force` is the force of the hand on its handle. `velocity` is the velocity of the handle. Both
+  // vectors are finite and in the axes of W. Returns whether the handle runs away. Does not use the
+  // heap.
   bool Update(const Vector3& force, const Vector3& velocity) noexcept;
   double speed() const noexcept { return speed_.fast; }        // after the low-pass filter [m/s]
   double threshold() const noexcept { return kSpeed * cap_; }  // [m/s]
@@ -43,7 +45,8 @@ class RunawayDetector {
   void Archive(StateArchive& a) noexcept { a(force_, speed_, growing_, time_); }
 
  private:
-  // Two low-pass filters of one signal: the lead of the faster one shows how the signal grows.
+  // Two low-pass filters of one signal. The lead of the faster filter shows how fast the signal
+  // grows.
   struct Trend {
     double fast = 0, slow = 0;
     void Step(double x, double dt) noexcept;
@@ -53,8 +56,8 @@ class RunawayDetector {
 
   double cap_ = 0.25, dt_ = 0.001;
   Trend force_, speed_;
-  // The time for which both have grown, and the part of it above the thresholds. Each decreases
-  // twice as fast as it increases [s].
+  // The time for which force and speed have both grown, and the part of this time in which both
+  // exceeded the thresholds. Each of these two times decreases twice as fast as it increases [s].
   double growing_ = 0, time_ = 0;
 };
 

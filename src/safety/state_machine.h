@@ -48,8 +48,8 @@ struct Transition {
   RunCondition to;
 };
 
-// The conditions of a run. STOPPING occurs twice, once for each way to end. RECOVERY occurs twice,
-// too, because after a stop it leads back to HELD.
+// The conditions of a run. STOPPING occurs twice, once for each state in which it can end. RECOVERY
+// occurs twice, too, because after a stop it leads back to HELD.
 inline constexpr std::array<RunCondition, kRunStates + 2> kRunConditions = {{
     {RunState::kInit, StopLevel::kNone},
     {RunState::kSelfTest, StopLevel::kNone},
@@ -75,7 +75,7 @@ inline constexpr RunCondition kInit = kRunConditions[0], kSelfTest = kRunConditi
 }  // namespace internal
 
 // The table; Next decides the transitions that it does not contain. Before the self-test has
-// passed, and after power was off, the self-test is the only way to IDLE. A stop in INIT or
+// passed, and after the power was off, IDLE can be reached only by the self-test. A stop in INIT or
 // SELFTEST therefore ends without power.
 inline constexpr std::array kTransitions = {
     Transition{internal::kInit, RunEvent::kStarted, internal::kSelfTest},
@@ -126,8 +126,8 @@ inline constexpr std::array kTransitions = {
 };
 
 // Returns the next condition. If the table does not contain the event, the program has lost track
-// of the run. While the arms follow a task, such an event stops them and requests power-off. In any
-// other state, it changes nothing.
+// of the state of the run. While the arms follow a task, such an event stops them and requests
+// power-off. In any other state, such an event changes nothing.
 constexpr RunCondition Next(RunCondition from, RunEvent event) noexcept {
   for (const Transition& t : kTransitions) {
     if (t.from == from && t.event == event) return t.to;
@@ -146,7 +146,7 @@ class StateMachine {
     condition_ = Next(before, event);
     return condition_ != before;
   }
-  // Whether simulated time advances: in RUN only.
+  // Returns whether simulated time advances, which it does in RUN only.
   static constexpr bool TimePasses(RunState state) noexcept { return state == RunState::kRun; }
   template <class A>
   void Archive(A& a) noexcept {

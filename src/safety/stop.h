@@ -1,4 +1,4 @@
-// Carries out a stop: brings both arms to rest, and reports the outcome.
+// Carries out a stop, which brings both arms to rest, and reports the outcome.
 #pragma once
 
 #include <array>
@@ -24,40 +24,40 @@ struct StopReport {
 struct StopGeometry {
   std::array<Jacobian, kHands> J;  // Jacobian of each handle, axes of W; without columns: unknown
   std::array<Vector3, kHands> p_WH = {Vector3::Zero(), Vector3::Zero()};  // [m]
-  // The measured twists of the handles. They are valid only while both arms' samples can be
-  // trusted.
+  // The measured twists of the handles. These twists are valid only while the samples of both arms
+  // can be trusted.
   bool measured = false;
   std::array<Twist, kHands> V_W = {Twist::Zero(), Twist::Zero()};
 };
 
-// Carries out one stop, from the decision to rest. In each tick from the decision on, call Next to
-// get the command, and Observe with the poses of the handles.
+// Carries out one stop, from the decision to rest. In each tick, beginning with that of the
+// decision, call Next to get the command, and Observe with the poses of the handles.
 //
 // The faster arm waits for the slower one. The arm with the smaller overrun begins to brake later,
-// by the difference. If an arm's handle has moved less than the other one, relative to its speed
-// when the stop began, that arm brakes less until both are even again. An arm that follows a
-// position compensates for its lag, so it is represented by its commands. kMaxFollowing bounds the
-// additional distance that an arm may travel for this.
+// by the difference. If one handle has moved less than the other one, each relative to its speed
+// when the stop began, the arm of this handle brakes less until both have moved equally far again.
+// An arm that follows a position compensates for its lag, so it is represented by its commands.
+// kMaxFollowing bounds the additional distance that an arm may travel for this.
 class StopController {
  public:
   // `bounds` are joint bounds, which a stop respects as well. If the handles' deceleration would
   // need more than a joint's acceleration, both arms brake more gently and do not separate. `lags`
   // are the times by which the arms lag behind their commands [s]. `overruns` are the distances
-  // that the arms travel after their commands reach zero, divided by their speeds before [s]. They
-  // default to the lags.
+  // that the arms travel after their commands reach zero, divided by their speeds before [s]. If
+  // omitted, the overruns are equal to the lags.
   StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
                  const std::array<double, kHands>& lags = {});
   StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
                  const std::array<double, kHands>& lags,
                  const std::array<double, kHands>& overruns);
 
-  // Latches the fault and begins to brake. Until Reset, a further call only adds a fault to a stop
-  // that has none, because the operator must be shown the first fault. `time` is that of the
+  // Latches the fault and begins to brake. Until Reset, a further call has an effect only if the
+  // stop has no fault yet, because the operator must see the first fault. `time` is the time of the
   // decision [s]. `last_command` is the last command that was sent [rad/s]. `handle_speed` [m/s]
-  // and `handle_rate` [m/s²] are those of the faster handle, as for StopProfile::Begin. A speed
-  // that is not finite counts as the cap. `handle_twists` are the twists of the handles due to the
-  // last command. If omitted, they are computed from the first geometry. Does not use the heap or
-  // throw.
+  // and `handle_rate` [m/s²] are the speed of the faster handle and its derivative, as for
+  // StopProfile::Begin. A speed that is not finite is replaced by the cap. `handle_twists` are the
+  // twists of the handles due to the last command. If omitted, the twists are computed from the
+  // first geometry. Does not use the heap or throw.
   void Begin(const Status& cause, double time, const std::array<JointVector, kHands>& last_command,
              double handle_speed, double handle_rate,
              const std::array<Twist, kHands>* handle_twists = nullptr) noexcept;
@@ -67,15 +67,16 @@ class StopController {
   // geometries. Does not use the heap or throw.
   void Next(std::array<JointVector, kHands>* v, int ticks = 1) noexcept;
   // Computes the next command, corrected for the change of the arms' geometry. The twists of the
-  // handles are scaled like those of one rigid body, so that the handles keep their relative pose.
-  // The correction is small (second order in the distance so far) and bounded.
+  // handles are scaled like the twists of two points of one rigid body, so that the handles keep
+  // their relative pose. The correction is bounded and small, because it is of second order in the
+  // distance that has been covered.
   void Next(const StopGeometry& geometry, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
   // `X_WH` are the poses of the handles in W, which are constant for absent handles. `in_motion`
   // states whether a driver still moves its arm. The handles are at rest once the commands are zero
-  // and no handle has moved (RestDetector) for kRestTime. The stop is done at that time, or at the
-  // latest kPatience after the commands became zero. An arm that still moves then does not follow
-  // its commands.
+  // and no handle has moved (RestDetector) for kRestTime. The stop ends when the handles are at
+  // rest, or at the latest kPatience after the commands became zero. An arm that still moves then
+  // does not follow its commands.
   void Observe(const std::array<Pose, kHands>& X_WH, bool in_motion = false) noexcept;
   void Reset() noexcept;
 
@@ -90,15 +91,16 @@ class StopController {
 
   static constexpr double kRestTime = 0.02;  // [s]
   static constexpr double kPatience = 0.5;   // [s]
-  // The largest speed of a handle that counts as at rest [m/s].
+  // The largest speed at which a handle is regarded as at rest [m/s].
   static constexpr double kMaxRestSpeed = RestDetector::kMaxMotion / kRestTime;
 
   static constexpr double kMaxCorrection = 0.5;  // as a share of the scaled command's norm
-  // The share of the joints' acceleration that scaling uses. The rest is for the correction.
+  // The share of the joints' acceleration that scaling uses. The rest of the acceleration is
+  // reserved for the correction.
   static constexpr double kShareOfJoints = 0.75;
-  // The largest extra distance that an arm travels compared with stopping alone, expressed as time
-  // at the speed at which the stop began [s] (7.5 mm at 0.25 m/s), and the time for which it
-  // follows after the profile ends [s].
+  // The first constant is the largest extra distance that an arm travels compared with stopping
+  // alone. It is divided by the speed at which the stop began [s] (7.5 mm at 0.25 m/s). The second
+  // constant is the time for which an arm follows the other arm after the profile has ended [s].
   static constexpr double kMaxFollowing = 0.030, kMaxFollowingTime = 0.100;
 
  private:
@@ -107,7 +109,7 @@ class StopController {
   void BeginTwists(const StopGeometry& geometry) noexcept;
   std::array<double, kHands> Behind(const StopGeometry& geometry, int ticks) noexcept;
   std::array<double, kHands> NextFactors(const StopGeometry* geometry, int ticks) noexcept;
-  // Returns whether the arm follows a position. It then overruns less than it lags.
+  // Returns whether the arm follows a position. The overrun of such an arm is shorter than its lag.
   bool MakesUp(std::size_t arm) const noexcept { return overruns_[arm] < lags_[arm]; }
 
   SafetySpec safety_;
@@ -129,7 +131,8 @@ class StopController {
   bool twists_known_ = false;
   bool twists_split_ = false;  // the right twist is relative to its rigid-body share
 
-  // Values for waiting for the other arm. Distances are times at the handle's initial speed [s].
+  // The values with which an arm waits for the other one. Distances are times at the handle's
+  // initial speed [s].
   std::array<double, kHands> gone_ = {};      // distance of each handle
   std::array<double, kHands> followed_ = {};  // distance of each command beyond the profile's
   double after_ = 0;                          // time since the end of the profile [s]

@@ -12,14 +12,15 @@ void StopProfile::Begin(double speed, double rate) noexcept {
   tick_ = 0;
   speed_ = std::isfinite(speed) ? std::max(0.0, speed) : 0;
   done_ = speed_ == 0;
-  // The speed that may still be gained, and the deceleration from which the speed would pass
-  // through zero.
+  // The amount by which the speed may still increase, and the deceleration from which the speed
+  // would pass through zero.
   const double gain = std::max(0.0, std::min(cap_ - speed_, (kOvershoot - 1) * speed_));
   const double highest = std::min(acceleration_, std::sqrt(2 * jerk_ * gain));
   const double lowest = std::max(-acceleration_, -std::sqrt(2 * jerk_ * speed_));
   rate_ = std::isfinite(rate) ? std::clamp(rate, lowest, highest) : 0;
-  // The deceleration ramps to the peak with jerk −j, holds, and ramps back to zero with jerk +j.
-  // Without the hold, the two ramps reduce the speed by (2 peak² − rate²)/2j.
+  // The deceleration increases to the peak with jerk −j, remains constant, and decreases to zero
+  // with jerk +j. Without the constant phase, the two ramps reduce the speed by (2 peak² −
+  // rate²)/2j.
   const double peak = std::sqrt(jerk_ * speed_ + rate_ * rate_ / 2);
   peak_ = std::min(acceleration_, peak);
   const double lost = (2 * peak_ * peak_ - rate_ * rate_) / (2 * jerk_);

@@ -12,12 +12,13 @@ namespace predictor {
 // acceleration and jerk allow (closed form, sampled in each tick).
 //
 // The jerk bound does not allow an accelerating motion to brake at once. The factor first rises
-// above 1, by rate²/(2·jerk·speed). It never exceeds kOvershoot, and the speed never exceeds the
-// cap. A larger rate is cut at once, since the last command of a motion that has barely begun does
-// not show its direction reliably.
+// above 1, by rate²/(2·jerk·speed). The factor never exceeds kOvershoot, and the speed never
+// exceeds the cap. A larger rate is cut at once, since the last command of a motion that has barely
+// begun does not show its direction reliably.
 //
 // A factor that is common to all joints scales the handles' twists equally as long as the Jacobians
-// do not change. Over the few centimetres of a stop they do change; StopController corrects this.
+// do not change. Over the few centimetres of a stop, the Jacobians do change; StopController
+// corrects this.
 class StopProfile {
  public:
   static constexpr double kOvershoot = 1.25;  // largest factor
@@ -27,9 +28,9 @@ class StopProfile {
   // [s].
   StopProfile(double acceleration, double jerk, double dt,
               double speed_cap = std::numeric_limits<double>::infinity());
-  // Begins from the handles' present speed and acceleration along their motion. `speed` [m/s] is
-  // that of the faster handle (rotation counts at 0.2 m), and `rate` [m/s²] is its derivative. If
-  // the speed is zero or not finite, the profile is at rest at once.
+  // Begins the profile at the handles' present speed and acceleration along their motion. `speed`
+  // [m/s] is the speed of the faster handle, in which a rotation is multiplied by 0.2 m, and `rate`
+  // [m/s²] is its derivative. If the speed is zero or not finite, the profile is at rest at once.
   void Begin(double speed, double rate) noexcept;
   // Returns the factor for the next tick, in [0, kOvershoot], or 0 once at rest.
   double Next() noexcept;

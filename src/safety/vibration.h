@@ -1,4 +1,4 @@
-// Detects vibration of one hand's force: growing, or narrow-band and steady.
+// Detects a vibration of one hand's force that grows, or that is narrow-band and steady.
 #pragma once
 
 #include <array>
@@ -10,37 +10,38 @@
 namespace predictor {
 
 // The haptic loop becomes unstable above 10 Hz, where no person moves deliberately. Coherence, not
-// amplitude, distinguishes such a vibration from noise: a vibration continues its own past, noise
-// does not.
+// amplitude, distinguishes such a vibration from noise, because a vibration continues its own past
+// and noise does not.
 //
 // Each axis of the force is band-passed (kLow to kHigh, or to the limit that the tick allows) and
 // sampled every 4 ms. With R(T) the mean of y(t)·y(t − T), summed over the axes, any sinusoid
 // satisfies
 //   R(T)² − R(T−h) R(T+h) = R(0)² sin²(2π f h),
 // whatever its frequency, phase and direction. The left side divided by the right side is the
-// squared coherence after a lag T. It is 1 for a vibration. It is near 0 for the response of a
-// damped loop to noise, a push or a release, because that response decays within T. A growing
-// vibration is normalised by the power at both times, so that it stays coherent.
+// squared coherence after a lag T. The coherence is 1 for a vibration. It is near 0 for the
+// response of a damped loop to noise, a push or a release, because that response decays within T. A
+// growing vibration is normalised by the power at both times, so that it stays coherent.
 //
 // A jump of the force (a push, a release, the step of a mouse) contains all frequencies, and the
 // filter rings after it. The vibration must therefore exceed a share of the force's latest jump.
 // Two jumps one lag apart look coherent after that lag, but not after half of it, so the force must
 // be coherent after both.
 //
-// The identity above assumes that the power is constant while the mean is taken. After a jolt it is
-// not: the mean contains the onset, and the left side can then exceed the right side for a force
-// that only decays. The three shorter scales, which require growth, therefore also require that
-// the past explains the present: the least-squares projection of y(t) on y(t − T) and y(t − T − h)
-// must have more than half of the power of y(t). It explains nothing that began within the last T,
-// so a ringing decays before the past explains it, while a growing vibration consists mostly of
-// its latest cycles, which the cycles before them explain.
+// The identity above holds only if the power is constant during the averaging. After a jolt, the
+// power is not constant. The mean contains the onset of the jolt, so the left side can exceed the
+// right side for a force that only decays. The three shorter scales, which require growth,
+// therefore also require that the past explains the present. This means that the least-squares
+// projection of y(t) on y(t − T) and y(t − T − h) must have more than half of the power of y(t).
+// The projection explains nothing that began within the last T, so a ringing decays before the past
+// explains it. A growing vibration, however, consists mostly of its latest cycles, which the
+// preceding cycles explain.
 //
-// Each of the four scales has its own lag, averaging time, coherence and amplitude: the shorter the
-// lag, the sooner it responds and the larger the amplitude must be. The three shorter ones also
-// require growth; the longest finds a steady vibration. A vibration that beats or whose amplitude
-// is modulated is coherent only for short times, but repeatedly. It counts once it has been
-// coherent at the shortest lag for a share of the last second. docs/concepts/vibration.md gives the
-// reasons.
+// Each of the four scales has its own lag, averaging time, coherence and amplitude. A scale with a
+// shorter lag responds sooner but needs a larger amplitude. The three shorter scales also require
+// growth; the longest scale finds a steady vibration. A vibration that beats or whose amplitude is
+// modulated is coherent only for short times, but repeatedly. Such a vibration is reported once it
+// has been coherent at the shortest lag for a share of the last second. docs/concepts/vibration.md
+// gives the reasons.
 class VibrationDetector {
  public:
   static constexpr double kLow = 12, kHigh = 65;  // [Hz]
@@ -49,8 +50,8 @@ class VibrationDetector {
     double lag, window;  // T, and the time constant of the mean [s]
     double coherence;    // minimum coherence
     double amplitude;    // minimum amplitude [N]
-    // Minimum and maximum growth of the amplitude over one lag. The maximum exists because a
-    // vibration that did not exist one lag ago cannot be compared with itself.
+    // The minimum and the maximum growth of the amplitude during one lag. The maximum exists
+    // because a vibration that did not exist one lag ago cannot be compared with itself.
     double growth, max_growth;
     double share_of_jump;  // minimum share of the latest jump of the force below kLow
     double explained;      // minimum share of the amplitude that the past explains
@@ -62,8 +63,8 @@ class VibrationDetector {
       {0.240, 0.300, 0.65, 1.0, 0, HUGE_VAL, 0.5, 0},
   }};
 
-  // Repeated coherence: at the first scale's lag, for the share kLastingShare of about kLastingTime
-  // [s].
+  // Repeated coherence is coherence at the first scale's lag for the share kLastingShare of about
+  // kLastingTime [s].
   static constexpr Scale kLasting = {
       kScales[0].lag, kScales[0].window, 0.75, 1.0, 0, HUGE_VAL, 0.5, 0};
   static constexpr double kLastingShare = 0.4, kLastingTime = 0.8;
@@ -103,8 +104,8 @@ class VibrationDetector {
     double Explained() const noexcept;
     void Archive(StateArchive& a) noexcept { a(before, earlier, past, shorter, lag, longer); }
   };
-  // Means of one scale: the present power, the product with the previous sample, and the products
-  // across T and T/2 [N²].
+  // The means for one scale: of the present power, of the product with the previous sample, and of
+  // the products across T and T/2 [N²].
   struct Means {
     double now = 0, next = 0;
     Across whole, half;

@@ -1,4 +1,4 @@
-// Warnings: conditions reported to the operator that do not stop the run.
+// Determines the warnings, which report conditions to the operator without stopping the run.
 #pragma once
 
 #include <array>
@@ -17,14 +17,14 @@ struct WarningInput {
   bool rests = false;  // the arms are at rest, and no one needs to hold the handles
 };
 
-// Losses and refusals are counted over about one second. Drift is the slope of a straight line that
-// is fitted to the force over kDriftTime at rest, provided that the residual does not exceed the
-// sensor's own noise (a hand is never that quiet). A warning remains until its value has fallen to
-// half the limit.
+// Lost packets and refused commands are counted over about one second. Drift is the slope of a
+// straight line that is fitted to the force over kDriftTime at rest. The residual must not exceed
+// the sensor's own noise, because the force of a hand is always noisier than that. A warning
+// remains until its value has fallen to half the limit.
 class Warnings {
  public:
-  // Nothing is counted during this initial time [s]: packets that arrived before the program read
-  // them were not lost.
+  // During this initial time [s], nothing is counted, because packets that arrived before the
+  // program read them were not lost.
   static constexpr double kStartTime = 0.5;
   static constexpr double kMaxLost = 0.01;    // largest share of lost samples
   static constexpr double kMinLosses = 1.5;   // fewer losses cause no warning
@@ -46,7 +46,7 @@ class Warnings {
   void Archive(StateArchive& a) noexcept { a(arm_, sensor_, lines_, bits_, values_); }
 
  private:
-  // Counts over about the last second. Older counts fade.
+  // The counts during about the last second. Older counts fade.
   struct Link {
     LinkCounts last;
     double known = 0;  // time since the first count [s]

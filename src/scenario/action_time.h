@@ -1,4 +1,4 @@
-// The times of a script's actions, both for performing and for checking them.
+// Computes the times of a script's actions, which are used to perform and to check the script.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ struct ActionSpan {
 std::vector<ActionSpan> SpansOf(const std::vector<ActionSpec>& script);
 
 // Returns the index in the script of the action in progress at `run_time` [s], or −1 if there is
-// none. It is the last action that has started. A person at the handles follows it.
+// none. This is the last action that has started. A person at the handles follows this action.
 int ActionAt(const std::vector<ActionSpan>& script, double run_time) noexcept;
 
 }  // namespace predictor

@@ -14,7 +14,7 @@
 namespace predictor {
 namespace {
 
-// The numbers in a field table, without its groups, in the table's order.
+// The numbers in a field table in the table's order, without the numbers in its groups.
 struct Numbers {
   struct Number {
     std::string key;
@@ -49,7 +49,7 @@ std::string LooserThan(const Numbers::Number& limit, const std::string& key, dou
          FormatNumber(limit.value) + ".";
 }
 
-// Each limit of a machine has the name of a value in the scenario's safety or rendering group.
+// Each limit of a machine has the same name as a value in the scenario's safety or rendering group.
 void RefuseLooser(const Machine& machine, const Scenario& s) {
   static const std::set<std::string> kMinima = {"stop_acceleration", "stop_jerk",
                                                 "security_distance", "joint_security"};
@@ -71,7 +71,7 @@ void RefuseLooser(const Machine& machine, const Scenario& s) {
 }
 
 // The lateness of samples and of ticks is measured in ticks, and the watchdog trips only after
-// several late ticks. With slower ticks, a stop would start later than its budget allows.
+// several late ticks. With longer ticks, a stop would start later than its budget allows.
 void RequireRate(const Scenario& s) {
   constexpr double kRate = 1000;  // [Hz]
   if (s.rate != kRate)
@@ -81,7 +81,8 @@ void RequireRate(const Scenario& s) {
                " Hz, because slower ticks would delay a stop. Remove this key.");
 }
 
-// A large weight moves the handles away from their targets and moves elbows that no one monitors.
+// A large weight moves the handles away from their targets, and also moves the elbows, which no one
+// monitors.
 void RequireLittleManipulability(const Scenario& s) {
   constexpr double kMaxManipulability = 0.01;
   if (s.rendering.manipulability > kMaxManipulability)
@@ -104,8 +105,8 @@ void RequireOscillationDetector(const Scenario& s) {
     double value, bound;
     bool least;
   };
-  // A band that starts much lower takes longer to forget a change of the held force, and detects
-  // nothing meanwhile.
+  // A filter band that starts much lower needs more time to settle after a change of the held
+  // force, and detects nothing meanwhile.
   for (const Bound& b :
        {Bound{"low", has.low, all.low, false},
         {"low", has.low, all.low / 2, true},
@@ -129,8 +130,8 @@ void RememberMachine(const Machine& machine, Scenario* scenario) {
   scenario->tree = std::make_shared<const YamlNode>(std::move(tree));
 }
 
-// Returns one line for each arm of the scenario for which `is_done` returns false: its name,
-// `not_done`, and the remedy.
+// Returns one line for each arm of the scenario for which `is_done` returns false. The line
+// contains the name of the arm, `not_done` and the remedy.
 std::vector<std::string> LeftToDo(const Machine& machine, const Scenario& scenario,
                                   const char* step, bool (*is_done)(const MachineArm&),
                                   std::string (*not_done)(const std::string&, const MachineArm&)) {

@@ -1,4 +1,4 @@
-// The scenarios of a folder.
+// Lists the scenarios of a folder.
 #pragma once
 
 #include <filesystem>

@@ -45,7 +45,7 @@ class Checker {
   void Perturbation() const;
 
  private:
-  // Reports a problem unless `good`. `sentence` follows the path: "<path> is ...".
+  // Reports a problem if `good` is false. `sentence` follows the path: "<path> is ...".
   void Unless(bool good, const std::string& path, const std::string& sentence) const {
     if (!good) problems_->Add(PlaceOf(path, root_), path + " " + sentence);
   }
@@ -261,7 +261,7 @@ void Checker::Operator() const {
   Embodied();
 }
 
-// An embodied operator needs a body, which takes the place of some parameters of the hand.
+// An embodied operator needs a body, which replaces some parameters of the hand.
 void Checker::Embodied() const {
   const OperatorSpec& person = s_.operator_;
   if (!person.embodied) return;
@@ -365,7 +365,7 @@ void Checker::Formulation() const {
          "formulation_except.");
 }
 
-// A recording has a controller's torque once per tick.
+// A recording contains a controller's torque once per tick.
 void Checker::Controller() const {
   const ParameterKind* kind = FindKind(Controllers(), s_.cobot.controller.type);
   if (kind == nullptr || kind->place == ControllerPlace::kProgram) return;
@@ -374,7 +374,7 @@ void Checker::Controller() const {
              " needs 1000 Hz. Set rate: 1000; cobot.control.rate may be lower.");
 }
 
-// A run stops at safety.force, so an event that waits for more never begins.
+// A run stops at safety.force, so an event that waits for a larger force never begins.
 void Checker::Events() const {
   for (std::size_t i = 0; i < s_.events.size(); ++i)
     if (const std::optional<double>& force = s_.events[i].trigger.force)
@@ -383,8 +383,8 @@ void Checker::Events() const {
                  FormatNumber(s_.safety.force) + " N, so the event would never begin. Reduce it.");
 }
 
-// A displacement's force on a person is predicted from the scenario's hand, which may be wrong: the
-// run measures it too.
+// The force that a displacement exerts on a person is predicted from the scenario's model of the
+// hand. The model may be wrong, so the run also measures this force.
 void Checker::Perturbation() const {
   if (!s_.perturbation) return;
   const PerturbationSpec& p = *s_.perturbation;

@@ -7,7 +7,7 @@
 namespace predictor {
 
 // Reports contradictions between parts of a scenario whose individual values are all allowed.
-// `root` is the tree from which it was read; it supplies the places.
+// `root` is the tree from which the scenario was read. It supplies the places for the messages.
 void CheckScenario(const Scenario& scenario, const YamlNode& root, Problems* problems);
 
 }  // namespace predictor

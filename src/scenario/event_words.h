@@ -8,7 +8,7 @@
 namespace predictor {
 
 // Returns when the event begins, such as "at a random time between 2 and 4 s, when every hand
-// grips". The drawn time is not part of it.
+// grips". This text does not contain the time that was drawn.
 std::string TriggerWords(const TriggerSpec& trigger);
 
 }  // namespace predictor

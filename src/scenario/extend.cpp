@@ -50,8 +50,8 @@ fs::path TakeExtended(const fs::path& file, YamlNode* root, Place* place) {
                                         folder.string() +
                                         ". Move that scenario into this folder or a subfolder.");
   root->items.erase(root->items.begin() + (node - root->items.data()));
-  // Relative to the same folder as the name of the extending file, because messages show both
-  // names.
+  // The name is relative to the same folder as the name of the extending file, because messages
+  // show both names.
   return file.parent_path() / fs::path(target).lexically_relative(folder);
 }
 

@@ -67,7 +67,7 @@ class FieldReader {
     }
   }
 
-  // Reads everything that `walk` names, then reports keys without a table entry.
+  // Reads everything that `walk` names, and then reports keys without a table entry.
   template <class Walk>
   void ReadAll(Walk walk) {
     naming_ = true;
@@ -84,8 +84,8 @@ class FieldReader {
   bool IsKnown(const std::string& key) const {
     return std::find(known_.begin(), known_.end(), key) != known_.end();
   }
-  // Finds misspelt keys that are similar to a missing key. They are reported only once, as unknown
-  // keys, not also as missing ones.
+  // Finds misspelt keys that are similar to a missing key. Such keys are reported only once, as
+  // unknown keys and not also as missing keys.
   void FindMisspelt() {
     for (const YamlNode& item : at_.node.items)
       if (misspelt_.size() < Problems::kMaxReported && !IsKnown(item.key))
@@ -115,7 +115,7 @@ class FieldReader {
     }
   }
 
-  // Reports a key that only other kinds of this group have.
+  // Reports a key that this kind does not have, but other kinds of the group have.
   bool RefuseForeign(const YamlNode& item) {
     if (kind_ == nullptr || problems_->IsFull()) return false;
     const std::vector<std::string> others = OthersWith(item.key, *kind_, kinds_);

@@ -30,7 +30,7 @@ std::string End(double x) { return x == 0x1p64 ? std::to_string(UINT64_MAX) : Fo
 bool TakesAngles(const Rule& rule) { return rule.unit == "rad" || rule.unit == kAngleOrLength; }
 
 // Reads the number of a scalar in the rule's unit. An angle may be given in degrees ("30 deg").
-// Where a joint may turn or slide, a length may be marked as such ("0.3 m").
+// For a joint that may turn or slide, a length may have the unit m ("0.3 m").
 bool ReadInUnit(const YamlNode& node, const Rule& rule, double* number) {
   if (node.kind != Kind::kScalar) return false;
   const auto before = [&node](std::string_view suffix) {

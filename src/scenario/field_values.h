@@ -1,5 +1,5 @@
-// Reads the value of a field from a node and writes it to one. Each Read reports invalid values to
-// `problems` and leaves the member unchanged in that case.
+// Reads the value of a field from a node, and writes it to a node. Each Read reports invalid values
+// to `problems` and leaves the member unchanged in that case.
 #pragma once
 
 #include <array>

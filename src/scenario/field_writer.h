@@ -1,4 +1,4 @@
-// Writes structs into a tree, including every default and a comment for each key.
+// Writes structs into a tree, including all defaults and a comment for each key.
 #pragma once
 
 #include <optional>

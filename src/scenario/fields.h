@@ -1,5 +1,6 @@
-// The field tables of a scenario, one for each struct. They are the only place that defines keys,
-// units, meanings and permitted values. Loading, saving, the schema and overrides all use them.
+// The field tables of a scenario, one for each struct. These tables are the only place that defines
+// keys, units, meanings and permitted values. Loading, saving, the schema and overrides all use
+// these tables.
 //
 // A visitor V offers
 //   v(key, member, rule)      for every member,

@@ -18,19 +18,20 @@ inline std::vector<std::string> NamesOf(FixtureShape) {
 
 struct FixtureSpec {
   FixtureShape shape = FixtureShape::kBox;
-  // Box: x y z; cylinder: radius, length, –; capsule: radius, length without the caps, –;
-  // sphere: radius, –, –; plane: x, y as drawn, – [m]. A plane is unlimited and solid below.
+  // The dimensions [m]. Box: x y z; cylinder: radius, length, –; capsule: radius, length without
+  // the caps, –; sphere: radius, –, –; plane: x, y as drawn, –. A plane is infinite, and everything
+  // below it is solid.
   Vector3 size = {0.1, 0.1, 0.1};
-  // Pose in W [m], [rad]. Axis of a cylinder or capsule, and normal of a plane: z.
+  // Pose in W [m], [rad]. The axis of a cylinder or capsule and the normal of a plane are along z.
   Vector3 xyz = Vector3::Zero();
   Vector3 rpy = Vector3::Zero();
   std::optional<double> friction;  // sliding friction of its contacts; absent: environment.friction
-  // A contact is a spring and a damper scaled to the mass that it moves: undamped, the bodies would
-  // swing with the frequency 1/(time_constant · damping_ratio) [rad/s].
+  // A contact is a spring and a damper that are scaled to the mass that they move. Without damping,
+  // the bodies would oscillate at the frequency 1/(time_constant · damping_ratio) [rad/s].
   double time_constant = 0.0025;  // [s]
   double damping_ratio = 1;       // 1: no bounce
-  // With a stiffness, each point of contact is instead a spring and a damper of these values,
-  // whatever they move [N/m], [N·s/m].
+  // If a stiffness is given, each point of contact is instead a spring and a damper of these
+  // values, whatever mass they move [N/m], [N·s/m].
   std::optional<double> stiffness;
   double damping = 0;
   std::vector<std::string> touches = {"object"};  // that collide with it: object, cobot

@@ -8,7 +8,7 @@
 namespace predictor {
 namespace {
 
-// Walks the field tables along the keys that a tree has.
+// Visits the field tables along the keys that a tree has.
 class KindFinder {
  public:
   KindFinder(YamlNode* group, std::string path, std::vector<KindGroup>* found)

@@ -1,4 +1,5 @@
-// Finds the parts of a scenario whose keys depend on the kind that a word in them names.
+// Finds the parts of a scenario whose keys depend on their kind, which is named by a word in each
+// part.
 #pragma once
 
 #include <vector>

@@ -34,8 +34,8 @@ YamlNode ParseRoot(const std::string& text, const std::string& name) {
   return root;
 }
 
-// An override that selects another kind removes the parameters of the former kind, as a file that
-// extends another one does.
+// An override that selects another kind removes the parameters of the former kind. A file that
+// extends another one does the same.
 void ApplyToScenario(const std::string& assignment, YamlNode* root) {
   ApplyOverride(assignment, root);
   for (const KindGroup& group : KindGroups(root))

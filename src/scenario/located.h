@@ -1,4 +1,4 @@
-// Finds the place in the file for an error of a scenario that is detected only after models are
+// Finds the place in the file for an error in a scenario that is detected only after the models are
 // loaded.
 #pragma once
 
@@ -8,9 +8,9 @@
 namespace predictor {
 
 // Returns `error` preceded by the place of its key: "file:line:column: ", or "--set key: " if an
-// override set it. For a missing key, it is the place of the group that lacks the key. An error of
-// a machine's arm gets its place and key in the machine's file. The error is unchanged if it has no
-// key or if the scenario was not read from text.
+// override set it. For a missing key, this is the place of the group that lacks the key. An error
+// of a machine's arm gets its place and key in the machine's file. The error is unchanged if it has
+// no key or if the scenario was not read from text.
 InputError Located(const InputError& error, const Scenario& scenario);
 
 // Returns the key of a hand's arm in a scenario: "device.arms.left".
@@ -18,11 +18,11 @@ std::string DeviceArmKey(int hand);
 // Returns the name of a hand's arm for the user: "device.arms.left" of the scenario or, on a
 // machine, "arms.left.arm".
 std::string ArmKey(const Scenario& scenario, int hand);
-// Returns what changes the places that a hand's arm reaches: "move device.arms.left.base" or, if
-// the arms are fixed, "change environment.shift".
+// Returns the advice for a place that a hand's arm cannot reach: "move device.arms.left.base" or,
+// if the arms are fixed, "change environment.shift".
 std::string PlacementRemedy(const Scenario& scenario, int hand);
 
-// For a scenario on a machine: the key in its tree under which the machine's tree is stored. No
+// The key under which the machine's tree is stored in the tree of a scenario on a machine. No
 // scenario contains this key.
 inline constexpr const char* kMachineKey = "machine file";
 

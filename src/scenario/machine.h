@@ -1,5 +1,5 @@
 // A machine: the real arms and sensors of one laboratory, their connections, their properties, and
-// the absolute limits there. It has a separate file because scenarios change more often.
+// the absolute limits there. A machine has a separate file because scenarios change more often.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace predictor {
 enum class ArmMake { kUr, kFranka };
 enum class SensorMake { kOwn, kNetFt, kOnRobot };  // kOwn: the arm's own sensor or estimator
 
-// Thresholds of a Franka arm's own reflex.
+// The thresholds of the Franka arm's own reflex.
 struct CollisionThresholds {
   double force = 60;         // external force at the stiffness frame [N]
   double torque = 20;        // external torque at the stiffness frame [N·m]
@@ -56,8 +56,8 @@ struct MachineArm {
   std::optional<Commissioned> commissioned;
 };
 
-// Limits that no scenario may loosen on this machine. Names and units are those of a scenario's
-// `safety`. Some limits are minima, for which a smaller value is looser.
+// Limits that no scenario may loosen on this machine. The limits have the names and units of a
+// scenario's `safety`. Some limits are minima. For these, a smaller value is looser.
 struct MachineLimits {
   double force = 30;                   // limit per hand [N]
   double torque = 5;                   // limit per hand [N·m]
@@ -84,8 +84,8 @@ struct MachineLimits {
   double joint_security = 0.02;    // minimum distance [rad]
 };
 
-// A device that a person holds pressed while the arms may move. Its contact is wired to a digital
-// input.
+// A device that a person must keep pressed while the arms may move. The device's contact is wired
+// to a digital input.
 struct EnablingInput {
   std::string arm;        // left, right: the controller to which it is wired
   int digital_input = 0;  // UR: 0 … 7 standard inputs, 8 … 15 configurable inputs, 16, 17 tool
@@ -107,8 +107,8 @@ struct Machine {
   const std::optional<MachineArm>& arm(int hand) const { return hand == 0 ? left : right; }
 };
 
-// Reads and checks a machine file. Errors are those of LoadScenario. Models may only be given by
-// package://.
+// Reads and checks a machine file. Throws the same errors as LoadScenario. Paths of models must
+// begin with package://.
 Machine LoadMachine(const std::filesystem::path& file);
 Machine ParseMachine(const std::string& text, const std::string& name);
 // Returns the whole machine as YAML, including every default.
@@ -119,8 +119,9 @@ std::string MachineSchema();
 // Returns the `error` of a key ("arms.left.arm.elbow"), preceded by its place in the file.
 InputError Located(const InputError& error, const Machine& machine);
 
-// Returns a hash of the entry of an arm except `commissioned`, whatever its order and comments: 16
-// hexadecimal digits (FNV-1a). It protects against oversight, not against malice.
+// Returns a hash (FNV-1a, 16 hexadecimal digits) of the entry of an arm except `commissioned`. The
+// order of the keys and the comments do not affect this hash. The hash protects against oversight,
+// not against malice.
 std::string HashOf(const MachineArm& arm);
 // Returns whether the arm has not changed since its push test.
 bool IsPushTested(const MachineArm& arm);
@@ -130,7 +131,7 @@ std::string HashOfLoop(const MachineArm& arm);
 // Returns whether `arm.loop` was measured on this arm.
 bool IsLoopMeasured(const MachineArm& arm);
 // Returns one line with the remedy for each arm of `scenario` whose velocity loop was not measured.
-// For these arms ApplyMachine removes the lead, which would be a guess.
+// For these arms, ApplyMachine removes the lead, because it would be based on an assumed lag.
 std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario);
 // Returns one line with the remedy for each arm of `scenario` without a current push test.
 std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& scenario);
@@ -139,8 +140,8 @@ void RequirePushTests(const Machine& machine, const Scenario& scenario);
 
 // Replaces the scenario's arms by the machine's. A scenario may tighten the machine's limits but
 // never loosen them, and its stop must keep the budget of real arms (90 ms, 13.5 mm from 0.25 m/s).
-// Otherwise, or if the machine lacks an arm for a handle, throws InputError that names the key. If
-// a loop was not measured, the reference has no lead.
+// Throws InputError that names the key if the scenario does not fit, or if the machine lacks an arm
+// for a handle. If a velocity loop was not measured, the reference has no lead.
 void ApplyMachine(const Machine& machine, Scenario* scenario);
 
 }  // namespace predictor

@@ -22,7 +22,7 @@ struct PrimitiveSpec {
   std::optional<Vector3> inertia;  // principal moments about the centre of mass, axes of O [kg·m²]
 };
 
-// A body that others can push and that nothing holds at the start: an entry of environment.objects.
+// An entry of environment.objects: a body that others can push and that nothing holds at the start.
 struct MovableSpec {
   std::string name;   // by which events and messages refer to it
   std::string model;  // URDF; empty: the primitive
@@ -30,8 +30,9 @@ struct MovableSpec {
   // Pose of its frame in W at the start [m], [rad].
   Vector3 xyz = Vector3::Zero();
   Vector3 rpy = Vector3::Zero();
-  // Sliding friction of its contacts. If the other body has one too, the lower one applies. Absent:
-  // that of the other body or, if it has none, environment.friction.
+  // Sliding friction of its contacts. If the other body has a friction coefficient too, the lower
+  // one applies. If absent, the coefficient of the other body applies or, if there is none,
+  // environment.friction.
   std::optional<double> friction;
   std::vector<std::string> touches = {"object"};  // that collide with it: object, cobot
   Vector3 color = {0.35, 0.55, 0.75};             // red, green, blue; of a primitive

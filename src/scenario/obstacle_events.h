@@ -8,7 +8,8 @@
 namespace predictor {
 
 // Returns the entries of `events` in which fixture number i appears (obstacle_appears), as bits. If
-// there are none, the fixture is always present. Otherwise it is present only while one is active.
+// there are none, the fixture is always present. Otherwise the fixture is present only while one of
+// them is active.
 std::uint16_t EventsOfFixture(const Scenario& scenario, std::size_t i);
 
 }  // namespace predictor

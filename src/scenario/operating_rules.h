@@ -1,5 +1,6 @@
-// The operating rules of a run: what people and programs may do, and what the safety functions
-// take into account. They follow from the scenario alone and do not change during a run.
+// The operating rules of a run determine what people and programs may do, and what the safety
+// functions take into account. The rules follow from the scenario alone and do not change during a
+// run.
 #pragma once
 
 #include <limits>
@@ -9,19 +10,20 @@
 
 namespace predictor {
 
-// The defaults are the rules of a run in which no real arm can move: a simulated rig or direct
-// mode. RulesFor is the only function that distinguishes these kinds of scenario.
+// The defaults are the rules of a run in which no real arm can move, with a simulated rig or in
+// direct mode. RulesFor is the only function that distinguishes these kinds of scenario.
 struct OperatingRules {
   // -- Who may command --
   // The program takes the run from IDLE to RUN without a person.
   bool auto_start = true;
-  // Pages may request align, start, end and reset. Otherwise only a person at the rig may.
+  // Pages may request align, start, end and reset. Otherwise only a person at the rig may make
+  // these requests.
   bool remote_start = true;
   // While the arms are at rest, a page may select the next scenario.
   bool may_switch_scenario = true;
   // The arms move in ALIGN, RUN and RECOVERY only while a person holds the enabling key or device.
   bool needs_enabling = false;
-  // A person holds the handles: operator.type must be person.
+  // A person holds the handles, so operator.type must be person.
   bool needs_person = false;
   // ALIGN starts only while no one presses on a handle.
   bool aligns_hands_free = false;
@@ -33,7 +35,7 @@ struct OperatingRules {
   bool may_stiffen = true;
   // A person who wears a headset must see the moving arms: a silent headset stops the run.
   bool watches_headsets = false;
-  // An access code for the page admits one client.
+  // An access code for the page admits only one client.
   bool single_use_access_code = false;
 
   // -- The arms --
@@ -45,7 +47,8 @@ struct OperatingRules {
   bool cuts_power_of_moving_arms = false;
   // rendering.formulation must include every repair, because a person can be hurt.
   bool needs_repairs = false;
-  // A controller's library must have passed a trial: its crash would be the loop's.
+  // A controller's library must have passed a trial, because a crash of the library would be a
+  // crash of the control loop.
   bool distrusts_libraries = false;
   // The elbows keep their distance even if the scenario lists other link pairs.
   bool always_separates_elbows = false;
@@ -55,7 +58,7 @@ struct OperatingRules {
   // -- The force sensors --
   // A constant reading means a frozen sensor, even if the scenario sets no noise.
   bool sensors_always_have_noise = false;
-  // A sensor may be mounted or wired incorrectly: the run stops if handles run away.
+  // A sensor may be mounted or wired incorrectly, so the run stops if a handle runs away.
   bool detects_runaway = false;
   // Gravity that acts on the handles [m/s²].
   double handle_gravity = kStandardGravity;

@@ -1,6 +1,6 @@
-// Parameters that a kind of part declares beside its own code, in a module that this one does not
-// know. The controllers of the virtual cobot, the hazards, the actions of the operator and the
-// tasks and limits of rendering are such kinds.
+// Parameters that a kind of part declares beside its own code, in a module that the scenario module
+// does not know. The controllers of the virtual cobot, the hazards, the actions of the operator and
+// the tasks and limits of rendering are such kinds.
 //
 // A kind declares a struct with a field table, like every part of a scenario (fields.h):
 //   struct DampingParameters { double damping = 5; };
@@ -25,7 +25,7 @@
 
 namespace predictor {
 
-// The visitor of a kind's field table. Its members may have the types below.
+// The visitor of a kind's field table. The members of the table may have the types below.
 class ParameterVisitor {
  public:
   using Member = std::variant<bool*, int*, double*, std::string*, Vector3*, std::vector<double>*,
@@ -86,7 +86,7 @@ std::unique_ptr<OwnParameters> NewParameters() {
   return std::make_unique<ParametersOf<P>>();
 }
 
-// For a kind that has none.
+// The parameters of a kind that has none.
 struct NoParameters {};
 template <class V>
 void Fields(V&, NoParameters&) {}
@@ -110,8 +110,8 @@ const ParameterKind* FindKind(ParameterKinds kinds, const std::string& name) noe
 std::vector<std::string> OthersWith(const std::string& key, const ParameterKind& kind,
                                     ParameterKinds kinds);
 
-// Reads the parameters of a kind. Reports invalid values, missing ones and keys that it does not
-// have.
+// Reads the parameters of a kind. Reports invalid values, missing values, and keys that this kind
+// does not have.
 std::unique_ptr<OwnParameters> ReadParameters(const ParameterKind& kind, const PathNode& at,
                                               Problems* problems);
 YamlNode WriteParameters(OwnParameters* parameters);
@@ -125,8 +125,8 @@ struct KindGroup {
   ParameterKinds kinds;
   YamlNode* group;
 };
-// Removes from a group the parameters of other kinds that a file, not an override, gives. Returns
-// whether there were any.
+// Removes from a group the parameters of other kinds, if a file and not an override contains them.
+// Returns whether there were any such parameters.
 bool RemoveForeignParameters(const KindGroup& group);
 
 // ---- parts that are all present

@@ -1,5 +1,5 @@
-// The person in a study who holds the handles: no name, only what a study may store. A recording
-// has it as labels.
+// The person in a study who holds the handles. These data contain no name, but only what a study
+// may store. A recording contains these data as labels.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace predictor {
 
-// What the person agreed to.
+// The consent of the person.
 struct ConsentSpec {
   std::string version;  // of the text of the consent
   std::string date;     // on which the person signed it: YYYY-MM-DD

@@ -28,7 +28,8 @@ fs::path InstalledData() {
   return !error && fs::is_directory(data, error) ? Canonical(data) : fs::path();
 }
 
-// UseDataFolder sets this folder. Otherwise the first call finds it.
+// UseDataFolder sets this folder. If UseDataFolder was not called, the first call of this function
+// finds the folder.
 fs::path& Data() {
   static fs::path data = InstalledData();
   return data;
@@ -59,7 +60,8 @@ std::string DidYouMean(const std::string& word, const std::vector<std::string>& 
   return nearest.empty() ? "" : " Did you mean " + nearest + "?";
 }
 
-// As above for packages. Their common ending says nothing about similarity.
+// As above for packages. The ending that these names have in common says nothing about their
+// similarity.
 std::string DidYouMeanPackage(const std::string& word, const std::vector<std::string>& names) {
   constexpr std::string_view kEnding = "_description";
   if (!word.ends_with(kEnding)) return DidYouMean(word, names);

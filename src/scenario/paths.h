@@ -8,25 +8,26 @@
 
 namespace predictor {
 
-// Roots of package:// URIs: PREDICTOR_PACKAGE_PATH (colon-separated) if set, then the robot
-// descriptions that the build pinned ("package://example-robot-data/robots/..." and
-// "package://panda_description/..." both refer to them).
+// The roots of package:// URIs are PREDICTOR_PACKAGE_PATH (colon-separated) if it is set, and then
+// the robot descriptions that the build pinned. Both "package://example-robot-data/robots/..." and
+// "package://panda_description/..." refer to these descriptions.
 std::vector<std::filesystem::path> PackageRoots();
 
 // Returns the folder of the robot descriptions that come with the program, with symlinks resolved:
-// those in the data folder, otherwise those that the build pinned. They are identical on all
-// computers with the same version. Returns "" if there are none.
+// those in the data folder, otherwise those that the build pinned. These descriptions are identical
+// on all computers with the same version of the program. Returns "" if there are none.
 std::filesystem::path PinnedRobots();
 
 // Returns the folder with the scenarios, assets and robot descriptions of an installed program
-// (share/predictor beside its bin), or the folder given to UseDataFolder; "" in a build folder.
+// (share/predictor beside its bin), or the folder given to UseDataFolder. Returns "" for a program
+// in a build folder.
 std::filesystem::path DataFolder();
 
-// Sets the location of the installed data, for programs that embed the emulator. It is not
-// thread-safe; call it before loading a scenario.
+// Sets the location of the installed data, for programs that embed the emulator. This function is
+// not thread-safe; call it before loading a scenario.
 void UseDataFolder(const std::filesystem::path& folder);
 
-// Returns `path` with symlinks resolved, as far as it exists.
+// Resolves the symlinks in the part of `path` that exists, and returns the result.
 std::filesystem::path Canonical(const std::filesystem::path& path);
 // Returns whether `path` is `root` or below it. Both must be canonical.
 bool IsInside(const std::filesystem::path& path, const std::filesystem::path& root);
@@ -42,9 +43,9 @@ std::vector<std::filesystem::path> ModelFolders(const std::filesystem::path& sce
 // Returns the file for `uri` (package://..., file-relative, or relative to `base_folder`), with
 // symlinks resolved. Apart from the package roots, only files in `scenario_folder` or in the folder
 // "assets" beside it (a real folder, not a symlink) may be read. If `scenario_folder` is empty,
-// `base_folder` replaces it. Throws InputError that names `uri`, the searched places and the remedy
-// if the file does not exist, is not a regular file, is larger than 64 MiB, or is outside these
-// places.
+// `base_folder` is used instead. Throws InputError that names `uri`, the searched places and the
+// remedy if the file does not exist, is not a regular file, is larger than 64 MiB, or is outside
+// these places.
 std::filesystem::path ResolveModelPath(const std::string& uri,
                                        const std::filesystem::path& base_folder,
                                        const std::filesystem::path& scenario_folder = {});

@@ -8,7 +8,7 @@
 namespace predictor {
 namespace {
 
-// Motion from rest to rest over `length` in `time`.
+// Returns the motion from rest to rest that covers `length` in `time`.
 struct Ramp {
   double length, time;
 

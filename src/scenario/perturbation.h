@@ -7,12 +7,14 @@
 
 namespace predictor {
 
-// Largest force with which a hand of this impedance, with its reflex, resists a displacement along
-// any axis [N]. The handle follows the command, a motion of minimum jerk; in truth, its lag and the
-// motion of the virtual object make the force smaller.
+// Returns the largest force with which a hand of this impedance, including its reflex, resists a
+// displacement along any axis [N]. The handle is assumed to follow the command, which is a motion
+// of minimum jerk. In reality, the lag of the handle and the motion of the virtual object make the
+// force smaller.
 double PerturbationForce(const PerturbationSpec& perturbation, const HandSpec& hand);
 
-// Two unit vectors that span the plane of the displacements; along axes of W if the plane is.
+// Returns two unit vectors that span the plane of the displacements. They are parallel to axes of W
+// if the plane is parallel to a coordinate plane of W.
 std::array<Vector3, 2> PerturbationPlane(const PerturbationSpec& perturbation);
 
 }  // namespace predictor

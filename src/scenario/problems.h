@@ -17,8 +17,8 @@ class Problems {
     return found_.size() == kMaxReported;
   }  // further problems are only counted
   bool empty() const { return found_.empty(); }
-  // Throws InputError with one line per problem, in the order of the file. Returns if there are
-  // none.
+  // Throws InputError with one line per problem, in the order of the file. Does nothing if there
+  // are no problems.
   void ThrowIfAny();
 
  private:

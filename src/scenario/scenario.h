@@ -29,8 +29,8 @@ struct PoseSpec {
 };
 
 // Pose of a haptic arm's base in the rig's frame R, as a file gives it and `calibrate bases`
-// measures it. It is deliberately not a PoseSpec: its pose in W also depends on environment.shift,
-// see Scenario::X_WB.
+// measures it. This type is deliberately not a PoseSpec, because the pose of the base in W also
+// depends on environment.shift (see Scenario::X_WB).
 struct BaseSpec {
   Vector3 xyz = Vector3::Zero();
   Vector3 rpy = Vector3::Zero();
@@ -47,7 +47,8 @@ struct JointFriction {
   std::vector<double> coulomb = {0.0};  // [N·m]
 };
 
-// A point that a set-point trajectory passes at a given time, from rest to rest (minimum jerk).
+// A point of a set-point trajectory and the time at which the set-point is there. The set-point
+// moves from point to point with minimum jerk, from rest to rest.
 struct Waypoint {
   double time = 0;                // [s]
   Vector3 xyz = Vector3::Zero();  // offset of the end-effector's set-point from its start, in W [m]
@@ -63,7 +64,7 @@ struct ControllerSpec {
   void Set(const std::string& assignment) { ApplyOverride(assignment, &parameters); }
 };
 
-// When the controller computes and when its torques act.
+// The times at which the controller computes and at which its torques act.
 struct ControlSpec {
   double rate = 1000;  // rate of the controller [Hz]
   double delay = 0;    // delay from the state that the controller sees to its torque [s]
@@ -77,7 +78,7 @@ struct WristSensorSpec {
   double cutoff_frequency = 150;    // cutoff of the first-order filter [Hz]
 };
 
-// What the cobot's program states about the load in the gripper.
+// The load in the gripper as the cobot's program states it.
 struct PayloadSpec {
   double mass = 1;                           // [kg]
   Vector3 center_of_mass = Vector3::Zero();  // in E [m]
@@ -114,7 +115,8 @@ struct CobotSpec {
 
 // ---- what goes wrong --------------------------------------------------------------------------
 
-// The region where an event begins: a sphere whose centre is an offset from the object's start.
+// The region in which an event begins. It is a sphere, and its centre is given relative to the
+// object's position at the start.
 struct EventPlaceSpec {
   Vector3 center = Vector3::Zero();  // offset in W [m]
   double radius = 0.05;              // [m]
@@ -129,7 +131,7 @@ struct TriggerSpec {
   bool gripping = false;                // every hand must exert a force
 };
 
-// One entry of `events`: a hazard that happens on purpose.
+// One entry of `events`, which specifies a hazard that occurs on purpose.
 struct EventSpec {
   std::string event = "power_loss";  // a name in the registry of hazards
   TriggerSpec trigger;
@@ -165,7 +167,7 @@ enum class GripKind {
   kHook,   // the bar hangs in the bent fingers
 };
 
-// How a hand holds its handle, for the evaluation of the person.
+// The grip of a hand on its handle, for the evaluation of the person.
 struct GripSpec {
   GripKind kind = GripKind::kPower;
   Vector3 bar = {0, 0, 1};  // direction of the bar towards the thumb, in D
@@ -189,7 +191,8 @@ struct EnvironmentSpec {
   std::vector<MovableSpec> objects;  // movable objects; at most kMaxMovables
   double friction = 0.8;             // coefficient of sliding friction in contacts
   // X_RW, pose of the virtual world in the frame of the arms' bases. Roll and pitch are 0, so
-  // gravity points down in both. If it is absent, W is R and the arms' bases may be chosen freely.
+  // gravity points down in both. If `shift` is absent, W is R and the arms' bases may be chosen
+  // freely.
   std::optional<PoseSpec> shift;
 };
 
@@ -200,14 +203,14 @@ enum class VelocityLimits { kOff, kHard };
 // The physics engine of the virtual world.
 struct SimulationSpec {
   EngineKind engine = EngineKind::kMujoco;
-  // How the engine enforces the position limits of the cobot's joints and the attachment; absent:
-  // soft in MuJoCo and hard in DART.
+  // How the engine enforces the position limits of the cobot's joints and the attachment. If
+  // absent, it is soft in MuJoCo and hard in DART.
   std::optional<JointLimits> joint_limits;
   VelocityLimits velocity_limits = VelocityLimits::kOff;  // of the cobot's joints
 };
 
-// How far a real handle may deviate from the virtual one before the virtual handle is coupled to it
-// (DESIGN: coupling).
+// The distance by which a real handle may deviate from its virtual handle before the coupling acts
+// between them (DESIGN: coupling).
 struct CouplingSpec {
   double deadband = 0.004;          // [m]
   double stiffness = 2000;          // [N/m]
@@ -261,7 +264,8 @@ struct ArmSpec {
   double sample_rate = 1000;  // rate at which the device reports its joints [Hz]
   VelocityLoopSpec loop;
   // A real arm that follows positions also corrects position errors: its joints reach the positions
-  // to which the commanded velocities lead. A machine's Franka always does, whatever this value is.
+  // to which the commanded velocities lead. A Franka arm of a machine always does so, whatever this
+  // value is.
   bool follows_position = false;
   HandlePayloadSpec payload;
   SensorSpec sensor;
@@ -272,7 +276,8 @@ struct DeviceSpec {
   std::optional<ArmSpec> left, right;
 };
 
-// How the simulated rig differs from the program's model of it. Only the rig reads these values.
+// The differences between the simulated rig and the program's model of it. Only the rig reads these
+// values.
 struct RigSpec {
   std::optional<VelocityLoopSpec> loop;  // true loop of both arms; if absent, device.arms.*.loop
   double computation_delay = 0;          // delay from reading to command of a tick [s]
@@ -339,8 +344,8 @@ struct BodySpec {
   std::optional<double> trunk;              // middle of the hip joints to the vertebra C7 [m]
   std::optional<double> thigh;              // hip to knee joint [m]
   std::optional<double> shank;              // knee to ankle joint [m]
-  // Strength as a multiple of the mean for the sex: elbow flexion and extension, shoulder flexion
-  // and extension.
+  // Strength as a multiple of the mean for the sex, for elbow flexion, elbow extension, shoulder
+  // flexion and shoulder extension.
   std::array<double, 4> strength = {1, 1, 1, 1};
   double stiffness = 1;  // stiffness of the arm's joints, as a multiple of the published mean
   double fatigue = 0;    // share of the arm's muscles that is fatigued at the start of a run
@@ -367,7 +372,7 @@ struct OperatorSpec {
 
 // ---- haptic rendering --------------------------------------------------------------------------
 
-// The named parameters are those that several tasks and limits or other modules use.
+// The named parameters are used by several tasks and limits or by other modules.
 struct RenderingSpec {
   std::string formulation = "repaired";         // repaired | paper
   std::vector<std::string> formulation_except;  // repairs that deviate from it (formulation.h)
@@ -386,10 +391,10 @@ struct RenderingSpec {
   double joint_security = 0.02;        // q_s [rad]
   double joint_gain = 1.0;             // ξ_q [rad/s]
   // Pairs of links that are kept apart, each with a link of the left arm and one of the right arm.
-  // A link of a specific arm is given as left:LINK or right:LINK. If empty: the two elbows.
+  // The name left:LINK or right:LINK refers to a link of a specific arm. If empty: the two elbows.
   std::vector<std::array<std::string, 2>> link_pairs;
-  // Own parameters of tasks and limits, each part in a group with its name (own_parameters.h).
-  // Missing ones have their defaults.
+  // The own parameters of tasks and limits. The parameters of each part are in a group with the
+  // name of this part (own_parameters.h). Missing ones have their defaults.
   YamlNode parts;
 };
 
@@ -460,7 +465,7 @@ struct Scenario {
   std::shared_ptr<const YamlNode> tree;  // the tree that was read, for the places of errors;
                                          // otherwise null
   // Of a recorded scenario: what a controller outside the program answered while the run was set up
-  // (simulation/taped_controller.h). Then that controller is not used. Otherwise null.
+  // (simulation/taped_controller.h). In this case, the controller is not used. Otherwise null.
   std::shared_ptr<const std::vector<double>> controller_tape;
 
   std::filesystem::path folder() const {

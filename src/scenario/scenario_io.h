@@ -13,8 +13,8 @@ namespace predictor {
 
 // Reads and checks a scenario. `overrides` are "path.to.key=value" (value in YAML) and are applied
 // before the checks. Throws InputError with file:line:column, the invalid value, the permitted
-// values and the most similar key. Reads at most 1 MiB. Aliases and anchors are refused. A file may
-// extend another one by `extends` (extend.h).
+// values and the most similar key. The file may have at most 1 MiB. Aliases and anchors are
+// refused. A file may extend another one by `extends` (extend.h).
 Scenario LoadScenario(const std::filesystem::path& file,
                       const std::vector<std::string>& overrides = {});
 
@@ -24,13 +24,13 @@ Scenario ParseScenario(const std::string& text, const std::string& name,
                        const std::filesystem::path& folder,
                        const std::vector<std::string>& overrides = {});
 
-// Returns the whole scenario as YAML, with every default. ParseScenario(SaveScenario(s)) equals s.
+// Returns the whole scenario as YAML, with all defaults. ParseScenario(SaveScenario(s)) equals s.
 std::string SaveScenario(const Scenario& scenario);
 
 // Reads every field of a group of keys and reports invalid values. A member with a missing or
 // invalid value keeps its default.
 Scenario ReadFields(const YamlNode& root, Problems* problems);
-// Returns the tree to be saved, with every default and a comment for each key.
+// Returns the tree to be saved, with all defaults and a comment for each key.
 YamlNode ScenarioTree(const Scenario& scenario);
 
 // Returns the JSON Schema (draft-07) of scenarios, from the field tables that loading uses.

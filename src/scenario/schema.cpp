@@ -199,7 +199,7 @@ void AddDefaults(const YamlNode& defaults, Json* schema) {
 }
 
 // Removes the requirements from a schema and returns them as a separate schema. Entries of lists
-// keep theirs, because a list is always written completely.
+// keep their requirements, because a list is always written completely.
 Json TakeRequirements(Json* schema) {
   Json taken = Json::object();
   if (schema->contains("required")) {
@@ -218,7 +218,8 @@ Json TakeRequirements(Json* schema) {
     for (Json& choice : (*schema)["anyOf"]) {
       Json inner = TakeRequirements(&choice);
       any |= !inner.empty();
-      // Otherwise the keys of an alternative with requirements would be accepted without them.
+      // Without this, the keys of an alternative with requirements would be accepted without these
+      // requirements.
       if (inner.empty() && choice.contains("properties")) {
         for (const auto& item : choice["properties"].items())
           inner["properties"][item.key()] = Json::object();

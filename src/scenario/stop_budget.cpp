@@ -8,8 +8,8 @@
 namespace predictor {
 namespace {
 
-// Budget of a stop from a speed, even if the handles were accelerating. The second limit applies if
-// a handle may move faster than the first one allows.
+// The budget of a stop from a given speed. It also covers handles that accelerate when the stop
+// begins. The second limit applies if a handle may move faster than the first one allows.
 struct StopAllowance {
   double speed, time, way;  // [m/s], [s], [m]
 };
@@ -21,8 +21,8 @@ constexpr double kHardestStop = 10, kHardestStopJerk = 1000;
 
 StopBudget WorstStop(double speed, double acceleration, double jerk) {
   // The deceleration has three phases: a jerk from the rate at which the speed still grows to the
-  // peak deceleration, the constant peak, and a jerk back. The speed first grows to `speed`, by a
-  // quarter at most (safety/stop.h). Slow handles never reach the full deceleration.
+  // peak deceleration, the constant peak, and a jerk back. The speed first grows to `speed`, by at
+  // most a quarter (safety/stop.h). Slow handles never reach the full deceleration.
   const double peak = std::min(acceleration, std::sqrt(jerk * speed));
   const double rate = std::min(acceleration, std::sqrt(0.4 * jerk * speed));
   const double begin = speed - rate * rate / (2 * jerk);

@@ -1,4 +1,4 @@
-// Time and distance permitted for a stop.
+// Checks the time and the distance of a stop against the budget.
 #pragma once
 
 #include <string>
@@ -6,14 +6,15 @@
 namespace predictor {
 
 // The longest stop from `speed` [m/s] within these limits [m/s²], [m/s³], without the arms' lag. At
-// its start, the handle still accelerates as hard as possible without exceeding `speed`.
+// the start of the stop, the handle still accelerates as hard as possible without exceeding
+// `speed`.
 struct StopBudget {
   double time, way;  // [s], [m]
 };
 StopBudget WorstStop(double speed, double acceleration, double jerk);
 
-// Returns the error in a stop with these limits [m/s²], [m/s³] if real handles move at up to
-// `fastest` [m/s], as a sentence that follows their keys, or "" without an error.
+// Returns the error in the limits of a stop [m/s²], [m/s³] if real handles move at up to `fastest`
+// [m/s]. It is a sentence that follows the keys of the limits, or "" if there is no error.
 std::string StopRefusal(double acceleration, double jerk, double fastest);
 
 }  // namespace predictor

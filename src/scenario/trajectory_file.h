@@ -1,4 +1,4 @@
-// Waypoints from a CSV file, for a controller that has the parameters `trajectory` and
+// Reads waypoints from a CSV file, for a controller that has the parameters `trajectory` and
 // `trajectory_file`.
 #pragma once
 

@@ -31,7 +31,8 @@ std::string StartOf(const std::filesystem::path& library) {
          hash + ") passed `predictor trial` with";
 }
 
-// Returns the end of the line about a list of parameters. How they are separated does not matter.
+// Returns the end of the line about a list of parameters. The separators between the parameters do
+// not matter.
 std::string WordsOf(const std::string& parameters) {
   std::istringstream words(parameters);
   std::string text;

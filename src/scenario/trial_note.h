@@ -1,6 +1,6 @@
-// The note that a controller's library passed its trial (`predictor trial`). It is stored beside
-// the library, with a line for each list of parameters that passed. A line is valid only for the
-// same bytes of the library and the same parameters.
+// Reads and writes the note that a controller's library passed its trial (`predictor trial`). The
+// note is stored beside the library, with a line for each list of parameters with which the library
+// passed. A line is valid only for the same bytes of the library and the same parameters.
 #pragma once
 
 #include <filesystem>

@@ -152,7 +152,8 @@ class TreeBuilder : public YAML::EventHandler {
 };
 
 // Refuses content that must not reach the parser. Brackets are counted everywhere, because the
-// parser reads ahead through open ones before any event and needs a quarter of a kilobyte for each.
+// parser reads ahead through open brackets before it reports any event, and needs a quarter of a
+// kilobyte for each of them.
 void CheckBytes(const std::string& text, const Source& source) {
   if (text.size() > kMaxYamlBytes) {
     throw InputError(*source, "the file has more than " + std::to_string(kMaxYamlBytes) +

@@ -10,7 +10,8 @@ namespace predictor {
 
 enum class ScalarKind { kString, kBool, kNumber };
 
-// Returns a scalar's kind. "inf" and "nan" in any spelling count as numbers, so errors name them.
+// Returns a scalar's kind. "inf" and "nan" in any spelling count as numbers, so that error messages
+// can name them.
 ScalarKind KindOf(const YamlNode& scalar);
 
 // Reads the number that the whole text (decimal) represents, which may be infinite or NaN. Returns

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kCommentColumn = 48;
 
-// Takes one step along a path: a key of a map or an index of a list. Returns null if it does not
-// exist.
+// Takes one step along a path, which is a key of a map or an index of a list. Returns null if it
+// does not exist.
 const YamlNode* Step(const std::string& step, const YamlNode& node) {
   if (node.kind != YamlNode::Kind::kList) return node.Find(step);
   std::size_t i = 0;
@@ -93,7 +93,7 @@ void WriteBlock(const YamlNode& node, std::size_t indent, bool indented, std::st
   }
 }
 
-// The innermost existing node on the path, and whether it is the path's end.
+// The innermost existing node on the path, and whether this node is the end of the path.
 const YamlNode* Innermost(const std::string& path, const YamlNode& root, bool* is_found) {
   const YamlNode* node = &root;
   *is_found = false;

@@ -42,10 +42,10 @@ std::string ReadYamlText(const std::filesystem::path& file, const std::string& w
 
 // Reads one document of at most kMaxYamlBytes. Throws InputError for invalid UTF-8, anchors and
 // aliases, tags, several documents, duplicate keys, keys that are not plain words, and more depth
-// or nodes than the limits above. It does so before a larger tree exists.
+// or nodes than the limits above. The error is thrown before a tree beyond these limits is built.
 YamlNode ParseYaml(const std::string& text, const std::string& source);
 
-// Returns the value at "path.to.key" (list entries by index from 0), or null without one.
+// Returns the value at "path.to.key" (list entries by index from 0), or null if there is none.
 const YamlNode* NodeAt(const std::string& path, const YamlNode& root);
 
 // Returns the place of the value at "path.to.key", or of the innermost existing group around it.

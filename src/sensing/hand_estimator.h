@@ -9,23 +9,23 @@
 
 namespace predictor {
 
-// Estimates the wrench of one hand. The reading is the wrench that the handle exerts on the sensor:
-//   F_S_raw = F_hand + weight − d(momentum)/dt + bias,
-// so the hand's wrench is the reading minus bias and weight, plus the rate of change of momentum.
-// The latter passes the same low-pass filter and delay as the sensor's signal; otherwise the two
-// would not cancel.
+// Estimates the wrench of one hand. The reading is the wrench that the handle exerts on the sensor,
+// F_S_raw = F_hand + weight − d(momentum)/dt + bias. Therefore the hand's wrench is the reading
+// minus bias and weight, plus the rate of change of momentum. The rate of change of momentum passes
+// the same low-pass filter and delay as the sensor's signal, because otherwise it would not cancel
+// the handle's inertia in the reading.
 //
-// The measured acceleration is late, too (MotionDifferentiator::Lag). It is therefore delayed by
-// the sensor's delay minus that lag. If the sensor's delay is shorter than the lag, the reading is
-// delayed by the difference instead, which is at most half a tick.
+// The measured acceleration is delayed, too (MotionDifferentiator::Lag). The acceleration is
+// therefore delayed further by the sensor's delay minus this lag. If the sensor's delay is shorter
+// than the lag, the reading is delayed by the difference instead, which is at most half a tick.
 class HandEstimator {
  public:
-  // `X_EH` is the handle in the end-effector frame. `dt` is the duration of a tick [s], at least 1
-  // ms. `gravity` is in [m/s²]. `acceleration_lag` is the age of the acceleration that is passed to
-  // Update [s]. Throws InputError.
+  // `X_EH` is the pose of the handle in the end-effector frame. `dt` is the duration of a tick [s],
+  // at least 1 ms. `gravity` is in [m/s²]. `acceleration_lag` is the age of the acceleration that
+  // is passed to Update [s]. Throws InputError.
   HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload, const Pose& X_EH,
                 double gravity, double dt, double acceleration_lag);
-  // Uses the acceleration lag of MotionDifferentiator at that tick.
+  // Uses the acceleration lag that MotionDifferentiator has with this duration of a tick.
   HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload, const Pose& X_EH,
                 double gravity, double dt);
 
@@ -33,10 +33,10 @@ class HandEstimator {
   // each tick until FinishTare.
   void BeginTare() noexcept;
   Status Tare(const ArmSample& sample, const Pose& X_WE) noexcept;
-  // Takes the mean as the bias. Returns kSensor and keeps the previous bias if there are fewer than
-  // kTareSamples readings, or if they vary more than the sensor's noise explains, which means
-  // that a person or an object is touching the handle. The status contains the observed and the
-  // allowed standard deviation of the worst axis.
+  // Sets the bias to the mean of the readings. Returns kSensor and keeps the previous bias if there
+  // are fewer than kTareSamples readings, or if they vary more than the sensor's noise explains. In
+  // the latter case, a person or an object is touching the handle. The status contains the observed
+  // and the allowed standard deviation of the worst axis.
   Status FinishTare() noexcept;
   const Wrench& bias() const { return bias_; }
   // Returns the standard deviation of the readings that sensor noise and a quiet room explain [N],

@@ -6,9 +6,9 @@
 
 namespace predictor {
 
-// a = difference between the last two different samples of v, divided by the time between them. It
-// is not filtered here: HandEstimator passes it through the sensor's low-pass filter, which removes
-// the noise, and compensates for its lag.
+// a = difference between the last two different samples of v, divided by the time between them. The
+// acceleration is not filtered here. HandEstimator passes it through the sensor's low-pass filter,
+// which removes the noise, and compensates for its lag.
 class MotionDifferentiator {
  public:
   // `dt` is the duration of a tick [s].
@@ -20,7 +20,7 @@ class MotionDifferentiator {
   static double Lag(double dt) { return dt / 2; }
 
   // Call this once per tick. Returns the joint accelerations [rad/s²]. A repeated sample (same
-  // arm_sequence) leaves them unchanged.
+  // arm_sequence) does not change these accelerations.
   const JointVector& Update(const ArmSample& sample) noexcept;
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept { a(v_, a_, sequence_, ticks_, started_); }

@@ -18,7 +18,8 @@ namespace {
 
 thread_local std::int64_t allocation_calls = 0;
 
-// These are the C library's own functions. The names in this program refer to the counting ones.
+// These pointers refer to the C library's own functions. In this program, the usual names refer to
+// the functions that count.
 void* (*real_malloc)(std::size_t);
 void* (*real_calloc)(std::size_t, std::size_t);
 void* (*real_realloc)(void*, std::size_t);

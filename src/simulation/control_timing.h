@@ -9,15 +9,15 @@
 
 namespace predictor {
 
-// A zero-order hold with a delay, in sub-steps of the simulation.
+// Applies a zero-order hold and a delay to the torques, in sub-steps of the simulation.
 class ControlTiming {
  public:
   // `step` is the duration of a sub-step [s]. `max_added` is the largest delay that AddDelay adds
   // [s]. Throws InputError if period or delay is not a whole number of sub-steps.
   ControlTiming(const ControlSpec& spec, double step, double max_added = 0);
 
-  // These functions return the controller's period [sub-steps, s], and the delay of its torques
-  // [sub-steps].
+  // The following functions return the controller's period [sub-steps, s] and the delay of its
+  // torques [sub-steps].
   int period() const noexcept { return period_; }
   double period_time() const noexcept { return period_ * step_; }
   int delay() const noexcept { return delay_; }
@@ -26,7 +26,7 @@ class ControlTiming {
   // addition to the hold of one sub-step.
   double mean_delay() const noexcept { return (delay_ + 0.5 * (period_ - 1)) * step_; }
 
-  // From now on, `torque` counts as applied for a long time [N·m].
+  // Resets the state as if `torque` had been applied for a long time [N·m].
   void Reset(const JointVector& torque) noexcept;
   // Delays the torques further by `time` [s], to the nearest sub-step, but at most by max_added.
   void AddDelay(double time) noexcept;

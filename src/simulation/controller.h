@@ -27,7 +27,7 @@ struct ControllerInput {
   const RobotData* data = nullptr;  // after UpdateDynamics at (q, v): poses, Jacobians, M, gravity
   FrameId end_effector;
   // The reading of the wrist sensor: the wrench of the load on the end-effector, about E, in axes
-  // of W. It is zero unless the controller uses the sensor.
+  // of W. The reading is zero unless the controller uses the sensor.
   Wrench F_E_W = Wrench::Zero();
   const JointVector* torque = nullptr;  // that acts at present [N·m]
   Pose X_WO;                            // of the object, without any error
@@ -36,18 +36,18 @@ struct ControllerInput {
 class Controller {
  public:
   virtual ~Controller() = default;
-  // Computes joint torques [N·m] before the effort limits are applied. They depend only on the
-  // input, the memory and the last Tune. Earlier calls must have no effect, since start, reset and
-  // linearisation call this function at other states. Does not use the heap or a lock, and does not
-  // throw.
+  // Computes joint torques [N·m] before the effort limits are applied. The torques depend only on
+  // the input, the memory and the last Tune. Earlier calls must have no effect, since start, reset
+  // and linearisation call this function at other states. Does not use the heap or a lock, and does
+  // not throw.
   virtual void Compute(const ControllerInput& input, JointVector* torque) noexcept = 0;
   // Returns the memory: everything that Advance changes, as numbers of any unit that vary smoothly.
   // Its size is constant. Saved states and the linearisation contain it.
   virtual std::span<double> memory() noexcept { return {}; }
   // Sets the memory for a cobot that has rested at `input` for a long time.
   virtual void Start(const ControllerInput&) noexcept {}
-  // Sets the memory for a controller that takes over at `input`, where input.torque acts. Does not
-  // use the heap or a lock, and does not throw.
+  // Sets the memory for a controller that replaces another one at `input`, while input.torque acts.
+  // Does not use the heap or a lock, and does not throw.
   virtual void TakeOver(const ControllerInput& input) noexcept { Start(input); }
   // Advances the memory by the controller's period dt [s]. Does not use the heap or a lock, or
   // throw.
@@ -67,23 +67,23 @@ class Controller {
   }
   virtual bool has_springs() const noexcept { return false; }
   // Shifts the Cartesian set-point by `shift` from its usual place: a translation [m] and a
-  // rotation vector [rad] in W. Does nothing for a controller without one. Does not use the heap or
-  // a lock, and does not throw.
+  // rotation vector [rad] in W. Does nothing for a controller without a Cartesian set-point. Does
+  // not use the heap or a lock, and does not throw.
   virtual void ShiftSetPoint(const Vector6& shift) noexcept { static_cast<void>(shift); }
   virtual bool has_set_point() const noexcept { return false; }
   // Undoes Tune and ShiftSetPoint.
   virtual void ResetTuning() noexcept {}
-  // Returns how the last Compute went, and the status of a refused step.
+  // Returns the outcome of the last Compute, and the status of a refused step.
   virtual ControllerOutcome outcome() const noexcept { return ControllerOutcome::kComputed; }
   virtual Status failure() const noexcept {
     return {StopCause::kPhysics, -1, std::numeric_limits<double>::quiet_NaN(), 0, Quantity::kNone};
   }
   // In real time, a controller outside the program has a deadline. Otherwise the program waits for
-  // it.
+  // the controller.
   virtual void SetRealTime(bool) noexcept {}
-  // If the scenario asks for it, gives the controller's process a real-time priority (SCHED_FIFO)
-  // below the loop's, or takes it away again. Returns what the system granted as text to follow
-  // "Real-time scheduling: ...; ", or "" if there is nothing to say. Not for the tick.
+  // If the scenario requests it, gives the controller's process a real-time priority (SCHED_FIFO)
+  // below that of the loop, or removes this priority. Returns what the system granted as text to
+  // follow "Real-time scheduling: ...; ", or "" if there is nothing to say. Not for the tick.
   virtual std::string PrioritiseProcess(bool) { return ""; }
   // Returns null unless the controller is outside the program.
   virtual TapedController* taped() noexcept { return nullptr; }
@@ -124,7 +124,7 @@ constexpr ControllerKind ControllerKindOf(const char* name, const char* doc,
 }
 
 // Returns the `values` of the parameter `key`, one per joint. A single value is for all joints.
-// Throws InputError for another number of values.
+// Throws InputError if the number of values is neither 1 nor the number of joints.
 JointVector PerJoint(const ControllerContext& context, const std::string& key,
                      const std::vector<double>& values);
 

@@ -15,7 +15,7 @@ class ControllerProcess {
  public:
   // Starts the program in `folder`, with the shared memory as descriptor 3. Throws InputError.
   ControllerProcess(const std::vector<std::string>& command, const std::filesystem::path& folder);
-  // Asks the program to end, and ends it if it does not.
+  // Requests that the program end, and ends it if it does not do so by itself.
   ~ControllerProcess();
   ControllerProcess(const ControllerProcess&) = delete;
   ControllerProcess& operator=(const ControllerProcess&) = delete;
@@ -27,16 +27,17 @@ class ControllerProcess {
   // ends, or does not answer within `limit` [s].
   bool AskAndWait(int kind, double limit) noexcept;
 
-  // Works for the tick in real time, without system calls and locks. Sends a request unless the
-  // last one is still unanswered, and watches until `deadline` [s] has passed.
+  // This function may be called in a tick in real time, because it uses no system calls and no
+  // locks. Sends a request unless the last one is still unanswered, and waits for the answer until
+  // `deadline` [s] has passed.
   bool AskAndWatch(int kind, double deadline) noexcept;
 
-  // Returns true while an answer to an earlier request may still arrive. `shared` then belongs to
-  // the program.
+  // Returns true while an answer to an earlier request may still arrive. In this case, the memory
+  // `shared` belongs to the program.
   bool IsBusy() const noexcept;
   // As SharedProcess::SetPriority.
   int SetPriority(int priority) noexcept { return process_.SetPriority(priority); }
-  // "exit code 1", or "" while it runs.
+  // Returns, for example, "exit code 1", or "" while the program runs.
   std::string HowItEnded() noexcept { return process_.HowItEnded(); }
 
  private:

@@ -12,7 +12,7 @@
 namespace predictor {
 namespace {
 
-// Returns the time of this thread, in which other programs do not count [s].
+// Returns the processor time of this thread, which excludes that of other programs [s].
 double CpuTime() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

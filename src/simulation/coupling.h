@@ -8,7 +8,8 @@
 namespace predictor {
 
 // The mobility of the free object at one handle. A cobot that holds the object can only reduce the
-// mobility, so it bounds the effect of an explicit damper in one step.
+// mobility. Therefore the mobility of the free object bounds the effect of an explicit damper in
+// one step.
 struct HandleMobility {
   double translation = 1;  // maximum, for a force [1/kg]
   double rotation = 1;     // maximum, for a torque [1/(kg·m²)]

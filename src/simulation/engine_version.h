@@ -1,4 +1,4 @@
-// The versions of the physics engines.
+// Returns the versions of the physics engines.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace predictor {
 
-// Returns "MuJoCo 4.0.0" or "DART 6.12.1", or "" if this build lacks DART. For DART, it starts a
-// process and waits for it.
+// Returns "MuJoCo 4.0.0" or "DART 6.12.1", or "" if this build lacks DART. For DART, the function
+// starts a process and waits for its answer.
 std::string EngineVersion(EngineKind engine);
 
 }  // namespace predictor

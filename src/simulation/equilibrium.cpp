@@ -20,7 +20,8 @@ constexpr int kIterations = 1000;
 constexpr double kMaxStep = 0.1;      // maximum change of a coordinate in an iteration [rad, m]
 constexpr double kPseudoTime = 0.01;  // first step of the flow, squared [s²]
 constexpr double kDifference = 1e-6;  // step of finite differences [rad, m]
-// The step while a body rests on a fixture: less than the 0.5 µm by which the body sinks in.
+// The step while a body rests on a fixture. It is smaller than the 0.5 µm by which the body sinks
+// in.
 constexpr double kContactDifference = 1e-8;
 // The largest depth to which an iteration may enter a fixture [m]. Deeper inside, the contact's
 // force is so large that the search would jump in and out.
@@ -33,8 +34,8 @@ constexpr double kUnstable = -0.01;  // eigenvalue of M⁻¹ H below which the s
 constexpr double kNudge = 0.01;      // away from an unstable equilibrium [rad, m]
 
 // Searches by the implicit flow M dq = τ r(q ⊕ dq), where r is the generalised force at rest. While
-// the pseudo-time τ is small, this is a heavily damped motion. When τ is large, it is Newton's
-// method.
+// the pseudo-time τ is small, the flow is a heavily damped motion. When τ is large, the flow is
+// Newton's method.
 class EquilibriumSearch {
  public:
   explicit EquilibriumSearch(ControlledScene* scene)
@@ -116,8 +117,8 @@ class EquilibriumSearch {
     }
   }
 
-  // Returns how deep the object or the cobot is in a fixture that has a stiffness (`yields`), or in
-  // one that has none [m]. It is 0 if the search does not include contacts.
+  // Returns the depth to which the object or the cobot has entered a fixture that has a stiffness
+  // (`yields`), or one that has none [m]. The depth is 0 if the search does not include contacts.
   double Depth(bool yields) {
     if (!engine_.has_contacts_at_rest()) return 0;
     engine_.Prepare();
@@ -161,7 +162,8 @@ class EquilibriumSearch {
 };
 
 // The reason why the cobot cannot hold the object in the posture where the search ended, and the
-// key that sets it, or "" if nothing prevents it.
+// scenario's key for the cause. The text is "" if nothing prevents the cobot from holding the
+// object.
 struct Obstacle {
   std::string key, text;
   std::string remedy = "Increase the stiffness of cobot.controller, choose";

@@ -12,7 +12,8 @@
 namespace predictor {
 namespace {
 
-// The fallback's damping as a rate [1/s]. The mass matrix times this rate resists the motion.
+// The damping of the fallback controller, as a rate [1/s]. The mass matrix times this rate resists
+// the motion.
 constexpr double kFallbackRate = 10;
 
 template <class M>
@@ -41,7 +42,8 @@ const PredictorControllerInput& InterfaceInput::Fill(const ControllerInput& inpu
   if (input.torque) Copy(*input.torque, to_.torque);
   Copy(input.F_E_W, to_.F_E_W);
   FillPose(input.X_WO, to_.X_WO);
-  // The rest follows from the state of the joints, which is often that of the last call.
+  // The other values follow from the state of the joints, which is often the same as in the last
+  // call.
   if (is_filled_ && Holds(*input.q, to_.q) && Holds(*input.v, to_.v)) return to_;
   is_filled_ = true;
   const RobotData& data = *input.data;

@@ -1,4 +1,5 @@
-// The common part of controllers outside the program: plug-ins and separate processes.
+// The part that all controllers outside the program have in common. They are plug-ins and separate
+// processes.
 #pragma once
 
 #include <predictor/controller.h>
@@ -33,7 +34,7 @@ struct InterfaceParameter {
 // Throws InputError if a word is not "key=value".
 std::vector<InterfaceParameter> InterfaceParameters(const std::string& text);
 
-// Returns whether a saved state can contain this number. No controller needs larger ones.
+// Returns whether a saved state can contain this number. No controller needs larger numbers.
 inline bool IsUsable(double x) noexcept { return std::abs(x) < 1e12; }
 
 void FillPose(const Pose& X, double* to) noexcept;
@@ -48,8 +49,8 @@ class ExternalController : public Controller {
   Status failure() const noexcept final { return failure_; }
 
  protected:
-  // Requests the torques. The answer states whether they arrived, and otherwise for how long none
-  // have [s].
+  // Requests the torques. The answer states whether torques arrived, and otherwise for how long
+  // none have arrived [s].
   struct Answer {
     bool came = true;
     double silence = 0;

@@ -10,8 +10,9 @@ namespace predictor {
 // softly to rest when its centre of mass is below `height` [m]. Above this height, it is zero.
 Wrench LandingWrench(const ObjectModel& object, const FrameMotion& O, double height) noexcept;
 
-// Returns the height for an object that breaks loose with its centre of mass at `height` [m]. It is
-// that of the floor, z = 0, or one metre further down if the object is already below the floor.
+// Returns the height for an object that breaks loose with its centre of mass at `height` [m]. This
+// is the height of the floor, z = 0, or one metre below the object if the object is already below
+// the floor.
 inline double LandingHeight(double height) noexcept { return height > 0 ? 0 : height - 1; }
 
 }  // namespace predictor

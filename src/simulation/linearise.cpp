@@ -10,7 +10,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kPositionStep = 1e-6;  // [rad, m]
-// The step is in [rad/s, m/s]. The result is exact, because the forces are quadratic in it.
+// The step is in [rad/s, m/s]. The result is exact, because the forces are quadratic in the
+// velocities.
 constexpr double kVelocityStep = 1e-4;
 constexpr double kWrenchStep = 1e-2;  // [N, N·m]
 constexpr double kMemoryStep = 1e-6;  // of a controller
@@ -64,8 +65,7 @@ class Linearisation {
 
  private:
   int dof() const { return static_cast<int>(scene_.torque().size()); }
-  // Returns the number of states of the wrist sensor's filter plus those of the controller's
-  // memory.
+  // Returns the number of states of the wrist sensor's filter and the controller's memory together.
   int inner() const { return sensed_ + static_cast<int>(memory_.size()); }
 
   // Returns the slopes of the rates and, below them, of the controller's torques.
@@ -164,8 +164,9 @@ class Linearisation {
     return rates;
   }
 
-  // Returns the cutoff of the wrist sensor [rad/s], with the lag of sampling. A reading is half a
-  // sub-step old on average, and the memory is advanced explicitly, half a period late.
+  // Returns the cutoff of the wrist sensor [rad/s], which accounts for the lag of sampling. On
+  // average, a reading is half a sub-step old. The memory is advanced explicitly, which delays it
+  // by half a period.
   double WristRate() {
     const double lag = 0.5 * (engine_.step() + scene_.timing().period_time());
     return 1 / (1 / scene_.wrist().cutoff() + lag);

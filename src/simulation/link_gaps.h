@@ -1,4 +1,4 @@
-// The distance of the carried object from the links of the cobot.
+// Computes the distance of the carried object from the links of the cobot.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@ namespace predictor {
 
 inline constexpr double kFarthestLink = 2;  // no larger distance is computed [m]
 
-// The nearest of some links.
+// The nearest of the links in question.
 struct LinkGap {
   std::string link;                 // "" if none is nearer than kFarthestLink
   double distance = kFarthestLink;  // to the object; negative: depth by which they overlap [m]
@@ -23,8 +23,9 @@ struct ObjectGaps {
 };
 
 // The shapes of a scenario's cobot and object. The engine replaces each mesh by its convex hull. A
-// link has its collision shapes, or else its visual ones. A link that has none, or whose meshes the
-// engine cannot read, is represented by bars of kBarRadius from its joint to the next ones.
+// link has its collision shapes, or else its visual ones. A link that has no shapes, or whose
+// meshes the engine cannot read, is represented by bars of the radius kBarRadius from its joint to
+// the next joints.
 class LinkGaps {
  public:
   static constexpr double kBarRadius = 0.03;  // [m]

@@ -12,14 +12,14 @@
 namespace predictor {
 namespace {
 
-// Constant initialisation, so that a signal handler can read it at any time.
+// The variable is initialised with a constant, so that a signal handler can read it at any time.
 constinit thread_local PluginCalls* running = nullptr;
 
 std::atomic<PluginCalls*> given_up{nullptr};
 
 }  // namespace
 
-// All controllers from libraries that exist at present.
+// The list of all controllers from libraries that exist at present.
 struct PluginWatchList {
   std::mutex mutex;
   std::vector<PluginCalls*> all;
@@ -68,7 +68,8 @@ struct PluginWatchList {
 
 namespace {
 
-// It is never destroyed, because the thread that looks may outlive the static objects.
+// The list is never destroyed, because the thread that looks at the calls may outlive the static
+// objects.
 PluginWatchList& TheList() {
   static PluginWatchList* const list = new PluginWatchList;
   return *list;
@@ -91,8 +92,8 @@ PluginCall::PluginCall(PluginCalls* calls, const char* function, Kind kind) noex
   running = calls_;
 }
 
-// The order of the two accesses (both sequentially consistent) ensures that either this call sees
-// that it was given up, or GiveUp sees that it has returned.
+// The order of the two accesses (both sequentially consistent) ensures that either this thread sees
+// that its call was given up, or GiveUp sees that the call has returned.
 PluginCall::~PluginCall() {
   running = nullptr;
   calls_->count_.store(calls_->count_.load(std::memory_order_relaxed) + 1);

@@ -1,6 +1,7 @@
-// The calls into controllers' libraries. A library runs as part of the program: a crash in it ends
-// the program, and a call that does not return stops the control loop. Others, a thread or a signal
-// handler, must then report it. Here they find which library was running.
+// Keeps track of the calls into controllers' libraries. A library runs as part of the program: a
+// crash in it ends the program, and a call that does not return stops the control loop. Another
+// thread or a signal handler must then report this problem. From this file, they learn which
+// library was running.
 #pragma once
 
 #include <atomic>
@@ -27,7 +28,7 @@ class PluginCalls {
   friend struct PluginWatchList;
 
   const std::string library_;
-  // Only the calling thread writes these.
+  // Only the calling thread writes these members.
   std::atomic<std::uint64_t> count_{0};         // odd: the library runs
   std::atomic<const char*> function_{nullptr};  // the one that runs or ran last
   std::atomic<bool> prepares_{false};           // it may take long: it is not in the loop
@@ -36,7 +37,8 @@ class PluginCalls {
   int looks_ = 0;                               // how often it then saw the same call
 };
 
-// While this object exists, the library runs. The functions are those of predictor/controller.h.
+// While this object exists, the library runs. The functions have the names of the functions in
+// predictor/controller.h.
 class PluginCall {
  public:
   enum class Kind { kInLoop, kPreparation };
@@ -48,7 +50,7 @@ class PluginCall {
   PluginCall& operator=(const PluginCall&) = delete;
 
   // Describes the library that this thread runs at present: its file and its function. Both are
-  // null if it runs none. A signal handler may call this.
+  // null if the thread runs no library. A signal handler may call this.
   struct Place {
     const char* library = nullptr;
     const char* function = nullptr;
@@ -68,17 +70,17 @@ struct LongPluginCall {
 
 // Looks at all controllers and returns the call that has been running for the most looks, or
 // nothing if none was running at the last look too. One thread calls this at a fixed interval.
-// Because looks count and not the clock, the time does not pass while the whole program is stopped
-// or delayed.
+// The duration of a call is measured in looks and not by the clock, so that it does not grow while
+// the whole program is stopped or delayed.
 std::optional<LongPluginCall> LookAtPluginCalls();
 
-// Gives up the call that LookAtPluginCalls returned last: if it returns after all, its thread waits
-// forever, so that the control loop does not continue while another thread ends the program.
-// Returns false if it has already returned; nothing has then changed.
+// Gives up the call that LookAtPluginCalls returned last. If this call returns after all, its
+// thread waits forever, so that the control loop does not continue while another thread ends the
+// program. Returns false and changes nothing if the call has already returned.
 bool GiveUpPluginCall();
 
 // `start` is called when the next library is about to be loaded, and only then: it starts the
-// thread that looks at the calls. A program that never loads one does not need the thread.
+// thread that looks at the calls. A program that never loads a library does not need the thread.
 void OnNextPlugin(std::function<void()> start);
 
 }  // namespace predictor

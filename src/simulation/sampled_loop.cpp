@@ -18,8 +18,9 @@ using Eigen::VectorXd;
 
 constexpr double kMinShare = 1e-4, kShareFactor = 0.8;  // of the search for a stable share
 
-// The state at the start of a period: the states of Linearise, the torque last computed, and those
-// computed in each of the sub-steps before, as many as the delay has, the latest first.
+// The state at the start of a period consists of the states of Linearise, the torque last computed,
+// and the torques of the preceding sub-steps, the latest first. There are as many of these
+// sub-steps as the delay has.
 class Periods {
  public:
   Periods(ControlledScene* scene, Engine* engine, double t)
@@ -35,8 +36,8 @@ class Periods {
     engine->MassMatrix(M);
     engine->StepMatrix(step_matrix);
     inertia_ = M.diagonal();
-    // Undo what the continuous model contains: the controller, the rate of its sensor, and that
-    // the engine integrates joint damping implicitly.
+    // Removes three things that the continuous model contains: the controller, the rate of its
+    // sensor, and the implicit integration of joint damping by the engine.
     without_ = slopes_.rates - slopes_.by_torque * slopes_.torque;
     const Eigen::LLT<MatrixXd> factor(step_matrix);
     without_.topRows(n_) = factor.solve(M * without_.topRows(n_));
@@ -63,7 +64,8 @@ class Periods {
   double time() const { return timing_.period_time(); }
   Index velocities() const { return n_; }
   double inertia(Index v) const { return inertia_[v]; }
-  // Returns the torque's change by the position or velocity of the same joint.
+  // Returns the derivative of a joint's torque with respect to the position or the velocity of the
+  // same joint.
   double Torque(Index joint, Index state) const { return slopes_.torque(joint, state); }
 
  private:
@@ -74,7 +76,7 @@ class Periods {
     return T;
   }
 
-  // A sub-step of the engine: semi-implicit, v' = v + h a, q' = q + h v'.
+  // A sub-step of the engine is semi-implicit: v' = v + h a, q' = q + h v'.
   MatrixXd Stepping(Index size) const {
     const Index acting = states_ + timing_.delay() * joints_;  // torque of `delay` sub-steps ago
     MatrixXd rates = MatrixXd::Zero(without_.rows(), size);

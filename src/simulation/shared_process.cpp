@@ -28,7 +28,7 @@ constexpr auto kEndPause = std::chrono::milliseconds(1);
   throw InputError::At(key, key + why);
 }
 
-// Anonymous memory that the program inherits. Returns its descriptor.
+// The memory is anonymous, and the program inherits it. Returns its descriptor.
 int NewMemory(const std::string& key, std::size_t size) {
   const int made = memfd_create("predictor", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   const int descriptor = made < 0 ? -1 : fcntl(made, F_DUPFD_CLOEXEC, kSafeDescriptor);
@@ -42,7 +42,7 @@ int NewMemory(const std::string& key, std::size_t size) {
   Refuse(key, std::string(": no shared memory: ") + std::strerror(error) + ".");
 }
 
-// Returns the error's number, 0 for none.
+// Returns the number of the error, or 0 if there is none.
 int Spawn(const std::vector<std::string>& command, const std::filesystem::path& folder, int memory,
           pid_t* pid) {
   std::vector<std::string> words = command;

@@ -1,4 +1,4 @@
-// A process of its own that shares memory with the run.
+// Runs a separate process that shares memory with the run.
 #pragma once
 
 #include <sys/types.h>
@@ -12,7 +12,7 @@ namespace predictor {
 
 class SharedProcess {
  public:
-  // Makes `size` bytes of memory, all zero. Errors are those of the scenario's `key`. Throws
+  // Makes `size` bytes of memory, all zero. Error messages name the scenario's `key`. Throws
   // InputError.
   SharedProcess(std::string key, std::size_t size);
   // Ends the process.
@@ -33,7 +33,7 @@ class SharedProcess {
 
   bool HasEnded() noexcept;
   bool was_seen_to_end() const noexcept { return ended_; }
-  // Gives the program the time to end by itself [s], then ends it.
+  // Waits until the program ends by itself, for at most this time [s], and then ends it.
   void End(double patience) noexcept;
   // "exit code 1", or "" while it runs.
   std::string HowItEnded() noexcept;

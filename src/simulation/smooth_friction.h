@@ -1,4 +1,4 @@
-// Computes the friction of a joint, which is smooth about standstill.
+// Computes the friction of a joint, which is a smooth function of the velocity near standstill.
 #pragma once
 
 #include <cmath>

@@ -16,16 +16,16 @@ namespace predictor {
 class TapedController final : public Controller {
  public:
   explicit TapedController(std::unique_ptr<Controller> controller, int dof);
-  // Makes a controller that replays. Throws InputError if the tape does not fit a cobot with dof
-  // joints.
+  // Makes a controller that replays recorded answers. Throws InputError if the tape does not fit a
+  // cobot with dof joints.
   TapedController(std::vector<double> tape, int dof);
 
   TapedController* taped() noexcept override { return this; }
   void SetUp(bool begins) noexcept { sets_up_ = begins; }
   std::span<const double> tape() const noexcept { return tape_; }
-  // Sets the answer of the tick that follows. This is for replays only.
+  // Sets the answer of the tick that follows. This function is for replays only.
   void Play(const ControllerAnswer& answer) noexcept { answer_ = answer; }
-  // Returns that answer, or null in a run and while the scene is set up.
+  // Returns the answer of this tick, or null in a run and while the scene is set up.
   const ControllerAnswer* played() const noexcept {
     return controller_ || sets_up_ ? nullptr : &answer_;
   }
@@ -44,7 +44,7 @@ class TapedController final : public Controller {
   double StoredEnergy(const ControllerInput& input) const noexcept override;
 
  private:
-  // Appends the answer to the tape, or takes it from there.
+  // Appends the answer to the tape, or in a replay takes it from the tape.
   void Tape(std::span<double> answer) const noexcept;
 
   std::unique_ptr<Controller> controller_;  // null in a replay

@@ -1,5 +1,5 @@
-// The virtual world: cobot, object, handles, floor and table, which MuJoCo simulates behind this
-// class.
+// The virtual world: the cobot, the object, the handles, the floor and the table. The physics
+// engine behind this class simulates it.
 #pragma once
 
 #include <memory>
@@ -36,10 +36,12 @@ class World {
   // not use the heap or a lock, and does not throw.
   void Tune(const ControllerTuning& tuning) noexcept;
 
-  // These functions have an effect only for a controller outside the program. SetRealTime
-  // determines whether it has a deadline. Play gives its answer in the tick that follows, in a
-  // replay without it. Tape returns its answers while this world was set up, and nothing for
-  // another controller. PrioritiseProcess is that of Controller, and not for the tick.
+  // The following functions have an effect only for a controller outside the program. SetRealTime
+  // determines whether the controller has a deadline. Play supplies the controller's answer for the
+  // next tick, in a replay without the controller. Tape returns the answers that the controller
+  // gave while this world was set up, or nothing for a controller inside the program.
+  // PrioritiseProcess calls the function of this name of Controller, and must not be called in a
+  // tick.
   void SetRealTime(bool real_time) noexcept;
   std::string PrioritiseProcess(bool on);
   void Play(const ControllerAnswer& answer) noexcept;
@@ -48,25 +50,26 @@ class World {
   // Returns the state after the last Step: poses and twists at state().time, and accelerations
   // (A_W), torque and coupling of the last sub-step. A_W is the change of the twist over that
   // sub-step. `energy` is the sum of the kinetic energy, the potential energy of the object and of
-  // the movable objects, and the energy of the controller's springs. It excludes the cobot's
-  // weight, which its controllers compensate.
+  // the movable objects, and the energy of the controller's springs. This sum excludes the
+  // potential energy of the cobot, because its controllers compensate its weight.
   const WorldState& state() const;
 
   // Returns to the initial equilibrium at time 0.
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept;
 
-  // Returns a linear model about the present posture, at rest. It includes the controller, joint
-  // friction and contacts, but not the coupling, hands, Coulomb friction and movable objects. At
-  // the start, no movable object touches the object or the cobot, so their motion neither affects
-  // the handles nor follows from a force on them. x contains the
+  // Returns a linear model about the present posture, at rest. The model includes the controller,
+  // joint friction and contacts. It excludes the coupling, the hands, Coulomb friction and the
+  // movable objects. At the start, no movable object touches the object or the cobot, so their
+  // motion neither affects the handles nor follows from a force on them. x contains the
   // tangent-space change of the coordinates (nv) and then their rates (nv). Allocates memory.
   LinearModel Linearise() const;
 
-  // Judges the loop of the controller, as it is sampled, and the same scene. Allocates memory.
+  // Judges the stability of the loop that the sampled controller and this scene form. Allocates
+  // memory.
   SampledLoop JudgeController() const;
-  // Returns what carries the object in the start. To be called before the first Step, or after
-  // Reset. Allocates memory.
+  // Returns the forces that carry the object at the start. This function must be called before the
+  // first Step or directly after Reset. Allocates memory.
   ObjectSupport SupportAtStart() const;
 
   double object_mass() const;                    // [kg]

@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// The reading is low-pass(true wrench) + bias + white noise. The wrench is that of the load on the
-// end-effector, about E, in axes of W.
+// The reading is low-pass(true wrench) + bias + white noise. The wrench is the one that the load
+// exerts on the end-effector, about E, in axes of W.
 class WristSensor {
  public:
   // `dt` is the sampling time [s].
@@ -22,8 +22,8 @@ class WristSensor {
   void Step(const Wrench& F_E_W) noexcept;
   Wrench reading() const noexcept { return filter_.value() + bias_ + noise_; }
 
-  // Returns the filter's state, for linearisation. Its derivative is cutoff() · (true wrench −
-  // filtered).
+  // Returns the filter's state, for linearisation. The derivative of this state is cutoff() · (true
+  // wrench − filtered).
   const Wrench& filtered() const noexcept { return filter_.value(); }
   void SetFiltered(const Wrench& F_E_W) noexcept { filter_.Reset(F_E_W); }
   double cutoff() const noexcept;  // [rad/s]

@@ -1,6 +1,6 @@
 // Provides the questionnaire as a page. A person who has the code consents, answers, and receives a
-// pseudonym. It uses the viewer's server and follows its rules. docs/how-to/questionnaire.md
-// describes the texts.
+// pseudonym. The application uses the viewer's server and follows its rules.
+// docs/how-to/questionnaire.md describes the texts.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +24,10 @@ std::string_view SurveyPageFile(std::string_view name);
 
 struct SurveySetup {
   std::vector<std::string> hosts;  // host names of this server, without port
-  // The condition that the person used before answering. If it is empty, the page asks for it.
+  // The condition that the person used before answering. If the condition is empty, the person
+  // enters it on the page.
   std::optional<Condition> condition;
-  // Stores an answer, which has a pseudonym by then. May throw InputError, which is shown to the
+  // Stores an answer, which already has a pseudonym. May throw InputError, which is shown to the
   // person.
   std::function<void(const SurveyAnswer&)> store;
   std::function<std::uint64_t()> clock;  // monotonic [ns]
@@ -34,7 +35,8 @@ struct SurveySetup {
 
 enum class SurveyEnd { kNone, kStored, kDeclined };
 
-// Handles one answer, or the person's decision not to answer. Runs in the server's single thread.
+// Handles one answer, or the person's decision not to answer. This function runs in the server's
+// single thread.
 class SurveyApp : public viewer::Application {
  public:
   static constexpr std::uint64_t kHelloTime = 5'000'000'000;  // [ns]
@@ -49,9 +51,10 @@ class SurveyApp : public viewer::Application {
 
   // Returns the code that admits one browser, which then uses a token to reconnect.
   const std::string& code() const { return admission_.code(); }
-  // Returns how the survey ended.
+  // Returns the reason for which the survey ended.
   SurveyEnd end() const { return end_; }
-  // `over` is called once, after the page has shown the end or its connection is closed.
+  // `over` is called once, after the page has shown the end or the page's connection has been
+  // closed.
   void OnOver(std::function<void()> over) { over_ = std::move(over); }
 
  private:

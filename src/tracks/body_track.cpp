@@ -10,7 +10,8 @@
 namespace predictor::tracks {
 namespace {
 
-// Returns the channels of `names`: all of them, or NAME with an axis added.
+// Returns the channels of `names`. They are the given channels or, for one NAME, the channels of
+// this name with an axis added.
 std::vector<const Series*> ChannelsOf(const SeriesFile& file, const std::vector<std::string>& names,
                                       const std::vector<const char*>& axes) {
   std::vector<const Series*> channels;

@@ -1,4 +1,4 @@
-// Measured motion of parts of a person, in W.
+// Provides the measured motion of parts of a person, in W.
 #pragma once
 
 #include <array>
@@ -35,9 +35,9 @@ struct HandTrack {
   bool along_handle = false;        // F is along the handle's axes, otherwise along those of W
   Vector3 about = Vector3::Zero();  // point of the torque, in the handle's frame [m]
 
-  // Returns F_D_W about the handle's origin, or no value where the pose or the wrench is missing.
-  // If there are several values within `width` [s] around the time, it is their mean. Otherwise it
-  // is interpolated linearly.
+  // Returns F_D_W about the handle's origin, or no value at times at which the pose or the wrench
+  // is missing. If there are several values within `width` [s] around the time, their mean is used.
+  // Otherwise the value is interpolated linearly.
   std::optional<Wrench> WrenchAt(double time, double width = 0) const;
   bool HoldsAt(double time) const;
 };
@@ -48,12 +48,12 @@ struct SignalTrack {
   std::vector<double> times, values;
 
   // Returns the mean of the values within `width` [s] around the time, if there are several.
-  // Otherwise it interpolates linearly between neighbours that are at most twice the median
-  // interval apart. NaN means that the value is missing.
+  // Otherwise the function interpolates linearly between neighbours that are at most twice the
+  // median interval apart. NaN means that the value is missing.
   double At(double time, double width) const;
 };
 
-// A raw electromyogram, and how an activation is computed from it.
+// A raw electromyogram, and the parameters with which the activation is computed from it.
 struct EmgTrack {
   EmgMap map;
   std::vector<double> times, values;  // [s], in the unit of the channel; NaN: missing

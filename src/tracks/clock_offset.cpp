@@ -58,7 +58,7 @@ Speeds SpeedsOf(const Path& path) {
   return speeds;
 }
 
-// Returns the means of `n` values each.
+// Returns the means of successive groups of `n` values.
 Speeds Coarser(const Speeds& fine, std::size_t n) {
   Speeds coarse{fine.start + fine.step * (static_cast<double>(n) - 1) / 2,
                 fine.step * static_cast<double>(n),
@@ -72,8 +72,8 @@ Speeds Coarser(const Speeds& fine, std::size_t n) {
 }
 
 // Compares the part of `a` from `begin` to `end` with `b` shifted by `lag` steps, so that value i
-// of `a` meets value i - lag of `b`. Returns no value if fewer than `least` values meet, or if one
-// of the parts is at rest.
+// of `a` meets value i - lag of `b`. Returns no value if fewer than `least` values coincide, or if
+// one of the parts is at rest.
 std::optional<double> Correlation(const Speeds& a, const Speeds& b, std::ptrdiff_t lag,
                                   std::size_t begin, std::size_t end, double least) {
   double n = 0, sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;

@@ -9,7 +9,7 @@
 
 namespace predictor::tracks {
 
-// The positions of a point over time, with NaN where they are missing. Times ascend [s].
+// The positions of a point over time. A missing position is NaN. Times ascend [s].
 struct Path {
   std::span<const double> times;
   std::span<const Vector3> p;  // in any frame at rest [m]
@@ -26,10 +26,10 @@ struct ClockOffset {
 // record give its uncertainty (a jackknife over blocks, because errors of neighbouring samples are
 // not independent).
 //
-// Throws InputError, which begins with `what`, in these cases: the records overlap too little, the
-// hand moves too little, the best correlation is below kMinCorrelation, another offset fits nearly
-// as well (kMaxSecond of the best, as for a periodic motion), or the offset changes within the
-// record (because a clock jumps or drifts).
+// Throws InputError, which begins with `what`, if the records overlap too little, the hand moves
+// too little, or the best correlation is below kMinCorrelation. Also throws InputError if another
+// offset fits nearly as well (kMaxSecond of the best, as for a periodic motion), or if the offset
+// changes within the record (because a clock jumps or drifts).
 ClockOffset EstimateOffset(const Path& reference, const Path& track, const std::string& what);
 
 // These values are design choices.

@@ -174,7 +174,7 @@ struct Span {
   double begin = -INFINITY, end = INFINITY;
 };
 
-// Returns the time in which the poses and forces of all hands are measured. Throws InputError if
+// Returns the period in which the poses and forces of all hands are measured. Throws InputError if
 // there is none.
 Span CommonSpan(const BodyTrack& track) {
   Span span;

@@ -1,7 +1,7 @@
-// Recordings of a person that come from another system: what the hands did, and everything else
-// that is needed to judge the person. A recording is a table with named columns (MapOfColumns) at
-// 100 Hz, after comments with a few keys in YAML. It is not a recording of the emulator, because it
-// has no ticks.
+// Imports recordings of a person from another system. They contain the motions and forces of the
+// hands, and all other data that are needed to judge the person. Such a recording is a table with
+// named columns (MapOfColumns) at 100 Hz. Comments with a few keys in YAML precede the table. This
+// format differs from a recording of the emulator, because it has no ticks.
 #pragma once
 
 #include <filesystem>
@@ -45,10 +45,11 @@ struct ImportMap {
 // Throws InputError with file:line:column.
 ImportMap ParseImportMap(const std::string& text, const std::string& name);
 
-// Returns the text of a recording of a person. Throws InputError that names what is missing: a
-// hand, its rotation or force, or a time in which all of them are measured. Forces are means over
-// 10 ms. If a pose or force is missing for more than PartTrack::kMaxGap, the hand counts as not
-// holding, and the header states for how long.
+// Returns the text of a recording of a person. Throws InputError if a hand, its rotation or its
+// force is missing, or if there is no period in which all of them are measured. The message names
+// the missing part. Forces are means over 10 ms. If a pose or force is missing for more than
+// PartTrack::kMaxGap, the hand is treated as not holding its handle, and the header states for how
+// long.
 std::string ImportPerson(const ImportMap& map, const SeriesFile& file);
 
 bool IsPersonFile(const std::filesystem::path& file);

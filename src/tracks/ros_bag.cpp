@@ -18,7 +18,7 @@ using mcap::Parser;
 
 constexpr std::uint64_t kMaxChunk = std::uint64_t{1} << 28U;  // uncompressed [bytes]
 
-// The topics by the number that the storage gives them.
+// The topics, by the numbers that they have in the storage file.
 class Topics {
  public:
   Topics(std::string file, MessageTime clock) : file_(std::move(file)), clock_(clock) {}

@@ -76,7 +76,8 @@ const std::vector<Field> kWrench = {{"force.x", "N"},    {"force.y", "N"},    {"
                                     {"torque.x", "N m"}, {"torque.y", "N m"}, {"torque.z", "N m"}};
 const std::vector<Field> kNumber = {{"data", ""}};
 
-// Messages that begin with a sequence of float64. After a header, `prefix` names the group.
+// Reads messages that begin with a sequence of float64. `prefix` is the name of the group that
+// follows a header.
 struct Layout {
   bool stamped;
   std::string prefix;

@@ -12,7 +12,7 @@
 
 namespace predictor::tracks {
 
-// The clock that gives a message its time.
+// The clock from which a message takes its time.
 enum class MessageTime {
   kStamp,     // header.stamp, if the message has one
   kReceived,  // when the recorder received it

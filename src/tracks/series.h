@@ -1,4 +1,4 @@
-// Numbers over time from files of other systems: tables, motion capture, robots' logs.
+// Reads numbers over time from files of other systems: tables, motion capture and robots' logs.
 #pragma once
 
 #include <filesystem>
@@ -31,7 +31,8 @@ struct SeriesFile {
   const Series& At(const std::string& channel) const;
 };
 
-// How the time of a table is read. Files of other formats define their time themselves.
+// The way in which the times of a table are read. Files of other formats define their time
+// themselves.
 struct TimeColumn {
   std::string name;  // "": the column called time or timestamp
   std::string unit;  // "": as the header states it, otherwise s

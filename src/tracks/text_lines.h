@@ -1,4 +1,4 @@
-// Lines and cells of text files.
+// Splits text files into lines and cells.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,8 @@
 
 namespace predictor::tracks {
 
-// Takes one line after another, without its end (LF or CR LF) and without a byte order mark.
+// Returns one line after another, without the end of the line (LF or CR LF) and without a byte
+// order mark.
 class TextLines {
  public:
   explicit TextLines(std::string_view text);

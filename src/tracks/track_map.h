@@ -13,12 +13,14 @@
 
 namespace predictor::tracks {
 
-// Where a part of the body is. Its frame is the tracked frame T, times the pose `xyz`, `rpy`.
+// The source of the pose of a part of the body. The frame of the part is the tracked frame T,
+// multiplied by the pose `xyz`, `rpy`.
 struct PartMap {
   std::vector<std::string> position;  // three channels, or NAME for NAME.x, NAME.y, NAME.z
   std::vector<std::string> markers;   // or points whose mean is the position; all must be present
   std::vector<std::string> rotation;  // four channels w, x, y, z, or NAME for NAME.w, ...
-  // Or four sets of markers on its sides: x of T points from back to front, y from right to left.
+  // As an alternative, the source is four sets of markers on the sides of the part. The x axis of T
+  // then points from back to front, and its y axis from right to left.
   std::vector<std::string> front, back, left, right;
   Vector3 xyz = Vector3::Zero(), rpy = Vector3::Zero();
 };
@@ -41,14 +43,14 @@ struct SeriesMap {
 enum class ArmSide { kLeft, kRight };
 
 // The raw electromyogram of one or several muscles of an arm. The names of the muscles are the keys
-// of muscles::MuscleTable, which belongs to a module that this one does not use.
+// of muscles::MuscleTable, which belongs to a module that the tracks module does not use.
 struct EmgMap {
   std::string channel;
   ArmSide arm = ArmSide::kLeft;
   std::vector<std::string> muscles;
   // Envelope of a maximum voluntary contraction, in the unit of the channel. An activation can be
-  // computed from a voltage only relative to this envelope. 0: not given, which CheckTrackMap
-  // refuses.
+  // computed from a voltage only relative to this envelope. The value 0 means that it is not given,
+  // and CheckTrackMap refuses this.
   double mvc = 0;
   double shape = -2, delay = 0.04;        // as in muscles::EmgProcessing; [s]
   double band_low = 20, band_high = 450;  // [Hz]

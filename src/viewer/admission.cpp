@@ -27,7 +27,8 @@ void Fill(void* to, std::size_t bytes) {
     throw std::runtime_error("The system does not provide random numbers.");
 }
 
-// Takes the same time regardless of where the texts differ, so it reveals at most their lengths.
+// The comparison takes the same time wherever the texts differ, so it reveals at most the lengths
+// of the texts.
 bool Same(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
@@ -153,7 +154,7 @@ std::string Admission::IssuePin(Role role, std::uint64_t now_ns) {
   for (Pin& pin : pins_)
     if (now_ns >= pin.end_ns || pin.digits == digits) pin = {};  // a pin must identify one role
   pins_[static_cast<std::size_t>(role)] = {};
-  // Keep the counts of wrong guesses only for roles whose pin is still valid.
+  // The counts of wrong guesses are kept only for roles whose pin is still valid.
   for (auto& [source, guesses] : guesses_)
     for (std::size_t i = 0; i < kRoles; ++i)
       if (pins_[i].end_ns == 0) guesses[i] = 0;

@@ -1,5 +1,5 @@
-// Admits clients by codes, typed pins, and tokens. It uses no sockets, and the caller passes the
-// time.
+// Admits clients by codes, typed pins, and tokens. This module uses no sockets, and the caller
+// passes the time.
 #pragma once
 
 #include <array>
@@ -12,7 +12,8 @@
 
 namespace predictor::viewer {
 
-// A client's permissions: look (and stop), also act as operator, or also command.
+// A client's permissions. The first role may look and stop, the second may also act as operator,
+// and the third may also command.
 enum class Role : std::uint8_t { kLook, kOperator, kControl };
 inline constexpr int kRoles = 3;
 const char* Name(Role role);  // "look", "operator", "control"
@@ -47,8 +48,8 @@ class Admission {
     Role role = Role::kLook;
     std::string token;
   };
-  // These functions exchange the code, a pin or a token for a grant. They return no value if it is
-  // wrong, used or expired.
+  // These functions exchange the code, a pin or a token for a grant. The functions return no value
+  // if the code, pin or token is wrong, used or expired.
   std::optional<Grant> ByCode(std::string_view code);
   // `address` is the client's numeric address.
   std::optional<Grant> ByPin(std::string_view pin, const std::string& address,
@@ -64,13 +65,14 @@ class Admission {
   std::string IssuePin(Role role, std::uint64_t now_ns);
   // Returns a random number and the role, signed with the secret: 256 bits of HMAC-SHA-256.
   std::string IssueToken(Role role) const;
-  // Returns a token for an address that other programs store (Foxglove's). It only opens their data
-  // stream: no page, no model, and not even a stop. ByToken does not accept it.
+  // Returns a token for an address that other programs store (Foxglove's). This token only opens
+  // the data stream of such a program. It gives no access to a page or a model, and not even to a
+  // stop. ByToken does not accept it.
   std::string IssueWatchToken() const;
   bool MayWatch(std::string_view token) const;
-  // Ends all generations before these. A new generation of pages invalidates all page tokens and
-  // waiting pins, and replaces a code that several clients may use. A number lower than the present
-  // one has no effect.
+  // Ends all generations before the given ones. A new generation of pages invalidates all page
+  // tokens and waiting pins, and replaces a code that several clients may use. A number lower than
+  // the present one has no effect.
   void Renew(const Generations& generations);
   const Generations& generations() const { return generations_; }
   // Returns the address that has used its last guess since the previous call, or "" if there was

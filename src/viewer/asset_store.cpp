@@ -113,7 +113,7 @@ void AssetStore::Add(const std::string& path, Asset asset) {
 void AssetStore::AddPage() {
   for (const PageFile& file : PageFiles()) {
     Add(file.path, {std::string(file.bytes), file.type});
-    // The same page asks for the events to come if it is opened at this address.
+    // If the same page is opened at this address, it also requests the events to come.
     if (file.path == "/") Add(kExperimenterPath, {std::string(file.bytes), file.type});
   }
 }

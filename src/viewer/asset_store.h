@@ -1,4 +1,4 @@
-// All files that are served by HTTP, held in memory: no request reaches the file system.
+// Holds all files that are served by HTTP in memory, so that no request reaches the file system.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +38,7 @@ class AssetStore {
   // Throws InputError if the assets would exceed the limit.
   void Add(const std::string& path, Asset asset);
 
-  // Finds exact matches without decoding. Returns nullptr for any other path.
+  // Finds only exact matches, and does not decode the path. Returns nullptr for any other path.
   const Asset* Find(std::string_view path) const;
   std::size_t bytes() const { return bytes_; }
 

@@ -1,4 +1,4 @@
-// The certificate that the viewer presents to headsets and other machines.
+// Provides the certificate that the viewer presents to headsets and other machines.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@ struct Certificate {
   bool made = false;                     // made by this call
 };
 
-// This machine's host names and IPv4 addresses, "localhost" and loopback first.
+// Returns this machine's host names and IPv4 addresses, with "localhost" and loopback first.
 std::vector<std::string> MachineNames();
 
 // Reads the TLS library's configuration, which cannot be read later.
@@ -25,8 +25,8 @@ void MakeCertificateFolder(const std::filesystem::path& folder);
 
 // Returns a self-signed certificate (P-256, two years) for `names`, kept in `folder` as viewer.pem
 // and viewer.key. Only the owner can read these files. An existing certificate is used if it covers
-// all names and is valid for at least 30 more days. Otherwise a new one is made. Throws InputError
-// with the file's name.
+// all names and is valid for at least 30 more days. If there is no such certificate, a new one is
+// made. Throws InputError with the file's name.
 Certificate SelfSignedCertificate(const std::filesystem::path& folder,
                                   const std::vector<std::string>& names);
 

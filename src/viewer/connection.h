@@ -27,22 +27,24 @@ enum class MessageKind : std::uint8_t { kText, kBinary };
 class Connection {
  public:
   virtual ~Connection() = default;
-  // Sends text in order, before any newest message. A client with too much unsent text is
-  // disconnected.
+  // Sends texts in order. Texts precede the messages of SendNewest. A client with too much unsent
+  // text is disconnected.
   virtual void SendText(std::string text) = 0;
   // Sends a message that replaces an unsent message of the same slot. A client that does not read
-  // gets no such messages until it reads again, so at most a third of a second of them is ever
-  // waiting.
+  // gets no such messages until it reads again, so the waiting messages never cover more than a
+  // third of a second.
   virtual void SendNewest(std::uint32_t slot, MessageKind kind,
                           std::shared_ptr<const std::string> message) = 0;
-  // Sends the remaining messages, then closes. The session is not called any more.
+  // Sends the remaining messages, then closes. After this call, the session receives no further
+  // calls.
   virtual void Close(CloseCode code, std::string reason) = 0;
-  // The client was admitted: it is no longer disconnected to make room for others.
+  // The application calls this function when the client has been admitted. From then on, the client
+  // is not disconnected to make room for others.
   virtual void Admitted() = 0;
   virtual std::string peer() const = 0;  // numeric address of the peer
 };
 
-// The application's side of one WebSocket. Destroyed when the connection has ended.
+// The application's side of one WebSocket. The session is destroyed when the connection has ended.
 class Session {
  public:
   virtual ~Session() = default;
@@ -51,7 +53,7 @@ class Session {
   virtual void OnControlFrame() = 0;  // a ping or pong was received
 };
 
-// The head of a request. Empty fields were missing in the request.
+// The head of a request. A field is empty if it is missing in the request.
 struct HttpRequest {
   std::string method, target, host, origin, authorization;
   std::vector<std::string> subprotocols;

@@ -13,7 +13,7 @@ namespace predictor::viewer {
 class EventPlan {
  public:
   explicit EventPlan(const Scenario& scenario);
-  // Follows the next record. If the first one is not from the start of a run, events that have
+  // Follows the next record. If the first record is not from the start of a run, events that have
   // already ended are not known, and the plan is incomplete until the next reset.
   void See(const TickRecord& record);
   // Returns the message `events` (docs/reference/viewer-protocol.md).

@@ -1,5 +1,5 @@
-// The Foxglove WebSocket protocol, read-only. Its JSON channels are shown by Foxglove and its forks
-// as 3D scene, plots and state. Channels without subscribers are neither sent nor encoded.
+// The Foxglove WebSocket protocol, read-only. Foxglove and its forks show the JSON channels as a 3D
+// scene, plots and state. Channels without subscribers are neither sent nor encoded.
 #pragma once
 
 #include <cstdint>

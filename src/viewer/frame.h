@@ -1,5 +1,5 @@
-// The binary format in which pages receive a tick's record: packed, little-endian, described by a
-// list of fields.
+// The binary format in which pages receive the record of a tick. It is packed, little-endian and
+// described by a list of fields.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace predictor::viewer {
 
-// How the page interprets a field's numbers.
+// The way in which the page interprets the numbers of a field.
 enum class FrameKind : std::uint8_t {
   kNumber,
   kNumbers,
@@ -46,8 +46,9 @@ struct Peaks {
   std::array<std::array<float, 2>, kHands> hands = {};
 };
 
-// Returns the record as a binary message. `peaks` are those since the previous message. `sent_ns`
-// is the time of the monotonic clock [ns]. `recording` states whether the run is being recorded.
+// Returns the record as a binary message. `peaks` are the peaks since the previous message.
+// `sent_ns` is the time of the monotonic clock [ns]. `recording` states whether the run is being
+// recorded.
 std::string PackFrame(const TickRecord& record, const Peaks& peaks, std::uint64_t sent_ns,
                       bool recording);
 

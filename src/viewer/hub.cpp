@@ -17,7 +17,8 @@ constexpr double kDenialRate = 5;
 constexpr double kLatencyRate = 2;
 constexpr double kMarkRate = 2;
 constexpr double kHeadRate = 12;  // rate at which a headset's pose is forwarded to the other pages
-// Slots of the states of the run and of the person. The slot of a head is its client's number.
+// Slots of the states of the run and of the person. The slot of a head's message is the number of
+// its client.
 constexpr std::uint32_t kStates = 0, kPerson = ~0U;
 
 }  // namespace
@@ -87,7 +88,7 @@ class Hub::Client : public Session {
     input.client = id_;
     if (!hub_->mailbox_->inputs.Push(input)) Deny(what, "The run does not accept inputs now.");
   }
-  // Returns whether this client has control. If not, the client gets a hint.
+  // Returns whether this client has control. A client without control gets a hint.
   bool Commands(const char* what);
 
   void On(const HelloRequest&) {
@@ -158,7 +159,7 @@ void Hub::Client::OnText(std::string_view text) {
 }
 
 void Hub::Client::Admit(const HelloRequest& hello) {
-  // This is not a refusal: the client's token stays valid.
+  // This is no refusal of the client, because its token stays valid.
   if (hub_->clients() >= kMaxClients)
     return End(CloseCode::kTryLater, "64 clients are connected already.");
   Admission& admission = *hub_->admission_;
@@ -182,7 +183,7 @@ void Hub::Client::Admit(const HelloRequest& hello) {
   role_ = grant->role;
   token_ = grant->token;
   connection_->Admitted();
-  // A client whose connection dropped silently may reconnect before the server detects the loss.
+  // A client that lost its connection may reconnect before the server detects the loss.
   for (const Client* other : hub_->sessions_)
     if (other != this && other->token() == token_ && other->silent())
       hub_->leases_.Leave(other->id(), token_);
@@ -237,7 +238,8 @@ void Hub::Client::On(const LeaseRequest& request) {
   if (before != id_) hub_->SendLeases();
 }
 
-// Only this request lets a page receive events that have not begun. A subject must not see them.
+// Only this request lets a page receive events that have not begun. A subject must not see the
+// events to come.
 void Hub::Client::On(const ExperimenterRequest&) {
   if (hub_->events_.empty())
     return Deny("experimenter", "There are no events to come: this run has ended.");
@@ -400,7 +402,7 @@ void Hub::Tick() {
 }
 
 // Returns why no seat is available, or null. Neither a single client nor all clients that only look
-// can keep the others out.
+// can occupy all seats.
 const char* Hub::NoSeatFor(const Admission::Grant& grant) const {
   const auto same = [&](const Client* c) { return c->admitted() && c->token() == grant.token; };
   if (static_cast<std::size_t>(std::count_if(sessions_.begin(), sessions_.end(), same)) >=
@@ -464,8 +466,8 @@ void Hub::SendLeases() {
   SendToAll(LeasesText(leases_, clients()));
 }
 
-// This is called before any query of the leases. A client that lost a lease through silence is
-// notified, and so are the clients that may now take it.
+// This function must be called before any query of the leases. A client that lost a lease through
+// silence is notified, and so are the clients that may now take it.
 void Hub::ExpireLeases() {
   if (leases_.Expire(clock_())) SendLeases();
 }

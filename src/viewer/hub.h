@@ -1,5 +1,5 @@
 // The connected pages: their admission and leases, their inputs to the run, and the data that they
-// all receive. It uses no sockets, and the caller passes the clock.
+// all receive. The hub uses no sockets, and the caller passes the time.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct HubSetup {
   std::uint32_t last_client = 0;       // new clients get numbers above this one
 };
 
-// The data that the console may show of a client.
+// The data of a client that the console may show.
 struct ClientStatus {
   std::uint32_t id = 0;
   Role role = Role::kLook;
@@ -61,9 +61,10 @@ class Hub {
   // Sends the newest state of the person, as text, to all clients.
   void PublishPerson(std::shared_ptr<const std::string> text);
   // Sends the message `events` to the experimenter's pages if it has changed. Until the first call,
-  // there are no such pages.
+  // no page may be an experimenter's page.
   void PublishEvents(const std::string& text);
-  // Sends the fixtures that are there now to all clients. They belong to the scene from now on.
+  // Sends the fixtures that are there now to all clients. From now on, the scene contains these
+  // fixtures.
   void PublishFixtures(const Json& fixtures);
   // Ends expired leases and waiting times. Call this at least ten times per second.
   void Tick();

@@ -1,4 +1,4 @@
-// What the hub reports to the run about the headsets.
+// Reports the state of the headsets from the hub to the run.
 #include <algorithm>
 
 #include "viewer/hub.h"
@@ -6,8 +6,8 @@
 namespace predictor::viewer {
 
 // A page that still sends messages may show a frozen picture, so the time of the drawn state
-// counts. With real arms, the end of a session also counts as silence for as long as the run needs
-// to detect it. The run decides whether there is any motion to stop.
+// counts. With real arms, the end of a session is also reported as silence, for as long as the run
+// needs to detect it. The run then decides whether there is any motion to stop.
 void Hub::See(std::uint32_t client, const ImmersiveRequest& request) {
   const std::uint64_t now = clock_();
   auto found = std::find_if(headsets_.begin(), headsets_.end(),
@@ -26,7 +26,7 @@ void Hub::See(std::uint32_t client, const ImmersiveRequest& request) {
 }
 
 // The run stops real arms when a headset falls silent. Therefore the headset with the oldest
-// picture counts, and a headset whose page has disconnected is kept for a while.
+// picture is decisive, and a headset whose page has disconnected is kept for a while.
 void Hub::PublishHeadsets() {
   const std::uint64_t now = clock_();
   std::erase_if(headsets_, [now](const Headset& h) {

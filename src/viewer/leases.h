@@ -1,4 +1,4 @@
-// The leases for control and for acting as operator. At most one client holds each.
+// The leases for control and for acting as operator. At most one client holds each lease.
 #pragma once
 
 #include <array>
@@ -27,13 +27,14 @@ class Leases {
     return kind == LeaseKind::kControl ? role == Role::kControl : role != Role::kLook;
   }
 
-  // Returns false if another client holds it. For the holder, taking it again is a heartbeat.
+  // Returns false if another client holds it. If the holder takes the lease again, this counts as a
+  // heartbeat.
   bool Take(LeaseKind kind, std::uint32_t client, std::uint64_t now_ns);
   // Returns whether a lease was released.
   bool Release(LeaseKind kind, std::uint32_t client);
   void Heartbeat(std::uint32_t client, std::uint64_t now_ns);
-  // The client has disconnected. Its leases expire normally, unless a client with the same token
-  // reconnects before.
+  // The client has disconnected. The leases of this client expire normally, unless a client with
+  // the same token reconnects earlier.
   void Leave(std::uint32_t client, const std::string& token);
   // Returns true if a lease was transferred to the client that reconnected with `token`.
   bool Return(std::uint32_t client, const std::string& token, std::uint64_t now_ns);

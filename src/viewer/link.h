@@ -33,11 +33,11 @@ inline constexpr auto kPongWithin = std::chrono::milliseconds(250);
 inline constexpr auto kClosing = std::chrono::milliseconds(3000);
 // Maximum time for the rest of a refused request.
 inline constexpr auto kLinger = std::chrono::milliseconds(1000);
-// The pause before a connection requests a turn again.
+// The pause after which a connection requests its turn again.
 inline constexpr auto kHandshakePause = std::chrono::milliseconds(20);
 
-// One connection: first HTTP requests, then perhaps a WebSocket. Its pending operations keep it
-// alive.
+// One connection, which first receives HTTP requests and may then become a WebSocket. The pending
+// operations of a connection keep this object alive.
 class Link final : public Connection, public Member, public std::enable_shared_from_this<Link> {
  public:
   Link(Server::Impl* server, tcp::socket socket)
@@ -159,7 +159,8 @@ class Link final : public Connection, public Member, public std::enable_shared_f
                       });
   }
 
-  // Reads the remaining input, which would otherwise cause a reset that discards the answer.
+  // Reads and discards the remaining input. Unread input would cause a TCP reset, and the client
+  // would lose the answer.
   void Linger() {
     lowest().socket().shutdown(tcp::socket::shutdown_send, ignored_);
     lowest().expires_after(kLinger);
@@ -232,7 +233,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     session_->OnText({static_cast<const char*>(data.data()), data.size()});
   }
 
-  // Limits the time for a message that has begun.
+  // Limits the time in which a message that has begun must be complete.
   void WatchMessage() {
     if (std::exchange(watched_, true)) return;
     message_timer_.expires_after(server_->options.message_time);
@@ -243,7 +244,7 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     });
   }
 
-  // This is called during a read, so it must not send or close anything.
+  // This function is called during a read, so it must not send or close anything.
   void OnControl(websocket::frame_type kind, beast::string_view payload) {
     if (kind == websocket::frame_type::close) return;
     const bool awaited =
@@ -299,8 +300,8 @@ class Link final : public Connection, public Member, public std::enable_shared_f
   }
 
   // Pings accompany the states, and a client answers a ping only after it has read everything
-  // before it. Therefore, the data in transit is limited to what is sent within the time for a
-  // pong.
+  // before it. Therefore, the amount of data in transit is limited to the amount that is sent
+  // within the time for a pong.
   bool MaySendNewest() {
     const auto now = Clock::now();
     if (ping_out_) return now - pinged_ < kPongWithin;

@@ -13,7 +13,7 @@ struct PageFile {
   std::string_view bytes;
 };
 
-// Returns the built page, or a page which says that the page was not built.
+// Returns the built page, or a page that states that the viewer's page was not built.
 std::vector<PageFile> PageFiles();
 
 }  // namespace predictor::viewer

@@ -1,4 +1,4 @@
-// The table of a person's state as TypeScript.
+// Writes the table of a person's state as TypeScript.
 #include <concepts>
 #include <string>
 #include <vector>

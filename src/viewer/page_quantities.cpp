@@ -1,4 +1,4 @@
-// The table of quantities as TypeScript.
+// Writes the table of quantities as TypeScript.
 #include <cctype>
 #include <string>
 

@@ -11,14 +11,14 @@ namespace {
 
 constexpr std::size_t kLongestSecret = 80;
 constexpr double kFarthest = 100;  // maximum distance of a hand from the origin [m]
-// Tolerance of its norm, because pages use single precision.
+// The tolerance of a quaternion's norm, because pages use single precision.
 constexpr double kQuaternionSlip = 1e-2;
 constexpr double kLargestTime = 1e15;    // [ms]
 constexpr double kMaxReplaySteps = 1e6;  // maximum number of steps in one request to a replay
 constexpr double kMaxReplaySpeed = 64;   // maximum speed of a replay
 constexpr double kLargestClock = 9e18;   // [ns]
 
-// Reads the members of a message. `good` becomes false once one is missing or invalid.
+// Reads the members of a message. `good` becomes false when a member is missing or invalid.
 class Reader {
  public:
   explicit Reader(const Json& message) : message_(message) {}

@@ -57,7 +57,7 @@ struct HandRequest {
 struct PingRequest {
   double page_ms = 0;
 };
-// Medians over the page's last second, on the page's clock [ms].
+// The medians during the last second, measured with the page's clock [ms].
 struct LatencyRequest {
   double offset_ms = 0, received_ms = 0, rendered_ms = 0;
 };
@@ -92,7 +92,7 @@ std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset);
 // Returns {"control": 3 | null, ...}, as in `leases` and `welcome`.
 Json LeasesJson(const Leases& leases, std::size_t clients);
 std::string LeasesText(const Leases& leases, std::size_t clients);
-// Returns the message `fixtures`. `fixtures` are those that are there now, as in `scene`.
+// Returns the message `fixtures`. `fixtures` are the fixtures that are present now, as in `scene`.
 std::string FixturesText(const Json& fixtures);
 Json FrameJson();  // FrameFields() as JSON
 

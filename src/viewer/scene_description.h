@@ -11,8 +11,8 @@
 
 namespace predictor::viewer {
 
-// Describes the fixtures that are there while `events` act (bits: entries of the scenario's
-// `events`). The description does not say that a fixture will appear or disappear.
+// Describes the fixtures that are present while `events` act (one bit for each entry of the
+// scenario's `events`). The description does not reveal that a fixture will appear or disappear.
 nlohmann::ordered_json DescribeFixtures(const Scenario& scenario, std::uint16_t events);
 
 // Reads the scenario's models into `assets` and describes the scene before any event.

@@ -1,5 +1,5 @@
-// HTTP and WebSocket on one port, with or without TLS. Handles connections, limits and time-outs,
-// but not the content of messages. Hides Boost from its users.
+// Serves HTTP and WebSocket on one port, with or without TLS. Handles connections, limits and
+// time-outs, but not the content of messages. Hides Boost from its users.
 #pragma once
 
 #include <chrono>
@@ -21,11 +21,12 @@ struct ServerOptions {
   std::chrono::milliseconds message_time{1000};  // limit from a message's first byte to its last
   std::chrono::milliseconds idle_time{20000};    // time limit without any data on a WebSocket
   std::size_t longest_head = 8192;               // [bytes]
-  // The maximum number of connections before admission. One more drops the oldest.
+  // The maximum number of connections before admission. A further connection replaces the oldest
+  // one.
   std::size_t max_guests = 256;
   std::size_t max_guests_per_address = 128;  // the same limit for each address
-  // The maximum number of TLS handshakes that begin per second. Further handshakes wait within
-  // head_time. Handshakes cost the single thread most, and a stop request has to wait for them.
+  // The maximum number of TLS handshakes that begin per second. Further handshakes wait, at most
+  // for head_time. Handshakes cost the single thread most, and a stop request has to wait for them.
   double handshake_rate = 100;
   double handshake_rate_per_address = 40;
   std::size_t max_waiting_text = 256 * 1024;  // limit for one client [bytes]
@@ -35,7 +36,7 @@ struct ServerOptions {
 class Server {
  public:
   // Opens the port. Throws InputError if the port is not available, or if the address is not
-  // loopback and TLS is off. The application is borrowed and must outlive the server.
+  // loopback and TLS is off. The application must outlive the server.
   Server(const ServerOptions& options, Application* application);
   ~Server();
 

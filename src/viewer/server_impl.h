@@ -1,4 +1,4 @@
-// What the server and its connections share.
+// The data and functions that the server and its connections share.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ using Clock = std::chrono::steady_clock;
 
 inline constexpr std::size_t kMaxAddresses = 1024;  // maximum number that is remembered
 
-// A connection of either kind, as the server uses it.
+// The server's interface to a connection of either kind.
 class Member {
  public:
   virtual ~Member() = default;

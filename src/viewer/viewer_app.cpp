@@ -198,8 +198,8 @@ void ViewerApp::Tick() {
   ShowPerson();
   const std::uint64_t written = board_->records.written();
   TickRecord record;
-  // If this process was delayed, the newest record may be overwritten while it is read. The next
-  // tick then tries again.
+  // If this process was delayed, the newest record may have been overwritten while it was read. In
+  // this case, the record is read again in the next tick.
   if (written == shown_ || !board_->records.Get(written - 1, &record)) return;
   const Peaks peaks = SeeRecords(std::exchange(shown_, written), written);
   ReportReset(record);
@@ -247,7 +247,7 @@ void ViewerApp::ShowEvents(const TickRecord& record) {
   if (now != DescribeFixtures(scenario_, before)) hub_->PublishFixtures(now);
 }
 
-// If pages may not start a run, only the console reports why a request was refused.
+// If pages may not start a run, only the console states why a request was refused.
 void ViewerApp::ReportRefusal(const TickRecord& record) {
   if (!RulesFor(scenario_).remote_start) return;
   if (const std::string why = refusals_.See(record); !why.empty()) hub_->Notify(why);

@@ -1,4 +1,5 @@
-// The application of a run's server: page and models by HTTP, pages by WebSocket, and Foxglove.
+// The application of a run's server. It serves the page and the models by HTTP, and the data for
+// pages and for Foxglove by WebSocket.
 #pragma once
 
 #include <array>
@@ -43,7 +44,7 @@ struct AppSetup {
 
 // Checks a request's Host header by RFC 9112, section 3.2. The status is 400 if there is not
 // exactly one Host, if it is not a name with or without a port, or if the port is not this
-// server's. It is 421 if the Host names none of `hosts`, and 200 if it is valid.
+// server's. The status is 421 if the Host names none of `hosts`, and 200 if it is valid.
 HttpReply CheckHost(const HttpRequest& request, const std::vector<std::string>& hosts);
 // Returns whether an Origin belongs to a page that this server delivered under `host`. Browsers
 // always send it with a WebSocket request. A client without an Origin is not a page.
@@ -51,7 +52,7 @@ bool IsOwnOrigin(std::string_view origin, std::string_view host, bool tls);
 
 class ViewerApp : public Application {
  public:
-  // `board` and `mailbox` are borrowed.
+  // `board` and `mailbox` must outlive this object.
   ViewerApp(AppSetup setup, const Scenario& scenario, const Vector3& object_start,
             const RunBoard* board, RunMailbox* mailbox, MonotonicClock clock);
   ~ViewerApp() override;

@@ -1,4 +1,4 @@
-// Main function of the viewer's process, which has no rights except to serve.
+// The main function of the viewer's process, which may only serve pages and data.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -29,8 +29,8 @@ struct Site {
   // `machine_names` is the result of MachineNames().
   Site(const Json& start, const std::vector<std::string>& machine_names)
       : tls(start["tls"]), address(start["address"].get<std::string>()), names(machine_names) {
-    // One certificate with all names of this machine, regardless of how the server is reached, so
-    // that users need to trust it only once.
+    // One certificate contains all names of this machine, whichever name is used to reach the
+    // server, so that users need to trust it only once.
     std::vector<std::string> certified = names;
     if (IsLoopback(address)) names.resize(std::min<std::size_t>(names.size(), 3));
     std::vector<std::string> more = start["names"];
@@ -179,7 +179,7 @@ Preparation PreparationOf(const Json& start) {
   return may;
 }
 
-// Returns "" if there is no report. Then the page does not offer one.
+// Returns "" if there is no report. In this case, the page does not offer a report.
 std::string ReadReport(const std::string& file) {
   if (file.empty()) return "";
   std::ifstream in(file, std::ios::binary);

@@ -1,5 +1,5 @@
-// The run's side of the viewer: messages to the viewer's process, and the operator's requests to
-// it.
+// Implements the run's side of the viewer. It sends messages and the operator's requests to the
+// viewer's process.
 #include "viewer/viewer_process.h"
 
 #include <pwd.h>
@@ -140,8 +140,8 @@ void ViewerProcess::Hear(const Json& line) {
   notify_(where);
 }
 
-// Sends a request that must not be lost. `if_absent` is the message about the situation if no
-// process is running.
+// Sends a request that must not be lost. `if_absent` is the message for the case that no process is
+// running.
 void ViewerProcess::Ask(const Json& line, const std::string& if_absent) {
   bool hangs = false;
   {

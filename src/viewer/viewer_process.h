@@ -39,8 +39,8 @@ struct ViewerOptions {
   std::vector<ScenarioTitle> scenarios;       // scenarios that a page may choose
   std::string notice;                         // shown to every client; empty: no notice
   ReplaySpan replay;
-  // The results of a run that has ended, as JSON (the page's `scene.results`). They are empty
-  // during a run.
+  // The results of a run that has ended, as JSON (the page's `scene.results`). The results are
+  // empty during a run.
   std::string results;
   std::filesystem::path report;            // report of that run, an HTML page; empty: no report
   Vector3 object_start = Vector3::Zero();  // O in W at the start of the run [m]
@@ -58,34 +58,35 @@ int ViewerMain();
 
 class ViewerProcess {
  public:
-  // Shows a message of one or several lines to the user. It is called in the viewer's own thread.
+  // Shows a message of one or several lines to the user. The function is called in the viewer's own
+  // thread.
   using Notify = std::function<void(const std::string& text)>;
 
   // Starts the process and waits until it accepts clients. Throws InputError, for instance if the
   // port is in use, the certificate cannot be read, or the address needs `expose`. The descriptors
-  // of `board`, `mailbox` and `states` are borrowed. `states` are those of the person, or null if
-  // the person is not judged.
+  // of `board`, `mailbox` and `states` are borrowed. `states` are the states of the person, or null
+  // if the person is not judged.
   ViewerProcess(const Scenario& scenario, const ViewerOptions& options,
                 const Shared<RunBoard>& board, const Shared<RunMailbox>& mailbox, Notify notify,
                 const Shared<EvaluationBoard>* states = nullptr);
 
-  // Returns the page's address with the access code. With real arms, it changes when the viewer
-  // restarts.
+  // Returns the page's address with the access code. With real arms, this address changes when the
+  // viewer restarts.
   std::string url() const;
   std::uint16_t port() const { return process_.port(); }
   std::string fingerprint() const;            // fingerprint of the certificate; "" without TLS
   int pid() const { return process_.pid(); }  // 0 while no process is running
   Generations generations() const;            // generations for the ViewerOptions of the next run
 
-  // Requests of the operator at the console. They do not block, may be called from any thread, and
-  // report their result by messages.
+  // Requests of the operator at the console. These functions do not block, may be called from any
+  // thread, and report their results by messages.
   void AskPin(const std::string& role);   // "look", "operator", "control"
   void Revoke(const std::string& lease);  // "control", "operator"
-  // Removes client N permanently. All tokens so far become invalid, and with simulated arms, the
-  // address gets a new code. Pages that stay connected get new tokens. This process keeps the
-  // tokens' generation, so this also works while the viewer is restarting, in which case all
-  // clients are disconnected. If the viewer has not answered a request when the next one is made at
-  // least 2 s later, it is killed and restarted.
+  // Removes client N permanently. All tokens that exist so far become invalid. With simulated arms,
+  // the address also gets a new code. Pages that remain connected get new tokens. The run's process
+  // keeps the generation of the tokens, so this function also works while the viewer is restarting.
+  // In this case, all clients are disconnected. If the viewer has not answered a request when the
+  // next one is made at least 2 s later, it is killed and restarted.
   void Kick(std::uint32_t client);
   // Does the same for each address that was given to Foxglove.
   void KickFoxglove();

@@ -9,12 +9,12 @@ namespace predictor::watchdog {
 
 class Watchdog {
  public:
-  // The loop counts as hanging if no tick occurs for this time while the arms may move [ns].
+  // The loop is regarded as hanging if no tick occurs for this time while the arms may move [ns].
   static constexpr std::uint64_t kPatience = 10'000'000;
 
   // Call this at least every millisecond. `ticks` is the number of ticks published so far. `state`
-  // is the state in the latest one. `now` is the monotonic clock [ns]. Returns true once each time
-  // the loop hangs, and the arms must then be stopped.
+  // is the state in the latest tick. `now` is the monotonic clock [ns]. Returns true once each time
+  // the loop hangs. The caller must then stop the arms.
   bool Look(std::uint64_t ticks, RunState state, std::uint64_t now) noexcept;
 
  private:

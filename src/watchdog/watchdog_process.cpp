@@ -123,14 +123,15 @@ class Channels {
 };
 
 // Returns whether this process must restart to open a new channel, because it has given up the
-// right to connect. It does not restart as long as another arm has a channel and may move. It also
-// waits a moment, so that it does not retry continuously if the connection is refused.
+// right to connect. The process does not restart as long as another arm has a channel and may move.
+// The process also waits before a restart, so that it does not retry continuously if the connection
+// is refused.
 bool MustStartAgain(const Channels& channels, RunState state, std::uint64_t age) {
   constexpr std::uint64_t kPause = 2'000'000'000;  // [ns]
   return channels.AnyLost() && (channels.AllLost() || !MayMove(state)) && age > kPause;
 }
 
-// Follows the ticks of the run, and the state in the latest one.
+// Follows the ticks of the run, and the state in the latest tick.
 class Ticks {
  public:
   explicit Ticks(const RunBoard& board) : records_(board.records) {}

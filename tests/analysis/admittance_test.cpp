@@ -1,5 +1,6 @@
-// Checks the stability of the haptic loop with a cobot under admittance control. It compares the
-// linear model, which has states for the sensor, the controller and the delay, with the simulation.
+// Checks the stability of the haptic loop with a cobot under admittance control. The test compares
+// the simulation with the linear model, which has states for the sensor, the controller and the
+// delay.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +16,7 @@
 namespace predictor {
 namespace {
 
-// A mode that grows faster counts as unstable [1/s].
+// A mode that grows faster than this rate counts as unstable [1/s].
 constexpr double kUnstableRate = 0.05;
 constexpr double kLightest = 0.3, kHeaviest = 12;  // hands [kg]
 
@@ -40,7 +41,8 @@ std::optional<double> CriticalMass(const Scenario& s) {
 }
 
 Scenario LoopWith(double stiffness, double delay) {
-  // The virtual spring is weak, because the effect of a tap on a free cobot would never decay.
+  // A weak virtual spring holds the cobot, because the effect of a tap on a free cobot would never
+  // decay.
   Scenario s =
       Load("admittance.yaml", {"cobot.controller.virtual_stiffness.translation=[80, 80, 80]",
                                "cobot.controller.virtual_stiffness.rotation=[5, 5, 5]"});
@@ -53,8 +55,8 @@ Scenario LoopWith(double stiffness, double delay) {
 bool Grows(Scenario s, double mass) {
   s.operator_.hand.mass = mass;
   const Growth growth = MeasureGrowth(s, 0);
-  // Once a disturbance has decayed, the measured rate is that of rounding errors, which is about 0.
-  // If there is no rate, a limit acted from the start.
+  // Once a disturbance has decayed, only rounding errors are left, and the measured rate is about
+  // 0. If no rate was measured, a limit acted from the start.
   return growth.grows && growth.rate.value_or(1) > 0.2;
 }
 

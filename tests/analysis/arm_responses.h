@@ -12,7 +12,7 @@
 
 namespace predictor {
 
-// Symmetric matrices that are not diagonal.
+// Returns an arm whose matrices are symmetric but not diagonal.
 inline PlaneVector KnownArm() {
   PlaneVector p;
   p << 1.6, 0.2, 1.1, 14, -2, 9, 320, 40, 120, 0.45, 0.07;
@@ -25,9 +25,9 @@ inline Eigen::Matrix2d PlaneMatrixOf(const PlaneVector& p, int first) {
   return m;
 }
 
-// Displacements in eight directions against a mass that hangs on a spring and a damper. The force
-// of the hand moves the mass. Its noise, of this standard deviation [N], therefore moves the handle
-// too.
+// Simulates displacements in eight directions against a mass that hangs on a spring and a damper.
+// The hand's force, which has noise with the standard deviation `noise` [N], moves the mass. The
+// noise of the force therefore also moves the handle.
 inline ArmResponses SimulatedResponses(const PlaneVector& arm, int count, double noise,
                                        std::uint64_t seed) {
   constexpr double kArmTick = 0.001, kAmplitude = 0.007, kRamp = 0.12;

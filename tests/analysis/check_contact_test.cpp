@@ -17,7 +17,7 @@ CheckReport Checked(const Scenario& s) {
   return Check(s, options);
 }
 
-// A plane far below box_9kg.
+// Returns a plane far below the object of box_9kg.
 std::string Plane(const std::string& keys) {
   return "environment.fixtures=[{shape: plane, xyz: [0, 0, -1], " + keys + "}]";
 }
@@ -30,7 +30,7 @@ TEST(CheckContact, HasAReportForEachSideOfTheObject) {
   for (const ContactReport& contact : report.contacts) {
     EXPECT_FALSE(contact.yields);
     EXPECT_TRUE(contact.stable);
-    // A rigid wall is compared with springs without its damping.
+    // The wall has damping, but the springs with which a rigid wall is compared have none.
     EXPECT_GT(contact.wall.damping, 0);
     EXPECT_EQ(contact.Varying().damping, 0);
   }
@@ -55,7 +55,7 @@ TEST(CheckContact, TheHandsFeelTheFixtureAndTheCobotsSpring) {
   EXPECT_TRUE(contact.stable);
   EXPECT_NEAR(contact.at_rest.requested.real(), 20000 + 500, 0.02 * 20500);
   EXPECT_NEAR(contact.at_rest.rendered.real(), 20000 + 500, 0.02 * 20500);
-  // The handle's motion is late.
+  // The handle's motion is delayed, which increases the imaginary part.
   EXPECT_GT(contact.moving.rendered.imag(), contact.moving.requested.imag());
   EXPECT_NE(CheckText(report).find("felt at rest     2.05e+04 N/m of 2.05e+04"), std::string::npos);
 }
@@ -99,7 +99,7 @@ TEST(CheckContact, ADamperIsItsDamping) {
   EXPECT_NEAR(DampingOf(impedance, kFrequency), kDamping, 1e-12);
 }
 
-// Which scenarios have contacts, two arms, proposals and problems differs.
+// The scenarios differ in whether they have contacts, two arms, proposals and problems.
 TEST(CheckJson, ConformsToItsSchema) {
   const Json schema = Json::parse(CheckSchema());
   const CheckReport report =

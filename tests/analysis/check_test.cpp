@@ -92,8 +92,8 @@ TEST(Reach, WithShiftedBasesIsThatOfAScenarioWithThoseBases) {
   EXPECT_NEAR(a.pairs[0].distance.value, b.pairs[0].distance.value, 1e-3);
 }
 
-// The reported speed of a handle on a circle must be that of the circle, regardless of the arms'
-// limits.
+// If a handle follows a circle, its reported speed must be the speed along the circle, regardless
+// of the arms' limits.
 TEST(Reach, HandleOnACircleHasItsSpeed) {
   const Scenario s = Load("bar_circle.yaml");
   const Reach reach = DeviceReach(s).Over(TaskPaths(s, StartOfObject(s), 0.1));
@@ -108,7 +108,7 @@ TEST(Check, NamesTheArmThatLeavesItsReach) {
   EXPECT_FALSE(Mentions(report.problems, "The left arm"));
   EXPECT_TRUE(report.reach->arms[1]->lost);
   EXPECT_FALSE(report.reach->arms[0]->lost);
-  // The last postures before that say nothing about speeds.
+  // The report must not derive speeds from the last postures before the arm loses its handle.
   const std::string text = CheckText(report);
   const std::size_t line = text.find("right            CANNOT REACH ITS HANDLE from");
   ASSERT_NE(line, std::string::npos) << text;
@@ -305,7 +305,7 @@ TEST(ShiftSearch, BringsTheSceneToFixedArms) {
   const std::string text = CheckText(report);
   const std::size_t at = text.find("  environment.shift: {");
   ASSERT_NE(at, std::string::npos) << text;
-  // A scenario with the printed value must have the predicted comfort.
+  // A scenario with the printed `environment.shift` must have the predicted comfort.
   const std::string copied = text.substr(at + 21, text.find('}', at) - at - 20);
   const Scenario moved = Load("box_9kg.yaml", {"environment.shift=" + copied});
   const DeviceReach device(moved);

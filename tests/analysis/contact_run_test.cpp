@@ -1,4 +1,4 @@
-// What the report says about contact with fixtures.
+// Tests what the report says about contact with fixtures.
 #include "analysis/contact_run/contact_run.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(ContactCollector, ARigidFixtureHasNoModelledForce) {
   EXPECT_NEAR(collector.facts()[0].depth, 0.001, 1e-6);
 }
 
-// An obstacle counts from when it appears, and not while it overlaps the object and waits.
+// An obstacle counts only after it has appeared, not while it waits because it overlaps the object.
 TEST(ContactCollector, AnObstacleIsThereWhenItHasAppeared) {
   const Scenario s = Load(
       "box_9kg.yaml", {Fixtures("stiffness: 20000, damping: 60"),

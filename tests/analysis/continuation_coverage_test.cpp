@@ -1,7 +1,7 @@
 // Tests whether the intervals of a continued run contain what simulated people would have done.
 //
-// The numbers of IntentModel were chosen with the seeds 1000 to 1400. The seeds below were chosen
-// before that and played no part in it.
+// The numbers of IntentModel were chosen with the seeds 1000 to 1400. The seeds below were fixed
+// earlier and were not used to choose these numbers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,8 +76,8 @@ Coverage Study(std::uint64_t seed, long stops, bool outside, int draws) {
   return result;
 }
 
-// The interval extends from the second smallest to the second largest of 39 draws. Another draw
-// lies in it with a probability of 90 %.
+// The interval extends from the second smallest to the second largest of 39 draws. With a
+// probability of 90 %, a further draw lies in this interval.
 constexpr int kDraws = 39;
 
 TEST(ContinuationCoverage, ContainsWhatSimulatedPeopleWouldHaveDoneSoak) {
@@ -90,8 +90,8 @@ TEST(ContinuationCoverage, ContainsWhatSimulatedPeopleWouldHaveDoneSoak) {
   EXPECT_LE(Median(inside.shares), 1);
 }
 
-// The prior hardly contains these arms and reflexes. The only requirement is that more than half of
-// the intervals contain the true value.
+// According to the prior, these arms and reflexes are very unlikely. The only requirement is that
+// more than half of the intervals contain the true value.
 TEST(ContinuationCoverage, OfPeopleOutsideThePriorIsReportedSoak) {
   const Coverage outside = Study(kOutsideSeed, Count(4, 200), true, kDraws);
   outside.Print("Outside the prior");

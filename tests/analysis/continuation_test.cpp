@@ -1,4 +1,4 @@
-// Tests the continuation of a stopped run, including which data it must not use.
+// Tests the continuation of a stopped run, and that it does not use data that must stay hidden.
 #include "analysis/continuation/continuation.h"
 
 #include <gtest/gtest.h>
@@ -76,8 +76,8 @@ TEST(Continuation, OfTheSimulatedOperatorIsTheRunWithoutLimits) {
   EXPECT_GT(c.reference->peak_force, 31);
 }
 
-// Two operators act alike until the stop and differently after it. Their predictions must be
-// identical bit for bit.
+// Two operators act alike until the stop and differently after it. The predictions for the two
+// operators must be identical bit for bit.
 TEST(Continuation, DoesNotUseTheOperatorsHiddenIntention) {
   const StoppedPerson one = Pusher();
   const auto stop = RunToStop(one);
@@ -141,7 +141,7 @@ void ExpectMatches(const Json& value, const Json& schema) {
     for (const Json& entry : value) ExpectMatches(entry, schema["items"]);
 }
 
-// If another fault ends a run, its value is a lower bound.
+// If another fault ends a continued run, the largest force of this run is a lower bound.
 TEST(Continuation, CountsRunsThatEndedByAFaultAsBounds) {
   Continuation c;
   for (int k = 1; k <= 19; ++k) {
@@ -221,7 +221,8 @@ TEST(ArmDistribution, DrawsHaveTheGivenMoments) {
     product += (x[0] - 400) * (x[1] - 180) / kSamples;
     with_gain += (x[0] - 400) * (x[5] - 0.4) / kSamples;
   }
-  // The tolerance of the means is five standard errors, that of the covariances 10 %.
+  // The tolerance of the means is five standard errors, and the tolerance of the covariances is 10
+  // %.
   EXPECT_TRUE(
       ((sum - mean).cwiseAbs().array() < 5 * (c.diagonal() / kSamples).cwiseSqrt().array()).all())
       << sum.transpose();
@@ -267,7 +268,8 @@ TEST(ArmDistribution, RefusesInvalidFiles) {
   EXPECT_NEAR(ArmDistribution::Read(file, HandSpec()).Draw(&random).mass, 3, 0.01);
 }
 
-// A hand follows the law with a known drive. The estimate must find this drive and its trend.
+// The test simulates a hand that follows the assumed law with a known drive. The estimate must find
+// this drive and its trend.
 TEST(EstimatedHand, FindsTheDriveOfAHandThatFollowsItsLaw) {
   constexpr double kStep = 0.001, kAmplitude = 0.02, kRate = 12;
   OperatorDraw person;
@@ -298,7 +300,7 @@ TEST(EstimatedHand, FindsTheDriveOfAHandThatFollowsItsLaw) {
   EstimatedHand hand;
   hand.Begin(past, 0, kStep, kStep, {}, person);
   ASSERT_TRUE(hand.holds());
-  // The displacement is measured from the first record, and the force as well.
+  // Displacement and force are measured relative to their values in the first record.
   const Vector3 offset = (1 + person.arm.reflex_gain) * K.cwiseProduct(at(-0.5));
   EXPECT_LT((hand.drive().head<3>() + offset - u0).norm(), 0.6) << hand.drive().transpose();
   EXPECT_LT((hand.trend().head<3>() - slope).norm(), 8) << hand.trend().transpose();

@@ -20,8 +20,8 @@ HandSpec SpringWithReflex(double stiffness, double reflex_gain, double reflex_de
   return hand;
 }
 
-// M s² + B s + K (1 + g e^−sT) = 0 at s = jω for ωT = 2π n + π/2: M ω² = K and B = g K/ω. If too
-// few states model the delay, its phase is wrong at this frequency.
+// For ωT = 2π n + π/2, s = jω solves M s² + B s + K (1 + g e^−sT) = 0 if M ω² = K and B = g K/ω. If
+// too few states model the delay, its phase is wrong at this frequency.
 TEST(ExactLoop, ModelsTheReflexAfterWholeTurnsOfItsPhase) {
   const double T = 0.060, g = 0.4, mass = 2;
   for (const int turns : {0, 1}) {
@@ -51,7 +51,8 @@ TEST(ExactLoop, HasOnlyItsOwnDelay) {
     const HapticLoop loop(Mass(mass, share * critical), s, kDt, LoopModel::kExact);
     EXPECT_EQ(loop.GrowthRate(hand, 0, 1) > kRounding, share < 1) << share;
   }
-  // The loop model that selects the leads has 1.5 ticks more delay, which amounts to 2 or 3 % here.
+  // The loop model that selects the leads has a delay that is longer by 1.5 ticks. Here, this
+  // raises the critical mass by 2 or 3 %.
   const HapticLoop reserved(Mass(mass, 1.01 * critical), s, kDt);
   EXPECT_GT(reserved.GrowthRate(hand, 0, 1), kRounding);
 }

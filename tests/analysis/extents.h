@@ -7,8 +7,8 @@
 
 namespace predictor {
 
-// Returns samples around a boundary at 1000 N/m. Their growth rates lie on a line, apart from
-// `scatter`.
+// Returns samples around a boundary at 1000 N/m. The growth rates of the samples lie on a line,
+// apart from `scatter`.
 inline FoundExtent AboutAThousand(double scatter) {
   FoundExtent found;
   int sign = 1;

@@ -1,4 +1,5 @@
-// Tests whether the emulator keeps its promises in runs with hazards, and how this is measured.
+// Tests whether the emulator keeps to its documented limits in runs with hazards. It also tests the
+// measurements on which this judgement depends.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +12,8 @@
 namespace predictor {
 namespace {
 
-// A reading deviates from the truth by the noise and, evenly distributed, by up to half a step. The
-// standard deviation of the latter is the step over sqrt(12).
+// A reading deviates from the truth by the noise and by a uniformly distributed rounding error of
+// up to half a step. The standard deviation of this rounding error is the step divided by sqrt(12).
 TEST(ResolvedForce, IsThreeStandardDeviationsOfAReading) {
   SensorSpec sensor;
   sensor.noise_force = 0.03;

@@ -1,4 +1,5 @@
-// Tests the hazard study: the file of finished runs, and the tables that follow from runs.
+// Tests two parts of the hazard study: the file of finished runs, and the tables that are computed
+// from the runs.
 #include "analysis/hazard_study/hazard_study.h"
 
 #include <gtest/gtest.h>
@@ -228,10 +229,11 @@ HazardRun Felt(double force, StopCause cause = StopCause::kNone) {
   return run;
 }
 
-// Forces of 10, 20 and 30 N, and at least 25 and 40 N. By hand, the product-limit estimate exceeds
-// them with probability 4/5 after 10 N, 4/5 · 3/4 = 3/5 after 20 N, and 3/5 · 1/2 = 3/10 after 30
-// N. So the median is 30 N (of the five numbers alone, it would be 25 N). The estimate does not
-// reach 95 %. The bound is then the quantile of the five numbers, 30 + 0.8 · 10 N.
+// Three forces are 10, 20 and 30 N. Two others are only known to be at least 25 and 40 N. The
+// product-limit estimate was calculated by hand: a force exceeds 10 N with the probability 4/5, 20
+// N with 4/5 · 3/4 = 3/5, and 30 N with 3/5 · 1/2 = 3/10. The median is therefore 30 N (the median
+// of the five numbers alone would be 25 N). The estimate does not reach 95 %. The bound is then the
+// quantile of the five numbers, 30 + 0.8 · 10 N.
 HazardCell CensoredCell() {
   HazardCell cell = CellOf("box");
   cell.speed_cap = 0.5;
@@ -322,13 +324,14 @@ TEST(HazardTable, StatesWhetherTheRequirementsHold) {
   noisy.commanded = 1;
   cell.runs.push_back(noisy);
   const std::string kept = HazardStudyWords({{cell}, 4});
-  for (const char* words : {"7 runs (4 from an earlier study); the hazard began in 6; 3 stopped.",
-                            "2 of 2 force stops were decided within 3 ms", "all within 3 ms.",
-                            "In 2 of them, the true force had crossed the threshold itself, at "
-                            "most 4 ms before and by at most 0.50 N",
-                            "used 40 % of its travel budget",
-                            "used 100.0 % of its cap; the measured speed of a handle reached "
-                            "100.6 % of the cap."})
+  for (const char* words :
+       {"7 runs (4 from an earlier study); the hazard began in 6; 3 stopped.",
+        "2 of 2 force stops were decided within 3 ms", "all within 3 ms.",
+        "In 2 of these runs, the true force itself had crossed the threshold, at "
+        "most 4 ms earlier and by at most 0.50 N",
+        "used 40 % of its travel budget",
+        "used 100.0 % of its cap; the measured speed of a handle reached "
+        "100.6 % of the cap."})
     EXPECT_NE(kept.find(words), std::string::npos) << words << "\n" << kept;
 
   cell.runs.back().clear_detection = 0.004;
@@ -339,8 +342,8 @@ TEST(HazardTable, StatesWhetherTheRequirementsHold) {
 
 // ---- a whole study ------------------------------------------------------------------------------
 
-// The second study takes the runs of the complete lines from the first one, and its results do not
-// differ.
+// The second study must reuse the runs in the first study's complete lines, and both studies must
+// have the same results.
 TEST(HazardStudyFiles, AnInterruptedStudyIsContinued) {
   const test::TemporaryFolder folder;
   HazardStudyOptions options;

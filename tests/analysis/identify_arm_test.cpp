@@ -1,4 +1,4 @@
-// The impedance of the operator's arm, identified from displacements of the handles.
+// Tests how displacements of the handles identify the impedance of the operator's arm.
 #include "analysis/identify_arm/identify_arm.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ struct PlaneArm {
   }
 };
 
-// Ranges around those of the literature (shared with docs/concepts/operator.md).
+// Draws a person from ranges around those of the literature (see docs/concepts/operator.md).
 PlaneArm DrawPerson(std::uint64_t seed) {
   RandomStream random(seed, "person");
   const auto between = [&](double low, double high) {
@@ -160,8 +160,9 @@ struct Errors {
   }
 };
 
-// Errors of the values and coverage of the intervals. The method was developed with people of other
-// seeds (from 5000). If the monitor stops a run, that person is not identified.
+// Measures the errors of the values and the coverage of the intervals. The method was developed
+// with people of other seeds (from 5000). If the monitor stops a run, the person in this run is not
+// identified.
 TEST(PerturbedPeople, AreIdentifiedThroughTheDeviceSoak) {
   const long people = Count(2, 50);
   Errors errors;
@@ -209,7 +210,7 @@ TEST(ArmIdentifier, RefusesTooFewDisplacements) {
       << run.arms.hands[0].refusal;
 }
 
-// The scale of the file is that of HandSpec: ζ = D / (2 √(M K)).
+// The file contains the damping ratio as HandSpec defines it: ζ = D / (2 √(M K)).
 TEST(ArmIdentifier, WritesTheDistributionThatOtherCommandsRead) {
   ArmIdentification arms;
   ArmFit fit;

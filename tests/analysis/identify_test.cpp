@@ -104,8 +104,8 @@ TEST_F(IdentifyTest, FrictionAndItsIntervalsSoak) {
   RecordProperty("held", tally.held);
 }
 
-// The residuals are correlated, as changes in the temperature of a gear would cause. Their
-// correlation time is 0.5 s, and their standard deviation is 0.1 N·m.
+// The residuals are correlated, as changes in the temperature of a gear would cause. The residuals
+// have a correlation time of 0.5 s and a standard deviation of 0.1 N·m.
 TEST_F(IdentifyTest, IntervalsCountWhatNeighbouringResidualsHaveInCommonSoak) {
   Tally tally;
   double widening = 0;
@@ -130,8 +130,8 @@ TEST_F(IdentifyTest, IntervalsCountWhatNeighbouringResidualsHaveInCommonSoak) {
                 static_cast<double>(seeds);
   }
   tally.Expect(0.05 * tally.intervals);
-  // The correlation makes the window means 4 times as large, and the interval must grow by more
-  // than that.
+  // The correlation makes the residuals' window means 4 times as large, and the interval must grow
+  // by a larger factor.
   EXPECT_GT(widening, 6);
 }
 
@@ -181,7 +181,7 @@ TEST_F(IdentifyTest, FindsTheLoadAndPassesOverGaps) {
 }
 
 // A damaged or hostile recording contains NaN, huge values, ticks in the wrong order, and a last
-// tick in the far future. The identifier must not allocate memory up to that tick.
+// tick in the far future. The identifier must not allocate memory for all ticks up to the last one.
 TEST_F(IdentifyTest, LeavesOutWhatCannotBe) {
   Identifier identifier(nominal_);
   const RealCobot real = DrawRealCobot(kJoints, 5);
@@ -226,7 +226,7 @@ TEST_F(IdentifyTest, LinksFarFromTheirModelAreNoticed) {
   tally.Expect();
 }
 
-// This test needs no simulation, because the identifier uses only the positions here.
+// This test needs no simulation, because the identifier uses only the positions in the records.
 TEST_F(IdentifyTest, OneSpeedIsNotEnough) {
   Identifier identifier(nominal_);
   TickRecord record{};

@@ -7,9 +7,10 @@ namespace predictor {
 
 // Fails unless the file has exactly this experiment's numbers. The mean and the deviation must
 // agree within 2 %, the largest value within 20 %. Under the paper's conditions the loop is
-// unstable: rounding errors grow with it, and the mathematical libraries of different processors
-// round differently. The tolerances are therefore 15 % and 40 % there. The tolerance of the time to
-// rest is 10 %, because it ends with the last step that counts as motion, in a slow decay.
+// unstable, so rounding errors grow. The mathematical libraries of different processors round
+// differently. For these conditions, the tolerances are therefore 15 % and 40 %. The tolerance of
+// the time to rest is 10 %, because it ends with the last step that counts as motion, in a slow
+// decay.
 void ExpectAsInNumbersFile(const ReproducedExperiment& experiment);
 
 // Returns the file's mean for a number of the experiment with this condition, quantity and unit, or

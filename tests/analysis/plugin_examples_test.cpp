@@ -1,4 +1,4 @@
-// The example controllers with the parameters of the documentation, in the shipped scenarios.
+// Tests the example controllers in the shipped scenarios with the parameters of the documentation.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -46,7 +46,7 @@ TEST(PluginExamples, AreSmoothInTheShippedScenarios) {
   }
 }
 
-// A controller that saturates in both directions looks like a stable one in continuous time.
+// In a model in continuous time, a controller that saturates in both directions looks stable.
 TEST(PluginExamples, ThatChatterAreUnfitAndCounted) {
   const Scenario s = WithExample("single_arm.yaml", "joint_stiffness=200 damping_rate=4000");
   CheckOptions options;

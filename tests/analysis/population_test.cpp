@@ -76,7 +76,7 @@ TEST(Share, HasThePublishedIntervals) {
   EXPECT_EQ(ShareOf(0, 0).high, 1);
 }
 
-// Makes up two designs. In the second one, each person's values are larger by `shift`.
+// Makes up two designs. In the second design, each person's values are larger by `shift`.
 PopulationStudy MadeUp(int people, double shift) {
   PopulationStudy study;
   study.people = SamplePopulation(people, 1);
@@ -204,7 +204,8 @@ TEST(Study, RunsAndContinuesWhereItEnded) {
   ASSERT_EQ(study.designs.size(), 2U);
   EXPECT_EQ(study.kept, 0);
   EXPECT_NEAR(*study.designs[0].height, 0.9, 1e-9);
-  // The handles move alike, but their height relative to the body is different.
+  // In both designs, the handles move in the same way, but their height relative to the body is
+  // different.
   EXPECT_NE(study.designs[0].runs[0].values, study.designs[1].runs[0].values);
   for (const PopulationDesign& design : study.designs)
     for (const PopulationRun& run : design.runs) EXPECT_GT(run.held, 1);
@@ -224,7 +225,8 @@ TEST(Study, RefusesAScenarioWithoutAPlaceOfTheOperator) {
   EXPECT_THROW(MakePopulationStudy(options), InputError);
 }
 
-// A mirrored person must do with one hand what the person does with the other.
+// The left hand of a mirrored person must do what the original person's right hand does, and vice
+// versa.
 assessment::Assessment AssessLift(double side) {
   Scenario scenario = QuietScenario(2);
   scenario.operator_.embodied = true;

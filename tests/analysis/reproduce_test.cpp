@@ -49,7 +49,8 @@ class ReproduceTest : public testing::Test {
   ReproduceOptions options_;
 };
 
-// Returns the number for a quantity under a condition. The test fails if it does not exist.
+// Returns the number for a quantity under a condition. If the number does not exist, the test
+// fails.
 const ReproducedNumber& Find(const ReproducedExperiment& e, const std::string& quantity,
                              const std::string& condition) {
   static const ReproducedNumber kNone;
@@ -81,12 +82,12 @@ TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
       EXPECT_GT(n.largest, n.mean);
       EXPECT_DOUBLE_EQ(*n.ratio(), n.mean / printed[0]);
     }
-  // A slow loop without lead has a larger tracking error. Both values come from a run, not from a
-  // constant.
+  // A slow loop without lead has a larger tracking error. This shows that both values come from
+  // runs and not from constants.
   EXPECT_GT(Find(e, "left handle", kPapers).mean, 3 * Find(e, "left handle", kOurs).mean);
   EXPECT_NE(Find(e, "left handle", kPapers).command.find("--set rate=100"), std::string::npos);
-  // Without our coupling, the run stops. The page must show the time of the stop, without a ratio
-  // to the paper's number.
+  // Without our coupling, the run stops. The page must show the time of the stop, but no ratio to
+  // the paper's number.
   const ReproducedNumber& stop = Find(e, "time of the safety stop", kPapersUncoupled);
   EXPECT_GT(stop.mean, 0);
   EXPECT_LT(stop.mean, 30);
@@ -94,11 +95,13 @@ TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
        {"stiffness", "damping", "rotation_stiffness", "rotation_damping", "speed_damping"})
     EXPECT_NE(stop.command.find(std::string("--set coupling.") + part + "=0"), std::string::npos);
   EXPECT_FALSE(Find(e, "left handle", kPapersUncoupled).ratio());
-  // The values for the whole run include the release; the error while both hands grip does not.
+  // The values for the whole run include the release, but the error while both hands grip excludes
+  // it.
   EXPECT_GT(Find(e, "left handle, whole run", kOurs).largest,
             Find(e, "left handle", kOurs).largest);
   EXPECT_EQ(Find(e, "left handle, whole run", kOurs).paper->mean, 4.1);
-  // The handles' relative position has a direction as well as a length.
+  // The error of the handles' relative position includes that of its direction as well as that of
+  // its length.
   EXPECT_GE(Find(e, "right handle seen from the left", kOurs).mean,
             Find(e, "distance between the handles", kOurs).mean);
   // The paper states no rate, so the results at half and at twice our rate are shown as well.
@@ -152,8 +155,9 @@ void ExpectTheSwingWithoutTuning(const ReproducedExperiment& e) {
 }
 
 // ./dev soak checks the remaining experiments.
-// The bar's loop is stable even with the paper's formulation, so its figures can be compared. The
-// whole ablation is compared in the full run of NumbersFileIsWhatTheProgramComputesSoak.
+// The bar's loop is stable even with the paper's formulation, so the numbers of both formulations
+// can be compared. The whole ablation is compared in the full run of
+// NumbersFileIsWhatTheProgramComputesSoak.
 TEST_F(ReproduceTest, AblationOfTheBarIsInTheNumbersFile) {
   ReproduceRuns runs(options_, "ablation", 2);
   const auto expect_same = [&](const std::string& step, const std::vector<std::string>& set) {
@@ -184,7 +188,8 @@ TEST_F(ReproduceTest, NumbersFileIsWhatTheProgramComputesSoak) {
   }
 }
 
-// The loop must keep the relative pose even where it does not keep the absolute pose.
+// The loop must keep the relative pose even under conditions in which the absolute pose has large
+// errors.
 TEST_F(ReproduceTest, ShowsTheRelativePoseKept) {
   options_.only = "relative_pose";
   const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
@@ -199,7 +204,8 @@ TEST_F(ReproduceTest, ShowsTheRelativePoseKept) {
   ExpectAsInNumbersFile(e);
 }
 
-// Fig. 12: with identified friction, the emulation must agree better with the real run.
+// For the paper's Fig. 12, the emulation must agree better with the real run if it uses the
+// identified friction.
 TEST_F(ReproduceTest, HoldsTheCircleAgainstTheRealOne) {
   options_.only = "circle";
   options_.seeds = 2;
@@ -219,8 +225,7 @@ TEST_F(ReproduceTest, HoldsTheCircleAgainstTheRealOne) {
   }));
 }
 
-// Each reconstructed set of answers must reproduce the printed numbers: ten numbers for 8
-// statements.
+// Each reconstructed set of answers must reproduce the ten printed numbers for the 8 statements.
 TEST_F(ReproduceTest, ListsTheAnswersOfTableOne) {
   options_.only = "questionnaire";
   const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
@@ -356,7 +361,7 @@ TEST(Raster, ProjectsCorrectly) {
   const Picture picture = Decode(raster.Png());
   ASSERT_EQ(picture.width, kWidth);
   ASSERT_EQ(picture.height, kHeight);
-  // The size of 1 m at a distance of 2 m, in pixels.
+  // This scale is the size of 1 m at a distance of 2 m, in pixels.
   const double scale = 0.5 * kHeight / std::tan(0.3) / 2;
   const int left = static_cast<int>(kWidth / 2 - 0.4 * scale);
   const int right = static_cast<int>(kWidth / 2 - 0.1 * scale);

@@ -1,4 +1,4 @@
-// The simplest hand and the simplest world. The stability of their loop has a closed form.
+// Defines the simplest hand and the simplest world. The stability of their loop has a closed form.
 #pragma once
 
 #include "core/messages.h"

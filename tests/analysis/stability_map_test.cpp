@@ -172,8 +172,8 @@ TEST(StabilityMap, RefusesAFolderThatCannotBe) {
   EXPECT_EQ(WEXITSTATUS(status), 2);
 }
 
-// This test takes minutes. It computes the maps of the paper's two scenarios and checks that a
-// second call reuses all results.
+// This test takes minutes. The test computes the maps of the paper's two scenarios and checks that
+// a second call reuses all results.
 TEST(StabilityMap, SoakSimulatedBoundaryIsThePredictedOne) {
   if (Count(0, 1) == 0) GTEST_SKIP() << "set PREDICTOR_SOAK";
   for (const char* name : {"box_9kg.yaml", "bar_circle.yaml"}) {

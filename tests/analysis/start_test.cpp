@@ -11,8 +11,9 @@ namespace {
 
 constexpr double kStiffness = 500;  // vertical stiffness of the scenario's controller [N/m]
 
-// The tutorial's cobot, made of cylinders. At zero it stands upright: the upper arm reaches from
-// 0.3 m to 0.7 m with a radius of 60 mm, the last wrist link to 1.3 m, and the flange to 1.31 m.
+// Returns a scenario with the tutorial's cobot, which consists of cylinders. With all joints at
+// zero, the cobot stands upright. The upper arm has a radius of 60 mm and extends from 0.3 m to 0.7
+// m. The last wrist link extends to 1.3 m and the flange to 1.31 m.
 Scenario Cylinders() {
   Scenario s = Load("box_9kg.yaml");
   s.file = PREDICTOR_SOURCE_DIR "/docs/tutorials/own.yaml";
@@ -69,7 +70,7 @@ Scenario Box() {
   return s;
 }
 
-// The floor carries the part of the weight that the spring of the sagging cobot does not.
+// The floor carries the part of the weight that the spring of the sagging cobot does not carry.
 TEST(Start, OfAnObjectOnTheFloorDividesItsWeight) {
   const World hanging(Box());
   const StartReport free = Describe(Box(), hanging);

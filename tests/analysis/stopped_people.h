@@ -18,8 +18,9 @@
 
 namespace predictor {
 
-// A person whose arm stiffens with its force, which the continuation does not assume. The force is
-// that of the simulated operator times 1 + |F| / F0, so an infinite F0 makes no difference.
+// A person whose arm stiffens with its force, which the continuation does not assume. The person's
+// force is the simulated operator's force multiplied by 1 + |F| / F0, so an infinite F0 makes no
+// difference.
 class StiffeningOperator final : public Operator {
  public:
   StiffeningOperator(std::unique_ptr<Operator> person, double force)
@@ -65,7 +66,7 @@ inline void PerturbHand(RandomStream* random, bool outside, HandSpec* hand) {
   hand->max_force = 150;
 }
 
-// Draws a disturbance: the person pushes, or a hazard of the cobot occurs.
+// Draws a disturbance, which is either a push by the person or a hazard of the cobot.
 inline std::vector<std::string> DisturbanceOf(RandomStream* random, std::string* what) {
   const double at = Between(random, 2, 4);
   const auto event = [&](const std::string& name, const std::string& parameters) {

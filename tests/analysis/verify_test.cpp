@@ -116,8 +116,8 @@ TEST_F(VerifyTest, ARunInAShiftedWorldIsTheSameAgain) {
   EXPECT_FALSE(result.departure);
 }
 
-// Verification uses neither the library nor the program. It takes the controller's answers from the
-// recording.
+// Verification uses neither the controller's library nor its program. Verification takes the
+// controller's answers from the recording.
 TEST_F(VerifyTest, ARunWithAControllerOutsideTheProgramIsTheSameWithoutIt) {
   struct OutsideCase {
     ControllerSpec controller;
@@ -212,8 +212,8 @@ TEST_F(VerifyTest, ARecordingWithoutTheAnswersOfItsControllerIsRefused) {
   }
 }
 
-// The soak test runs each scenario to its end. A scenario that stops runs to its stop in both
-// tests.
+// The soak test runs each scenario to its end. If a scenario ends in a stop, both tests run it
+// until this stop.
 TEST_F(VerifyTest, EveryScenarioIsTheSameAgainSoak) {
   int scenarios = 0;
   for (const auto& entry :
@@ -249,7 +249,7 @@ TEST_F(VerifyTest, TheLastBitOfOneNumberIsFound) {
   EXPECT_NE(result.departure->recorded, result.departure->computed);
 }
 
-// An input that was not given changes the computed run.
+// If a record contains an input that no one gave, the computed run differs from the recorded one.
 TEST_F(VerifyTest, AnInputThatWasNotGivenIsFound) {
   const Verification result = VerifyFile(Record([](TickRecord* record) {
     if (record->tick == 2500) {

@@ -1,6 +1,6 @@
-// Compares two values of the largest wall stiffness at which the haptic loop is stable: that of the
-// linear loop with a spring and a damper, and that of the simulation of an object that touches a
-// fixture.
+// Compares two values of the largest wall stiffness at which the haptic loop is stable. One value
+// is from the linear loop with a spring and a damper. The other is from the simulation of an object
+// that touches a fixture.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -23,8 +23,8 @@ struct ArmLoop {
 };
 
 Scenario LoopWith(const ArmLoop& arm, double hand_mass) {
-  // The cobot's damping is low, because it would hide that of the loop. If the box hung on a joint
-  // or the cobot were compliant sideways, the box would slip off the ball.
+  // The cobot's damping is low, because high damping would hide the damping of the loop. If the box
+  // hung on a joint or the cobot were compliant sideways, the box would slip off the ball.
   Scenario s = Load(
       "box_9kg.yaml",
       {"object.attachment.joint=fixed", "cobot.controller.stiffness.translation=[300, 300, 500]",
@@ -34,7 +34,7 @@ Scenario LoopWith(const ArmLoop& arm, double hand_mass) {
   for (ArmSpec* spec : {&*s.device.left, &*s.device.right}) {
     spec->loop.bandwidth = arm.bandwidth;
     spec->loop.delay = arm.delay;
-    // Steps of the readings would excite the oscillation again after it has decayed.
+    // Quantisation steps of the readings would excite the oscillation again after it has decayed.
     spec->sensor.force_resolution = spec->sensor.torque_resolution = 1e-9;
   }
   return s;

@@ -86,8 +86,8 @@ TEST(WallMap, PointsAreTheSinglePredictions) {
   }
 }
 
-// A map with made-up predictions, which fall with mass and delay. Nothing is stable for the
-// heaviest hand, and everything for the lightest one.
+// Returns a map with made-up predictions, which fall with mass and delay. For the heaviest hand, no
+// stiffness is stable, and for the lightest hand, every stiffness is.
 StabilityMap MadeUp() {
   StabilityMap map;
   map.base = BaseOf(Load("box_9kg.yaml", {kPlane}));

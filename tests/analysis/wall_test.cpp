@@ -53,8 +53,8 @@ TEST(Wall, ActsAtItsPoint) {
   EXPECT_NEAR(model.A(3, 1), -500 * kArm * kArm / kInertia, 1e-9);
 }
 
-// A delay T of the motion multiplies the impedance Z = K − M ω² + j ω B by e^{jωT}. This adds
-// apparent damping to a wall and removes it from an inertia.
+// A delay T of the motion multiplies the impedance Z = K − M ω² + j ω B by e^{jωT}. The delay adds
+// apparent damping to a wall and removes damping from an inertia.
 TEST(ImpedanceAt, OfAMassAtAWallThroughADelay) {
   constexpr double T = 0.02, kMass = 9, kDamper = 15, kFrequency = 5;
   const double omega = 2 * kPi * kFrequency;
@@ -75,8 +75,8 @@ TEST(ImpedanceAt, AtRestIsTheOneRequested) {
   EXPECT_NEAR(felt.rendered.real(), 5000, 5);
 }
 
-// M s² + B s + K + m s² e^−sT describes a hand of mass m that acts on a wall through a delay. Its
-// stability boundary is at B = −m ω sin ωT and K = M ω² + m ω² cos ωT.
+// M s² + B s + K + m s² e^−sT describes a hand of mass m that acts on a wall through a delay. The
+// stability boundary of this system is at B = −m ω sin ωT and K = M ω² + m ω² cos ωT.
 TEST(StiffestStableWall, FindsTheClosedForm) {
   constexpr double T = 0.02, kMass = 9, kHand = 2;
   for (const double phase : {1.1 * kPi, 1.15 * kPi}) {

@@ -62,8 +62,8 @@ TEST(ExitCode, OfARefusedStartGivesReasonPlaceAndRemedy) {
     EXPECT_NE(child.errors().find(text), std::string::npos) << child.errors();
 }
 
-// The name of a scenario from elsewhere may contain control characters. They must not reach the
-// terminal.
+// The name of a scenario from elsewhere may contain control characters. These characters must not
+// reach the terminal.
 TEST(Terminal, ObeysNoNameOfAScenario) {
   const test::TemporaryFolder folder;
   const std::string file = Scenario("box_9kg"), recording = folder.path() / "e.mcap";
@@ -144,7 +144,7 @@ TEST(ExitCode, OfARunWithoutOscillationDetectorsGivesTheReason) {
   EXPECT_EQ(simulate.Wait(), 0) << simulate.errors();
 }
 
-// DART's steps may be late.
+// DART's steps may take too long for real time, so the program must refuse DART.
 TEST(ExitCode, OfARunWithDartGivesTheReason) {
   Child run({"run", Scenario("box_9kg"), "--no-viewer", "--no-record", "--set",
              "simulation.engine=dart"});

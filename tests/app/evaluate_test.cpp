@@ -71,7 +71,7 @@ TEST_F(Evaluate, AReportShowsThePersonOrWhatIsMissing) {
   const std::string unknown = Record("box_18kg", {"--set", "operator.body=null"});
   const std::string refused = ReportOf({unknown}, page);
   EXPECT_TRUE(Contains(refused,
-                       "Not evaluable: posture, loads and scores of the person. The "
+                       "Posture, loads and scores of the person cannot be evaluated. The "
                        "scenario does not describe the operator's body."));
   EXPECT_FALSE(Contains(refused, "person-scores"));
   const std::string given =
@@ -81,7 +81,7 @@ TEST_F(Evaluate, AReportShowsThePersonOrWhatIsMissing) {
   EXPECT_TRUE(Contains(given, "Body: female, 1.62 m, 58 kg."));
   const std::string both = ReportOf({known, unknown}, page);
   EXPECT_TRUE(Contains(both, "Lower back (L5/S1), compression [N], modelled"));
-  EXPECT_TRUE(Contains(both, ": Not evaluable: posture, loads"));
+  EXPECT_TRUE(Contains(both, ": Posture, loads and scores"));
 }
 
 TEST_F(Evaluate, ComparesTwoDesigns) {

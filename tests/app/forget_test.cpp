@@ -1,4 +1,4 @@
-// Follows a person in a study from the recording to the deletion.
+// Follows the data about a person in a study from the recording to the deletion.
 #include <gtest/gtest.h>
 
 #include <filesystem>

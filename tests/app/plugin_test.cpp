@@ -28,7 +28,8 @@ class FailingController : public testing::Test {
     said_ = child.output() + child.errors();
     return code;
   }
-  // The command line of a recorded run. It needs FindPlugins to find the library.
+  // Returns the command line of a recorded run. Its process finds the library only if FindPlugins
+  // exists.
   std::vector<std::string> Arguments(const std::string& controller, const std::string& command) {
     std::vector<std::string> arguments = {command,      Scenario("box_9kg"),
                                           "--duration", "6",
@@ -54,7 +55,7 @@ class FailingController : public testing::Test {
   }
   void ExpectStop(const std::string& words) {
     EXPECT_NE(said_.find(words), std::string::npos) << said_;
-    EXPECT_NE(said_.find("At rest after"), std::string::npos) << said_;
+    EXPECT_NE(said_.find("came to rest after"), std::string::npos) << said_;
     EXPECT_EQ(Do({"verify", file_}), 0) << said_;
   }
   long TicksSaid() const {
@@ -106,8 +107,8 @@ TEST_F(FailingController, ThatCrashesAsALibraryIsNamedAndLeavesARecordingThatCan
   }
 }
 
-// The program must not report a signal from another process as a crash of the library. This run is
-// not recorded.
+// The program must not report a signal from another process as a crash of the library. The run in
+// this test is not recorded.
 TEST_F(FailingController, IsNotBlamedForASignalFromOutside) {
   Child child({"run", Scenario("box_9kg"), "--no-viewer"});
   ASSERT_TRUE(child.Says("Running")) << child.errors();
@@ -130,7 +131,7 @@ TEST_F(FailingController, ThatHangsAsALibraryEndsARunInRealTime) {
   EXPECT_GT(TicksSaid(), 2000) << said_;
 }
 
-// In virtual time, the thread that hangs is also the one that writes the recording.
+// In virtual time, the thread that hangs also writes the recording.
 TEST_F(FailingController, ThatHangsAsALibraryEndsASimulation) {
   ASSERT_EQ(Run(Library("hang")), 3) << said_;
   for (const std::string& words : {std::string("has not returned for 10 s"),
@@ -141,8 +142,8 @@ TEST_F(FailingController, ThatHangsAsALibraryEndsASimulation) {
   ASSERT_EQ(Do({"verify", folder_ / "run.repaired.mcap"}), 0) << said_;
 }
 
-// A library may take a long time to prepare itself, but Ctrl-C must end the program nevertheless.
-// The program handles Ctrl-C as soon as the thread that watches the library has started.
+// Even while a library takes a long time to prepare itself, Ctrl-C must end the program. The
+// program handles Ctrl-C as soon as the thread that watches the library has started.
 TEST_F(FailingController, ThatHangsInItsPreparationEndsWithTheFirstCtrlC) {
   test::FindPlugins();
   Child child(Arguments(Library("create"), "run"));

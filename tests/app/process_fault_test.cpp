@@ -106,8 +106,8 @@ TEST(FileSizeLimit, IsAnErrorOfEveryCommand) {
   }
 }
 
-// A full pipe that no process reads. It takes the place of a standard error that accepts no more
-// data, as happens if a pager is not scrolled or a terminal is paused.
+// A full pipe that no process reads. The pipe takes the place of a standard error that accepts no
+// more data, for example because a pager is not scrolled or a terminal is paused.
 class FullPipe {
  public:
   FullPipe() {
@@ -174,8 +174,8 @@ TEST(Memory, OfTheFollowerExhaustedEndsTheRun) {
 }
 
 TEST(Memory, OfTheRecorderExhaustedEndsTheRecordingNotTheRun) {
-  // The first size is that of a chunk's buffer. Smaller allocations might be those of nlohmann's
-  // JSON, whose destructor needs memory.
+  // The first size, 16384, is that of a chunk's buffer. Smaller allocations might come from
+  // nlohmann's JSON, whose destructor needs memory.
   for (const std::string fault : {"record encode,2,16384", "record write,2,64"}) {
     const test::TemporaryFolder folder;
     const FaultySystem system("FAULTY_MEMORY", fault);

@@ -112,8 +112,8 @@ TEST_F(RecordedProgram, CutIsRecovered) {
   EXPECT_EQ(TicksSaid(), kept) << said_;
 }
 
-// Damage before the first tick loses no data. Damage in a chunk ends the table there, and a message
-// reports it.
+// Damage before the first tick must not lose any data. If a chunk is damaged, the table must end
+// before this chunk, and a message must report the damage.
 TEST_F(RecordedProgram, DamagedIsReadAsFarAsItIsWhole) {
   ASSERT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--duration", "2", "--record", file_}),
             0);
@@ -179,7 +179,7 @@ TEST_F(RecordedProgram, EventsAreATable) {
   for (; std::getline(lines, line); ++rows) EXPECT_TRUE(std::regex_match(line, row)) << line;
   EXPECT_GT(rows, 2);
   EXPECT_NE(printed_.find("stop: force, right hand: "), std::string::npos) << printed_;
-  // A report derives the events from the ticks. It must show each event once in the stop's
+  // A report derives the events from the ticks. The report must show each event once in the stop's
   // description and once in the table.
   const std::string page = folder_ / "run.html";
   ASSERT_EQ(Do({"report", file_, "-o", page, "--quiet"}), 0) << said_;
@@ -196,8 +196,8 @@ TEST_F(RecordedProgram, EventsAreATable) {
   EXPECT_EQ(Do({"export", "data", Scenario("push")}), 2);
 }
 
-// The paper criticises that the emulated cobot yields too easily. The cause is lower friction in
-// its joints.
+// The paper criticises the emulated cobot for yielding too easily. The cause is that its joints
+// have less friction than those of the real cobot.
 TEST_F(RecordedProgram, OfACobotWithLessFrictionDiffersFromTheRealOne) {
   const std::string other = folder_ / "emulated.mcap";
   ASSERT_EQ(

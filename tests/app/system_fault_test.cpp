@@ -20,7 +20,7 @@ std::string TemporaryFile(const std::string& name) {
   return (fs::temp_directory_path() / (std::to_string(getpid()) + "-" + name)).string();
 }
 
-// For fault 32, a run must never depend on the wall clock.
+// A run must never depend on the wall clock (fault 32).
 TEST(SystemFault, AWallClockThatJumpsChangesNothing) {
   for (const std::string jump : {"3600", "-3600"}) {
     const std::string recording = TemporaryFile("clock.mcap");
@@ -39,7 +39,8 @@ TEST(SystemFault, AWallClockThatJumpsChangesNothing) {
   }
 }
 
-// For the milder form of fault 33, a simulated rig waits and the program prints a warning.
+// Without real-time priority (the milder form of fault 33), a simulated rig waits for the loop, and
+// the program prints a warning.
 TEST(SystemFault, WithoutRealTimePriorityASimulatedRunContinues) {
   const FaultySystem system("FAULTY_PRIORITY", "1");
   Child run({"run", Scenario("box_9kg"), "--duration", "1", "--no-viewer"});
@@ -47,7 +48,7 @@ TEST(SystemFault, WithoutRealTimePriorityASimulatedRunContinues) {
   EXPECT_NE(run.errors().find("Real-time scheduling: refused"), std::string::npos) << run.errors();
 }
 
-// For fault 50, if another program uses the port, the run must not choose a different one.
+// If another program uses the port, the run must not choose a different one (fault 50).
 TEST(SystemFault, ABusyPortEndsTheRunBeforeItBegins) {
   const int socket_ = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};

@@ -27,8 +27,8 @@ const QuantityResult& Find(const Assessment& a, const std::string& path) {
   throw std::out_of_range(path);
 }
 
-// By equilibrium, the force on both hands turns the upper body forward about the disc, with the
-// horizontal distance as its lever. The posture does not depend on the force.
+// The force on both hands turns the upper body forward about the disc. Its lever is the horizontal
+// distance from the disc to the hands. The posture does not depend on the force.
 TEST(Assessment, TheBackHoldsTheForceTimesItsLever) {
   const Scenario scenario = PersonScenario();
   const SampleCollector run =
@@ -73,7 +73,7 @@ TEST(Assessment, AHigherForceScoresNoBetter) {
   EXPECT_GT(heavy.worksheets[0].worst, light.worksheets[0].worst);
 }
 
-// The hands push against each other. The worksheets do not count that as a load.
+// The hands push against each other. The worksheets do not count this squeezing force as a load.
 TEST(Assessment, ASqueezeIsNotALoad) {
   Scenario scenario = PersonScenario();
   const auto judge = [&](double inward) {
@@ -148,7 +148,8 @@ TEST(Assessment, StatesWhatCouldNotBeJudged) {
   EXPECT_TRUE(lifting);
 }
 
-// If a possible person's hands exert more force, the load on the back is larger in every posture.
+// If the same person's hands exert more force, the load on the person's back is larger in every
+// posture.
 TEST(Assessment, DesignsAreComparedForTheSamePossiblePersons) {
   const Comparison comparison = Compare(Judge(5, true), Judge(40, true));
   for (const Difference& d : comparison.differences) {
@@ -156,7 +157,7 @@ TEST(Assessment, DesignsAreComparedForTheSamePossiblePersons) {
     ASSERT_TRUE(d.interval);
     EXPECT_LT(d.interval->high, 0);
     EXPECT_NEAR(*d.share_better, 1, 1e-9);
-    // The interval must be narrower than that of the difference between independent people.
+    // The interval of the difference must be narrower than it would be for independent people.
     const person::Interval heavy = *Find(Judge(40, true), d.kind->path).tail_interval;
     EXPECT_LT(d.interval->high - d.interval->low, heavy.high - heavy.low);
   }

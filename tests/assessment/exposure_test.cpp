@@ -12,8 +12,8 @@ namespace {
 
 using ergonomics::FatigueJoint;
 
-// Lifts of 2 s with these load moments [N·m]. They are 3 s apart, so that the low-pass filter
-// settles.
+// Returns the load moment [N·m] during lifts of 2 s whose peaks are `peaks` [N·m]. The lifts are 3
+// s apart, so that the low-pass filter settles.
 std::vector<double> LiftsWith(const std::vector<double>& peaks) {
   std::vector<double> moment(300, 0);
   for (const double peak : peaks) {
@@ -38,7 +38,8 @@ TEST(Exposure, AddsTheDamageOfEachLift) {
   EXPECT_GT(result.probability, 0);
 }
 
-// Each of the two hands at 0.4 m has noise of 3 N rms and a tremor of 1 N at 10 Hz.
+// The force of each of the two hands at 0.4 m contains noise of 3 N rms and a tremor of 1 N at 10
+// Hz.
 TEST(Exposure, NoiseAndTremorHardlyChangeTheDamage) {
   const std::vector<double> clean = LiftsWith({40, 40, 40});
   std::vector<double> noisy = clean;

@@ -7,7 +7,8 @@
 namespace predictor::assessment {
 namespace {
 
-// Finds the lifts in a course of heights. Both hands together carry 98.1 N.
+// Returns the lifts that are found if the hands' height changes as `height` states. The two hands
+// together carry 98.1 N.
 std::vector<Lift> LiftsIn(
     double duration, const std::function<double(double)>& height,
     const std::function<bool(double)>& holds = [](double) { return true; }) {

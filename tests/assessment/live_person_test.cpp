@@ -47,7 +47,8 @@ const GaugeState& Gauge(const PersonState& state, PersonGauge gauge) {
   return state.gauges[static_cast<std::size_t>(gauge)];
 }
 
-// If the whole part is known, the live chain and the recorded chain perform the same computation.
+// In a recording this short, the live chain already knows all samples, so it must perform the same
+// computation as the recorded chain.
 TEST(LiveChain, IsExactOverAShortPart) {
   const Recorded recorded(0.4);
   NominalChain nominal = recorded.nominal;
@@ -69,8 +70,8 @@ TEST(LiveChain, IsExactOverAShortPart) {
   EXPECT_EQ(i, recorded.nominal.frames.size());
 }
 
-// Postures and measured forces need no later sample, so they are exact. Loads differ by the effect
-// of samples that the filter receives after kLiveDelay.
+// Postures and measured forces need no later sample, so they are exact. Loads may differ by the
+// effect of samples that the filter receives after kLiveDelay.
 TEST(LiveChain, AgreesWithTheRecordedChainInALongRun) {
   const Recorded recorded(4);
   LiveChain live(recorded.setup, {});
@@ -111,7 +112,8 @@ TEST(LivePerson, EndsWithTheDamageAndFatigueOfTheRecordedRun) {
   }
 }
 
-// In a still posture no motion has to be estimated.
+// The posture is still, so the live chain need not estimate any motion and must give the same
+// muscle activations.
 TEST(LivePerson, HasTheMusclesOfTheRecordedRun) {
   const Scenario scenario = PersonScenario();
   const auto still = [](std::uint64_t tick) { return RecordOf(tick, 1, 20); };
@@ -136,7 +138,7 @@ TEST(LivePerson, HasTheMusclesOfTheRecordedRun) {
   EXPECT_EQ(found, gauges.size());
 }
 
-// The same holds for the intervals.
+// In a still posture, the intervals must be the same too.
 TEST(LivePerson, HasTheIntervalsOfTheRecordedRun) {
   const Scenario scenario = PersonScenario();
   const auto still = [](std::uint64_t tick) { return RecordOf(tick, 1, 20); };
@@ -249,7 +251,7 @@ TEST(Warnings, BeginAndEndWithTimeAndTwoThresholds) {
   EXPECT_FALSE(on_after(3000, 0.02));
 }
 
-// For the balance, low values are bad.
+// A warning about the balance must appear for low values.
 TEST(Warnings, KnowInWhichDirectionAValueIsBad) {
   WarningKeeper keeper;
   Frame frame;

@@ -43,8 +43,8 @@ Truth TruthOf(const SampleCollector& run) {
   return truth;
 }
 
-// Returns a point that rests. It is sampled at 100 Hz during the run by a clock that is ahead by
-// `shift`.
+// Returns the track of a point that does not move. A clock that is ahead by `shift` gives the times
+// of its samples at 100 Hz.
 tracks::PartTrack Resting(const Vector3& p, double shift = 0) {
   tracks::PartTrack part;
   for (double t = -0.5; t < kDuration + 0.5; t += 0.01) {
@@ -158,7 +158,7 @@ TEST(MeasuredBody, RefusesImpossibleBodies) {
   EXPECT_NE(Refusal({track}).find("unit"), std::string::npos);
   tracks::BodyTrack twice = TrackOf(truth, true, false);
   EXPECT_NE(Refusal({twice, twice}).find("also measured in"), std::string::npos);
-  // These elbows belong to another place and are too far from the handles.
+  // These elbows were measured at another place and are too far from the handles.
   tracks::BodyTrack far = TrackOf(truth, false, true);
   for (Vector3& p : far.elbows[1]->p) p += Vector3(0.8, 0.8, 0.3);
   EXPECT_NE(Refusal({far}).find("farther than a forearm"), std::string::npos) << Refusal({far});

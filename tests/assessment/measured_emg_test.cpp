@@ -41,7 +41,7 @@ double VoltageAt(double time, const std::function<double(double)>& activation) {
   return kAmplitude * u * std::sin(2 * std::numbers::pi * kCarrier * time);
 }
 
-// A slow contraction between 10 and 50 %.
+// Returns the activation of a slow contraction between 10 and 50 %.
 double SlowlyAt(double time) { return 0.3 + 0.2 * std::sin(2 * std::numbers::pi * 0.4 * time); }
 
 class MeasuredEmgTest : public testing::Test {
@@ -173,7 +173,7 @@ TEST_F(MeasuredEmgTest, AnUnusableChannelIsReportedWithTheReason) {
 }
 
 TEST_F(MeasuredEmgTest, MissingValuesAreNotInvented) {
-  // One value in a hundred is NaN; from 1 to 1.5 s, the rows are lost.
+  // One value in a hundred is NaN, and the rows from 1 to 1.5 s are missing.
   int n = 0;
   const tracks::BodyTrack track = Load(Row("right", "triceps_long"), [&](double t) {
     if (t > 1 && t < 1.5) return std::numeric_limits<double>::infinity();
@@ -189,7 +189,7 @@ TEST_F(MeasuredEmgTest, MissingValuesAreNotInvented) {
       EXPECT_NEAR(channel.measured[i], SlowlyAt(samples[i].recorded), 0.02);
     }
   EXPECT_TRUE(Warns(a, "gaps that are not used: 1, of up to 0.50 s"));
-  EXPECT_TRUE(Warns(a, "its clock jumped"));
+  EXPECT_TRUE(Warns(a, "the clock of the recorder jumped"));
 }
 
 TEST_F(MeasuredEmgTest, AContractionAboveTheMaximumIsReported) {

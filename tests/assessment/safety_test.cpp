@@ -64,7 +64,8 @@ TEST(HandExposure, RateOfAStepFollowsFromTheStatedFilter) {
   EXPECT_NEAR(Value(results, "hands.left.force_rms_n"), std::sqrt(200.0), 1e-9);
 }
 
-// A force of 10 N acts along 0.1 m/s for 1 s, then against it for 1.5 s.
+// The hand moves at 0.1 m/s. A force of 10 N acts in the direction of motion for 1 s, and then
+// against it for 1.5 s.
 TEST(HandExposure, EnergyIsCountedPerPort) {
   const Scenario scenario = PersonScenario();
   const auto results = CollectSafety(scenario, 2500,
@@ -110,7 +111,8 @@ TEST(HandExposure, GrowingCyclesAreFound) {
 
 constexpr std::uint64_t kDecision = 1001;
 
-// At rest, the hand presses upward with `before`, and with `after` from the decision to stop.
+// Returns a tick in which a hand at rest presses upward with the force `before` [N] or, from the
+// decision to stop on, with the force `after` [N].
 TickRecord StopRecord(std::uint64_t tick, double before, double after) {
   TickRecord record = RecordOf(tick, 1, tick < kDecision ? before : after);
   if (tick < kDecision) return record;
@@ -135,7 +137,8 @@ TEST(StopWindow, HoldsTheTimeAroundTheStopAndItsHands) {
   ASSERT_EQ(windows.size(), 1U);
   const StopWindow& window = windows[0];
   EXPECT_EQ(window.stop.cause, StopCause::kForce);
-  // The window begins 0.2 s before the decision. After it come 0.1 s of stopping and 0.1 s of rest.
+  // The window begins 0.2 s before the decision. After the decision, it contains 0.1 s of stopping
+  // and 0.1 s of rest.
   EXPECT_EQ(window.decided, 20U);
   EXPECT_EQ(window.samples.size(), 40U);
   for (std::size_t i = 0; i < window.samples.size(); ++i) {
@@ -144,8 +147,8 @@ TEST(StopWindow, HoldsTheTimeAroundTheStopAndItsHands) {
   }
 }
 
-// In equilibrium, torque = weight + Jᵀ F. The change of the torque is therefore linear in the
-// change of the force, and equal to that of the same posture in the run without a stop.
+// In equilibrium, torque = weight + Jᵀ F. If the force changes, the torque therefore changes in
+// proportion. The change must equal that between two runs without a stop in the same posture.
 TEST(StopLoads, ChangeByTheForceThatTheStopAdds) {
   const Scenario scenario = PersonScenario();
   const PersonSetup setup = MadeUpSetup(scenario);
@@ -206,8 +209,8 @@ TEST(LettingGo, AFallingObjectConvertsItsHeight) {
   EXPECT_NEAR(drop.speed * drop.speed / 2, kStandardGravity * 1.2, 1e-9);
   EXPECT_NEAR(drop.weight_of_hand, 9 * kStandardGravity / 2, 1e-9);
   EXPECT_NEAR(drop.jump, 9 * kStandardGravity / 2 - 12, 1e-9);
-  // De Leva's foot is 258.1 mm long at a body height of 1741 mm. Three quarters of it are in front
-  // of the ankle.
+  // De Leva's foot is 258.1 mm long at a body height of 1741 mm. Three quarters of the foot's
+  // length are in front of the ankle.
   EXPECT_NEAR(drop.beside_feet, 0.65 - 0.75 * 0.2581 / 1.741 * 1.75, 1e-9);
 }
 

@@ -21,8 +21,8 @@ HandlePayloadSpec Handle() {
   return handle;
 }
 
-// Orientations that a person can give to a handle on a robot: tilts of 60° to four sides, level,
-// and half turned over. The sensor itself is mounted at an angle.
+// Returns orientations that a person can give to a handle on a robot: level, tilted by 60° to four
+// sides, and partly turned over. The sensor itself is mounted at an angle.
 std::vector<Quaternion> Tilts(int count, RandomStream* random) {
   std::vector<Vector3> turns = {{0, 0, 0},     {1.05, 0, 0},  {-1.05, 0, 0},  {0, 1.05, 0},
                                 {0, -1.05, 0}, {1.9, 0.4, 0}, {0.5, -1.6, 0}, {0.7, 0.7, 1}};
@@ -51,8 +51,8 @@ struct Truth {
   Wrench wander = Wrench::Zero();  // standard deviation of the bias from pose to pose
 };
 
-// Returns the poses that the recorder computes from a noisy sensor. They are ten seconds apart.
-// `last` receives the final bias.
+// Returns the poses that the recorder computes from a noisy sensor. There are ten seconds between
+// two poses. `last` receives the final bias.
 std::vector<RestingPose> Poses(const Truth& truth, const SensorSpec& spec, int count,
                                std::uint64_t seed, Wrench* last = nullptr) {
   RandomStream random(seed, "poses");

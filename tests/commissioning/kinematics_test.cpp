@@ -122,7 +122,7 @@ TEST(KinematicsRefusal, OfAUrGoesByItsToolAndTheToolsOffset) {
   const std::string why = Refusal(Connected(other, q), spec);
   EXPECT_NE(why.find("Give a calibrated model of this arm"), std::string::npos) << why;
   EXPECT_EQ(why.find("tool centre point"), std::string::npos) << why;
-  // An arm that does not report its tool offset must not have one.
+  // If an arm does not report its tool offset, this offset must be zero.
   const std::string unknown = Refusal(Connected({}, q, "tcp_offset"), spec);
   EXPECT_NE(unknown.find("Set the tool centre point to zero at the pendant"), std::string::npos)
       << unknown;

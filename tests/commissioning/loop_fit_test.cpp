@@ -29,7 +29,7 @@ struct Arrangement {
   int waver = 0;  // the arm takes each command after a random delay of 0 … waver ticks
 };
 
-// One joint of the rig swings, with no hand on the handle.
+// One joint of the rig swings while no hand is on the handle.
 LoopRecord Swing(const Arrangement& a) {
   Scenario scenario = ArmScenario(1);
   scenario.seed = a.seed;
@@ -128,8 +128,8 @@ TEST(LoopRecorder, CountsLateTicksAndLostSamples) {
   double time = 7;
   for (int k = 0; k < 1000; ++k) {
     recorder.AddCommand(time, time, 0);
-    // Every other tick has a sample, whose age varies. Of the 500 samples, those of k = 400 … 419
-    // are lost.
+    // Every other tick has a sample, whose age varies. Of the 500 samples, the ten from k = 400 to
+    // 419 are lost.
     if (k % 2 == 0 && (k < 400 || k >= 420)) recorder.AddSample(time - 0.0004 * (k % 3), 0);
     time += k % 100 == 50 ? 0.0042 : k % 100 == 51 ? 0.0014 : k % 100 == 60 ? 0.0019 : 0.001;
   }
@@ -138,7 +138,7 @@ TEST(LoopRecorder, CountsLateTicksAndLostSamples) {
   EXPECT_EQ(gaps.late, 20);  // 1.4 ms is jitter of the wake-up, 1.9 ms is a skipped step
   EXPECT_NEAR(gaps.longest_tick, 0.0042, 1e-9);
   EXPECT_EQ(gaps.samples, 490);
-  // Ten samples were lost, and others are missing in 10 gaps of 4.5 ms.
+  // Ten samples were lost together, and 22.5 more count as lost because of ten gaps of 4.5 ms.
   EXPECT_NEAR(static_cast<double>(gaps.lost), 10 + 22.5, 1.5);
   EXPECT_NEAR(gaps.longest_hole, 0.022, 0.002);
   const std::string text = GapsText(gaps);

@@ -105,7 +105,7 @@ TEST_F(MeasureLoopWithADevice, AnyOtherKeyStopsUntilItIsReleased) {
 }
 
 // Letters typed while the connection was stalled do not count as a touch of the key. A jammed key
-// does not count either.
+// does not count as a touch of the key either.
 TEST_F(MeasureLoopWithADevice, BufferedLettersAreNotATouch) {
   Swing([&](double t) -> char {
     Press(t > 0.2);

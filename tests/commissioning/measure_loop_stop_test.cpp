@@ -18,8 +18,9 @@
 namespace predictor::commissioning {
 namespace {
 
-// The end of a measurement. The arm must be at rest, must never have decelerated faster than the
-// limit, and must have left its motion mode. The person must have been informed of the reason.
+// A way in which a measurement can end, and the expected message. Afterwards, the arm must be at
+// rest, must never have decelerated faster than the limit, and must have left its motion mode. The
+// person must have been informed of the reason.
 struct End {
   const char* way;
   std::string why;  // expected message
@@ -27,7 +28,7 @@ struct End {
 
 class MeasureLoopEnds : public testing::TestWithParam<End> {
  protected:
-  // Causes an end of the kind `way`.
+  // Ends the measurement in the way that `way` names.
   void Act(const std::string& way, Bench* bench, RigHand* other) {
     if (way == "touched") bench->hand.touch[1] = 32;
     if (way == "twisted") bench->hand.touch[5] = 4;
@@ -112,8 +113,8 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
-// A late reading or a late tick stops the arm. The program measures the joint again, but only after
-// the person has released the key.
+// A late reading or a late tick must stop the arm. The program measures the joint again, but only
+// after the person has released the key.
 TEST(MeasureLoop, BeginsAJointAgainThatWasHeldUp) {
   for (const bool tick : {true, false}) {
     Bench bench;

@@ -111,7 +111,8 @@ TEST(ProbeMachine, ReportsSilenceFaultAndWrongRate) {
   EXPECT_NE(deaf.Probe()[0].trouble.find("does not measure a wrench"), std::string::npos);
 }
 
-// The nominal rate of the version applies, even if the network delivers fewer samples.
+// The sample rate must be the nominal one of the controller's version, even if the network delivers
+// fewer samples.
 TEST(ProbeMachine, KnowsTheRateOfAVersion) {
   OneArm one(500);
   one.rate = 500;

@@ -144,7 +144,8 @@ TEST(PushTest, CountsOnlyClearPushesThatLast) {
   }
 }
 
-// A push must last in one direction. Its time does not continue if the direction changes.
+// A push must last long enough in one direction. If the direction changes, its time starts again
+// from zero.
 TEST(PushTest, CountsTheTimeOfOneDirectionOnly) {
   Pusher pusher;
   pusher.Push(Vector3::Zero(), 0.2);

@@ -1,4 +1,5 @@
-// An arm of the rig as the station of a session in virtual time, with the people at it.
+// An arm of the rig that serves as the station of a session in virtual time, and the people at this
+// arm.
 #pragma once
 
 #include <memory>
@@ -24,7 +25,8 @@ struct Bench {
   Station station;
 };
 
-// A person who guides the arm to given joint angles. Lead returns true once the arm rests at them.
+// A person who guides the arm to given joint angles. Lead returns true once the arm rests at these
+// angles.
 class Leader {
  public:
   explicit Leader(RigHand* hand) : hand_(hand) {}
@@ -44,7 +46,8 @@ class Leader {
   int steps_ = 0;
 };
 
-// A person who holds the key, as a terminal reports it: 30 letters a second after an initial pause.
+// A person who holds the key. The terminal reports this as 30 letters a second after an initial
+// pause.
 class Holder {
  public:
   explicit Holder(const VirtualTime* time) : time_(time) {}

@@ -1,5 +1,5 @@
-// Connects an arm of the rig through a driver's interface in virtual time. It behaves like a
-// perfect driver with an adjustable sampling rate.
+// Connects an arm of the rig through a driver's interface in virtual time. This connection behaves
+// like a perfect driver with an adjustable sampling rate.
 #pragma once
 
 #include <algorithm>
@@ -143,7 +143,7 @@ class RigDriver final : public Arm {
 };
 
 // Simulates a person. In each step, the reaction receives the latest message until it answers with
-// a key. After that it receives an empty string until the next message.
+// a key. After its answer, the reaction receives an empty string until the next message.
 class ScriptedPerson final : public Person {
  public:
   using Reaction = std::function<char(const std::string& last)>;

@@ -30,7 +30,7 @@ class HeldKeyTest : public testing::Test {
       Note(key_.Update(0, now_));
     }
   }
-  // Types the letters of a held key: one letter, a pause, then the repeats.
+  // Types the letters of a held key: one letter and, after a pause, the repeated letters.
   void Hold(int repeats = 5) {
     Letters({1, 0.5});
     Letters(std::vector<double>(static_cast<std::size_t>(repeats), kRepeat));
@@ -64,8 +64,8 @@ TEST_F(HeldKeyTest, IsHeldFromTheSecondLetterUntilItIsSilent) {
                                  KeySign::kContinues, KeySign::kContinues}));
 }
 
-// If no letter arrives for too long, the key is released. After that, one letter does not count as
-// held, but two do.
+// If no letter arrives for too long, the key counts as released. After that, the key does not count
+// as held after one letter, but after two.
 TEST_F(HeldKeyTest, MustBeHeldAgainAfterSilence) {
   Hold();
   Letters({0.15});
@@ -76,7 +76,8 @@ TEST_F(HeldKeyTest, MustBeHeldAgainAfterSilence) {
   EXPECT_TRUE(key_.held());
 }
 
-// If no letter arrives for too long, the key is released, even if nothing calls Update meanwhile.
+// If no letter arrives for too long, the key counts as released, even if nothing calls Update
+// meanwhile.
 TEST_F(HeldKeyTest, IsReleasedByUnobservedSilence) {
   Hold();
   now_ += 0.5;
@@ -161,8 +162,8 @@ TEST_F(HeldKeyTest, PairsOfLettersDoNotRelease) {
   EXPECT_EQ(Count(KeySign::kContinues) - before, 10);  // one sign for each pair
 }
 
-// Letters that arrive together are one sign, so a rapid burst counts as holding only until the
-// time-out.
+// Letters that arrive together count as a single letter, so a burst counts as holding only until
+// the time-out.
 TEST_F(HeldKeyTest, ABacklogDoesNotKeepHolding) {
   Hold();
   for (int i = 0; i < 60; ++i) Letters({0.002});

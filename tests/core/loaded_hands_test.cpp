@@ -12,7 +12,7 @@ namespace {
 
 class LoadedHandsTest : public testing::Test {
  protected:
-  // Simulates this many milliseconds in a state with a force at the left handle [N]. Returns the
+  // Simulates `milliseconds` in the state `state` with a force at the left handle [N]. Returns the
   // messages.
   std::vector<std::string> Pass(int milliseconds, RunState state, double force,
                                 bool fault = false) {
@@ -56,7 +56,7 @@ TEST_F(LoadedHandsTest, AreReportedWithTheKeyOfThisRig) {
   EXPECT_NE(reported[0].find(HowToHold('r', true)), std::string::npos) << reported[0];
 }
 
-// One hand is trapped later. The other one was free and is trapped again.
+// One hand is trapped only after a while. Later, it is free and then trapped again.
 TEST_F(LoadedHandsTest, AreWatchedAsLongAsTheArmsStand) {
   EXPECT_TRUE(Pass(10'000, RunState::kHeld, 4.9).empty());
   EXPECT_EQ(Pass(600, RunState::kHeld, 30).size(), 1U);
@@ -79,7 +79,8 @@ TEST_F(LoadedHandsTest, OfARobotWithoutPowerHaveOtherAdvice) {
   EXPECT_TRUE(Pass(2000, RunState::kUnpowered, std::numeric_limits<double>::quiet_NaN()).empty());
 }
 
-// RECOVERY would stop immediately, because the arm accepts commands again only with a new driver.
+// RECOVERY would stop immediately, because an arm with a fault accepts commands again only through
+// a new driver.
 TEST_F(LoadedHandsTest, AreNotFreedByRecoveryWhereAnArmIsAtFault) {
   const auto reported = Pass(600, RunState::kHeld, 12, true);
   ASSERT_EQ(reported.size(), 1U);

@@ -48,7 +48,8 @@ TEST(PersonJson, HasNoPointsOfAPersonWhoIsNotJudged) {
   EXPECT_TRUE(Contains(PersonJson(state), R"("points":{"pelvis":null,"l5s1":null,)"));
 }
 
-// Another process writes this memory. `nan`, `inf` and names beyond the table are not valid JSON.
+// Another process writes the memory of the state, so it may contain any bytes. `nan`, `inf` and
+// names beyond the table are not valid JSON.
 TEST(PersonJson, IsValidForAnyBytes) {
   for (const int byte : {0x00, 0x7f, 0xff}) {
     PersonState state;

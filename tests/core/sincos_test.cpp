@@ -34,7 +34,8 @@ TEST(SinesAndCosines, AgreeBesideEachEighthOfATurn) {
   }
 }
 
-// Otherwise a robot's motion would depend on its number of joints.
+// If an angle's sine depended on the other angles, a robot's motion would depend on its number of
+// joints.
 TEST(SinesAndCosines, DoNotDependOnTheOtherAngles) {
   RandomStream random(2, "angles");
   for (int n = 1; n <= 16; ++n) {

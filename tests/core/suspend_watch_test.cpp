@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
-// Clocks that are read at intervals of `first` and `second`, as if the thread had been delayed in
-// between.
+// Clocks that a thread reads three times in a row. The thread may be delayed: `first` is the time
+// from the first reading to the second, and `second` is the time from the second to the third.
 class Clocks {
  public:
   std::int64_t Look(std::int64_t first, std::int64_t second) {

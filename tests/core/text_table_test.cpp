@@ -5,7 +5,7 @@
 namespace predictor {
 namespace {
 
-// Characters of 1, 2, 3 and 4 bytes (RFC 3629).
+// The text contains characters of 1, 2, 3 and 4 bytes (RFC 3629).
 TEST(TextTable, CountsCharactersAndNotBytes) {
   EXPECT_EQ(CharactersIn(""), 0u);
   EXPECT_EQ(CharactersIn("N·m"), 3u);

@@ -13,8 +13,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Writes a record that consists of the time [ns], the hand (0 or 1; 2 for data about the run, as
-// JSON), the size, and the bytes.
+// Writes a record that consists of the time [ns], the hand (0 or 1), the size, and the bytes. If
+// the hand is 2, the bytes are data about the run, as JSON.
 void Put(std::ofstream* out, std::uint64_t time, std::uint32_t hand, const void* bytes,
          std::size_t size) {
   const auto length = static_cast<std::uint32_t>(size);
@@ -47,8 +47,8 @@ Json ArmJson(const Scenario& s, int hand, const char* make, const JointVector& q
           {"q", std::vector<double>(q.data(), q.data() + q.size())}};
 }
 
-// Returns the limits on a handle that docs/concepts/states.md promises in each stage. Null means
-// that no limit applies, or that the rules for stops cover it.
+// Returns the limits on a handle that docs/concepts/states.md states for each stage. Null means
+// that no limit applies or that the rules for stops replace the limit.
 Json StagesJson(const Scenario& s, const Bench& bench) {
   Json stages = Json::array();
   for (const RunStage& stage : bench.stages()) {

@@ -117,7 +117,8 @@ TEST_F(EnablingDevice, IsNeededToAlignAndToStart) {
   EXPECT_EQ(emulator_->state(), RunState::kRun);  // continues while it is pressed
 }
 
-// The controller's cycle takes 2 ms. One tick reads the input, and the next one responds.
+// The controller's cycle takes 2 ms. One tick reads the input of the device, and the next tick
+// responds to it.
 TEST_F(EnablingDevice, LettingGoStopsAtOnce) {
   ASSERT_TRUE(ToRun());
   Tick(1500);

@@ -111,8 +111,8 @@ TEST(FakeUr, RefusesUnknownProgramsWithTheReason) {
   EXPECT_EQ(bench.fake.log().back(), "program ended: line 3: unknown variable 'y'");
 }
 
-// In the protocol of ur_rtde's program, 9 moves the arm, 15 stops it and is acknowledged, and 255
-// ends the program.
+// In the protocol of ur_rtde's program, the command 9 moves the arm, 15 stops it and is
+// acknowledged, and 255 ends the program.
 TEST(FakeUr, ImplementsTheProgramOfUrRtde) {
   UrBench bench;
   const auto stream = bench.network.Connect({kUrHost, 30003}, 1);

@@ -18,9 +18,9 @@ constexpr double kDegrees = 57.29577951;
 constexpr double kBefore = 0.05;  // audited time before a fault [s]
 
 // These limits are literals, so that the judgement does not depend on the prediction. The first
-// applies to quick arms. It consists of the budget at 0.25 m/s, the 30 ms for which one arm follows
-// the other, and the lag (10 ms, or 120 ms for a Franka's impedance control). The second applies to
-// a Franka of 15 Hz.
+// limit applies to quick arms. This limit consists of the budget at 0.25 m/s, the 30 ms for which
+// one arm follows the other, and the lag (10 ms, or 120 ms for a Franka's impedance control). The
+// second limit applies to a Franka with a bandwidth of 15 Hz.
 constexpr StopBudget kMaxStop{0.240, 0.0134 + 0.25 * 0.040}, kMaxSlowStop{0.260, 0.037};
 constexpr double kMaxDrift = 0.002, kMaxTurn = 0.5 / kDegrees;
 
@@ -100,7 +100,7 @@ void JudgeMessage(const Fault& fault, int hand, FaultOutcome* o) {
                  [&](const std::string& text) { return reported.find(text) != std::string::npos; }),
              "the message does not describe the cause: " + reported);
   if (!words->names_hand) return;
-  // The text may be "Left hand: ..." or "... of the left sensor's readings ...".
+  // The text may have the form "Left hand: ..." or "... of the left sensor's readings ...".
   std::string text = reported;
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
   const auto place = [&text](const std::string& name) { return text.find(name + " "); };
@@ -191,11 +191,11 @@ void JudgeRestWithoutLoop(Bench& bench, const std::function<void()>& each, Fault
   o->Require(fastest < kRest, Formatted("moves at %.1f mm/s without the loop", 1e3 * fastest));
 }
 
-// Returns whether a run may end in this state, apart from rest after a stop.
+// Returns whether a run may end in this state even if the arms do not rest after a stop.
 bool MayEnd(RunState end, const Fault& first, const Fault& second) {
   const auto lets_continue = [](const Fault& f) { return f.Begins() || Continues(f); };
   if (end == RunState::kRun) return lets_continue(first) && lets_continue(second);
-  // The emulation does not run while the arms recover.
+  // While the arms recover, the emulation does not run.
   if (end == RunState::kRecovery)
     return (first.recovers || second.recovers) &&
            (lets_continue(second) || second.carrier == Carrier::kLoop);

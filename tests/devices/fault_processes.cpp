@@ -20,7 +20,7 @@ using enum Expect;
 
 constexpr double kSlow = 5e-6;  // distance in a millisecond at 5 mm/s [m]
 
-// Lets the devices continue without our process.
+// Lets time pass for the devices without our process.
 void WithoutUs(Bench& bench, FaultOutcome* o, int bound, const std::function<void()>& each) {
   const auto handles = [&](std::size_t i) { return bench.rig().rig().true_handles()[i].X_W; };
   const std::array<Pose, kHands> begin = {handles(0), handles(1)};
@@ -59,8 +59,8 @@ void ProcessDies(Bench& bench, int, FaultOutcome* o) {
   o->SetMessage("(No process is left to report it; see the robot's own panel.)");
 }
 
-// The watchdog has channels to URs. A Franka accepts only one client, so it relies on its own
-// time-out.
+// The watchdog has channels to URs. A Franka accepts only one client, so the watchdog cannot
+// connect to it, and only the Franka's own time-out stops it.
 struct Guarded {
   std::vector<std::unique_ptr<StopChannel>> channels;
   watchdog::Watchdog watchdog;

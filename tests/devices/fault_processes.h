@@ -1,4 +1,4 @@
-// Faults of our own process: it dies, hangs, or receives a request to end.
+// Faults of our own process, which dies, hangs, or receives a request to end.
 #pragma once
 
 #include <vector>

@@ -214,7 +214,7 @@ bool Start(Bench& bench, const Beginning& beginning) {
   return recovers ? StartToRecover(bench) : bench.Start();
 }
 
-// Performs all runs of a beginning; calls `report` after each one.
+// Performs all runs of a beginning and calls `report` after each of them.
 void RunDue(const FaultRig& rig, Beginning beginning,
             const std::function<void(const FaultRun&)>& report) {
   const std::uint64_t seed = beginning.seed;

@@ -9,11 +9,12 @@
 
 namespace predictor {
 
-// The value of FaultRun::fault for the audit of the commands in all runs with that seed.
+// This value of FaultRun::fault stands for the audit of the commands in all runs with the same
+// beginning.
 inline constexpr std::size_t kAudit = ~std::size_t{0};
 
-// One fault, or two faults of which the second occurs up to 100 ms after the first, on a rig with
-// one seed.
+// A run on a rig with one seed and with one or two faults. The second fault occurs up to 100 ms
+// after the first.
 struct FaultRun {
   std::size_t fault = 0;  // index in Faults()
   int second = -1;        // index in Faults(); −1: none
@@ -34,9 +35,9 @@ int OnlyFault();
 // Returns whether the rig has the device to which this fault applies and the fault is to be tested.
 bool Concerns(const Fault& fault, const FaultRig& rig);
 
-// Returns whether the second fault can occur after the first in a run of the rig. Only faults up to
-// 33 form pairs. Both orders count, unless a run begins with one of the faults or cannot continue
-// after it.
+// Returns whether the second fault can occur after the first in a run of the rig. Only faults with
+// numbers up to 33 form pairs. Two faults form one pair for each order, unless a run begins with
+// one of the faults or cannot continue after it.
 bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig);
 
 // Returns the time in RUN at which a fault is injected, during the first motions [s].

@@ -26,8 +26,8 @@ using enum Expect;
 std::vector<double> GrowingCycles(const std::vector<double>& force) {
   constexpr double kSlowPart = 0.0025, kTremor = 0.02;  // coefficients per millisecond: 0.4 Hz, 3
                                                         // Hz
-  // The filter reduces a sensor's noise of 0.05 N to 0.005 N. This is its effect on the difference
-  // of two peaks [N].
+  // The filter reduces a sensor's noise of 0.05 N to 0.005 N. The constant is the effect of the
+  // remaining noise on the difference of two peaks [N].
   constexpr double kNoise = 0.015;
   std::vector<double> peaks;
   double smooth = 0, slow = 0, slower = 0, highest = 0;
@@ -87,8 +87,8 @@ void BeginUnderdamped(const FaultRig&, std::uint64_t, BenchOptions* options) {
   options->change = [change = options->change](Scenario* s) {
     change(s);
     // Only the cobot should swing. No lead is stable with this cobot, so the automatic choice would
-    // be the full lead. With it, the loop of a quick Franka next to a UR vibrates before the cobot
-    // swings.
+    // be the full lead. With the full lead, the loop of a quick Franka next to a UR vibrates before
+    // the cobot swings.
     s->rendering.lead = Emulator(*s).setup().lead.lead;
     s->cobot.controller.Set("damping_ratio=[0.7, 0.7, 0.02, 0.7, 0.7, 0.7]");
     s->operator_.hand.stiffness = {250, 100, 150};
@@ -197,11 +197,11 @@ Vector3 KilogramAt(Bench& bench, std::size_t hand, const Vector3& a) {
   return q_WS.conjugate() * (Vector3(0, 0, -bench.scenario().environment.gravity) - a);
 }
 
-// A sensor is mounted mirrored, and no push test was made. The time counts from the moment at which
-// a handle drags the hand with more than 6 N at two fifths of its speed limit. The measurement
-// differs from that of a pushing hand only in how it grows, so detection takes time. Until then,
-// and if the measurement does not grow in this way, the thresholds limit the force on the hand.
-// They depend only on its magnitude.
+// A sensor is mounted mirrored, and no push test was made. The time to detect this begins when a
+// handle drags the hand with more than 6 N at two fifths of its speed limit. The measured force
+// differs from that of a pushing hand only in how it grows, so detection takes time. Until the
+// detection, and if the measured force does not grow in this way, the force thresholds protect the
+// hand. The thresholds depend only on the magnitude of the force.
 void RunsAwayMirrored(const FaultRig& rig, std::uint64_t seed, const std::string& audit,
                       const Fault& fault, FaultOutcome* o) {
   Bench bench(OptionsOf(rig, seed));

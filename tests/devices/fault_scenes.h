@@ -1,4 +1,4 @@
-// Faults in the emulation. After them, only the arms can be judged.
+// Faults in the emulation. After such a fault, the test can judge only the arms.
 #pragma once
 
 #include <vector>

@@ -142,7 +142,7 @@ void PushesAreRefused(const FaultRig& rig, std::uint64_t seed, FaultOutcome* o) 
     test.Update(wrench(hand), wrench(1 - hand), 0.001);
     if (k % 1500 == 1000) hint = test.hint();
   }
-  // The sensor's axes may be at an angle to those of the world. The test then recognises no push
+  // The sensor's axes may be at an angle to the axes of the world. The test then recognises no push
   // along an axis and does not advance.
   o->SetMessage(test.done() ? test.Refusal() : commissioning::Sentence(hint));
   o->Require(!test.passed(), "passes");
@@ -301,7 +301,7 @@ std::vector<Fault> FaultsOfStarts() {
       StartIsRefused<BeginWithElbowsTooNear, Refusal::kBeyondLinks>);
   add(42, "a scenario loosens the machine's limits", kLoop, kRefused, 0,
       unaudited(ScenarioLoosens));
-  // These faults also take part in pairs.
+  // The following faults also occur in pairs with other faults.
   FindFault(&all, 7, "")->options = BeginBeforeWrap;
   FindFault(&all, 20, "")->inject = BeginToDrift;
   FindFault(&all, 29, "starts beyond")->options = BeginBeyondALimit;

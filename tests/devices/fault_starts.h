@@ -1,4 +1,4 @@
-// Faults that the program refuses or reports before the run.
+// Declares the faults that the program refuses or reports before the run.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace predictor {
 
-// Starts RECOVERY instead of a run. Returns false if it is not reached.
+// Starts RECOVERY instead of a run. Returns false if the arms do not reach RECOVERY.
 bool StartToRecover(Bench& bench);
 
 std::vector<Fault> FaultsOfStarts();

@@ -42,7 +42,7 @@ const char* Words(Expect expect) {
   return "";
 }
 
-// PREDICTOR_SEEDS is the number of seeds. A smaller number gives a quicker result.
+// PREDICTOR_SEEDS is the number of seeds. With a smaller number of seeds, the test takes less time.
 long Seeds() {
   const char* seeds = std::getenv("PREDICTOR_SEEDS");
   return seeds == nullptr ? Count(1, 200) : std::atol(seeds);

@@ -51,7 +51,7 @@ void Push(Bench& bench, int hand, double force) {
   bench.rig().Disturb(hand, JointVector(), F);
 }
 
-// Replaces the numbers at one place in an arm's packages.
+// Returns the number that replaces another one in an arm's packets.
 using Change = std::function<double(double)>;
 
 // If two faults change the same bytes, both take effect.
@@ -62,8 +62,8 @@ void Corrupt(WireFaults* wire, std::function<void(Bytes*)> change) {
   };
 }
 
-// Each package of a UR arrives separately. `place` is the offset of the number from the beginning
-// of the package or, if negative, from its end.
+// Each packet of a UR arrives separately. `place` is the offset of the number from the beginning of
+// the packet or, if negative, from its end.
 void ChangeUr(WireFaults* wire, int place, const Change& change) {
   Corrupt(wire, [place, change](Bytes* bytes) {
     if (bytes->size() < 100 || (*bytes)[2] != std::byte{'U'}) return;
@@ -116,7 +116,7 @@ double Jump(double q) { return q + 0.2; }
 double NotANumber(double) { return std::numeric_limits<double>::quiet_NaN(); }
 double Huge(double) { return 1e6; }
 
-// The same reading is repeated in new packages.
+// Repeats the same reading in new packets.
 void FreezeWrench(WireFaults* wire, std::size_t before_end, std::size_t bytes_of_it) {
   Corrupt(wire, [=, first = Bytes()](Bytes* bytes) mutable {
     if (bytes->size() < 100) return;
@@ -174,8 +174,8 @@ std::vector<Fault> FaultsOfWires() {
   using enum Carrier;
   using enum Expect;
   return {
-      // If one datagram in ten were lost, five in a row would be lost in one run of a hundred. That
-      // would stop the run.
+      // If one datagram in ten were lost, five in a row would be lost in one of a hundred runs, and
+      // this loss would stop the run.
       {1, "a twentieth of the sensor's datagrams lost", kNetFt, kWarned, 0,
        ToSensorsWire([](WireFaults* w) { w->loss = 0.05; })},
       {1, "a twentieth of the arm's states lost", kFranka, kWarned, 0,
@@ -289,8 +289,8 @@ std::vector<Fault> FaultsOfTheLoop() {
        [](Bench&, int) { BreakQp(QpFault::kIterationLimit); }},
       {30, "one deadline missed", kLoop, kContinues, 0, [](Bench& b, int) { b.Tick(1); }},
       {30, "three deadlines missed", kLoop, kHold, 1, [](Bench& b, int) { b.Tick(3); }},
-      // Single deadlines are missed, 2 % of all deadlines in a second. The limit of 1 % is reached
-      // after half a second.
+      // Every fiftieth deadline is missed, which is 2 % of the deadlines in a second. The limit of
+      // 1 % is reached after half a second.
       {30, "each fiftieth deadline missed", kLoop, kHold, 1300,
        [](Bench& b, int) {
          for (int k = 0; k < 1300 && b.emulator().state() == RunState::kRun; ++k)

@@ -1,5 +1,5 @@
-// The faults of the fault model: how the bench injects them, the expected result, and the time
-// limit.
+// Describes the faults of the fault model: how the bench injects each of them, the expected result,
+// and the time limit.
 #pragma once
 
 #include <array>
@@ -36,7 +36,8 @@ enum class Carrier { kLoop, kArm, kUr, kFranka, kNetFt, kUrWrench, kFrankaWrench
 // Returns the hands of a rig that have this device.
 std::vector<int> HandsWith(Carrier carrier, const FaultRig& rig);
 
-// The result of a run with a fault. It is trivially copyable, because a child process sends it.
+// The result of a run with a fault. The struct is trivially copyable, because a child process sends
+// it.
 struct FaultOutcome {
   bool well = true;  // the expected result in the expected time
   bool ran = false;  // for kAnyEnd: whether RUN was reached
@@ -53,7 +54,7 @@ struct FaultOutcome {
   std::array<char, 600> why{};      // the deviation from the expected result
 
   void SetMessage(const std::string& text);
-  // Records a failure; only the first reason is kept.
+  // Records a failure. If several failures occur, only the first reason is kept.
   void Fail(const std::string& text);
   void Require(bool good, const std::string& text) {
     if (!good) Fail(text);
@@ -69,12 +70,12 @@ struct Fault {
   int bound;
   // Injects the fault into a run.
   std::function<void(Bench&, int hand)> inject;
-  // Whether the handles must keep their relative pose. This is false if an arm no longer receives
-  // commands or stops in its own way.
+  // Whether the handles must keep their relative pose. The value is false if an arm no longer
+  // receives commands or stops in its own way.
   bool together = true;
   // Creates a condition that lasts for a while before the fault is injected.
   std::function<void(Bench&, int hand)> before = nullptr;
-  // Replaces both the injection and the judgement.
+  // This function replaces both the injection and the judgement.
   std::function<void(Bench&, int hand, FaultOutcome*)> upon = nullptr;
   // Performs everything for a fault that shares no run with others. `audit` is the file for the
   // commands.
@@ -87,13 +88,14 @@ struct Fault {
   double lag = 0;
 
   // The following members define how the fault takes part in pairs if `inject` is not enough.
-  // `options` is for a run that begins with the fault: it changes the options, and the bench before
-  // the start.
+  // If a run begins with the fault, `options` changes the options, and `begin` changes the bench
+  // before the start.
   std::function<void(const FaultRig&, std::uint64_t seed, BenchOptions*)> options = nullptr;
   std::function<void(Bench&, std::uint64_t seed)> begin = nullptr;
-  // The arms are still recovering from this fault, instead of running, when the other fault occurs.
+  // If true, the arms are still recovering from this fault when the other fault occurs, so there is
+  // no run.
   bool recovers = false;
-  // Used if the loop no longer exists after this fault. Returns a function that runs every
+  // Is set if the loop no longer exists after this fault. Returns a function that runs every
   // millisecond instead of the loop.
   std::function<std::function<void()>(Bench&)> gone = nullptr;
 
@@ -108,8 +110,8 @@ const std::vector<Fault>& Faults();
 // std::logic_error if there is none.
 Fault* FindFault(std::vector<Fault>* all, int number, const char* beginning);
 
-// One of these texts must appear after a fault that causes a warning or a stop. They are the words
-// for its cause, and the name of its hand.
+// One of these texts must appear after a fault that causes a warning or a stop. The texts describe
+// the cause of the fault, and the message must also name the hand.
 struct FaultWords {
   int number;
   const char* fault;  // beginning of its name

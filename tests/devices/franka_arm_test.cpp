@@ -44,7 +44,7 @@ TEST_P(FrankaDriver, FindsTheVersionAndDescribesTheArm) {
 }
 
 // After a command to rest, the driver brings the arm to rest within the jerk limit. Whichever
-// commands are lost, it reports motion until the arm can no longer move.
+// commands are lost, the driver must report motion until the arm can no longer move.
 TEST_P(FrankaDriver, IsInMotionUntilNothingButRestFollows) {
   rig_.Connect();
   EXPECT_FALSE(rig_.reading.in_motion);
@@ -129,8 +129,8 @@ TEST_P(FrankaDriver, MovesAsCommandedAndEndsTheMotion) {
   ASSERT_TRUE(rig_.Ticks(1010));
   EXPECT_EQ(rig_.fake.mode(), fci::RobotMode::kMove);
   EXPECT_NEAR((rig_.reading.v - rig_.v).norm(), 0, 1e-6);
-  // The arm moves for one second at that speed, less a few milliseconds of start and the ramp of
-  // v/a + a/j.
+  // The arm moves at that speed for one second, minus a few milliseconds for the start and the time
+  // v/a + a/j of the ramp.
   for (int i = 0; i < 7; ++i) {
     const double way = rig_.mechanics.sample.q[i] - start[i];
     EXPECT_NEAR(way, rig_.v[i], std::abs(rig_.v[i]) * 0.03) << i;
@@ -181,8 +181,8 @@ TEST_P(FrankaDriver, StopsWithinTheLimits) {
   int ticks = 0;
   for (; rig_.mechanics.command.cwiseAbs().maxCoeff() > 1e-9 && ticks < 1000; ++ticks)
     ASSERT_TRUE(rig_.Tick());
-  // The slowest joint needs v/a + a/j at 95 % of 7.5 rad/s² or 10 rad/s², plus two ticks of
-  // transmission.
+  // The slowest joint needs v/a + a/j, where a is 95 % of 7.5 rad/s² or 10 rad/s². Transmission
+  // takes two further ticks.
   const double a = 0.95 * (GetParam() == 5 ? 7.5 : 10);
   EXPECT_NEAR(1e-3 * ticks, 0.5 / a + 0.002, 0.004);
 }
@@ -282,8 +282,8 @@ TEST_P(FrankaDriver, AfterAMissedStateDoesNotGoFaster) {
   EXPECT_EQ(rig_.arm->counts().missed_states, 1U);
 }
 
-// While states are lost, the driver does not accelerate. Afterwards it must not jump to the
-// velocity that was requested meanwhile.
+// While states are lost, the driver does not accelerate. When states arrive again, the driver must
+// not jump to the velocity that was requested meanwhile.
 TEST_P(FrankaDriver, CatchesUpWithoutAJumpAfterWaiting) {
   constexpr double kRate = 0.5, kStep = kRate * 1e-3;  // [rad/s²], [rad/s]
   rig_.Connect();
@@ -384,8 +384,8 @@ TEST_P(FrankaDriver, DropsAndCountsInvalidStates) {
   EXPECT_EQ(rig_.arm->counts().malformed, 2U);
 }
 
-// A single bit of a state's number is wrong. The driver must discard that state and use the later
-// ones.
+// In one state, a single bit of its number is wrong. The driver must discard that state and use the
+// later ones.
 TEST_P(FrankaDriver, DropsAStateWhoseNumberJumps) {
   FrankaRig rig(FrankaOfVersion(GetParam()));
   rig.Connect();

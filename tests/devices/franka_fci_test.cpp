@@ -16,7 +16,7 @@ struct Field {
   const char* name;
   int count;
 };
-// The fields have the order of research_interface/robot/rbk_types.h, up to the modes.
+// Up to the modes, the fields have the same order as in research_interface/robot/rbk_types.h.
 const std::vector<Field> kSignals = {{"O_T_EE", 16},
                                      {"O_T_EE_d", 16},
                                      {"F_T_EE", 16},

@@ -105,8 +105,8 @@ TEST_P(FrankaRateLimiter, SendsNothingBeyondTheLimitsWhateverIsAskedSoak) {
 }
 
 // At any time, the robot may miss up to 19 milliseconds of commands and continue with constant
-// acceleration. It must then still be within its limits, and the next command must be a permitted
-// one.
+// acceleration. During such a gap, the robot must stay within its limits, and the next command must
+// be a permitted one.
 TEST_P(FrankaRateLimiter, LeavesRoomForCoastingSoak) {
   for (long seed = 0; seed < Count(20, 1000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "coasting");
@@ -227,8 +227,8 @@ TEST(FrankaRateLimiterFraction, IsAPartOfTheLimits) {
   }
 }
 
-// The way leads from the robot's actual motion back to the requested one, without a step in
-// velocity or acceleration.
+// The limiter must lead the robot from its actual motion back to the requested one without a step
+// in velocity or acceleration.
 TEST(FrankaWayBack, BeginsWithTheDifferenceAndEndsWithoutOne) {
   Joints v{}, a{};
   v[0] = 0.02, a[0] = 0.5;

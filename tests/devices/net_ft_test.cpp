@@ -273,8 +273,8 @@ TEST_F(NetFtTest, CountsWhatIsLostAndWhatItRefuses) {
   EXPECT_EQ(after.link.refused - before.link.refused, 10U);
 }
 
-// No one reads the socket while other devices are being connected. Its queue holds about 270
-// readings, and newer ones are dropped.
+// The program does not read the socket while it connects to other devices. The socket's queue holds
+// about 270 readings, and the system drops newer ones.
 TEST_F(NetFtTest, AfterAPauseReadsTheWholeBuffer) {
   const auto sensor = Connect();
   WrenchReading before, after;
@@ -354,7 +354,7 @@ TEST_F(NetFtTest, ADuplicateIsNotANewReading) {
   EXPECT_EQ(after.link.lost, 0u);
 }
 
-// Small differences between clocks are normal. The driver must report larger ones.
+// Small differences between clocks are normal, but the driver must report larger differences.
 TEST_F(NetFtTest, ARateThatDiffersFromTheFileIsReported) {
   for (const double rate : {1000.5, 999.0, 990.0}) {
     const auto sensor = Connect({{"rate", std::to_string(rate)}});

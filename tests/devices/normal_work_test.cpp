@@ -18,8 +18,8 @@
 namespace predictor {
 namespace {
 
-// One hand or both push suddenly while the box is carried slowly. The pushes are so rare that they
-// do not count as an oscillation.
+// One hand or both hands push suddenly while they carry the box slowly. The pushes are so rare that
+// they do not count as an oscillation.
 void PushWhileCarrying(Scenario* s) {
   RandomStream random(s->seed, "pushes");
   std::vector<ActionSpec> script = {MakeActionSpec("grip", 0, {"duration=0.5"})};

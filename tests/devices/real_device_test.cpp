@@ -141,7 +141,7 @@ TEST_F(RealDeviceTest, JointsAreWhereTheyWereBeforeTheFirstCommand) {
   EXPECT_EQ(sample.arms[0].q, said_[0].reading.q);
 }
 
-// The monitor uses the values that this test checks.
+// The monitor uses the ages and range flags that this test checks.
 TEST_F(RealDeviceTest, ReportsAgesAndWhatIsBeyondItsRange) {
   said_[0].reading.age = 0.003;
   said_[1].reading.age = 0.004;

@@ -16,7 +16,7 @@
 namespace predictor {
 namespace {
 
-// Another sender in the network, at an address of this computer.
+// Simulates another sender in the network, which has an address of this computer.
 class Sender {
  public:
   explicit Sender(const char* host, std::uint16_t at = 0)

@@ -1,4 +1,4 @@
-// Injects faults into the solvers that the tick calls. The linker redirects those calls to wrappers
+// Injects faults into the solvers that the tick calls. The linker redirects the calls to wrappers
 // (-Wl,--wrap).
 #pragma once
 

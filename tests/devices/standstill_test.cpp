@@ -34,8 +34,8 @@ TEST(Standstill, IsWhatTheDocumentsSay) {
     std::stringstream text;
     text << in.rdbuf();
     const std::string says = Formatted(
-        "%.0f ms + v / (%.0f rad/s²) + %.0f ms, where v is the speed of its fastest joint: "
-        "%.2f s at 0.8 rad/s, %.2f s at 2.5 rad/s",
+        "%.0f ms + v / (%.0f rad/s²) + %.0f ms, where v is the speed of its fastest joint. "
+        "This time is %.2f s at 0.8 rad/s and %.2f s at 2.5 rad/s",
         1e3 * s.silence, s.deceleration, 1e3 * s.settling, s.Within(0.8), s.Within(2.5));
     EXPECT_NE(text.str().find(says), std::string::npos) << name << ": " << says;
   }

@@ -12,7 +12,8 @@ using Link = StopChannel::Link;
 
 class StopChannelTest : public testing::Test {
  protected:
-  // Returns the result of Tend during this number of milliseconds, in which it must not change.
+  // Calls Tend in each of these milliseconds and returns its result, which must not change
+  // meanwhile.
   Link Tend(int milliseconds) {
     Link link = Link::kTalks;
     for (int i = 0; i < milliseconds; ++i) {

@@ -1,4 +1,4 @@
-// The fixture of the UR driver's tests, which run for both generations of controllers.
+// The fixture of the UR driver's tests. Each test runs for both generations of controllers.
 #pragma once
 
 #include <gtest/gtest.h>

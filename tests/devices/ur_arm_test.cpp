@@ -72,7 +72,7 @@ TEST_P(UrArmTest, ReadsTheArmsModelAndVersion) {
   bench.mechanics.sample.F_S_raw << 1, -2, 3, -0.4, 0.5, -0.6;
   bench.mechanics.sample.q << 0.1, 0.2, 0.3, -0.4, -0.5, 7;
   bench.Connect().Ticks(100, 0.25);
-  // The last package can be at most one cycle old.
+  // The last packet can be at most one cycle old.
   const double most = 0.25e-3 * (period() + 1) + 1e-9;
   for (int j = 0; j < kUrJoints; ++j)
     EXPECT_NEAR(bench.reading.q[j], bench.mechanics.sample.q[j], most) << j;
@@ -117,7 +117,7 @@ TEST_P(UrArmTest, SilenceAges) {
   bench.Connect().Ticks(100, 0);
   bench.fake.Do("freeze");
   const std::uint64_t last = bench.reading.sequence;
-  bench.Tick(0);  // one package may have been in transit
+  bench.Tick(0);  // one packet may have been in transit
   const double age = bench.reading.age;
   bench.Ticks(100, 0);
   EXPECT_NEAR(bench.reading.age, age + 0.1, 1e-9);
@@ -236,7 +236,7 @@ TEST_P(UrArmTest, CountsMissingPackages) {
   EXPECT_EQ(bench.reading.link.lost, 5U);
 }
 
-// Each package arrives in two parts that are a millisecond apart.
+// Each packet arrives in two parts that are a millisecond apart.
 TEST(UrArm, StreamCutAtAnyByteGivesTheSameSamples) {
   const std::size_t package =
       rtde::kHeaderSize + 1 + rtde::SizeOf(UrOutputs(0, {true, false, true}));

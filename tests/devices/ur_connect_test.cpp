@@ -77,7 +77,7 @@ TEST(UrConnect, RegistersThatAFieldbusHolds) {
     const std::string sentence = Refusal(&bench);
     EXPECT_TRUE(Says(sentence, std::string(name) + " is in use"));
     EXPECT_TRUE(Says(sentence, "first register 0 or 24"));
-    // The other register range is still free.
+    // The other register range is still free, so the driver must connect with it.
     UrBench other;
     other.fake.rtde().in_use = {name};
     EXPECT_EQ(Refusal(&other, {.host = kUrHost, .first_register = 0}), "");

@@ -222,7 +222,7 @@ TEST(UrArm, AListenersReadingReportsThatTheConnectionIsClosed) {
   EXPECT_NE(bench.arm->Trouble().find("closed the connection"), std::string::npos);
 }
 
-// An external watchdog takes over in this way, through its own connection.
+// In this way, an external watchdog takes over the arm through its own connection.
 TEST_P(UrArmTest, ProgramThatTakesOursPlaceBrakesTheArmAndIsAFault) {
   UrBench bench(GetParam());
   const auto other = bench.network.Connect({kUrHost, 30001}, 1);

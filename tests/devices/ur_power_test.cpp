@@ -72,7 +72,7 @@ TEST_P(UrArmTest, ReportsNoPowerWhileItIsSilent) {
   bench.Connect({.host = kUrHost, .dashboard_port = 0}).Ticks(50, 0);
   bench.arm->PowerOff(true);
   bench.Ticks(500, 0, false);
-  bench.fake.Do("late 600");  // packages still arrive, but with this age [ms]
+  bench.fake.Do("late 600");  // packets still arrive, but with this age [ms]
   bench.Ticks(1200, 0, false);
   EXPECT_GT(bench.reading.age, 0.5);
   EXPECT_FALSE(bench.reading.keeps_power);

@@ -1,5 +1,6 @@
-// A network between a driver and another network that cuts the streams. Its Read and Write do not
-// allocate memory, so all counted allocations are the driver's own.
+// A network that lies between a driver and another network and cuts the streams into pieces. Read
+// and Write of this network do not allocate memory, so all counted allocations are the driver's
+// own.
 #pragma once
 
 #include <algorithm>

@@ -84,8 +84,8 @@ TEST(Rtde, DataAreAsCaptured) {
             Hex("00 48 55 0d 00 00 00 09 3f b9 99 99 99 99 99 9a"));
 }
 
-// The captured package contains the time, six joints, six velocities and runtime_state: 00 70 55 01
-// ….
+// The captured packet, which begins with 00 70 55 01, contains the time, six joints, six velocities
+// and runtime_state.
 TEST(Rtde, SizesOfTypesGiveTheCapturedPackage) {
   const std::vector<rtde::Field> recipe = {{"timestamp", "DOUBLE"},
                                            {"actual_q", "VECTOR6D"},

@@ -144,7 +144,8 @@ TEST_P(UrScriptTest, BrakesWithinTwentyMillisecondsOfSilenceAndForGood) {
     EXPECT_LE(silence, 0.020) << phase;
     EXPECT_GE(silence, cycle) << phase;
     EXPECT_LE(silence, UrWatchdog(cycle) + 1e-9) << phase;
-    // The arm must brake to a standstill with the given deceleration, whatever arrives now.
+    // After that, the arm must brake to a standstill with the given deceleration, whatever data
+    // arrives.
     double last = bench.speed();
     for (double t = 0; t < 0.2; t += cycle) {
       bench.Command(0.5, true);

@@ -10,15 +10,15 @@
 namespace predictor {
 namespace {
 
-// A measured value may exceed the printed one by this factor.
+// A measured value may be larger than the printed one by this factor.
 constexpr double kMargin = 1.5;
 
 struct Figure {
   double mean, largest;
 };
 
-// The values of the worse hand in docs/numbers.csv, which README.md and docs/ quote.
-// docs/concepts/accuracy.md has those of arms that differ from their nominal model.
+// The printed values are those of the worse hand in docs/numbers.csv, which README.md and docs/
+// quote. The values for arms that differ from their nominal model are in docs/concepts/accuracy.md.
 struct Printed {
   const char* scenario;
   Figure translation, rotation;                    // error of a handle [mm], [deg]
@@ -81,8 +81,8 @@ TEST(RelativePose, AndHandlesAfterTheReleaseAreAsPrinted) {
   ExpectWithin(run.summary, "tracking.released.relative.angle_rad", {0.0009, 0.0026});
 }
 
-// The arms are slower or faster than the lead assumes, so that the test does not compare the model
-// with itself.
+// The arms are slower or faster than the lead assumes. The test therefore does not merely compare
+// the model with itself.
 TEST_P(Accuracy, WithArmsOtherThanNominalIsAsPrinted) {
   const Printed& printed = GetParam();
   const std::pair<const char*, double> arms[] = {{"rig.loop.bandwidth=10", printed.slower_arms},

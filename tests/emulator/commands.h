@@ -1,4 +1,4 @@
-// The commands of a tick to both arms.
+// The commands that a tick sends to both arms.
 #pragma once
 
 #include <array>

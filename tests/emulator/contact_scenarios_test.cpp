@@ -65,7 +65,8 @@ TEST(ContactScenarios, APegGoesIntoAHoleWithOneMillimetreOfClearance) {
   RecordProperty("deepest_um", static_cast<int>(deepest * 1e6));
 }
 
-// The corners of a cross-section of the bar, and of its ends.
+// Returns how deep the bar enters the box [m], from the corners of its cross-sections, including
+// those of its ends.
 double DepthOfBar(const FixtureSpec& box, const Pose& X) {
   constexpr int kSections = 90;
   double depth = -HUGE_VAL;

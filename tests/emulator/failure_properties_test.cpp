@@ -1,4 +1,4 @@
-// A failed QP and a rejected physics step must not contribute to the command.
+// The results of a failed QP and of a rejected physics step must not contribute to the command.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -48,7 +48,7 @@ Stopped RunUntilHeld(const std::vector<std::string>& set, std::optional<std::siz
 
 // The controller is too stiff for the simulation. The emulator discards the step that diverges and
 // stops the run. From then on, the commands must equal, bit for bit, those of a run in which the
-// same tick received a stop request. The rejected step then has no effect.
+// same tick received a stop request. This shows that the rejected step has no effect.
 TEST(EmulatorProperties, ARejectedPhysicsStepContributesNothing) {
   for (const char* stiffness : {"2e4", "5e4", "1e5"}) {
     const std::vector<std::string> set = {

@@ -13,9 +13,9 @@ constexpr double kOvershoot = 1.05;     // overshoot of the arms' velocity loops
 constexpr double kPosture = 1.03;       // change of an arm's Jacobian until it follows
 constexpr double kAlignRotation = 0.3;  // [rad/s]
 
-// The relative pose of the arms is wrong by half a metre. Their relative rotation is right, wrong
-// by half a turn, or wrong by so much on each side that the shortest rotation from one handle to
-// the other leads away.
+// Returns start joints in which the distance between the handles is wrong by half a metre. The
+// handles' relative rotation is right, wrong by half a turn, or wrong by even more. In the last
+// case, the shortest rotation from one handle to the other leads away from the goal.
 enum class Turned { kNone, kHalf, kFurther };
 std::array<JointVector, kHands> Apart(const Scenario& scenario, Turned turned) {
   const double angle = turned == Turned::kNone ? -0.7 : turned == Turned::kHalf ? 0.85 : 1.4;
@@ -81,8 +81,8 @@ TEST(HandleSpeed, OfAlignIsKeptForAnyErrorOfTheArmsRelativePose) {
       EXPECT_LE(seen.reported.rotation, kPosture * kAlignRotation);
       EXPECT_LE(seen.came.translation, kOvershoot * cap);
       EXPECT_LE(seen.came.rotation, kOvershoot * kAlignRotation);
-      // If the gain is too high, the relative pose oscillates because of the arms' lag. That does
-      // not matter here.
+      // If the gain is too high, the relative pose oscillates because of the arms' lag. This
+      // oscillation does not matter in this test.
       EXPECT_TRUE(seen.armed);
     }
 }

@@ -38,7 +38,7 @@ RunInput Hold(int hand, const PoseRecord& X, bool grip = true) {
   return input;
 }
 
-// Performs ticks until `duration` [s] of run time has passed. It calls `before` before each tick,
+// Performs ticks until `duration` [s] of run time has passed. Before each tick, it calls `before`,
 // which may submit inputs.
 template <class F>
 void Pass(Emulator* emulator, double duration, F before) {
@@ -126,7 +126,8 @@ TEST(Hands, OfAPageAreUsedOnlyWithABrowserOperator) {
   EXPECT_FALSE(emulator.Submit(Hold(7, X)));
 }
 
-// Inputs at the rate of a page make both hands lift the box by 8 cm. Then the page stops sending.
+// Inputs arrive at the rate at which a page sends them, and make both hands lift the box by 8 cm.
+// Then the page stops sending.
 TEST(Hands, LiftTheBoxWithinTheirLimitAndReleaseOnSilence) {
   Emulator emulator(
       LoadTestScenario("box_9kg", {"operator.type=browser", "operator.script=[]", "duration=100"}));

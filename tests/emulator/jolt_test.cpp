@@ -1,5 +1,5 @@
-// A hazard jolts the object, and the force rings. If the ringing decays by itself, the vibration
-// detector should not count it.
+// Tests hazards that jolt the object, so that the force rings. If the ringing decays by itself, the
+// vibration detector should not count it.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The scenario in which the carried box pushes a crate. Places and penetrations follow from the
-// recorded poses and the shapes of the scenario, without the physics engine.
+// Tests the scenario in which the carried box pushes a crate. The test computes places and
+// penetrations from the recorded poses and the shapes of the scenario, without the physics engine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 constexpr double kMaxDepth = 2e-4;           // [m]
 const Vector3 kBoxHalf = {0.13, 0.19, 0.1};  // of box_9kg.urdf [m]
 
-// Height of the lowest corner of a box [m].
+// Returns the height of the lowest corner of a box [m].
 double LowestOf(const Pose& X, const Vector3& half) {
   return X.p.z() - (X.R().row(2).transpose().cwiseAbs()).dot(half);
 }

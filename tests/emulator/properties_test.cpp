@@ -210,9 +210,10 @@ class Watched {
     state_ = record.state;
   }
 
-  // The arms share one stop: each command is the last one before the stop, times a factor in [0,
-  // kOvershoot]. The factors differ only because the faster arm waits for the slower one, and only
-  // within the promised distance. The change of the arms' geometry has little effect.
+  // The arms share one stop. Each of its commands is the last command before the stop, multiplied
+  // by a factor in [0, kOvershoot]. The factors differ only because the faster arm waits for the
+  // slower one, and only within the promised distance. The change of the arms' geometry has little
+  // effect.
   void LookAtFactors(const Arms& start, const Arms& now, int ticks) {
     std::array<double, kHands> factor;
     for (std::size_t i = 0; i < kHands; ++i) {
@@ -270,8 +271,8 @@ TEST(EmulatorProperties, WhatPlaysARecordingIsRefusedByARun) {
   }));
 }
 
-// Whatever the initial pose, the last command of ALIGN can be stopped within one tick, so no
-// command is sent in ARMED.
+// Whatever the initial pose is, the arms can stop from the last command of ALIGN within one tick,
+// so no command is sent in ARMED.
 TEST(EmulatorProperties, NothingIsSentInArmedHoweverAlignEnds) {
   for (const char* offset : {"0", "0.0015", "0.01", "0.05"})
     for (const char* kp : {"0.3", "2", "20"}) {

@@ -271,8 +271,8 @@ TEST_F(LedToRest, NoRecoveryEndsBefore) {
 class BeyondALimit : public RealArms {
  protected:
   BeyondALimit() {
-    // The measured joint is beyond its limit by an amount from which the distance already moved
-    // back is subtracted.
+    // Adds an offset to the measured joint, so that the joint seems to be beyond its limit until it
+    // has moved back.
     device_->spoil = [this](DeviceSample* sample) {
       JointVector& q = sample->arms[0].q;
       q[3] -= offset_;

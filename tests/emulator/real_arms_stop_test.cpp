@@ -55,8 +55,8 @@ TEST_F(RealArms, AResetWaitsUntilTheHandsAreFree) {
   EXPECT_EQ(emulator_->state(), RunState::kHeld);
 }
 
-// If a fault makes it doubtful that the arm can hold its position, the stop ends in power-off. This
-// also applies if the fault occurs during a stop that has a milder cause.
+// If a fault makes it doubtful that the arm can hold its position, the stop ends in power-off.
+// Power-off must also end the stop if such a fault occurs during a stop with a milder cause.
 TEST_F(RealArms, TheMostSevereWins) {
   ASSERT_TRUE(ToRun());
   Tick(500);
@@ -203,7 +203,7 @@ TEST_F(RealArms, DeadlinesMissedHereAndThereStopToo) {
 }
 
 // A run that ended normally holds the arms without a cause. A fault after which the arms must not
-// be held then becomes the cause. Other faults only prevent the reset.
+// be held then becomes the cause. All other faults only prevent the reset.
 TEST_F(RealArms, AfterARunThatEndedWellOnlyWhatMustNotBeHeldCutsThePower) {
   ASSERT_TRUE(ToRun());
   Tick(300);

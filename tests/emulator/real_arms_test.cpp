@@ -11,8 +11,9 @@
 namespace predictor {
 namespace {
 
-// The gravity in the scenario's world must not affect a real handle. Its weight is compensated with
-// the local gravity, and a rotation of the handle must not look like a hand's force.
+// The gravity in the scenario's world must not affect a real handle. The program compensates the
+// weight of the real handle with the local gravity, and a rotation of the handle must not look like
+// a hand's force.
 TEST(RealHandles, WeighWhatTheyWeighHere) {
   Scenario scenario = LoadTestScenario("box_9kg", {});
   const JointVector start = Emulator(scenario).setup().start[0];
@@ -79,8 +80,8 @@ TEST_F(RealArms, NothingIsAlignedWhileAHandleIsNotFree) {
   EXPECT_EQ(emulator_->state(), RunState::kAlign);
 }
 
-// A page may stop real arms. It must not align, start or reset them, even while a person holds the
-// key.
+// A page may stop real arms. A page must not align, start or reset real arms, even while a person
+// holds the key.
 TEST_F(RealArms, NothingBeginsFromAfar) {
   const auto from_afar = [this](InputKind kind) {
     RunInput input;
@@ -318,8 +319,8 @@ TEST_F(WaitsForAnArm, ToRecover) {
   ExpectNothingMovesBeforeItCan(RunState::kRecovery);
 }
 
-// Taring must cause no visible force: not while it averages, not when it ends, and not if the bias
-// has changed while the sensor had no power.
+// Taring must cause no visible force while it averages or when it ends. This also applies if the
+// bias has changed while the sensor had no power.
 TEST_F(RealArms, TaringIsBumpless) {
   double bias = 40, felt = 0;
   device_->spoil = [&bias](DeviceSample* sample) { sample->arms[0].F_S_raw[1] += bias; };
@@ -360,9 +361,9 @@ TEST(RealTimeArms, CannotBeEnabledRemotely) {
   key.kind = InputKind::kEnable;
   key.value = 1;
   std::atomic<bool> quit{false}, over{false}, moved{false}, refused{false}, stopped{false};
-  // However often a page claims that the key is held, the rig must refuse a request to align,
-  // because no person holds the key there. (On a busy computer, missed ticks may stop the run
-  // instead.)
+  // Even if a page claims again and again that the key is held, the rig must refuse a request to
+  // align, because no person at the rig holds the key. (On a busy computer, missed ticks may stop
+  // the run instead.)
   std::thread ends([&] {
     TickRecord record;
     RingReader<TickRecord, kRecordRing> reader(*ring);

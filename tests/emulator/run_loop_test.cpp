@@ -114,7 +114,7 @@ TEST(RealTime, StopsForAHeadsetThatFellSilent) {
   EXPECT_EQ(without.Run({0.1, false, &*mailbox, true, true}), RunEnd::kFinished);
 }
 
-// After a session has ended, its frames no longer count as a sign of life.
+// After a session has ended, its frames must no longer count as a sign of life.
 TEST(RealTime, StopsWhenAWearerTakesTheHeadsetOffInMotion) {
   Paced run("box_9kg");
   Shared<RunMailbox> mailbox;

@@ -53,8 +53,8 @@ TEST(Stop, TheSameScriptPassesWithDamping) {
   EXPECT_EQ(run.end, RunEnd::kFinished);
 }
 
-// A circle, transports and a release must cause no stop, whatever the noise and the pace of the
-// hand.
+// Circles, transports and a release must not cause a stop, whatever the noise and the pace of the
+// hand are.
 TEST(Stop, NormalWorkRaisesNoAlarmSoak) {
   for (long seed = 1; seed <= Count(3, 50); ++seed)
     for (const char* name : {"box_9kg", "box_18kg", "bar_circle", "dual_ur5"}) {
@@ -79,13 +79,13 @@ std::vector<std::string> ToAndFro(double duration) {
 
 // A scripted motion differs from an oscillation in that it is slower (docs/developer/decisions.md).
 // Outside the frequency band, growth does not count. Inside the band, the monitor stops a motion at
-// 0.5 Hz whose force grows, whatever caused it.
+// 0.5 Hz whose force grows, whatever the reason for the growth is.
 TEST(Stop, AScriptsMotionIsNotAnOscillationUnlessAsFast) {
   EXPECT_EQ(RunScenario("box_9kg", ToAndFro(1.6)).end, RunEnd::kFinished);
   EXPECT_EQ(RunScenario("box_9kg", ToAndFro(2.5)).end, RunEnd::kFinished);
 }
 
-// One common factor must bring both arms to rest, and they must stay there.
+// One common factor must bring both arms to rest, and the arms must stay at rest.
 TEST(Stop, ScalesBothArmsByOneFactor) {
   std::vector<TickRecord> records;
   RunScenario("push", {}, [&](const TickRecord& record) {
@@ -138,7 +138,7 @@ double Torque(const HandRecord& hand) {
   return Vector3(hand.wrench[3], hand.wrench[4], hand.wrench[5]).norm();
 }
 
-// The conditions are those of real arms: free hands, handles at rest, and half a second without the
+// Real arms have the same conditions: free hands, handles at rest, and half a second without the
 // cause. The test requests a reset in each tick, and every request but the last must be refused
 // with a reason.
 TEST(Reset, OfASimulatedRigWaitsForItsConditions) {
@@ -173,8 +173,8 @@ TEST(Reset, OfASimulatedRigWaitsForItsConditions) {
     EXPECT_LT(moved, tick - 1);
     EXPECT_EQ(refused[static_cast<std::size_t>(Refusal::kNone)], 0);
     if (by_force) {
-      // This is the first tick after half a second, because the decision uses the samples of the
-      // tick before.
+      // The program accepts the reset in the first tick after half a second, because the decision
+      // uses the samples of the previous tick.
       EXPECT_NEAR(tick - wrong, 501, 1.5);
       EXPECT_GT(refused[static_cast<std::size_t>(Refusal::kCauseRemains)], 0);
     } else {
@@ -234,7 +234,8 @@ TEST(Start, WithLinksTooNearIsRefusedAtOnce) {
   EXPECT_NE(why.find("rendering.security_distance is 0.700 m"), std::string::npos) << why;
 }
 
-// RECOVERY moves the joint away from its limit. After that, ALIGN is granted.
+// RECOVERY moves the joint away from its limit. After that, the program must accept a request for
+// ALIGN.
 TEST(Start, WithAJointWithinItsSecurityDistanceIsPossibleAfterRecovery) {
   Emulator emulator(LoadTestScenario(
       "box_9kg", {"rendering.joint_security=0.8", "rendering.joint_influence=0.9"}));
@@ -303,8 +304,8 @@ TEST(Stop, UntimelyRequestsEndInABoundedStop) {
   }
 }
 
-// These requests to the whole emulator follow docs/concepts/states.md. The more severe stop must
-// win whatever the order, and no request may be lost.
+// These requests to the whole emulator follow docs/concepts/states.md. If several stops are
+// requested, the most severe one must take effect whatever their order, and no request may be lost.
 struct Asked {
   const char* name;
   std::vector<RunEvent> at_once;  // all in one tick of RUN
@@ -368,8 +369,8 @@ TEST(Stop, DuringTheEndOfARunIsReported) {
 // The motion of the handles during a stop, computed from the commands. Acceleration and jerk are
 // within their limits from the tick after the decision on. In the tick of the decision, the stop
 // continues the acceleration along the path, but the acceleration across the path ends immediately
-// (docs/developer/decisions.md). That tick may therefore exceed the jerk limit, but not the
-// acceleration of the run itself.
+// (docs/developer/decisions.md). The tick of the decision may therefore exceed the jerk limit, but
+// not the acceleration of the run itself.
 struct Ending {
   const char* scenario;
   std::vector<std::string> set;

@@ -33,8 +33,8 @@ void ExpectSame(const Pose& a, const Pose& b, std::uint64_t tick) {
   ASSERT_LT(RotationError(a.q, b.q).norm(), 1e-9) << "tick " << tick;
 }
 
-// A seventh joint accumulates motion that its handle does not determine, so joints may differ more
-// than handles.
+// The handle does not determine all motion of seven joints. This free motion accumulates, so the
+// joints of two runs may differ more than the handles.
 constexpr double kSameJoint = 1e-7;  // [rad]
 
 // One arm's base is tilted, so that gravity does not act along the z axis of the base. The readings
@@ -61,7 +61,8 @@ TEST(Shift, OfSceneAndArmsTogetherChangesNothing) {
   if (HasFatalFailure()) FAIL();
 }
 
-// This test shows that a shift has an effect. Without it, the previous test would prove nothing.
+// This test shows that a shift has an effect. If a shift had no effect, the previous test would
+// prove nothing.
 TEST(Shift, OfTheSceneAloneMovesItForTheArms) {
   const Scenario here = LoadTestScenario("box_9kg", {"duration=0.2"});
   Scenario lower = here;

@@ -35,7 +35,7 @@ std::vector<std::byte> Save(Emulator* emulator) {
   return bytes;
 }
 
-// Submits the inputs of a page: parameters that change back and forth, a moving hand, and
+// Submits the inputs that a page sends: parameters that change back and forth, a moving hand, and
 // latencies.
 void PutIn(int k, Emulator* emulator) {
   RunInput input;

@@ -31,8 +31,8 @@ void Follows(ArmSpec* arm) {
   arm->follows_position = true;
 }
 
-// This test fixes the value that other tests use in formulas: the longest time for which one arm
-// continues because of the other [s].
+// Other tests use kFollowing in formulas, so this test checks its value. kFollowing is the longest
+// time for which one arm continues because of the other [s].
 TEST(StopOfArms, HasNoMoreOfFollowingThanWasPromised) { EXPECT_EQ(kFollowing, 0.030); }
 
 // If the lag is insignificant, the stop consists of the commanded profile and the time for which
@@ -57,7 +57,7 @@ TEST(StopOfArms, HasTheArmsLagInIt) {
   EXPECT_GT(later.way, slow.way + 0.0003);
 }
 
-// An arm under position control overshoots and is pulled back.
+// Position control lets the arm overshoot and then pulls it back, so the stop takes longer.
 TEST(StopOfArms, TakesAnArmThatFollowsAPositionLonger) {
   const StopBudget slow = OfBoth(Slow), follows = OfBoth(Follows);
   EXPECT_NEAR(follows.time, 0.200 + kFollowing, 0.004);

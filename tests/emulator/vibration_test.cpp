@@ -243,7 +243,7 @@ TEST(VibrationRun, NoScenarioIsStoppedSoak) {
   }
   for (const auto& [where, count] : left_out)
     std::printf("%s: %ld runs omitted because of their margin\n", where.c_str(), count);
-  // Only this loop has a margin that is too low.
+  // Of all loops, only this one has a margin that is too low.
   const long without = InFull() ? 100 : 1;
   EXPECT_EQ(left_out, (std::map<std::string, long>{{"bar_circle at 250 Hz", without}}));
   EXPECT_EQ(runs + without, 9 * seeds * (InFull() ? 6 : 1));

@@ -184,7 +184,8 @@ class WiringOfModels : public testing::Test {
   void Write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
-  // Writes an object of 9 kg. Its second and third shape, in lines 4 and 5, use a mesh.
+  // Writes an object of 9 kg. The second and the third shape of the object, in lines 4 and 5, use a
+  // mesh.
   void WriteBox() const {
     const std::string mesh =
         "<collision><geometry><mesh filename=\"mesh.stl\"/></geometry></collision>\n";

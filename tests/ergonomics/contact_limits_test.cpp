@@ -48,7 +48,7 @@ TEST(ContactLimitFile, IsReadInSiUnits) {
 TEST(ContactLimitFile, RefusesWhatItCannotUse) {
   ExpectError("", "limits.csv", "contains no limits");
   ExpectError(kStart, "limits.csv", "contains no limits");
-  ExpectError(kHeader, "limits.csv:1", "Begin it with a line such as");
+  ExpectError(kHeader, "limits.csv:1", "Begin the file with a line such as");
   ExpectError("edition,\n" + kHeader, "limits.csv:1", "does not name its edition");
   ExpectError("edition,x\nregion,point\n", "limits.csv:2", "it must be region,point,force_N");
   ExpectError(kStart + "chest,sternum,140,120,2,25\n", "limits.csv:4", "7 columns");
@@ -90,7 +90,7 @@ TEST(Contact, SpeedOfAHandIsThatComputedByHand) {
               1e-12);
 }
 
-// The spring absorbs all of the energy of the relative motion.
+// The spring of the contact absorbs the whole energy of the relative motion.
 TEST(Contact, EnergyIsThatOfTheReducedMass) {
   for (const double robot : {1.0, 10.0, 1000.0}) {
     const ContactSpeed result = MaxContactSpeed(kHand, {ContactKind::kTransient, robot, 0});

@@ -30,7 +30,7 @@ TEST(Rainflow, CountsTheExampleOfItsStandard) {
   EXPECT_EQ(cycles[2].count, 1);
 }
 
-// Samples between the reversals and repeated samples must change nothing.
+// Additional samples between the reversals and repeated samples must not change the result.
 TEST(Rainflow, SeesReversalsOnly) {
   const std::vector<double> plain = {0, 10, 0, 10, 0};
   const std::vector<double> sampled = {0, 0, 3, 10, 10, 8, 0, 5, 10, 4, 4, 0, 0};
@@ -74,8 +74,8 @@ TEST(Lift, AssistanceReducesDamageAsPublished) {
   EXPECT_NEAR(1 - left, 0.70, 0.05);
 }
 
-// Table 1 of DUET (Gallagher et al. 2018) gives the cycles to failure by effort. It rounds the
-// stress to 0.1 %, which changes the cycles by 0.8 % at most.
+// Table 1 of DUET (Gallagher et al. 2018) gives the cycles to failure by effort. The table rounds
+// the stress to 0.1 %, which changes the cycles by 0.8 % at most.
 TEST(Hand, HasTheCyclesToFailureOfThePublishedTable) {
   constexpr std::array<double, 11> kCycles = {3842605, 2231607, 729651, 242301, 79223, 26308,
                                               8602,    2856,    949,    310,    103};
@@ -87,7 +87,8 @@ TEST(Hand, HasTheProbabilitiesOfThePublishedExamples) {
   EXPECT_NEAR(5400 * HandDamage(2), 0.0074, 0.00005);
   EXPECT_NEAR(kHandRisk.Probability(5400 * HandDamage(2)), 0.265, 0.0005);
   EXPECT_NEAR(kHandRisk.Probability(1350 * HandDamage(4)), 0.321, 0.0005);
-  // A wrong DUET that agrees with the example above would give 65 % here instead of 41 %.
+  // A wrong version of DUET that agrees with the example above would give 65 % here instead of 41
+  // %.
   EXPECT_NEAR(kHandRisk.Probability(500 * HandDamage(6)), 0.41, 0.005);
 }
 
@@ -97,7 +98,8 @@ TEST(Shoulder, HasTheDamageOfThePublishedExamples) {
   const double one_hand = 2880 * ShoulderDamage(ShoulderMoment(2 * kPoundForce, 16 * kInch));
   EXPECT_NEAR(one_hand, 0.00428, 0.005 * 0.00428);
   EXPECT_NEAR(kShoulderRisk.Probability(one_hand), 0.208, 0.0005);
-  // The published damage of the second case is 2.6 % larger, for an unknown reason.
+  // For an unknown reason, the published damage of the second case is 2.6 % larger than the
+  // computed one.
   const double two_hands = 4800 * ShoulderDamage(ShoulderMoment(5 * kPoundForce, 18 * kInch));
   EXPECT_NEAR(two_hands, 0.03331, 0.03 * 0.03331);
   EXPECT_NEAR(kShoulderRisk.Probability(two_hands), 0.376, 0.003);

@@ -15,8 +15,8 @@ constexpr FatigueJoint kAllJoints[] = {
     FatigueJoint::kAnkle, FatigueJoint::kKnee, FatigueJoint::kTrunk,  FatigueJoint::kShoulder,
     FatigueJoint::kElbow, FatigueJoint::kGrip, FatigueJoint::kGeneral};
 
-// Returns the relative error of the closed form. It assumes that the active share equals the load,
-// but in the model this share is smaller by F / LD (LD = 10 1/s).
+// Returns the relative error of the closed form. The closed form assumes that the active share
+// equals the load, but in the model this share is smaller by F / LD (LD = 10 1/s).
 double ActivationError(const FatigueRates& rates) { return 2 * rates.fatigue / 10; }
 
 TEST(ThreeCompartments, FollowTheClosedFormUnderConstantLoad) {
@@ -43,7 +43,8 @@ TEST(ThreeCompartments, FailAtTheEnduranceTime) {
   }
 }
 
-// At full effort, the strength falls to R / (F + R). Any load below that can be held indefinitely.
+// At full effort, the strength falls to R / (F + R). Any load below this strength can be held
+// indefinitely.
 TEST(ThreeCompartments, EndAtTheStrengthThatRecoveryKeepsUp) {
   for (const FatigueJoint joint : kAllJoints) {
     const FatigueRates rates = FatigueRatesOf(joint);
@@ -87,7 +88,8 @@ TEST(ThreeCompartments, DoNotDependOnTheStep) {
 }
 
 // The coefficients were validated in this way: the model agrees with measured endurance within a
-// factor of two. Above 70 %, the model's endurance falls to 0, but the measured one does not.
+// factor of two. At loads above 70 % of the strength, the model's endurance falls to 0, but the
+// measured endurance does not.
 TEST(ThreeCompartments, AgreeWithMeasuredEnduranceWithinAFactorOfTwo) {
   for (const FatigueJoint joint : kAllJoints)
     for (const double load : {0.2, 0.3, 0.5, 0.7}) {

@@ -12,8 +12,8 @@
 namespace predictor::ergonomics {
 namespace {
 
-// The manual's examples are in inches and pounds. Its metric form is the same equation with these
-// units (10 in = 25 cm, 30 in = 75 cm, 51 lb = 23 kg).
+// The manual's examples are in inches and pounds. The metric form of the manual is the same
+// equation with rounded units (10 in = 25 cm, 30 in = 75 cm, 51 lb = 23 kg).
 constexpr double kManualInch = 0.025;       // [m]
 constexpr double kManualPound = 23.0 / 51;  // [kg]
 
@@ -71,7 +71,8 @@ TEST(Niosh, Example1LoadingPunchPressStock) {
   task.frequency = 0.1;
   task.coupling = Coupling::kFair;
   const LiftAssessment lift = AssessLift(task);
-  // The printed multipliers give these limits. They are rounded to two digits (10/23 to 0.44).
+  // The printed multipliers give these limits. The printed multipliers are rounded to two digits
+  // (10/23 to 0.44).
   EXPECT_NEAR(51 * 0.44 * 0.89 * 0.86 * 0.95, 16.3, 0.05);
   EXPECT_NEAR(51 * 0.44 * 0.75 * 0.86, 14.5, 0.05);
   constexpr double kRounding = 0.0055;
@@ -87,7 +88,7 @@ TEST(Niosh, Example1LoadingPunchPressStock) {
 
 // Section 2.4.5 of the manual is quoted from memory and was not verified. The limits are 20, 20 and
 // 15 lb for a single lift, the loads 30, 20 and 10 lb, and the frequencies 1, 2 and 4 lifts per
-// minute. They give CLI = 1.60 + 0.07 + 0.20.
+// minute. These values give CLI = 1.60 + 0.07 + 0.20.
 TEST(Niosh, CompositeIndexOfThreeTasks) {
   const auto task = [](double limit, double load, double frequency) {
     LiftTask t;
@@ -174,9 +175,9 @@ TEST(Niosh, AssistedLiftIsLabelledAsAdapted) {
   EXPECT_STREQ(AssistedLift::kCarriedLabel, "adapted, not NIOSH");
 }
 
-// Each equation is a reference load times factors that are 1 under the reference condition, within
-// the four printed digits. A wrong digit in any constant fails this test. With 0.6687 instead of
-// 0.6887, the men's sustained push would be 9 % too large.
+// Each equation multiplies a reference load by factors. Under the reference condition, these
+// factors are 1 within the four printed digits. A wrong digit in any constant fails this test. With
+// 0.6687 instead of 0.6887, the men's sustained push would be 9 % too large.
 TEST(LmMmh, EachEquationReturnsItsReferenceLoad) {
   constexpr double kOnceInEightHours = 1.0 / 480, kPrinted = 1e-3;
   const VerticalHandling female = {0.20, 9.221 / (2 * 13.69), 0.25, kOnceInEightHours};

@@ -72,8 +72,9 @@ TEST(PostureScores, AreThoseOfPublishedExamples) {
   }
 }
 
-// Two published examples whose stored text has the scores of the body parts, but not their angles:
-// phase 4 of text-id.123dok.com/document/nzw0r4ngy, and a pushed water bottle in wyeokwv4q.
+// Compares the scores with two published examples: phase 4 of
+// text-id.123dok.com/document/nzw0r4ngy, and a pushed water bottle in wyeokwv4q. Their stored texts
+// contain the scores of the body parts, but not the angles.
 TEST(PostureScores, CombineAsInPublishedExamples) {
   EXPECT_EQ(RulaTableC(4 + 1 + 0, 4 + 1 + 0), 6);
   EXPECT_EQ(RulaAction(6).level, 3);
@@ -81,7 +82,7 @@ TEST(PostureScores, CombineAsInPublishedExamples) {
   EXPECT_EQ(RebaTableC(5, 2 + 1), 4);
 }
 
-// The load classes that the postures do not reach (McAtamney & Corlett 1993).
+// Tests the load classes that do not occur in the scored postures (McAtamney & Corlett 1993).
 TEST(Rula, ScoresLoadsAsThePaperDoes) {
   const auto force = [](double load, bool held) {
     Exertion exertion;
@@ -165,8 +166,8 @@ TEST(Owas, MarksTheOneCellInWhichItsSourcesDiffer) {
   EXPECT_EQ(contested, 1);
 }
 
-// An upright person needs no action. A person who is bent and twisted, on bent knees and with a
-// heavy load, needs it immediately.
+// If a person is upright, no action is needed. If a person is bent and twisted, on bent knees and
+// with a heavy load, action is needed immediately.
 TEST(Owas, ClassifiesMeasuredPostures) {
   BodyPosture body;
   ArmPosture low, high;

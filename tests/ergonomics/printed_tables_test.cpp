@@ -18,10 +18,10 @@ std::vector<int> NumbersIn(const std::string& text) {
   return numbers;
 }
 
-// This table is from two public programs (in Korean and in Spanish), which agree. Its rows are the
-// upper arm, its columns the lower arm and the wrist, and each pair is the twist. Two other
-// programs have 6 instead of 7 for upper arm 5, lower arm 2, wrist 3, twist 2. An older worksheet
-// also has 7 there.
+// Two public programs (in Korean and in Spanish) contain this same table. Its rows correspond to
+// the score of the upper arm, and its columns to the scores of the lower arm and the wrist. The two
+// digits of a pair are for the two scores of the wrist's twist. For upper arm 5, lower arm 2, wrist
+// 3 and twist 2, two other programs have 6 instead of 7, but an older worksheet also has 7.
 constexpr const char* kPrintedRulaA =
     "12 22 23 33  22 22 33 33  23 33 33 44\n"
     "23 33 34 44  33 33 34 44  34 44 44 55\n"
@@ -29,8 +29,8 @@ constexpr const char* kPrintedRulaA =
     "44 44 45 55  44 44 45 55  44 45 55 66\n"
     "55 55 56 67  56 66 67 77  66 67 77 78\n"
     "77 77 78 89  88 88 89 99  99 99 99 99\n";
-// This table is from three public programs, which agree. Its rows are the neck, its columns the
-// trunk and the legs.
+// Three public programs contain this same table. Its rows correspond to the score of the neck, and
+// its columns to the scores of the trunk and the legs.
 constexpr const char* kPrintedRulaB =
     "1 3 2 3 3 4 5 5 6 6 7 7\n"
     "2 3 2 3 4 5 5 5 6 7 7 7\n"
@@ -38,7 +38,8 @@ constexpr const char* kPrintedRulaB =
     "5 5 5 6 6 7 7 7 7 7 8 8\n"
     "7 7 7 7 7 8 8 8 8 8 8 8\n"
     "8 8 8 8 8 8 8 9 9 9 9 9\n";
-// The rows are the wrist and arm, the columns the neck, trunk and legs.
+// The rows correspond to the score of wrist and arm, and the columns to the score of neck, trunk
+// and legs.
 constexpr const char* kPrintedRulaC =
     "1 2 3 3 4 5 5\n"
     "2 2 3 4 4 5 5\n"
@@ -69,15 +70,16 @@ TEST(Rula, TablesAreThoseOfOtherCopies) {
     EXPECT_EQ(RulaTableC(1 + i / 7, 1 + i % 7), c[static_cast<std::size_t>(i)]) << i;
 }
 
-// The REBA Employee Assessment Worksheet prints this table. Its rows are the trunk, its columns the
-// neck and the legs.
+// The REBA Employee Assessment Worksheet prints this table. Its rows correspond to the score of the
+// trunk, and its columns to the scores of the neck and the legs.
 constexpr const char* kPrintedRebaA =
     "1 2 3 4 1 2 3 4 3 3 5 6\n"
     "2 3 4 5 3 4 5 6 4 5 6 7\n"
     "2 4 5 6 4 5 6 7 5 6 7 8\n"
     "3 5 6 7 5 6 7 8 6 7 8 9\n"
     "4 6 7 8 6 7 8 9 7 8 9 9\n";
-// The rows are the upper arm, the columns the lower arm and the wrist.
+// The rows correspond to the score of the upper arm, and the columns to the scores of the lower arm
+// and the wrist.
 constexpr const char* kPrintedRebaB =
     "1 2 2 1 2 3\n"
     "1 2 3 2 3 4\n"
@@ -85,7 +87,7 @@ constexpr const char* kPrintedRebaB =
     "4 5 5 5 6 7\n"
     "6 7 8 7 8 8\n"
     "7 8 8 8 9 9\n";
-// The rows are score A from 1 to 9, where the copy ends. The columns are score B.
+// The rows correspond to score A, and the columns to score B. The copy ends at score A = 9.
 constexpr const char* kPrintedRebaC =
     "1 1 1 2 3 3 4 5 6 7 7 7\n"
     "1 2 2 3 4 4 5 6 6 7 7 8\n"

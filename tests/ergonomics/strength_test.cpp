@@ -12,7 +12,7 @@ namespace predictor::ergonomics {
 namespace {
 
 // Chaffin & Andersson's table of Stobbe's data gives means of 77 and 41 N·m for the elbow flexors
-// at 90° with the arm at the side. It is quoted from memory and was not verified.
+// at 90° with the arm at the side. The table is quoted from memory and was not verified.
 TEST(Strength, OfTheElbowIsThatOfThePublishedTable) {
   const auto flexion = [](Sex sex) {
     return MeanStrength(StrengthDirection::kElbowFlexion, sex, Degrees(90), 0);
@@ -64,7 +64,7 @@ TEST(Strength, SamplesHaveThePublishedSpreadAndCorrelation) {
     products += (shares[0] - 1) * (shares[3] - 1);
   }
   // The tolerance is five standard errors. The lower bound of the strength shifts the moments by
-  // less than that.
+  // less than this tolerance.
   const double error = 5 / std::sqrt(static_cast<double>(kPeople));
   for (std::size_t i = 0; i < sum.size(); ++i) {
     EXPECT_NEAR(sum[i] / kPeople, 0, 0.3 * error);

@@ -69,8 +69,8 @@ TEST(CensoredQuantile, IsTheUsualOneWithoutCensoring) {
                    Quantile(std::vector<double>{4, 8, 15, 16, 23}, 0.9));
 }
 
-// A limit censors the values. The estimate must find the quantiles below the limit without bias and
-// report those above it as unknown.
+// A limit censors the values above it. The estimate must find the quantiles below the limit without
+// bias and report those above it as unknown.
 TEST(CensoredQuantile, FindsTheTrueQuantilesBelowALimit) {
   std::mt19937_64 random(5);
   std::exponential_distribution<double> force(1 / 20.0);

@@ -1,5 +1,5 @@
-// Metrics of the virtual cobot: its limits, the late answers of its controller, and the fastest
-// joint of a simulation that diverged.
+// Tests metrics of the virtual cobot: its limits, the late answers of its controller, and the
+// fastest joint of a simulation that diverged.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -146,7 +146,8 @@ TEST(WarpedDistance, IsTheLeastOverAllPaths) {
 }
 
 TEST(WarpedDistance, StaysInItsBandAndForgivesWhatFits) {
-  // A delayed step costs nothing while the delay is within the band, but it does beyond the band.
+  // A delayed step must not contribute to the distance while the delay is within the band, but a
+  // longer delay must.
   std::vector<double> a(100, 0.0), late(100, 0.0), later(100, 0.0);
   std::fill(a.begin() + 40, a.end(), 1.0);
   std::fill(late.begin() + 49, late.end(), 1.0);
@@ -249,8 +250,8 @@ TEST(Impedance, OfOneSineCannotSeparateMassFromStiffness) {
   EXPECT_TRUE(std::isnan(FitImpedance({}, {}).viscosity));
 }
 
-// If the person only yields, the force is that of the hand, F = −(mass a + …). It contains no
-// information about the object.
+// If the person only yields, the force is the reaction of the hand itself, F = −(mass a + …). This
+// force contains no information about the object.
 TEST(Impedance, IsNotReportedForAnAxisWithoutMotion) {
   const auto position = Sampled(1000, [](double t) { return 1e-3 * std::sin(2 * t); });
   const auto force = Sampled(1000, [](double t) { return -0.6 * std::sin(2 * t); });

@@ -87,8 +87,8 @@ TEST(PaperTable, SolutionsHaveThePrintedFigures) {
 }
 
 TEST(PaperTable, RoundsExactlyAndHalvesAwayFromZero) {
-  // One answer of eight differs. The mean 1/8 = 0.125 is rounded to 0.13, and the deviation is
-  // √(1/8) = 0.35355.
+  // One answer of eight differs from the others by 1. The mean 1/8 = 0.125 is rounded to 0.13, and
+  // the deviation is √(1/8) = 0.35355.
   EXPECT_EQ(FiguresOf({0, 0, 7, 1, 0}), (RoundedFigures{13, 35}));
   EXPECT_EQ(FiguresOf({0, 1, 7, 0, 0}), (RoundedFigures{-13, 35}));
   EXPECT_EQ(FiguresOf({0, 0, 0, 0, 17}), (RoundedFigures{200, 0}));
@@ -376,8 +376,8 @@ TEST(SurveyReport, ShowsThePapersStudyAsThePaperDoes) {
 
 // The expected values were computed with scipy 1.17.1: wilcoxon(x, zero_method="wilcox",
 // method=PermutationMethod(n_resamples=inf)), which enumerates all signs. The shift is the median
-// of the 153 Walsh averages. Its limits are the 35th and the 119th, as in the published tables for
-// 17. Holm's correction was computed by hand.
+// of the 153 Walsh averages. The limits of the interval are the 35th and the 119th of these
+// averages, as in the published tables for 17 differences. Holm's correction was computed by hand.
 TEST(SurveyReport, ComparesThePapersAnswersWithNeutral) {
   struct Expected {
     double p, adjusted, shift, lower, upper;  // p in units of 2^−16

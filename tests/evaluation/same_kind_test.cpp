@@ -36,16 +36,16 @@ int CountDistinguished(double size, int trials, std::size_t count) {
 
 TEST(SameKind, OneInTwentyOfEqualKindsIsDistinguished) {
   // The number of distinguished cases has a binomial distribution with 400 trials at 5 %, so it is
-  // 20 ± 4.4. The limits are three and a half deviations away, which is exceeded about once in two
-  // thousand cases.
+  // 20 ± 4.4. The limits are three and a half standard deviations from the mean, which is exceeded
+  // about once in two thousand cases.
   const int distinguished = CountDistinguished(1, 400, 17);
   EXPECT_GE(distinguished, 5);
   EXPECT_LE(distinguished, 35);
 }
 
 TEST(SameKind, UnequalKindsAreDistinguished) {
-  // The sizes differ by 1.5 deviations. Student's test would detect the difference in 98 of 100
-  // cases.
+  // The sizes of the two kinds differ by 1.5 standard deviations. Student's test would detect the
+  // difference in 98 of 100 cases.
   EXPECT_GE(CountDistinguished(1.3, 100, 17), 90);
   // Kinds with the same mean but different variances must be distinguished as well.
   std::mt19937_64 random(3);

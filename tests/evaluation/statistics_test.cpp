@@ -51,7 +51,8 @@ TEST(Holm, AdjustsStepByStep) {
   EXPECT_EQ(HolmAdjusted(std::vector<double>{0.7, 0.9}), (std::vector<double>{1, 1}));
 }
 
-// Returns the differences 1, 2, ... n, of which some are negative. Their ranks have the given sum.
+// Returns the differences 1, 2, ... n, of which some are negative. The ranks of the negative
+// differences have the given sum.
 std::vector<double> WithNegativeRanks(std::size_t n, std::size_t sum) {
   std::vector<double> d(n);
   std::iota(d.begin(), d.end(), 1.0);
@@ -60,7 +61,7 @@ std::vector<double> WithNegativeRanks(std::size_t n, std::size_t sum) {
   return d;
 }
 
-// Textbooks print the largest rank sums that are significant in a two-sided test (n: sum).
+// For each n, textbooks print the largest rank sum that is significant in a two-sided test.
 TEST(SignedRank, HasTheCriticalValuesOfThePublishedTables) {
   const std::map<double, std::map<std::size_t, std::size_t>> tables = {
       {0.05, {{6, 0},   {7, 2},   {8, 3},   {9, 5},   {10, 8},  {11, 10}, {12, 13},
@@ -92,11 +93,13 @@ TEST(SignedRank, HasTheCriticalValuesOfThePublishedTables) {
                                                                // significant
 }
 
-// Hamilton's depression factor before and after therapy (Hollander & Wolfe, example 3.1).
+// The data are Hamilton's depression factor before and after therapy (Hollander & Wolfe, example
+// 3.1).
 const std::vector<double> kHamilton = {1.83 - 0.878, 0.50 - 0.647, 1.62 - 0.598,
                                        2.48 - 2.05,  1.68 - 1.06,  1.88 - 1.29,
                                        1.55 - 1.06,  3.06 - 3.14,  1.30 - 1.29};
-// Darwin's comparison of crossed and self-fertilised maize, in eighths of an inch.
+// The data are from Darwin's comparison of crossed and self-fertilised maize, in eighths of an
+// inch.
 const std::vector<double> kMaize = {49, -67, 8, 16, 6, 23, 28, 41, 14, 29, 56, 24, 75, 60, -48};
 
 TEST(SignedRank, AgreesWithPublishedExamples) {
@@ -230,7 +233,7 @@ TEST(HodgesLehmannEstimate, CoversTheShiftAsOftenAsItSays) {
   }
 }
 
-// Where both are available, the approximate interval must agree with the enumerated one.
+// If both intervals are available, the approximate one must agree with the enumerated one.
 TEST(HodgesLehmannEstimate, ApproximatesBeyondWhatIsEnumerated) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise;

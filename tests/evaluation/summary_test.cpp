@@ -1,4 +1,4 @@
-// Scripts use the names in the summary. Its values must match the records.
+// Scripts use the names in the summary. The values in the summary must match the records.
 #include "evaluation/summary.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TickRecord Running(double time, double error, double force) {
   return r;
 }
 
-// The hand in a record may be an invalid number.
+// The number of the hand in a record may be invalid.
 TEST(Summary, OfAStopByNoSide) {
   for (const int hand : {-128, -1, 0, 1, 2, 127}) {
     SummaryBuilder builder(Named("hostile", 7));
@@ -60,7 +60,7 @@ TEST(Summary, OfAStopByNoSide) {
   }
 }
 
-// Further metrics may add further names.
+// The summary must contain at least these names, but further metrics may add others.
 TEST(Summary, HasTheContractsNames) {
   SummaryBuilder builder(Named("name", 7));
   builder.Add(Running(0.001, 0.002, 10));
@@ -250,7 +250,7 @@ TEST(Summary, ReportsWhatMadeAStopHarderInItsOwnTick) {
 }
 
 // If the arms did not come to rest, the table must not claim that they did. The cause or the end of
-// the stop can show this.
+// the stop can show that the arms did not come to rest.
 TEST(Summary, StatesThatArmsDidNotRest) {
   const auto rested = [](StopCause cause, Quantity quantity, const StatusRecord& harder) {
     SummaryBuilder builder(Named("name", 1));
@@ -264,7 +264,7 @@ TEST(Summary, StatesThatArmsDidNotRest) {
     stop.harder = harder;
     builder.Add(stop);
     const std::string table = SummaryTable(builder.summary());
-    const bool reported = table.find("At rest after") != std::string::npos;
+    const bool reported = table.find("came to rest after") != std::string::npos;
     EXPECT_NE(reported, table.find("The arms had not come to rest.") != std::string::npos) << table;
     EXPECT_NE(reported, DidNotRest(builder.stops().stops().front()));
     return reported;
@@ -322,7 +322,7 @@ TEST(Summary, HasNoFiguresIfRunWasNotReached) {
   record.cause_hand = 0;
   builder.Add(record);
   const std::string table = SummaryTable(builder.summary());
-  EXPECT_NE(table.find("Not run:"), std::string::npos) << table;
+  EXPECT_NE(table.find("was never reached"), std::string::npos) << table;
   EXPECT_NE(table.find("by cause 'device', hand left"), std::string::npos) << table;
   for (const char* figure : {"While gripping", "Hands", "Height", "Time per tick"})
     EXPECT_EQ(table.find(figure), std::string::npos) << table;
@@ -333,8 +333,8 @@ TEST(Summary, HasNoFiguresIfRunWasNotReached) {
   EXPECT_EQ(json["stop"]["cause"], "device");
 }
 
-// Rest has the same definition as in a stop: a handle is not at rest while it rotates or its driver
-// moves it.
+// Here, rest has the same definition as in a stop. A handle is not at rest while it rotates or
+// while its driver moves it.
 TEST(Summary, RestsWhereTheStopRests) {
   const auto duration = [](const auto& at) {
     SummaryBuilder builder(Named("name", 1));
@@ -437,7 +437,7 @@ TEST(Summary, StatesTheGripOfTheCobot) {
   EXPECT_NEAR(grip["slipping_s"], 0.02, 1e-12);
   EXPECT_NEAR(grip["open_s"], 0.13, 1e-12);
   EXPECT_NE(SummaryTable(summary).find("Gripper"), std::string::npos);
-  // A cobot that never lets go is not worth a line.
+  // If the cobot never releases the object, the table must not contain a line about the gripper.
   const Summary held = WithGrip({{S::kHolds, 5}});
   EXPECT_EQ(nlohmann::json::parse(SummaryJson(held))["gripper"]["at_end"], "holding");
   EXPECT_EQ(nlohmann::json::parse(SummaryJson(held))["gripper"]["slipped"], false);

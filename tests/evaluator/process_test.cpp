@@ -40,7 +40,8 @@ class EvaluatorProcessTest : public testing::Test {
     for (std::uint64_t tick = first; tick <= last; ++tick)
       board_->records.Publish(RecordOf(tick, height, 20));
   }
-  // Returns the newest state. Before the first state, its tick is 0.
+  // Returns the newest state. Before the process has written the first state, the returned state
+  // has tick 0.
   PersonState Newest() const {
     PersonState state;
     const std::uint64_t written = (*states_).states.written();

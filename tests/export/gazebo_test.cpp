@@ -44,8 +44,8 @@ std::string OutputOf(const std::string& command) {
   return output;
 }
 
-// Applies the same control law as that program: springs and dampers in the joints, and a force on
-// the object's centre.
+// Applies the same control law as that program. The law consists of springs and dampers in the
+// joints, and a force on the object's centre.
 std::vector<Vector3> MoveInDart(const Scenario& scenario) {
   const auto robot = RobotModel::Load({scenario.cobot.model, scenario.folder(),
                                        scenario.cobot.remove_links, scenario.cobot.base.ToPose()});

@@ -361,7 +361,7 @@ TEST_P(ExportedScene, HasFloorAndTableWhereTheyAre) {
   EXPECT_NEAR(data->geom_xpos[3 * geom], table->top.x(), kExact);
 }
 
-// The bounding box along a fixture's own axes is that of its shape.
+// Along a fixture's own axes, its bounding box must be the bounding box of its shape.
 TEST_P(ExportedScene, HasTheFixturesWhereTheyAre) {
   mj_forward(mujoco.get(), data.get());
   for (std::size_t i = 0; i < scenario.environment.fixtures.size(); ++i) {

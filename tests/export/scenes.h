@@ -10,7 +10,7 @@
 namespace predictor::scene_export {
 
 // A cobot with slanted axes, an upright pitch axis, a prismatic joint, a continuous joint and a
-// branch. It uses the same names as the scene itself.
+// branch. Some of its links and joints have names that the scene itself uses.
 inline constexpr const char* kOddCobot = R"(<robot name="odd">
   <link name="world"><inertial><origin xyz="0.1 0 0.2"/><mass value="3"/>
     <inertia ixx="0.1" iyy="0.12" izz="0.09" ixy="0.01" ixz="-0.02" iyz="0.005"/></inertial></link>

@@ -1,5 +1,5 @@
-// Tests the scene as SDF: compares the poses of its links with our kinematics, and runs Gazebo's
-// checker.
+// Tests the scene as SDF. The tests compare the poses of its links with our kinematics, and run
+// Gazebo's checker.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <tinyxml2.h>
@@ -158,7 +158,7 @@ TEST_P(SdfScene, IsValidForGazebosChecker) {
   for (std::size_t n; (n = fread(text.data(), 1, text.size(), pipe)) > 0;)
     said.append(text.data(), n);
   const int status = pclose(pipe);
-  // The checker may print "Valid." and exit with 255 nevertheless, because of a library that it
+  // The checker may print "Valid." and still exit with 255, because it lacks a library that it
   // needs only for better error messages.
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   EXPECT_TRUE(code == 0 || code == 255) << code;

@@ -33,7 +33,7 @@ struct BenchOptions {
   std::function<void(std::array<JointVector, kHands>*)> start;
 };
 
-// Bytes that were written to an arm's controller: a part of a stream, or a datagram.
+// Bytes that were written to an arm's controller. They are a part of a stream or a datagram.
 struct Sent {
   std::uint64_t time;  // [ns]
   int hand;

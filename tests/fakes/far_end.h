@@ -1,6 +1,6 @@
 // The device side of the wire for tests: fakes that use a real protocol, byte by byte, in steps of
-// a millisecond. They depend on no socket and no clock, so the same code runs in memory and virtual
-// time (memory_network.h), and over sockets in a separate process (fake_rig.cpp).
+// a millisecond. The fakes depend on no socket and no clock. The same code therefore runs in memory
+// and virtual time (memory_network.h), and over sockets in a separate process (fake_rig.cpp).
 #pragma once
 
 #include <cstddef>

@@ -10,7 +10,7 @@ namespace predictor {
 namespace {
 
 // Returns the scenario's start joints with a small offset. The simulated device and operator
-// replace the scenario's.
+// replace those of the scenario.
 std::array<JointVector, kHands> Beside(Scenario scenario, const FarRig::Start& change) {
   constexpr double kBeside = 0.01;  // [rad]
   scenario.device.type = "simulated";
@@ -94,7 +94,7 @@ void FarRig::Step() {
   command.run_time = run_time_;
   for (std::size_t hand = 0; hand < kHands; ++hand)
     command.v[hand].setZero(sample_.arms[hand].q.size());
-  // Sensors do not command motion.
+  // The places of sensors contain no command.
   for (const Place& place : places_)
     if (place.mechanics->command.size() > 0)
       command.v[static_cast<std::size_t>(place.hand)] = place.mechanics->command;

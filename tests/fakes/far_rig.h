@@ -23,15 +23,15 @@ class FarRig {
   explicit FarRig(const Scenario& scenario, const Start& start = nullptr);
 
   // Adds a place for a controller or a sensor on the arm of a hand. The place is valid as long as
-  // this object.
+  // this object exists.
   Mechanics* Hang(int hand);
 
   // Lets one millisecond pass. The arms follow the commands in the places, which then receive new
   // samples.
   void Step();
 
-  // From now on, adds errors to the readings of a controller and a sensor: to the joints [rad]
-  // (empty for no error), and a wrench about S [N], [N·m].
+  // From now on, adds errors to the readings of a controller and a sensor. One error is added to
+  // the joints [rad] (none if empty), and the other is a wrench about S [N], [N·m].
   void Disturb(int hand, const JointVector& q, const Wrench& F_S);
   // From now on, adds a drift to the wrench [N/s], [N·m/s].
   void Drift(int hand, const Wrench& rate);
@@ -39,8 +39,8 @@ class FarRig {
   // From now on, delays the commands to this arm by this number of milliseconds, at most kMaxLate.
   static constexpr std::size_t kMaxLate = 64;
   void Hinder(int hand, std::size_t milliseconds);
-  // A person guides an arm to these joints [rad], whatever its controller commands. If empty, the
-  // person lets go.
+  // A person guides an arm to these joints [rad], whatever its controller commands. If the joints
+  // are empty, the person lets go.
   void Lead(int hand, const JointVector& q);
   // Returns whether the arm that a person guides has arrived.
   bool Led(int hand) const;
@@ -53,7 +53,7 @@ class FarRig {
   // Reports to the simulated operator whether the run is active.
   void SetRunning(bool running);
 
-  // A multiple of each controller's cycle, of which that of a CB3 is the slowest [ms].
+  // A multiple of every controller's cycle [ms]. The longest cycle is that of a CB3.
   static constexpr std::size_t kWindow = 8;
   // Motion of the true handles since Mark().
   struct Motion {

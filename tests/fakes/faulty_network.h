@@ -35,11 +35,11 @@ class FaultyNetwork final : public Network {
   // `network` must outlive this object. `seed` determines the random faults.
   FaultyNetwork(Network* network, std::uint64_t seed);
 
-  // Returns the faults of a host. They are valid as long as this object.
+  // Returns the faults of a host. The returned faults are valid as long as this object exists.
   WireFaults* Of(const std::string& host) { return &faults_[host]; }
 
-  // A function that receives all data written to a host, whether it arrives or not: a piece of a
-  // stream, or a datagram.
+  // A function that receives all data written to a host, whether the data arrives or not. The data
+  // is a piece of a stream or a datagram.
   using Heard = std::function<void(const std::string& host, std::span<const std::byte> bytes)>;
   void SetHeard(Heard heard) { heard_ = std::move(heard); }
   void Observe(const std::string& host, std::span<const std::byte> bytes) const {

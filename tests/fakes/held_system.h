@@ -27,8 +27,8 @@ class HeldSystem {
   // Throws the same exceptions as ConnectMachine.
   explicit HeldSystem(const HeldSystemOptions& options);
 
-  // Lets the millisecond before a tick pass, and also those of the ticks that were missed before
-  // it.
+  // Lets the millisecond before a tick pass, and also the milliseconds of the ticks that were
+  // missed before it.
   void Between(int missed = 0);
   void Tick(int missed = 0) {
     Between(missed);

@@ -55,7 +55,6 @@ std::unique_ptr<FakeDevice> MakeFakeFranka(const FakeOptions& options) {
   return std::make_unique<FakeFranka>(franka);
 }
 
-// One line for each kind.
 const std::map<std::string, Make> kKinds = {
     {"franka", MakeFakeFranka},
     {"net_ft", MakeFakeNetFt},

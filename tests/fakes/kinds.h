@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// The options after the address, as in "ur:127.0.0.2,cb3,register=24". Each is a word, or a key
-// with a value.
+// The options after the address, as in "ur:127.0.0.2,cb3,register=24". Each option is a word, or a
+// key with a value.
 using FakeOptions = std::map<std::string, std::string>;
 
 // Throws std::runtime_error with the list of known names if the name is unknown.

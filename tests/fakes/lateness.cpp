@@ -14,7 +14,7 @@ constexpr double kNoticed = 0.3;  // shorter delays are not recorded [ms]
 constexpr int kPriority = 90;     // above the loop (80) and the watchdog (85)
 constexpr std::size_t kMaxEntries = 100'000;
 
-// Binds the thread to that processor, with priority over all other threads on it.
+// Binds the thread to this processor and gives it priority over all other threads there.
 void TakeProcessor(int processor) {
   cpu_set_t set;
   CPU_ZERO(&set);

@@ -1,7 +1,7 @@
-// Measures how late this computer is, in the process of the fakes. On each processor, a thread with
-// the highest priority wakes every half millisecond. One more thread has ordinary priority, and the
-// loop of the fakes is measured as well. If none of them is late, the cause of a silence of the
-// program is the program itself.
+// Measures, in the process of the fakes, how late this computer runs its threads. On each
+// processor, a thread with the highest priority wakes every half millisecond. One more thread has
+// ordinary priority. The delays of the fakes' own loop are measured as well. If none of these
+// threads is late, the program itself is the cause of its silence.
 #pragma once
 
 #include <atomic>
@@ -22,7 +22,7 @@ struct Delay {
   double longest = 0, sum = 0;
 };
 
-// Records delays with the time at which each one ended. It forgets the oldest ones.
+// Records delays with the time at which each one ended. The log forgets the oldest delays.
 class DelayLog {
  public:
   // `end` is a time [ns], and `length` is a duration [ms].

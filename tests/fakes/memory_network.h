@@ -20,8 +20,8 @@ class MemoryNetwork final : public Network {
   // Makes `device` answer at `host`. The device must outlive the network. `mechanics` belongs to
   // its arm.
   void Add(const std::string& host, FakeDevice* device, Mechanics* mechanics);
-  // Sets a function that moves the arms. It is called every millisecond of virtual time, after the
-  // steps of the fakes.
+  // Sets a function that moves the arms. The network calls this function every millisecond of
+  // virtual time, after the steps of the fakes.
   void SetWorld(std::function<void()> step) { world_ = std::move(step); }
   // Lets this much virtual time pass, in whole milliseconds [s].
   void Pass(double time);

@@ -21,7 +21,7 @@ class SocketHost final : public Wire {
   SocketHost(const SocketHost&) = delete;
   SocketHost& operator=(const SocketHost&) = delete;
 
-  // Passes received data to the device without waiting. Returns whether there was any.
+  // Passes received data to the device without waiting. Returns whether there was any data.
   bool Receive();
 
   void Send(int link, std::span<const std::byte> bytes) override;

@@ -1,5 +1,5 @@
 // Parses any stream as the answers of a Franka controller. The first byte determines how the stream
-// is cut, and the answers must not depend on that.
+// is cut, and the answers must not depend on these cuts.
 #include <algorithm>
 #include <cstdlib>
 #include <tuple>

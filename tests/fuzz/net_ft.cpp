@@ -1,5 +1,5 @@
-// Passes arbitrary datagrams to the driver as those of a force/torque sensor of either
-// manufacturer.
+// Passes arbitrary datagrams to the driver as if a force/torque sensor of either manufacturer had
+// sent them.
 #include "devices/net_ft/net_ft.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Parses any datagram as one of a force/torque sensor. An accepted datagram must be reproduced when
-// it is written again.
+// Parses any datagram as a reading of a force/torque sensor. An accepted datagram must be
+// reproduced when it is written again.
 #include "devices/net_ft/rdt.h"
 
 #include <cstdlib>

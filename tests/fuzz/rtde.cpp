@@ -1,6 +1,6 @@
 // Parses any stream as a robot's RTDE data. The first byte determines how the stream is cut, and
-// the packets must not depend on that. Each packet is also parsed as the answer to a recipe, as a
-// text message, and as a state of any recipe.
+// the packets must not depend on these cuts. Each packet is also parsed as the answer to a recipe,
+// as a text message, and as a state of any recipe.
 #include "devices/ur/rtde.h"
 
 #include <algorithm>

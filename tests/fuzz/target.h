@@ -1,6 +1,6 @@
-// The declaration that all fuzz targets share. libFuzzer calls the function (./dev fuzz NAME).
-// Without libFuzzer, replay.cpp calls it once for each file in the target's corpus, as a test of
-// the ordinary build.
+// Declares the function that each fuzz target defines. libFuzzer calls this function (./dev fuzz
+// NAME). Without libFuzzer, replay.cpp calls it once for each file in the target's corpus, as a
+// test of the ordinary build.
 #pragma once
 
 #include <cstddef>

@@ -11,7 +11,7 @@ namespace predictor {
 namespace {
 
 TEST(ApproachSpeed, IsTheVelocityDamperNearTheLimit) {
-  // By equation (15), the speed is ξ_q (distance) / (q_i − q_s), as long as the required
+  // According to equation (15), the speed is ξ_q (distance) / (q_i − q_s), as long as the required
   // deceleration is allowed.
   const double gain = 1.0 / 0.28;
   for (const double d : {1e-6, 0.01, 0.1, 0.28})

@@ -1,5 +1,5 @@
-// The problem that the paper's formulation assembles must equal equations (3) to (15). They are
-// written out here with matrices as in the paper.
+// The problem that the paper's formulation assembles must equal equations (3) to (15). The test
+// writes these equations with matrices, as the paper does.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -129,7 +129,7 @@ TEST_F(PaperFormulation, EqualsTheEquations) {
     ASSERT_EQ(qp.m(), 7);
     ASSERT_LT((Matrix(qp.H()) - paper.P).lpNorm<Eigen::Infinity>(), 1e-12);
     ASSERT_LT((Vector(qp.f()) - paper.c).lpNorm<Eigen::Infinity>(), 1e-12);
-    // The first row is −G x ≥ −h.
+    // The first row of the QP corresponds to the paper's G x ≤ h, written as −G x ≥ −h.
     ASSERT_LT((Matrix(qp.A()).row(0) + paper.G).lpNorm<Eigen::Infinity>(), 1e-12);
     if (paper.h[0] < 1e29)
       ASSERT_NEAR(qp.b()[0], -paper.h[0], 1e-12);

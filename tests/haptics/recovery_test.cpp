@@ -1,5 +1,5 @@
-// Tests recovery's motion at random states of two arms. It must remove the violation, yield to the
-// hand, and be slow.
+// Tests recovery's motion at random states of two arms. The motion must remove the violation, yield
+// to the hand, and be slow.
 #include "haptics/recovery.h"
 
 #include <gtest/gtest.h>
@@ -87,7 +87,8 @@ TEST_F(RecoveryTest, FindsViolations) {
 
 // A joint within its security distance counts as beyond its limit, and links within
 // rendering.security_distance count as too near. Rendering moves no joint into this zone and could
-// not move one back, so RECOVERY must do it. The message names the joint and its allowed range.
+// not move a joint out of it, so RECOVERY must do so. The message names the joint and its allowed
+// range.
 TEST_F(RecoveryTest, AJointNearerToItsLimitThanRenderingKeepsIsBeyond) {
   const double security = two_.scenario_.rendering.joint_security;
   for (int k = 0; k < 50; ++k) {

@@ -46,8 +46,8 @@ TEST(Renderer, HasAVerifiedSolutionEverywhereSoak) {
   }
 }
 
-// The relative pose may yield to limits but never to tracking. Its weighted slack must be the same
-// without tracking.
+// The relative pose may yield to limits but never to tracking. The weighted slack of the relative
+// pose must be the same with and without tracking.
 TEST(Renderer, RelativePoseDoesNotYieldToTrackingSoak) {
   TwoArms two;
   RandomStream random(2, "priorities");
@@ -115,8 +115,8 @@ TEST(Renderer, HasTheSameSolutionByWeightsAndByRows) {
   EXPECT_GT(compared, 250);
 }
 
-// One arm has no relative pose. The problem then needs no rows for it, and both forms are
-// identical.
+// A single arm has no relative pose. The problem then has no rows for the relative pose, and both
+// forms of the problem are identical.
 TEST(Renderer, OfOneArmHasNoRowsOfTheRelativePose) {
   TwoArms two;
   two.models_[1] = nullptr;
@@ -153,8 +153,8 @@ TEST(Renderer, PublishesTheSlackOfEachLimit) {
   EXPECT_GT(yielding, 10);
 }
 
-// Whatever the gain, handles with a wrong relative pose must not approach each other faster than a
-// handle's caps allow.
+// Whatever the gain is, handles with a wrong relative pose must not approach each other faster than
+// a handle's caps allow.
 TEST(RelativePose, DemandsNoMoreThanTheCaps) {
   RandomStream random(11, "caps");
   double fastest = 0, quickest = 0;
@@ -239,7 +239,7 @@ TEST(Renderer, SlowsDownWithoutASolutionAndStopsAfterThreeTicks) {
     const Status status = renderer->Render(two.arms_, two.target_, two.last_, &result);
     EXPECT_TRUE(result.failed);
     EXPECT_EQ(status.cause, k < 2 ? StopCause::kNone : StopCause::kQp);
-    // The faster handle increases its deceleration at the jerk of a stop.
+    // The deceleration of the faster handle must increase with the jerk of a stop.
     const double factor = result.v[0][0] / two.last_[0][0];
     EXPECT_NEAR((1 - factor) * two.Speed(), two.scenario_.safety.stop_jerk * (k + 1) * kDt * kDt,
                 1e-9);

@@ -44,8 +44,8 @@ class TwoArms {
     }
   }
 
-  // Draws joint positions at random. One in four is at a limit, beyond a limit, or straight
-  // (singular). Command and target are random too, and the target is sometimes far away.
+  // Draws joint positions at random. One in four of the joints is at a limit, beyond a limit, or
+  // straight (singular). Command and target are random too, and the target is sometimes far away.
   void Draw(RandomStream* random) {
     for (int i = 0; i < kHands; ++i) {
       q_[i].resize(7);

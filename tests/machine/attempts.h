@@ -1,6 +1,6 @@
-// Repeats attempts of tests that need real time. If lateness stopped a run, the run may be repeated
-// only if the process of the fakes measured that the computer was late at that time. Otherwise the
-// program was late, and the test fails.
+// Repeats attempts of tests that need real time. A run that lateness stopped may be repeated only
+// if the process that runs the fakes also detected at that time that the computer was late.
+// If the computer was not late, the program was, and the test fails.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ enum class Late { kNothing, kComputer, kProgram };
 
 // Delays that stop the arms are longer than a computer's usual delays. Three missed deadlines in a
 // row take at least 2 ms (Monitor::kMissedDeadlines). The thread that watches a processor wakes
-// every half millisecond, so it notices all but half a millisecond of this. Ten missed deadlines
-// within a second also stop the arms (kMissedShare).
+// every half millisecond, so it may underestimate a delay by half a millisecond. Ten missed
+// deadlines within a second also stop the arms (kMissedShare).
 inline constexpr double kLateOnce = 2, kLateInSum = 6;  // [ms]
 // The letters of a key arrive every 33 ms and pass through two threads of ordinary priority. After
 // 100 ms without a letter, the key counts as released.
@@ -86,8 +86,8 @@ class Attempts {
     Note("", late, late.processor_sum);
     return true;
   }
-  // Ends a run that came to a stop, and judges it. Returns true if the computer's lateness spoiled
-  // the run. Otherwise it fails the test and returns false.
+  // Ends a run that has stopped, and judges its cause. Returns true if the computer's lateness
+  // spoiled the run. If not, the function fails the test and returns false.
   bool EndedByComputer(Terminal* terminal, FakeRig* rig) {
     terminal->Let();
     terminal->Kill(SIGINT);

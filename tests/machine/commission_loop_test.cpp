@@ -186,7 +186,7 @@ TEST_F(FrankaLoopAtTheTerminal, ItsStatesAreSeenAndAnsweredAsItSendsThem) {
       ASSERT_TRUE(attempts.WasSpoiled(terminal, rig_.get())) << terminal.Screen();
       continue;
     }
-    // Whatever the load on the computer, late ticks must account for all missing ticks.
+    // Whatever the load on the computer is, late ticks must account for all missing ticks.
     const commissioning::Gaps& gaps = record->gaps;
     const std::string seen = commissioning::GapsText(gaps);
     const double late =

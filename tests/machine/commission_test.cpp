@@ -1,6 +1,6 @@
 // Tests `predictor devices` and `predictor calibrate` as a person at a rig uses them: at a terminal
-// and over real sockets. The arms do not move by themselves here; commission_loop_test.cpp covers
-// that.
+// and over real sockets. In these tests, the arms do not move by themselves.
+// commission_loop_test.cpp covers motion by the program.
 #include <gtest/gtest.h>
 
 #include <cmath>

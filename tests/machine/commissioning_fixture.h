@@ -59,7 +59,7 @@ class Commissioning : public testing::Test {
     text << q.transpose();
     return text.str();
   }
-  // A person guides the arm there in free-drive and holds it.
+  // A person guides the arm to the joint angles `q` in free-drive and holds it at these angles.
   void Lead(const std::string& hand, const JointVector& q) {
     ASSERT_EQ(rig_->Ask("lead " + hand + " " + Text(q)), "ok");
     for (int i = 0; i < 3000 && rig_->Ask("led " + hand) != "yes"; ++i)

@@ -1,6 +1,7 @@
 // The program must read files from others before it connects to an arm. A file that makes a reader
-// fail, hang or crash then cannot affect an arm that follows the program. These tests have no
-// device: a program that connected first would report this instead of the file.
+// fail, hang or crash then cannot affect an arm that follows the program. In these tests, there is
+// no device. A program that tried to connect first would therefore report the missing device
+// instead of the file.
 #include <gtest/gtest.h>
 
 #include <fstream>

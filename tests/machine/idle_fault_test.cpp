@@ -63,7 +63,7 @@ TEST_P(IdleFault, EndsWithoutPowerAndIsReported) {
         EXPECT_EQ(rig.Ask(what), "ok") << what;
     }
     const bool unpowered = terminal.Says("Now UNPOWERED", 10);
-    // The lines appear one after the other.
+    // The console prints the lines one after the other, so the test waits for the last one.
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     terminal.Kill(SIGINT);
     const int code = terminal.Wait();

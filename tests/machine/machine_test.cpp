@@ -12,8 +12,8 @@ namespace predictor {
 namespace {
 
 // The allowed distance between the paths of one object in two runs of the same task [m]. Tared
-// sensors may differ by 0.2 N between runs. Where nothing else holds the object, the scenarios'
-// hands have a stiffness of 100 N/m.
+// sensors may differ by 0.2 N between runs. In directions in which nothing else holds the object,
+// the scenarios' hands have a stiffness of 100 N/m.
 constexpr double kBeside = 2e-3;
 
 // Returns the object's path in the run of a recording, one point every 20 ms [m].
@@ -68,7 +68,7 @@ class OnMachine : public testing::TestWithParam<Rigging> {
     folder_.NotePushTests();
     SwitchOn();
   }
-  // Resets the rig. After a stop without power, the simulated user switches it on again.
+  // Resets the rig. After a stop without power, the simulated user switches the power on again.
   void SwitchOn() {
     std::vector<std::string> fakes = {
         "left=" + std::string(GetParam().makes[0]) + ":" + HostOf(kLeft),
@@ -97,7 +97,8 @@ class OnMachine : public testing::TestWithParam<Rigging> {
   // If a hand's path deviates by the allowed distance, its force changes by this distance times the
   // hand's stiffness. The largest reading also contains some sensor noise.
   static void ExpectSameForces(const nlohmann::json& real, const nlohmann::json& simulated) {
-    // These are the maximum values of the scenarios' hands and sensors.
+    // These are the largest stiffness of the scenarios' hands [N/m] and the largest noise of their
+    // sensors [N].
     constexpr double kStiffest = 250, kNoise = 0.05;
     for (const char* hand : {"left", "right"}) {
       const double ours = real["wrench"][hand]["force_n"]["max"],
@@ -107,9 +108,9 @@ class OnMachine : public testing::TestWithParam<Rigging> {
       EXPECT_NEAR(ours, theirs, kStiffest * kBeside + 5 * kNoise);
     }
   }
-  // The tracking error may be that of docs/concepts/accuracy.md plus the effect of 3 ms more lag,
-  // at 0.020 mm per millisecond. This lag is one controller cycle that a command misses plus one
-  // tick of the program.
+  // The tracking error may exceed the one in docs/concepts/accuracy.md by the effect of 3 ms more
+  // lag, at 0.020 mm per millisecond. The additional lag is one controller cycle that a command
+  // misses plus one tick of the program.
   static void ExpectTracking(const nlohmann::json& real, const nlohmann::json& simulated) {
     constexpr double kByLag = 0.020, kLag = 3, kSimulated = 0.10;  // [mm/ms], [ms], [mm]
     for (std::size_t i = 0; i < 2; ++i) {
@@ -196,10 +197,10 @@ TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
   ExpectSamePath(PathOf(recording), PathOf(reference));
 }
 
-// Whenever the program dies, the arms must come to rest by themselves within the time advertised
-// for the slower make, and must brake no harder than advertised for the quicker make. The program
-// dies during one cycle of a motion from side to side. The moments are spread evenly over the
-// cycle, so half of them fall into its faster half.
+// Whenever the program dies, the arms must come to rest by themselves within the time that the
+// documents state for the slower make. They must brake no harder than the documents state for the
+// quicker make. The program dies during one cycle of a motion from side to side. The moments are
+// spread evenly over the cycle, so half of them fall into its faster half.
 TEST_P(OnMachine, OutlivesAKilledProgramSoak) {
   constexpr double kGolden = 0.6180339887498949;
   scenario_ = folder_.Brisk(GetParam().scenario);
@@ -252,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(
     Of, OnMachine,
     testing::Values(
         Rigging{"two UR", "dual_ur5", {"ur", "ur"}, {0.16, 0.16}},
-        // This rig must be as accurate as two UR with their own sensors.
+        // This rig must be as accurate as two URs with their own sensors.
         Rigging{"two UR, Net FT", "dual_ur5", {"ur", "ur"}, {0.16, 0.16}, {"net_ft", "net_ft"}},
         Rigging{"two Franka", "box_9kg", {"franka", "franka"}, {0.39, 0.40}},
         Rigging{"UR, Franka", "ur_and_panda", {"ur", "franka"}, {0.25, 0.48}}),
@@ -262,8 +263,8 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
-// Readings queue at a sensor's socket while the program connects to the arms. They must not cause a
-// stop although they are old.
+// Readings queue at a sensor's socket while the program connects to the arms. Although these
+// readings are old, they must not cause a stop.
 TEST(NetFtOnMachine, IsReadyDespiteBufferedReadings) {
   const MachineFolder folder({"ur", "ur"}, {"net_ft", "net_ft"});
   folder.NotePushTests();
@@ -381,8 +382,8 @@ TEST_F(PushTests, DoNotSufficeWhereTheLoopIsPredictedToSwing) {
 class RigsConsole : public testing::Test {
  protected:
   RigsConsole() : folder_({"ur", "ur"}) { folder_.NotePushTests(); }
-  // `act` performs the person's actions from IDLE on. It sets the text that is expected on the
-  // screen. The run ends with Ctrl-C.
+  // `act` performs the person's actions from IDLE on. `act` also sets the text that is expected on
+  // the screen. The run ends with Ctrl-C.
   void InIdle(const std::function<void(Terminal*, bool* expected)>& act) const {
     Attempts attempts;
     while (attempts.Next()) {
@@ -439,7 +440,7 @@ TEST_F(RigsConsole, LettersThatComeAtOnceHoldNothing) {
       terminal->Type(letters);
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    *expected = terminal->Says("the presses of key a arrived late, all at once", 5) &&
+    *expected = terminal->Says("its presses arrived late and all at once", 5) &&
                 terminal->Screen().find("Now ALIGN") == std::string::npos;
     terminal->Hold('a');  // none of these letters may remain
     *expected = terminal->Says("Now ALIGN", 5) && *expected;
@@ -460,8 +461,8 @@ TEST_F(RigsConsole, ResetsOncePerTouch) {
   });
 }
 
-// The console redraws the progress ten times a second, and other threads print lines. Neither may
-// interrupt the command that the user is typing.
+// The console redraws the progress ten times a second, and other threads print lines. Neither the
+// progress nor these lines may interrupt the command that the user is typing.
 TEST(Console, KeepsTheTypedText) {
   Terminal terminal({"run", FileOf("box_9kg"), "--no-viewer", "--no-record", "--duration", "60"});
   ASSERT_TRUE(terminal.Says("Running", 60)) << terminal.Screen();

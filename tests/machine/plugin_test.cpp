@@ -87,7 +87,7 @@ TEST(PluginHang, OfAProcessIsBridgedUntilTheRunStops) {
                    "/tests/plugins/process.py, \"hang\", \"0.05\"]}"});
     EXPECT_EQ(run.Wait(), 1) << run.errors();
     const std::string said = run.output() + run.errors();
-    EXPECT_NE(said.find("At rest after"), std::string::npos) << said;
+    EXPECT_NE(said.find("came to rest after"), std::string::npos) << said;
     Child verify({"verify", file});
     EXPECT_EQ(verify.Wait(), 0) << verify.output();
     // On a busy computer, the answers come so irregularly that the cobot oscillates.

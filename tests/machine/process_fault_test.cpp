@@ -13,8 +13,8 @@ std::vector<std::string> Arguments(const std::string& scenario, const MachineFol
           "--no-viewer", "--no-record"};
 }
 
-// For fault 31, the loop hangs, and the watchdog process brakes the arms to which it has a channel.
-// When the loop continues, it finds the arms stopped and stops too.
+// If the loop hangs (fault 31), the watchdog process must brake the arms to which it has a channel.
+// When the loop continues, it must detect that these arms have stopped, and stop too.
 TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
   const MachineFolder folder({"ur", "franka"});
   folder.NotePushTests();
@@ -88,7 +88,7 @@ TEST(ProcessFault, CtrlCInARunIsNotAHang) {
 
 // The watchdog's channel is closed during the run. The program must report this immediately, not
 // only when it needs the channel, and the channel must be restored automatically. Lateness may stop
-// the loop meanwhile, but the watchdog keeps watching.
+// the loop during this test, but the watchdog must continue to watch.
 TEST(ProcessFault, ALostStopChannelIsReportedAndRestored) {
   const MachineFolder folder({"ur", "franka"});
   folder.NotePushTests();
@@ -173,9 +173,9 @@ TEST(ProcessFault, AConsoleThatReceivesNoMoreKeysStopsTheRun) {
   EXPECT_EQ(terminal.Wait(), 1) << terminal.Screen();
 }
 
-// For fault 33, the program must not move real arms if another program could delay the loop.
+// If other programs could delay the loop (fault 33), the program must not move real arms.
 TEST(ProcessFault, WithoutRealTimePriorityRealArmsAreRefused) {
-  // The refused hosts include names that only look like addresses of this computer.
+  // The refused hosts include a name that only looks like an address of this computer.
   for (const char* host : {"192.0.2.10", "127.robot.example"}) {
     const MachineFolder folder({"ur", "ur"});
     folder.Change([&](Machine* machine) { machine->left->connection.host = host; });

@@ -46,9 +46,10 @@ struct RigMotion {
   double rest_after = 0, fastest = 0, hardest = 0, distance = 0, joint = 0, braking = 0;
 };
 
-// The longest delays that the process of the fakes measured [ms]. They are those of its
-// highest-priority threads on each processor (and their sum), of its own loop, and of a thread with
-// the ordinary priority of the program's console. The program's longest silence is included.
+// The longest delays that the process of the fakes measured [ms]. `processor` is the longest delay
+// of the highest-priority threads on each processor, and `processor_sum` is the sum of these
+// delays. `rig` is the delay of the fakes' loop. `ordinary` is that of a thread with the ordinary
+// priority of the program's console. `silence` is the program's longest silence.
 struct RigLateness {
   double processor = 0, processor_sum = 0, rig = 0, silence = 0, ordinary = 0;
 };
@@ -125,9 +126,9 @@ class FakeRig {
   int to_ = -1, from_ = -1;
 };
 
-// The time to rest and the deceleration that the documents state for the worse of two makes. They
-// apply if the program dies while the fastest joint moves at `speed` [rad/s]. A thousandth is added
-// to the deceleration for rounding.
+// The time to rest and the deceleration that the documents state for the worse of two makes. Both
+// values apply if the program dies while the fastest joint moves at `speed` [rad/s]. A thousandth
+// is added to the deceleration for rounding.
 struct Advertised {
   // The program's driver allows this deceleration of a Franka's joints [rad/s²].
   static constexpr double kLetThrough = 0.95 * 10;
@@ -143,8 +144,8 @@ struct Advertised {
   double rest_after = 0, braking = 0;  // [s], [rad/s²]
 };
 
-// The messages that end a run or the measurement of a joint, whether the computer or the program
-// was late.
+// The messages that end a run or the measurement of a joint because the computer or the program was
+// late.
 inline constexpr std::array kLateSigns = {"the stop 'stale'",
                                           "the stop 'deadline'",
                                           "received no command from this",
@@ -236,8 +237,8 @@ class Terminal {
   }
   // Returns whether the arms become ready before any stop.
   bool IsIdle() { return Comes("Now IDLE"); }
-  // Goes through ALIGN and ARMED to RUN and then notifies the person of the fakes. Returns false at
-  // a stop.
+  // Goes through ALIGN and ARMED to RUN, and then notifies the person whom the fakes simulate.
+  // Returns false if the run stops.
   bool Start(FakeRig* rig) {
     if (!IsIdle()) return false;
     Hold('a');
@@ -246,7 +247,7 @@ class Terminal {
     return Comes("Now RUN") && rig->Ask("run") == "ok";
   }
 
-  // Returns whether the text appears before a stop.
+  // Returns whether the text appears before the run stops.
   bool Comes(const std::string& text) {
     for (int i = 0; i < 1500; ++i) {
       if (Says(text, 0.02)) return true;
@@ -374,7 +375,7 @@ class MachineFolder {
   void Change(const std::function<void(Machine*)>& change) const {
     commissioning::ChangeMachine(file(), "before", change);
   }
-  // Stores results like those of `predictor calibrate loop` and `predictor calibrate push`.
+  // Stores the results that `predictor calibrate loop` and `predictor calibrate push` would store.
   void NotePushTests() const {
     Change([](Machine* machine) {
       NoteLoops(machine);

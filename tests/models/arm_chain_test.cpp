@@ -51,7 +51,8 @@ TEST(ArmChain, OfSeveralArmsIsOneOrTheOneOfTheGivenLink) {
             (Names{"left_s0", "left_s1", "left_e0", "left_e1", "left_w0", "left_w1", "left_w2"}));
   EXPECT_NE(std::ranges::find(left.remove_links, "head"), left.remove_links.end());
   EXPECT_NE(std::ranges::find(left.remove_links, "right_upper_shoulder"), left.remove_links.end());
-  // The remaining model must have the joints of the chain and weigh less by what was removed.
+  // The remaining model must have only the joints of the chain, and its mass must be that of the
+  // robot minus the removed mass.
   const UrdfModel rest = ReadUrdf(baxter.file, left.remove_links);
   EXPECT_EQ(RobotModel::Build(rest, {})->dof(), 7);
   EXPECT_NEAR(rest.Mass() + left.removed_mass, baxter.Mass(), 1e-9);
@@ -82,7 +83,7 @@ TEST(ArmChain, EndsWhereAHandBeginsWhateverItsNames) {
   const std::string two =
       Link("x") + Link("y") + Link("z") + Joint("x", "a5") + Joint("y", "x") + Joint("z", "a5");
   EXPECT_EQ(ArmOf(Chain(6) + two).remove_links, (Names{"x", "z"}));
-  // A branch close to the base leads to arms.
+  // A branch close to the base belongs to another arm, so its links must be removed.
   const std::string arm = Link("x") + Joint("x", "a1");
   EXPECT_EQ(ArmOf(Chain(6) + arm).end_effector, "a5");
   EXPECT_EQ(ArmOf(Chain(6) + arm).remove_links, Names{"x"});

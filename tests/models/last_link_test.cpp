@@ -26,7 +26,7 @@ TEST(LastLink, PointsOutOfTheFlange) {
       {"kinova_description/robots/kinova.urdf", "j2s6s200_end_effector", {1, 0, 0}},
       // The fingertips of this gripper are 5° off the axis of its last joint.
       {"so_arm_description/urdf/so101.urdf", "gripper_frame_link", {0, 0, 1}, 0.1},
-      // These frames are at the origin of their joint.
+      // Each of the following frames is at the origin of its joint.
       {"xarm_description/urdf/xarm7.urdf", "link7", {0, 0, 1}},
       {"xarm_description/urdf/xarm7.urdf", "link_eef", {0, 0, 1}},
       {"so_arm_description/urdf/so100.urdf", "gripper", {0, -1, 0}}};
@@ -42,7 +42,7 @@ TEST(LastLink, PointsOutOfTheFlange) {
   }
 }
 
-// The last link of this arm bends, and only its centre of mass says where it points.
+// The last link of this arm is bent, so only its centre of mass shows where it points.
 TEST(LastLink, PointsToTheCentreOfMassOfALinkThatBends) {
   const UrdfModel urdf = ParseUrdf(R"(<robot name="arm"><link name="base"/>
     <link name="hand"><inertial><origin xyz="0.02 0.2 0"/><mass value="1"/>

@@ -1,4 +1,5 @@
-// The program must refuse collision meshes that would delay the start before the engine reads them.
+// If collision meshes would delay the start too much, the program must refuse them before the
+// engine reads them.
 #include "models/mesh_size.h"
 
 #include <gtest/gtest.h>

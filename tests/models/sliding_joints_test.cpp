@@ -27,7 +27,8 @@ std::string ErrorOf(const std::string& urdf) {
   return "";
 }
 
-// M = m, and the weight along the axis is m g n_z, whatever the velocity.
+// The mass matrix must be M = m, and the force of the weight along the axis must be m g n_z at any
+// velocity.
 TEST(Prismatic, CarriesAMassAlongAnyAxis) {
   const Pose X_WB = SlantedBase();
   for (const Vector3& axis : {Vector3(0, 0, 1), Vector3(1, 0, 0), Vector3(0.3, -1, 0.2)}) {

@@ -58,7 +58,8 @@ TEST(Activation, AnOpposingMuscleRests) {
   EXPECT_EQ(result.activation[1], 0);
 }
 
-// A lower bound of the opposing muscle costs the other one just as much torque.
+// If the opposing muscle has a lower bound, the other muscle must produce just as much additional
+// torque.
 TEST(Activation, CoContractionIsBalanced) {
   ActivationProblem problem = TwoMuscles(9);
   problem.torque(3, 1) = -10;

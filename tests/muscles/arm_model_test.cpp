@@ -81,7 +81,7 @@ TEST(ArmModel, ScalesWithTheSegments) {
   EXPECT_LT((after.length - 1.1 * before.length).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-// The power of the muscles at the joints must equal that of their tendons.
+// The power of the muscles at the joints must equal the power of their tendons.
 TEST(ArmModel, TorquesAndTendonsDoTheSamePower) {
   constexpr double kTime = 1e-6;
   const ArmModel arm({}, 1);

@@ -18,7 +18,7 @@
 namespace predictor::muscles::myo {
 namespace {
 
-// In MyoArm's axes: x forward, y up, z to the right [m].
+// These points are given in MyoArm's axes: x forward, y up, z to the right [m].
 const Vector3 kPivot(-0.02, 0.05, -0.1);           // of the shoulder blade
 const Vector3 kShoulder(0.01, 0, 0.02);            // in the zero posture
 constexpr double kSlope = 0.35, kCurvature = 0.1;  // of blade angle versus elevation
@@ -32,8 +32,8 @@ constexpr const char* kNames[] = {
 constexpr int kStrands = static_cast<int>(std::size(kNames));
 constexpr int kOnUpperArm = 15;  // number of strands that end at the upper arm
 
-// Return the ends of a strand. The origin is on the shoulder blade (even numbers) or on the torso
-// (odd numbers), in the torso's axes.
+// These two functions return the ends of strand `i`. The origin of an even strand is on the
+// shoulder blade and that of an odd strand on the torso, both in the torso's axes.
 Vector3 OriginOf(int i) {
   return kShoulder + Vector3(0.03 * std::sin(i), 0.02 + 0.004 * (i % 5), -0.02 * std::cos(2 * i));
 }
@@ -136,7 +136,7 @@ TEST_F(MyoArmTest, MomentArmsAreTheSlopesAlongTheCoupledPath) {
 }
 
 // The upper arm must have the orientation of our body model, and the shoulder blade must follow its
-// elevation. The lengths are computed here without MuJoCo.
+// elevation. The test computes the lengths without MuJoCo.
 TEST_F(MyoArmTest, TheUpperArmHasOurOrientationAndTheBladeFollows) {
   const auto paths = LoadMyoArm(Write(SmallArm()));
   const person::BodyModel body{BodySpec{}};
@@ -236,7 +236,7 @@ void ExpectSameCost(const ArmModel& arm) {
   }
 }
 
-// Returns the folder of the optional package (./dev: need_myo), or no name.
+// Returns the folder of the optional package, which need_myo in ./dev installs, or an empty name.
 std::filesystem::path Package() {
   if (const char* given = std::getenv("PREDICTOR_MYOARM")) return given;
   const std::filesystem::path lib = std::filesystem::path(PREDICTOR_SOURCE_DIR) / ".deps/myo/lib";
@@ -305,7 +305,7 @@ TEST_F(MyoArmPackage, PullsLikeTheBuiltInModelSoak) {
         return 1e3 * arm.LinesAt(q).moment_arm(static_cast<int>(c.joint), IndexOf(c.key));
       };
       std::printf(" %.0f / %.0f |", of(own), of(myo));
-      // At the shoulder, the models may differ even in sign.
+      // At the shoulder, even the sign of the moment arms may differ between the models.
       if (c.joint >= kElbowFlexion) {
         EXPECT_GT(of(own) * of(myo), 0) << c.key;
       }

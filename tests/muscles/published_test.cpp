@@ -17,9 +17,9 @@ double ArmAt(const ArmModel& arm, const char* key, person::ArmJoint joint, doubl
   return 1e3 * arm.LinesAt(q).moment_arm(static_cast<int>(joint), IndexOf(key));
 }
 
-// The moment arms [mm] about the elbow are polynomials of the angle a [rad]. They are from Lemay &
-// Crago 1996 as reproduced by the Institute of Biomechanics, Bulgarian Academy of Sciences, where
-// they were verified.
+// The moment arms [mm] about the elbow are polynomials of the angle a [rad]. The polynomials are
+// from Lemay & Crago 1996. They were verified in the reproduction by the Institute of Biomechanics,
+// Bulgarian Academy of Sciences.
 struct ElbowArm {
   const char* key;
   double c[6];       // [cm]
@@ -62,7 +62,8 @@ TEST(Published, MomentArmsOfTheTriceps) {
 
 // In eight specimens, the peaks were 24.4 mm inward for the inferior subscapularis, and 28.3 mm and
 // 26.5 mm outward for the inferior infraspinatus and the teres minor (Ackland & Pandy 2011,
-// verified). The model has one path for each muscle, and its moment arms are smaller.
+// verified). The model has only one path for each muscle, and its moment arms are smaller than the
+// measured ones.
 TEST(Published, MomentArmsOfTheRotatorCuff) {
   const ArmModel arm({}, 1);
   for (const double degrees : {-45.0, 0.0, 45.0}) {
@@ -106,8 +107,8 @@ struct Moment {
 
 // The mean strength of men in the work posture is from Chaffin & Andersson for elbow and shoulder
 // (quoted from memory), and from Delp et al. 1996 for the wrist (verified: flexion 12.2 ± 3.7,
-// extension 7.1 ± 2.1, radial 11.0 ± 2.0, ulnar 9.5 ± 2.2). The model is known to lie between low
-// and high.
+// extension 7.1 ± 2.1, radial 11.0 ± 2.0, ulnar 9.5 ± 2.2). The model's moments must lie between
+// the columns `low` and `high`, which describe how far it is known to deviate.
 TEST(Published, StrongestMoments) {
   const ArmModel arm({}, 1);
   constexpr Moment kMoments[] = {{"elbow flexion", kElbowFlexion, 1, 77.7, 70, 100},

@@ -100,7 +100,7 @@ TEST(Stiffness, IsEmptyIfThePostureIsNotStable) {
   const ArmModel arm({}, 1);
   const ArmVector q = WorkPosture();
   EXPECT_FALSE(EndpointStiffness(-ArmMatrix::Identity(), PointAt(arm, q, Vector3::Zero())));
-  // A push along the arm buckles it.
+  // If the push acts along the arm, the arm buckles.
   EXPECT_FALSE(
       EndpointStiffness(0.1 * ArmMatrix::Identity(), PointAt(arm, q, Vector3(-500, 0, 0))));
 }

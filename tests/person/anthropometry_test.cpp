@@ -26,20 +26,21 @@ TEST(Anthropometry, StandsAsTallAsThePerson) {
     const Anthropometry a = AnthropometryOf(spec);
     EXPECT_NEAR(a.hip_height() + a.pelvis.length + a.torso.length + a.head.length, spec.height,
                 1e-12);
-    // Drillis & Contini give 0.530 and 0.818 of the height. The women in de Leva's table have
-    // longer trunks.
+    // According to Drillis & Contini, the hips are at 0.530 and the shoulders at 0.818 of the
+    // body's height. The women in de Leva's table have longer trunks.
     EXPECT_NEAR(a.hip_height() / spec.height, 0.53, spec.sex == Sex::kMale ? 0.005 : 0.035);
     EXPECT_NEAR((a.hip_height() + a.shoulder_height) / spec.height, 0.818, 0.035);
-    // For upper arm and forearm, they give 0.186 and 0.146. De Leva's joint centres are farther
-    // apart.
+    // According to Drillis & Contini, the lengths of upper arm and forearm are 0.186 and 0.146 of
+    // the body's height. In de Leva's table, the joint centres are farther apart.
     EXPECT_NEAR(a.upper_arm.length / spec.height, 0.186, 0.03);
     EXPECT_NEAR(a.forearm.length / spec.height, 0.146, 0.01);
   }
 }
 
-// De Leva also gives the whole trunk: 0.4346 of the mass, its centre 0.5138 of 603.3 mm from C7,
-// and radii of gyration of 0.328, 0.306 and 0.169 (for women 0.4257, 0.4964, 614.8; 0.307, 0.292,
-// 0.147).
+// De Leva also gives values for the whole trunk. For men, it has 0.4346 of the body's mass, its
+// centre of mass is at 0.5138 of its length of 603.3 mm from C7, and its radii of gyration are
+// 0.328, 0.306 and 0.169. For women, the corresponding values are 0.4257, 0.4964, 614.8 mm, 0.307,
+// 0.292 and 0.147.
 TEST(Anthropometry, PartsOfTheTrunkMakeTheWholeTrunk) {
   struct Whole {
     BodySpec spec;
@@ -120,7 +121,7 @@ TEST(Legs, StandStraightAndBendWithTheLawOfCosines) {
   BodyVector q = BodyVector::Zero();
   q[kPelvisZ] = -0.3;
   const BodyLegs bent = LegsOf(model, q, width);
-  // The test finds the knee's angle by bisection instead.
+  // The test finds the knee's angle by bisection and not by the product's formula.
   double low = 0, high = 3;
   for (int i = 0; i < 60; ++i) {
     const double knee = (low + high) / 2;

@@ -41,7 +41,7 @@ TEST_F(Loads, OfAStaticArmAreWeightTimesLever) {
   const double own =
       kG * (a.forearm.mass * a.forearm.com + a.hand.mass * (a.forearm.length + a.hand.com));
   const double grip = a.forearm.length + 0.9 * a.hand.length;
-  // Each hand carries 20 N. It pushes the handle up, and the handle pushes it down.
+  // Each hand carries 20 N. The hand pushes the handle up, and the handle pushes the hand down.
   const BodyLoads loads = Static(q, Pushing(q, {0, 0, 20}));
   for (int hand = 0; hand < kHands; ++hand) {
     const int elbow = Of(hand, ArmJoint::kElbowFlexion);
@@ -56,7 +56,8 @@ TEST_F(Loads, OfTheLowerBackFollowFromTheUpperBody) {
   const double upper =
       a.torso.mass + a.head.mass + 2 * (a.upper_arm.mass + a.forearm.mass + a.hand.mass);
   const BodyLoads standing = Static(BodyVector::Zero());
-  // All centres of mass are on the line from the hips to the head, from which the arms hang.
+  // All centres of mass are on the line from the hips to the head, because the arms hang from this
+  // line.
   const double moment = upper * kG * a.l5s1_behind;
   EXPECT_NEAR(standing.l5s1.flexion_moment, moment, 1e-9);
   EXPECT_NEAR(standing.l5s1.compression,
@@ -103,10 +104,12 @@ TEST_F(Loads, GroundCarriesTheWholeBodyUnderItsCentre) {
   EXPECT_LT(Static(q, Pushing(q, 150 * ahead)).balance.margin, 0);
 }
 
-// Wilke et al. 1999 measured the pressure in a lumbar disc of a person (72 kg, 1.74 m) with 20 kg:
-// 2.3 MPa lifted with a round back, 1.7 MPa with bent knees, 1.1 MPa held close to the body. The
-// angles of the postures are ours. The ratios of these loads agree within 25 %. Those to relaxed
-// standing (0.5 MPa) do not, because co-contraction is neglected (docs/concepts/person.md).
+// Wilke et al. 1999 measured the pressure in a lumbar disc of a person (72 kg, 1.74 m) who lifted
+// or held 20 kg. The pressure was 2.3 MPa during a lift with a round back, 1.7 MPa during a lift
+// with bent knees, and 1.1 MPa when the load was held close to the body. The angles of the postures
+// are ours. The ratios between these three loads agree with the model within 25 %. Their ratios to
+// the load of relaxed standing (0.5 MPa) do not agree, because the model neglects co-contraction
+// (docs/concepts/person.md).
 TEST(LowerBack, LoadsHaveTheRatiosOfMeasuredPressures) {
   BodySpec spec;
   spec.height = 1.74;
@@ -134,7 +137,7 @@ TEST(LowerBack, LoadsHaveTheRatiosOfMeasuredPressures) {
   EXPECT_NEAR(bent_knees / close, 1.7 / 1.1, 0.25 * 1.7 / 1.1);
 }
 
-// The work of the joints must equal the change of the body's energy: τ v = d(kinetic +
+// The power of the joints must equal the rate of change of the body's energy: τ v = d(kinetic +
 // potential)/dt.
 TEST_F(Loads, TorquesDoTheWorkOfTheMotion) {
   RandomStream random(3, "power");

@@ -22,7 +22,7 @@ inline BodySpec Woman() {
 // Returns an arbitrary place and direction in W.
 inline Stance SomeStance() { return StanceAt({0.4, -1.2, -0.7}, {-1, 0.5, 0}, 0.3); }
 
-// Each hand grips a bar along its handle's x axis, with the wrist towards z.
+// Each hand grips a bar along its handle's x axis, and its wrist is on the side of the z axis.
 inline std::array<Grip, kHands> Grips(bool turns) {
   Grip grip;
   grip.turns = turns;

@@ -52,8 +52,8 @@ TEST(PostureAngles, OfTheArmsHaveTheSignsOfTheWorksheets) {
     EXPECT_LT(
         with(ArmJoint::kElbowFlexion, kPi / 2, ArmJoint::kShoulderRotation, 1).hand_beside_midline,
         0);
-    // The palm faces the body. Flexion moves the knuckles towards it, ulnar deviation moves them
-    // backward.
+    // The palm faces the body. Flexion moves the knuckles towards the body, and ulnar deviation
+    // moves them backward.
     EXPECT_LT(with(ArmJoint::kWristFlexion, 0.5).hand_beside_shoulder, -0.02);
   }
 }

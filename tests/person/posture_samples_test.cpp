@@ -32,7 +32,8 @@ std::vector<double> Normals(RandomStream* random, int count) {
   return z;
 }
 
-// Draws a person as the samples are drawn. The interval must contain 59/65 of such persons.
+// Draws a person as the samples are drawn. The interval must contain the value of such a person
+// with the probability 59/65.
 VirtualPerson Inside(const BodySpec& spec, RandomStream* random) {
   const PostureSpread spread;
   return {VariedBody(spec, Normals(random, kBodyVariations), spread.length, spread.segment_mass),
@@ -108,7 +109,7 @@ void Add(const std::string& group, T truth, Range<T> range, ForEach for_each, Ta
   });
 }
 
-// Which parts are measured besides the hands.
+// States which parts of the body are measured besides the hands.
 struct Measured {
   const char* name;
   bool head, elbows;
@@ -211,10 +212,11 @@ void Print(const Table& table) {
 }
 
 // An interval from 64 samples contains a further sample with a probability that depends on the
-// draw: Beta(59, 6), 91 % ± 3.6 %. All people are judged with the same draw. The number of 200
-// people adds ± 2 %. If a value's coverage is below 91 % - 4 · √(3.6² + 2²) % = 74 %, that is a
-// defect. Pooled over all values, the target is 84 to 96 % for people inside the prior, and at
-// least 84 % outside.
+// draw. This probability has the distribution Beta(59, 6), which is 91 % ± 3.6 %. The test judges
+// all people with the same draw. Because there are only 200 people, the measured coverage varies by
+// a further ± 2 %. If a value's coverage is below 74 % (four standard deviations √(3.6² + 2²) %
+// below 91 %), the sampler has a defect. The target for the coverage of all values together is 84
+// to 96 % for people inside the prior, and at least 84 % for people outside.
 TEST(PostureSampler, CoversVirtualPeopleSoak) {
   const int people = static_cast<int>(Count(15, 200));
   for (const Measured& measured : kMeasured) {
@@ -271,7 +273,7 @@ TEST(PostureSampler, DrawsTheSamePersonsEachTime) {
   EXPECT_LT(first.loads.median.torque[elbow], first.loads.high.torque[elbow]);
 }
 
-// A person without any spread must be the nominal one, and a measured length must not vary.
+// If there is no spread, the person must be the nominal one. A measured length must not vary.
 TEST(PostureSampler, VariesOnlyWhatIsNotMeasured) {
   const std::vector<double> z(kPriorVariations, 1.0);
   const PosturePrior same = VariedPrior(DefaultPrior(), z, PostureSpread{0, 0, 0, 0, 0, 0, 0});

@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kPostures = 200;
 
-// The handles are at places that some posture reaches, within a share of the joints' ranges.
+// Each pair of handles is placed where a random posture, drawn from the middle share of the joints'
+// ranges, has its hands.
 TEST(PostureSolver, ReproducesThePositionsOfTheHands) {
   RandomStream random(1, "round trip");
   const BodyModel model{Man()};
@@ -124,7 +125,8 @@ TEST(PostureSolver, FollowsASmoothPathSmoothly) {
   EXPECT_LT((q - first).cwiseAbs().maxCoeff(), 0.05);  // back at the first posture
 }
 
-// Measured elbows and a measured head must pull those of the model away from the prior.
+// Measured positions of the elbows and the head must pull the model's elbows and head away from the
+// prior.
 TEST(PostureSolver, FollowsMeasuredElbowsAndHead) {
   RandomStream random(5, "elbows");
   const BodyModel model{Man()};

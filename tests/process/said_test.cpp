@@ -22,8 +22,8 @@ TEST(Said, IsOmittedAndCountedInAFlood) {
   int shown = 0;
   for (int k = 0; k < 10'000; ++k, now += milliseconds(1))
     shown += static_cast<int>(filter.Take("x", now).size());
-  // These are the lines that are shown immediately, followed by five lines a second, each with a
-  // sentence that counts the omitted lines.
+  // The first 30 lines are shown immediately. After that, five lines a second are shown, each with
+  // a sentence that counts the omitted lines.
   EXPECT_GE(shown, 30 + 2 * 49);
   EXPECT_LE(shown, 30 + 2 * 51);
   const auto later = filter.Take("y", now + seconds(10));

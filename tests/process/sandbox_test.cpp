@@ -63,7 +63,7 @@ std::string Inside(const Enter& enter, const std::function<std::string()>& look)
 }
 std::string Inside(const std::function<std::string()>& look) { return Inside(EnterSandbox, look); }
 
-// Queries the kernel, not the code under test.
+// This function queries the kernel itself, without the code under test.
 bool KernelHasBoth() {
   constexpr long kCreateRuleset = 444;
   return syscall(kCreateRuleset, nullptr, 0, 1) >= 1 && prctl(PR_GET_SECCOMP) >= 0;
@@ -77,8 +77,8 @@ class SandboxTest : public testing::Test {
   }
 };
 
-// System calls by number. Outside the sandbox, each one succeeds or fails with an error other than
-// EPERM.
+// System calls by number. Outside the sandbox, each of these calls succeeds or fails with an error
+// other than EPERM.
 struct Call {
   const char* name;
   std::function<long()> make;

@@ -119,7 +119,7 @@ TEST_F(SupervisedProcessTest, AStartThatFailsIsTriedAgain) {
   EXPECT_TRUE(IsThereAgain(pid));
 }
 
-// The supervising thread must continue to supervise the process, whatever error it meets.
+// Whatever error occurs, the supervising thread must continue to supervise the process.
 TEST_F(SupervisedProcessTest, AnExceptionInTheSupervisorIsReportedAndItContinues) {
   Start(false);
   ThrowAt("It is there.");

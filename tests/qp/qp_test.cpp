@@ -80,7 +80,7 @@ Optimality Conditions(const Qp& qp, const QpSolution& s) {
 }
 
 // With damping, as in rendering's last attempt, the solver must solve every problem. With little
-// regularisation it may give up, and rendering then makes its last attempt
+// regularisation, the solver may give up, and rendering then makes its last attempt
 // (tests/haptics/renderer_test.cpp).
 TEST(QpSolver, MeetsTheOptimalityConditionsWhenDamped) {
   RandomStream random(1, "qp");

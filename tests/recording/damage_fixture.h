@@ -1,4 +1,5 @@
-// A small recording to be damaged. The fixture compares what is read with what was written.
+// The fixture of tests that damage a small recording. The fixture compares what is read with what
+// was written.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -118,7 +119,7 @@ class Damage : public ::testing::Test {
       ASSERT_TRUE(Same(content.ticks[k], original_.ticks[k])) << what << ", tick " << k;
     ExpectOthers(content, what);
   }
-  // As above, but ticks may be missing if events report them.
+  // Does the same checks, except that ticks may be missing if events report them.
   void ExpectPart(const Content& content, const std::string& what) const {
     EXPECT_TRUE(SameHeader(content.header, original_.header)) << what;
     std::uint64_t last = 0, reported = 0, missing = 0;

@@ -63,7 +63,8 @@ TEST_F(Damage, EachByteFlippedSoak) {
   std::size_t errors = 0, whole = 0;
   std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
   for (std::size_t at = 0; at < bytes_.size(); at += step) {
-    // Flips one bit at a time, each in turn. Every ninth byte has all its bits flipped.
+    // Damages one byte at a time. In eight of nine bytes, one bit is flipped, and its position
+    // changes from byte to byte. In every ninth byte, all bits are flipped.
     const unsigned mask = at % 9 == 8 ? 0xFFU : 1U << (at % 9);
     const auto put = [&](char byte) {
       file.seekp(static_cast<std::streamoff>(at));
@@ -106,7 +107,7 @@ TEST_F(Damage, InBothPlaces) {
   const std::size_t run = bytes_.find("predictor.run") - mcap::kHead - 4;
   const std::size_t run_again = bytes_.find("predictor.run", copy) - mcap::kHead - 4;
   const std::map<std::string, std::string> places = {
-      // Each piece is listed with a text that it contains.
+      // The list contains, for each piece, a text that occurs in it.
       {"predictor.labels", "P07"},    {"predictor.models", "abc123"},
       {"scenario.yaml", "name: Box"}, {"machine.yaml", "device: here"},
       {"robot.urdf", "<robot/>"},     {"topics", "predictor_msgs/msg/Qp"}};

@@ -122,8 +122,8 @@ std::uint64_t BytesRead() {
   return bytes;
 }
 
-// Each header seems to contain all following data. The number of reads of each byte must be bounded
-// nevertheless.
+// Each header seems to contain all following data. Even then, the number of times that each byte is
+// read must be bounded.
 TEST_F(Damage, AFileFullOfHeadsIsNotReadAgainForEach) {
   const std::size_t first = bytes_.find("zstd") - 4 - mcap::kHead - 28;
   std::string hostile = bytes_.substr(0, first);

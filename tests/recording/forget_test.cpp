@@ -126,7 +126,7 @@ TEST_F(Forget, ReportsFilesThatCouldNotBeDeleted) {
   fs::permissions(folder_.path(), fs::perms::others_exec, fs::perm_options::add);
   fs::permissions(Path("fixed"), fs::perms(0555));
   const auto found = FindPerson(folder_.path(), kPerson).found;
-  // Root may delete everything, so another user tries.
+  // The root user may delete everything, so the test uses another user.
   const uid_t user = geteuid();
   ASSERT_EQ(seteuid(user == 0 ? 65534 : user), 0);
   const auto failed = Delete(found);

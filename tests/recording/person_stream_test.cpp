@@ -1,4 +1,5 @@
-// Tests the person's states in a recording. They have their own topic, and no tick depends on them.
+// Tests the person's states in a recording. The states have their own topic, and no tick depends on
+// them.
 #include <gtest/gtest.h>
 
 #include <thread>

@@ -222,7 +222,7 @@ TEST_F(Live, ReportsLostTicksAndRequestsASnapshotAfterThem) {
   Publish(10);
   Await([&] { return !recorder.SnapshotBuffer().empty(); });
   recorder.SnapshotTaken(10, 1);
-  // However fast the recorder encodes, it must wait for a disk that accepts no data, so the ring
+  // Even if the recorder encodes fast, it must wait for a disk that accepts no data, so the ring
   // overflows.
   for (std::uint64_t n = 20'000; recorder.status().lost == 0; n *= 2) {
     disk_.held = true;
@@ -348,8 +348,8 @@ TEST_F(Live, ASlowDiskLosesNothing) {
   EXPECT_EQ(RecordingReader(path_).count(), tick_);
 }
 
-// Only one write, that of the index, occurs between the first refusal and the message, so the
-// message comes immediately.
+// Between the first refusal and the message, only the index is written, so the message comes
+// immediately.
 TEST_F(Live, AFullDiskEndsItAndTheFileIsWhole) {
   disk_.capacity = 1'500'000;
   RecorderOptions options = Options();
@@ -386,7 +386,7 @@ TEST_F(Live, ABrokenDiskEndsIt) {
   EXPECT_EQ(why.find("can be read"), std::string::npos) << why;
 }
 
-// The message may promise only the ticks that the disk confirmed before it broke.
+// The message may report only those ticks as saved that the disk confirmed before it failed.
 TEST_F(Live, ADiskThatBreaksHasWhatItConfirmed) {
   RecorderOptions options = Options();
   options.sync_period = milliseconds(50);
@@ -398,7 +398,7 @@ TEST_F(Live, ADiskThatBreaksHasWhatItConfirmed) {
     return std::count_if(disk_.calls.begin(), disk_.calls.end(),
                          [](const Disk::Call& call) { return call.sync; });
   };
-  // The test waits for two synchronisations that begin after `there` was written.
+  // The test waits for two synchronisations that begin after the tick `there` was written.
   const auto before = syncs();
   PublishUntil([&] { return syncs() >= before + 3; });
   disk_.broken = true;

@@ -23,7 +23,7 @@ TickRecord Random(std::mt19937_64* random, std::uint64_t tick) {
   TickRecord noise;
   auto* bytes = reinterpret_cast<unsigned char*>(&noise);
   for (std::size_t k = 0; k < sizeof noise; ++k) bytes[k] = static_cast<unsigned char>((*random)());
-  // This function visits the fields, so that padding stays zero.
+  // The function sets the bytes field by field, so that padding stays zero.
   noise.tick = tick;
   noise.state = static_cast<RunState>((*random)() % kRunStates);
   noise.cause = static_cast<StopCause>((*random)() % kStopCauses);

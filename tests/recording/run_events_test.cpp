@@ -83,8 +83,8 @@ TEST(RunEvents, AreInARecordingOfRealTime) {
   EXPECT_EQ(EventsOf(path), kExpected);
 }
 
-// However fast values change, the log must contain at most 50 events a second, and changes made in
-// a page must not displace a stop.
+// Even if values change fast, the log must contain at most 50 events a second. Changes made in a
+// page must not displace a stop.
 TEST(RunEvents, AreBounded) {
   recording::RunEvents events;
   std::map<std::uint64_t, int> reported;  // by second

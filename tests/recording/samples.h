@@ -1,4 +1,4 @@
-// Records to write. Some have random bits, and some resemble a run.
+// Records to write. Some records have random bits, and some resemble those of a run.
 #pragma once
 
 #include <unistd.h>
@@ -19,8 +19,8 @@
 
 namespace predictor::recording_test {
 
-// A temporary folder that is deleted with the test. It is in memory if the test permits this and
-// such a folder exists.
+// A temporary folder that is deleted with the test. The folder is in memory if the test permits
+// this and a folder in memory exists.
 class Folder {
  public:
   explicit Folder(bool in_memory = false) : folder_(Where(in_memory)) {}

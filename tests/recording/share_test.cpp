@@ -36,8 +36,8 @@ RecordingHeader MadeHeader() {
   return header;
 }
 
-// The header is stored twice, and chunks are compressed. Neither may contain a byte of the person's
-// data.
+// The header is stored twice, and chunks are compressed. Neither the header nor the chunks may
+// contain a byte of the person's data.
 TEST(Share, LeavesNoByteOfThePerson) {
   const test::TemporaryFolder folder;
   const std::string in = folder / "in.mcap", out = folder / "out.mcap";

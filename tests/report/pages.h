@@ -1,4 +1,4 @@
-// Runs in the form that a report uses.
+// Simulates runs and provides their data in the form that a report uses.
 #pragma once
 
 #include <cstdlib>

@@ -250,8 +250,8 @@ RunData OfForce(double seconds, const std::function<double(double)>& force) {
   return collector.Finish();
 }
 
-// The force has 20 N at 0.75 Hz and 6 N at 5 Hz. The share from 3 to 10 Hz is small, but its rms is
-// still 4 N.
+// The force has 20 N at 0.75 Hz and 6 N at 5 Hz. The share of the force from 3 to 10 Hz is small,
+// but the rms value of this part is still 4 N.
 TEST(Report, ASmallPartOfALargeForceIsGivenInNewtons) {
   const RunData run = OfForce(8, [](double t) {
     return 20 * std::sin(1.5 * std::numbers::pi * t) + 6 * std::sin(10 * std::numbers::pi * t);
@@ -266,7 +266,8 @@ TEST(Report, ASmallPartOfALargeForceIsGivenInNewtons) {
 
 // The largest index in the text must equal the largest one in the plot.
 TEST(Report, TextAndPlotShowTheSameIndex) {
-  // The hand is at rest with a little noise of 5 Hz. Then its force is slow and strong.
+  // The hand is at rest with a little noise of 5 Hz. After that, the force of the hand is slow and
+  // strong.
   const RunData run = OfForce(20, [](double t) {
     const double slow = t < 10 ? 0 : 20 * std::sin(1.5 * std::numbers::pi * t);
     return slow + 0.2 * std::sin(10 * std::numbers::pi * t);
@@ -305,7 +306,7 @@ TEST(Report, ComparesRuns) {
   Keep(MakeReport({Collect("bar_circle", 37).data}, "test"), "bar_circle");
 }
 
-// Each metric must appear without further code.
+// Each metric must appear in the report although the report has no code for single metrics.
 TEST(Report, ShowsAndComparesEveryMetric) {
   const CollectedRun run = Collect("box_9kg", 8);
   const std::string one = MakeReport({run.data}, "test").html;

@@ -11,8 +11,8 @@
 namespace predictor {
 namespace {
 
-// An arm whose joints are rotated by q from the given points. It does not use the functions under
-// test.
+// Computes the positions of an arm whose joints are rotated by q from the given points. The
+// computation does not use the functions under test.
 struct TurnedArm {
   ArmPoints at_zero;
   Vector3 lateral, normal;
@@ -33,8 +33,8 @@ struct TurnedArm {
   }
 };
 
-// Returns the force that holds the hand at q if the muscles' torques are those that balance F0 at
-// zero, minus K q.
+// Returns the force that holds the hand at q. The torques of the muscles are those that balance F0
+// at q = 0, minus K q.
 Vector3 HoldingForce(const TurnedArm& arm, const Matrix3& K, const Vector3& F0, const Vector3& q) {
   const Vector3 torque = -arm.Jacobian(Vector3::Zero()).transpose() * F0 - K * q;
   return -arm.Jacobian(q).transpose().inverse() * torque;

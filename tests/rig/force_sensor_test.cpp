@@ -162,9 +162,9 @@ TEST(ForceSensor, FlagsAndClipsWhatIsBeyondItsRange) {
   EXPECT_FALSE(sensor.saturated());
 }
 
-// A force rises by `rate` [N/s]. At the first sample in which it exceeds the threshold, it does so
-// by the share `beyond` of a sample's rise. Returns the number of samples from there to the first
-// reading that exceeds the threshold.
+// Simulates a force that rises by `rate` [N/s]. In the first sample above the threshold, the force
+// exceeds it by the fraction `beyond` of its rise per sample. Returns the number of samples from
+// this one to the first reading that exceeds the threshold.
 int SamplesUntilSeen(const SensorSpec& spec, double rate, double beyond, std::uint64_t seed) {
   constexpr double kThreshold = 30;  // [N]
   constexpr int kBefore = 50;        // samples
@@ -180,8 +180,8 @@ int SamplesUntilSeen(const SensorSpec& spec, double rate, double beyond, std::ui
   return kBefore;
 }
 
-// The monitor stops in the tick in which the reading exceeds its threshold. The reading of a rising
-// force lags by the delay plus the filter's time constant, whatever the rate.
+// The monitor stops in the tick in which the reading exceeds its threshold. At any rate, the
+// reading of a rising force lags by the delay plus the filter's time constant.
 TEST(ForceSensor, ARisingForceIsSeenWithinThreeMilliseconds) {
   SensorSpec spec;
   const double lag = spec.delay + 1 / (2 * std::numbers::pi * spec.cutoff_frequency);
@@ -193,8 +193,8 @@ TEST(ForceSensor, ARisingForceIsSeenWithinThreeMilliseconds) {
       EXPECT_EQ(SamplesUntilSeen(exact, rate, beyond, 1), expected) << rate << " " << beyond;
       EXPECT_LE(expected, 3);
     }
-  // Noise and resolution can hide less than 0.3 N. This force rises by that in 1 ms, which is the
-  // rest of the three milliseconds.
+  // Noise and resolution can hide less than 0.3 N. The force in this test rises by 0.3 N in 1 ms,
+  // which is the remaining one of the three milliseconds.
   for (std::uint64_t seed = 1; seed <= 1000; ++seed)
     EXPECT_LE(SamplesUntilSeen(spec, 300, 0.01, seed), 3) << seed;
 }

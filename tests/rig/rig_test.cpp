@@ -97,7 +97,7 @@ TEST(Rig, SensorReadsTheHandsWrenchShiftedToIt) {
   const Vector3 force = X_WS.q * Vector3(difference.head<3>());
   const Vector3 torque = X_WS.q * Vector3(difference.tail<3>());
   EXPECT_LT((force - F_H_W.head<3>()).norm(), 1e-9);
-  // The moment about H must be the same, including that of the force.
+  // The total moment about H, including the moment of the force, must be the same.
   const Vector3 about_H = torque + (X_WS.p - X_WH.p).cross(force);
   EXPECT_LT((about_H - F_H_W.tail<3>()).norm(), 1e-9);
 }

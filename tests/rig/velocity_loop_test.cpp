@@ -30,7 +30,7 @@ double StepVelocity(double omega, double zeta, double t) {
 }
 
 double StepPosition(double omega, double zeta, double t) {
-  // From v'' + 2 ζ ω v' + ω² v = ω²: q = t − (v' + 2 ζ ω v)/ω², integrated once from rest.
+  // If v'' + 2 ζ ω v' + ω² v = ω² is integrated once from rest, it gives q = t − (v' + 2 ζ ω v)/ω².
   if (t <= 0) return 0;
   const double d = omega * std::sqrt(1 - zeta * zeta);
   const double a = omega * omega / d * std::exp(-zeta * omega * t) * std::sin(d * t);

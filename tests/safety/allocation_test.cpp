@@ -26,7 +26,7 @@ static_assert(noexcept(std::declval<VibrationDetector&>().Update(std::declval<co
 static_assert(noexcept(std::declval<VibrationDetector&>().Reset()));
 
 // Calls this module as the emulator does in each tick. The runs oscillate, stop, brake and are
-// reset. Some of the numbers are not finite.
+// reset. Some of the input numbers are not finite.
 class Loop {
  public:
   Loop() : monitor_(SafetySpec{}, RenderingSpec{}, {true, true}, 0.001) {

@@ -1,4 +1,4 @@
-// Tests one arm's share of a stop. It must never move faster or brake harder than the profile
+// Tests one arm's share of a stop. Each arm must never move faster or brake harder than the profile
 // allows, whatever the other arm does.
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kAcceleration = 5, kJerk = 250;
 
-// Returns the speeds [m/s] of an arm's share of a stop. In each tick, a request to move faster by
-// `behind` is made.
+// Returns the speeds [m/s] of an arm's share of a stop. In each tick, the test requests a speed
+// that is higher by `behind`.
 template <class Behind>
 std::vector<double> Speeds(double speed, double rate, double hold, const Behind& behind) {
   StopProfile profile(kAcceleration, kJerk, kDt, 1);
@@ -127,9 +127,9 @@ TEST(StopController, FollowsAnArmThatDoesNotStopForAWhileOnly) {
   }
 }
 
-// Stops two arms and returns their distance at rest [m]. The first arm follows its commands with a
-// lag and coasts for that time. The second arm reaches the position to which its commands lead, but
-// with a lag of `lag` [s] and a delay of `late` [ms]. `hindered` is an additional delay of the
+// Stops two arms and returns how far apart they are at rest [m]. The first arm coasts, because it
+// follows its commands with a lag. The second arm reaches the position to which its commands lead,
+// but with a lag of `lag` [s] and a delay of `late` [ms]. `hindered` is an additional delay of the
 // first arm that it does not report [ms].
 double ApartAtRest(const std::array<double, kHands>& coasting, std::size_t late, double lag = 0.006,
                    std::size_t hindered = 0) {

@@ -130,8 +130,8 @@ TEST_F(ConsoleTalk, OfAStopShowsDangerCauseAdviceAndKeysInThisOrder) {
                                         "z resets", "hold r", "Ctrl-C"});
 }
 
-// A sensor that repeats its readings must be restarted. The program must be started again to accept
-// it.
+// A sensor that repeats its readings must be restarted. After that, the program must be started
+// again before it accepts the sensor.
 TEST_F(ConsoleTalk, OffersNoResetForAFrozenSensor) {
   Stop(StopCause::kStale, 1);
   record_.cause_quantity = Quantity::kCount;
@@ -156,7 +156,7 @@ TEST_F(ConsoleTalk, OffersOnlyUsefulActionsForAFaultyArm) {
 }
 
 // For example, an arm that holds its position traps a hand and then stops itself. Neither the state
-// nor the cause changes.
+// nor the cause of the stop changes.
 TEST_F(ConsoleTalk, ReportsAnArmsFaultAfterAStopOnce) {
   for (const RunState state : {RunState::kStopping, RunState::kHeld, RunState::kUnpowered}) {
     words_ = ConsoleWords{false, 1000};

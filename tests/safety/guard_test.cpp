@@ -30,7 +30,8 @@ JointBounds RandomBounds(RandomStream* random, int joints) {
   return b;
 }
 
-// Returns a value that a broken program might send. Most values drive hard into the limits.
+// Returns a value that a broken program might send. Most values are not finite or far beyond the
+// limits.
 double AnyNumber(RandomStream* random) {
   switch (random->Next() % 12) {
     case 0:
@@ -103,7 +104,7 @@ struct Plant {
   }
 };
 
-// Applies 20 random commands. `v` is the last one, as the guard left it.
+// Applies 20 random commands. `v` contains the last command as the guard modified it.
 void ApplyRandomCommands(const Plant& plant, RandomStream* random, Guard* guard, Arms* v) {
   for (int tick = 0; tick < 20; ++tick) {
     for (std::size_t arm = 0; arm < kHands; ++arm)
@@ -112,7 +113,8 @@ void ApplyRandomCommands(const Plant& plant, RandomStream* random, Guard* guard,
   }
 }
 
-// Returns whether all values are finite and within the velocity bounds, and their number is right.
+// Returns whether the number of values is right and all values are finite and within the velocity
+// bounds.
 bool Sendable(const Plant& plant, const Arms& v) {
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     if (v[arm].size() != plant.q[arm].size() || !v[arm].allFinite()) return false;
@@ -156,7 +158,7 @@ TEST(Guard, AnyInputGivesASendableCommandThatNeverCrossesALimitSoak) {
 }
 
 // The joints respond late by whole ticks, and their measured positions are equally old. The
-// reaction time covers both.
+// reaction time covers both delays.
 TEST(Guard, NeverCrossesALimitInADelayedLoopSoak) {
   for (long seed = 1; seed <= Count(100, 20000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "delayed");
@@ -180,7 +182,7 @@ TEST(Guard, NeverCrossesALimitInADelayedLoopSoak) {
   }
 }
 
-// Ticks are early, or late by up to three ticks.
+// The ticks may be early, or late by up to three ticks.
 TEST(Guard, NeverCrossesALimitUnderJitterSoak) {
   for (long seed = 1; seed <= Count(100, 20000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "jitter");
@@ -367,7 +369,7 @@ TEST(Guard, SlowsBothArmsByTheSameFraction) {
 }
 
 // If the posture of the arms made the last command too fast, the way begins at the last command
-// scaled by one factor. The factor yields to the joints' accelerations.
+// scaled by one factor. The factor must not cause joint accelerations beyond the limits.
 TEST(Guard, SlowsFromALastCommandThatBecameTooFast) {
   RandomStream random(8, "became too fast");
   int kept = 0, yielded = 0;

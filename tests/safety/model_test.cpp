@@ -125,9 +125,9 @@ struct Step {
   int from, event, to;
 };
 
-// Returns the steps of the model's state machine in a random run of `steps` steps. The times are
-// longer than in the search. Otherwise a random person would rarely hold the key long enough to
-// change the state.
+// Returns the steps of the model's state machine in a random run of `steps` steps. The model's
+// times are longer here than in Spin's exhaustive search. With shorter times, a random person would
+// rarely hold the key long enough to change the state.
 std::vector<Step> Trace(const test::TemporaryFolder& folder, long seed, long steps) {
   const std::string command = "cd '" + folder.path().string() + "' && spin -T -n" +
                               std::to_string(seed) + " -u" + std::to_string(steps) +

@@ -44,7 +44,7 @@ class MonitorTest : public testing::Test {
     Refresh();
     return monitor_.Check(input_);
   }
-  // Resets the monitor and passes it one tick. `change` has changed copies of the tick's inputs.
+  // Resets the monitor and passes it one tick. `change` modifies copies of the tick's inputs first.
   template <class Change>
   Status CheckChanged(const Change& change) {
     DeviceSample sample = sample_;

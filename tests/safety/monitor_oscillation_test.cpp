@@ -10,8 +10,8 @@
 namespace predictor {
 namespace {
 
-// Returns the vertical force of one hand. It consists of the task's force and an oscillation at 1
-// Hz that grows by 15 % per cycle.
+// Returns the vertical force of one hand. The force consists of the task's force and an oscillation
+// at 1 Hz that grows by 15 % per cycle.
 double Growing(int tick) {
   const double t = 0.001 * tick;
   return 10 + 0.3 * std::pow(1.15, t) * std::sin(2 * std::numbers::pi * t);
@@ -73,8 +73,8 @@ TEST_F(MonitorTest, OscillationOfAnEarlierRunIsForgotten) {
   EXPECT_GE(ticks_to_alarm(alarm - 500), 4000);
 }
 
-// Returns the vertical force of one hand. It consists of the task's force and a vibration at 24 Hz
-// that doubles in 0.2 s up to 3 N.
+// Returns the vertical force of one hand. The force consists of the task's force and a vibration at
+// 24 Hz that doubles in 0.2 s up to 3 N.
 double Vibrating(int tick) {
   const double t = 0.001 * tick;
   return 10 + std::min(3.0, 0.1 * std::exp2(5 * t)) * std::sin(2 * std::numbers::pi * 24 * t);
@@ -117,7 +117,8 @@ TEST_F(MonitorTest, VibrationOfAnEarlierRunIsForgotten) {
   };
   const int alarm = ticks_to_alarm();
   ASSERT_GT(alarm, 40);
-  // The run ends just before the alarm. The next run must tolerate as much as the first.
+  // The run ends just before the alarm. The next run must tolerate the vibration for as long as the
+  // first run.
   monitor_.Reset();
   for (int k = 0; k < alarm - 5; ++k) {
     input_.wrench[0].F_H_W[2] = 10 + 2.5 * std::sin(2 * std::numbers::pi * 24 * 0.001 * k);

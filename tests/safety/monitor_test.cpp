@@ -37,8 +37,8 @@ TEST_F(MonitorTest, TorqueIsItsNorm) {
   ExpectStatus(Check(), StopCause::kTorque, 0, std::hypot(3, 4.01), 5);
 }
 
-// The limit in RECOVERY is the usual limit, or a third of it above the smallest load since RECOVERY
-// began, whichever is larger.
+// In RECOVERY, the limit is the larger of two values: the usual limit, and the smallest load since
+// RECOVERY began plus a third of the usual limit.
 TEST_F(MonitorTest, RecoveryMayNotLoadAHandMore) {
   input_.running = input_.follows = false;
   const auto press = [&](double force, double torque) {
@@ -227,7 +227,7 @@ TEST_F(MonitorTest, Tracking) {
   input_.virtual_[1].X_W.p = Vector3(0.03, 0.041, 0);
   ExpectStatus(Check(), StopCause::kTracking, 1, std::hypot(0.03, 0.041), 0.05);
   input_.virtual_[1].X_W.p.setZero();
-  // The monitor must measure the shorter rotation, whatever the quaternion's sign.
+  // Whatever the quaternion's sign is, the monitor must measure the shorter rotation.
   for (const double sign : {1.0, -1.0}) {
     input_.virtual_[0].X_W.q = QuaternionFromZ(0.3, sign);
     EXPECT_TRUE(Check().ok());
@@ -253,7 +253,7 @@ TEST_F(MonitorTest, MissedDeadlines) {
   ExpectStatus(Check(), StopCause::kDeadline, -1, 3, 2);
 }
 
-// The loop misses single deadlines repeatedly, and more than ten within about a second.
+// The loop misses single deadlines repeatedly. More than ten are missed within about a second.
 TEST_F(MonitorTest, DeadlinesThatAreMissedNowAndThen) {
   for (const int period : {50, 200}) {
     Status status = CheckAfterReset();

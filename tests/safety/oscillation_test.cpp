@@ -16,8 +16,8 @@
 namespace predictor {
 namespace {
 
-// The disturbances by a sensor and a person's hand: white noise of 0.05 N, and tremor at about 10
-// Hz (rms in N).
+// Simulates the disturbances by a sensor and a person's hand: white noise of 0.05 N, and tremor at
+// about 10 Hz (rms in N).
 class Disturbance {
  public:
   Disturbance(std::uint64_t seed, double tremor) : random_(seed, "disturbance"), tremor_(tremor) {
@@ -34,8 +34,8 @@ class Disturbance {
   double tremor_, wander_ = 0, phase_ = 0;
 };
 
-// Returns the first alarm for force(t), t in [0, duration), along `axis`. A seed adds a
-// disturbance.
+// Returns the first alarm for force(t), t in [0, duration), along `axis`. If there is a seed, a
+// disturbance is added.
 template <class Force>
 Alarm FirstAlarm(const Force& force, double duration, std::uint64_t seed = 0, int axis = 0,
                  double tremor = 0.1) {
@@ -176,8 +176,8 @@ TEST(Oscillation, OutsideTheBandNothingGrows) {
 }
 
 // After three growing cycles, the force ends on a rise. The alarm must come when the cycles are
-// complete or not at all. It must not wait for seconds until a small force happens to change its
-// sign.
+// complete or not at all. The alarm must not come seconds later, when a small force happens to
+// change its sign.
 TEST(Oscillation, ThatEndedIsNotReportedLater) {
   OscillationSpec spec;
   OscillationDetector detector(spec, 0.001);
@@ -186,8 +186,8 @@ TEST(Oscillation, ThatEndedIsNotReportedLater) {
     for (double t = from; t < to; t += 0.001)
       if (detector.Update({0, 0, force(t)}) > 0 && reported < 0) reported = t;
   };
-  // The force grows up to the rise of the last cycle and then decays from above without changing
-  // its sign.
+  // The force grows until it rises in the last cycle. It then decays to zero without changing its
+  // sign.
   feed(0, 6.2, [](double t) { return 0.6 * t * std::sin(2 * M_PI * 0.5 * t) * (t < 5.9); });
   feed(6.2, 20, [](double) { return 0.0; });
   feed(20, 21, [](double t) { return -1.0 * (t - 20); });
@@ -225,8 +225,8 @@ TEST(Oscillation, CyclesOfUnequalPeriodsNeverCount) {
   }
 }
 
-// A part of the task's slow motion remains under an oscillation. It must not make the oscillation
-// seem to grow.
+// A part of the task's slow motion remains under an oscillation. This remaining part must not make
+// the oscillation seem to grow.
 TEST(Oscillation, ConstantOscillationOnASlowMotionNeverCounts) {
   for (const double frequency : {1.5, 2.0, 3.0, 5.0}) {
     for (const double slow : {0.1, 0.15, 0.2}) {
@@ -248,8 +248,8 @@ TEST(Oscillation, QuietHandNeverCountsSoak) {
   }
 }
 
-// A step makes the band-pass filter ring most. The hand releases within 40 ms and grips again
-// within 0.3 s.
+// A step makes the band-pass filter ring most. The hand releases the handle within 40 ms and grips
+// it again within 0.3 s.
 TEST(Oscillation, StepsReleaseAndRegripNeverCountSoak) {
   for (long seed = 1; seed <= Count(40, 4000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "release");
@@ -266,7 +266,8 @@ TEST(Oscillation, StepsReleaseAndRegripNeverCountSoak) {
   }
 }
 
-// The forces of a task: minimum-jerk legs to random levels within ±20 N, with and without pauses.
+// Simulates the forces of a task. They consist of minimum-jerk legs to random levels within ±20 N,
+// with and without pauses.
 struct Legs {
   Legs(std::uint64_t seed, double leg, double dwell) {
     RandomStream random(seed, "legs");

@@ -91,8 +91,8 @@ void Split(const Tick& tick, Arms* q, Arms* v) {
 
 // Positions jump, are unknown or lie far beyond the limits. Commands are arbitrary and may come
 // late. A joint's velocity may change by more than a tick's acceleration only towards zero, but not
-// past zero. After missed ticks, the change may be that of all these ticks. It may be larger only
-// if a joint limit is known to be near.
+// past zero. After missed ticks, the change may be as large as the sum of the changes allowed in
+// all these ticks. The change may be larger only if a joint limit is known to be near.
 TEST(GuardProperties, WhateverIsMeasuredAndAskedWhatIsSentIsBoundedSoak) {
   EXPECT_TRUE(rc::check([] {
     const auto bounds = SomeBounds();
@@ -159,8 +159,8 @@ struct Motion {
   double speed = 0, rate = 0;  // speed and rate of the faster handle [m/s], [m/s²]
 };
 
-// Returns the motion after one tick with `jerk` (−1, 0 or 1 times the limit). If this would leave
-// the bounds, the jerk is chosen so that the motion stays in them: the speed remains under the cap
+// Returns the motion after one tick with `jerk` (−1, 0 or 1 times the limit). If this jerk would
+// leave the bounds, it is replaced by one that keeps to them. The speed then remains under the cap
 // after the acceleration has faded, and does not cross zero.
 Motion Next(const Motion& from, int jerk, const Limits& limits) {
   const double step = limits.jerk * kDt;
@@ -225,8 +225,8 @@ struct Stop {
   double time = 0, way = 0, fastest = 0;  // [s], [m], [m/s]
 };
 
-// The numbers of ticks that pass before each command, repeated cyclically. If empty, it is always
-// one.
+// The numbers of ticks that pass before each command, repeated cyclically. If the list is empty,
+// one tick passes before each command.
 using Passed = std::vector<int>;
 rc::Gen<Passed> SomeJitter() { return rc::gen::container<Passed>(SomePassed()); }
 int At(const Passed& passed, int command) {
@@ -265,8 +265,9 @@ Stop RunStop(const Motion& motion, const Limits& limits, double allowed, const P
   return result;
 }
 
-// A velocity is sent for a whole tick, so a handle that still accelerates travels further by this
-// amount. A velocity that is held for several ticks is that of the first of them.
+// A sent velocity applies for a whole tick, so a handle that still accelerates travels further by
+// this amount. If a velocity is held for several ticks, it is the velocity of the first of these
+// ticks.
 double Held(const Stop& stop, const Motion& motion, const Passed& passed) {
   const double late = (Most(passed) - 1) * stop.fastest * kDt;
   return Most(passed) * std::max(0.0, stop.fastest - motion.speed) * kDt + late;
@@ -284,7 +285,7 @@ TEST(StopProperties, FromEveryMotionThatMayBeTheBudgetIsKeptSoak) {
   }));
 }
 
-// If the joints cannot brake as hard, the budget is that of the deceleration that they allow.
+// If the joints cannot brake as hard, the budget is computed with the deceleration that they allow.
 TEST(StopProperties, WeakerJointsHaveTheBudgetOfWhatTheyAllowSoak) {
   EXPECT_TRUE(rc::check([] {
     const Limits limits = SomeLimits();

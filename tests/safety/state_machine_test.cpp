@@ -14,8 +14,8 @@
 namespace predictor {
 namespace {
 
-// An independent copy of the state table: one row per condition in the order of kRunConditions, one
-// word per event in the order of RunEvent. "." means no change.
+// An independent copy of the state table. It has one row per condition in the order of
+// kRunConditions, and one word per event in the order of RunEvent. "." means no change.
 constexpr const char* kExpected = R"(
 INIT      SELFTEST .    .     .     .    OFF      OFF       .         .        .        .
 SELFTEST  .        IDLE .     .     .    OFF      OFF       .         .        .        .

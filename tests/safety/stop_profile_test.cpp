@@ -30,8 +30,8 @@ double Travelled(const std::vector<double>& v, double dt) {
   return sum;
 }
 
-// The budget of the worst stop, over all speeds v and accelerations a under the cap, v + a²/2j <=
-// cap.
+// The budget is that of the worst stop from any speed v and acceleration a under the cap, v + a²/2j
+// <= cap.
 struct Budget {
   double cap, time, distance, detection_travel;
 };
@@ -70,8 +70,8 @@ TEST(StopProfile, EveryStopKeepsItsBoundsSoak) {
     const double dt = Between(&random, 0.0005, 0.004);
     const double cap = Between(&random, 0.05, 1);
     const double speed = cap * std::pow(random.Uniform(), 3);
-    // The motion can have this acceleration: it is within the bounds, and the speed stays under the
-    // cap while it fades.
+    // The test draws an acceleration that the motion can have. The acceleration is within the
+    // bounds, and the speed stays under the cap while the acceleration fades.
     const double gain = std::min(cap - speed, 0.25 * speed);
     const double highest = std::min(a, std::sqrt(2 * j * gain));
     const double lowest = -std::min(a, std::sqrt(2 * j * speed));
@@ -93,8 +93,8 @@ TEST(StopProfile, EveryStopKeepsItsBoundsSoak) {
   }
 }
 
-// Computes an independent optimum in fine steps. It brakes with full jerk as long as easing off
-// with full jerk still ends above zero speed. Then it eases off.
+// Computes an independent optimum in fine steps. The optimum increases the deceleration with full
+// jerk as long as easing off with full jerk would still end above zero speed. Then it eases off.
 double GreedyStopTime(double speed, double rate, double a, double j) {
   const double h = 2e-6;
   double v = speed, r = rate, t = 0;
@@ -148,7 +148,8 @@ TEST(StopProfile, ARateBeyondWhatMayBeIsCut) {
       EXPECT_EQ(v.back(), 0);
       const double highest = rate > 0 ? std::max(speed, std::min(0.25, 1.25 * speed)) : speed;
       EXPECT_LE(*std::max_element(v.begin(), v.end()), highest * (1 + 1e-12));
-      // The cut itself is one step of the acceleration. After it, the jerk must be bounded again.
+      // The cut itself is one step of the acceleration. After this step, the jerk must be bounded
+      // again.
       for (std::size_t k = 1; k < v.size(); ++k) {
         const double before = k >= 2 ? v[k - 1] - v[k - 2] : v[k] - v[k - 1];
         ASSERT_LE(std::abs(v[k] - v[k - 1]), 5 * kDt * (1 + 1e-9));

@@ -136,8 +136,8 @@ struct PlanarStop {
   double travelled = 0;  // path of the faster handle [m]
 };
 
-// Stops two arms in different postures that hold one object at `speed`. Their joints follow the
-// command with a first-order lag.
+// Stops two arms in different postures that hold one object at `speed`. The joints of both arms
+// follow the command with a first-order lag.
 PlanarStop RunPlanarStop(double speed, double lag) {
   std::array<PlanarArm, kHands> arms = {PlanarArm{-0.3, 2.2, -1.4}, PlanarArm{0.3, 0.6, 1.5}};
   const std::array<JointBounds, kHands> bounds = {Bounds(2, 40), Bounds(2, 40)};
@@ -186,7 +186,7 @@ TEST(StopController, ReportsCauseTimeAndDuration) {
   EXPECT_EQ(stop.report.status.limit, 30);
   EXPECT_EQ(stop.report.time, 1.25);
   // From a constant speed of 0.25 m/s, the commands take 70 ms and 8.75 mm. The lag adds a distance
-  // of v·20 ms and the time until less than 50 µm is left.
+  // of v·20 ms. It also adds the time until less than 50 µm of this distance is left.
   EXPECT_NEAR(stop.travelled, 0.00875 + 0.25 * 0.02, 0.0004);
   EXPECT_GE(stop.report.duration, 0.070);
   EXPECT_LE(stop.report.duration, 0.070 + 6 * 0.02);
@@ -263,7 +263,7 @@ TEST(StopController, ANanCommandHasNoEffect) {
   }
 }
 
-// The handles keep moving after the arms were commanded to rest. The stop must end nevertheless.
+// The handles keep moving after the arms were commanded to rest. Even then, the stop must end.
 TEST(StopController, DoesNotWaitForEver) {
   StopController stop(SafetySpec{}, {Bounds(1, 10), JointBounds{}}, kDt);
   stop.Begin(kForceStop, 0, {JointVector::Zero(1), JointVector()}, 0, 0);

@@ -53,9 +53,9 @@ class NoisyMode {
 
 constexpr double kVibrationFrequencies[] = {12, 15, 20, 25, 30, 40, 50, 60};
 
-// A vibration starts at 0.1 N, with noise of 0.1 N on each axis. It doubles within 50 ms (but not
-// within a cycle) to 20 s. The detector must find the vibration before it reaches 5 N, and report
-// its true amplitude.
+// A vibration starts at 0.1 N, with noise of 0.1 N on each axis. The vibration doubles within 50 ms
+// to 20 s, but never within a single cycle. The detector must find the vibration before it reaches
+// 5 N, and report its true amplitude.
 TEST(Vibration, GrowingOneIsFoundBeforeFiveNewton) {
   for (const double frequency : kVibrationFrequencies) {
     for (const double doubling : {0.05, 0.2, 1.0, 5.0, 20.0}) {
@@ -98,7 +98,8 @@ TEST(Vibration, ConstantOneIsFoundWithinASecond) {
   }
 }
 
-// The loop doubles within three half cycles. The shortest scale must respond soon enough.
+// The vibration of the loop doubles within three half cycles. The shortest scale must respond soon
+// enough.
 TEST(Vibration, OneThatDoublesWithinThirtyMillisecondsIsFoundBeforeSixNewton) {
   for (const double frequency : {20.0, 25.0, 30.0, 35.0, 40.0}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {

@@ -1,4 +1,4 @@
-// Tests scenarios on a machine: what the machine file determines, and what it rejects.
+// Tests scenarios on a machine. The machine file determines some values and rejects others.
 #include <gtest/gtest.h>
 
 #include <cmath>

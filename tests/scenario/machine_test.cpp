@@ -75,7 +75,7 @@ TEST(Machine, EachArmAndEachSensorHasItsOwnAddress) {
             "lab.yaml:14:34: arms.right.sensor.host is also the address of the left sensor, but "
             "one sensor cannot measure both hands. Give each sensor its own address.");
   EXPECT_EQ(MachineRefusal(sensor("192.0.2.21")), "");
-  // A sensor that belongs to an arm has no address of its own.
+  // A sensor that is a part of an arm has no separate address.
   EXPECT_EQ(MachineRefusal(With(kMachine, "    sensor: {make: net_ft, host: 192.0.2.20}\n", "")),
             "");
 }

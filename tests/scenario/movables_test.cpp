@@ -63,7 +63,7 @@ TEST(MovableKeys, AMassThatNoMaterialHasIsAnError) {
                        "densest metal of this size would weigh."),
             std::string::npos)
       << error;
-  // Volumes π r² l = 0.00314 m³ and 4/3 π r³ = 0.00419 m³.
+  // The volumes are π r² l = 0.00314 m³ and 4/3 π r³ = 0.00419 m³.
   for (const std::string shape : {"cylinder, size: [0.1, 0.1, 0]", "sphere, size: [0.1, 0, 0]"}) {
     const double most = shape[0] == 'c' ? 72.3 : 96.3;
     const auto with = [&](double mass) {

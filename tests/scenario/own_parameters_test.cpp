@@ -1,4 +1,5 @@
-// Each controller and action has its own parameters. Those of another one must be refused.
+// Each controller and action has its own parameters. The program must refuse the parameters of
+// another controller or action.
 #include "scenario/own_parameters.h"
 
 #include <gtest/gtest.h>

@@ -33,8 +33,8 @@ TEST(Perturbation, HasBoundsThatAScenarioCannotWiden) {
         << beyond;
 }
 
-// Peak speed 1.875 L/T and peak acceleration 10/√3 L/T² of a minimum-jerk motion (Flash & Hogan
-// 1985).
+// A minimum-jerk motion has the peak speed 1.875 L/T and the peak acceleration 10/√3 L/T² (Flash &
+// Hogan 1985).
 TEST(Perturbation, ForceIsThatOfAMassAndOfASpringWithReflex) {
   PerturbationSpec p;
   p.amplitude = 0.008;

@@ -160,7 +160,7 @@ Scenario Reread(const Scenario& s) {
 TEST(SaveScenario, SavedTextLoadsAndSavesTheSame) {
   const std::string saved = SaveScenario(Fixture());
   EXPECT_EQ(SaveScenario(ParseScenario(saved, "saved", kData)), saved);
-  // The file did not contain this default.
+  // The original file did not contain this default.
   EXPECT_NE(saved.find("stop_jerk: 250"), std::string::npos);
   EXPECT_NE(saved.find("[m/s³]"), std::string::npos);  // with its unit
 }

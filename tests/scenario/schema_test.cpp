@@ -135,8 +135,9 @@ constexpr const char* kOthers =
     "3 deg;-3 deg;deg;3 degrees;\"3 deg\";1e-1 deg;[1 deg, 2 deg, -3 deg];[3deg, 1, 2];"
     "{xyz: [0, 0, 0]};{xyz: [0, 0]};{unknown: 1}";
 
-// Replaces each value of a full scenario with each of many others. Schema and loader must judge
-// alike. Neither the schema nor ReadFields detects values that only contradict another value.
+// Replaces each value of a full scenario with each of many others. Schema and loader must accept
+// the same values. Neither the schema nor ReadFields detects values that only contradict another
+// value.
 TEST(Schema, JudgesEveryValueAsTheLoaderDoes) {
   std::vector<std::string> others;
   std::istringstream lines(kOthers);

@@ -1,4 +1,4 @@
-// Tests the note that a controller's library passed its trial.
+// Tests the note which states that a controller's library has passed its trial.
 #include "scenario/trial_note.h"
 
 #include <gtest/gtest.h>

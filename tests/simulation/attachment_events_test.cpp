@@ -39,7 +39,7 @@ Pose ObjectInFlange(const WorldState& state) {
 }
 
 // Returns the distance of a fall with acceleration a after n steps of the semi-implicit Euler
-// method. It differs from a t²/2 by a t dt/2.
+// method. This distance differs from a t²/2 by a t dt/2.
 double Fall(double a, int n) { return a * kTick * kTick * n * (n + 1) / 2; }
 
 // ---- the object breaks loose ------------------------------------------------------------------
@@ -109,14 +109,15 @@ TEST(BreaksLoose, TheObjectSwingsOnTheSpringsOfTwoHands) {
       input.F_H_W[h].head<3>() = kSpring * (start.handle[h].X_W.p - world.state().handle[h].X_W.p);
     ASSERT_TRUE(world.Step(input, kTick).ok());
     const double z = (HandlesMiddle(world.state()) - HandlesMiddle(start)).z();
-    // The semi-implicit Euler method is half a step ahead.
+    // The semi-implicit Euler method of the engine is half a step ahead.
     ASSERT_NEAR(z, -sag * (1 - std::cos(omega * n * kTick)), 0.6 * sag * omega * kTick) << n;
     lowest = std::min(lowest, z);
   }
   EXPECT_NEAR(lowest, -2 * sag, 0.01 * sag);
 }
 
-// The springs of the controller carried the weight, so the cobot rises when it is gone.
+// The springs of the controller carried the weight of the object, so the cobot rises when the
+// object is gone.
 TEST(BreaksLoose, TheCobotRisesToItsOwnEquilibrium) {
   World world(WithEvent(RigidBox(), Loose(0)));
   const double before = world.state().end_effector.X_W.p.z();
@@ -124,8 +125,8 @@ TEST(BreaksLoose, TheCobotRisesToItsOwnEquilibrium) {
   EXPECT_NEAR(world.state().end_effector.X_W.p.z() - before, kMass * kGravity / 500, 3e-4);
 }
 
-// The wrist sensor of the cobot was tared with the load. The cobot feels the loss of the load as an
-// upward force and yields to it with the speed F / D.
+// The cobot's wrist sensor was tared while the cobot held the load. The cobot feels the loss of the
+// load as an upward force and yields to it with the speed F / D.
 TEST(BreaksLoose, AnAdmittanceCobotYieldsToTheLostWeight) {
   Scenario s = RigidBox();
   s.cobot.controller = {"admittance", {}};
@@ -134,7 +135,8 @@ TEST(BreaksLoose, AnAdmittanceCobotYieldsToTheLostWeight) {
   EXPECT_NEAR(world.state().end_effector.V_W.z(), kMass * kGravity / 60, 0.02);
 }
 
-// Without contacts, the centre of mass must come to rest at the floor, on a support of 30 rad/s.
+// In a scene without contacts, the object's centre of mass must come to rest on the floor, which
+// acts as a spring with a frequency of 30 rad/s.
 TEST(BreaksLoose, NoFallIsEndless) {
   for (const bool floor : {false, true}) {
     Scenario s = WithEvent(RigidBox(), Loose(0));
@@ -201,9 +203,9 @@ TEST(Slips, TheObjectTurnsWithTheTorqueBeyondTheLimit) {
   EXPECT_LT((world.state().object.X_W.p - start.p).norm(), 1e-3);
 }
 
-// Below its limits, the grip must hold the object in place. With the same inputs, the motion is
-// that of the rigid attachment, apart from the error of the engine's steps. The error differs in
-// these coordinates, and both motions are at most about half a step ahead or behind.
+// Below its limits, the grip must hold the object in place. With the same inputs, the motion must
+// be that of the rigid attachment, apart from the error of the engine's steps. This error depends
+// on the coordinates, which differ, and it shifts each motion by at most about half a step.
 TEST(Slips, BelowTheLimitNothingMoves) {
   for (const char* controller : {"", "admittance"}) {
     for (const JointType joint : {JointType::kFixed, JointType::kSpherical}) {
@@ -240,7 +242,8 @@ TEST(Slips, BelowTheLimitNothingMoves) {
   }
 }
 
-// Coulomb friction in the joints and the contact with a table react to the grip in the same step.
+// Coulomb friction in the joints and the contact with a table must react to the grip in the same
+// step.
 TEST(Slips, FrictionAndContactDoNotMoveTheGrip) {
   Scenario s = RigidBox();
   s.cobot.joint_friction.coulomb = {2};
@@ -297,7 +300,7 @@ TEST(Slips, TheGripTightensWithoutAJolt) {
   for (int n = 1; n * kTick < rest - 0.001; ++n) {
     ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
     const double t = n * kTick;
-    // Within a step, the force may already be that of the step's end.
+    // During a step, the grip's force may already have its value of the end of the step.
     EXPECT_NEAR(-world.state().object.V_W.z(), v0 + a * t - rate * t * t / 2, rate * kTick * t)
         << n;
   }
@@ -305,8 +308,8 @@ TEST(Slips, TheGripTightensWithoutAJolt) {
   EXPECT_LT(std::abs(world.state().object.V_W.z()), 2e-3);  // the brakes creep
 }
 
-// A grip without any force or torque is open. It must grip the object again at its place at that
-// time.
+// A grip without any force or torque is open. When it closes, it must grip the object where the
+// object is at that time.
 TEST(Slips, AnOpenGripClosesWhereTheObjectIs) {
   Scenario s = WithEvent(RigidBox(), Slips(0.1, 0, 0, 1));
   s.events[0].duration = 0.1;
@@ -394,8 +397,8 @@ TEST(AttachmentEvents, TakeNothingFromTheHeap) {
   ExpectNoHeap(s, {1, 2, 3}, 800);
 }
 
-// A light object spins between stiff couplings after its release. It must neither diverge nor
-// become NaN.
+// A light object spins between stiff couplings after its release. Its motion must neither diverge
+// nor become NaN.
 TEST(AttachmentEvents, KeepALightObjectInTheCouplingFinite) {
   for (const bool slips : {false, true}) {
     Scenario s = RigidBox();

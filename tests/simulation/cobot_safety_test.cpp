@@ -43,7 +43,7 @@ double TimeOfStopUnderRamp(const Scenario& s, const Vector3& force, CobotStop* s
 
 CobotStop StopOf(const World& world) { return static_cast<CobotStop>(world.state().cobot_stop); }
 
-// The estimate must settle at the force that acts, whatever the payload is.
+// Whatever the payload is, the estimate must settle at the force that acts.
 TEST(CobotSafety, EstimatesTheForceOnTheEndEffector) {
   Scenario s = SafeCobot();
   s.cobot.safety.force = 12;
@@ -75,7 +75,8 @@ TEST(CobotSafety, StopsAtASpeedAndThenHolds) {
   const Vector3 decided = world.state().end_effector.X_W.p;
   for (int k = 0; k < 1000; ++k) ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
   EXPECT_LT(world.state().v.lpNorm<Eigen::Infinity>(), 1e-3);
-  // The fastest joint decelerates from v by a. In each joint, the path is at most v² / 2a.
+  // The fastest joint decelerates from the speed v with the deceleration a. In each joint, the path
+  // is at most v² / 2a.
   const Vector3 rest = world.state().end_effector.X_W.p;
   EXPECT_LT((rest - decided).norm(), 0.02);
   for (int k = 0; k < 1000; ++k) ASSERT_TRUE(world.Step(push, kTick).ok());
@@ -146,8 +147,8 @@ TEST(CobotSafety, ForceCapBoundsTheSpring) {
   EXPECT_GT(start - world.state().end_effector.X_W.p.z(), 2 * 13.0 / 500);
 }
 
-// Beyond the cap, the cobot brakes with the arm's mass m and the time constant T = 10 ms. The speed
-// settles at F T / m above the cap.
+// Above the speed cap, the cobot brakes with the time constant T = 10 ms, and m is the arm's
+// effective mass. The speed settles at F T / m above the cap.
 TEST(CobotSafety, SpeedCapBrakes) {
   Scenario s = SafeCobot();
   s.cobot.controller = {"gravity_compensation", {}};

@@ -20,7 +20,7 @@ struct Result {
   double value, closed_form;
 };
 
-// A quantity that has a closed form in each engine's law of contact.
+// A quantity for which each engine's law of contact gives a closed form.
 struct Case {
   std::string name, quantity;
   std::function<Result(EngineKind)> measure;
@@ -47,7 +47,7 @@ Case BlockOnAnIncline(double friction) {
           }};
 }
 
-// Without gravity, the closed form is that of both engines.
+// Without gravity, both engines have the same closed form.
 Case BallAgainstAWall(double zeta) {
   return {"ball that hits a wall at 2 m/s, damping ratio " + Number(zeta), "share of its speed [1]",
           [zeta](EngineKind kind) -> Result {
@@ -64,8 +64,8 @@ Case BallAgainstAWall(double zeta) {
           }};
 }
 
-// MuJoCo: a fixture with a stiffness, which is a spring and damper under the ball's weight. DART:
-// an impact, which is over at once.
+// In MuJoCo, the fixture has a stiffness, so it is a spring and damper, and the closed form
+// includes the ball's weight. In DART, the impact is over in an instant.
 Case FallingBall(double zeta) {
   return {"ball that falls 0.815 m, damping ratio " + Number(zeta), "height of the rebound [m]",
           [zeta](EngineKind kind) -> Result {
@@ -107,8 +107,8 @@ Case PegAgainstAWall(double force) {
       }};
 }
 
-// At steps of 1 ms, a stop must take at least 50 steps: a step moves the body at the speed of its
-// end, so the path is shorter by half a step at the first speed.
+// A stop must take at least 50 steps of 1 ms. In each step, the body moves at the speed of the
+// step's end, so its path is too short by half a step at the initial speed.
 Case SlidingStop(double friction, double speed) {
   return {"block that slides at " + Number(speed) + " m/s, friction " + Number(friction),
           "path until it stops [m]", [=](EngineKind kind) -> Result {
@@ -120,7 +120,8 @@ Case SlidingStop(double friction, double speed) {
           }};
 }
 
-// The force at the height of the centre of mass above which the box tips, to a thousandth.
+// Measures, to a thousandth, the force at the height of the centre of mass above which the box
+// tips.
 Case TippingBox() {
   return {"box of 0.1 m × 0.3 m, pushed at half its height", "force that tips it [N]",
           [](EngineKind kind) -> Result {
@@ -163,7 +164,7 @@ std::vector<Row> ReadRows() {
   EXPECT_EQ(line, kHeader);
   std::vector<Row> rows;
   while (std::getline(file, line)) {
-    // The names contain commas and are quoted.
+    // The names are quoted, because they contain commas.
     std::istringstream cells(line);
     Row row;
     std::string cell;
@@ -182,7 +183,7 @@ std::string Percent(double value, double of) {
   return text == "+0.0" || text == "-0.0" ? "0.0" : text;
 }
 
-// A row of the page's table.
+// Returns a row of the page's table.
 std::string TableRow(const Row& row) {
   const std::vector<double>& v = row.values;
   std::string text = "| " + row.name + " | " + row.quantity;

@@ -31,7 +31,7 @@ TEST(Incline, ABlockRestsIfItsSlopeIsBelowTheFriction) {
   body.Place(OnSlope(kBlock.z() / 2));
   body.Run(2);
   EXPECT_LT((body.pose().p - OnSlope(kBlock.z() / 2).p).norm(), 1e-3);
-  // The slope carries the weight.
+  // The contact force must carry the weight.
   EXPECT_LT((body.ContactForce() - Vector3(0, 0, kBodyMass * kGravity)).norm(),
             kFormAccuracy * kBodyMass * kGravity);
   EXPECT_LT(body.Depth(), 1e-4);
@@ -82,7 +82,8 @@ TEST(Bounce, ACriticallyDampedContactDoesNotBounce) {
   EXPECT_LT(highest, 0.2 * 0.02);  // the limit of Restitution is exp(−2), so 1.8 % of the height
 }
 
-// The depth is what the documentation states: the distance of a step, and 5 % more.
+// The depth must not exceed the one in the documentation: the distance that the body moves in a
+// step, plus 5 %.
 TEST(Bounce, AnImpactEntersAFixtureByLittleMoreThanItsSpeedTimesAStep) {
   constexpr int kPhases = 10;  // of the impact within a step
   FreeBody body(Shape::kBox, {0.2, 0.2, 0.1}, {Fixture(FixtureShape::kPlane, {1, 1, 0}, kOrigin)},
@@ -111,7 +112,8 @@ FixtureSpec YieldingGround(double stiffness, double damping) {
   return ground;
 }
 
-// The engine scales its contacts to the masses of the bodies; these must not depend on them.
+// The engine scales its contacts with the masses of the bodies, but the contacts of a fixture with
+// a stiffness must not depend on these masses.
 TEST(Yielding, ABodySinksInByTheForceOverTheStiffnessOfItsPoints) {
   constexpr double kStiffness = 5000;  // [N/m]
   for (const Shape shape : {Shape::kSphere, Shape::kBox}) {
@@ -129,7 +131,7 @@ TEST(Yielding, ABodySinksInByTheForceOverTheStiffnessOfItsPoints) {
   }
 }
 
-// At its turning points, so that half a step does not matter.
+// Compares the motion at its turning points, where an error of half a step has little effect.
 TEST(Yielding, ABodySwingsAsItsSpringAndDamperSay) {
   constexpr double kRadius = 0.1, kStiffness = 2000, kDamping = 12;  // [m], [N/m], [N·s/m]
   const double omega = std::sqrt(kStiffness / kBodyMass);
@@ -147,8 +149,9 @@ TEST(Yielding, ABodySwingsAsItsSpringAndDamperSay) {
   }
 }
 
-// Under its weight, which a fixture without a stiffness would compensate during the impact. The
-// heights differ by less than the distance of a step, so that the impact begins anywhere in a step.
+// The ball moves under its weight, which a fixture without a stiffness would compensate during the
+// impact. The heights differ by less than the distance of a step, so that the impacts begin at
+// different phases of a step.
 TEST(Yielding, AFallingBallRisesAsItsSpringAndDamperSay) {
   constexpr double kRadius = 0.2, kFrequency = 50;  // [m], of the contact [rad/s]
   for (const double zeta : {0.05, 0.1, 0.2}) {
@@ -169,7 +172,8 @@ TEST(Yielding, AFallingBallRisesAsItsSpringAndDamperSay) {
 // ---- a sliding stop ----------------------------------------------------------------------------
 
 TEST(SlidingStop, ABlockStopsAfterTheDistanceOfItsFriction) {
-  // A stop takes at least 25 steps. Shorter ones depend on the time constant of the friction.
+  // Each stop takes at least 25 steps, because shorter stops depend on the time constant of the
+  // friction.
   const std::pair<double, double> stops[] = {{0.3, 0.1}, {0.3, 0.2}, {0.3, 0.5}, {0.3, 1.5},
                                              {0.8, 0.2}, {0.8, 0.5}, {0.8, 1.5}};
   for (const auto& [friction, speed] : stops) {
@@ -205,8 +209,8 @@ TEST(Tipping, ABoxTipsAtTheForceThatMovesItsWeightOverTheEdge) {
 
 // ---- a peg against a wall ----------------------------------------------------------------------
 
-// A peg along x, with an end face against a wall, pressed by a force N: the wall answers with N,
-// and its friction lets the peg slide down with g − μ N / m, or holds it.
+// A force N presses the end face of a peg, which lies along x, against a wall. The wall reacts with
+// N, and its friction either holds the peg or lets it slide down with the acceleration g − μ N / m.
 TEST(Peg, SlidesDownAWallAgainstTheFrictionOfThePressingForce) {
   constexpr double kFriction = 0.5, kRadius = 0.05, kLength = 0.04;
   FixtureSpec wall = Fixture(FixtureShape::kBox, {0.1, 2, 8}, kOrigin + Vector3(0.05, 0, 0));

@@ -163,7 +163,7 @@ struct WithMemory {
   std::vector<std::string> parameters = {};
 };
 
-// Without hands, these controllers rest.
+// Without hands, these controllers must keep the cobot at rest.
 const WithMemory kWithMemory[] = {
     {"admittance"},
     {"hybrid_force_position", {"set_force=[0, 0, 19.62]", "force_integral_gain=2"}},
@@ -210,8 +210,8 @@ TEST_P(ControllerMemory, ReturnsToTheStartOnReset) {
   EXPECT_EQ(a.state().q, b.state().q);
 }
 
-// After a small push, the state must equal that of the linear model, with all states of sensor,
-// controller and delay.
+// After a small push, the state must equal the state of the linear model, which includes all states
+// of sensor, controller and delay.
 void ExpectLinearMotion(const Scenario& s, double tolerance) {
   World world(s);
   const LinearModel model = world.Linearise();

@@ -180,7 +180,8 @@ TEST(CartesianImpedance, RatioPerAxisReachesTheModesOfThatAxis) {
   s.cobot.controller.Set("damping_ratio=[0.1, 0.2, 0.9, 0.3, 0.4, 0.5]");
   ControlledRobot robot(s);
   const MatrixXd D = DampingInJoints(&robot);
-  // One spring causes one mode. Its inertia along z is 1/(Λ⁻¹)_zz, and D is of rank one.
+  // One spring causes one mode. The inertia of this mode along z is 1/(Λ⁻¹)_zz, and D is of rank
+  // one.
   const MatrixXd J = JacobianOf(robot);
   const MatrixXd Lambda = CartesianInertia(robot);
   const MatrixXd mobility = Inverse(Lambda);

@@ -1,4 +1,5 @@
-// Tests contact in the engine DART: fixtures, what it refuses, and how it differs from MuJoCo.
+// Tests contact in the engine DART: contact with fixtures, the scenarios that DART refuses, and the
+// differences to MuJoCo.
 #include <array>
 #include <string>
 #include <vector>
@@ -39,7 +40,7 @@ std::vector<Support> Supports() {
           {"cylinder", Fixture(FixtureShape::kCylinder, {0.3, 0.2, 0}, below(0.1))}};
 }
 
-// Each shape rests on each flat top, and sinks in by less than 1 µm.
+// Each shape must rest on each flat top and sink in by less than 1 µm.
 TEST_F(DartContact, EveryShapeRestsOnEveryFlatTop) {
   const std::array<std::pair<Shape, Vector3>, 3> shapes = {{{Shape::kBox, {0.2, 0.2, 0.2}},
                                                             {Shape::kCylinder, {0.1, 0.2, 0}},
@@ -61,8 +62,8 @@ TEST_F(DartContact, EveryShapeRestsOnEveryFlatTop) {
   }
 }
 
-// A cylinder that rolls has a moment of inertia of m r²/2, so that friction leaves two thirds of
-// its speed. Earlier points of contact must not hold it.
+// The cylinder has a moment of inertia of m r²/2, so it rolls at two thirds of the speed at which
+// it slid. Earlier points of contact must not hold the cylinder back.
 TEST_F(DartContact, ACylinderThatSlidesBeginsToRoll) {
   FreeBody body = InDart(Shape::kCylinder, {0.05, 0.2, 0}, {TableTop(0.5)});
   body.Place(
@@ -72,7 +73,7 @@ TEST_F(DartContact, ACylinderThatSlidesBeginsToRoll) {
   EXPECT_NEAR(body.velocity().x(), 2.0 / 3, kFormAccuracy * 2 / 3);
 }
 
-// A cylinder stands at an edge as long as its centre is above the table.
+// A cylinder at the edge of a table must stand as long as its centre is above the table.
 TEST_F(DartContact, ACylinderTipsOverAnEdgeIfItsCentreIsBeyondIt) {
   for (const double beyond : {-0.01, 0.01}) {
     FixtureSpec table = Fixture(FixtureShape::kBox, {2, 2, 0.1}, kOrigin - Vector3(1, 0, 0.05));
@@ -85,7 +86,7 @@ TEST_F(DartContact, ACylinderTipsOverAnEdgeIfItsCentreIsBeyondIt) {
   }
 }
 
-// A capsule and a ball are touched at one point, from the side.
+// The body touches a capsule or a ball from the side, at a single point.
 TEST_F(DartContact, CapsulesAndBallsStopABody) {
   for (const FixtureShape shape : {FixtureShape::kCapsule, FixtureShape::kSphere}) {
     const double radius = 0.1;
@@ -107,7 +108,8 @@ TEST_F(DartContact, CapsulesAndBallsStopABody) {
 
 // ---- impact and friction -----------------------------------------------------------------------
 
-// The speed with which a mass of 1 kg on a spring of 1 N/m with this damping ratio leaves it.
+// Returns the speed [m/s] at which a mass of 1 kg that arrives at 1 m/s leaves a spring of 1 N/m
+// with this damping ratio.
 double ShareOfSpeed(double zeta) {
   constexpr double kSmallStep = 1e-5;  // [s]
   double x = 0, v = -1;
@@ -124,7 +126,8 @@ TEST(RestitutionOf, IsThatOfASpringAndDamper) {
     EXPECT_NEAR(RestitutionOf(zeta), ShareOfSpeed(zeta), 1e-4) << zeta;
 }
 
-// DART bounds friction along two axes. Along their diagonal, it is √2 times as large.
+// DART limits the friction along each of two axes. Along the diagonal between these axes, the
+// friction is therefore √2 times as large.
 TEST_F(DartContact, FrictionDependsOnTheDirection) {
   constexpr double kFriction = 0.3, kSpeed = 0.5;  // [1], [m/s]
   const double path = kSpeed * kSpeed / (2 * kFriction * kGravity);
@@ -157,7 +160,8 @@ TEST_F(DartContact, ARemovedFixtureDoesNotTouch) {
 
 constexpr double kWallGap = 0.03;  // [m]
 
-// A wall at a distance of kWallGap before the box that the cobot holds.
+// Returns a scenario with a wall in front of the box that the cobot holds, at a distance of
+// kWallGap.
 Scenario BeforeAWall() {
   Scenario s = BoxScene(9);
   s.simulation.engine = EngineKind::kDart;
@@ -179,7 +183,8 @@ TEST_F(DartContact, AWallStopsTheBoxThatIsPushedIntoIt) {
   EXPECT_NEAR(world.state().object.X_W.p.x() - start, kWallGap, 2e-3);
 }
 
-// The points of contact are not part of the state, so the engine must not remember any.
+// The points of contact are not part of the saved state, so the engine must not use any from
+// earlier steps.
 TEST_F(DartContact, ContinuesARestoredStateBitForBit) {
   const Scenario s = BeforeAWall();
   const WorldInput input = Push(s, {15, 4, -3});

@@ -24,7 +24,7 @@ constexpr double kDuration = 5;  // [s]
 constexpr double kMaxDifference =
     1e-8;  // [m], as the engines' rounding errors grow in a closed loop
 
-// Without what the engines treat differently: limits, Coulomb friction, and contact.
+// Removes what the two engines treat differently: joint limits and Coulomb friction.
 Scenario Comparable(Scenario s) {
   s.cobot.joint_friction.coulomb = {0};
   s.simulation.joint_limits = JointLimits::kNone;
@@ -36,7 +36,7 @@ Scenario With(EngineKind engine, Scenario s) {
   return s;
 }
 
-// Hands that draw the handles along a smooth path, by springs and dampers.
+// Returns the input of hands that pull the handles along a smooth path with springs and dampers.
 WorldInput DrawHandles(const Scenario& s, const WorldState& start, const WorldState& now) {
   constexpr double kStiffness = 150, kDamping = 30, kTurnStiffness = 2, kTurnDamping = 0.2;
   const double x = std::sin(0.5 * now.time);
@@ -60,7 +60,7 @@ struct Moved {
   double distance = 0;    // that the object moved [m]
 };
 
-// Guides the object in both engines, each by its own hands.
+// Guides the object in both engines. The hands in each engine react to the motion in this engine.
 Moved Compare(const Scenario& scenario) {
   const Scenario s = Comparable(scenario);
   World mujoco(With(EngineKind::kMujoco, s)), dart(With(EngineKind::kDart, s));
@@ -87,7 +87,7 @@ void ExpectAlike(const Scenario& scenario) {
   std::printf("%.2g m, %.2g rad, over %.2f m\n", moved.difference, moved.angle, moved.distance);
 }
 
-// Tests with DART. A build without DART skips them.
+// The fixture of tests with DART, which a build without DART skips.
 class Dart : public testing::Test {
  protected:
   void SetUp() override {
@@ -124,9 +124,9 @@ TEST_F(Dart, MovesHandsWithMassAsInMujoco) {
   ExpectAlike(s);
 }
 
-// The shipped scenarios, without their events. Not comparable are `underdamped`, which is unstable
-// on purpose, and `hybrid_force_position` and `load_sharing`, which begin in contact with the
-// table.
+// Tests the shipped scenarios without their events. Three scenarios cannot be compared:
+// `underdamped` is unstable on purpose, and `hybrid_force_position` and `load_sharing` begin in
+// contact with the table.
 class DartScenario : public Dart, public testing::WithParamInterface<const char*> {};
 
 TEST_P(DartScenario, MovesAsInMujoco) {
@@ -196,7 +196,7 @@ TEST_F(Dart, ReportsAStateThatIsNotFinite) {
   EXPECT_NEAR(world.state().time, kTick, 1e-12);
 }
 
-// Processes that this one started.
+// Returns the processes that this process started.
 std::vector<pid_t> Children() {
   std::vector<pid_t> children;
   std::ifstream list("/proc/self/task/" + std::to_string(getpid()) + "/children");
@@ -251,7 +251,8 @@ TEST(Mujoco, RefusesHardLimitsByName) {
 
 // ---- limits ------------------------------------------------------------------------------------
 
-// The largest position and speed of a sliding attachment that a hand pushes with 60 N for a second.
+// Measures the largest position and speed of a sliding attachment that a hand pushes with 60 N for
+// a second.
 double Slide(Scenario s, JointLimits limits) {
   s.simulation.joint_limits = limits;
   s.environment.gravity = 0;
@@ -281,8 +282,9 @@ TEST(Mujoco, HasSoftLimitsOrNone) {
   EXPECT_GT(Slide(s, JointLimits::kNone), 0.1);
 }
 
-// The largest speed of the first joint [rad/s], which a torque turns for 0.3 s. The other joints
-// stay below their limits. (If several joints are at their limits, DART lets some exceed them.)
+// Returns the largest speed of the first joint [rad/s], which a torque turns for 0.3 s. The other
+// joints stay below their limits. (If several joints are at their limits, DART lets some exceed
+// them.)
 double FastestTurn(VelocityLimits limits) {
   Scenario s = BoxScene(9);
   s.environment.gravity = 0;

@@ -62,7 +62,7 @@ TEST(Equilibrium, DoesNotBalance) {
 TEST(Equilibrium, RestsOnTheTableUnderneath) {
   Scenario s = BoxScene(9);
   s.environment.table = TableSpec{};
-  // Before it sags, the box ends 0.05 m above the table.
+  // Before the cobot sags, the lower face of the box is 0.05 m above the table.
   const double top = SetPoint(s).p.z() - 0.2 - 0.05;
   s.environment.table->top = {0.5, 0, top};
   World world(s);

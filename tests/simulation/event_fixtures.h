@@ -36,7 +36,7 @@ inline void RunWith(World* world, const WorldInput& input, double time) {
     ASSERT_TRUE(world->Step(input, kTick).ok()) << world->state().time;
 }
 
-// Requires that `ticks` steps with this force on each handle, and a reset, take nothing from the
+// Checks that `ticks` steps with this force on each handle and a reset allocate no memory on the
 // heap.
 inline void ExpectNoHeap(const Scenario& scenario, const Vector3& force, int ticks) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();

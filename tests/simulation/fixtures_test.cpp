@@ -1,4 +1,5 @@
-// Tests fixtures in the world: the carried object rests and slides on them, and cannot pass.
+// Tests fixtures in the world. The carried object must rest and slide on them, and must not pass
+// through them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +18,7 @@ constexpr double kBoxMass = 9;      // [kg]
 constexpr double kTableGap = 0.05;  // between box and table before the box sags [m]
 constexpr double kVertical = 500;   // stiffness of the cobot's controller [N/m]
 
-// Middle of the box's lower face at cobot.posture, before it sags.
+// Returns the middle of the box's lower face at cobot.posture, before the cobot sags.
 Vector3 BottomOf(const Scenario& s) {
   const ControlledRobot robot(s);
   return robot.data.FramePose(*robot.model, robot.end_effector).p - Vector3(0, 0, 0.2);
@@ -31,7 +32,7 @@ FixtureSpec TableUnder(const Scenario& s, double friction) {
   return table;
 }
 
-// The box sags onto a table.
+// Returns a scenario in which the box sags onto a table.
 Scenario OnATable(double friction) {
   Scenario s = BoxScene(kBoxMass);
   s.right_handle->pose.rpy.setZero();
@@ -51,7 +52,7 @@ TEST(Fixtures, ABoxRestsOnATable) {
   EXPECT_LT(world.state().object.V_W.norm(), 1e-5);
 }
 
-// The table carries what the cobot's spring does not.
+// The table carries the part of the weight that the cobot's spring does not carry.
 TEST(Fixtures, ABoxSlidesWhenTheHandsExceedItsFriction) {
   constexpr double kFriction = 0.3;
   const double normal = kBoxMass * kGravity - kVertical * kTableGap;
@@ -66,11 +67,12 @@ TEST(Fixtures, ABoxSlidesWhenTheHandsExceedItsFriction) {
   }
 }
 
-// The cobot's spring and that of the fixture share the hands' force.
+// The cobot's spring and the fixture's spring share the hands' force.
 TEST(Fixtures, ABoxOnOneThatYieldsMovesByTheForceOverBothStiffnesses) {
   constexpr double kStiffness = 4000, kForce = 20;  // [N/m], of each hand [N]
   Scenario s = OnATable(0);
-  // On a joint, and with a cobot that is soft to the sides, the box would slip off the ball.
+  // If the box hung on a joint or the cobot were compliant sideways, the box would slip off the
+  // ball.
   s.object.attachment.joint = JointType::kFixed;
   s.cobot.controller.Set("stiffness.translation=[300, 300, 500]");
   FixtureSpec& post = s.environment.fixtures[0];
@@ -104,7 +106,7 @@ TEST(Fixtures, AWallStopsTheBoxThatIsPushedIntoIt) {
   EXPECT_GT(through.state().object.X_W.p.x() - free.state().object.X_W.p.x(), 2 * kGap);
 }
 
-// A ball beside a link of the cobot: the link's hull cannot pass it, if it is to touch the cobot.
+// The hull of a link of the cobot must not pass through a fixture that may touch the cobot.
 TEST(Fixtures, ALinkOfTheCobotIsStopped) {
   Scenario s = RigidBox();
   FixtureSpec wall;
@@ -174,7 +176,7 @@ TEST(Fixtures, OfEveryShapeTakeNothingFromTheHeap) {
                           : shape == FixtureShape::kSphere  ? 0.04
                                                             : 0.02;
     fixture.xyz = bottom + Vector3(0.05 * (touching - 2), 0.08 * (touching % 2), -0.02 - height);
-    // A plane extends to the foot of the cobot.
+    // A plane would also touch the foot of the cobot, so it may touch only the object.
     if (shape != FixtureShape::kPlane) fixture.touches = {"object", "cobot"};
     s.environment.fixtures.push_back(fixture);
     ++touching;

@@ -1,4 +1,4 @@
-// A free body among fixtures, in either engine, for comparisons with closed forms.
+// Simulates a free body among fixtures in either engine, for comparisons with closed forms.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ inline FixtureSpec Fixture(FixtureShape shape, const Vector3& size, const Vector
   return fixture;
 }
 
-// A table whose top is at kOrigin.
+// Returns a table whose top is at kOrigin.
 inline FixtureSpec TableTop(double friction) {
   FixtureSpec table = Fixture(FixtureShape::kBox, {4, 1, 0.1}, kOrigin - Vector3(0, 0, 0.05));
   table.friction = friction;
@@ -62,7 +62,7 @@ class FreeBody {
     engine_->MoveObject(O);
     ASSERT_TRUE(engine_->Prepare());
   }
-  // Under the wrench F; sums the contacts' forces.
+  // Simulates the body under the wrench F and averages the contacts' forces.
   void Run(double duration, const Wrench& F = Wrench::Zero()) {
     engine_->SetObjectWrench(F);
     const int steps = static_cast<int>(std::lround(duration / kOneStep));
@@ -88,7 +88,8 @@ class FreeBody {
   double tilt() const { return std::acos(std::min(1.0, pose().R()(2, 2))); }  // [rad]
   Engine& engine() { return *engine_; }
 
-  // Mean of the contacts' forces in the last Run: a sliding body hops. Greatest penetration.
+  // ContactForce returns the mean of the contacts' forces in the last Run, because a sliding body
+  // hops. Depth returns the greatest penetration [m].
   const Vector3& ContactForce() const { return mean_force_; }
   double Depth() const {
     double depth = 0;
@@ -114,7 +115,7 @@ class FreeBody {
 
 inline constexpr double kSlope = 20 * M_PI / 180;  // [rad]; its tangent is 0.364
 
-// A slope through kOrigin that falls along x, as a plane or as the upper face of a box.
+// Returns a slope through kOrigin that falls along x. It is a plane or the upper face of a box.
 inline FixtureSpec Slope(FixtureShape shape, double friction) {
   const Pose X = PoseFromXyzRpy(kOrigin, {0, kSlope, 0});
   const bool plane = shape == FixtureShape::kPlane;
@@ -131,16 +132,17 @@ inline Pose OnSlope(double height) {
 
 // ---- an impact ---------------------------------------------------------------------------------
 
-// A linear spring and damper that pushes but does not pull returns the share e of the speed
-// (Schwager & Pöschel, Granular Matter 9:465, 2007, eq. 20).
+// Returns the fraction of its speed that a body keeps if a linear spring and damper pushes it back
+// but does not pull it (Schwager & Pöschel, Granular Matter 9:465, 2007, eq. 20).
 inline double Restitution(double zeta) {
   const double omega = std::sqrt(1 - zeta * zeta);  // in units of the undamped one
   const double angle = std::atan2(2 * zeta * omega, omega * omega - zeta * zeta);
   return std::exp(-zeta / omega * (M_PI - angle));
 }
 
-// Height above the contact at which a ball that arrives at the speed v turns again [m]: the same
-// spring and damper, and the weight, integrated in small steps. `omega`: undamped [rad/s].
+// Returns the height above the contact to which a ball rises again after it has arrived at the
+// speed v [m]. The spring and damper are those of Restitution. The weight acts as well, and the
+// motion is integrated in small steps. `omega` is the undamped frequency [rad/s].
 inline double HeightOfBounce(double omega, double zeta, double v) {
   constexpr double kSmallStep = 1e-6;  // [s]
   double z = 0, speed = -v;

@@ -1,5 +1,5 @@
-// The cobot puts the object down and grasps it again, on command. Expected values are closed forms,
-// or come from the same scene without these events.
+// Tests the commands on which the cobot puts the object down and grasps it again. Expected values
+// are closed forms or come from the same scene without these events.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,12 +16,13 @@ namespace {
 constexpr double kMass = 2;        // of the box [kg]
 constexpr double kFriction = 0.3;  // of the table
 constexpr double kWeight = kMass * kGravity;
-// Below this speed per unit of friction, the friction of a fixture is smaller
+// Below this speed per unit of friction, a fixture's friction is weaker than Coulomb's law states
 // (docs/how-to/fixtures.md) [m/s].
 constexpr double kWeakFriction = 0.05;
 constexpr double kGap = 1e-4;  // between box and table at the start [m]
 
-// A box fixed to the flange of a cobot that knows its load, so that nothing sags.
+// Returns a scenario in which a box is fixed to the flange of a cobot that compensates its load, so
+// that nothing sags.
 Scenario KnownLoad() {
   Scenario s = RigidBox();
   s.cobot.payload = PayloadSpec{kMass, {0, 0, 0.1}};
@@ -50,7 +51,8 @@ Pose ObjectInFlange(const World& world) {
   return world.state().end_effector.X_W.Inverse() * world.state().object.X_W;
 }
 
-// Both hands push with this share of the friction of a box that lies on the table with its weight.
+// Returns the input of two hands whose pushes together are the fraction `share` of the friction of
+// a box that rests on the table with its full weight.
 WorldInput PushAgainstFriction(const Scenario& s, double share) {
   return Push(s, {share * kFriction * kWeight / 2, 0, 0});
 }
@@ -108,8 +110,8 @@ TEST(Gripper, TheTableCarriesTheReleasedObject) {
   }
 }
 
-// The object is moved on the table between release and grasp. The grip then holds it at its new
-// place, without a jump.
+// The object is moved on the table between release and grasp. The grip must then hold the object at
+// its new place, without a jump.
 TEST(Gripper, ClosesWhereTheObjectIs) {
   Scenario s = OnATable();
   s.events = {Release(0.1), Grasp(0.6)};
@@ -139,8 +141,8 @@ TEST(Gripper, ClosesWhereTheObjectIs) {
   EXPECT_LT(slid, 1e-5);
 }
 
-// The cobot carries the same mass as before: the springs are relaxed again, and a push moves both
-// alike.
+// The cobot must carry the same mass as before. Its springs must be relaxed again, and a push must
+// move it like a cobot that never released the object.
 TEST(Gripper, HoldsTheSameMassAgain) {
   const Scenario without = KnownLoad();
   Scenario s = without;
@@ -175,7 +177,7 @@ TEST(Gripper, StaysOpenIfTheObjectIsTooFarAway) {
   }
 }
 
-// A second release and grasp act like the first.
+// A second release and grasp must have the same effect as the first ones.
 TEST(Gripper, OpensAndClosesRepeatedly) {
   Scenario s = OnATable();
   s.events = {Release(0.1), Grasp(0.3), Release(1.2), Grasp(1.4)};
@@ -221,7 +223,8 @@ TEST(Gripper, TakesNothingFromTheHeap) {
 }
 
 // The cobot knows that it put its load down, so its own safety functions do not take the missing
-// weight for a force. They do if the object breaks loose.
+// weight for a force. If the object breaks loose, the safety functions do take the missing weight
+// for a force.
 TEST(Gripper, ItsSafetyFunctionsKnowWhatItHolds) {
   for (const bool on_purpose : {true, false}) {
     Scenario s = OnATable();

@@ -1,5 +1,5 @@
 // Compares the controllers that laboratories use with the closed forms of their laws. The tests
-// compute each expected value from the law as published.
+// compute each expected value from the published law.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,8 +50,9 @@ TEST(VariableImpedance, ReachesTheSpeedAtWhichDampingBalancesTheForce) {
   }
 }
 
-// A force rises by r t and then falls at the same rate. The motion follows m v̇ + d v = F with d =
-// d_0 − α r, then d_0 + α r. The mass is that of the controller and the box.
+// A force rises at the rate r and then falls at the same rate. The motion follows m v̇ + d v = F
+// with d = d_0 − α r, then d_0 + α r. The moving mass is the sum of the controller's virtual mass
+// and the mass of the box.
 TEST(VariableImpedance, TakesARisingForceAsTheIntentionToAccelerate) {
   const double d0 = 100, gain = 2, r = 10, m = 8 + kMassOfBox, turn = 1, end = 1.6;
   World world(FlangeScene("variable_impedance",
@@ -86,7 +87,8 @@ TEST(VariableImpedance, RefusesBoundsInTheWrongOrder) {
 
 // ---- minimum jerk ------------------------------------------------------------------------------
 
-// Position and velocity, as shares of the distance, of a movement of T seconds at time t.
+// Position and velocity of a movement that lasts T seconds, at time t, as fractions of its
+// distance.
 struct JerkPoint {
   double x, v;
 };
@@ -121,9 +123,10 @@ TEST(MinimumJerkEstimate, EqualsAnExactMovement) {
     }
 }
 
-// A hand leads the box along a minimum-jerk movement. Its force is what this movement needs beyond
-// the assistance, which the controller fades in from s = 0.1 to 0.3, plus a spring against
-// deviations. Returns the hand's mean force [N] while the cobot assists fully.
+// A hand leads the box along a minimum-jerk movement. The hand's force is the part of the necessary
+// force that the assistance does not provide, plus a spring against deviations. The controller
+// fades the assistance in from s = 0.1 to 0.3. Returns the hand's mean force [N] while the cobot
+// assists fully.
 double MeanForceOfHand(double assistance, double T, double distance) {
   World world(FlangeScene("minimum_jerk_intention", {"damping_translation=60", "load_mass=2",
                                                      "assistance=" + std::to_string(assistance)}));
@@ -148,8 +151,9 @@ double MeanForceOfHand(double assistance, double T, double distance) {
 }
 
 // Without assistance, the hand moves the virtual mass, the box and the damper. With full
-// assistance, its force nearly vanishes. A larger part remains in faster movements (a quarter for 1
-// s), because the position loop yields a little to the hand and the estimate uses the real motion.
+// assistance, the hand's force nearly vanishes. A larger part remains in faster movements (a
+// quarter for 1 s), because the position loop yields a little to the hand and the estimate uses the
+// real motion.
 TEST(MinimumJerkIntention, RelievesTheHand) {
   for (const double T : {1.5, 2.5}) {
     const double distance = 0.2;
@@ -185,7 +189,8 @@ Scenario OnTable(const std::string& type, const std::vector<std::string>& parame
   return s;
 }
 
-// A hand lifts the box with a spring by 3 cm plus its sag. Returns the hand's force at rest [N].
+// Through a spring, a hand lifts the box to 5 cm above its start, minus the sag of the spring.
+// Returns the hand's force at rest [N].
 double ForceToHoldInTheAir(const Scenario& s, double duration) {
   World world(s);
   const double table = world.state().end_effector.X_W.p.z();
@@ -290,8 +295,8 @@ TEST(HybridForcePosition, HoldsThePositionAlongTheOtherAxes) {
   EXPECT_NEAR(moved.y(), -8.0 / 800, 1e-4);
 }
 
-// Across a guide, the displacement must be F/K. Along it, the speed must be F/D. In a zone, the
-// zone's damper is added.
+// Across a guide, the displacement must be F/K. Along the guide, the speed must be F/D. In a zone,
+// the zone's damper is added.
 TEST(VirtualFixtures, GuideAcrossAndLeaveFreeAlong) {
   const auto moved = [](const std::string& guide, const std::string& zone, FrameMotion* E) {
     World world(WithoutFriction("virtual_fixtures", {"object_mass=2", "damping_translation=50",

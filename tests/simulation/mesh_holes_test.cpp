@@ -17,8 +17,8 @@ void AddQuadrilateral(const std::array<int, 4>& corner, CollisionMesh* mesh) {
   for (const int i : {0, 1, 2, 0, 2, 3}) mesh->faces.push_back(corner[static_cast<std::size_t>(i)]);
 }
 
-// A square frame around the z axis: rings of 4 corners, outer and inner, below and above. `x`: of
-// its centre.
+// Adds a square frame around an axis parallel to z. The frame has four rings of four corners each:
+// an outer and an inner ring below, and the same above. `x` is the position of the frame's centre.
 void AddFrame(float x, CollisionMesh* mesh) {
   const int first = static_cast<int>(mesh->vertices.size() / 3);
   for (const float z : {0.0F, 0.1F})
@@ -36,7 +36,7 @@ void AddFrame(float x, CollisionMesh* mesh) {
   }
 }
 
-// The same surface with three vertices of its own for each triangle.
+// Returns the same surface, but each triangle has three vertices of its own.
 CollisionMesh WithRepeatedVertices(const CollisionMesh& mesh) {
   CollisionMesh repeated;
   for (const int v : mesh.faces) {

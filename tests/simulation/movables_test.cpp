@@ -1,5 +1,5 @@
-// Movable objects among themselves and on fixtures, against closed forms of mechanics. The cobot is
-// there, but touches nothing.
+// Compares movable objects that touch each other or fixtures with closed forms of mechanics. The
+// scene contains a cobot, which touches nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ MovableSpec Cube(const std::string& name, double mass, const Vector3& offset) {
   return cube;
 }
 
-// A table whose top is at z = 0.
+// Returns a table whose top is at z = 0.
 FixtureSpec Table(double friction) {
   FixtureSpec table;
   table.size = {4, 4, 0.2};
@@ -58,8 +58,8 @@ class Bench {
     engine_->movable_velocities().segment<3>(static_cast<Eigen::Index>(6 * i)) = v;
     ASSERT_TRUE(engine_->Prepare());
   }
-  // Averages the upward forces of the contacts on a body by another one over the run. `by`: its
-  // number; −1: the fixture.
+  // Returns the mean upward force that the contacts with another body exert on `body` during the
+  // run [N]. `by` is the number of the other body, or −1 for the fixture.
   double Run(double duration, int body = -1, int by = -1) {
     const int steps = static_cast<int>(std::lround(duration / kOneStep));
     double sum = 0;
@@ -105,7 +105,7 @@ TEST(Movables, AFallEndsBelowTheScene) {
   EXPECT_LT(bench.motion(0).V_W.norm(), kGravity * 2 * kOneStep);
 }
 
-// Each contact carries what lies above it.
+// Each contact must carry the weight of everything above it.
 TEST(Movables, AStackStandsAndItsContactsCarryTheWeights) {
   constexpr double kMasses[] = {3, 2, 0.5};
   std::vector<MovableSpec> cubes;
@@ -149,7 +149,8 @@ TEST(Movables, ASlipperyBlockSlidesFarther) {
   }
 }
 
-// Two cubes meet in free space. Their momentum remains, and the contact only takes energy.
+// Two cubes collide in free space. Their total momentum must be conserved, and the contact may only
+// remove energy.
 TEST(Movables, AnImpactConservesMomentum) {
   constexpr double kFast = 0.8, kSlow = -0.3, kHeavy = 3, kLight = 1;
   Bench bench({Cube("a", kHeavy, {-0.2, 0, 0}), Cube("b", kLight, {0.2, 0, 0})}, {}, 0);
@@ -167,8 +168,8 @@ TEST(Movables, AnImpactConservesMomentum) {
   EXPECT_GT(bench.motion(1).X_W.p.x() - bench.motion(0).X_W.p.x(), kSide - 1e-3);
 }
 
-// The lower one of two blocks is thrown. While both slide, the upper block is accelerated by μ g,
-// and the friction of both of its faces decelerates the lower one.
+// The lower of two stacked blocks is thrown. While both slide, the upper block is accelerated by μ
+// g, and the friction of both of its faces decelerates the lower one.
 TEST(Movables, TwoBlocksThatSlideOnEachOtherFollowCoulombsLaw) {
   constexpr double kSpeed = 1.5, kTime = 0.3;  // [m/s], [s]
   constexpr double kTop = 0.2, kBottom = 0.1;  // friction

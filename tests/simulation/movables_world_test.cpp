@@ -1,5 +1,5 @@
-// Movable objects in the world of a cobot: the carried object pushes them, and its start and its
-// linear model do not depend on them.
+// Tests movable objects in the world of a cobot. The carried object must push them. The carried
+// object's start and the linear model must not depend on the movable objects.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,8 +16,8 @@ constexpr double kBrickMass = 4;        // [kg]
 constexpr double kBrickFriction = 0.4;  // of the table
 constexpr double kBrickGap = 0.02;      // between the carried box and the brick at the start [m]
 
-// A brick stands on a table beside the box that the cobot carries, in the direction x. The box is
-// above the table.
+// Returns a scenario in which the cobot carries a box above a table. A brick stands on the table,
+// beside the box in the direction x.
 Scenario WithABrick(double gap = kBrickGap) {
   Scenario s = RigidBox();
   s.right_handle->pose.rpy.setZero();
@@ -47,7 +47,8 @@ Scenario WithoutObjects(Scenario s) {
   return s;
 }
 
-// The hands push the box against the brick, through a cobot that is soft to the sides (5 N/m).
+// The hands push the box against the brick, and the cobot that holds the box hardly resists,
+// because it is soft sideways (5 N/m).
 TEST(MovableObject, SlidesWhenTheHandsExceedItsFriction) {
   const double limit = kBrickFriction * kBrickMass * kGravity;
   for (const double share : {0.9, 1.3}) {
@@ -58,7 +59,7 @@ TEST(MovableObject, SlidesWhenTheHandsExceedItsFriction) {
     RunWith(&world, Push(s, {share * limit / 2, 0, 0}), 1.2);
     const double moved = Brick(world).X_W.p.x() - start;
     EXPECT_EQ(moved > 0.05, share > 1) << moved;
-    // MuJoCo's friction creeps below its limit.
+    // In MuJoCo, bodies creep even while the force is below the limit of friction.
     EXPECT_EQ(moved < 0.02, share < 1) << moved;
     // The box is behind the brick and touches it.
     const double behind = Brick(world).X_W.p.x() - world.state().object.X_W.p.x();
@@ -67,7 +68,7 @@ TEST(MovableObject, SlidesWhenTheHandsExceedItsFriction) {
   }
 }
 
-// The equilibrium and the linear model are those of the cobot and its object.
+// The equilibrium and the linear model must be those of the cobot and its object alone.
 TEST(MovableObject, DoesNotChangeTheStart) {
   const Scenario s = WithABrick(0.002);
   World with(s), without(WithoutObjects(s));
@@ -119,8 +120,8 @@ TEST(MovableObject, TheTickDoesNotUseTheHeap) {
   ExpectNoHeap(s, {14, 2, 0}, 600);
 }
 
-// The object that a gripper holds with limited force pushes a brick as one on a joint does. The
-// brick's inertia acts back on the grip.
+// An object that a gripper holds with limited force must push a brick as an object on a joint does.
+// The brick's inertia also loads the grip.
 TEST(MovableObject, AGripPushesItAsAJointDoes) {
   Scenario s = WithABrick(0.002);
   s.environment.fixtures[0].friction = 0;  // sliding bodies hop, and each hop differs
@@ -151,12 +152,13 @@ TEST(MovableObject, CarriesTheReleasedObject) {
   EXPECT_LT(world.state().object.V_W.norm(), 1e-4);
 }
 
-// A link of the cobot touches a brick only if the brick says so.
+// A link of the cobot must touch a brick only if the brick's `touches` contains the cobot.
 TEST(MovableObject, TouchesTheCobotIfItShould) {
   Scenario s = WithABrick();
   MovableSpec& brick = s.environment.objects[0];
   FixtureSpec& shelf = s.environment.fixtures[0];
-  // Above the upper face of the box, which is 0.1 m above its middle, and beside the wrist.
+  // The shelf is beside the wrist and above the upper face of the box, which is 0.1 m above the
+  // box's middle.
   shelf.size = {0.3, 0.3, 0.05};
   shelf.xyz = Vector3(brick.xyz.x(), brick.xyz.y(), brick.xyz.z() + 0.225);
   brick.primitive->size = {0.3, 0.3, 0.5};

@@ -1,4 +1,4 @@
-// A fixture that is absent until an event.
+// Tests a fixture that is absent until an event.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kWallGap = 0.03;  // between the box and the wall at the start [m]
 
-// A wall in front of a box, which appears at the time `after` [s] for `duration` [s].
+// Returns a scenario in which a wall in front of the box appears at the time `after` [s] for
+// `duration` [s].
 Scenario WithWall(double after, double duration = 0) {
   Scenario s = RigidBox();
   s.object.attachment.on_end_effector.rpy.z() = -0.785;  // its faces are along the axes of W
@@ -52,7 +53,7 @@ TEST(Obstacle, IsGoneWhenItsEventEnds) {
   EXPECT_GT(MovedBy(WithWall(0, 1), 1.5), 2 * kWallGap);
 }
 
-// The event begins while the box is where the wall would be; there is no sudden force.
+// The event begins while the box is where the wall would be, but no sudden force may act.
 TEST(Obstacle, WaitsUntilItsPlaceIsFree) {
   constexpr double kBegin = 0.5;  // [s]
   const Scenario s = WithWall(kBegin);
@@ -66,7 +67,7 @@ TEST(Obstacle, WaitsUntilItsPlaceIsFree) {
   EXPECT_GT(world.state().object.X_W.p.x() - start, kWallGap + 0.02);
   EXPECT_EQ((world.state().q - other.state().q).norm(), 0);
   EXPECT_EQ(world.state().events, 1u);
-  // The box is pulled back; the wall appears behind it, and it does not pass again.
+  // The box is pulled back. The wall then appears, and the box must not pass it again.
   RunWith(&world, Push(s, {-15, 0, 0}), 1.3);
   ASSERT_LT(world.state().object.X_W.p.x() - start, kWallGap - 0.02);
   RunWith(&world, push, 2);

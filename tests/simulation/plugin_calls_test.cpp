@@ -1,4 +1,4 @@
-// Tests what others learn about the calls into a controller's library.
+// Tests what other threads can find out about the calls into a controller's library.
 #include "simulation/plugin_calls.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,8 @@ TEST(PluginCalls, CountTheLooksThatSawTheSameCall) {
   EXPECT_FALSE(LookAtPluginCalls());
 }
 
-// A loop that calls the library again and again does not hang, even if it is seen in it each time.
+// A loop that calls the library again and again does not hang, even if each check finds it inside
+// the library.
 TEST(PluginCalls, CallsThatReturnAreNotLong) {
   PluginCalls calls("mine.so");
   for (int k = 0; k < 5; ++k) {
@@ -77,8 +78,8 @@ TEST(PluginCalls, ACallThatReturnsAfterTheLookIsNotGivenUp) {
   const PluginCall next(&calls, "compute");  // its end would hang otherwise
 }
 
-// The loop must not continue while another thread ends the program. Its thread then waits until the
-// process ends, so the test leaves it behind, with what it uses.
+// The loop must not continue while another thread ends the program. The loop's thread then waits
+// until the process ends, so the test leaves the thread and its data behind.
 TEST(PluginCalls, ACallThatIsGivenUpNeverReturnsToTheLoop) {
   struct Loop {
     PluginCalls calls{"mine.so"};

@@ -7,7 +7,8 @@
 namespace predictor {
 namespace {
 
-// An xArm7 without friction, whose last link has an inertia of 1.3e-4 kg·m² about its joint.
+// Returns a scenario with an xArm7 without friction, whose last link has an inertia of 1.3e-4 kg·m²
+// about its joint.
 Scenario LightWrist(const ControllerSpec& controller) {
   Scenario s = BoxScene(3);
   s.cobot.model = "package://example-robot-data/robots/xarm_description/urdf/xarm7.urdf";
@@ -42,7 +43,7 @@ TEST(PluginExamples, DoNotChatterAtALightWrist) {
   }
 }
 
-// A test that cannot fail would be no test: a damper that ignores the inertia chatters.
+// This test shows that the previous one can fail: a damper that ignores the inertia chatters.
 TEST(PluginExamples, WouldChatterWithADamperThatIgnoresTheInertia) {
   const Scenario s =
       LightWrist(test::Plugin("joint_impedance", "joint_stiffness=200 damping_rate=3000"));

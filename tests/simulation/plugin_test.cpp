@@ -41,7 +41,7 @@ ControllerSpec BuiltIn(const std::string& type, const std::vector<std::string>& 
   return spec;
 }
 
-// Returns a process that does what `fault` names from the time `at` [s] on.
+// Returns a controller process that has the fault `fault` from the time `at` [s] on.
 ControllerSpec Faulty(const std::string& fault, double at = 0.05) {
   return test::ProcessOf("[python3, " + std::string(PREDICTOR_SOURCE_DIR) +
                          "/tests/plugins/process.py, \"" + fault + "\", \"" + std::to_string(at) +
@@ -85,8 +85,8 @@ Quaternion ObjectInE(const World& world) {
   return world.state().end_effector.X_W.q.conjugate() * world.state().object.X_W.q;
 }
 
-// These controllers answer with the pose that they receive. It must be the pose before the step,
-// even if the object rotates in a spherical attachment.
+// These controllers answer with the pose that they receive. This pose must be the one before the
+// step, even if the object rotates in a spherical attachment.
 TEST(Plugin, SeesThePoseOfTheObject) {
   for (const ControllerSpec& controller :
        {Plugin("at_time", "fault=object at=0.05"), Faulty("object")}) {
@@ -330,7 +330,8 @@ bool MayUse(int priority) {
   return sched_setscheduler(0, SCHED_OTHER, &parameter) == 0;
 }
 
-// The process answers its scheduling policy and its priority. Without permission, it keeps its own.
+// The process answers with its scheduling policy and its priority. If the system does not permit a
+// real-time priority, the process must keep the ordinary one.
 TEST(Plugin, AProcessGetsAPriorityBelowTheLoopsIfItAsksForIt) {
   for (const bool asks : {false, true}) {
     Scenario s = BallScene(Faulty("priority", 0.01));

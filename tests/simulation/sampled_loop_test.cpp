@@ -12,7 +12,8 @@
 namespace predictor {
 namespace {
 
-// A Panda without friction whose motors never saturate, with a load and springs in its joints.
+// Returns a scenario with a Panda that has no friction, motors that never saturate, a load, and
+// springs in its joints.
 Scenario SpringScene(const std::vector<std::string>& parameters) {
   Scenario s = FlangeScene("joint_impedance", parameters);
   s.cobot.effort_limit = {1e12};
@@ -41,7 +42,7 @@ TEST(SampledLoop, OfAnOrdinaryControllerIsStable) {
   EXPECT_TRUE(World(SpringScene({"joint_stiffness=300"})).JudgeController().is_stable());
 }
 
-// In continuous time, no damper is too strong.
+// In continuous time, no damper would be too strong, but the sampled loop becomes unstable.
 TEST(SampledLoop, OfATooStrongDamperGrowsAsInTheSimulation) {
   const Scenario s = SpringScene({"joint_stiffness=20000", "joint_damping_ratio=1.2"});
   const SampledLoop loop = World(s).JudgeController();

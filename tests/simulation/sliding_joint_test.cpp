@@ -1,4 +1,4 @@
-// Compares a cobot that only slides, with an object fixed to it, with closed forms.
+// Compares a cobot with one sliding joint and a fixed object with closed forms.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kCarriage = 3, kLoad = 2;  // [kg]
 
-// A carriage of 3 kg on a rail along `axis`, with springs of 400 N/m and a load of 2 kg.
+// Returns a scenario with a carriage of 3 kg on a rail along `axis`, springs of 400 N/m and a load
+// of 2 kg.
 class SlidingCobot : public testing::Test {
  protected:
   Scenario On(const std::string& axis, const std::vector<std::string>& overrides = {}) {
@@ -69,8 +70,8 @@ TEST_F(SlidingCobot, SagsByTheLoadsWeightAlongTheAxis) {
   }
 }
 
-// The poles of the linearised world are ± i sqrt(k / (m + M)), with the damping friction / (2 (m +
-// M)).
+// The poles of the linearised world have the undamped frequency sqrt(k / (m + M)) and the decay
+// rate friction / (2 (m + M)).
 TEST_F(SlidingCobot, SwingsAsMassAndSpring) {
   const World world(On("0 3 4", {"cobot.joint_friction.viscous=4"}));
   const LinearModel linear = world.Linearise();
@@ -83,8 +84,8 @@ TEST_F(SlidingCobot, SwingsAsMassAndSpring) {
   EXPECT_LT(nearest, 1e-4) << poles;
 }
 
-// On a horizontal rail, the force of a hand along it is the external force in the joint. It grows
-// slowly, so that carriage and load hardly accelerate.
+// On a horizontal rail, the force of a hand along it is the external force in the joint. The force
+// grows slowly, so that carriage and load hardly accelerate.
 TEST_F(SlidingCobot, StopsItselfAtAnExternalForce) {
   const auto stop_under = [&](double force, const std::string& limit) {
     const Scenario s = On("0 1 0", {limit, "cobot.joint_friction.viscous=4"});

@@ -1,5 +1,5 @@
-// Stiffness and damping change while the cobot holds a load. The torque must not jump, and
-// afterwards the new spring must act.
+// Tests changes of stiffness and damping while the cobot holds a load. The torque must not jump,
+// and after the change the new stiffness must act.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -53,14 +53,14 @@ TEST_P(Tuning, LeavesTheTorqueAsItIsAndTheSpringAsAskedFor) {
   Displace(&tuned, 0.05);
   Displace(&plain, 0.05);
   const JointVector before = Torque(&tuned);
-  // The value changes in steps, like a ramp.
+  // The stiffness changes in many small steps, like a ramp.
   for (int k = 1; k <= 100; ++k) {
     const double factor = 1 - 0.005 * k;
     tuned.controller->Tune({factor, factor, 1}, tuned.Input(), true);
     EXPECT_LT((Torque(&tuned) - before).lpNorm<Eigen::Infinity>(), 1e-9);
   }
 
-  // The new stiffness resists small motions from here on.
+  // From this position on, the new stiffness must resist small motions.
   Displace(&tuned, 0.0501);
   const JointVector change =
       Torque(&tuned) - before - (tuned.data.gravity() - plain.data.gravity());

@@ -34,8 +34,8 @@ bool Same(const WorldState& a, const WorldState& b) {
          a.energy == b.energy && a.coupling[0] == b.coupling[0];
 }
 
-// The inertia of cobot and box in terms of joint rates and the box's angular velocity (axes of W),
-// assembled by hand from the robot's mass matrix: v_com = J_v q̇ + ω × r.
+// The test assembles the inertia of cobot and box from the robot's mass matrix. The coordinates are
+// the joint rates and the box's angular velocity (axes of W), so v_com = J_v q̇ + ω × r.
 TEST(World, ForceOfAHandAcceleratesTheComposedInertia) {
   Scenario s = BoxScene(9);
   s.cobot.joint_friction.viscous = {0};
@@ -125,7 +125,8 @@ TEST(World, HandsWorkBecomesEnergy) {
   EXPECT_NEAR(world.state().energy - start, work, 0.01 * std::abs(work));
 }
 
-// With damping, but without friction and hands, the energy above the equilibrium's must not rise.
+// With damping, but without friction and hands, the energy must not rise relative to the energy of
+// the equilibrium.
 TEST(World, IsPassive) {
   for (const double posture : {0.0, 10.0}) {
     Scenario s = Frictionless(9, 0.7);

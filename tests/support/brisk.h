@@ -1,5 +1,5 @@
-// A carry from side to side, almost at the handles' speed cap, for tests of events during fast
-// motion.
+// Provides a script that carries the object from side to side, almost at the handles' speed cap,
+// for tests of events during fast motion.
 #pragma once
 
 #include <string>
@@ -10,9 +10,9 @@
 namespace predictor {
 
 constexpr double kBriskBegin = 1, kBriskMove = 2, kBriskWay = 0.25;  // [s], [s], [m]
-// Each move has minimum jerk, with a speed of 30 u²(1 − u)² times its mean at the fraction u of its
-// time. The maximum is 15/8 of the mean. For half of the time, the speed exceeds 9/16 of the
-// maximum, which is its value at a quarter.
+// Each move has minimum jerk: at the fraction u of its time, its speed is 30 u²(1 − u)² times the
+// mean speed. The maximum is 15/8 of the mean. For half of the time, the speed exceeds 9/16 of the
+// maximum, which it reaches after a quarter of the time.
 constexpr double kBriskSpeed = 15.0 / 8 * kBriskWay / kBriskMove;  // [m/s]
 constexpr double kBriskMedian = 9.0 / 16 * kBriskSpeed;            // [m/s]
 

@@ -9,7 +9,7 @@
 namespace predictor {
 
 // A fourth-order Butterworth high-pass filter at 10 Hz, as two biquads from the bilinear transform
-// in direct form II. It starts in the steady state of its first sample.
+// in direct form II. The filter starts in the steady state of its first sample.
 class HighPass {
  public:
   explicit HighPass(double dt) {

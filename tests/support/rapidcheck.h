@@ -1,5 +1,6 @@
 // RapidCheck draws random cases and shrinks those that fail. Every ./dev test runs the same cases.
-// Each ./dev soak runs different and more ones. A failure prints how to repeat it (RC_PARAMS).
+// Each ./dev soak runs more cases, which differ every time. A failure prints how to repeat it
+// (RC_PARAMS).
 #pragma once
 
 #include <rapidcheck.h>

@@ -54,8 +54,7 @@ int Slower(int milliseconds) {
   return slow > INT_MAX ? INT_MAX : static_cast<int>(slow);
 }
 
-// Returns whether a clock shows the time that passes, as opposed to the processor time that is
-// used.
+// Returns whether a clock shows the passing time and not the processor time used.
 bool Passes(clockid_t clock) {
   return clock == CLOCK_MONOTONIC || clock == CLOCK_MONOTONIC_RAW ||
          clock == CLOCK_MONOTONIC_COARSE || clock == CLOCK_BOOTTIME || clock == CLOCK_REALTIME ||
@@ -168,7 +167,7 @@ int timerfd_settime(int timer, int flags, const itimerspec* time, itimerspec* ol
   static const auto real =
       Real<int (*)(int, int, const itimerspec*, itimerspec*)>("timerfd_settime");
   itimerspec slow = *time;
-  // The time is an absolute one of a monotonic timer, the only kind in use.
+  // The programs use only monotonic timers with absolute times.
   slow.it_value = Slower(time->it_value);
   slow.it_interval = Slower(time->it_interval);
   return real(timer, flags, &slow, old);
@@ -195,7 +194,7 @@ int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, cl
   return real(condition, mutex, CLOCK_MONOTONIC, &at);
 }
 
-// This function waits by the wall clock.
+// This function waits until a time of the wall clock.
 int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex,
                            const timespec* time) {
   return pthread_cond_clockwait(condition, mutex, CLOCK_REALTIME, time);

@@ -19,7 +19,7 @@ inline long Count(long sample, long full) {
 }
 
 // Ends a test if this computer never kept real time. In a sample, the test is skipped. In a full
-// run, or if PREDICTOR_REAL_TIME=required promises a quiet computer, the test fails.
+// run, or if PREDICTOR_REAL_TIME=required states that the computer is quiet, the test fails.
 inline bool RealTimeIsRequired() {
   const char* says = std::getenv("PREDICTOR_REAL_TIME");
   return InFull() || (says && std::string_view(says) == "required");

@@ -22,7 +22,7 @@ class Mapping : public Files {
 const char* const kHalfSecond = "time,A.x [mm],A.y [mm],A.z [mm],B.x [mm],B.y [mm],B.z [mm]\n";
 
 TEST_F(Mapping, PutsTheMeanOfMarkersIntoTheWorld) {
-  // The file's frame is at (1, 2, 0) in W and is rotated by 90° about z.
+  // The frame of the file is at (1, 2, 0) in W and is rotated by 90° about z.
   const BodyTrack track =
       Load("frame: {xyz: [1, 2, 0], rpy: [0, 0, 90 deg]}\nhead: {markers: [A, B]}\n",
            std::string(kHalfSecond) + "0,100,0,1500,300,0,1700\n1,200,0,1500,,0,1700\n");
@@ -32,8 +32,8 @@ TEST_F(Mapping, PutsTheMeanOfMarkersIntoTheWorld) {
 }
 
 TEST_F(Mapping, FollowsMarkersOnTheSidesOfAHead) {
-  // The head looks along y of the file. The eyes are 0.1 m in front of its markers and 0.05 m below
-  // them.
+  // The head looks along the y axis of the file's frame. The eyes are 0.1 m in front of its markers
+  // and 0.05 m below them.
   std::string table = "time";
   for (const char* name : {"F", "B", "L", "R"})
     for (const char* axis : {".x", ".y", ".z"}) table += std::string(",") + name + axis + " [m]";

@@ -201,8 +201,8 @@ TEST_F(C3d, OfEveryShorterLengthIsRefused) {
   }
 }
 
-// No damaged byte may crash the reader or make it allocate much memory. It must read numbers or
-// give the reason why it cannot.
+// No damaged byte may crash the reader or make it allocate much memory. The reader must return
+// numbers or state why it cannot read the file.
 TEST_F(C3d, WithADamagedByteIsReadOrRefused) {
   const std::string whole = MadeC3d(false);
   int refused = 0;

@@ -148,7 +148,8 @@ TEST(Admission, AnyNumberOfGenerationsEnds) {
   for (const std::string& token : tokens) EXPECT_FALSE(after.ByToken(token));
 }
 
-// A token must be refused if any of its characters is changed, in particular that of the role.
+// A token must be refused if any of its characters is changed, in particular the character of the
+// role.
 TEST(Admission, ATokenIsSigned) {
   const Admission admission(false, NewAdmissionSecret());
   const std::string token = admission.IssueToken(Role::kLook);
@@ -190,7 +191,7 @@ TEST(Admission, PinsAreUniform) {
     for (const int n : place) EXPECT_NEAR(n, count / 10, 7 * 42.4);  // 7 standard deviations
 }
 
-// A client that guesses must use up its own attempts, not those of others.
+// A client that guesses must use up its own attempts and not the attempts of other clients.
 TEST(Admission, WrongAttemptsCountForTheirAddressOnly) {
   Admission admission(false, NewAdmissionSecret());
   const std::string pin = admission.IssuePin(Role::kLook, 0);

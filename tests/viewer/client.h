@@ -11,8 +11,8 @@
 
 namespace predictor::testing_client {
 
-// An optional layer between a socket and its bytes, such as TLS. Its functions correspond to send
-// and recv.
+// An optional layer between a socket and its bytes, such as TLS. The functions of this layer
+// correspond to send and recv.
 class Transport {
  public:
   virtual ~Transport() = default;

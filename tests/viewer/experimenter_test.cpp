@@ -1,4 +1,4 @@
-// Tests who learns of the scenario's events before they begin: only the experimenter's page.
+// Tests that only the experimenter's page receives the scenario's events before they begin.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -50,8 +50,8 @@ TEST(Frame, HasNoGapAndNoOverlap) {
   EXPECT_EQ(next, FrameBytes());
 }
 
-// The program sends states and causes as numbers, and fields have types. The page's generated
-// source must agree with the program.
+// The page's generated source contains the numbers of states and causes, and the types of the
+// fields. This source must agree with the program.
 TEST(Frame, ThePagesTypesAreThoseOfTheTable) {
   std::ifstream file(PREDICTOR_SOURCE_DIR "/web/src/quantities.ts");
   const std::string source{std::istreambuf_iterator<char>(file), {}};

@@ -123,7 +123,7 @@ TEST(Http, AcceptsOnlyItsOwnNames) {
     EXPECT_EQ(Get(server.port(), "/", "", "GET", host).status, 421) << host;
 }
 
-// The rules are those of RFC 9112, section 3.2.
+// The rules are from RFC 9112, section 3.2.
 TEST(Http, RefusesAHostThatIsNotOne) {
   TestServer server;
   const std::string port = std::to_string(server.port());
@@ -206,7 +206,8 @@ TEST(Http, AHeadThatDoesNotEndIsCutOff) {
   EXPECT_EQ(Get(server.port(), "/").status, 200);
 }
 
-// There are more slow clients than the server has room for. It must still serve the newest request.
+// There are more slow clients than the server has room for. The server must still serve the newest
+// request.
 TEST(Http, SlowClientsDoNotKeepOthersOut) {
   TestServer server;  // with long time-outs, so that no client times out
   std::vector<Socket> sockets;

@@ -19,7 +19,7 @@ TEST_F(HubTest, ReportsHeadsetsAndTheirSilenceToTheRun) {
   now_ += kSecond / 10;
   two->Say(sees_now());
   EXPECT_EQ(mailbox_.immersive.load(), 2u);
-  // The reported frame is that of the page that has been silent longest.
+  // The hub must report the frame of the page that has been silent longest.
   EXPECT_EQ(mailbox_.immersive_frame_ns.load(), first);
   one->Say(sees_now());
   EXPECT_EQ(mailbox_.immersive_frame_ns.load(), first + kSecond / 10);
@@ -55,8 +55,8 @@ TEST_F(HubTest, AHeadsetIsAsOldAsThePictureThatItShows) {
   EXPECT_EQ(mailbox_.immersive_frame_ns.load(), now_);
 }
 
-// When the session ends, the wearer sees as little as after a lost connection. If nothing moves,
-// the run may ignore this.
+// When the session ends, the wearer no longer sees the scene, as after a lost connection. If
+// nothing moves, the run may ignore this.
 TEST_F(HubTest, WithRealArmsTheEndOfASessionIsSilence) {
   HubSetup setup = TestSetup();
   setup.rules = RulesOfRealArms();

@@ -41,8 +41,8 @@ TEST_F(HubTest, ALeaseEndsThreeSecondsAfterTheLastHeartbeat) {
   EXPECT_TRUE(Inputs().empty());
 }
 
-// A message arrives after a lease has ended and before the next tick. Whatever the message is, all
-// pages must be notified that the lease is free, and any of them may take it.
+// A message arrives after a lease has ended and before the next tick. Whatever the message is, the
+// hub must notify all pages that the lease is free, and any page may take the lease.
 TEST_F(HubTest, AnEndedLeaseIsReportedWhicheverClientSendsFirst) {
   const Json heartbeat = {{"type", "heartbeat"}};
   const Json other_lease = {{"type", "lease"}, {"what", "operator"}, {"take", true}};

@@ -122,7 +122,7 @@ TEST_F(ProcessTest, HasNoRights) {
   }
   EXPECT_EQ(StatusOf(pid, "Threads"), "1");
   // The tests in tests/process check from inside which calls the sandbox refuses. This test checks
-  // that the sandbox is active. The sanitizers do not work inside the sandbox.
+  // only that the sandbox is active. The sanitizers do not work inside the sandbox.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   if (StatusOf(getpid(), "Seccomp").empty()) GTEST_SKIP() << "This kernel has no seccomp.";
   EXPECT_EQ(StatusOf(pid, "Seccomp"), "2");
@@ -247,7 +247,7 @@ TEST_F(ProcessTest, RemovesAClientAfterItsDeath) {
   EXPECT_GT(nlohmann::json::parse(other.Hello(Code()))["client"].get<std::uint32_t>(), 1u);
 }
 
-// The second request, at the latest, must end a viewer that hangs.
+// If a viewer hangs, it must be ended after the second request at the latest.
 TEST_F(ProcessTest, AViewerThatDoesNotAnswerIsReplaced) {
   Start();
   WebSocket page(viewer_->port());

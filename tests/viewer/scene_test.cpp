@@ -55,8 +55,8 @@ TEST(Scene, HasTheMembersOfTheProtocol) {
   EXPECT_NE(scene["object"]["urdf"], scene["cobot"]["urdf"]);
 }
 
-// The name becomes the page's title, where characters that change the direction of text would show
-// another name.
+// The name becomes the title of the page. In the title, characters that change the direction of
+// text would show another name.
 TEST(Scene, HasAPrintableName) {
   Scenario scenario = Load("box_9kg.yaml");
   scenario.name = "Box \u202egk 9\x1b[2J";

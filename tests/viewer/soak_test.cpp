@@ -86,7 +86,7 @@ class Program {
   }
 
  private:
-  // Ends the program as Ctrl-C does, or by force after ten seconds.
+  // Ends the program as Ctrl-C does, or kills it after ten seconds.
   void End() {
     kill(pid_, SIGINT);
     for (int i = 0; i < 1000; ++i, std::this_thread::sleep_for(milliseconds(10)))
@@ -234,8 +234,8 @@ double Quantile(std::vector<double> values, double p) {
   return values[k] + (at - static_cast<double>(k)) * (next - values[k]);
 }
 
-// Compares loaded and idle windows of the same run. Returns the larger of two ratios, that of the
-// medians and that of the 95th percentiles. It must be at most kLoadCosts.
+// Compares loaded and idle windows of the same run. Returns the larger of two ratios: the ratio of
+// the medians and the ratio of the 95th percentiles. The larger ratio must be at most kLoadCosts.
 constexpr double kLoadCosts = 1.3;  // as stated in docs/getting-started/viewer.md
 double Ratio(const char* what, const std::vector<double>& idle, const std::vector<double>& loaded) {
   double most = 0;
@@ -309,7 +309,8 @@ TEST_F(ViewerLoad, TheTickDoesNotFeelTheViewersSoak) {
     const Ticks loaded = Measure(board(), window);
     EXPECT_GT(idle.tick_us.count(), 0u);
     EXPECT_GT(loaded.tick_us.count(), 0u);
-    // If there were fewer, there was no load, or the slowest ticks were not measured.
+    // If the viewers received fewer states, there was no load, or the slowest ticks were not
+    // measured.
     const long least = InFull() ? window.count() : 1;
     long states = 0;
     for (const auto& viewer : viewers) {
@@ -340,8 +341,8 @@ TEST_F(ViewerLoad, TheTickDoesNotFeelTheViewersSoak) {
   EXPECT_LE(woken, kLoadCosts);
 }
 
-// However many clients connect and disconnect, the run must continue, and the next page must be
-// admitted.
+// Even if many clients connect and disconnect, the run must continue, and the server must admit the
+// next page.
 TEST_F(ViewerLoad, TenThousandConnectionAttemptsSoak) {
   BeNice();
   const long attempts = Count(500, 10'000);
@@ -453,7 +454,7 @@ TEST_F(ViewerLoad, DelaysDoNotGrowSoak) {
   const double growth = Growth(medians);
   std::printf("Growth of the median over all windows: %.2f ms; trend %.2f (%.2f is one).\n", growth,
               Trend(medians), kTrend);
-  // A growth of a tenth of a tick is negligible, however steady it is.
+  // A growth of a tenth of a tick is negligible even if it is steady.
   if (InFull()) {
     EXPECT_TRUE(Trend(medians) < kTrend || growth < 0.1) << growth << " ms";
   }

@@ -60,7 +60,8 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
     std::optional<Socket> socket = Connect("127.0.0.1");
     if (!socket) return nullptr;
     auto page = std::make_unique<WebSocket>(std::move(*socket), server_->port());
-    // A single token does not admit so many pages, and neither does a role that may only look.
+    // A single token does not admit so many pages, and the role that may only look does not admit
+    // them either.
     const std::string token = server_->Token(Role::kOperator);
     page->SendText("{\"type\":\"hello\",\"token\":\"" + token + "\"}");
     return page->NextText("welcome") ? std::move(page) : nullptr;

@@ -9,7 +9,7 @@ export interface Ticks {
   text: string[];
 }
 
-// Formats a value. It never writes a minus sign before zero.
+// Formats a value. The label of zero never has a minus sign.
 function fixed(value: number, decimals: number): string {
   const text = value.toFixed(decimals);
   return /^-[0.]*$/.test(text) ? text.slice(1) : text;
@@ -28,7 +28,7 @@ export function linearTicks({low, high}: Range, count: number): Ticks {
   return {at, text: at.map((value) => fixed(value, decimals))};
 }
 
-// Returns powers of ten, with 2 and 5 in between if there is room.
+// Returns powers of ten, with 2 and 5 times these powers in between if there is room.
 export function logTicks({low, high}: Range, count: number): Ticks {
   const decades = Math.log10(high / low);
   const factors = 3 * decades <= count ? [1, 2, 5] : [1];

@@ -1,5 +1,5 @@
-// Shows an interactive plot with zoom and cursor. The library draws it. This file selects the
-// points of long lines to draw.
+// Shows an interactive plot with zoom and cursor. The library draws it. This file also selects the
+// points of long lines that are drawn.
 import type {ECharts} from 'echarts/core';
 import {h} from '../src/dom';
 import {readable} from './axis';
@@ -89,7 +89,7 @@ export class Chart {
     return layOut({plot: this.spec, series: this.series, x, extent, hidden: this.hidden, width, heading});
   }
 
-  // Draws immediately. On paper, the plot is scaled to the paper's width.
+  // Draws immediately. On paper, the plot is scaled to the width of the page.
   draw() {
     const paper = matchMedia('print').matches;
     const width = paper ? kPaperWidth : this.element.clientWidth;

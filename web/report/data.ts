@@ -62,8 +62,8 @@ function bytesOf(base64: string): Uint8Array {
   return bytes;
 }
 
-// Decodes the format of src/report/page.h. It multiplies instead of shifting, since a value may
-// need more than 32 bits.
+// Decodes the format of src/report/page.h. This function multiplies instead of shifting, since a
+// value may need more than 32 bits.
 function decode(bytes: Uint8Array, step: number, to: Float64Array | Float32Array) {
   let value = 0;
   let at = 0;
@@ -158,9 +158,10 @@ function merge(coarse: Points, detail: Points): Points {
   return all;
 }
 
-// Keeps the lowest and the highest point in each `width` of x, in their order, and a gap if there
-// is one. The bins are ranges of x, not numbers of points. Otherwise sparse points would be thinned
-// in lines that also contain a section with every tick.
+// Keeps the lowest and the highest point in each interval of length `width` along x, in their
+// original order, and preserves any gap in the interval. The bins are ranges of x, not numbers of
+// points. With a fixed number of points, sparse points would be thinned in lines that also contain
+// a section with every tick.
 export function thin({x, y}: Points, width: number): Points {
   const places: number[] = [];
   for (let start = 0, end = 0; start < x.length; start = end) {
@@ -236,7 +237,8 @@ export class Series {
   }
 
   // Returns the value at x. For a line, this is the value of the preceding sample, or NaN in a gap.
-  // Otherwise, it is the value of the nearest point, or NaN if that is farther away than `reach`.
+  // For other series, this is the value of the nearest point, or NaN if that point is farther away
+  // than `reach`.
   at(x: number, reach: number): number {
     const {points, spec} = this;
     const i = lowerBound(points.x, x);

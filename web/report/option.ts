@@ -150,7 +150,7 @@ function placeNotes(view: View, {low, high}: Range): Note[] {
   });
 }
 
-// Makes a metre equally long in x and y by widening the shorter range. Returns the height.
+// Makes a metre equally long in x and y by widening one of the two ranges. Returns the height.
 function fitEqual(x: Range, y: Range, width: number): number {
   const [dx, dy] = [x.high - x.low, y.high - y.low];
   const height = Math.min(Math.max(dy / dx * width, 120), 0.62 * width);

@@ -1,4 +1,4 @@
-// The application creates and connects all parts of the page.
+// Creates and connects all parts of the page.
 import {Connection, isExperimentersAddress, Phase} from './connection';
 import {h} from './dom';
 import {Hands} from './hands';
@@ -67,7 +67,8 @@ export class App {
       phase: (phase, reason) => this.phaseChanged(phase, reason),
       welcome: (welcome) => this.welcomed(welcome),
       state: (state, receivedMs) => this.received(state, receivedMs),
-      // This runs immediately, because the browser rarely draws a page in the background.
+      // The message is handled immediately and not with the next frame, because the browser rarely
+      // draws a page in the background.
       leases: () => this.invite(),
       denied: (_what, reason) => this.overlay.notify(reason),
       notice: (text) => this.overlay.warn(text),
@@ -180,7 +181,8 @@ export class App {
       this.mouse.update(state);
       this.keyboard.update(state);
     }
-    // If the connection is lost, the board shows the last state, because it must report the loss.
+    // If the connection is lost, the board still shows the last state, because the board must
+    // report the loss.
     const seen = state ?? this.lastSeen;
     this.lastSeen = seen;
     if (xrFrame) this.immersive.update(xrFrame, this.spec, seen, nowMs);
@@ -189,7 +191,8 @@ export class App {
     if (xrFrame) this.immersive.drawMirror();
     const renderedMs = performance.now();
     if (!this.stage.drawable) return;
-    // The first frames take long. The states that arrived meanwhile do not represent the run.
+    // Drawing the first frames takes a long time. The delays of the states that arrived meanwhile
+    // are not typical of the run.
     if (!this.stage.settled || ++this.pictures <= kFirstPictures) return;
     for (const {state: s, receivedMs} of news) this.latency.add(s, receivedMs, renderedMs);
     const newest = news.at(-1)?.state;
@@ -326,8 +329,8 @@ export class App {
       this.player.reset();
       this.person.reset();
     }
-    // The page is updated immediately, not with the next frame, because it must never show a stop
-    // button that has no effect.
+    // The page is updated immediately and not with the next frame, because it must never show a
+    // stop button that has no effect.
     this.showTrouble();
   }
 

@@ -1,4 +1,4 @@
-// Estimates the server's clock from pings. Of the latest ones, it uses the quickest, which was
+// Estimates the server's clock from pings. Of the latest pings, it uses the quickest one, which was
 // delayed least.
 
 interface Sample {
@@ -32,7 +32,8 @@ export class ServerClock {
     return this.best?.offsetMs ?? NaN;
   }
 
-  // Returns the round trip of the best ping [ms]. Half of it bounds the offset's error.
+  // Returns the round trip of the best ping [ms]. Half of the round trip bounds the error of the
+  // offset.
   get roundTripMs(): number {
     return this.best?.roundTripMs ?? NaN;
   }

@@ -57,14 +57,14 @@ export class Connection {
   private resultsSinceMs = 0;
   private pings = 0;
 
-  // `isExperimenter` states whether the page asks for the events to come.
+  // `isExperimenter` states whether the page requests the events to come.
   constructor(private readonly events: ConnectionEvents, readonly isExperimenter = false) {
     window.setInterval(() => this.everySecond(), 1000);
     window.setInterval(() => this.quickPing(), 120);
   }
 
   // Starts with the URL's code, or otherwise with this tab's token. If there is neither, it
-  // requests the digits. An admitted page stays admitted, whatever address is opened.
+  // requests the digits. An admitted page stays admitted, whatever address is opened in this tab.
   start(code: string | null) {
     if (this.phase === 'open') return;
     const token = sessionStorage.getItem(kTokenKey);
@@ -178,7 +178,7 @@ export class Connection {
     this.pings = 0;
     this.events.welcome(welcome);
     this.enter('open', '');
-    // A run that is over, or a recording, has no events to come.
+    // A run that has ended, or a recording, has no events to come.
     const {results, replay} = welcome.scene;
     if (this.isExperimenter && !results && !replay) this.send({type: 'experimenter'});
     this.quickPing();

@@ -1,5 +1,6 @@
 // Sends the person's hands to the server: the desired pose of each handle, and whether the hand
-// grips. It never sends a force, because the program computes the hand's spring and its limits.
+// grips. The page never sends a force, because the program computes the hand's spring and its
+// limits.
 import {Connection} from './connection';
 import {kSides, Pose, Side} from './protocol';
 

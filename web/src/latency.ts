@@ -38,7 +38,8 @@ class Samples {
 
 export class LatencyLedger {
   private readonly steps = new Map<Step, Samples>(kSteps.map((step) => [step, new Samples()]));
-  // These times of the last second are for the record [ms]. They count from the tick's start.
+  // The times of the last second that are sent for the recording [ms]. These times are measured
+  // from the start of the tick.
   private received: number[] = [];
   private rendered: number[] = [];
 

@@ -1,4 +1,5 @@
-// The page: connects, shows the states in scene, panel and plots, and handles the person's input.
+// The main module of the page. It connects to the server, shows the states in the scene, the panel
+// and the plots, and handles the person's input.
 import './app.css';
 import {App} from './app';
 import {takeCodeFromAddress} from './connection';

@@ -1,4 +1,4 @@
-// Provides texts for people, from the catalogue that the program uses as well.
+// Provides the texts for people, from the catalogue that the program also uses.
 import catalogue from '../../src/core/message_catalogue.json';
 
 export type MessageId = keyof typeof catalogue;

@@ -1,5 +1,5 @@
-// Plays the states of the person. The body moves smoothly between them, and everything else comes
-// from the newest state.
+// Shows the states of the person over time. The body moves smoothly between the states, and
+// everything else comes from the newest state.
 import {kSides, PersonState, Side, Vec3} from './protocol';
 
 export type BodyPoints = {[K in keyof PersonState['points']]: Vec3};
@@ -72,16 +72,16 @@ function mixPoints(a: BodyPoints, b: BodyPoints, t: number): BodyPoints {
   })) as BodyPoints;
 }
 
-// Where the figure of the body in a mirror stands, and how large it is. Directions are horizontal
-// unit vectors.
+// The place, the directions and the size of the figure of the body in a mirror. Directions are
+// horizontal unit vectors.
 export interface MirrorPlace {
   at: Vec3;        // position of the figure's feet
   toward: Vec3;    // direction from the person to the mirror
   scale: number;
 }
 
-// Returns the body of a person, who stands at `ground` and faces `forward`, as seen in a mirror. It
-// faces the person, with its left side on the person's left.
+// Returns the body of a person, who stands at `ground` and faces `forward`, as seen in a mirror.
+// The figure faces the person, with its left side on the person's left.
 export function mirrored(points: BodyPoints, ground: Vec3, forward: Vec3, {at, toward, scale}: MirrorPlace): BodyPoints {
   return Object.fromEntries(Object.entries(points).map(([name, p]) => {
     const [x, y, up] = p.map((v, i) => scale * (v - ground[i]));

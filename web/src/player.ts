@@ -1,6 +1,6 @@
-// Plays the timestamped states with a delay of about one state. It interpolates between the two
-// states around the present time. There is no queue: the buffer contains the latest few states, and
-// the newest one takes precedence.
+// Plays the timestamped states with a delay of about one state. The player interpolates between the
+// two states around the present time. There is no queue: the buffer contains the latest few states,
+// and the newest one takes precedence.
 import {Pose, Quat, Side, stampMs, State, Vec3} from './protocol';
 
 const kKept = 8;
@@ -79,8 +79,8 @@ function median(values: number[]): number {
   return sorted[sorted.length >> 1];
 }
 
-// Interpolates between states `a` and `b`. It interpolates the numbers of moving things, and takes
-// all other values from `a`.
+// Interpolates between states `a` and `b`. Only the numbers of moving things are interpolated. All
+// other values are those of `a`.
 export function interpolate(a: State, b: State, t: number): State {
   const hand = (side: Side) => ({
     ...a.hands[side],
@@ -105,8 +105,8 @@ function mix(a: number[], b: number[], t: number): number[] {
   return a.map((value, i) => value + (b[i] - value) * t);
 }
 
-// Interpolates linearly along the shorter arc and normalises the result. This is accurate enough
-// because states are milliseconds apart.
+// Interpolates linearly along the shorter arc and normalises the result. Linear interpolation is
+// accurate enough because states are milliseconds apart.
 function mixPose(a: Pose, b: Pose, t: number): Pose {
   const dot = a.q.reduce((sum, value, i) => sum + value * b.q[i], 0);
   const q = mix(a.q, dot < 0 ? b.q.map((x) => -x) : b.q, t);

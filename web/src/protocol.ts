@@ -35,11 +35,12 @@ export interface ArmSpec extends RobotSpec {
 // The colour is red, green, blue, from 0 to 1.
 export type ObjectSpec =
     {urdf: string} | {shape: 'box' | 'cylinder' | 'sphere'; size: number[]; color?: Vec3};
-// A movable object. The states contain its pose.
+// A movable object. The states contain the pose of this body.
 export type MovableSpec = ObjectSpec & {name: string};
 
-// Box: x, y, z; cylinder, capsule: radius, length (along z, of a capsule without its caps); sphere: radius; plane: x, y,
-// with its normal along z [m]. The colour is red, green, blue, from 0 to 1.
+// The dimensions [m]. Box: x, y, z; cylinder and capsule: radius, length along z (of a capsule
+// without its caps); sphere: radius; plane: x, y, with its normal along z. The colour is red,
+// green, blue, from 0 to 1.
 export interface FixtureSpec {
   shape: 'box' | 'cylinder' | 'capsule' | 'sphere' | 'plane';
   size: Vec3;
@@ -70,7 +71,8 @@ export interface SceneSpec {
   operator: 'virtual' | 'browser' | 'person';
   rate: number;
   // The operator in W: the eyes at the start, the direction of view (horizontal), and the ground
-  // between the feet, which are `feet` [m] apart. Without the ground, the rest is a guess.
+  // between the feet, which are `feet` [m] apart. If the ground is missing, the other values are
+  // assumptions.
   viewpoint: {eye: Vec3; forward: Vec3; guess: boolean; ground: Vec3 | null; feet: number};
   cobot: RobotSpec;
   object: ObjectSpec;

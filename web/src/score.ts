@@ -1,4 +1,4 @@
-// Measures how well a person followed a path. The page shows the score when the person has
+// Measures how closely a person followed a path. The page shows the score when the person has
 // finished.
 import {kSides, SceneSpec, State} from './protocol';
 

@@ -1,9 +1,9 @@
-// The style is dark or light as the system prefers, until the person chooses.
+// The style is dark or light as the system prefers, until the person chooses one of them.
 
 export type Theme = 'dark' | 'light';
 const kKey = 'predictor.theme';
 
-// These are the colours of the three.js scene. Those of the page are in app.css.
+// These are the colours of the three.js scene. The colours of the page are in app.css.
 export const kSceneColors = {
   dark: {background: 0x12161d, floor: 0x1d232c, minor: 0x2a323e, major: 0x3d4857, ghost: 0x8fb4e8,
          path: 0x56c2ff, hemisphere: 1.35, sun: 2.3},
@@ -11,7 +11,7 @@ export const kSceneColors = {
           path: 0x0b74c9, hemisphere: 1.7, sun: 2.1},
 } as const;
 
-// These colours have a meaning. They are the same in the scene and in the plots.
+// The following colours have a meaning. These colours are the same in the scene and in the plots.
 export const kMeaning = {
   green: 0x2fbf71, orange: 0xff9f1c, red: 0xf23645, left: 0x35a7ff, right: 0xb57bff,
 } as const;

@@ -1,5 +1,5 @@
-// Declares the types of two parts of three.js's ColladaLoader, as far as they are used. No types
-// are published.
+// Declares the types that the page uses of two parts of three.js's ColladaLoader. No types are
+// published.
 declare module 'three/examples/jsm/loaders/collada/ColladaParser.js' {
   export interface Geometry {
     sources: Record<string, {array: ArrayLike<number>}>;

@@ -17,7 +17,7 @@ export class RunWatch {
   private tick = NaN;
   private state: RunState = 'INIT';
 
-  // A new connection has the same time until its first state.
+  // The first state after a new connection must arrive within the same time.
   reset() {
     this.silentMs = 0;
     this.askedMs = NaN;
@@ -33,7 +33,7 @@ export class RunWatch {
     if (isStopped(state)) this.askedMs = NaN;
   }
 
-  // The page has sent a stop request.
+  // Called when the page has sent a stop request.
   asked() {
     if (!isStopped(this.state) && Number.isNaN(this.askedMs)) this.askedMs = 0;
   }

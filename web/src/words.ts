@@ -79,8 +79,8 @@ export interface StopWords {
 
 type StopId = MessageId extends infer Id ? Id extends `stop.${infer Name}.advice` ? Name : never : never;
 
-// Returns the stop's name in the catalogue. The measured quantity may be more specific than the
-// cause.
+// Returns the name of the stop in the catalogue. The measured quantity may be more specific than
+// the cause.
 function stopId({cause, quantity}: Reason): StopId | null {
   if (cause === 'none') return null;
   if (cause === 'stale' && quantity === 'arm_age') return 'arm_stale';
@@ -96,12 +96,12 @@ function stopId({cause, quantity}: Reason): StopId | null {
   return cause;
 }
 
-// Returns whether an arm reports a fault. It does not move until the program is restarted.
+// Returns whether an arm reports a fault. Such an arm does not move until the program is restarted.
 function armAtFault(state: State): boolean {
   return kSides.some((side) => state.hands[side].present && state.hands[side].armFault);
 }
 
-// Returns whether a reset is not enough.
+// Returns whether more than a reset is needed.
 function needsANewStart(state: State): boolean {
   return armAtFault(state) || [state.stop, state.harder].some(({cause, quantity}) =>
     cause === 'device' || (cause === 'stale' && quantity === 'count'));
@@ -113,8 +113,8 @@ export function fixed(value: number, decimals: number): string {
   return /^-[0.]*$/.test(text) ? text.slice(1) : text;
 }
 
-// Formats a value in readable units: millimetres and degrees. `more` is the number of additional
-// digits.
+// Formats a value in readable units, such as millimetres and degrees. `more` is the number of
+// additional digits.
 export function readable(value: number, quantity: Quantity, more = 0): string {
   const degrees = (value * 180) / Math.PI;
   const d = 1 + more;
@@ -140,7 +140,7 @@ function beyond(value: number, limit: number, quantity: Quantity): string {
   return message('value', {value: is, limit: may});
 }
 
-// Describes what was measured, like MeasuredWords in the program.
+// Describes the measured quantity, like MeasuredWords in the program.
 function measured({cause, value, limit, quantity}: Reason): string {
   const numbers = beyond(value, limit, quantity);
   if (cause !== 'physics') return numbers;
@@ -172,7 +172,7 @@ function advice(why: Reason): string {
 // Returns null unless a stop occurred. If the run is `over`, there is nothing to reset.
 export function stopWords(state: State, simulated: boolean, over = false): StopWords | null {
   if (state.stop.cause === 'none') return null;
-  // Without power, or if the program must be restarted, a reset is not enough.
+  // A reset is not enough if the power is off or the program must be restarted.
   const next = over ? message('next.run_again') :
       state.state === 'UNPOWERED' && !simulated ? message('next.console') :
       needsANewStart(state) ? message('next.restart') : message('next.reset');
@@ -194,8 +194,8 @@ function powerWords(state: State): string {
 
 const kFreeForce = 5;  // a handle with a larger force is not free [N]
 
-// Returns the remaining danger after a stop, if there is one. Only the worst is returned, and the
-// emergency stop comes first.
+// Returns the remaining danger after a stop, if there is one. Only the worst danger is returned. An
+// emergency stop is worse than all others.
 export function dangerWords(state: State, simulated: boolean): string {
   return powerWords(state) || loadedWords(state, simulated);
 }
@@ -229,7 +229,7 @@ export const kParameterWords = {
   torque: {label: 'Torque threshold', unit: 'N·m', digits: 1},
 } as const;
 
-// How close a wrench is to its threshold.
+// The level that shows how close a wrench is to its threshold.
 export type Level = 'green' | 'orange' | 'red';
 
 // Returns green below 50 % of the threshold, orange up to 80 %, and red above, so that red appears
@@ -248,8 +248,8 @@ export function gripWords(state: State): string {
   return words === undefined ? '' : `The gripper ${words}.`;
 }
 
-// Describes what the event that began last does while an event acts, and whether the virtual cobot
-// has stopped itself.
+// Describes the effect of the event that began last while an event acts, and whether the virtual
+// cobot has stopped itself.
 export function hazardWords(state: State, spec: SceneSpec): string {
   const meaning = state.events === 0 ? undefined : spec.hazards?.[state.latestEvent - 1];
   const words = meaning === undefined ? [] : [`Event: ${meaning}.`];

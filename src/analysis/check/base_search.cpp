@@ -12,7 +12,7 @@ constexpr std::array<double, 3> kBehind = {0.35, 0.45, 0.55};
 constexpr std::array<double, 3> kOutside = {-0.05, 0.1, 0.25};
 constexpr std::array<double, 4> kBelow = {0.2, 0.3, 0.4, 0.5};
 
-// Both arms, with their bases at the same position relative to their handles.
+// A placement of both arms, with the bases at the same position relative to their handles.
 struct Placed {
   Vector3 offset = Vector3::Zero();  // position of the left base relative to its handle; mirrored
                                      // for the right arm [m]
@@ -72,7 +72,7 @@ class Search {
   }
 
   double ComfortAt(const std::array<Vector3, kHands>& xyz) const {
-    // The bases must not collide with each other, either.
+    // The bases must not collide with each other.
     std::vector<PairReach> pairs = device_.NoDistances();
     if (s_.Has(0) && s_.Has(1)) pairs.push_back({"bases", {(xyz[0] - xyz[1]).norm(), 0, -1}});
     double comfort = std::numeric_limits<double>::infinity();

@@ -22,7 +22,8 @@ constexpr double kSlow =
     4;  // [Hz]; slower oscillations are caused by the virtual cobot, faster ones by the arms
 constexpr double kNearTorqueLimit = 0.8;  // share that causes a warning
 
-// Returns the pose of the object without its weight, with the attachment at its zero position.
+// Returns the pose that the object would have without its weight, with the attachment at its zero
+// position.
 Pose UnsaggedObject(const Scenario& s, const RobotModel& cobot) {
   JointVector q = JointVector::Zero(cobot.dof());
   for (std::size_t j = 0; j < s.cobot.posture.size(); ++j)
@@ -102,7 +103,7 @@ class Judge {
   void Torques() {
     const ModelsReport& m = report_->models;
     const char* unit = m.torque_is_force ? "N" : "N·m";
-    // Beyond its torque limit, the virtual world has no equilibrium.
+    // If a joint exceeded its torque limit, the virtual world would have no equilibrium.
     if (m.torque_share < kNearTorqueLimit) return;
     Warn(
         Formatted("Holding the object at rest needs %.1f %s at the cobot's joint %s, whose limit "
@@ -123,8 +124,9 @@ class Judge {
           kind.needs != HazardNeeds::kRelease)
         continue;
       Warn(
-          Formatted("After events.%zu (%s), the object may be loose. Reach, stability and torques "
-                    "here are those of the object on the cobot. Simulate the scenario to see what "
+          Formatted("After events.%zu (%s), the object may be loose. The reach, stability and "
+                    "torques in this report apply only while the object is attached to the cobot. "
+                    "Simulate the scenario to see what "
                     "follows the event.",
                     i, kind.name));
     }
@@ -174,7 +176,7 @@ class Judge {
     if (std::isinf(r.joint_speed.value))
       Bad(
           Formatted("The %s arm's joint %s would have to move beyond rendering.joint_security at "
-                    "%.2f s, where it may not move any further. %s or choose another posture.",
+                    "%.2f s, but rendering stops it there. %s or choose another posture.",
                     name, joint(r.joint_speed.joint).c_str(), r.joint_speed.time, remedy));
     else if (r.joint_speed.value > 1)
       Bad(
@@ -188,7 +190,7 @@ class Judge {
     if (pair.distance.value >= s_.rendering.security_distance) return;
     Bad(
         Formatted("The links %s approach each other to %.3f m at %.2f s, but "
-                  "rendering.security_distance is %.3f m. Move the arms' bases apart.",
+                  "rendering.security_distance is %.3f m. Move the bases of the arms apart.",
                   pair.name.c_str(), pair.distance.value, pair.distance.time,
                   s_.rendering.security_distance));
   }
@@ -231,15 +233,15 @@ class Judge {
         r.margin.gain, 1e3 * r.lead, kMinMargin, r.margin.frequency, lead, change.c_str()));
   }
 
-  // The loop without contact may be unstable too, which Stability says.
+  // The loop may be unstable without contact, too; Stability reports this.
   void Contact(const ContactReport& r) {
     if (r.stable || report_->stability->margin.gain < 1) return;
     const std::string key = "environment.fixtures." + std::to_string(r.fixtures[0]);
     const std::string limit =
         r.yields && r.limit.reached
             ? Formatted(
-                  " With its damping, the stiffness can be at most %.3g N/m in all points of "
-                  "contact together; it would oscillate at %.1f Hz.",
+                  " With its damping, the total stiffness of all points of contact can be at most "
+                  "%.3g N/m; with a larger stiffness, the loop would oscillate at %.1f Hz.",
                   r.limit.stiffness, r.limit.frequency)
             : "";
     Warn(key + ": the haptic loop oscillates while the object touches this fixture." + limit +

@@ -73,13 +73,14 @@ struct CheckReport {
   std::array<std::string, kHands> arm_key;  // key of an arm's base and loop
   std::array<Vector3, kHands> base = {Vector3::Zero(), Vector3::Zero()};  // current bases [m]
   PoseSpec shift;                                                         // current shift
-  // Set after a search: the first or, if the arms are fixed (Scenario::HasFixedArms), the second.
+  // A search sets `proposal` or, if the arms are fixed (Scenario::HasFixedArms), `shift_proposal`.
   std::optional<BaseProposal> proposal;
   std::optional<ShiftProposal> shift_proposal;
   std::optional<StabilityReport> stability;  // empty without a device
   std::vector<ContactReport> contacts;       // with fixtures that touch the object; the same
-  // A stop from `handle_speed` [m/s] as the arms perform it (StopOfArms), and the same with a joint
-  // at its speed limit (MinStopAcceleration). They are empty without a device.
+  // `stop` is a stop from `handle_speed` [m/s] as the arms perform it (StopOfArms). `longest_stop`
+  // is the same stop with a joint at its speed limit (MinStopAcceleration). Both are empty without
+  // a device.
   std::optional<StopBudget> stop, longest_stop;
   double handle_speed = 0;
   std::vector<std::string> problems;  // sentences, each with its remedy; if there are any, the
@@ -99,11 +100,11 @@ struct CheckOptions {
   std::function<void(double share, const char* what)> progress = [](double, const char*) {};
 };
 
-// Throws InputError for every error for which `run` would refuse the scenario, except for a start
-// out of reach, with which the check fails.
+// Throws InputError for every error for which `run` would refuse the scenario. The exception is a
+// start out of reach: the scenario then fails the check.
 CheckReport Check(const Scenario& scenario, const CheckOptions& options);
 
-// Returns whether a margin is sufficient, as far as it is known.
+// Returns whether a margin is sufficient, within the precision of its computation.
 inline bool Suffices(const StabilityMargin& margin) {
   return kMarginPrecision * margin.gain >= kMinMargin;
 }
@@ -112,9 +113,9 @@ inline bool Suffices(const StabilityMargin& margin) {
 // is its largest component. The other components and the rotational stiffness change in proportion.
 HandSpec Varied(HandSpec hand, double mass, double stiffness);
 
-// Computes the stability margins of the loop. `world` is at rest, with hands off. The table covers
-// a range of hands: the scenario's hand with each mass, and its stiffness scaled to each given
-// value of the largest component (same damping ratio).
+// Computes the stability margins of the loop. `world` is at rest, and no hand holds a handle. The
+// table covers a range of hands. Each is the scenario's hand with another mass, and with its
+// stiffness scaled so that the largest component has a given value (same damping ratio).
 StabilityReport CheckStability(const Scenario& scenario, const LinearModel& world,
                                const std::vector<double>& masses,
                                const std::vector<double>& stiffnesses, const OnProgress& progress);

@@ -219,7 +219,7 @@ const schema::Words kWords = {
      {"imaginary_n_m", "imaginary part: 2π·frequency times a damping [N/m]"}},
     {"left", "right", "reach", "stop", "stability", "out_of_reach_s", "growth_rate"}};
 
-// Returns a report in which nothing is missing.
+// Returns an example of a report that contains every member.
 CheckReport Example() {
   CheckReport report;
   report.models.torque_joint = "joint";
@@ -281,7 +281,7 @@ std::string CheckSchema() {
   CheckReport example = Example();
   Json schema = SchemaOf(example);
   Json& properties = schema["properties"];
-  // The other forms of members that have two.
+  // Some members have two forms, so this example contains their second form.
   example.models.torque_is_force = true;
   example.shift_proposal.emplace().reach = *example.reach;
   example.proposal.reset();

@@ -33,8 +33,8 @@ void AddModels(const CheckReport& report, std::string* text) {
 
 void AddArm(const CheckReport& report, const Reach& reach, std::size_t h, std::string* text) {
   const ArmReach& r = *reach.arms[h];
-  // An arm that is about to lose its handle is stretched or at a joint limit. Its figures would say
-  // nothing about the task.
+  // An arm that is about to lose its handle is stretched or at a joint limit. The figures of such
+  // an arm would say nothing about the task.
   if (r.lost) {
     AppendLine(text,
                "  %-5s            CANNOT REACH ITS HANDLE from %.2f s on (%.0f %% of the path)",
@@ -104,7 +104,7 @@ void AddProposal(const CheckReport& report, const BaseProposal& p, std::string* 
   AddComfort(report, p.comfort, text);
 }
 
-// Returns a shift in the form that the scenario takes.
+// Returns a shift in the syntax of the scenario.
 std::string ShiftText(const PoseSpec& shift) {
   return Formatted("{xyz: [%.3f, %.3f, %.3f], rpy: [0, 0, %.4g deg]}", shift.xyz.x(), shift.xyz.y(),
                    shift.xyz.z(), kDegrees * shift.rpy.z());

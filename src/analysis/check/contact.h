@@ -22,14 +22,14 @@ struct WallLimit {
   bool reached = true;   // false: none up to kStiffestWall makes it oscillate
 };
 
-// Returns the limit for a hand and a lead [s] to 5 %. `wall` gives place, direction and damping of
-// the wall, whose stiffness is varied from soft to stiff. Above the limit, still stiffer walls may
-// be stable again.
+// Returns the limit for a hand and a lead [s] to 5 %. `wall` specifies the place, direction and
+// damping of the wall; the function varies its stiffness from soft to stiff. Walls that are much
+// stiffer than the limit may be stable again.
 WallLimit StiffestStableWall(const LinearModel& world, const Scenario& scenario,
                              const HandSpec& hand, double lead, const Wall& wall,
                              LoopModel model = LoopModel::kWithReserve);
 
-// What the hands feel at one frequency.
+// The impedance that the hands feel at one frequency.
 struct FeltAt {
   double frequency = 0;  // [Hz]
   FeltImpedance felt;
@@ -41,36 +41,37 @@ struct FixtureWall {
   std::vector<std::size_t> fixtures;  // their numbers
   Wall wall;
   bool yields = false;  // they have a stiffness
-  // The fixtures' own damping if they yield, and otherwise none: the law of a contact that does not
-  // yield applies only with its own stiffness.
+  // Returns the wall with the fixtures' own damping if the fixtures yield, and otherwise without
+  // damping, because the law of a contact that does not yield applies only with its own stiffness.
   Wall Varying() const;
 };
 
-// What happens in contact with such fixtures.
+// The prediction for contact with such fixtures.
 struct ContactReport : FixtureWall {
   bool stable = true;  // touched at one point and, if they yield, at four
   WallLimit limit;     // with the wall Varying(), for the scenario's hand
-  // Felt by the hands at rest, at kFeltFrequency and at all frequencies of FeltFrequencies(),
-  // touching at one point.
+  // Impedances that the hands feel in contact at one point: at rest, at kFeltFrequency and at all
+  // frequencies of FeltFrequencies().
   FeltImpedance at_rest, moving;
   std::vector<FeltAt> spectrum;
 };
 inline constexpr double kFeltFrequency = 5;  // [Hz]
 
-// Returns frequencies from 0.1 to 40 Hz, 20 in each decade [Hz].
+// Returns frequencies from 0.1 to 40 Hz, with 20 frequencies per decade [Hz].
 std::vector<double> FeltFrequencies();
 
-// Returns the walls of all fixtures that touch the object. Each contact is at the object's origin,
-// whose pose in W is X_WO, along the normal of the fixture's nearest side. Empty without hands.
+// Returns the walls of all fixtures that touch the object. Each contact acts at the object's
+// origin, along the normal of the fixture's nearest side. X_WO is the pose of the object in W.
+// Empty without hands.
 std::vector<FixtureWall> WallsOf(const Scenario& scenario, const LinearModel& world,
                                  const Pose& X_WO);
 
-// Returns the reports for WallsOf. The world is linearised about the start. `lead` is that of the
-// run [s].
+// Returns the reports for WallsOf. The world is linearised about the start. `lead` is the lead of
+// the run [s].
 std::vector<ContactReport> CheckContacts(const Scenario& scenario, const LinearModel& world,
                                          const Pose& X_WO, double lead);
 
-// Returns the damping that an impedance [N/m] contains at a frequency [Hz], in N·s/m.
+// Returns the damping part of an impedance [N/m] at a frequency [Hz], in N·s/m.
 double DampingOf(const std::complex<double>& impedance, double frequency);
 
 // Returns the unit normal of a fixture's side that faces the point p_W, out of the fixture, in W.

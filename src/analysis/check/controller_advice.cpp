@@ -12,19 +12,20 @@ namespace {
 std::string Reduction(const SampledLoop& loop) {
   if (loop.stable_damping > 0)
     return Formatted(
-        "Its damping is too large for so light a joint. There, it is %.3g N·m·s/rad, and at most "
-        "about %.2g would be stable. Reduce the damping, or make it proportional to the mass "
+        "The damping is too large for such a light joint. At this joint, the damping is %.3g "
+        "N·m·s/rad, but only up to about %.2g would be stable. Reduce the damping, or make it "
+        "proportional to the mass "
         "matrix.",
         loop.damping, loop.stable_damping * loop.damping);
   if (loop.stable_stiffness > 0)
     return Formatted(
-        "Its stiffness is too large for so light a joint. There, it is %.3g N·m/rad, and at most "
-        "about %.2g would be stable. Reduce the stiffness.",
+        "The stiffness is too large for such a light joint. At this joint, the stiffness is %.3g "
+        "N·m/rad, but only up to about %.2g would be stable. Reduce the stiffness.",
         loop.stiffness, loop.stable_stiffness * loop.stiffness);
   if (loop.stable_both > 0)
     return Formatted(
-        "Its stiffness and damping are too large for so light a joint. With %.2g %% of both, it "
-        "would be stable. Reduce them.",
+        "The stiffness and the damping are too large for such a light joint. With %.2g %% of both "
+        "values, the controller would be stable. Reduce them.",
         100 * loop.stable_both);
   return "Reduce its gains.";
 }
@@ -36,11 +37,12 @@ std::string ControllerProblem(const Scenario& s, const CheckReport& report) {
   const ControlSpec& control = s.cobot.control;
   const std::string later =
       control.rate < s.rate || control.delay > 0
-          ? " A higher cobot.control.rate or a shorter cobot.control.delay helps, too."
+          ? " A higher cobot.control.rate or a shorter cobot.control.delay also helps."
           : "";
   return Formatted(
-             "The cobot's controller is unstable at joint %s, even without hands: computed %.0f "
-             "times per second, its torque there oscillates at %.0f Hz with growing amplitude. ",
+             "The cobot's controller is unstable at joint %s, even without hands: because the "
+             "torque is computed %.0f times per second, it oscillates at %.0f Hz with growing "
+             "amplitude. ",
              report.controller_joint.c_str(), control.rate, loop.frequency) +
          Reduction(loop) + later;
 }

@@ -1,4 +1,4 @@
-// Sentences about the cobot's controller, with remedies that this controller has.
+// Writes sentences about the cobot's controller and the remedies that exist for this controller.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace predictor {
 
-// Says at which joint the controller is unstable, why, and what to change.
+// Returns sentences that state at which joint the controller is unstable, why, and what to change.
 std::string ControllerProblem(const Scenario& scenario, const CheckReport& report);
 
-// Returns the beginning of a sentence that ends the oscillation of a cobot with its load: "Raise
-// cobot.controller.damping_ratio, use a heavier object,".
+// Returns the beginning of a sentence that explains how to end the oscillation of a cobot with its
+// load, for example "Raise cobot.controller.damping_ratio, use a heavier object,".
 std::string MoreDamping(const CobotSpec& cobot);
 
 }  // namespace predictor

@@ -55,7 +55,7 @@ ArmFollower::Track ArmFollower::Follow(const std::vector<IntendedSample>& path,
   Track track;
   track.links.reserve(path.size());
   RobotData data(*model_);
-  // The model's base is fixed, so the goals move in the opposite direction.
+  // The model's base is fixed, so the goals are shifted in the opposite direction instead.
   const auto goal = [&](std::size_t k) {
     Pose X = path[k].X_WO * X_OD_;
     X.p -= shift;
@@ -97,7 +97,7 @@ void ArmFollower::Judge(const JointVector& q, double time, RobotData* data, ArmR
 
 void ArmFollower::JudgeSpeed(const JointVector& from, const JointVector& to, double dt, double time,
                              ArmReach* reach) const {
-  // These are the bounds used by rendering, equations (13) to (15).
+  // These bounds are the same as in rendering, equations (13) to (15).
   const double gain =
       rendering_.joint_gain / (rendering_.joint_influence - rendering_.joint_security);
   for (int j = 0; j < to.size(); ++j) {

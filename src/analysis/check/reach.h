@@ -1,5 +1,5 @@
-// Computes the reach of the device along a path of the object: the motion of the arms' joints and
-// its worst values.
+// Computes the reach of the device along a path of the object, that is, the motion of the arms'
+// joints and the worst values on the path.
 #pragma once
 
 #include <array>
@@ -62,7 +62,7 @@ struct Reach {
 // An arm that follows a path.
 class ArmFollower {
  public:
-  // The origins of the arm's links in the link pairs, one list per sample.
+  // For each sample, the origins of those links of the arm that occur in the link pairs.
   struct Track {
     ArmReach reach;
     std::vector<std::vector<Vector3>> links;
@@ -75,9 +75,9 @@ class ArmFollower {
   // Sets the links whose positions Follow stores.
   void Watch(const std::vector<FrameId>& links) { links_ = links; }
 
-  // Follows the object's path with the base moved by `shift` [m], sample by sample, with damped
-  // least squares. Like rendering with velocities, this gives the smallest joint motion. The first
-  // posture is found as in the emulator. With `give_up`, it ends as soon as the handle is lost.
+  // Follows the object's path sample by sample with damped least squares. The base is moved by
+  // `shift` [m]. As in rendering, the joints move as little as possible. The first posture is found
+  // as in the emulator. With `give_up`, the function returns as soon as the handle is lost.
   Track Follow(const std::vector<IntendedSample>& path, const Vector3& shift, bool give_up) const;
 
  private:
@@ -110,8 +110,8 @@ class DeviceReach {
   Reach Over(const std::vector<std::vector<IntendedSample>>& paths,
              const std::array<Vector3, kHands>& shift = {Vector3::Zero(), Vector3::Zero()},
              bool give_up = false) const;
-  // Reduces the distances of the link pairs, starting with the first of `pairs`, to those of two
-  // tracks along the same path.
+  // Sets the distances of the link pairs to the smaller of their present values and the distances
+  // between two tracks along the same path. The first pair is the first of `pairs`.
   void Distances(const ArmFollower::Track& left, const ArmFollower::Track& right,
                  const std::vector<IntendedSample>& path, std::vector<PairReach>* pairs) const;
   std::vector<PairReach> NoDistances() const;
@@ -129,9 +129,9 @@ class DeviceReach {
   std::vector<WatchedPair> pairs_;
 };
 
-// Returns the paths that a task may take from the object's start. If the script lets go and grips
-// again, there are two: the object stays where it was released, or it returns to its start.
-// Otherwise there is one.
+// Returns the paths that a task may take from the object's start. If the operator's script lets go
+// and grips again, there are two paths: either the object stays where the hands released it, or the
+// object returns to its start. Otherwise there is one.
 std::vector<std::vector<IntendedSample>> TaskPaths(const Scenario& scenario, const Pose& X_WO,
                                                    double step);
 

@@ -44,7 +44,7 @@ std::vector<std::string> StartWarnings(const StartReport& start) {
     warnings.push_back(
         Formatted("At the start, the object overlaps the cobot's link %s by %s%s. No contact acts "
                   "between them, so the run would be possible only in the simulation. Choose "
-                  "another cobot.posture, or place the object further out with "
+                  "another cobot.posture, or place the object further away from the link with "
                   "object.attachment.on_end_effector.",
                   gap.link.c_str(), Millimetres(-gap.distance).c_str(), why));
   };

@@ -1,4 +1,4 @@
-// How cobot and object stand at the start of a run, at rest.
+// Examines the position of cobot and object at the start of a run, at rest.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ struct StartReport {
   double tilt() const;
 };
 
-// `cobot` is the scenario's, and `world` is at its start.
+// `cobot` is the cobot of the scenario, and `world` is in its initial state.
 StartReport DescribeStart(const Scenario& scenario, const RobotModel& cobot, const World& world);
 
 // Returns sentences about an object that is inside the cobot or that the floor carries.

@@ -98,8 +98,8 @@ Plot ImpedancePlot(const ContactRun& run, std::size_t k) {
   plot.id = "impedance-" + std::to_string(k + 1);
   plot.title = "Requested and rendered impedance: " + Title(run.scenario, r);
   plot.caption =
-      "Force over displacement of the handles, predicted for contact at one point: as the virtual "
-      "world requests it, and as the arms render it.";
+      "Ratio of force to displacement of the handles, predicted for contact at one point: the "
+      "ratio that the virtual world requests, and the ratio that the arms render.";
   plot.x = {.label = "Frequency", .unit = "Hz", .log = true};
   plot.x.low = frequency.front();
   plot.x.high = frequency.back();
@@ -141,7 +141,7 @@ void AddContactChapter(const ContactRun& run, ReportPage* page) {
   if (!run.problem.empty()) page->Paragraph(run.problem);
   if (!run.facts.empty()) page->Html(kFactsWords + FactsTable(run));
   if (run.scenario.mode == Mode::kDirect)
-    return page->Paragraph("In mode: direct, no arms render the contact.");
+    return page->Paragraph("In `mode: direct`, no arms render the contact.");
   if (run.predictions.empty()) return;
   page->Html(kPredictionWords);
   page->Html(Formatted("<p>Lead: %.1f ms.</p>\n", 1e3 * run.lead) + PredictionTable(run));

@@ -10,8 +10,8 @@
 namespace predictor {
 namespace {
 
-// The object as a free body among the fixtures. Its motion is that of the records, so any engine
-// finds the same contacts.
+// The object as a free body among the fixtures. The object's motion comes from the records, so any
+// engine finds the same contacts.
 std::unique_ptr<Engine> FreeObject(Scenario scenario) {
   scenario.simulation.engine = EngineKind::kMujoco;
   return MakeEngine(scenario, *LoadCobotModel(scenario), false, Holding::kFree);
@@ -42,7 +42,7 @@ ContactCollector::ContactCollector(const Scenario& scenario)
       facts_(scenario.environment.fixtures.size()),
       present_(~events_.obstacles()) {}
 
-// Moves the engine's bodies to their places in the record.
+// Moves the engine's bodies to the poses in the record.
 void ContactCollector::Place(const TickRecord& record) {
   const Engine::Layout& at = engine_->layout();
   Engine::Values q = engine_->positions();
@@ -69,8 +69,8 @@ void ContactCollector::AddPoint(const Contact& contact, const FrameMotion& O,
       std::max(0.0, *fixture.stiffness * contact.depth - fixture.damping * contact.normal_W.dot(v));
 }
 
-// Returns the fixtures that are there. One that an event lets appear is added only when it does not
-// overlap the object, as in the simulation.
+// Returns the fixtures that are present. As in the simulation, a fixture that an event lets appear
+// is added only when it does not overlap the object.
 std::uint64_t ContactCollector::Present(const TickRecord& record,
                                         const std::vector<Touch>& touches) {
   const std::uint64_t all = events_.obstacles();

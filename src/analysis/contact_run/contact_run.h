@@ -1,5 +1,5 @@
-// What a recorded run and the prediction of `check` say about contact with fixtures, and the
-// report's chapter about it.
+// Contact with fixtures in a recorded run and in the prediction of `check`, and the report's
+// chapter about this contact.
 #pragma once
 
 #include <cmath>
@@ -22,8 +22,8 @@ namespace predictor {
 struct ContactFacts {
   double time = 0;   // in contact [s]
   double depth = 0;  // deepest penetration [m]
-  // Largest force at all points of contact together, by the fixture's stiffness and damping from
-  // depth and speed. Only for a fixture that yields [N].
+  // Largest total force of all points of contact [N], computed from the fixture's stiffness and
+  // damping and from depth and speed. Only for a fixture that yields.
   double force = 0;
   double pressing = 0;  // largest force with which the hands together pressed on the fixture while
                         // the object touched it, by the force sensors [N]
@@ -32,10 +32,10 @@ struct ContactFacts {
 // Returns whether a fixture of the scenario can touch the object.
 bool HasContact(const Scenario& scenario);
 
-// Collects the facts while records arrive.
+// Collects these facts while records arrive.
 class ContactCollector {
  public:
-  // `scenario` has its model files. Throws InputError.
+  // `scenario` includes its model files. Throws InputError.
   explicit ContactCollector(const Scenario& scenario);
   // Adds the next record.
   void Add(const TickRecord& record);
@@ -66,8 +66,8 @@ struct ContactRun {
   std::string problem;                     // why something is not known, as sentences
 };
 
-// Predicts what the arms of the collected run could render, with its lead [s]; absent: the one that
-// `check` chooses.
+// Predicts what the arms of the collected run could render with the run's lead [s]. If `lead` is
+// absent, the lead that `check` chooses is used.
 void PredictContacts(std::optional<double> lead, ContactRun* run);
 
 // Adds the chapter.

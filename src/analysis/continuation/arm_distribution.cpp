@@ -127,7 +127,7 @@ ArmDistribution ArmDistribution::Read(const std::string& file, const HandSpec& h
     const auto covariance = json.at("covariance").get<std::vector<std::vector<double>>>();
     if (mean.size() != which.size() || covariance.size() != which.size())
       throw InputError("parameters, mean and covariance must have the same length.");
-    // These are moments of the prior, for parameters that the file does not contain.
+    // For parameters that the file does not contain, the moments of the prior are kept.
     Vector m = MomentsOf(hand);
     Matrix c = Matrix::Zero();
     const ArmDistribution prior = Prior(hand);

@@ -1,5 +1,5 @@
-// Predicts what would have happened if the emulator had not stopped a run. It continues the run
-// from the tick of the stop, for many possible operators.
+// Predicts what would have happened if the emulator had not stopped a run. The prediction continues
+// the run from the tick of the stop, for many possible operators.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace predictor {
 
-// How a continued run ended.
+// The way in which a continued run ended.
 enum class Ending {
   kSettles,       // in the last third, no hand exceeds the scenario's limits of force and torque
   kStaysAbove,    // in the last third, the limits are still exceeded
@@ -31,8 +31,8 @@ inline constexpr int kEndings = 5;
 // Returns "settles", "stays_above", "diverges", "cobot_stops" or "fault".
 const char* Name(Ending ending);
 
-// One continued run, from the stop on. Forces are readings of the sensors, which the stop uses as
-// well.
+// One continued run, from the stop onwards. Forces are readings of the sensors, because the stop is
+// decided from the same readings.
 struct ContinuedRun {
   double peak_force = 0, peak_torque = 0;  // largest of a hand [N], [N·m]
   double peak_speed = 0;                   // of a handle [m/s]
@@ -46,8 +46,8 @@ struct ContinuedRun {
   TickRecord at_peak{};       // the tick with the largest force
   OperatorDraw person;        // not set for the reference
   // The largest torque of elbows and shoulders at the time of the largest force, as a multiple of
-  // the mean strength for the person's sex. It is NaN if the posture is unknown or does not reach
-  // the handles.
+  // the mean strength for the person's sex. The value is NaN if the posture is unknown or does not
+  // reach the handles.
   double joint_use = kUndefined;
 };
 inline constexpr double kCurveStep = 0.01;  // [s]
@@ -68,7 +68,7 @@ struct Continuation {
   std::vector<double> past_times,
       past_force;                  // before the stop: time relative to the stop, largest force
   std::vector<ContinuedRun> runs;  // one per draw, in order
-  // For a simulated operator, what that operator would have done.
+  // If the operator was simulated, the run as this operator would have continued it.
   std::optional<ContinuedRun> reference;
   std::string no_joint_use;  // why no posture could be judged; empty: it could
 
@@ -88,7 +88,7 @@ struct ContinueOptions {
   IntentModel intent;
   bool reference = false;   // also continue with the simulated operator's own state
   bool joint_loads = true;  // needs body and stance in the scenario
-  // Makes an operator that can load the saved state of the recorded one.
+  // Makes an operator that can load the saved state of the recorded operator.
   OperatorMaker recorded_operator = [](const Scenario& scenario) {
     return MakeOperator(scenario, HandInertia::kInWrench);
   };
@@ -110,7 +110,7 @@ std::string ContinuationPage(const Continuation& c, const std::string& recording
 std::string ContinuationSchema();
 // Returns sentences that state the assumptions and omissions of the prediction.
 std::vector<std::string> ContinuationAssumptions(const Continuation& c);
-// Returns "settles in 71 %, ..." of the draws.
+// Returns the shares of the endings over the draws, such as "settles in 71 %, ...".
 std::string EndingWords(const Continuation& c);
 
 // The results over the draws that the text, the page and the JSON show, in the order of the JSON.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kBarWidth = 5;  // of the histogram [N]
 
-// Returns the forces in one interval of kCurveStep, of all runs that last that long.
+// Returns the forces in one interval of kCurveStep for all runs that last that long.
 std::vector<double> ForcesAt(const Continuation& c, std::size_t piece) {
   std::vector<double> forces;
   for (const ContinuedRun& run : c.runs)
@@ -55,9 +55,9 @@ Plot FanPlot(const Continuation& c) {
   plot.id = "force";
   plot.title = "Largest force of a hand, before the stop and without it";
   plot.caption =
-      "Areas: 90 % and 50 % of the possible operators at each time, without those whose run had "
-      "already ended with another fault. The largest force of a run can lie above the areas, which "
-      "apply to each time separately.";
+      "The areas contain 90 % and 50 % of the possible operators at each time, without operators "
+      "whose run had already ended with another fault. The largest force of a run can lie above "
+      "the areas, because the areas apply to each time separately.";
   plot.x = {.label = "Time after the stop", .unit = "s"};
   plot.notes.push_back({0, "stop"});
   PlotPanel panel;

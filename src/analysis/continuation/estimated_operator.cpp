@@ -13,8 +13,8 @@ Vector3 SpeedOf(const TickRecord& record, std::size_t hand) {
   return {twist[0], twist[1], twist[2]};
 }
 
-// Returns the acceleration of the handle at each record [m/s²]. It is a backward difference,
-// because the motion after the last record is unknown.
+// Returns the acceleration of the handle at each record [m/s²]. The acceleration is a backward
+// difference, because the motion after the last record is unknown.
 std::vector<Vector3> AccelerationsOf(std::span<const TickRecord> past, std::size_t hand,
                                      double step) {
   const auto lag = static_cast<std::size_t>(std::max(1L, std::lround(kAccelerationTime / step)));
@@ -67,7 +67,7 @@ void EstimatedHand::Prepare(const HandRecord& first, double dt, const OperatorDr
 }
 
 // Returns the wrench with which the arm resists a motion, without its inertia. `force` is the force
-// of the hand, with which the arm stiffens.
+// of the hand; the arm becomes stiffer with it.
 Vector6 EstimatedHand::Resist(const Pose& X_W, const Twist& V_W, double force) noexcept {
   const double stiffer = 1 + draw_.stiffening * force / kStiffeningForce;
   const Vector6 stretch = PoseError(X_W, origin_);
@@ -79,7 +79,8 @@ Vector6 EstimatedHand::Resist(const Pose& X_W, const Twist& V_W, double force) n
   return resistance;
 }
 
-// Fills the delay lines with the past as well. The handle counts as at rest between two records.
+// Also fills the delay lines with the past. Between two records, the handle counts as being at
+// rest.
 std::vector<Vector6> EstimatedHand::DriveBefore(std::span<const TickRecord> past, std::size_t hand,
                                                 double record_step) {
   const auto steps = static_cast<int>(std::max(1L, std::lround(record_step / dt_)));

@@ -1,5 +1,5 @@
-// An operator of whom only the recorded motion and forces are known. With this model, a run is
-// continued after a stop.
+// An operator of whom only the recorded motion and forces are known. This model continues a run
+// after a stop.
 #pragma once
 
 #include <array>
@@ -15,13 +15,14 @@
 namespace predictor {
 
 // The assumptions about the operator after the stop, apart from the arm (design choices). It is
-// unknown how long an intention keeps changing. Each draw assumes that it continues to change at
-// its present rate until it has changed by about as much as the hand's present force.
+// unknown how long an intention keeps changing. Each draw assumes that the intention continues to
+// change at its present rate until the change is about as large as the hand's present force.
 struct IntentModel {
   // The time before the stop from which the present rate is taken, log-uniform in this range [s].
   double shortest_trend = 0.04, longest_trend = 0.2;
-  // The further change as a multiple of the present force: its median, and the standard deviation
-  // of its logarithm. The rate decays with a time constant of at most `longest_change` [s].
+  // The change after the stop as a multiple of the present force: its median, and the standard
+  // deviation of its logarithm. The rate decays with a time constant of at most `longest_change`
+  // [s].
   double change = 1.8, change_spread = 0.6, longest_change = 1;
   // With this probability, the change (for example, a push) ends after a time that is log-uniform
   // in this range [s]. The drive then returns to its mean over the first kBaselineTime of the past,
@@ -30,14 +31,15 @@ struct IntentModel {
   // New intentions are modelled by an intended position that moves at a random speed, with this rms
   // along each axis [m/s], correlated over `wander_time` [s].
   double wander = 0.08, wander_time = 0.5;
-  // The noise of force and torque, as rms of the vectors relative to their present size, correlated
-  // over `noise_time` [s]. It represents everything that the model omits.
+  // The noise of force and torque: the rms of the noise vectors relative to the present magnitude
+  // of force and torque, correlated over `noise_time` [s]. The noise represents everything that the
+  // model omits.
   double noise = 0.1, noise_time = 0.3;
   // The arm stiffens with its force: K (1 + c |F| / kStiffeningForce), with c uniform from 0 to
   // this value.
   double max_stiffening = 1;
-  // The visual correction is drawn uniformly up to this multiple of the scenario's stiffness, and
-  // its delay has this spread.
+  // The visual correction is drawn from a uniform distribution up to this multiple of the
+  // scenario's stiffness. Its delay is drawn with this spread.
   double max_sight = 1.5, sight_delay_spread = 0.15;
 };
 inline constexpr double kStiffeningForce = 30;  // [N]
@@ -54,16 +56,16 @@ struct OperatorDraw {
   double sight_delay = 0;           // [s]
   RandomStream noise{0, ""};
 };
-// Returns the draw with this number. The same number gives the same operator for every run (common
+// Returns the draw with this number. For every run, the same number gives the same operator (common
 // random numbers), so that two runs are compared for the same operators.
 OperatorDraw DrawOperator(const ArmDistribution& arms, const HandSpec& hand,
                           const IntentModel& intent, std::uint64_t seed, int number);
 
 // F = u − z − g z(t − δ) − Kv x(t − δv) − M a, where z integrates K (1 + c |F| / 30 N) dx and
 // contains the damping D √(1 + c |F| / 30 N) v, and x is the displacement of the handle. The drive
-// u = K xr + D vr + its reflex and feed-forward is what the operator intends, expressed as a force.
-// Before the stop, it follows from the measured force and motion. After the stop, its trend over
-// the last `trend_time` continues and decays with a time constant (IntentModel). Then u is
+// u = K xr + D vr + its reflex and feed-forward is the operator's intention, expressed as a force.
+// Before the stop, u follows from the measured force and motion. After the stop, the trend of u
+// over the last `trend_time` continues and decays with a time constant (IntentModel). Then u is
 // constant, apart from noise. The stiffness grows with the force as in Perreault, Kirsch & Crago
 // 2002 (quoted from memory).
 class EstimatedHand {
@@ -109,18 +111,19 @@ class EstimatedHand {
   FractionalDelay<Vector3, 1024> sight_;
 };
 
-// Behaves like the recorded operator until Begin, so that a saved state can be loaded. From then
-// on, it behaves like the estimate of that operator. The estimate never uses the recorded
-// operator's state.
+// Behaves like the recorded operator until Begin, so that a saved state can be loaded. After Begin,
+// this class behaves like the estimate of the recorded operator. The estimate never uses the
+// recorded operator's state.
 class EstimatedOperator final : public Operator {
  public:
-  // `recorded` is the operator whose state the saved states contain, or null if they contain none.
+  // `recorded` is the operator whose state the saved states contain, or null if they contain no
+  // state of an operator.
   explicit EstimatedOperator(std::unique_ptr<Operator> recorded) : recorded_(std::move(recorded)) {}
 
   // From the next step on, the estimate replaces the recorded operator.
   void Begin(std::span<const TickRecord> past, double record_step, const IntentModel& intent,
              const OperatorDraw& draw);
-  // From the next step on, the recorded operator acts (again).
+  // From the next step on, the recorded operator acts again.
   void UseRecorded() noexcept { estimated_ = false; }
 
   void Step(const OperatorInput& input, OperatorOutput* output) noexcept override;

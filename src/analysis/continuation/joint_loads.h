@@ -5,8 +5,8 @@
 
 namespace predictor {
 
-// Sets joint_use of all runs, or no_joint_use. The posture is the nominal one that reaches both
-// handles at that time, and the body counts as being at rest.
+// Sets joint_use of all runs, or no_joint_use. The posture is the nominal posture that reaches both
+// handles at that time. The body counts as being at rest.
 void AddJointLoads(const StoppedRun& stopped, unsigned workers, Continuation* c);
 
 }  // namespace predictor

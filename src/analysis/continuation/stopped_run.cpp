@@ -28,13 +28,12 @@ StopFinder FindInRecording(RecordingReader* reader, const Scenario& scenario) {
     throw InputError(
         "The recording contains no stop, so there is nothing to continue. "
         "`predictor evaluate` and `predictor report` judge runs that were not stopped.");
-  throw InputError(
-      "The run was stopped because " + StopCauseText(finder.other()) +
-      ". Only stops by a limit of force, torque, coupling or tracking (the speed cap) can be "
-      "continued without that limit.");
+  throw InputError("The run was stopped because " + StopCauseText(finder.other()) +
+                   ". A run can be continued only after a stop by a limit of force, torque, "
+                   "coupling or tracking (the speed cap).");
 }
 
-// Computes the ticks up to the one before `stop` again. Throws InputError.
+// Computes the ticks before `stop` again. Throws InputError.
 void Recompute(RecordingReader* reader, std::uint64_t stop, Emulator* emulator,
                const std::function<void(std::uint64_t)>& progress) {
   RecordedSnapshot snapshot;

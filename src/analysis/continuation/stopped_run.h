@@ -26,16 +26,16 @@ struct StoppedRun {
 
 inline constexpr double kPastTime = 0.5;  // [s]
 
-// Takes the ticks of a run, and finds the tick in which its first stop by a limit (IsLimit) was
+// Receives the ticks of a run, and finds the tick in which the first stop by a limit (IsLimit) was
 // decided.
 class StopFinder {
  public:
   explicit StopFinder(double rate);
-  // Adds the next record, in order. Returns true if the stop was decided in its tick. Later records
-  // are ignored.
+  // Adds the next record, in order. Returns true if the stop was decided in the tick of this
+  // record. Later records are ignored.
   bool Add(const TickRecord& record);
   bool found() const { return found_; }
-  // Returns the first other cause that stopped the run, or kNone if there was none.
+  // Returns the first other cause that stopped the run, or kNone if no other cause stopped it.
   StopCause other() const { return other_; }
   const std::vector<TickRecord>& past() const { return past_; }
   double peak_before() const { return peak_; }  // [N]
@@ -51,9 +51,10 @@ class StopFinder {
 };
 
 // Finds the stop in a recording, and computes the run up to the stop again from the last saved
-// state (or from the start). `scenario` comes from RestoreScenario. `progress` receives the number
-// of ticks so far. Throws InputError if there is no stop by a limit, ticks before it are lost, the
-// computed run differs from the recorded one, or the run cannot be continued.
+// state (or from the start). `scenario` comes from RestoreScenario. `progress` is called with the
+// number of ticks so far. Throws InputError if there is no stop by a limit, if ticks before the
+// stop are lost, if the computed run differs from the recorded run, or if the run cannot be
+// continued.
 StoppedRun FindStop(RecordingReader* reader, const Scenario& scenario,
                     const std::function<void(std::uint64_t)>& progress);
 

@@ -91,7 +91,8 @@ Piece PieceOf(const std::filesystem::path& file, const StudyChoice& controller,
   piece.cell.hazard = hazard.name;
   try {
     piece.scenario = StudiedScenario(file, controller, hazard, duration);
-    // The first run reveals the program's behaviour, so that no outdated run is reused.
+    // The first run is a sample of the program's behaviour, so that runs of a program with
+    // different behaviour are not reused.
     piece.first = RunWithHazard(piece.scenario, 1);
     piece.key = HashOf(SaveScenario(piece.scenario) + TextOf(piece.first));
   } catch (const InputError& error) {

@@ -1,5 +1,5 @@
-// The hazard study shows what simulated operators feel when a hazard occurs at a time unknown to
-// them, for several scenarios, controllers and hazards.
+// For several scenarios, controllers and hazards, the hazard study shows what simulated operators
+// feel when a hazard occurs at a time unknown to them.
 #pragma once
 
 #include <array>
@@ -34,8 +34,8 @@ struct HazardRun {
   double detection = -1;  // from the time at which the true force crosses its threshold to the stop
                           // [s]
   double excess = -1;     // of the true force over its threshold at that stop [N]
-  // From the time at which the true force exceeds its threshold clearly (ClearCrossing) to that
-  // stop [s]; −1: it did not.
+  // Time from the moment at which the true force clearly exceeds its threshold (ClearCrossing) to
+  // that stop [s]; −1 if the force did not clearly exceed it.
   double clear_detection = -1;
   // The largest commanded speed of a handle, as a share of its cap (CommandedSpeeds).
   double commanded = 0;
@@ -67,8 +67,8 @@ struct HazardStudyOptions {
   std::function<void(double share)> progress = [](double) {};
 };
 
-// Returns the scenario of a cell's runs. Throws InputError if the controller and the hazard do not
-// fit, for example because the hazard would have no effect.
+// Returns the scenario of a cell's runs. Throws InputError if the controller and the hazard cannot
+// be combined, for example because the hazard would have no effect.
 Scenario StudiedScenario(const std::filesystem::path& file, const StudyChoice& controller,
                          const StudyChoice& hazard, double duration);
 // Simulates one run with the operator that belongs to `seed`. The first event of the scenario is
@@ -76,7 +76,7 @@ Scenario StudiedScenario(const std::filesystem::path& file, const StudyChoice& c
 HazardRun RunWithHazard(Scenario scenario, std::uint64_t seed);
 
 // Executes the runs that the folder's runs.csv does not contain yet. Each finished run is appended
-// to it, with a hash of its scenario and of the program's behaviour. Writes hazards.csv and
+// to runs.csv, with a hash of its scenario and of the program's behaviour. Writes hazards.csv and
 // hazards.md. Throws InputError.
 HazardStudy MakeHazardStudy(const HazardStudyOptions& options);
 

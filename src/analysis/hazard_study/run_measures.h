@@ -1,4 +1,4 @@
-// Measures from the records of a run whether the emulator kept its promises: how soon it stopped
+// Measures from the records of a run whether the emulator met its requirements: how soon it stopped
 // after a hand's force exceeded the threshold, and whether a commanded speed exceeded its cap.
 #pragma once
 
@@ -11,12 +11,13 @@
 
 namespace predictor {
 
-// Returns the smallest change of a force that a sensor distinguishes from its own noise [N]: three
-// standard deviations of a reading's noise and rounding, so that one reading in 370 deviates more.
+// Returns the smallest change of a force that a sensor distinguishes from its own noise [N]. This
+// is three standard deviations of a reading's noise and rounding; one reading in 370 deviates more.
 double ResolvedForce(const SensorSpec& sensor);
 
-// Finds when the true force of each hand exceeds `threshold` [N] clearly, that is by more than
-// `resolved` [N]. No monitor can see a smaller excess in time, because it is hidden in the noise.
+// Finds the time at which the true force of each hand clearly exceeds `threshold` [N], that is, by
+// more than `resolved` [N]. No monitor can see a smaller excess in time, because it is hidden in
+// the noise.
 class ClearCrossing {
  public:
   ClearCrossing(double threshold, const std::array<double, kHands>& resolved)
@@ -25,8 +26,8 @@ class ClearCrossing {
   }
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // Returns the time for which the force of `hand` has exceeded the threshold clearly, in the last
-  // record [s]; −1: it does not exceed it clearly.
+  // Returns how long the force of `hand` has clearly exceeded the threshold at the last record [s];
+  // −1 if it does not.
   double duration(int hand) const;
 
  private:
@@ -35,9 +36,10 @@ class ClearCrossing {
   double run_time_ = 0;                            // of the last record [s]
 };
 
-// Computes the speeds of the handles that were commanded in RUN, as a share of their caps. The
-// speed is that at the posture in which the arm obeys the command: the measured one, moved on by
-// the previous command for the lag of the arm's velocity loop. The cap is defined for this speed.
+// Computes the handle speeds that were commanded in RUN, as shares of their caps. The speed is
+// computed at the posture in which the arm obeys the command. This is the measured posture,
+// advanced with the previous command by the lag of the arm's velocity loop. The cap applies to this
+// speed.
 class CommandedSpeeds {
  public:
   // Throws InputError if an arm's model cannot be loaded.

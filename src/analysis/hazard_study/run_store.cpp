@@ -44,7 +44,8 @@ std::string Short(double x) { return Formatted("%.6g", x); }
 
 std::string KeyOf(const std::string& key, const std::string& seed) { return key + "/" + seed; }
 
-// Reads the cells of TextOf, which are the last ones. A comma in a name before them adds a cell.
+// Reads the cells that TextOf wrote, which are the last cells of the row. A comma in a name before
+// these cells would add a cell.
 bool ReadRun(const std::vector<std::string>& cells, HazardRun* run) {
   if (cells.size() < kColumns) return false;
   const std::span at = std::span(cells).last(kOfRun);
@@ -79,8 +80,8 @@ HazardRunStore::HazardRunStore(const std::filesystem::path& file) : file_(file) 
   Write(is_new ? std::string(kHeader) + "\n" : "");
 }
 
-// Removes the beginning of a line that was not completed. It may look like a whole line, with a
-// number that lacks its last digits.
+// Removes the beginning of a line that was not completed. Such a line may look complete although
+// its last number lacks digits.
 void HazardRunStore::Read() {
   std::ifstream in(file_);
   std::uintmax_t end = 0;  // of the last complete line

@@ -15,10 +15,10 @@ namespace predictor {
 // killed study) are skipped. Any thread may call Add.
 class HazardRunStore {
  public:
-  // Reads the file. Throws InputError if it cannot be written.
+  // Reads the file. Throws InputError if the file cannot be written.
   explicit HazardRunStore(const std::filesystem::path& file);
 
-  // Loads the run. Returns false if it is not stored.
+  // Loads the run. Returns false if the run is not stored.
   bool Find(const std::string& key, std::uint64_t seed, HazardRun* run) const;
   // `key` is a hash of the cell's scenario and of the program's behaviour. Throws InputError if the
   // file cannot be written.

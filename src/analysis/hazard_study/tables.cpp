@@ -23,9 +23,9 @@ std::vector<double> ValuesOf(const HazardCell& cell, double HazardRun::*value, d
   return values;
 }
 
-// Returns the largest forces after the hazard began. The emulator's stop ends the force as well, so
-// the force of a stopped run is a lower bound. The cobot's own stop does not count as such, because
-// the person would have experienced it too.
+// Returns the largest forces after the hazard began. The emulator's stop also ends the force, so
+// the largest force of a stopped run is a lower bound. If only the cobot stopped itself, the force
+// is not a lower bound, because the person would have experienced this stop too.
 std::vector<CensoredValue> ForcesOf(const HazardCell& cell) {
   std::vector<CensoredValue> forces;
   for (const HazardRun& run : cell.runs)
@@ -201,10 +201,11 @@ std::string HazardStudyWords(const HazardStudy& study) {
              "threshold by more than the sensor resolves, all within %.0f ms.",
              in_time, by_force, 1e3 * clear);
   AppendLine(&text,
-             "In %zu of them, the true force had crossed the threshold itself, at most %.0f ms "
-             "before and by at most %.2f N; the largest measured force was %.2f N.",
+             "In %zu of these runs, the true force itself had crossed the threshold, at most %.0f "
+             "ms earlier and by at most %.2f N; the largest measured force was %.2f N.",
              crossed, 1e3 * detection, excess, force);
-  AppendLine(&text, "The longest stop used %.0f %% of its travel budget.", 100 * travel);
+  AppendLine(&text, "The stop with the longest travel used %.0f %% of its travel budget.",
+             100 * travel);
   // An arm obeys a command later and not exactly, and the measured speed contains noise.
   AppendLine(&text,
              "The fastest command used %.1f %% of its cap; the measured speed of a handle reached "

@@ -21,7 +21,8 @@ constexpr double kDependent = 1e-6;  // share of a unit column's squared length 
 constexpr int kMinLag = 10;      // minimum lag of the scores' autocovariance; half of it is due to
                                  // overlapping windows [windows]
 constexpr int kExcessLags = 40;  // lags of the residuals' autocorrelation [windows]
-// The residuals' scale has this lower bound, because the simulated world moves in steps.
+// Lower bound of the residuals' scale, which is necessary because the simulated world moves in
+// steps.
 constexpr double kMinScale = 0.01;  // [N·m]
 constexpr double kTiny = 1e-9;      // [N·m]
 
@@ -119,7 +120,7 @@ Eigen::VectorXd Residual(const FitRows& rows, const Eigen::VectorXd& value) {
   return rows.y - rows.x * own;
 }
 
-// Performs one iteration of reweighting. Returns the largest relative change of a scale.
+// Performs one iteration of reweighting. Returns the largest relative change of a joint's scale.
 double Reweigh(const FitProblem& problem, Fit* fit) {
   double change = 0;
   for (std::size_t j = 0; j < problem.joints.size(); ++j) {
@@ -137,7 +138,8 @@ double Reweigh(const FitProblem& problem, Fit* fit) {
   return change;
 }
 
-// Returns the first window of any joint, and the number of windows from there to the last one.
+// Returns the first window of any joint, and the number of windows from the first to the last
+// window.
 std::pair<long, long> WindowsOf(const FitProblem& problem) {
   long first = std::numeric_limits<long>::max(), last = 0;
   for (const FitRows& rows : problem.joints) {
@@ -185,7 +187,7 @@ int LagFor(const Eigen::MatrixXd& scores) {
     if (!(own > 0)) continue;
     const double next = scores.row(i).head(n - 1).dot(scores.row(i).tail(n - 1));
     const double rho = std::clamp(next / own, -0.97, 0.97);
-    // The variance of the innovations is the one for which each score has variance 1.
+    // The variance of the innovations is chosen such that each score has variance 1.
     above += 4 * rho * rho / std::pow(1 - rho, 4);
     below += (1 + rho) * (1 + rho) / ((1 - rho) * (1 - rho));
   }
@@ -205,8 +207,9 @@ Eigen::MatrixXd LongRunCovariance(const Eigen::MatrixXd& scores, int lag) {
   return S;
 }
 
-// Returns the rate at which the scores fall as the parameters change. It uses the mean slope of
-// Huber's ψ of each joint, which is smaller than the mean of its weights.
+// Returns the rate at which the scores decrease with a change of the parameters. The rate is
+// computed with the mean slope of Huber's ψ of each joint, which is smaller than the mean of the
+// joint's weights.
 Normal Slope(const FitProblem& problem, const Fit& fit) {
   Normal slope(problem.parameters);
   for (std::size_t j = 0; j < problem.joints.size(); ++j) {
@@ -333,8 +336,8 @@ std::vector<int> BaseParameters(const FitProblem& problem, const Fit& fit,
   const double longest = length.maxCoeff();
   for (double& l : length) l = l > 1e-9 * longest ? 1 / l : 0;
   const Eigen::MatrixXd gram = length.asDiagonal() * normal.H(all, all) * length.asDiagonal();
-  // In this pivoted Cholesky factorisation, the next column is always the one furthest from the
-  // previous ones.
+  // This pivoted Cholesky factorisation always continues with the column that is furthest from the
+  // span of the previous columns.
   Eigen::MatrixXd rest = gram;
   std::vector<int> chosen;
   std::vector<bool> taken(all.size(), false);

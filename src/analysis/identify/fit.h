@@ -7,7 +7,7 @@
 
 namespace predictor {
 
-// The equations of one joint, with columns for parameters `index` of the whole problem.
+// The equations of one joint. The columns belong to the parameters `index` of the whole problem.
 struct FitRows {
   std::vector<long> window;  // window of each row
   Eigen::VectorXd y;
@@ -22,7 +22,7 @@ struct FitProblem {
 
 // Renumbers the windows in ascending order and shortens gaps to the length of the windows'
 // correlation. The fit needs memory for all windows from the first to the last, and a recording may
-// contain any number.
+// number its windows arbitrarily.
 void CloseGaps(FitProblem* problem);
 
 // The free parameters and their prior, which has mean 0 and a precision (1/variance), or 0 for no
@@ -43,13 +43,14 @@ struct Fit {
   std::vector<Eigen::VectorXd> weight;    // Huber's weights, divided by scale² excess
 };
 
-// Computes Huber's M-estimate, iteratively reweighted. The covariance of `wanted` is a sandwich:
-// the long-run covariance of the scores (Newey & West 1987, lag by Andrews 1991 with an AR(1))
-// between the curvatures, times N/(N − p) for the p estimated parameters, plus the contribution of
-// the prior.
+// Computes Huber's M-estimate, iteratively reweighted. The covariance of `wanted` is a sandwich
+// estimate: the long-run covariance of the scores (Newey & West 1987, with the lag of Andrews 1991
+// for an AR(1) process) between two inverse curvatures, times N/(N − p) for the p estimated
+// parameters. The contribution of the prior is added.
 Fit FitRobustly(const FitProblem& problem, const FitModel& model, const std::vector<int>& wanted);
 
-// Leaves out each block of time in turn and predicts it from the others (with the fit's weights).
+// Leaves out each block of time in turn and predicts this block from the other blocks (with the
+// weights of the fit).
 struct CrossValidation {
   std::vector<double> loss;           // mean of Huber's loss in each block, in units of scale
   std::vector<double> error_squares;  // sum for each joint [N²·m²]
@@ -58,9 +59,9 @@ struct CrossValidation {
 CrossValidation CrossValidate(const FitProblem& problem, const FitModel& model, const Fit& fit,
                               const std::vector<double>& scale, int blocks);
 
-// Returns the parameters in `among`, ordered by the information that each adds to the previous
-// ones, as far as the (weighted) equations can distinguish them. `condition` is the condition
-// number of these and of `always`, for columns of unit length.
+// Returns those parameters in `among` that the (weighted) equations can distinguish, ordered by the
+// information that each parameter adds to the previous parameters. `condition` is the condition
+// number of the columns of these parameters and of `always`, scaled to unit length.
 std::vector<int> BaseParameters(const FitProblem& problem, const Fit& fit,
                                 const std::vector<int>& always, const std::vector<int>& among,
                                 double* condition);

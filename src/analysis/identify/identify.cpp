@@ -45,8 +45,8 @@ Body BodyOf(const InertialParameters& p) {
   return body;
 }
 
-// Returns columns for mass (density), centre of mass x y z, and elements of the inertia, each for
-// one standard deviation.
+// Returns columns for the mass (density), for x, y and z of the centre of mass, and for the
+// elements of the inertia. Each column is the change for one standard deviation.
 InertialPrior PriorOf(const Body& body, double mass_share, double com, double inertia_share) {
   InertialPrior prior;
   prior.nominal = InertialParametersOf(body.mass, body.com, body.inertia);
@@ -62,14 +62,15 @@ InertialPrior PriorOf(const Body& body, double mass_share, double com, double in
   return prior;
 }
 
-// Returns the prior of a link with parameters π and the uncertainty in `options`, to first order.
+// Returns the prior of a link with parameters π, computed to first order from the uncertainty in
+// `options`.
 InertialPrior LinkPrior(const InertialParameters& nominal, const IdentifyOptions& options) {
   return PriorOf(BodyOf(nominal), options.mass_uncertainty, options.com_uncertainty,
                  options.inertia_uncertainty);
 }
 
-// Returns the prior of the load, which is nearly unknown (its mass by 100 %, its centre of gravity
-// by 0.1 m).
+// Returns the prior of the load, of which little is known: the standard deviations are 100 % for
+// its mass and 0.1 m for its centre of gravity.
 InertialPrior LoadPrior(double mass, const Vector3& com, const Matrix3& inertia) {
   return PriorOf({mass, com, inertia}, kLoadMass, kLoadCom, kLoadInertia);
 }
@@ -88,8 +89,8 @@ constexpr int kBody = 10;      // number of inertial parameters of a body
 constexpr const char* kHowToExcite =
     "Record a run in which the controller moves all joints, as in scenarios/excite_cobot.yaml.";
 
-// The order of all parameters is: viscous and Coulomb friction of each joint, and then z of each
-// body, of which the load is the last.
+// The parameters are ordered as follows: viscous and Coulomb friction of each joint, then z of each
+// link, and then z of the load.
 struct Layout {
   int joints;
   int links() const { return kFrictionColumns * joints; }
@@ -276,7 +277,7 @@ struct Identifier::Impl {
       throw InputError("The recorded cobot has " + std::to_string(recorded) +
                        " joints, but the scenario's cobot has " +
                        std::to_string(builder.robot().dof()) +
-                       ". Give the scenario that was recorded.");
+                       ". Pass the scenario that was recorded.");
     }
     if (builder.duration() < kMinDuration) {
       throw InputError("The recording lasts " + Seconds(builder.duration()) +
@@ -335,7 +336,7 @@ struct Identifier::Impl {
     return result;
   }
 
-  // Uses z of the links, whose variance is 1 if the prior is correct.
+  // Uses z of the links; the variance of z is 1 if the prior is correct.
   static void Strain(const Eigen::VectorXd& z, Identification* result) {
     const double k = std::max(1, result->base_parameters);
     result->strain = std::sqrt(z.squaredNorm() / k);

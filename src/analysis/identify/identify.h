@@ -7,8 +7,8 @@
 // τ is the commanded torque (a sensor on the link side would not measure the friction). b and c are
 // viscous and Coulomb friction, Y is the joint-torque regressor, π the links' inertial parameters,
 // A the attachment of the load, and P the projection on the wrenches that the attachment transmits.
-// All unknowns enter linearly, so robust least squares finds them. docs/how-to/identify-friction.md
-// describes method and accuracy.
+// All unknowns enter the equations linearly, so robust least squares can estimate them.
+// docs/how-to/identify-friction.md describes method and accuracy.
 #pragma once
 
 #include <array>
@@ -61,10 +61,11 @@ inline constexpr int kInertiaModels = 3;
 inline constexpr std::array<const char*, kInertiaModels> kInertiaModelNames = {
     "fixed", "regularised", "base"};
 
-// How well a model predicts blocks of time that were left out of its fit.
+// The accuracy with which a model predicts blocks of time that were left out of its fit.
 struct ModelScore {
   double held_out = 0;  // rms torque error [N·m]
-  // The mean robust loss per row minus that of the regularised model, and its standard error.
+  // The mean robust loss per row minus the loss of the regularised model, and the standard error of
+  // this difference.
   double excess = 0, excess_error = 0;
 };
 
@@ -75,7 +76,7 @@ struct Identification {
   std::array<ModelScore, kInertiaModels> scores;
   int base_parameters = 0;  // number of parameters of links and load that the motion separates
   // The distance of the links from their model in standard deviations of the prior (rms over the
-  // base parameters), and whether it is larger than chance explains.
+  // base parameters), and whether this distance is larger than chance can explain.
   double strain = 0;
   bool strained = false;
   double condition = 0;  // condition number of the base regressor with friction, for unit columns
@@ -89,7 +90,7 @@ struct Identification {
 // Collects the ticks of a run one by one. Memory grows by 6 MB per minute for seven joints.
 class Identifier {
  public:
-  // `nominal` is the scenario with the recording's nominal cobot and load. Throws InputError.
+  // `nominal` is the scenario with the nominal cobot and load of the recording. Throws InputError.
   explicit Identifier(const Scenario& nominal, const IdentifyOptions& options = {});
   ~Identifier();
 

@@ -51,7 +51,7 @@ std::vector<FidelitySignals> RunsOf(const Scenario& scenario, std::uint64_t firs
   return runs;
 }
 
-// For all channels, compares item i of `a` with item (i + shift) of `b`, cyclically.
+// Compares, for all channels, item i of `a` with item i + shift of `b`, cyclically.
 struct Compared {
   std::vector<ChannelFidelity> first;  // of the first pair, for names and units
   std::vector<Statistics> rmse, correlation, range;
@@ -83,8 +83,8 @@ Agreement AgreementOf(const Compared& compared, std::size_t channel) {
 
 constexpr std::size_t kPoints = 400;  // points per cycle
 
-// One channel of each run: its first `cycles` cycles by phase or, without phase, its first `length`
-// samples.
+// Returns one channel of each run: the first `cycles` cycles, resampled by phase, or the first
+// `length` samples of a task without phase.
 using Series = std::vector<std::vector<double>>;
 Series SeriesOf(const std::vector<FidelitySignals>& runs, std::size_t channel, std::size_t cycles,
                 std::size_t length) {
@@ -103,7 +103,7 @@ Series SeriesOf(const std::vector<FidelitySignals>& runs, std::size_t channel, s
   return series;
 }
 
-// Tests for each channel whether the runs are of the same kind.
+// Tests for each channel whether real and emulated runs can be distinguished.
 std::vector<SameKindTest> TestSameKinds(const std::vector<FidelitySignals>& a,
                                         const std::vector<FidelitySignals>& b) {
   std::size_t cycles = SIZE_MAX, length = SIZE_MAX;

@@ -39,7 +39,7 @@ struct AxisAgreement {
   // The real runs compared with the emulated runs; whole runs are aligned by the phase of the
   // cycle.
   SameKindTest same_before, same_after;
-  // Returns whether there are enough runs to distinguish the kinds and they do not differ.
+  // Returns whether the runs suffice to distinguish real from emulated runs, and do not differ.
   bool indistinguishable_before() const {
     return same_before.can_distinguish() && !same_before.distinguished();
   }
@@ -58,9 +58,9 @@ struct IdentifyLoopResult {
 };
 
 // Excites the real cobot and identifies its friction. Before and after the identification, compares
-// `seeds` real runs of `task` with the same number of emulated runs that use different random draws
-// for the operator. Both scenarios describe the same nominal cobot. Throws InputError, or
-// std::runtime_error if a run was stopped.
+// `seeds` real runs of `task` with the same number of emulated runs. The emulated runs use
+// different random draws for the operator. Both scenarios describe the same nominal cobot. Throws
+// InputError, or std::runtime_error if a run was stopped.
 IdentifyLoopResult IdentifyLoop(const Scenario& excitation, const Scenario& task,
                                 const IdentifyLoopOptions& options);
 

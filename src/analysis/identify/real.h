@@ -11,7 +11,7 @@
 
 namespace predictor {
 
-// The differences between the "real" cobot and its model.
+// The differences between the simulated real cobot and its model.
 struct RealCobot {
   std::vector<double> viscous, coulomb;  // true friction of its joints [N·m·s/rad], [N·m]
   double mass_error = 0.03;   // error of each link's mass in either direction, as a share of the
@@ -21,15 +21,16 @@ struct RealCobot {
   std::uint64_t seed = 1;     // seed of all random draws
 };
 
-// Draws random friction: viscous from 0.6 to 2.4 N·m·s/rad, Coulomb from 0.3 to 1.2 N·m.
+// Draws random friction: viscous friction from 0.6 to 2.4 N·m·s/rad, and Coulomb friction from 0.3
+// to 1.2 N·m.
 RealCobot DrawRealCobot(int joints, std::uint64_t seed);
 
-// Returns the scenario with the real cobot, in `mode: direct`. Writes its URDF and a copy of the
-// load's URDF into `folder`, which must exist. Throws InputError.
+// Returns the scenario with the real cobot, in `mode: direct`. Writes the URDF of the real cobot
+// and a copy of the load's URDF into `folder`, which must exist. Throws InputError.
 Scenario MakeReal(const Scenario& nominal, const RealCobot& real,
                   const std::filesystem::path& folder);
 
-// The noise of the measured torque, drawn for each tick.
+// The noise of the measured torque, which is drawn for each tick.
 class TorqueNoise {
  public:
   explicit TorqueNoise(const RealCobot& real)

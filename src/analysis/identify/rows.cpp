@@ -8,8 +8,8 @@
 namespace predictor {
 namespace {
 
-// If the joint may have been at rest for a larger share of the window's weight, the row contains
-// too little information about its friction.
+// Largest share of a window's weight during which the joint may have been at rest. Above this
+// share, the row contains too little information about the joint's friction.
 constexpr double kMaxRestShare = 0.1;
 
 int TicksOf(double window, double dt) {
@@ -157,7 +157,7 @@ void RowBuilder::AddEquation(const Sample& before, const Sample& now, const Samp
   Accumulate(v, now.tick);
 }
 
-// Computes the motion of the load like that of the joints in AddEquation.
+// Computes the motion of the load in the same way as AddEquation computes the motion of the joints.
 void RowBuilder::AddLoad(const Sample& before, const Sample& now, const Sample& after) {
   const Pose& X = now.X_WO;
   const Vector3 w_before = RotationError(X.q, before.X_WO.q) / dt_;

@@ -14,7 +14,8 @@
 namespace predictor {
 
 // The equations of one joint. Each row is y = x · parameters, averaged over a window. The columns
-// are the speed [rad/s], its sign, and then 10 inertial parameters of each body and of the load.
+// are the speed [rad/s], the sign of the speed, and then the 10 inertial parameters of each body
+// and of the load.
 struct JointRows {
   std::vector<long> window;  // number of the window in the run; windows overlap by half
   std::vector<double> y;     // [N·m]
@@ -24,7 +25,8 @@ struct JointRows {
 };
 
 inline constexpr int kFrictionColumns = 2;
-// A slower joint may be at rest due to friction; a faster joint certainly turns [rad/s].
+// A joint slower than the first speed may be at rest due to friction; a joint faster than the
+// second speed certainly turns [rad/s].
 inline constexpr double kStill = 0.002;
 inline constexpr double kTurning = 0.02;
 
@@ -47,7 +49,7 @@ class RowBuilder {
   int recorded_joints() const { return recorded_joints_; }  // joints of the last tick; 0: none yet
 
  private:
-  // The values of one tick at the same time.
+  // The values of one tick, all at the same time.
   struct Sample {
     std::uint64_t tick = 0;
     bool ran = false;

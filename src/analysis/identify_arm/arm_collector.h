@@ -1,4 +1,4 @@
-// Cuts the responses of a hand to displacements of its handle out of a run.
+// Extracts the responses of a hand to displacements of its handle from a run.
 #pragma once
 
 #include <array>
@@ -15,8 +15,9 @@ namespace predictor {
 
 class ArmCollector {
  public:
-  // Times kept before and after the onset of a displacement [s]: the longest reflex, and less than
-  // the time after which a person reacts voluntarily (about 200 ms: Takagi 2020).
+  // Times that are kept before and after the onset of a displacement [s]. The time after the onset
+  // covers the longest reflex and ends before a person reacts voluntarily (after about 200 ms:
+  // Takagi 2020).
   static constexpr double kBefore = 0.18, kAfter = 0.2;
 
   // plane: two unit vectors. dt: tick [s].
@@ -25,7 +26,8 @@ class ArmCollector {
   void Add(const TickRecord& record);  // in order
   ArmResponses responses() const;
   int taken() const { return static_cast<int>(windows_.size()); }
-  // Displacements that were cut short, or had a gap or a saturated sensor.
+  // Number of displacements that ended early, or during which data were missing or a sensor was
+  // saturated.
   int spoiled() const { return spoiled_; }
   double largest_force() const { return largest_force_; }  // of the hand in these windows [N]
 
@@ -45,7 +47,7 @@ class ArmCollector {
   double dt_;
   double amplitude_;  // [m]
   std::size_t before_, after_;
-  // The sensor's filter and delay, applied to the motion as well.
+  // The filter and the delay of the sensor, which are applied to the motion as well.
   RampLowPass<Eigen::Vector4d> low_pass_;
   FractionalDelay<Eigen::Vector4d, 64> delay_;
   double delay_ticks_;

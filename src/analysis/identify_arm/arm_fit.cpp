@@ -19,7 +19,7 @@ constexpr double kMinDecrease = 1e-14;  // relative decrease of the squared erro
 constexpr int kWhitenings = 2;          // repetitions of estimating the noise
 constexpr double kDelayStep = 0.02;     // between the starts of the search [s]
 
-// Unit matrices of a symmetric one.
+// The basis of symmetric matrices.
 const std::array<Eigen::Matrix2d, 3>& Units() {
   static const std::array<Eigen::Matrix2d, 3> units = [] {
     std::array<Eigen::Matrix2d, 3> m;
@@ -45,7 +45,8 @@ PlaneSignal Combined(const PlaneSignal& a, double factor, const PlaneSignal& b) 
   return {a[0] + factor * b[0], a[1] + factor * b[1]};
 }
 
-// The parts of the equations, as a matrix: times × (axis u of all displacements, then axis v).
+// Returns a signal as one matrix: a row per time, with a column per displacement for axis u and
+// then for axis v.
 Eigen::MatrixXd Beside(const PlaneSignal& s) {
   Eigen::MatrixXd m(s[0].rows(), 2 * s[0].cols());
   m << s[0], s[1];
@@ -66,7 +67,8 @@ class Equations {
 
   int bins() const { return bins_; }
 
-  // Measured minus modelled force; if wanted, the derivatives of the modelled force.
+  // Returns the measured minus the modelled force and, if requested, the derivatives of the
+  // modelled force.
   Eigen::MatrixXd Residual(const PlaneVector& p,
                            std::array<Eigen::MatrixXd, kPlaneParameters>* slopes) const {
     const Eigen::Matrix2d M = Symmetric(p, plane::kMass), D = Symmetric(p, plane::kDamping),
@@ -95,7 +97,8 @@ class Equations {
   }
 
  private:
-  // Averages over bins after the onset, of the signal `delay` [s] ago, interpolated linearly.
+  // Returns averages over bins after the onset, for the signal `delay` [s] earlier, which is
+  // interpolated linearly.
   PlaneSignal Binned(const PlaneSignal& signal, double delay) const {
     const double shift = delay / r_.dt;
     const int whole = static_cast<int>(std::floor(shift));
@@ -126,7 +129,7 @@ class LevenbergMarquardt {
                      const ArmFitOptions& options)
       : equations_(equations), root_(root), options_(options) {}
 
-  // Subtracts `share` times the squared errors of the equations `all`.
+  // Makes the fit subtract `share` times the squared errors of the equations `all`.
   void Correct(const Equations& all, double share) {
     all_ = &all;
     share_ = share;
@@ -144,7 +147,7 @@ class LevenbergMarquardt {
     double damping = 1e-3;
     for (int i = 0; i < kMaxSteps && damping < 1e8; ++i) {
       PlaneMatrix A = H;
-      // A reflex without gain has no delay: its column is zero.
+      // If the reflex has no gain, its delay has no effect, so the column of the delay is zero.
       A.diagonal() += damping * (H.diagonal() + PlaneVector::Constant(1e-12 * H.trace()));
       const PlaneVector next = Bounded(best.value + A.ldlt().solve(g));
       PlaneMatrix next_H;
@@ -220,8 +223,8 @@ class LevenbergMarquardt {
   double share_ = 0;
 };
 
-// The mean responses to displacements along u and v, of displacements that count `weight` times:
-// regression on the directions, with a constant.
+// Returns the mean responses to displacements along u and v, by regression on the directions with a
+// constant. Each displacement has a weight.
 ArmResponses MeanResponses(const ArmResponses& r, const Eigen::VectorXd& weight) {
   const Eigen::RowVector2d mean = (weight.transpose() * r.direction) / weight.sum();
   const Eigen::MatrixX2d centred = r.direction.rowwise() - mean;
@@ -229,7 +232,8 @@ ArmResponses MeanResponses(const ArmResponses& r, const Eigen::VectorXd& weight)
   const Eigen::Matrix2d S = weighted.transpose() * centred;
   if (!(std::abs(S.determinant()) > 1e-3 * S.trace() * S.trace()))
     throw InputError(
-        "The displacements lie along one line, but the arm is identified in a plane. Record "
+        "The displacements lie along one line, but identification of the arm needs displacements "
+        "in a plane. Record "
         "displacements in at least four directions.");
   const Eigen::MatrixX2d share = weighted * S.inverse();
   ArmResponses result;
@@ -245,7 +249,7 @@ ArmResponses MeanResponses(const ArmResponses& r, const Eigen::VectorXd& weight)
   return result;
 }
 
-// Root of the covariance over time of the forces that the model does not explain.
+// Returns a square root of the covariance over time of the forces that the model does not explain.
 Eigen::MatrixXd NoiseRoot(const Equations& all, const PlaneVector& p) {
   const Eigen::MatrixXd e = all.Residual(p, nullptr);
   Eigen::MatrixXd C = e * e.transpose() / static_cast<double>(e.cols());
@@ -254,12 +258,13 @@ Eigen::MatrixXd NoiseRoot(const Equations& all, const PlaneVector& p) {
   return C.llt().matrixL();
 }
 
-// The equations are weighted by the inverse of a noise covariance of `times` dimensions that is
-// estimated from the 2 N response curves of N displacements. With n curves, p times and q
-// parameters per curve, the estimate's variance exceeds that with the true covariance by (n − 1)/(n
-// − 1 − (p − q)), and the variance that is computed with the estimated covariance is too small by
-// (n − (p − q))/n (Rao 1967, "Least squares theory using an estimated dispersion matrix"; Williams
-// 1967). The result is the product of both corrections. The parameters belong to four mean curves.
+// The equations are weighted by the inverse of a noise covariance of `times` dimensions. This
+// covariance is estimated from the 2 N response curves of N displacements. Let there be n curves, p
+// times and q parameters per curve. The variance of the estimate is (n − 1)/(n − 1 − (p − q)) times
+// the variance with the true covariance. The variance that is computed with the estimated
+// covariance is too small by the factor (n − (p − q))/n (Rao 1967, "Least squares theory using an
+// estimated dispersion matrix"; Williams 1967). The result is the product of both corrections. The
+// parameters belong to four mean curves.
 double NoiseIsEstimated(int count, int times) {
   const double n = 2.0 * count, surplus = times - kPlaneParameters / 4.0;
   return n / (n - surplus) * (n - 1) / (n - 1 - surplus);
@@ -267,7 +272,7 @@ double NoiseIsEstimated(int count, int times) {
 
 }  // namespace
 
-// Student's quantile by the first term of its expansion (Abramowitz & Stegun 26.7.5).
+// Student's quantile, approximated by the first term of its expansion (Abramowitz & Stegun 26.7.5).
 double ArmFit::half_width(int parameter) const {
   constexpr double kZ = 1.6448536269514722;
   const double freedom = std::max(4, count - kPlaneParameters);

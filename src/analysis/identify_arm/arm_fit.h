@@ -7,13 +7,14 @@
 //
 // M, D, K are symmetric; g and τ are gain and delay of the reflex. The hand's own noise moves the
 // handle, so that motion and noise are correlated and ordinary least squares is biased. The
-// commanded directions are independent of the noise. They are the instruments here: force and
+// commanded directions are independent of the noise. The directions are the instruments: force and
 // motion are regressed on the directions at each time after the onset, and the model is fitted to
-// these mean responses. That is two-stage least squares (Theil 1953) with the direction at each
-// time as instrument. A displacement's own noise is part of the mean responses, which leaves a bias
-// in the order of 1/N for N displacements. It is removed as in the jackknife estimator (Angrist,
-// Imbens & Krueger 1999), in which each displacement is predicted from the others: with leverages
-// of 2/N, this subtracts 4/N² times the squared errors of the single displacements.
+// these mean responses. This method is two-stage least squares (Theil 1953) with the direction at
+// each time as instrument. A displacement's own noise is part of the mean responses, which leaves a
+// bias in the order of 1/N for N displacements. The bias is removed as in the jackknife estimator
+// (Angrist, Imbens & Krueger 1999), which predicts each displacement from the others. With
+// leverages of 2/N, this correction subtracts 4/N² times the squared errors of the single
+// displacements.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,7 +32,8 @@ namespace plane {
 inline constexpr int kMass = 0, kDamping = 3, kStiffness = 6, kGain = 9, kDelay = 10;
 }
 
-// A signal in the plane: for its axes u and v a matrix of times (rows) and displacements (columns).
+// A signal in the plane. Each of the axes u and v has a matrix with a row per time and a column per
+// displacement.
 using PlaneSignal = std::array<Eigen::MatrixXd, 2>;
 
 // The responses to the displacements, each relative to its mean just before the onset.
@@ -65,8 +67,8 @@ struct ArmFit {
 // Throws InputError if the directions do not span the plane or there are too few displacements.
 ArmFit FitArm(const ArmResponses& responses, const ArmFitOptions& options = {});
 
-// The same by ordinary least squares on all data, for comparison: biased by noise that moves the
-// handle. No covariance.
+// For comparison, does the same by ordinary least squares on all data. This result is biased by
+// noise that moves the handle. No covariance.
 PlaneVector FitArmWithoutInstruments(const ArmResponses& responses,
                                      const ArmFitOptions& options = {});
 

@@ -16,7 +16,7 @@ namespace {
 constexpr double kMaxTick = 0.002;  // [s]; a longer one cannot resolve the acceleration
 constexpr int kMinDisplacements = 3 * kPlaneParameters;
 
-// Appends the displacements of one recording to those of others.
+// Appends the displacements of one recording to the displacements of other recordings.
 void Append(const ArmResponses& from, ArmResponses* to) {
   if (to->count() == 0) {
     *to = from;
@@ -60,13 +60,14 @@ void ArmIdentifier::Begin(const Scenario& scenario, double dt) {
   Impl& s = *impl_;
   if (scenario.mode == Mode::kDirect)
     throw InputError(
-        "The recording is of mode: direct, in which no force sensor measures a hand. Record an "
+        "The recording was made in mode: direct, in which no force sensor measures a hand. Record "
+        "an "
         "emulation.");
   if (dt > kMaxTick)
     throw InputError("The recording has a tick of " + FormatNumber(1e3 * dt) +
                      " ms, which is too long to see the arm's inertia. Record at 500 Hz or more.");
   if (!s.recordings.empty() && std::abs(dt - s.dt) > 1e-9)
-    throw InputError("The recordings differ in their rates. Identify each of them by itself.");
+    throw InputError("The recordings differ in their rates. Identify each recording by itself.");
   if (scenario.perturbation) {
     const auto plane = PerturbationPlane(*scenario.perturbation);
     if (s.perturbed &&
@@ -88,8 +89,8 @@ void ArmIdentifier::Add(const TickRecord& record) {
     if (hand) hand->Add(record);
 }
 
-// Without a cause of motion that does not depend on the hand, force and motion determine the
-// virtual object's impedance, not the arm's.
+// If all motion depends on the hand, force and motion determine the impedance of the virtual
+// object, not that of the arm.
 std::string ArmIdentifier::Impl::WhyRefused(const ArmOfHand& arm) const {
   if (!perturbed)
     return "Nothing moved the handle independently of the person, because the scenario has no "

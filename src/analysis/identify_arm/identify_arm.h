@@ -36,7 +36,8 @@ class ArmIdentifier {
   ~ArmIdentifier();
 
   // Begins a further recording of the same person, with the scenario from which it was made.
-  // Throws InputError if its displacements lie in another plane than those of the first.
+  // Throws InputError if the displacements in this recording lie in another plane than those in the
+  // first recording.
   void Begin(const Scenario& scenario, double dt);
   void Add(const TickRecord& record);
   ArmIdentification Finish() const;
@@ -51,9 +52,9 @@ bool IsWide(const ArmFit& fit, int parameter);
 
 std::string ArmText(const ArmIdentification& identification, const std::string& source);
 std::string ArmJson(const ArmIdentification& identification, const std::string& source);  // SI
-// Mean and covariance of a hand's parameters for `predictor continue --arm`: stiffness along those
-// axes of W that lie in the plane, damping ratio, mass, reflex gain and delay. The hand must have
-// been identified.
+// Returns mean and covariance of a hand's parameters for `predictor continue --arm`: stiffness
+// along those axes of W that lie in the plane, damping ratio, mass, reflex gain and delay. The hand
+// must have been identified.
 std::string ArmFile(const ArmIdentification& identification, int hand, const std::string& source);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// The identified arms as text for the user, as JSON, and as a file for other commands.
+// Writes the identified arms as text for the user, as JSON, and as a file for other commands.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -33,7 +33,7 @@ std::string Cell(const ArmFit& fit, int k, double factor = 1) {
                    IsWide(fit, k) ? "wide" : "    ");
 }
 
-// The delay of a reflex that may not exist means nothing.
+// If the reflex may not exist, its delay has no meaning.
 bool HasReflex(const ArmFit& fit) { return fit.value[plane::kGain] > fit.half_width(plane::kGain); }
 
 void AddHand(const ArmIdentification& all, std::size_t hand, std::string* text) {
@@ -98,7 +98,8 @@ struct Derived {
   }
 };
 
-// Mean damping ratio ζ = D / (2 √(M K)) of both axes, by error propagation.
+// Returns the mean damping ratio ζ = D / (2 √(M K)) of both axes, with its interval from error
+// propagation.
 void AddDampingRatio(const ArmFit& fit, double mass, Derived* derived) {
   double ratio = 0;
   PlaneVector slope = PlaneVector::Zero();

@@ -1,5 +1,5 @@
-// Writes the page of a population study. For each quantity, it shows every person as a dot, the
-// differences person by person, and the curve over the height of the handles.
+// Writes the page of a population study. For each quantity, the page shows every person as a dot,
+// the differences person by person, and the curve over the height of the handles.
 #include "report/page.h"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ bool Counts(const PopulationRun& run, std::size_t quantity) {
 }
 
 // Places dots of equal height side by side. Values are grouped into rows, and the dots of a row are
-// spread about the middle `at`.
+// distributed symmetrically about `at`.
 void AddCloud(double at, std::vector<double> values, Points* points) {
   if (values.empty()) return;
   std::ranges::sort(values);
@@ -165,7 +165,7 @@ Plot HeightPlot(const PopulationStudy& study, std::size_t quantity) {
   Plot plot;
   plot.id = std::string("height-") + std::to_string(quantity);
   plot.title = std::string(kind.label) + " over the height of the handles";
-  plot.caption = "Lines: the median person. Areas: 90 % of the people.";
+  plot.caption = "Lines: the median person. The shaded areas contain 90 % of the people.";
   plot.x = {.label = "Height of the handles above the ground", .unit = "m"};
   PlotPanel panel;
   panel.y = {.label = kind.label, .unit = kind.unit.shown};
@@ -192,8 +192,9 @@ Plot HeightPlot(const PopulationStudy& study, std::size_t quantity) {
   return plot;
 }
 
-// The bars show "this score or more" and are drawn over each other from the lowest score, so that
-// the visible part of each colour is the share of its own score.
+// Each bar shows the share of "this score or more". The bars are drawn on top of one another,
+// beginning with the lowest score, so that the visible part of each colour is the share of that
+// score alone.
 Plot RulaPlot(const PopulationStudy& study) {
   Plot plot;
   plot.id = "rula-shares";
@@ -262,8 +263,9 @@ std::string PopulationPage(const PopulationStudy& study, const std::string& prog
       study.people.size(), study.designs.size()));
   page.Html(SummaryTable(study));
   page.Paragraph(
-      "Median over the people, and in brackets the range of 90 % of them, of each person's 95th "
-      "percentile over time (5th percentile for balance). Beyond: people who exceed the limit. "
+      "The table shows each person's 95th percentile over time (5th percentile for balance): the "
+      "median over the people and, in brackets, the range of 90 % of them. The column \"Beyond\" "
+      "contains the people who exceed the limit. "
       "People whose run the emulator stopped are left out.");
   const bool has_heights = std::ranges::any_of(study.designs, [&](const PopulationDesign& design) {
     return ByHeight(study, design.scenario).size() > 1;

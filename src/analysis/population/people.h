@@ -1,9 +1,9 @@
-// A population of simulated operators. They are different people, not one person whose posture is
-// unknown.
+// A population of simulated operators. The operators are different people, not one person whose
+// posture is unknown.
 //
 // person::PostureSampler draws 64 people who could have given the same measurements, and its
-// spread expresses ignorance about one person. Here, the spread is that between people, whose
-// bodies are known.
+// spread expresses ignorance about one person. The spread in this population is the spread between
+// people whose bodies are known.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,9 @@ struct SampledPerson {
   HandSpec hand;  // with the sampled members, see WritePerson
 };
 
-// The first `count` people of a population; a person does not depend on `count`. Odd numbers are
-// women, even ones men. Marks: R, recalled from the literature; D, our choice.
+// The first `count` people of a population; a person does not depend on `count`. People with odd
+// numbers are women, and people with even numbers are men. Marks: R, recalled from the literature;
+// D, our choice.
 // - height: women 1.62 ± 0.065 m, men 1.75 ± 0.07 m (R), within 3 standard deviations;
 // - mass: body-mass index lognormal, median 25 kg/m², 15 % (D), 17 to 40 kg/m²;
 // - strength: ergonomics::SampleStrength, 30 % and correlated by 0.7 between directions (R);
@@ -34,7 +35,7 @@ struct SampledPerson {
 //   the defaults of HandSpec (spread D), all within the ranges of docs/concepts/operator.md.
 std::vector<SampledPerson> SamplePopulation(int count, std::uint64_t seed);
 
-// Writes a person into a scenario, whose operator then has that body.
+// Gives the operator of a scenario the body of a person.
 void WritePerson(const SampledPerson& person, Scenario* scenario);
 
 }  // namespace predictor::population

@@ -19,7 +19,7 @@
 
 namespace predictor::population {
 
-// A number of an assessed run that the study compares.
+// A quantity of an assessed run that the study compares.
 struct StudyQuantity {
   const char* path;   // key in JSON and CSV, ending in the SI unit
   const char* label;  // text for people
@@ -47,7 +47,7 @@ struct PopulationRun {
   std::array<double, kRulaScores> rula_share = {};  // share of time at each score
 };
 
-// A scenario, with the handles at a height.
+// A scenario with the handles at a given height.
 struct PopulationDesign {
   std::string name;
   std::string scenario;             // file name without folder and extension
@@ -71,8 +71,8 @@ struct DesignSummary {
   Share beyond;  // the limit
 };
 
-// One quantity in two designs, over the people whose run was stopped in neither. It is positive if
-// design a has larger values.
+// One quantity in two designs, over the people whose run was not stopped in either design. The
+// difference is positive if design a has larger values.
 struct PairedDifference {
   std::size_t a = 0, b = 0;  // designs
   std::size_t quantity = 0;
@@ -103,10 +103,10 @@ struct PopulationOptions {
   std::function<void(double share)> progress = [](double) {};
 };
 
-// Executes the runs that the folder's runs.jsonl does not contain yet: all designs for one person,
-// then for the next one. An interrupted study therefore contains fewer people but all designs. Each
-// finished run is appended to the file. Writes persons.csv, designs.csv, differences.csv and
-// population.html. Throws InputError.
+// Executes the runs that the folder's runs.jsonl does not contain yet: first all designs for one
+// person, and then all designs for the next person. An interrupted study therefore contains fewer
+// people but all designs. Each finished run is appended to runs.jsonl. Writes persons.csv,
+// designs.csv, differences.csv and population.html. Throws InputError.
 PopulationStudy MakePopulationStudy(const PopulationOptions& options);
 
 // Computes summaries and differences from the runs.

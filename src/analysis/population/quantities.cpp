@@ -21,7 +21,7 @@ constexpr Unit kFineShares = {"", "%", 100, 2};
 constexpr Unit kScore = {"", "", 1, 0};
 constexpr Unit kLength = {"m", "cm", 100, 1};
 
-// Returns the tail over time of one of the assessment's quantities.
+// Returns the 95th (or 5th) percentile over time of one of the assessment's quantities.
 double Tail(const Assessment& a, std::string_view path) {
   for (const assessment::QuantityResult& q : a.quantities)
     if (path == q.kind->path) return q.tail();

@@ -11,9 +11,9 @@
 
 namespace predictor::population {
 
-// The file has one line of JSON per run, which the key of its design and the number of its person
-// identify. Unreadable lines (such as the last line of a killed study) are skipped. Any thread may
-// call Add.
+// The file has one line of JSON per run. The key of the design and the number of the person
+// identify a run. Unreadable lines (such as the last line of a killed study) are skipped. Any
+// thread may call Add.
 class PopulationRunStore {
  public:
   // Reads the file. Throws InputError if it cannot be written.

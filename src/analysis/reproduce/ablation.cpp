@@ -1,5 +1,5 @@
 // Shows the effect of each repair of the paper's formulation. In three tasks, the repairs are added
-// to the paper's equations in turn, and removed one by one from ours.
+// one after the other to the paper's equations, and removed one by one from our equations.
 #include <cmath>
 
 #include "analysis/reproduce/runs.h"
@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-// The repairs are added one by one in this order. The others are then added together.
+// The repairs are added one by one in this order. The remaining repairs are then added together.
 constexpr Repair kInTurn[] = {Repair::kPredictedJacobian, Repair::kRelativeTarget, Repair::kLead,
                               Repair::kSoftRows, Repair::kCoupling};
 // This loop has the rate and the computing time of the paper's loop, without our formulation.
@@ -25,8 +25,8 @@ struct Task {
   std::vector<std::string> set = {};
 };
 
-// Returns the paper's tasks, and two in which rarely used repairs act: arms that are almost
-// stretched, and motions that exceed the cap on the handles' speed.
+// Returns the paper's tasks and two additional tasks in which rarely used repairs act: one with
+// arms that are almost stretched, and one with motions that exceed the cap on the handles' speed.
 std::vector<Task> Tasks() {
   return {
       {"box_9kg", "9 kg"},
@@ -106,7 +106,8 @@ StepRuns RunStep(const Task& task, const Step& step, ReproduceRuns* runs) {
   ReproducedRun monitored = runs->RunToEitherEnd(setting);
   const std::optional<StopSummary> stop = StopOf(monitored);
   if (!stop || stop->cause != StopCause::kOscillation) {
-    // The monitor can only stop a run, and it did not, so this run is the same without it.
+    // The monitor can only stop a run. It did not stop this run, so the run without the monitor is
+    // the same.
     result.run = std::move(monitored);
     return result;
   }
@@ -116,7 +117,8 @@ StepRuns RunStep(const Task& task, const Step& step, ReproduceRuns* runs) {
   return result;
 }
 
-// Returns the time of the earliest stop, rounded down to 0.1 s, or the whole run if none stops [s].
+// Returns the time of the earliest stop, rounded down to 0.1 s, or the duration of the whole run if
+// no run stops [s].
 std::optional<double> EarliestStop(const std::vector<StepRuns>& all) {
   std::optional<double> earliest;
   for (const StepRuns& step : all)
@@ -145,7 +147,7 @@ std::string StopText(const ReproducedRun& run) {
   return std::string(Name(stop->cause)) + " at " + Significant(stop->time, 3) + " s";
 }
 
-// Adds numbers for tables with a row per step and a column per quantity of a task.
+// Adds numbers for tables that have a row per step and a column per quantity of a task.
 void AddNumbers(const Task& task, const Step& step, const StepRuns& ran,
                 std::optional<double> until, std::vector<ReproducedNumber>* numbers) {
   const auto add = [&](ReproducedNumber n, const std::string& column) {

@@ -85,7 +85,7 @@ void AddNumbers(const IdentifyLoopResult& loop, std::vector<ReproducedNumber>* n
   }
 }
 
-// Returns one run of each kind, the first of each in the table.
+// Returns one run of each kind: the first one in the table.
 Runs Examples(const IdentifyLoopResult& loop, const Scenario& task, ReproduceRuns* runs,
               std::vector<ReproducedRun>* kept) {
   const std::filesystem::path folder = runs->options().folder / "real_cobot";
@@ -161,13 +161,14 @@ ReproducedExperiment ReproduceCircle(ReproduceRuns* runs) {
   const Runs curves = Examples(loop, task, runs, &kept);
   e.Add(ForceAxesPlot(curves), "fig12-forces",
         "Forces of both hands by axis over four cycles (Fig. 12)",
-        "One run of each kind, over time. Each run has its own pace, like different "
-        "people, so the curves drift apart; the table compares them by the phase of the "
-        "cycle. Axes of the world: the circle is in x and y; z points up.");
+        "The curves show one run of each kind over time. Like different people, the runs differ in "
+        "pace, so the curves drift apart. The table therefore compares the runs by the phase of "
+        "the cycle. The axes are those of the world: the circle lies in the plane of x and y, and "
+        "z points up.");
   std::vector<Plot> paths = PathPlots(curves);
   e.Add(std::move(paths.front()), "fig12-path",
         "The path of the bar from above, and the circle to follow",
-        "Every 50 ms; both axes have the same scale.");
+        "The curves have a point every 50 ms. Both axes have the same scale.");
   return e;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Returns "" if the value is undefined.
+// Returns "" if the value is not defined.
 std::string Cell(double x) { return std::isfinite(x) ? FormatNumber(x) : ""; }
 
 std::string Comparable() {
@@ -49,7 +49,7 @@ std::string ShortName(const std::string& experiment) {
   return "";
 }
 
-// Shows the results that the paper prints as well, from all experiments without people.
+// Shows those results of all experiments without people that the paper also prints.
 std::string Overview(const Reproduction& reproduction) {
   std::vector<ReproducedNumber> numbers;
   for (const ReproducedExperiment& e : reproduction.experiments)
@@ -98,8 +98,9 @@ std::string ReproductionPage(const Reproduction& reproduction) {
   }
   page.Section("data", "Data");
   page.Paragraph(
-      "The curves show the minimum and maximum of every 50 ms, and every tick within eight seconds "
-      "around stops and worst errors. The files numbers.json and numbers.csv next to this page "
+      "The curves show the minimum and maximum of each interval of 50 ms. Within eight seconds "
+      "around stops and worst errors, they show every tick. The files numbers.json and numbers.csv "
+      "next to this page "
       "contain all numbers with more digits; the folder figures/ contains the images as PNG. Runs "
       "in virtual time are reproducible bit for bit with the same build; computing times are not.");
   return page.Finish();

@@ -64,13 +64,15 @@ ReproducedExperiment ReproduceQuestionnaire(ReproduceRuns* runs) {
   runs->ReportProgress(1);
   e.numbers = rows.numbers;
   e.AddParagraph(
-      "No people were asked for this. The table lists every set of 17 integer answers from −2 to 2 "
-      "that gives the mean and the sample standard deviation in Table 1 and the lowest answers to "
-      "S2, S3, S4 and S8 stated in the text. Fig. 11 is redrawn from these sets, not from the "
+      "No participants were asked for this reproduction. The table lists every set of 17 integer "
+      "answers from −2 to 2 that matches the mean and the sample standard deviation in Table 1. "
+      "For S2, S3, S4 and S8, the set also matches the lowest answer that the text states. Fig. 11 "
+      "is redrawn from these sets, not from the "
       "printed figure. To ask people yourself, use predictor survey ask.");
   e.Add(HtmlTable(rows.table));
   e.Add(LikertPlot(rows.plots), "fig11", "Distributions behind Table 1 (Fig. 11)",
-        "A cross for each answer. Where Table 1 allows only one distribution, both solutions are "
+        "The plot shows a cross for each answer. Where Table 1 allows only one distribution, both "
+        "solutions are "
         "the same.");
   return e;
 }
@@ -83,7 +85,7 @@ ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs) {
     ReproducedNumber n = NumberOf(run, quantity, us, 1e-3, "ms");
     n.paper = kPaperDelay;
     Add(n, "section 4.2.2", &e.numbers);
-    // Other load on the computer affects the mean and the deviation, but hardly the median.
+    // Other programs on the computer affect the mean and the deviation, but hardly the median.
     n.quantity += ", median";
     n.mean = 1e-3 * run.data.summary
                         .Get<Quantiles>(std::string("timing_us.") +

@@ -17,12 +17,12 @@ struct RasterCamera {
 
 class Raster {
  public:
-  // The arguments give the size of the picture [px]. It is drawn at a higher resolution and
+  // The arguments are the size of the picture [px]. The picture is drawn at a higher resolution and
   // averaged.
   Raster(int width, int height, const RasterCamera& camera);
 
-  // The corners are in W [m], and color is red, green, blue from 0 to 1. If `lit` is false, the
-  // colour is not shaded. A triangle that is not completely in front of the camera is omitted.
+  // The corners are in W [m]. `color` contains red, green and blue from 0 to 1. If `lit` is false,
+  // the colour is not shaded. A triangle that is not completely in front of the camera is omitted.
   void Triangle(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& color,
                 bool lit = true);
   // Everything drawn after this call is in front of everything drawn before.

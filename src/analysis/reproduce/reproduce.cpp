@@ -34,7 +34,7 @@ constexpr ExperimentEntry kExperiments[] = {
     {"questionnaire", "Questionnaire (Table 1, Fig. 11)", ReproduceQuestionnaire, 1, 0.01},
 };
 
-// This is checked in advance, because a failure after the runs would waste minutes.
+// The folder is checked in advance, because a failure after the runs would waste minutes.
 void MakeWritable(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

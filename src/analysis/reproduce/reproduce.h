@@ -19,7 +19,7 @@ struct PrintedValue {
   int decimals = 1;  // digits after the decimal point
 };
 
-// One quantity: the paper's number, if it prints one, and ours.
+// One quantity: our number and, if the paper prints one, the paper's number.
 struct ReproducedNumber {
   std::string place;  // place in the paper: "Fig. 7A"
   std::string quantity, unit;
@@ -40,7 +40,8 @@ struct ReproducedImage {
   std::string bytes;  // content of the file
 };
 
-// The content of the page about an experiment, in order. Each block is HTML or a plot.
+// The content of the page about an experiment, in the order of the page. Each block is HTML or a
+// plot.
 struct ReproducedBlock {
   std::string html;
   std::optional<Plot> plot;
@@ -55,7 +56,8 @@ struct ReproducedExperiment {
 
   void Add(std::string html) { blocks.push_back({std::move(html), {}}); }
   void AddParagraph(const std::string& text);
-  // Adds the plot with another ID, title and caption. Empty arguments keep the current ones.
+  // Adds the plot with another ID, title and caption. If an argument is empty, the plot keeps the
+  // current value.
   void Add(Plot plot, const std::string& id, const std::string& heading,
            const std::string& caption = "");
   void Add(const std::vector<ReproducedNumber>& more) {
@@ -74,7 +76,7 @@ struct ReproduceOptions {
   std::function<void(double share, const std::string& what)> progress = {};
 };
 
-// Returns the names of the experiments, in order.
+// Returns the names of the experiments, in the order of the page.
 std::vector<std::string> ReproducibleExperiments();
 
 struct Reproduction {
@@ -83,9 +85,9 @@ struct Reproduction {
   std::string program_version;
 };
 
-// Runs the experiments. `folder` then contains the files that the runs need. Throws InputError for
-// an unknown name, a missing scenario or a folder that cannot be written, and std::runtime_error if
-// a run did not end as its experiment requires.
+// Runs the experiments. Afterwards, `folder` contains the files that the runs need. Throws
+// InputError for an unknown name, a missing scenario or a folder that cannot be written, and
+// std::runtime_error if a run did not end as its experiment requires.
 Reproduction Reproduce(const ReproduceOptions& options);
 
 // Writes index.html, figures as SVG and PNG, numbers.json and numbers.csv. Throws InputError.

@@ -16,8 +16,8 @@
 namespace predictor {
 namespace {
 
-// The time for which every tick of a run is kept [s], around stops and worst errors. A page with
-// all ticks would have tens of megabytes.
+// Duration of the intervals around stops and worst errors in which every tick of a run is kept [s].
+// The size of a page with all ticks would be tens of megabytes.
 constexpr double kDetail = 8;
 
 // Finds the intervals in which no hand holds a handle, from a release to the end of the next grip.
@@ -199,8 +199,8 @@ void Add(ReproducedNumber number, const char* place, std::vector<ReproducedNumbe
 
 // ---- words -------------------------------------------------------------------------------------
 
-// Returns the number of digits after the decimal point: two digits of the smaller of deviation and
-// mean.
+// Returns the number of digits after the decimal point that shows two digits of the deviation or of
+// the mean, whichever is smaller.
 static int DecimalsOf(double mean, double deviation) {
   double least = std::abs(mean);
   if (std::isfinite(deviation) && deviation > 0) least = std::min(least, deviation);

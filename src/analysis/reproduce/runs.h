@@ -29,8 +29,8 @@ struct ReproducedRun {
   RunEnd end = RunEnd::kNotStarted;
   std::array<Statistics, kStages> timing;  // [µs]
   std::vector<TickRecord> moments;
-  // The errors from the release until the script has gripped again [m]: of the left handle, and of
-  // the distance between the handles.
+  // The errors from the release until the script has gripped again [m]: the error of the left
+  // handle, and the error of the distance between the handles.
   Statistics released_error, released_distance;
   std::string command;  // repeats the run
 };
@@ -39,15 +39,16 @@ class ReproduceRuns {
  public:
   ReproduceRuns(const ReproduceOptions& options, const std::string& experiment, int runs);
 
-  // The setting with the changes of the options.
+  // Returns the setting with the changes that the options request.
   ReproducedSetting Changed(ReproducedSetting setting) const;
   Scenario Load(const ReproducedSetting& setting) const;
-  // Performs a run. Throws std::runtime_error unless it ends as `expected`.
+  // Performs a run. Throws std::runtime_error unless the run ends as `expected`.
   ReproducedRun Run(const ReproducedSetting& setting, RunEnd expected = RunEnd::kFinished);
   ReproducedRun Run(const ReproducedSetting& setting, const Scenario& scenario, RunEnd expected);
-  // Runs a setting whose end is itself a result, to the end of the script or to a safety stop.
+  // Runs a setting to the end of the script or to a safety stop. For such settings, the end is
+  // itself a result.
   ReproducedRun RunToEitherEnd(const ReproducedSetting& setting);
-  // Reports progress of the experiment that Run does not report.
+  // Reports the part of the experiment's progress that Run does not report.
   void ReportProgress(double share) const;
   const ReproduceOptions& options() const { return options_; }
 
@@ -66,8 +67,8 @@ std::string SimulateCommandOf(const ReproducedSetting& setting);
 // computation starts when the previous one ends [Hz].
 inline constexpr int kAssumedPaperRate = 100;
 std::vector<std::string> PaperConditions(int rate = kAssumedPaperRate);
-// Returns these conditions without the coupling of real and virtual handles, which the paper does
-// not have either.
+// Returns these conditions without the coupling of real and virtual handles, because the paper has
+// no such coupling.
 std::vector<std::string> PaperConditionsWithoutCoupling();
 
 // The names of the conditions in tables and in the numbers file.
@@ -90,13 +91,14 @@ ReproducedExperiment ReproduceArms(ReproduceRuns* runs);
 ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs);
 ReproducedExperiment ReproduceQuestionnaire(ReproduceRuns* runs);
 
-// Draws pictures of the scene at the kept times, as PNG. `prefix` is the prefix of their IDs.
+// Draws pictures of the scene at the kept times, as PNG. `prefix` is the beginning of the pictures'
+// IDs.
 std::vector<ReproducedImage> ReproduceSnapshots(const ReproducedRun& run,
                                                 const std::string& prefix);
 
 // ---- numbers -----------------------------------------------------------------------------------
 
-// Returns a number of the run, with the run's name. `scale` is the factor from SI to `unit`.
+// Returns a number that is labelled with the run's name. `scale` is the factor from SI to `unit`.
 ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity,
                           const Statistics& values, double scale, const char* unit);
 // Returns the statistics of a metric by their path in the summary. `quantity` is "" for the row's
@@ -105,7 +107,7 @@ ReproducedNumber NumberOfMetric(const ReproducedRun& run, const std::string& pat
                                 const std::string& quantity = "");
 ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity, double value,
                           const char* unit);
-// Adds a number with its place in the paper.
+// Adds a number together with its place in the paper.
 void Add(ReproducedNumber number, const char* place, std::vector<ReproducedNumber>* numbers);
 
 // ---- words -------------------------------------------------------------------------------------
@@ -114,7 +116,7 @@ void Add(ReproducedNumber number, const char* place, std::vector<ReproducedNumbe
 std::string PlusMinus(double mean, double deviation);
 // Returns the number as printed in the paper.
 std::string Printed(const PrintedValue& value);
-// Returns one row per quantity: the paper's number, ours for each condition, "mean ± deviation
-// (largest)", and the ratio of each to the paper's.
+// Returns one row per quantity. A row contains the paper's number, our number for each condition as
+// "mean ± deviation (largest)", and the ratio of each of our numbers to the paper's.
 std::string NumbersTable(const std::vector<ReproducedNumber>& numbers);
 }  // namespace predictor

@@ -16,12 +16,13 @@ struct StopExperiment {
 
 constexpr StopExperiment kStopExperiments[] = {
     {"push", "Sudden push",
-     "The paper: the operator suddenly pushes with more than 30 N, and the system stops "
+     "In the paper, the operator suddenly pushes with more than 30 N, and the system stops "
      "immediately.",
      StopCause::kForce},
     {"underdamped", "Underdamped",
-     "The paper: if vertical motion is underdamped, the system tends to oscillate, the force "
-     "easily exceeds the threshold, and the system stops. Our oscillation monitor, which the paper "
+     "According to the paper, if vertical motion is underdamped, the system tends to oscillate, "
+     "the force easily exceeds the threshold, and the system stops. Our oscillation monitor, which "
+     "the paper "
      "does not have, stops the run before the force threshold does. A second run without the "
      "monitor stops at the threshold, as in the paper.",
      StopCause::kOscillation},
@@ -49,7 +50,7 @@ ReproducedSetting SettingOf(const StopExperiment& experiment, bool monitored) {
   return setting;
 }
 
-// Adds space on the right for the names of the limits beside the stop.
+// Adds space on the right side for the names of the limits next to the stop.
 Plot WithRoom(Plot plot) {
   constexpr double kRoom = 0.16;  // as a share of the displayed time
   *plot.x.high += kRoom * (*plot.x.high - *plot.x.low);
@@ -60,10 +61,9 @@ Plot WithRoom(Plot plot) {
 void AddFigures(const ReproducedRun& run, const std::string& id, ReproducedExperiment* e) {
   const RunCurves curves(run.data);
   e->Add(StopWords(run.data, run.data.stops.front()));
-  e->Add(
-      WithRoom(ForcePlot({curves})), "fig9-" + id + "-forces", "Forces of the hands (Fig. 9)",
-      "With the torques and the distance of the elbows, compared with the thresholds. Grey: before "
-      "the run and while the arms come to rest.");
+  e->Add(WithRoom(ForcePlot({curves})), "fig9-" + id + "-forces", "Forces of the hands (Fig. 9)",
+         "The plot also shows the torques and the distance of the elbows, with the thresholds. The "
+         "grey areas are the times before the run and while the arms come to rest.");
   e->Add(WithRoom(JointPlot(curves)), "fig9-" + id + "-joints", "Joints (Fig. 9)", "");
 }
 

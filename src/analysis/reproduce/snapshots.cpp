@@ -82,8 +82,8 @@ Corners SphereCorners(double radius) {
   return corners;
 }
 
-// Returns the triangles of a binary STL file, scaled, or nothing for other formats and truncated
-// files.
+// Returns the scaled triangles of a binary STL file. For other formats and truncated files, the
+// list is empty.
 Corners StlCorners(const std::filesystem::path& file, const Vector3& scale) {
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};

@@ -10,7 +10,8 @@
 namespace predictor {
 namespace {
 
-// There are twelve error values, six per scenario. `paper` is null if the paper prints none.
+// The paper prints twelve error values, six per scenario. `paper` is null if the paper does not
+// print the values.
 struct ErrorFigures {
   const PaperTracking* paper;
   const char* translation;  // place of the translational errors in the paper
@@ -48,7 +49,8 @@ void AddWholeRun(const ErrorFigures& figures, const ReproducedRun& run,
   AddErrorsOf("tracking.whole_run.", ", whole run", figures, run, numbers);
 }
 
-// Adds the time of the stop and the error that caused it. Adds nothing for a run without a stop.
+// Adds the time of the stop and the error that caused it. For a run without a stop, the function
+// adds nothing.
 void AddStop(const ErrorFigures& figures, const ReproducedRun& run,
              std::vector<ReproducedNumber>* numbers) {
   if (run.data.stops.empty()) return;
@@ -63,7 +65,7 @@ void AddStop(const ErrorFigures& figures, const ReproducedRun& run,
   if (stop.quantity == Quantity::kForce) add(quantity, stop.value, "N");
 }
 
-// Fig. 8 prints no numbers, so our forces are compared with the thresholds.
+// Fig. 8 contains no numbers, so our forces are compared with the thresholds.
 void AddForces(const ReproducedRun& run, std::vector<ReproducedNumber>* numbers) {
   const auto add = [&](ReproducedNumber n) { Add(std::move(n), "Fig. 8", numbers); };
   for (const std::string hand : kHandNames) {
@@ -86,8 +88,9 @@ void AddSnapshots(const ReproducedRun& run, const std::string& prefix, const cha
   std::string html =
       "<h3>Snapshots (" + std::string(figure) +
       ")</h3>\n"
-      "<p>The virtual cobot with the box, and the two haptic arms (pale) at their places. The box "
-      "does not exist for the arms, so it can hide a hand. Arrows: forces of the hands, 1 cm per "
+      "<p>The virtual cobot with the box, and the two haptic arms (pale) at their places. The arms "
+      "do not collide with the virtual box, so the box can hide a hand in the picture. Arrows: "
+      "forces of the hands, 1 cm per "
       "newton; orange above half the threshold, red above 80 %. Drawn from the collision shapes of "
       "the models.</p>\n"
       "<div style=\"display:grid;grid-template-columns:repeat(auto-fit,minmax(290px,1fr));gap:0 "
@@ -125,12 +128,13 @@ void AddReleaseTable(const ErrorFigures& figures, const ReproducedRun& papers,
   if (table.empty()) return;
   e->Add("<h4>The release</h4>\n" + NumbersTable(table));
   e->AddParagraph(
-      "From the 18th second until both hands have gripped again. The paper shows a spike of the "
-      "absolute errors there, while the relative pose remains accurate (Figs 7A and B).");
+      "This table covers the time from the 18th second until both hands have gripped again. There, "
+      "the paper shows a spike of the absolute errors, while the relative pose remains accurate "
+      "(Figs 7A and B).");
   e->Add(table);
 }
 
-// Shows the effect of the assumed rate by runs at half and twice the rate.
+// Performs runs at half and at twice the assumed rate, to show the effect of this assumption.
 void AddRates(const BoxExperiment& box, const ReproducedRun& assumed, ReproduceRuns* runs,
               ReproducedExperiment* e) {
   const auto name = [](int rate) { return "at " + std::to_string(rate) + " Hz"; };
@@ -208,11 +212,10 @@ ReproducedExperiment ReproduceBox(const BoxExperiment& box, ReproduceRuns* runs)
   std::vector<ReproducedNumber> forces;
   AddForces(task.ours, &forces);
   e.Add("<h3>Safety (Fig. 8)</h3>\n" + NumbersTable(forces));
-  e.Add(
-      ForcePlot({RunCurves(task.ours.data)}), std::string("fig8-") + box.name,
-      "Forces and torques of the hands, and the distance of the elbows (Fig. 8)",
-      "Our defaults. The thresholds are the paper's: 30 N, 5 N·m, 0.7 and 0.3 m. The paper prints "
-      "the curves, for scenario 1, and no numbers.");
+  e.Add(ForcePlot({RunCurves(task.ours.data)}), std::string("fig8-") + box.name,
+        "Forces and torques of the hands, and the distance of the elbows (Fig. 8)",
+        "Our defaults. The thresholds are those of the paper: 30 N, 5 N·m, 0.7 and 0.3 m. For "
+        "scenario 1, the paper prints curves but no numbers.");
   e.Add(forces);
   AddSnapshots(task.ours, std::string("snapshot-") + box.name, box.snapshots, box.moments, &e);
   return e;
@@ -241,8 +244,8 @@ ReproducedExperiment ReproduceBar(ReproduceRuns* runs) {
   const ConditionRuns task = RunConditions("bar_circle", {}, runs);
   AddTracking({nullptr, "Fig. 10", "Fig. 10"}, task, &e);
   e.AddParagraph(
-      "The paper gives no errors for this task. The lead is 0 with our defaults, too: hands of 1.5 "
-      "kg each on a bar of 2.1 kg leave no stability margin for more.");
+      "The paper gives no errors for this task. The lead is 0 with our defaults, too, because "
+      "hands of 1.5 kg each on a bar of 2.1 kg leave no stability margin for a larger lead.");
   return e;
 }
 
@@ -272,8 +275,8 @@ ReproducedExperiment ReproduceRelativePose(ReproduceRuns* runs) {
       TrackingPlot({RunCurves(plain.data), RunCurves(stretched.data), RunCurves(weighted.data)});
   e.Add(std::move(plot), "fig4-relative-pose",
         "Absolute and relative errors where tracking suffers (Fig. 4)",
-        "Panel by panel: translation of each handle, their distance, "
-        "rotation of each handle, their relative angle.");
+        "The panels show the translation of each handle, the distance between the handles, the "
+        "rotation of each handle, and the angle between the handles.");
   return e;
 }
 

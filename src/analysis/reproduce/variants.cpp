@@ -58,7 +58,8 @@ void AddTask(const char* scenario, const ReproducedVariant& variant, const char*
   Add(NumberOf(run, "largest force of a hand", LargestForce(run), "N"), place, numbers);
 }
 
-// The Panda's own effort limits are not sufficient for 18 kg. Returns the message of that refusal.
+// The Panda's own effort limits are not sufficient for 18 kg. Returns the message with which the
+// scenario is refused.
 std::string RefusalOfOwnEfforts(ReproduceRuns* runs) {
   const ReproducedSetting setting{"box_18kg", {"cobot.effort_limit=[]"}, ""};
   const std::string command = "<code>" + EscapeMarkup(SimulateCommandOf(setting)) + "</code>";
@@ -109,8 +110,8 @@ ReproducedExperiment ReproduceTuning(ReproduceRuns* runs) {
   e.Add("<h3>box_18kg</h3>\n" + NumbersTable(heavy) + RefusalOfOwnEfforts(runs));
   e.AddParagraph(
       "The scenario gives each joint of the cobot 200 N·m and raises its base by "
-      "0.4 m, because the object sags by 0.35 m. With the base on the floor, the "
-      "box starts and ends on the floor.");
+      "0.4 m, because the object sags by 0.35 m. If the base stood on the floor, the box would "
+      "start and end on the floor.");
   for (const auto* numbers : {&underdamped, &sight, &heavy}) e.Add(*numbers);
   return e;
 }
@@ -132,9 +133,9 @@ ReproducedExperiment ReproduceArms(ReproduceRuns* runs) {
   e.Add(NumbersTable(e.numbers));
   e.AddParagraph(
       "The lead assumes the velocity loop in device.arms.*.loop: 15 Hz and 4 ms. "
-      "Here, the simulated arms (rig.loop) have a different bandwidth or delay. "
-      "Simulated arms provide a sample in each tick regardless of sample_rate, so "
-      "the last case slows down the whole loop instead.");
+      "In these runs, the simulated arms (rig.loop) have a different bandwidth or delay. "
+      "Simulated arms provide a sample in each tick regardless of sample_rate, so in the last case "
+      "the whole loop is slower instead.");
   return e;
 }
 

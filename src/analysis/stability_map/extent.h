@@ -31,15 +31,15 @@ struct StableExtent {
 
   bool StableAt(double stiffness) const;
   // `critical` is the lowest stiffness above which the loop becomes unstable. `least` is the lowest
-  // boundary of a loop that is unstable with the softest hand. They return null if there is no such
-  // boundary.
+  // stable stiffness if the loop is unstable with the softest hand. Both functions return null if
+  // there is no such boundary.
   const Boundary* critical() const;
   const Boundary* least() const;
   bool nothing_stable() const { return !stable_at_softest && boundaries.empty(); }
   bool everything_stable() const { return stable_at_softest && boundaries.empty(); }
 };
 
-// Predicts the extent with the linearised loop and the scenario's hand at other stiffnesses.
+// Predicts the extent with the linearised loop, for the scenario's hand with other stiffnesses.
 // Boundaries are accurate to 1 %.
 StableExtent PredictExtent(const HapticLoop& loop, const HandSpec& hand, double lead,
                            const StiffnessRange& range);
@@ -49,9 +49,9 @@ struct GrowthAt {
   double stiffness = 0;  // [N/m]
   Growth growth;
 };
-// Finds boundaries by simulation. It evaluates the sign of the growth rate on a grid over the range
-// and near `hints` [N/m], and then bisects to 4 % wherever the sign changes. `samples` are all
-// simulated stiffnesses, ascending.
+// Finds boundaries by simulation. The function evaluates the sign of the growth rate on a grid over
+// the range and near `hints` [N/m]. Wherever the sign changes, it then bisects to 4 %. `samples`
+// contains all simulated stiffnesses in ascending order.
 struct FoundExtent {
   StableExtent extent;
   std::vector<GrowthAt> samples;

@@ -26,9 +26,9 @@ constexpr double kLowest = 0.3, kHighest = 80, kSpacing = 1.015;
 constexpr double kPi = std::numbers::pi;
 constexpr double kFaded = 0.02;  // as a share of the initial difference; below it only quantisation
                                  // of the sensors remains
-// Fast modes are examined separately. A fast mode that grows from a sensor's quantisation would
-// otherwise be hidden by a decaying slow mode until limits stop it. Cut-off frequency [Hz]; number
-// of first-order stages.
+// Fast modes are examined separately. The filter reveals a fast mode that grows from a sensor's
+// quantisation. Otherwise, a decaying slow mode would hide it until limits stop its growth. Cut-off
+// frequency [Hz]; number of first-order stages.
 constexpr double kFast = 15;
 constexpr int kFastOrder = 4;
 // Fast modes must rise above their minimum by these factors, which are larger than the effect of
@@ -116,8 +116,8 @@ class LimitWatch {
   std::array<std::array<double, kMaxArmJoints>, kHands> last_ = {};
 };
 
-// The difference of the two runs: linear and, multiplied by a length, angular velocities of both
-// handles [m/s].
+// The difference of the two runs: the linear velocities of both handles, and the angular velocities
+// multiplied by a length [m/s].
 using Difference = Eigen::Matrix<double, 6 * kHands, 1>;
 
 // A high-pass filter of kFastOrder identical stages.
@@ -195,7 +195,7 @@ class Twins {
  private:
   static constexpr int kLongestStart = 20000;  // maximum number of ticks until RUN
 
-  // Returns false when nothing more can be measured.
+  // Returns false when no further measurement is possible.
   bool Step() {
     for (Emulator* e : {&plain_, &tapped_}) {
       e->Tick();
@@ -249,7 +249,8 @@ class Twins {
   }
 
   // Returns sign and rate of the growth, from a straight line through the logarithm of the
-  // difference. The first third is ignored, because it still contains modes that decay quickly.
+  // difference. The first third of the run is ignored, because it still contains modes that decay
+  // quickly.
   Growth Judge(double time) {
     if (!bins_.empty() && bins_.back().ticks * plain_.dt() < kBin - 1e-9) bins_.pop_back();
     const int n = static_cast<int>(bins_.size());
@@ -339,7 +340,7 @@ Scenario HoldScenario(const Scenario& scenario, double lead, bool tap) {
   s.rig.start_offset = 0;
   SwitchStopsOff(&s.safety);
   s.operator_.script = {MakeActionSpec("grip", 0, {Formatted("duration=%.17g", kGripTime)})};
-  // The taps differ on the two sides, so the object both rotates and moves.
+  // The taps of the two hands differ, so the object both rotates and moves.
   if (tap && s.Has(0)) s.operator_.script.push_back(Tap("left", {1, 0.7, 0.9}));
   if (tap && s.Has(1)) s.operator_.script.push_back(Tap("right", {-0.4, 0.6, 0.3}));
   s.duration = 86400;

@@ -2,7 +2,8 @@
 //
 // The scenario is simulated twice with the same noise. In both runs the hands grip and hold, and in
 // one of them they also tap the handles. The effect of the tap is the difference of the two
-// motions. It follows the loop's linear dynamics without noise, so it either decays or grows.
+// motions. This effect follows the loop's linear dynamics without noise, so it either decays or
+// grows.
 #pragma once
 
 #include <array>
@@ -14,7 +15,8 @@
 
 namespace predictor {
 
-// The effects that make the loop nonlinear. While one of them acts, the prediction is not valid.
+// The effects that make the loop nonlinear. While one of these effects acts, the prediction is not
+// valid.
 enum class Limiting : int {
   kCoupling,      // the real handles lag by more than the coupling's dead band
   kSpeed,         // a handle at its speed cap
@@ -40,12 +42,12 @@ struct Growth {
 
 inline constexpr double kGrowthTime = 11;  // time simulated after the tap has faded [s]
 
-// Returns the scenario for a measurement: hands that grip and hold (and tap, if `tap`) and the
-// simulated rig. Every threshold of `safety` that would stop the run has the highest value that a
-// scenario may have. `lead` [s] replaces `auto`.
+// Returns the scenario for a measurement with the simulated rig: the hands grip and hold and, if
+// `tap` is true, tap the handles. Every threshold of `safety` that would stop the run has the
+// highest value that a scenario may have. `lead` [s] replaces `auto`.
 Scenario HoldScenario(const Scenario& scenario, double lead, bool tap);
 
-// Throws InputError because of models or a start out of reach.
+// Throws InputError if a model is invalid or the start is out of reach.
 Growth MeasureGrowth(const Scenario& scenario, double lead, double time = kGrowthTime);
 
 }  // namespace predictor

@@ -29,11 +29,14 @@ std::string Verdict(const StabilityMap& map) {
     text = "No simulated boundary can be compared with the prediction. ";
   }
   if (a.one_sided > 0)
-    text += Formatted("In %d cases, only one of the two has a boundary within the searched range. ",
-                      a.one_sided);
+    text += Formatted(
+        "In %d cases, only the prediction or only the simulation has a boundary within the "
+        "searched range. ",
+        a.one_sided);
   if (a.other > 0)
     text += Formatted(
-        "In %d more cases the assumptions do not hold; %d of those are nevertheless within 20 %%. ",
+        "In %d more cases, the assumptions of the prediction do not hold; in %d of these cases, "
+        "the deviation is nevertheless below 20 %%. ",
         a.other, a.other_agree);
   return text;
 }
@@ -47,7 +50,7 @@ std::string HandInWords(const StabilityMap& map) {
       h.damping_ratio, h.reflex_gain, 1e3 * h.reflex_delay);
 }
 
-// Describes a picture, for example if nothing or everything is stable.
+// Describes a special picture, for example one in which nothing or everything is stable.
 std::string Caption(const StabilityMap& map, const MapPicture& picture) {
   const MapAxisText& text = TextOf(picture.axis);
   std::string nothing, found_nothing, everything, impossible;
@@ -134,8 +137,9 @@ std::string Table(const StabilityMap& map, const MapPicture& picture) {
 
 std::string Assumptions(const StabilityMap& map) {
   std::string html =
-      "<p>The prediction applies to small motions about the start. It does not apply where "
-      "something limits the motion. A simulated boundary is compared with it unless one of these "
+      "<p>The prediction applies to small motions about the start. The prediction does not apply "
+      "where something limits the motion. A simulated boundary is compared with it unless one of "
+      "these "
       "conditions, fixed beforehand, occurs in the simulations near the boundary:</p><ul>";
   html += Formatted("<li>on the stable side, without a tap, for more than %.0f %% of the time:",
                     100 * kLimitedShare);

@@ -81,8 +81,8 @@ class MapDrawing {
   }
 
   // Draws the area in which the loop is predicted to be unstable, and the band in which a found
-  // boundary agrees. They connect neighbouring points if both have a boundary. Otherwise each point
-  // covers half the distance.
+  // boundary agrees with the prediction. Area and band connect neighbouring points if both points
+  // have a boundary. Otherwise, each point covers half of the distance to its neighbour.
   void Areas() {
     const auto& points = picture_.points;
     for (std::size_t k = 0; k + 1 < points.size(); ++k) {
@@ -169,7 +169,8 @@ class MapDrawing {
     markers("simulated: all stable up to here", PlotSymbol::kTriangle, std::move(everything));
   }
 
-  // Marks the unchanged scenario by a line at its value and one at the stiffness of its hand.
+  // Marks the unchanged scenario by one line at its value and another line at the stiffness of its
+  // hand.
   void Own() {
     Curve own;
     const double x = text_.per_si * OwnValue(map_.base, picture_.axis);

@@ -35,8 +35,9 @@ constexpr double kFingerprintTime = 1;  // [s]
 
 std::string Exactly(double x) { return Formatted("%a ", x); }
 
-// Identifies the behaviour of this program for a scenario by one simulated second with a tap and by
-// the predicted growth, bit for bit. Programs or models that differ in this must not share points.
+// Identifies the behaviour of this program for a scenario by the exact bits of one simulated second
+// with a tap and of the predicted growth. Programs or models whose behaviour differs must not share
+// points.
 std::string FingerprintOf(const MapBase& base) {
   std::string text = kFormat;
   const Scenario hold = HoldScenario(base.scenario, base.lead, true);
@@ -120,7 +121,8 @@ class Work {
     done_ += WorkOf(*item.point);
   }
 
-  // Returns the key under which the point must be stored, if it has not been stored yet.
+  // Returns the key under which a new point must be stored, or no value if the point is already
+  // stored.
   std::optional<std::string> Compute(const Item& item) {
     MapPoint& point = *item.point;
     const Variant variant = item.wall ? WallVariantOf(map_.base, *item.line, point.value)
@@ -209,8 +211,8 @@ std::vector<std::string> DeparturesOf(const Scenario& s) {
   const auto& coulomb = s.cobot.joint_friction.coulomb;
   if (std::any_of(coulomb.begin(), coulomb.end(), [](double x) { return x > 0; }))
     departures.emplace_back(
-        "The cobot's joints have Coulomb friction (cobot.joint_friction.coulomb). It damps small "
-        "motions, but the linear loop does not include it.");
+        "The cobot's joints have Coulomb friction (cobot.joint_friction.coulomb). This friction "
+        "damps small motions, but the linear loop does not include it.");
   if (s.rig.loop || s.rig.computation_delay > 0)
     departures.emplace_back(
         "The simulated arms differ from the assumed ones (rig.loop, rig.computation_delay). The "
@@ -219,11 +221,11 @@ std::vector<std::string> DeparturesOf(const Scenario& s) {
   if (trajectory && !trajectory->items.empty())
     departures.emplace_back(
         "The cobot's set-point moves (cobot.controller.trajectory). Prediction and simulation "
-        "apply to its start.");
+        "apply to the start of the trajectory.");
   if (s.rate < kMinMapRate)
     departures.push_back(
-        Formatted("The loop runs at %.3g Hz (rate). Below %.0f Hz its time steps lower the "
-                  "boundary, but the linear loop is continuous.",
+        Formatted("The loop runs at %.3g Hz (rate). Below %.0f Hz, the time steps of the loop "
+                  "lower the boundary, but the prediction assumes a continuous loop.",
                   s.rate, kMinMapRate));
   for (const int i : s.hands()) {
     const double slowest = std::min(s.arm(i).sample_rate, s.arm(i).sensor.sample_rate);
@@ -254,7 +256,8 @@ std::optional<double> UncertaintyOf(const FoundExtent& found, const Boundary& bo
 
 namespace {
 
-// Returns the sample closest to a boundary, on the growing or the other side of it.
+// Returns the sample closest to a boundary, on the side where the oscillation grows or on the other
+// side.
 const Growth* NearestTo(const FoundExtent& found, const Boundary& boundary, bool grows) {
   const GrowthAt* nearest = nullptr;
   const auto far = [&](const GrowthAt& g) {
@@ -268,7 +271,7 @@ const Growth* NearestTo(const FoundExtent& found, const Boundary& boundary, bool
   return nearest ? &nearest->growth : nullptr;
 }
 
-// Returns the limit that acts most.
+// Returns the limit that acts in the most ticks.
 const char* WorstLimit(const Growth& growth) {
   const auto worst = std::max_element(growth.limited.begin(), growth.limited.end());
   return Name(static_cast<Limiting>(worst - growth.limited.begin()));

@@ -1,6 +1,7 @@
 // The stability map of a scenario shows the stiffness up to which the haptic loop does not
-// oscillate: that of the hands, as a function of masses, delay, bandwidth and lead, and that of a
-// wall. The linearised loop predicts it. For the hands, simulation finds it too.
+// oscillate. It shows this stiffness for the hands, as a function of masses, delay, bandwidth and
+// lead, and for a wall. The linearised loop predicts these stiffnesses. For the hands, a simulation
+// also finds them.
 #pragma once
 
 #include <array>
@@ -19,16 +20,16 @@ namespace predictor {
 
 inline constexpr double kAgreement = 0.2;  // relative difference up to which found and predicted
                                            // boundaries agree, if the assumptions hold
-// Largest share of ticks in which a limit may act on the stable side of a boundary. The prediction
-// does not model limits, so boundaries beyond this share are not compared with it.
+// Largest share of ticks in which a limit may act on the stable side of a boundary. Because the
+// prediction does not model limits, boundaries with a larger share are not compared with it.
 inline constexpr double kLimitedShare = 0.01;
 
 // The smallest rate of the loop and of its readings at which the continuous prediction is compared
 // with the simulation [Hz].
 inline constexpr double kMinMapRate = 500;
 
-// If the uncertainty of a found boundary exceeds this, which is half of kAgreement, the boundary
-// cannot be judged.
+// If the uncertainty of a found boundary exceeds this value, which is half of kAgreement, the
+// boundary cannot be judged.
 inline constexpr double kMaxUncertainty = 0.1;
 
 struct MapPoint {
@@ -85,17 +86,17 @@ struct MapOptions {
 // therefore be continued, and no outdated point is reused. Throws InputError.
 StabilityMap MakeStabilityMap(const Scenario& scenario, const MapOptions& options);
 
-// Returns reasons why the prediction may be wrong for the whole scenario, as sentences. Without
-// any, the prediction must be correct.
+// Returns reasons why the prediction may be wrong for the whole scenario, as sentences. If there
+// are no reasons, the prediction must be correct.
 std::vector<std::string> DeparturesOf(const Scenario& scenario);
 
-// Returns reasons why the prediction may be wrong for a found boundary, as text. If there are none,
-// the prediction must be correct. The reasons are derived only from the simulations near the
-// boundary, never from the difference between prediction and simulation: limits that act on the
-// stable side, limits that noise alone reaches on the other side, and a growth rate that depends
-// too weakly on the stiffness.
+// Returns reasons why the prediction may be wrong for a found boundary, as text. If there are no
+// reasons, the prediction must be correct. The reasons are derived only from the simulations near
+// the boundary, never from the difference between prediction and simulation. They are limits that
+// act on the stable side, limits that noise alone reaches on the other side, and a growth rate that
+// depends too weakly on the stiffness.
 std::vector<std::string> DeparturesAt(const FoundExtent& found, const Boundary& boundary);
-// Returns such reasons for the case that no stable stiffness was found.
+// Returns the reasons why the prediction may be wrong if no stable stiffness was found.
 std::vector<std::string> DeparturesEverywhere(const FoundExtent& found);
 // Returns the relative uncertainty of a found boundary (two standard errors), derived from the
 // deviations of the nearby growth rates from a straight line, or no value for fewer than three.

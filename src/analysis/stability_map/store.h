@@ -34,8 +34,8 @@ class MapStore {
   std::mutex mutex_;
 };
 
-// Returns a 64-bit hash of the text as hexadecimal digits (FNV-1a). It distinguishes contents but
-// does not protect secrets.
+// Returns a 64-bit hash of the text as hexadecimal digits (FNV-1a). The hash distinguishes contents
+// but does not protect secrets.
 std::string HashOf(const std::string& text);
 
 }  // namespace predictor

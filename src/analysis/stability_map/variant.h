@@ -42,9 +42,10 @@ bool IsOwn(const MapBase& base, MapAxis axis, double value);
 // is one of them.
 std::vector<double> MapValues(const MapBase& base, MapAxis axis);
 
-// The scenario with another value, and the corresponding lead [s]. An object with another mass
-// keeps its shape, and its inertia changes in proportion. Its sag changes, and the arms' bases
-// follow its handles. Throws InputError, for example if the cobot cannot carry the object.
+// The scenario with another value of the varied quantity, and the corresponding lead [s]. An object
+// with another mass keeps its shape, and its inertia changes in proportion. The sag of the object
+// changes, and the arms' bases follow the object's handles. Throws InputError, for example if the
+// cobot cannot carry the object.
 struct Variant {
   Scenario scenario;
   double lead = 0;  // [s]

@@ -42,7 +42,8 @@ double LeadFor(const MapBase& base, double delay) {
   return ChooseLead(HapticLoop(base.world, s, 1 / s.rate), s, 1 / s.rate).lead;
 }
 
-// Returns the largest stable stiffness, or a gap if there is none or no limit was found [kN/m].
+// Returns the largest stable stiffness [kN/m], or a gap if no stiffness is stable or no limit was
+// found.
 double Largest(const MapPoint& point) {
   const Boundary* critical = point.predicted.critical();
   return critical ? critical->stiffness / kKilonewton : kNoLimit;
@@ -71,8 +72,8 @@ PlotSeries LineOf(const MapBase& base, const WallLine& line, int color) {
   return series;
 }
 
-// Sets the points of lines that have no neighbour, so that no line shows them. Returns whether
-// there are any.
+// Collects the points that have no neighbour and are therefore invisible as part of a line. Returns
+// whether there are such points.
 bool PointsAlone(const WallPicture& picture, PlotSeries* alone) {
   std::vector<double> mass, stiffness;
   for (const WallLine& line : picture.lines)
@@ -89,7 +90,7 @@ bool PointsAlone(const WallPicture& picture, PlotSeries* alone) {
   return any;
 }
 
-// Sets the axis to the powers of ten around all values.
+// Sets the range of the axis to the powers of ten around all values.
 void SetRange(const WallPicture& picture, PlotAxis* axis) {
   double low = kStiffestWall / kKilonewton, high = kSoftestWall / kKilonewton;
   for (const WallLine& line : picture.lines)

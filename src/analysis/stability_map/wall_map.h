@@ -13,7 +13,7 @@ namespace predictor {
 // form, or one for an assumed wall below the object, without damping.
 std::vector<WallPicture> WallPicturesOf(const MapBase& base);
 
-// Returns the scenario with the delay and lead of a line and another mass of the hands [kg].
+// Returns the scenario with the delay and lead of a line, and with another mass of the hands [kg].
 Variant WallVariantOf(const MapBase& base, const WallLine& line, double hand_mass);
 
 // Predicts the stiffnesses of a wall, up to kStiffestWall, for which the loop is stable.

@@ -1,5 +1,5 @@
-// What the hands felt during a run: forces, their rate, energy, oscillation. It uses only the
-// records, so it can be judged without knowing the person.
+// Measures what the hands felt during a run: forces, rates of force, energy and oscillation. Only
+// the records are used, so the person need not be known.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@
 
 namespace predictor::assessment {
 
-// Collects the records of a run. Forces count in RUN, energies also while the arms are stopping.
+// Collects the records of a run. Forces are evaluated in RUN; energies are evaluated while the arms
+// are stopping, too.
 class HandExposure {
  public:
   static constexpr double kCutoff = 20;      // cut-off for the low-passed force and its rate [Hz]
@@ -23,8 +24,8 @@ class HandExposure {
   explicit HandExposure(const Scenario& scenario);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // Returns the results so far: first those of each existing hand, then those of both hands. The
-  // meaning of each result states its filter and rate.
+  // Returns the results so far: first the results of each existing hand, then the results for both
+  // hands together. The meaning of each result states its filter and rate.
   std::vector<Result> results() const;
 
  private:

@@ -1,9 +1,9 @@
-// What could happen to a person who lets go of the handles: the object falls, the object or the
-// cobot hits the person or clamps a part of the body, the person stands too close to the moving
-// cobot.
+// Judges what could happen to a person who lets go of the handles: the object falls, the object or
+// the cobot hits the person or clamps a part of the body, or the person stands too close to the
+// moving cobot.
 //
-// These are unintended contacts. Their limits do not apply to the forces at the handles, which the
-// person intends.
+// These are unintended contacts. The limits for such contact do not apply to the forces at the
+// handles, which the person intends.
 #pragma once
 
 #include <algorithm>
@@ -43,8 +43,8 @@ class SceneMotion {
   bool empty() const { return !any_; }
   const Sample& fastest() const { return fastest_; }
   const Sample& highest() const { return highest_; }  // the object's highest place
-  // Returns the times of greatest speed after each release by a simulated operator's hand, until
-  // the hands hold again.
+  // Returns, for each release by a hand of a simulated operator, the time of the greatest speed
+  // before the hands hold again.
   const std::vector<Sample>& releases() const { return releases_; }
   // Returns the smallest upward force of a hand while it held [N], or infinity if it never held.
   double min_lift(int hand) const { return min_lift_[static_cast<std::size_t>(hand)]; }
@@ -57,7 +57,7 @@ class SceneMotion {
   int gripping_ = 0;
 };
 
-// The fall of the object from its highest place in the run, when the cobot lets go of it.
+// The fall of the object if the cobot lets go of it at its highest position in the run.
 struct Drop {
   double time = 0;         // run time of the highest place [s]
   double height = 0;       // height of the object's origin above the ground [m]
@@ -71,8 +71,8 @@ struct Drop {
 };
 
 // The distance that a person needs from a cobot that does not detect that the hands let go, after
-// ISO 13855 (mark R): S = v_h (T_r + T_s) + v_r T_r + v_r² / 2a. Not included are the intrusion
-// distance C and the uncertainties Z, which belong to a sensor that this scene does not have.
+// ISO 13855 (mark R): S = v_h (T_r + T_s) + v_r T_r + v_r² / 2a. The intrusion distance C and the
+// uncertainties Z are not included, because they belong to a sensor that this scene does not have.
 struct Separation {
   double time = 0;      // run time [s]
   double speed = 0;     // v_r: speed of the faster of object and end-effector [m/s]
@@ -85,8 +85,8 @@ inline constexpr double kReactionTime = 0.1;    // T_r (D) [s]
 inline constexpr double kStopDeceleration = 5;  // a, so that T_s = v_r / a (D) [m/s²]
 double NeededSeparation(double robot_speed);    // S [m]
 
-// A region of the body that the object or the cobot hits or clamps. Only the force is judged: the
-// pressure depends on the unknown shape of the contact surface.
+// A region of the body that the object or the cobot hits or clamps. Only the force is judged,
+// because the pressure depends on the unknown shape of the contact surface.
 struct RegionCheck {
   ergonomics::ContactLimit limit;
   double max_speed = 0;  // speed at which the force limit is reached [m/s]; 0: must not be hit
@@ -107,8 +107,8 @@ struct UnintendedContact {
 
 Drop DropOf(const SceneMotion& motion, const SceneMasses& masses, const PersonSetup& setup,
             const Scenario& scenario);
-// Returns the separation for the release with the largest shortfall of distance or, without a
-// release, for the moment of the highest speed.
+// Returns the separation for the release at which the distance falls short the most. Without a
+// release, returns the separation at the moment of the highest speed.
 Separation SeparationOf(const SceneMotion& motion, const PersonSetup& setup);
 UnintendedContact ContactOf(const SceneMotion& motion, const SceneMasses& masses,
                             const ergonomics::ContactLimits& limits, const Scenario& scenario);

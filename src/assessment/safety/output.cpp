@@ -105,7 +105,7 @@ Json ToJson(const RigLimit& limit) {
           {"censored", limit.censored()}};
 }
 
-// Returns the meaning of a key, which is the same wherever the key occurs.
+// Returns the meaning of a key. A key has the same meaning at every place where it occurs.
 std::string MeaningOf(const std::string& key) {
   static const std::map<std::string, std::string> kMeanings = {
       {"unit", "SI unit"},
@@ -187,7 +187,7 @@ std::string SafetyText(const SafetyAssessment& safety) {
     for (const std::string& note : table.notes) AppendLine(&text, "  %s", note.c_str());
   }
   for (const NotEvaluable& gap : safety.not_evaluable)
-    AppendLine(&text, "Not evaluable: %s, because %s.", gap.what.c_str(), gap.why.c_str());
+    AppendLine(&text, "Could not be evaluated: %s, because %s.", gap.what.c_str(), gap.why.c_str());
   return text;
 }
 

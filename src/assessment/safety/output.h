@@ -1,4 +1,4 @@
-// The safety of the collaboration as text, JSON and tables.
+// Writes the safety of the collaboration as text, JSON and tables.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
-// Whether the collaboration was safe for the person: what the hands felt, what the stops did to the
-// joints, what could happen after letting go, and what this rig cannot show.
+// Judges whether the collaboration was safe for the person: what the hands felt, how the stops
+// loaded the joints, what could happen after letting go, and what this rig cannot show.
 #pragma once
 
 #include <optional>
@@ -42,7 +42,8 @@ struct RigLimit {
   std::string what;  // "force of a hand"
   Unit unit;
   double limit = 0, reached = 0;  // SI
-  // The true value may have been larger: the emulator stopped the run or slowed the handles down.
+  // The true value may have been larger, because the emulator stopped the run or slowed the handles
+  // down.
   bool censored() const { return reached >= limit; }
 };
 

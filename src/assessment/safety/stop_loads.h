@@ -1,4 +1,5 @@
-// What a stop of the emulator itself does to the joints of the person who holds the handles.
+// Computes the loads that a stop of the emulator causes in the joints of the person who holds the
+// handles.
 #pragma once
 
 #include <deque>
@@ -16,15 +17,15 @@ namespace predictor::assessment {
 
 // A stop, and the samples from kBefore before its decision until kAfter after the arms come to
 // rest. Hands that held a handle when the stop was decided count as still holding it, because a
-// person cannot let go that quickly. The simulated operator lets go: the force then fades, but the
-// posture stays.
+// person cannot let go that quickly. The simulated operator does let go at a stop; the force then
+// fades, but the posture remains.
 struct StopWindow {
   StopSummary stop;
   std::vector<PersonSample> samples;  // samples at kSampleRate
   std::size_t decided = 0;            // the first sample after the decision
 };
 
-// Cuts the windows out of a run.
+// Extracts the time windows around the stops from a run.
 class StopWindows {
  public:
   static constexpr double kBefore = 0.2, kAfter = 0.1;  // [s]
@@ -35,7 +36,7 @@ class StopWindows {
   explicit StopWindows(const Scenario& scenario);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // Returns all stops so far. Their windows are complete or end with the run.
+  // Returns all stops so far. The windows of these stops are complete or end with the run.
   std::vector<StopWindow> windows() const;
 
  private:
@@ -71,9 +72,9 @@ struct StopJudgement {
   std::vector<StopLoad> loads;  // loads of the arms that held a handle
 };
 
-// Wrenches and motions are measured at 100 Hz (means of 10 ms). The posture's accelerations are
-// low-passed at 6 Hz, so the inertia of the person's own arm is underestimated. The inertia of what
-// the hand holds is included in the measured wrench.
+// Wrenches and motions are measured at 100 Hz (means of 10 ms). The accelerations of the posture
+// are low-passed at 6 Hz, so the inertial load of the person's own arm is underestimated. The
+// inertia of what the hand holds is included in the measured wrench.
 StopJudgement JudgeStop(const PersonSetup& setup, const StopWindow& window, bool intervals);
 
 }  // namespace predictor::assessment

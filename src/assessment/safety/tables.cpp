@@ -21,7 +21,8 @@ std::string PercentText(double share) {
   return std::isfinite(share) ? Formatted("%.0f %%", 100 * share) : "must not be hit";
 }
 
-// Returns the hand to which the result belongs, from its path ("hands.left.…"), or −1 for neither.
+// Returns the hand to which a result belongs, according to the path of the result ("hands.left.…"),
+// or −1 if the result belongs to neither hand.
 int HandOf(const Result& result) {
   for (int hand = 0; hand < kHands; ++hand)
     if (result.path.find(std::string(".") + HandName(hand) + ".") != std::string::npos) return hand;
@@ -36,7 +37,7 @@ std::string LabelOf(const Result& result, int hand) {
   return WithUnit(label, result.unit);
 }
 
-// Returns the results of each hand side by side, followed by those of the whole run.
+// Returns the results of each hand side by side, followed by the results of the whole run.
 SafetyTable HandTable(const std::vector<Result>& results) {
   SafetyTable table{.title = "What the hands felt", .origin = "measured"};
   table.rows.push_back({"", "left", "right", "how it was computed"});
@@ -79,8 +80,9 @@ SafetyTable StopTable(const StopJudgement& judged) {
          Formatted("%.1f", load.peak), load.use ? PercentText(*load.use) : "–"});
   table.notes.emplace_back(
       "The change caused by the stop is the largest change of the torque after the decision to "
-      "stop. The 90 % column contains the 90 % interval of this change, for 64 possible postures "
-      "and bodies. The last column gives the largest torque as a percentage of the mean strength "
+      "stop. The column \"90 %\" contains the 90 % interval of this change over 64 possible "
+      "postures and bodies. The last column gives the largest torque as a percentage of the mean "
+      "strength "
       "for the person's sex, if a verified source for this strength exists.");
   return table;
 }
@@ -125,18 +127,18 @@ SafetyTable ContactTable(const UnintendedContact& contact) {
     if (contact.clamping_force) row.push_back(PercentText(contact.clamped[i].share));
     table.rows.push_back(std::move(row));
   }
-  table.notes.push_back(
-      Formatted("For contact of the person with the object or the cobot at the largest speed of "
-                "this run, %.2f m/s (%.1f s), and an effective mass of %.1f kg. Limits: %s.",
-                contact.speed, contact.time, contact.robot_mass, contact.edition.c_str()));
+  table.notes.push_back(Formatted(
+      "This table is for contact of the person with the object or the cobot at the largest speed "
+      "of this run, %.2f m/s (%.1f s), and with an effective mass of %.1f kg. Limits: %s.",
+      contact.speed, contact.time, contact.robot_mass, contact.edition.c_str()));
   if (contact.clamping_force)
     table.notes.push_back(
-        Formatted("Clamped between object and fixture: with %.0f N, the bound that the scenario "
-                  "sets on the cobot's force.",
+        Formatted("Between object and fixture, a body part can be clamped with %.0f N, the bound "
+                  "that the scenario sets on the cobot's force.",
                   *contact.clamping_force));
   table.notes.emplace_back(
-      "These limits do not apply to the forces at the handles, and no number here is proof of "
-      "conformity: a real application must be measured.");
+      "These limits do not apply to the forces at the handles. The numbers do not prove "
+      "conformity, because a real application must be measured.");
   return table;
 }
 

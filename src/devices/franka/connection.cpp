@@ -5,7 +5,7 @@
 namespace predictor::fci {
 namespace {
 
-// Returns why that version of the interface is unsuitable, with the remedy.
+// Returns the reason why this version of the interface is unsuitable, and the remedy.
 std::string VersionRefusal(std::uint16_t answered) {
   return "answers FCI version " + std::to_string(answered) +
          ", but version 10 (Franka Research 3, system 5.9 and newer) or 5 (Panda, libfranka 0.8 "
@@ -32,14 +32,14 @@ class Connecting {
     c_.stream = network->Connect(address_, options.timeout);
   }
 
-  // Returns the robot's version if it differs.
+  // If the robot has a different version, returns this version.
   std::optional<std::uint16_t> Greet() {
     RequestBuffer buffer;
     const Answer answer =
         Ask(EncodeConnect(c_.version, c_.next_id++, c_.datagrams->port(), &buffer));
     ConnectResponse response;
     std::memcpy(&response, answer.body.data(), sizeof response);
-    // A copy, because the field in the packet is not aligned.
+    // This is a copy, because the field in the packet is not aligned.
     const std::uint16_t version = response.version;
     if (response.status == 0) return std::nullopt;
     if (version == c_.version)

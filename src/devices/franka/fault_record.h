@@ -22,7 +22,7 @@ enum class Fault : std::uint8_t {
   kNoEnd,
 };
 
-// `detail` is its mode or its answer.
+// `detail` is the mode or the answer of the robot.
 struct FaultAndDetail {
   Fault fault = Fault::kNone;
   std::int8_t detail = 0;

@@ -9,7 +9,7 @@
 namespace predictor::fci {
 namespace {
 
-// In the order of the bytes of a state's `errors`.
+// The names of the errors, in the order of the bytes in a state's `errors`.
 constexpr std::array<const char*, kErrors> kErrorNames = {
     "joint_position_limits_violation",
     "cartesian_position_limits_violation",
@@ -54,14 +54,16 @@ constexpr std::array<const char*, kErrors> kErrorNames = {
     "base_acceleration_invalid_reading",
 };
 
-// These values are far beyond the range of these arms' joints: 5.26 rad/s, 20 rad/s², two turns.
+// Upper bounds of possible values. They are far beyond the range of these arms' joints: 5.26 rad/s,
+// 20 rad/s² and two turns.
 constexpr double kMaxAngle = 7;           // [rad]
 constexpr double kMaxSpeed = 30;          // [rad/s]
 constexpr double kMaxAcceleration = 300;  // [rad/s²]
-// Tolerance for a rotation matrix of floats with the robot's own rounding.
+// Tolerance for a rotation matrix that the robot has rounded to floats.
 constexpr double kRotationTolerance = 1e-3;
 
-// Returns false if a number is not finite or exceeds `most`.
+// Copies the joint values. Returns false if a number is not finite or if its magnitude exceeds
+// `most`.
 template <class Real>
 bool TakeJoints(const Real (&from)[kJoints], double most, Joints* to) noexcept {
   for (std::size_t i = 0; i < kJoints; ++i) {
@@ -89,7 +91,7 @@ Errors TakeErrors(const std::uint8_t (&from)[kErrors]) noexcept {
 }
 
 // The estimated wrench. If there is no estimate, the robot itself reports zero. A wrench that is
-// not finite is passed on, because its user must detect it immediately.
+// not finite is passed on, so that the code that uses it detects the error immediately.
 template <class Real>
 void TakeWrench(const Signals<Real>& packet, RobotState* state) noexcept {
   state->F_K_K.setZero();
@@ -299,7 +301,7 @@ std::span<const std::byte> EncodeConnect(std::uint16_t version, std::uint32_t id
 
 std::span<const std::byte> EncodeMove(std::uint16_t version, std::uint32_t id,
                                       RequestBuffer* buffer) noexcept {
-  // The deviations matter only in Cartesian motions. Their values are those of libfranka.
+  // The deviations matter only in Cartesian motions. Their values are the same as in libfranka.
   constexpr Deviation kAny{10, 3.12, 2 * std::numbers::pi};
   Research3Move move{};
   move.controller = MoveController::kJointImpedance;

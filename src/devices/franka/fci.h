@@ -1,5 +1,5 @@
-// The parts of the Franka Control Interface that its versions have in common, without their
-// layouts.
+// The parts of the Franka Control Interface that all its versions share, independent of their
+// packet layouts.
 #pragma once
 
 #include <array>
@@ -53,8 +53,8 @@ MoveStatus MoveStatusOf(std::uint8_t byte, std::uint16_t version) noexcept;
 const char* Words(MoveStatus status);
 const char* Words(RobotMode mode);
 
-// Returns an error's name as in libfranka ("joint_velocity_violation"), by its index in the list of
-// a state.
+// Returns the name that libfranka gives to an error ("joint_velocity_violation"). `index` is the
+// error's index in the list of a state.
 const char* ErrorName(int error);
 // Returns "joint velocity violation, cartesian reflex", for example, or "" without errors.
 std::string ErrorWords(const Errors& errors);
@@ -96,7 +96,7 @@ std::span<const std::byte> EncodeConnect(std::uint16_t version, std::uint32_t id
 // Requests joint velocities with joint impedance.
 std::span<const std::byte> EncodeMove(std::uint16_t version, std::uint32_t id,
                                       RequestBuffer* buffer) noexcept;
-// Uses the same thresholds for contact and collision, with and without acceleration.
+// Sets the same thresholds for contact and collision, with and without acceleration.
 std::span<const std::byte> EncodeCollision(std::uint16_t version, std::uint32_t id,
                                            const Joints& torque, const Wrench& force,
                                            RequestBuffer* buffer) noexcept;
@@ -118,7 +118,7 @@ class AnswerReader {
   void Arrived(std::size_t size) noexcept { used_ += size; }
   // Returns the next complete answer. Unused data at the end of an answer are skipped.
   bool Next(Answer* answer) noexcept;
-  // Returns whether a header was invalid. Nothing after it can be interpreted.
+  // Returns whether a header was invalid. The data after an invalid header cannot be interpreted.
   bool broken() const noexcept { return broken_; }
 
  private:

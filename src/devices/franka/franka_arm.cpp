@@ -17,27 +17,28 @@ namespace {
 using fci::Fault;
 using fci::Joints;
 
-// The arm abandons a motion after this time without commands, and the driver after this time
-// without states.
+// After this time without commands, the arm abandons a motion; after this time without states, the
+// driver does.
 constexpr double kSilence = fci::RateLimiter::kCoasting;  // [s]
 // Longest time in which the arm starts or ends a motion.
 constexpr double kPatience = 1;  // [s]
 // Maximum number of datagrams that are read in one tick.
 constexpr int kMaxDatagrams = 64;
-// A quarter of an hour, which is longer than any pause, in states. If a state further ahead were
-// accepted, all later states would count as old.
+// Number of states that a new state may be ahead of the last state. This is a quarter of an hour,
+// which is longer than any pause. If a state further ahead were accepted, all later states would
+// count as old.
 constexpr std::int64_t kMaxAhead = 1'000'000;
-// The commanded velocity and the one that the arm reports differ at most by this, because floats
-// are rounded.
+// Largest difference between the commanded velocity and the reported velocity that the rounding of
+// floats can cause.
 constexpr double kSameVelocity = 1e-5;  // [rad/s]
 // Within this number of cycles the arm hardly deviates from its command.
 constexpr std::uint64_t kShortGap = 2;
 
-// A pose far from every model, used if the arm does not report the pose of its flange.
+// A pose far from every model, which is used if the arm does not report the pose of its flange.
 const Pose kNowhere = {Vector3::Constant(std::numeric_limits<double>::quiet_NaN()), {}};
 
-// Describes the thresholds of the arm's own reflexes. The robot does not report them, so only
-// thresholds set here are known.
+// Describes the thresholds of the arm's own reflexes. The robot does not report these thresholds,
+// so only those that this program sets are known.
 std::string CollisionRemark(const std::optional<FrankaCollision>& c) {
   if (!c)
     return "The collision thresholds set in Desk apply; the arm does not report them. To set them "
@@ -238,8 +239,8 @@ bool Driver::TakeState(std::span<const std::byte> bytes) noexcept {
   return true;
 }
 
-// The negated wrench of the robot is the wrench of the handle on the sensor. Near a singular pose
-// the robot has no estimate and reports zero.
+// The wrench that the handle exerts on the sensor is the negated wrench of the robot. Near a
+// singular pose the robot has no estimate and reports zero.
 void Driver::TakeWrench() noexcept {
   if (state_.F_K_K.isZero(0)) return;
   const Pose X_SK = X_SF_ * state_.X_FK;
@@ -297,7 +298,7 @@ bool Driver::InMotion() const noexcept {
 }
 
 Status Driver::Write(const JointVector& v, bool motion) noexcept {
-  // Otherwise, waiting for the arm to rest would never end.
+  // Without this condition, waiting for the arm to rest would never end.
   if (!(v.isZero(0) && InMotion())) rests_since_ = network_->Now();
   if (Since(rests_since_) > kPatience) trouble_.Set(Fault::kNoEnd);
   if (!trouble_.any()) Advance(motion);
@@ -344,8 +345,8 @@ void Driver::StartMotion() noexcept {
   Enter(Phase::kStarting);
 }
 
-// Answers only the newest state, and only once. In a millisecond without a state no command is
-// sent, and the robot continues as before.
+// Answers only the newest state, and only once. In a millisecond without a state, the driver sends
+// no command, and the robot continues its motion.
 void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
   const bool moves = phase_ == Phase::kMoving || phase_ == Phase::kFinishing;
   if (!moves || !Generating() || state_.message_id == answered_) return;
@@ -354,7 +355,7 @@ void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
     for (std::size_t i = 0; i < fci::kJoints; ++i) asked[i] = v[static_cast<int>(i)];
   const bool missed = CatchUp(asked);
   asked_ = asked;
-  // The return path may briefly need a higher speed.
+  // Adds the motion of the return path, which may briefly need a higher speed.
   const Joints left = way_back_.Next();
   for (std::size_t i = 0; i < fci::kJoints; ++i) asked[i] += left[i];
   limiter_.Next(asked, state_.q_d, missed && !way_back_.active());
@@ -379,9 +380,9 @@ bool Driver::RestsSoon(const Joints& asked) const noexcept {
   return falling * fci::WayBack::kTime >= square * fci::RateLimiter::kDt;
 }
 
-// Checks whether states or commands were lost since the last command. If so, the next command must
-// continue from the state that the robot reports. `asked` is the velocity requested by that
-// command.
+// Checks whether states or commands were lost since the last command. After such a loss, the next
+// command must continue from the state that the robot reports. `asked` is the velocity that the
+// next command requests.
 bool Driver::CatchUp(const Joints& asked) noexcept {
   if (!commanded_) return false;
   constexpr double dt = fci::RateLimiter::kDt;
@@ -391,7 +392,8 @@ bool Driver::CatchUp(const Joints& asked) noexcept {
   for (std::size_t i = 0; i < fci::kJoints; ++i)
     differs = differs || std::abs(state_.dq_d[i] - limiter_.v()[i]) > kSameVelocity;
   if (differs) limiter_.Start(state_.dq_d, state_.ddq_d);
-  // The arm deviated, or it was not accelerated while more commands could have been lost.
+  // The arm needs a return path if it deviated, or if it was not accelerated while more commands
+  // could have been lost.
   const bool waited = waits_ && !differs && !gap && !RestsSoon(asked);
   if ((differs && ticks > kShortGap) || waited) {
     Joints v{}, a{};

@@ -1,17 +1,18 @@
 // A Franka arm (Research 3 or the older Panda), driven through the Franka Control Interface at 1
-// kHz. It follows the published headers of the interface and was tested with a fake robot that
-// libfranka also drives. It has never run on hardware.
+// kHz. The driver follows the published headers of the interface, and was tested with a fake robot
+// that libfranka also drives. The driver has never run on hardware.
 //
 // The driver commands joint velocities; the arm's own joint impedance controller executes them. The
 // commands stay within the published limits of velocity, acceleration, jerk and range
 // (rate_limiter.h), because otherwise the arm's reflexes would stop it. The driver never recovers
 // from errors: a person does so in Desk.
 //
-// The wrench is estimated from the joint torques, without a sensor at the flange. It has a bias of
-// some newtons that changes with pose and friction, and it is worse in motion. Near a singular pose
-// there is no estimate, so its age grows. The wrench excludes the weight of the end-effector and
-// the load configured in Desk, so the handle's weight must be entered either in the scenario or in
-// Desk, not in both. It is good enough for experiments, but not for rendering stiff contacts.
+// The wrench is estimated from the joint torques, without a sensor at the flange. The estimate has
+// a bias of some newtons that changes with pose and friction, and is less accurate in motion. Near
+// a singular pose, the arm provides no estimate, so the age of the wrench grows. The wrench
+// excludes the weight of the end-effector and the load configured in Desk, so the handle's weight
+// must be entered either in the scenario or in Desk, not in both. The estimate is good enough for
+// experiments, but not for rendering stiff contacts.
 #pragma once
 
 #include <memory>
@@ -49,8 +50,8 @@ struct FrankaCounts {
   std::uint64_t malformed = 0;  // states of a wrong size or with impossible numbers, and dropped
   std::uint64_t strangers = 0;  // datagrams from other senders, dropped
   std::uint64_t commands = 0;   // commands sent
-  // Commands that were sent although the arm reports that it continued without them. At constant
-  // acceleration such a loss has no effect.
+  // Number of commands that were sent but not received, according to the arm's reports. If the
+  // acceleration is constant, such a loss has no effect.
   std::uint64_t lost_commands = 0;
 };
 
@@ -60,8 +61,8 @@ class FrankaArm : public Arm {
   virtual FrankaCounts counts() const noexcept = 0;
 };
 
-// Throws DeviceError, also if the arm is not ready to move (brakes, user stop, an error). `network`
-// must outlive the arm.
+// Throws DeviceError if the connection fails or the arm is not ready to move (brakes, user stop, an
+// error). `network` must outlive the arm.
 std::unique_ptr<FrankaArm> ConnectFranka(const FrankaOptions& options, Network* network);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// The bytes of the Franka Control Interface (FCI), as stored in memory: little-endian, packed.
+// The packets of the Franka Control Interface (FCI), as stored in memory: little-endian, packed.
 //
 // TCP, port 1337 of the robot: requests and answers, each with a Header and a body. An answer has
 // the command and ID of its request. UDP: the robot sends its state every millisecond to the port

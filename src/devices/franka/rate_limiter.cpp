@@ -21,8 +21,9 @@ constexpr JointLimits kPanda = {{
     {-2.8973, 2.8973, 2.6100, 20.0, 10000, kEverywhere, 0},
 }};
 
-// Each range is the narrower one of two publications. Their velocity limits belong to the wider
-// range (2.75010, ...), and so do the numbers here, which are published as 2 · deceleration.
+// Two publications state different ranges; these are the narrower ranges. The published velocity
+// limits belong to the wider range (2.75010, ...), and so do the decelerations here, which are
+// published as 2 · deceleration.
 constexpr JointLimits kResearch3 = {{
     {-2.7437, 2.7437, 2.62, 10, 5000, 12.0 / 2, 0.30},
     {-1.7837, 1.7837, 2.62, 10, 5000, 5.17 / 2, 0.20},
@@ -35,14 +36,15 @@ constexpr JointLimits kResearch3 = {{
 
 // Distance kept from the end of a joint's range [rad].
 constexpr double kEnd = 0.001;
-// The share of the acceleration used for braking before the end of a range. The rest is for
-// following.
+// The share of the acceleration used for braking before the end of a range. The remaining share is
+// for following the request.
 constexpr double kBraking = 0.8;
-// Assumed delay before a joint brakes: lost commands, and the jerk at the start of braking [s].
+// Assumed delay before a joint brakes [s], caused by lost commands and by the limited jerk at the
+// start of braking.
 constexpr double kLate = RateLimiter::kCoasting + 0.005;
 
-// Returns the largest speed towards the end of the range at distance d, both now and on the way to
-// it.
+// Returns the largest permitted speed towards the end of the range at distance d, so that the speed
+// is also permitted on the remaining way.
 double Cap(const JointLimit& limit, double d) noexcept {
   const double D = std::min(limit.deceleration, kBraking * limit.acceleration);
   // Solves v = sqrt(2 D (d − late · v)) − offset.
@@ -52,8 +54,9 @@ double Cap(const JointLimit& limit, double d) noexcept {
 }
 
 // Returns the largest acceleration from which the velocity reaches its target, at a difference of
-// `way`, without overshoot, if the acceleration then falls by jerk · dt per millisecond. From n + r
-// such steps, with r below 1, the velocity still changes by (n + 1)(n / 2 + r) · jerk · dt².
+// `way`, without overshoot, if the acceleration then falls by jerk · dt per millisecond. If the
+// acceleration falls to zero in n + r such steps, with r below 1, the velocity still changes by (n
+// + 1)(n / 2 + r) · jerk · dt².
 double Reaching(const JointLimit& limit, double way) noexcept {
   const double step = limit.jerk * RateLimiter::kDt;
   const double u = way / (step * RateLimiter::kDt);
@@ -62,9 +65,9 @@ double Reaching(const JointLimit& limit, double way) noexcept {
   return std::min((n + r) * step, limit.acceleration);
 }
 
-// Returns the largest acceleration from which coasting stays below `cap`. While the acceleration
-// then falls to zero, the velocity changes by a²/2j. This is at most a · dt, because the published
-// jerks are 500 times the accelerations.
+// Returns the largest acceleration after which the robot can coast and stay below `cap`. While the
+// acceleration then falls to zero, the velocity changes by a²/2j. This change is at most a · dt,
+// because each published jerk is 500 times the acceleration limit.
 double Coasting(double v, double cap) noexcept {
   return std::max(0.0, cap - v) / (RateLimiter::kCoasting + 2 * RateLimiter::kDt);
 }

@@ -10,8 +10,8 @@ struct JointLimit {
   double velocity;      // [rad/s]
   double acceleration;  // [rad/s²]
   double jerk;          // [rad/s³]
-  // Towards the end of its range at distance d, a joint may move at sqrt(2 · deceleration · d) −
-  // offset.
+  // At distance d from the end of its range, a joint may move towards this end at sqrt(2 ·
+  // deceleration · d) − offset.
   double deceleration;  // [rad/s²]
   double offset;        // [rad/s]
 };
@@ -20,16 +20,16 @@ using JointLimits = std::array<JointLimit, kJoints>;
 // Returns the limits published in Franka's "Robot and interface specifications" (frankaemika/docs,
 // control_parameters.rst) and in rate_limiting.h of libfranka 0.9.2 and 0.21.2. The limits of the
 // Research 3 are those for systems before 5.9, which are stricter. A Panda's velocity limits do not
-// depend on the position. Nevertheless, the driver brakes before the ends of its ranges.
+// depend on the position. Nevertheless, the driver brakes before the ends of these ranges.
 const JointLimits& PublishedLimits(std::uint16_t version);
 
 // Computes velocities for the next millisecond: as close to the request as the limits of velocity,
-// acceleration, jerk and range allow. They are computed from the robot's state over the nominal
-// millisecond. As in the robot, differences are backward: a = (v − v_last) / dt.
+// acceleration, jerk and range allow. The velocities are computed from the robot's state over the
+// nominal millisecond. As in the robot, differences are backward: a = (v − v_last) / dt.
 //
 // A robot that misses commands continues at constant acceleration for up to 20 cycles. The limiter
-// therefore always keeps enough reserve to the velocity limit, and for reducing the acceleration to
-// zero.
+// therefore always keeps a sufficient distance to the velocity limit, and enough time to reduce the
+// acceleration to zero.
 class RateLimiter {
  public:
   static constexpr double kDt = 0.001;  // robot cycle [s]
@@ -40,11 +40,12 @@ class RateLimiter {
   // Throws std::invalid_argument.
   RateLimiter(const JointLimits& limits, double fraction);
 
-  // Starts from a robot that moves at v with acceleration a.
+  // Starts with a robot that moves at v with acceleration a.
   void Start(const Joints& v, const Joints& a) noexcept;
-  // Returns the next command. `asked` is in [rad/s], and a value that is not finite counts as rest.
-  // `q` is the commanded position [rad]. `missed` states whether states or commands were lost
-  // recently, so that the robot may have to coast again and is not accelerated.
+  // Returns the next command. `asked` is in [rad/s]. A value that is not finite counts as zero. `q`
+  // is the commanded position [rad]. `missed` states whether states or commands were lost recently.
+  // In this case, the limiter does not accelerate the robot, because the robot may have to coast
+  // again.
   const Joints& Next(const Joints& asked, const Joints& q, bool missed) noexcept;
   const Joints& v() const noexcept { return v_; }
   const Joints& a() const noexcept { return a_; }
@@ -56,7 +57,7 @@ class RateLimiter {
 };
 
 // Returns a robot that has deviated, because commands or states were lost, to the request. The
-// limits of its joints alone would allow a sudden return, which would jerk the handle.
+// limits of the joints alone would allow a sudden return, which would jerk the handle.
 class WayBack {
  public:
   static constexpr double kTime = 0.020;  // duration of the return [s]

@@ -30,8 +30,9 @@ class RobotClock {
   // Allowed drift between the clocks per second [s].
   static constexpr double kDrift = 5e-4;
 
-  // Returns the offset of our clock relative to the robot's since the first state [ns]. It is exact
-  // for a hundred days, and finite whatever ID a state claims.
+  // Returns the offset of our clock relative to the robot's clock, counted from the first state
+  // [ns]. The offset is exact for a hundred days, and is finite for every ID that a state may
+  // contain.
   double Offset(std::uint64_t id, std::uint64_t now) const noexcept {
     return static_cast<double>(now - first_) -
            1e6 * static_cast<double>(static_cast<std::int64_t>(id - first_id_));

@@ -18,19 +18,20 @@ constexpr double kAgain = 0.1;     // time after which a lost request is repeate
 constexpr double kObey = 0.005;    // time in which an OnRobot sensor executes a request [s]
 constexpr double kRateTime = 2;    // time over which a rate is measured [s]
 constexpr double kMaxRate = 7000;  // maximum rate of a Net F/T [Hz]
-// The maximum number of datagrams that are read in one tick. A sensor of 7 kHz sends seven, and
-// more are a flood.
+// The maximum number of datagrams that are read in one tick. A sensor with a rate of 7 kHz sends
+// seven datagrams per tick; many more are a flood.
 constexpr int kMaxAtOnce = 32;
 // After this long without reading [s], for example while other devices are being connected, old
-// records are buffered. All of them are read, and records that did not fit into the buffer do not
-// count as lost.
+// records are buffered. All buffered records are read, and records that did not fit into the buffer
+// do not count as lost.
 constexpr double kPause = 0.05;
 constexpr int kMaxBuffered = 4096;
-// If this many records are old or too far ahead, without a new one in between, the cause is not
-// reordering: the sensor has restarted its counter.
+// If this many consecutive records are old or too far ahead, the cause is not reordering, but the
+// sensor has restarted its counter.
 constexpr int kRestarted = 16;
-// A record may be ahead of the last one by the number of records that the sensor can have sent
-// since then, times a margin for a rate that differs from the file's, plus this time [s].
+// A record may be ahead of the last record by the number of records that the sensor can have sent
+// since then. This number includes a factor for a rate that differs from the rate in the file, and
+// this additional time [s].
 constexpr double kRateRoom = 2, kMaxClockLead = 0.010;
 
 // Returns the interval between records to which an OnRobot sensor is set [ms], or 0 if no interval
@@ -53,7 +54,7 @@ void CheckRate(const NetFtOptions& options) {
                         : "a Net F/T sends at most 7000"));
 }
 
-// The meaning of a status.
+// Describes the meaning of a status.
 struct Health {
   bool usable, saturated;
 };
@@ -119,7 +120,7 @@ class NetFt final : public WrenchSensor {
   std::uint32_t last_ = 0;                  // sequence number of the newest accepted record
   std::uint64_t malformed_ = 0;             // datagrams dropped because of their size or number
   bool resumes_ = false;                    // only buffered records have arrived since a pause
-  // Trouble may be called by other threads.
+  // Other threads may call Trouble.
   std::atomic<std::uint32_t> status_ = 0;  // status of the newest record
   std::atomic<int> behind_ = 0;   // records since the newest one whose numbers were rejected
   std::atomic<double> rate_ = 0;  // measured rate [Hz]; 0: not measured yet
@@ -164,7 +165,7 @@ void NetFt::Start() {
                       "in its settings, and that no other client is connected.");
   if (status_ != 0)
     throw DeviceError(options_.address, "reports " + StatusWords(options_.make, status_) +
-                                            ". Clear it first; see the sensor's manual.");
+                                            ". Clear this error first; see the sensor's manual.");
 }
 
 Status NetFt::Read(WrenchReading* reading) noexcept {
@@ -191,8 +192,9 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
   return HealthOf(options_.make, status_).usable ? Status::Ok() : Status{StopCause::kSensor};
 }
 
-// A record that is further ahead is forged or damaged. If it were accepted as the newest, all later
-// ones would count as old. Records that were buffered for a long time lag behind by their age.
+// A record that is further ahead is forged or damaged. If such a record were accepted as the
+// newest, all later records would count as old. The counters of records that were buffered for a
+// long time lag behind by the age of these records.
 bool NetFt::IsNext(std::uint32_t ahead) const noexcept {
   const double since = 1e-9 * static_cast<double>(now_ - taken_time_);
   return ahead <=

@@ -1,5 +1,6 @@
 // A force/torque sensor that streams RDT datagrams: ATI Net F/T and Axia, OnRobot HEX, OptoForce.
-// It was tested with a fake sensor over the protocol and has never run on hardware.
+// The driver was tested with a fake sensor that uses the same protocol, and has never run on
+// hardware.
 #pragma once
 
 #include <memory>
@@ -26,11 +27,11 @@ struct NetFtOptions {
 // program tares the sensor and records the bias. Throws DeviceError if the sensor is silent, if its
 // records have the wrong size, if its status is an error, or if it does not support the rate.
 //
-// The age of a reading is computed from the records' own numbers, at their rate, relative to the
-// quickest recent record. The age of a record therefore includes its time in a queue, however
-// slowly the queue grows. A rate that deviates from `rate` by more than kRateError increases the
-// age too, and Trouble reports it. The delay of the sensor's own filter is not included
-// (SensorSpec.delay).
+// The age of a reading is computed from the sequence numbers and the rate of the records, relative
+// to the recent record with the shortest delay. The age of a record therefore includes its time in
+// a queue, even if the queue grows slowly. A rate that deviates from `rate` by more than kRateError
+// increases the age too, and Trouble reports it. The delay of the sensor's own filter is not
+// included (SensorSpec.delay).
 //
 // The reading is the sensor's output: the force and torque that the handle exerts on the sensor's
 // tool side, in the sensor's axes. The sensor streams to one client at a time. `network` must

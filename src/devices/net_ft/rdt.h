@@ -1,5 +1,5 @@
-// Raw Data Transfer, the datagrams of ATI's Net F/T and Axia and of OnRobot's HEX and OptoForce
-// boxes: big-endian, no heap.
+// Raw Data Transfer: the big-endian datagrams of ATI's Net F/T and Axia, and of OnRobot's HEX and
+// OptoForce boxes. This code does not use the heap.
 //
 // Sources: ATI, Net F/T Manual 9610-05-1022 (section 9, "UDP interface using RDT"); OnRobot, HEX/QC
 // compute box manual ("UDP"): the same frame, other commands.
@@ -46,15 +46,16 @@ std::array<std::byte, kRecordBytes> Encode(const Record& record) noexcept;
 std::optional<Request> DecodeRequest(std::span<const std::byte> bytes) noexcept;
 std::optional<Record> DecodeRecord(std::span<const std::byte> bytes) noexcept;
 
-// ATI's status word: the bit for an exceeded range, and the bit that is set with every error
+// ATI's status word has a bit for an exceeded range, and a bit that is set with every error
 // (manual, section 17.1, "System Status Code").
 inline constexpr std::uint32_t kSaturated = 0x00020000;  // force or torque out of range
 inline constexpr std::uint32_t kAnyError = 0x80000000;   // set with every error
 
-// The status of OnRobot and OptoForce, in the lower half. It is the status word of OptoForce's
-// 6-axis sensors, whose own clients treat every value except 0 as an error.
+// The status of OnRobot and OptoForce sensors is in the lower half of the word. This is the status
+// word of OptoForce's 6-axis sensors. OptoForce's own clients treat every value except 0 as an
+// error.
 inline constexpr std::uint32_t kOverload = 0x000003F0;  // Tz Ty Tx Fz Fy Fx, from bit 4 upwards
-// Three bits: 1 not detected, 2 failure, 4 temperature.
+// These three bits have the values 1 (not detected), 2 (failure) and 4 (temperature).
 inline constexpr int kSensorErrorShift = 10;
 inline constexpr int kDaqErrorShift = 13;  // three bits: 1 unit itself, 2 communication
 

@@ -12,7 +12,7 @@ namespace predictor {
 
 class SimulatedDevice final : public Device {
  public:
-  // `start` and `person` are as in Rig. Throws InputError.
+  // `start` and `person` have the same meaning as in Rig. Throws InputError.
   SimulatedDevice(const Scenario& scenario, const std::array<JointVector, kHands>& start,
                   std::unique_ptr<Operator> person);
 

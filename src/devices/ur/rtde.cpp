@@ -37,7 +37,7 @@ std::vector<std::string_view> Split(std::string_view list) {
 }  // namespace
 
 std::span<std::byte> PacketParser::Room() noexcept {
-  // The remaining bytes are less than one packet.
+  // The remaining bytes are not a complete packet.
   std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
   end_ -= begin_;
   begin_ = 0;
@@ -137,7 +137,8 @@ std::string Refusal(std::span<const Field> recipe, const RecipeAnswer& answer) {
   }
   if (types.size() != recipe.size())
     return "answers " + std::to_string(types.size()) + " types for " +
-           std::to_string(recipe.size()) + " names. This does not conform to the RTDE guide.";
+           std::to_string(recipe.size()) +
+           " names. This answer does not conform to the RTDE guide.";
   if (answer.id == 0) return "refuses to exchange " + Names(recipe) + ".";
   return "";
 }

@@ -36,8 +36,8 @@ struct Packet {
   std::span<const std::byte> payload;  // valid until the parser receives more bytes
 };
 
-// Splits a stream into packets, in whatever pieces the bytes arrive. An invalid size or type is a
-// permanent error, because the next packet cannot be found. Does not use the heap.
+// Splits a stream into packets. The bytes may arrive in pieces of any size. An invalid size or type
+// is a permanent error, because the next packet cannot be found. Does not use the heap.
 //
 //   parser.Filled(stream.Read(parser.Room()));
 //   while (parser.Next(&packet)) ...;
@@ -75,7 +75,7 @@ class PacketWriter {
     writer_.Put(std::as_bytes(std::span(text)));
     return *this;
   }
-  // Returns the packet with its size filled in, or nothing if the content was too large.
+  // Returns the complete packet with its size, or no bytes if the content was too large.
   std::span<const std::byte> Finish() noexcept;
 
  private:
@@ -111,8 +111,8 @@ struct RecipeAnswer {
 };
 bool Decode(std::span<const std::byte> payload, RecipeAnswer* answer);
 
-// Returns the error in the types with which the controller answered a recipe, as the rest of a
-// sentence that begins with the controller's address, or "" without an error.
+// Checks the types with which the controller answered a recipe. Returns an error as the rest of a
+// sentence that begins with the controller's address, or "" if there is no error.
 std::string Refusal(std::span<const Field> recipe, const RecipeAnswer& answer);
 
 struct TextMessage {

@@ -18,13 +18,13 @@ class Connection {
   Connection(Network* network, const Address& peer);
 
   // Sends a request and waits for the payload of the answer of this type. Call this only before the
-  // first tick. Throws DeviceError with the messages that the controller sent meanwhile.
+  // first tick. Throws DeviceError, which includes the messages that the controller sent meanwhile.
   std::vector<std::byte> Ask(std::span<const std::byte> request, PacketType answer);
 
   bool Send(std::span<const std::byte> packet) noexcept { return stream_->Write(packet); }
 
   // Passes all received packets to `take`, which returns whether a packet is valid. A malformed
-  // packet ends the connection. Never blocks, however many bytes arrive.
+  // packet ends the connection. Never blocks, even if many bytes arrive.
   template <class Take>
   State Drain(const Take& take) noexcept {
     for (int reads = 0; state_ == State::kOpen && reads < kMaxReads; ++reads) {

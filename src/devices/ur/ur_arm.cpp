@@ -77,7 +77,7 @@ class UrArm final : public Arm {
     const std::uint64_t now = network_->Now();
     const bool moves = motion && MayFollow(v, now);
     if (now < next_ && moves == moves_) return Now();
-    // A tick that is slightly early counts too.
+    // A tick that begins slightly early counts, too.
     next_ = now + static_cast<std::uint64_t>(1e9 * (period_ - 0.0005));
     moves_ = moves;
     if (moves || !fault_.any()) counter_ = static_cast<std::int32_t>(Unsigned(counter_) + 1U);
@@ -91,7 +91,8 @@ class UrArm final : public Arm {
     if (!wanted || power_ != Power::kWanted) return;
     power_ = Power::kUnwanted;
     unwanted_since_ = network_->Now();
-    // A stream may accept data although it is dead. Only the robot's mode shows the result.
+    // A stream may accept data although its connection is dead, so only the robot's mode shows the
+    // result.
     if (dashboard_ && !dashboard_->Write(std::as_bytes(std::span(kLine)))) dashboard_lost_ = true;
   }
 
@@ -108,14 +109,15 @@ class UrArm final : public Arm {
 
  private:
   // kUnwanted means that power-off was requested. The robot then reports that its power is off or,
-  // after a long time, that it still is on.
+  // after a long time, that its power is still on.
   enum class Power : std::uint8_t { kWanted, kUnwanted, kCut, kKept };
   static constexpr int kMaxReads = 16;
 
   static std::uint32_t Unsigned(std::int32_t x) noexcept { return static_cast<std::uint32_t>(x); }
 
-  // While the arm executes commands, its reported joints may be unreliable. It then comes to rest
-  // together with the other arm, by the commands of the following stop, and is not moved again.
+  // While the arm executes commands, its reported joints may be unreliable. The commands of the
+  // following stop then bring this arm to rest together with the other arm, and the arm is not
+  // moved again.
   bool MayFollow(const JointVector& v, std::uint64_t now) noexcept {
     if (!fault_.any()) stop_by_ = now + static_cast<std::uint64_t>(1e9 * kStop);
     if (!fault_.any()) return true;
@@ -161,7 +163,8 @@ class UrArm final : public Arm {
     FollowPower();
   }
 
-  // Power that a person switches on again after it was off does not count as kept.
+  // If a person switches the power on again after it was off, the arm does not count as having kept
+  // its power.
   void FollowPower() noexcept {
     if (power_ == Power::kWanted || power_ == Power::kCut || clock_.Age(now_) >= kFresh) return;
     if (!Powered(state_))
@@ -178,14 +181,15 @@ class UrArm final : public Arm {
     if (size == Stream::kClosed) dashboard_lost_ = true;
   }
 
-  // A controller omits packages if its client is too slow. A client that was paused does not count.
+  // A controller omits packets if its client is too slow. Packets that it omitted while this client
+  // was paused do not count.
   void CountSkipped(double step) noexcept {
     constexpr double kPause = 1;  // [s]
     const double cycles = step * facts_.rate;
     if (step < kPause && cycles > 1.5) link_.lost += static_cast<std::uint64_t>(cycles - 0.5);
   }
 
-  // Returns whether our program runs, is not braking, and has not received commands that were sent
+  // Returns whether our program runs, does not brake, and has not received commands that were sent
   // long ago.
   bool Deaf() const noexcept {
     const double behind = period_ * (Unsigned(counter_) - Unsigned(state_.echo));

@@ -45,8 +45,8 @@ Pose PoseOf(const UrVector& x) {
   return {{x[0], x[1], x[2]}, RotationFromVector({x[3], x[4], x[5]})};
 }
 
-// A client of the dashboard server, which controls the robot as a whole. Each line is answered by
-// one line. An arm moves without the server: PolyScope X does not have it.
+// A client of the dashboard server, which controls the robot as a whole. The server answers each
+// line with one line. An arm can move without this server, which PolyScope X does not have.
 class Dashboard {
  public:
   explicit Dashboard(Network* network) : network_(network) {}
@@ -155,8 +155,9 @@ class Setup {
     return answer.id;
   }
 
-  // Older controllers report neither the payload nor the pose of the tool on the flange. Then the
-  // check of the payload is omitted, and the pose of the flange is checked without a tool.
+  // Older controllers report neither the payload nor the pose of the tool on the flange. For such
+  // controllers, the check of the payload is omitted, and the pose of the flange is checked without
+  // a tool.
   void AgreeOnRecipes() {
     setup_.extras.wrench = setup_.facts.own_wrench;
     setup_.extras.payload = Offers({{"payload", "DOUBLE"}, {"payload_cog", "VECTOR3D"}});
@@ -183,7 +184,7 @@ class Setup {
     setup_.facts.remarks.emplace_back(
         "Its dashboard server (port 29999) does not answer, as on PolyScope X. This program "
         "therefore cannot switch its power off: after a stop with power-off, this arm holds its "
-        "position with power on. In that case, use its emergency stop.");
+        "position with power on. In that case, use the emergency stop of the arm.");
   }
 
   void Start() {
@@ -193,7 +194,8 @@ class Setup {
       Refuse("accepts the recipes but does not send its state.");
   }
 
-  // Returns true when at least `packages` states have arrived since it last returned true.
+  // Returns true if at least `packages` states have arrived since the last time when this function
+  // returned true.
   bool Hear(int packages) {
     using State = rtde::Connection::State;
     const State state = setup_.connection->Drain([this](const rtde::Packet& packet) {
@@ -221,7 +223,7 @@ class Setup {
     if (SlowedDown(state))
       setup_.facts.remarks.push_back(
           "Its speed slider is at " + std::to_string(std::lround(100 * state.slider)) +
-          " %. Set it to 100 %; until then, this program does not move the arm.");
+          " %. Set the speed slider to 100 %; until then, this program does not move the arm.");
   }
 
   void CheckArm() {
@@ -230,7 +232,8 @@ class Setup {
     if (SlowedDown(setup_.state)) Refuse(Sentence(UrFault::kSpeedSlider));
     if (setup_.state.runtime != kUrStopped)
       Refuse(
-          "is running or pausing a program. Stop it at the pendant. (A program that an earlier run "
+          "is running or pausing a program. Stop this program at the pendant. (A program that an "
+          "earlier run "
           "of this software left waiting ends by itself within half a minute.)");
     // Older controllers and the CB3 do not support this query.
     if (dashboard_.Ask("is in remote control").starts_with("false"))
@@ -238,7 +241,7 @@ class Setup {
     setup_.dashboard = dashboard_.Release();
   }
 
-  // Values that an earlier program left there must not move the arm.
+  // Values that an earlier program left in the registers must not move the arm.
   void ClearRegisters() {
     setup_.counter = static_cast<std::int32_t>(network_->Now() / 1000 & 0x3fffffff);
     rtde::PacketWriter writer(rtde::PacketType::kData);
@@ -258,8 +261,8 @@ class Setup {
                                          .first_register = options_.first_register});
     if (!stream->Write(std::as_bytes(std::span(script))))
       throw DeviceError(peer, "does not accept the program.");
-    // The connection stays open until the program runs. Closing it with unread data would reset it,
-    // and data that the controller has not read yet would be lost.
+    // The connection stays open until the program runs. If it were closed with unread data, it
+    // would be reset, and data that the controller has not read yet would be lost.
     const bool runs = WaitUntil(network_, kLaunch, [&] {
       std::array<std::byte, 4096> unused;
       while (stream->Read(unused) > 0) {

@@ -1,4 +1,4 @@
-// The setup of a Universal Robots arm before it can be controlled.
+// Sets up a Universal Robots arm before the driver can control it.
 #pragma once
 
 #include <memory>
@@ -21,10 +21,10 @@ struct UrSetup {
   UrState state;                // the last state
 };
 
-// Takes the parameters of ConnectUr and throws its errors.
+// The parameters and the errors are the same as for ConnectUr.
 UrSetup SetUpUr(const UrOptions& options, Network* network);
 
-// Encodes a package of UrInputs without using the heap.
+// Encodes a packet of UrInputs without using the heap.
 std::span<const std::byte> UrCommand(rtde::PacketWriter* writer, int recipe, const UrVector& qd,
                                      std::int32_t counter, bool follow) noexcept;
 

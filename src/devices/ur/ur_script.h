@@ -1,5 +1,5 @@
-// The program that runs on the robot's controller while the driver is connected. It is the last
-// link of the chain and stops the arm if all others have failed.
+// The program that runs on the robot's controller while the driver is connected. This program is
+// the last link of the chain, and stops the arm if all other links have failed.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ struct UrScriptOptions {
 // program has been sent again.
 std::string UrScript(const UrScriptOptions& options);
 
-// Cycles without a new counter after which the program brakes.
+// Number of cycles without a new counter after which the program brakes.
 int UrSilentCycles(double cycle);
 
 // Returns the largest time from the arrival of the last counter to the first braking cycle [s].

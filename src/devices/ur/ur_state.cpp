@@ -8,8 +8,8 @@
 namespace predictor {
 namespace {
 
-// Values of robot_mode: the motors have power from power-on through idle (brakes closed) to
-// running. Higher values mean that the firmware is being updated.
+// Values of robot_mode. The motors have power in the modes from power-on through idle (brakes
+// closed) to running. Higher values mean that the firmware is being updated.
 constexpr std::int32_t kPowerOn = 4;
 constexpr std::int32_t kRunning = 7;                 // powered, brakes released
 constexpr std::uint32_t kFreedriveButton = 1U << 2;  // bit of robot_status_bits
@@ -24,7 +24,7 @@ constexpr std::uint32_t kStoppedBySafetyBit = 1U << 10;
 constexpr double kWholeSpeed = 0.995;  // setting of the speed slider
 
 // The largest time since the controller's start is 30 years [s]. With a larger value, the age of a
-// package could not be computed.
+// packet could not be computed.
 constexpr double kMaxTime = 1e9;
 constexpr double kMaxAngle = 100;  // limit of an angle, also for an endless joint [rad]
 constexpr double kMaxSpeed = 20;   // five times the speed of an arm [rad/s]
@@ -127,8 +127,8 @@ const char* Sentence(UrFault fault) {
       return "received no command from this program for too long and braked by itself. Check that "
              "the computer and the network are fast enough, then start again.";
     case UrFault::kScriptEnded:
-      return "no longer runs the program that receives our commands. Someone stopped or paused it, "
-             "or the pendant shows an error.";
+      return "no longer runs the program that receives our commands. Someone stopped or paused "
+             "this program, or the pendant shows an error.";
     case UrFault::kDeaf:
       return "sends its state but accepts no commands. Restart the robot's controller.";
     case UrFault::kCommand:

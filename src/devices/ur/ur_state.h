@@ -1,5 +1,5 @@
-// The state that a Universal Robots controller reports in each package, and the faults that it can
-// show.
+// The state that a Universal Robots controller reports in each packet, and the faults that this
+// state can show.
 #pragma once
 
 #include <array>
@@ -42,12 +42,13 @@ struct UrExtras {
   bool tool_offset = false;  // tcp_offset
 };
 
-// Returns the requested fields, in order of arrival.
+// Returns the names of the fields to request, in the order in which they arrive.
 std::vector<rtde::Field> UrOutputs(int first_register, const UrExtras& extras);
-// Returns the sent fields: six velocities, the counter, the command (ur_script.h).
+// Returns the names of the fields that are sent: six velocities, the counter, and the command
+// (ur_script.h).
 std::vector<rtde::Field> UrInputs(int first_register);
 
-// Decodes the payload of a data package. Returns false for another size or another recipe.
+// Decodes the payload of a data packet. Returns false for another size or another recipe.
 bool Decode(std::span<const std::byte> payload, int recipe, const UrExtras& extras,
             UrState* state) noexcept;
 
@@ -78,7 +79,7 @@ constexpr bool EndsWithoutPower(UrFault fault) noexcept {
          fault == UrFault::kEmergencyStop || fault == UrFault::kSafetyFault;
 }
 
-// Returns the fault that prevents the arm from moving, whatever program runs, or kNone without a
+// Returns the fault that prevents the arm from moving with any program, or kNone if there is no
 // fault.
 UrFault ArmFault(const UrState& state) noexcept;
 // Returns the fault that prevents the arm from moving while our program should run at full speed.

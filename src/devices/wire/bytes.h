@@ -14,8 +14,8 @@ namespace predictor {
 template <class T>
 concept Scalar = std::is_arithmetic_v<T>;
 
-// Reads consecutive numbers. Missing numbers are read as zero, and ok() is false from then on: read
-// a whole packet first, then check once.
+// Reads consecutive numbers. Missing numbers are read as zero, and ok() is false from then on. Read
+// a whole packet first, and then check ok() once.
 template <std::endian kOrder>
 class ByteReader {
  public:

@@ -6,17 +6,18 @@
 
 namespace predictor {
 
-// The quickest recent package determines the offset of the device's clock. A slower package is
-// older by the difference. The delay common to all packages cannot be observed.
+// The recent packet with the shortest delay determines the offset of the device's clock. A packet
+// with a longer delay is older by the difference. The delay that is common to all packets cannot be
+// observed.
 class DeviceClock {
  public:
-  // Allowed drift between the clocks: far more than that of quartz clocks, far less than the
-  // changing delays of a network.
+  // Allowed drift between the clocks. This value is far larger than the drift of quartz clocks, and
+  // far smaller than the changing delays of a network.
   static constexpr double kDrift = 5e-4;
 
   explicit DeviceClock(double drift = kDrift) : drift_(drift) {}
 
-  // Reports that a package with this time-stamp [s] arrives at `now` [ns]. Time-stamps ascend.
+  // Reports that a packet with this time-stamp [s] arrives at `now` [ns]. Time-stamps ascend.
   void Arrived(double stamp, std::uint64_t now) noexcept {
     if (start_ == 0) start_ = now;
     const double offset = Seconds(now) - stamp;
@@ -24,7 +25,7 @@ class DeviceClock {
     stamp_ = stamp;
     known_ = true;
   }
-  // Returns the age of that package [s].
+  // Returns the age of this packet [s].
   double Age(std::uint64_t now) const noexcept {
     return known_ ? std::max(0.0, Seconds(now) - stamp_ - offset_) : 1e9;
   }

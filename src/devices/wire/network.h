@@ -1,5 +1,5 @@
-// Transports bytes between this program and a device, and provides the time: by sockets and the
-// real clock, or in memory with a simulated clock (tests, faults).
+// Transports bytes between this program and a device, and provides the time. This uses either
+// sockets and the real clock, or memory and a simulated clock (for tests and fault tests).
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,9 @@ struct Address {
   std::string ToString() const { return host + ":" + std::to_string(port); }
 };
 
-// A device does not answer, gives an invalid answer, or refuses a request, before anything moves.
-// what() is one or more sentences for the user: the device, the error and the remedy.
+// Thrown if a device does not answer, gives an invalid answer, or refuses a request before anything
+// moves. what() returns one or more sentences for the user that state the device, the error and the
+// remedy.
 class DeviceError : public std::runtime_error {
  public:
   explicit DeviceError(const std::string& sentence) : std::runtime_error(sentence) {}
@@ -27,7 +28,7 @@ class DeviceError : public std::runtime_error {
       : std::runtime_error(who.ToString() + " " + what) {}
 };
 
-// An ordered byte stream (TCP). Its functions never block, allocate or throw.
+// An ordered byte stream (TCP). The functions never block, allocate or throw.
 class Stream {
  public:
   static constexpr int kClosed = -1;
@@ -37,7 +38,7 @@ class Stream {
   // kClosed means that the peer has closed the connection, or that it is permanently broken.
   virtual int Read(std::span<std::byte> to) noexcept = 0;
   // Writes all bytes. Returns false if the peer has gone or reads so slowly that the buffer is
-  // full. A stream that accepts only a part is useless, so it is closed.
+  // full. If the stream accepts only a part of the data, it is closed, because it is useless.
   virtual bool Write(std::span<const std::byte> from) noexcept = 0;
 };
 
@@ -46,8 +47,8 @@ class Stream {
 class Datagrams {
  public:
   virtual ~Datagrams() = default;
-  // Copies the next datagram to `to` and returns its size, which exceeds the size of `to` if it was
-  // truncated, or 0 if there is none at present.
+  // Copies the next datagram to `to` and returns its size, or 0 if no datagram is available. If the
+  // datagram was truncated, its size exceeds the size of `to`.
   virtual int Receive(std::span<std::byte> to) noexcept = 0;
   virtual bool Send(std::span<const std::byte> from) noexcept = 0;
   virtual std::uint16_t port() const noexcept = 0;  // our port number
@@ -69,12 +70,12 @@ class Network {
   virtual void Wait(double time) = 0;
 };
 
-// Returns this computer's sockets and clock. TCP has no delay, and each peer is identified by its
-// address.
+// Returns this computer's sockets and clock. TCP streams send without delay (no Nagle algorithm),
+// and each peer is identified by its address.
 std::unique_ptr<Network> SocketNetwork();
 
-// Only before the first tick: waits until `done()` is true, polling every millisecond. Returns
-// false after `timeout` [s].
+// Waits until `done()` is true, and checks this every millisecond. Returns false after `timeout`
+// [s]. Call this only before the first tick.
 template <class Done>
 bool WaitUntil(Network* network, double timeout, const Done& done) {
   const std::uint64_t end = network->Now() + static_cast<std::uint64_t>(1e9 * timeout);

@@ -158,7 +158,7 @@ class Sockets final : public Network {
     if (bind(socket.get(), Generic(own), sizeof own) != 0)
       throw DeviceError("This computer's UDP port " + std::to_string(port) + ", to which " +
                         peer.host + " sends, is not available: " + Reason(errno) +
-                        ". Check whether another program uses it.");
+                        ". Check whether another program uses this port.");
     socklen_t size = sizeof own;
     getsockname(socket.get(), reinterpret_cast<sockaddr*>(&own), &size);
     return std::make_unique<SocketDatagrams>(std::move(socket), address, ntohs(own.sin_port));
@@ -178,7 +178,8 @@ class Sockets final : public Network {
   }
 
  private:
-  // Returns our address as the peer sees it. Connecting a datagram socket sends no packet.
+  // Returns the address of this computer as the peer sees it. Connecting a datagram socket sends no
+  // packet.
   static in_addr OwnAddress(sockaddr_in peer) {
     const Socket probe(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
     if (peer.sin_port == 0) peer.sin_port = htons(9);  // any port

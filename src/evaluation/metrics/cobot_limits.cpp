@@ -21,7 +21,7 @@ class CobotLimits final : public Metric {
       const auto robot = LoadCobotModel(s);
       limits_ = Limits{EffortLimit(s.cobot, *robot), robot->velocity_limit()};
     } catch (const InputError&) {
-      // The model of a recording may be missing. Its limits are then unknown.
+      // The model of a recording may be missing. In this case, the limits of the cobot are unknown.
     }
   }
 

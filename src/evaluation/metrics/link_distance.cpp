@@ -1,4 +1,4 @@
-// Measures the distance between the links that the program keeps apart.
+// Measures the distance between the links of the arms that the program keeps apart.
 #include <algorithm>
 #include <limits>
 

@@ -1,6 +1,6 @@
 // Implements (13)–(15): joint positions, velocities and accelerations, as bounds. Position and
-// velocity limits always hold. If the acceleration limit conflicts with them in one tick, it is
-// exceeded.
+// velocity limits always hold. If the acceleration limit conflicts with these limits in a tick, the
+// acceleration limit is exceeded.
 #include <algorithm>
 
 #include "haptics/approach_speed.h"
@@ -9,8 +9,8 @@
 namespace predictor {
 namespace {
 
-// The share of a joint's velocity limit that rendering uses. The rest is reserved for a stop, which
-// speeds up single joints slightly to keep the handles on their path.
+// The share of a joint's velocity limit that rendering uses. The remaining share is reserved for a
+// stop, which slightly accelerates single joints to keep the handles on their path.
 constexpr double kShareOfVelocity = 0.98;
 
 class JointLimit final : public Limit {
@@ -50,8 +50,8 @@ class JointLimit final : public Limit {
           out->Narrow(context.offset[i] + j, lowest, highest);
           continue;
         }
-        // The range that one tick's acceleration permits around the last command, shifted into the
-        // range that the position limits allow.
+        // The range around the last command that the acceleration limit permits in one tick,
+        // shifted into the range that the position limits allow.
         const double last = context.last[i][j], step = a * context.dt;
         out->Narrow(context.offset[i] + j, std::clamp(last - step, lowest, highest),
                     std::clamp(last + step, lowest, highest));

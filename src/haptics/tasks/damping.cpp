@@ -1,6 +1,7 @@
 // ½ ε |x|² makes the problem strictly convex: P = JᵀJ has rank 12 of 14. ε grows near a
-// singularity, where it bounds joint speeds (damped least squares, Nakamura & Hanafusa 1986). It
-// reduces a handle's speed along a direction of singular value σ by the fraction ε / (σ² + ε).
+// singularity, where it bounds joint speeds (damped least squares, Nakamura & Hanafusa 1986). The
+// damping reduces a handle's speed along a direction with the singular value σ by the fraction ε /
+// (σ² + ε).
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -43,7 +44,8 @@ class Damping final : public Task {
         const Vector6 column = scale.cwiseProduct(J.col(c));
         JJt.noalias() += column * column.transpose();
       }
-      // 1/tr((J Jᵀ)⁻¹) lies between σ_min²/6 and σ_min². It is cheap to compute and smooth in q.
+      // 1/tr((J Jᵀ)⁻¹) lies between σ_min²/6 and σ_min². This measure is cheap to compute and
+      // smooth in q.
       const double sigma = 1 / std::sqrt(TraceOfInverse(JJt));
       const double near = std::max(0.0, 1 - sigma / kSingularValue);
       joints->damping.segment(context.offset[i], J.cols()).array() +=

@@ -1,9 +1,9 @@
-// (10), repaired: the pose of the right real handle relative to the left one approaches the
-// relative pose of the virtual handles, applied to the real left handle. The requested motion stays
-// within a handle's caps.
+// The repaired form of (10): the right real handle approaches the pose that has the relative pose
+// of the virtual handles to the left real handle. The requested motion does not exceed the speed
+// caps of a handle.
 //
-// (10) as printed: the vector between the real handles approaches that between the virtual ones in
-// W, and the handles' orientations approach each other.
+// The form of (10) as printed: the vector between the real handles approaches the vector between
+// the virtual handles in W, and the orientations of the handles approach each other.
 #include "haptics/registry.h"
 
 namespace predictor {
@@ -28,8 +28,8 @@ class RelativePose final : public Task {
   void Update(const RenderContext& context, JointObjective*) noexcept override {
     if (terms_.empty()) return;
     TaskTerm& term = terms_[0];
-    // During alignment no hand holds a handle, and each arm moves independently. Far from the
-    // correct relative pose, the arms could not track both goals at once.
+    // During alignment, no hand holds a handle, and each arm moves independently. If the relative
+    // pose is far from correct, the arms cannot track both goals at once.
     if (!context.Has(0) || !context.Has(1) || context.target.aligning) {
       term.J.resize(6, 0);
       return;
@@ -38,8 +38,8 @@ class RelativePose final : public Task {
     Vector3 lever;
     SetGoal(context, &X_W2_goal, &lever);
 
-    // Derivative of (goal − right): rigid motion of the left handle at the goal, minus the motion
-    // of the right handle.
+    // The derivative of (goal − right) is the rigid motion of the left handle at the goal, minus
+    // the motion of the right handle.
     const Jacobian &J0 = context.J[0], &J1 = context.J[1];
     const auto n0 = J0.cols(), n1 = J1.cols();
     term.J.resize(6, n0 + n1);
@@ -57,7 +57,7 @@ class RelativePose final : public Task {
   }
 
  private:
-  // Sets the goal of the right handle, and the vector from the left handle to it [m].
+  // Sets the goal of the right handle, and the vector from the left handle to the right handle [m].
   void SetGoal(const RenderContext& context, Pose* goal, Vector3* lever) const noexcept {
     const auto& D = context.target.handle;
     if (relative_) {

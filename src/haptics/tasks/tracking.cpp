@@ -40,7 +40,7 @@ class Tracking final : public Task {
       if (!target.aligning) v += lead_ * acceleration_[i].value();
       v.head<3>() += kp * (D.X_W.p - context.X_WH[i].p);
       v.tail<3>() += ko * QuaternionError(D.X_W.q, context.X_WH[i].q, nearer_);
-      // One factor for both handles, so that the cap does not change their relative motion.
+      // The cap uses one factor for both handles, so it does not change their relative motion.
       if (capped_ || target.aligning) scale = std::min(scale, ScaleToCaps(v, target));
     }
     for (TaskTerm& term : terms_) term.rate *= scale;
@@ -57,8 +57,8 @@ class Tracking final : public Task {
   double kp_, ko_;  // K_p, K_o of (9) [1/s]
   double lead_;     // [s]
   bool nearer_, capped_;
-  // Filtered acceleration of the virtual handles [m/s²], [rad/s²]. Without a filter, noise of the
-  // hand's force would cause jerk of the arms.
+  // Filtered acceleration of the virtual handles [m/s²], [rad/s²]. Without a filter, noise in the
+  // measured force would make the arms jerk.
   std::array<LowPass<Vector6>, kHands> acceleration_;
 };
 

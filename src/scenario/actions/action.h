@@ -11,20 +11,21 @@
 
 namespace predictor {
 
-// One entry of the script as the virtual operator performs it. Actions that overlap in time are
-// added, like the submovements of an arm (Flash & Henis 1991).
+// An entry of the script that the virtual operator performs. The motions of actions that overlap in
+// time are added, like the submovements of an arm (Flash & Henis 1991).
 class Action {
  public:
   virtual ~Action() = default;
-  // The operator calls this when the action starts, and when the script starts again. It does not
-  // use the heap and does not throw, and nor do the functions below.
+  // The operator calls this when the action starts, and when the script starts again. This function
+  // and the following ones do not use the heap and do not throw.
   virtual void Begin(Intent* intent) noexcept = 0;
   // Advances by dt [s]. `pace` is the speed of the operator, 1 on average. Returns false when the
   // action ends.
   virtual bool Advance(double dt, double pace, Intent* intent) noexcept = 0;
-  // Returns whether the action moves the object. It then ends as soon as no hand holds the object.
+  // Returns whether the action moves the object. Such an action ends as soon as no hand holds the
+  // object.
   virtual bool NeedsHold() const noexcept { return false; }
-  // Saves or loads its progress.
+  // Saves or loads the progress of the action.
   virtual void Archive(StateArchive& a) noexcept = 0;
 };
 
@@ -34,7 +35,8 @@ enum class ActionMotion { kNone, kMoves, kTurns };
 // The registry's description of an action.
 struct ActionKind : ParameterKind {
   ActionMotion motion;  // motion of the object
-  // The instruction to a person. `facing` is the direction of view, about z of W from x [rad].
+  // Returns the instruction to a person. `facing` is the direction of view, about z of W from x
+  // [rad].
   std::string (*sentence)(const OwnParameters&, double facing);
   double (*time)(const OwnParameters&);                   // duration at an average pace [s]
   std::unique_ptr<Action> (*make)(const OwnParameters&);  // throws InputError
@@ -71,7 +73,7 @@ inline Rule DurationRule(const char* doc = "duration of the action") {
 inline Rule HandRule() { return Word("hand or hands that act", {"left", "right", "both"}); }
 // Returns a parameter without which the action does nothing. Throws InputError if it is zero.
 Vector3 NotZero(const char* key, const Vector3& value);
-// Returns whether "left", "right" or "both" concerns this hand.
+// Returns whether the word ("left", "right" or "both") includes this hand.
 bool Concerns(const std::string& which, std::size_t hand);
 
 // Returns all actions, sorted by name.
@@ -83,7 +85,7 @@ const ActionKind* FindAction(const std::string& name) noexcept;
 // and the error in it.
 std::unique_ptr<Action> MakeAction(const ActionSpec& spec, int index);
 
-// Returns the parameters of an entry of this kind. An invalid one has its default.
+// Returns the parameters of an entry of this kind. An invalid parameter has its default.
 std::unique_ptr<OwnParameters> ParametersIn(const ActionSpec& spec, const ActionKind& kind);
 
 // Returns the instruction to a person at the handles, for example "Grip the handles."

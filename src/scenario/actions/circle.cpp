@@ -1,6 +1,7 @@
-// Moves the object along a horizontal circle, counter-clockwise as seen from above. It starts at
-// the point of the circle with the largest x: centre = start − radius · x. The speed rises and
-// falls within one ramp each, with minimum jerk. The path is exactly `cycles` turns.
+// Moves the object along a horizontal circle, counter-clockwise as seen from above. The motion
+// starts at the point of the circle with the largest x, so centre = start − radius · x. The speed
+// rises during one ramp and falls during another one, each with minimum jerk. The path consists of
+// exactly `cycles` turns.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -36,7 +37,8 @@ class Circle final : public Action {
         rate_(2 * std::numbers::pi / p.period),
         ramp_(Ramp(p)),
         duration_(Time(p)) {}
-  // The path takes one ramp longer than the cycles, because the speed rises and falls.
+  // The motion takes one ramp longer than the cycles at constant speed, because the speed rises and
+  // falls.
   static double Time(const CircleParameters& p) { return p.cycles * p.period + Ramp(p); }
   static std::string Sentence(const CircleParameters& p, double) {
     return "Follow the circle of " + InCentimetres(p.radius) + " radius, " +

@@ -1,4 +1,5 @@
-// The operator's intent: the desired pose of the object, the hands that hold, and their forces.
+// The operator's intent: the desired pose of the object, the hands that hold the object, and their
+// forces.
 #pragma once
 
 #include <array>
@@ -7,8 +8,8 @@
 
 namespace predictor {
 
-// What the operator intends. Actions write it and the hands read it. Both hands share one reference
-// for the object.
+// What the operator intends. The actions write the intent, and the hands read it. Both hands share
+// one reference for the object.
 struct Intent {
   Pose X_WO;                   // set-point of the object
   Twist V_WO = Twist::Zero();  // velocity of the object, the sum over all actions [m/s], [rad/s]
@@ -17,13 +18,13 @@ struct Intent {
   std::array<bool, kHands> hold = {false, false};     // the hand holds its handle
   std::array<double, kHands> grip_time = {0.3, 0.3};  // time in which a grip closes [s]
 
-  // Moves the reference by a displacement [m] in W; v [m/s] is its current velocity.
+  // Moves the reference by a displacement [m] in W, whose rate is v [m/s].
   void Move(const Vector3& displacement, const Vector3& v) {
     X_WO.p += displacement;
     V_WO.head<3>() += v;
   }
-  // Rotates the reference about O by a rotation vector [rad] in W; w [rad/s] is its current
-  // velocity.
+  // Rotates the reference about O by a rotation vector [rad] in W. The present angular velocity is
+  // w [rad/s].
   void Turn(const Vector3& rotation, const Vector3& w) {
     X_WO.q = (RotationFromVector(rotation) * X_WO.q).normalized();
     V_WO.tail<3>() += w;

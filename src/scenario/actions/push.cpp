@@ -1,5 +1,5 @@
-// Adds a feed-forward force: it rises within `rise_time`, stays for `duration`, falls within
-// `rise_time`.
+// Adds a feed-forward force that rises within `rise_time`, is constant for `duration` and falls
+// within `rise_time`.
 #include <algorithm>
 #include <array>
 

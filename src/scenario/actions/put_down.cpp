@@ -1,4 +1,4 @@
-// Displaces the object by `by`, then opens hands.
+// Displaces the object by `by`, and then opens the hands.
 #include "scenario/actions/grip.h"
 #include "scenario/actions/phrases.h"
 #include "scenario/actions/registry.h"

@@ -1,4 +1,4 @@
-// The actions of the operator's script: one line each, sorted by name.
+// Lists the actions of the operator's script, one per line and sorted by name.
 #pragma once
 
 #include "scenario/actions/action.h"

@@ -1,4 +1,4 @@
-// Opens hands. The speed of release is a property of the hand (operator.hand.release_time).
+// Opens hands. The time for the release is a property of the hand (operator.hand.release_time).
 #include "scenario/actions/grip.h"
 #include "scenario/actions/phrases.h"
 #include "scenario/actions/registry.h"

@@ -32,7 +32,7 @@ class Admittance final : public AdmittanceLaw {
     stiffness_ << p.stiffness_translation, p.stiffness_rotation;
   }
 
-  // This is the energy of the virtual spring.
+  // The energy is that of the virtual spring.
   double StoredEnergy(const ControllerInput&) const noexcept override {
     return 0.5 * x().dot(stiffness_.cwiseProduct(x()));
   }

@@ -1,4 +1,5 @@
-// The law of the controllers that yield to the force in the wrist, and the position loop below it.
+// The law of the controllers that yield to the force in the wrist, and the position loop that
+// follows its reference.
 //
 //   M_d V̇ + D_d V = F + F_a,   F: wrist sensor's reading minus its value at the start
 //
@@ -48,7 +49,7 @@ class AdmittanceLaw : public Controller {
   bool uses_wrist_sensor() const noexcept final { return true; }
   std::span<double> memory() noexcept final { return memory_; }
   void Start(const ControllerInput& input) noexcept final;
-  // The reference begins where the torques continue. The tare remains that of the start.
+  // The reference begins where the torques do not jump. The tare of the start remains valid.
   void TakeOver(const ControllerInput& input) noexcept final;
   void Advance(const ControllerInput& input, double dt) noexcept final;
   void Compute(const ControllerInput& input, JointVector* torque) noexcept final;
@@ -56,7 +57,8 @@ class AdmittanceLaw : public Controller {
   void Archive(StateArchive& a) noexcept final { a(tare_); }
 
  protected:
-  // `own` is the number of values of the derived controller in the memory. They are 0 at the start.
+  // `own` is the number of values of the derived controller in the memory. These values are 0 at
+  // the start.
   AdmittanceLaw(const ControllerContext& context, const AdmittanceParameters& parameters, int own);
 
   // Returns F + F_a − D_d V, the wrench that accelerates M_d.

@@ -3,7 +3,7 @@
 //   τ = g + Jᵀ (Λ ẍ_d + D ẋ̃ + w_K) + τ_posture,   x̃ = set-point − pose of E
 //
 // Λ = (J M⁻¹ Jᵀ)⁻¹ is the inertia of the cobot alone, so no force has to be measured (Ott 2008). If
-// it included the load, D would be too large for the wrist. The Coriolis term stays in the loop: Λ
+// Λ included the load, D would be too large for the wrist. The Coriolis term stays in the loop: Λ
 // ẍ̃ + (μ + D) ẋ̃ + w_K = F_ext. Cancelling it would make the loop active, since Λ varies (½ Λ̇ − μ
 // is skew). w_K is the gradient of the springs' energy (below), and D is positive semidefinite for
 // any posture, so the loop is passive if the set-point does not move. While the set-point moves, μ
@@ -22,7 +22,7 @@ namespace predictor::controllers {
 namespace {
 
 struct CartesianImpedanceParameters {
-  // These values apply along and about W's axes, at the end-effector.
+  // Stiffness and damping apply along and about W's axes, at the end-effector.
   Vector3 stiffness_translation = {500, 500, 500};  // [N/m]
   Vector3 stiffness_rotation = {100, 100, 100};     // [N·m/rad]
   std::vector<double> damping_ratio = {0.7};        // one, or six: x y z, rotation x y z
@@ -52,14 +52,14 @@ void Fields(V& v, CartesianImpedanceParameters& p) {
          "roll, pitch, yaw [rad]"));
 }
 
-// This is added to Λ⁻¹ to bound Λ in a singular posture. There, J cancels the large values of Λ, so
-// that the joint torques stay bounded (a test checks this). In other postures, the effect is
-// negligible.
+// This value is added to Λ⁻¹ to bound Λ in a singular posture. In such a posture, J cancels the
+// large values of Λ, so that the joint torques stay bounded (a test checks this). In other
+// postures, the effect is negligible.
 constexpr double kMinMobility = 1e-9;  // [1/kg], [1/(kg·m²)]
 
-// Returns the inverse of the left Jacobian of the rotation vector e [rad]. With R = exp(e)ᵀ R_set
-// and the spring energy ½ eᵀ K e, the torque on the body is Jl⁻¹(e) K e. It equals K e if K is
-// isotropic.
+// Returns the inverse of the left Jacobian of the rotation vector e [rad]. If R = exp(e)ᵀ R_set and
+// the spring energy is ½ eᵀ K e, the torque on the body is Jl⁻¹(e) K e. This torque equals K e if K
+// is isotropic.
 Matrix3 InverseLeftJacobian(const Vector3& e) {
   const double angle2 = e.squaredNorm();
   const double angle = std::sqrt(angle2);

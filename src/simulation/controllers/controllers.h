@@ -1,4 +1,4 @@
-// Lists the controllers of the virtual cobot, one line each, sorted by name.
+// Lists the controllers of the virtual cobot, one per line and sorted by name.
 #pragma once
 
 #include "simulation/controller.h"

@@ -1,13 +1,14 @@
 // Hybrid force and position control (Raibert & Craig 1981, "Hybrid position/force control of
 // manipulators"; Khatib 1987, "A unified approach for motion and force control of robot
-// manipulators"). A set force acts along some of W's axes, which S selects; a spring holds the
-// position along the others.
+// manipulators"). Along the axes of W that S selects, the cobot exerts a set force. Along the other
+// axes, a spring holds the position.
 //
 //   F = S (F_d + I + k_p (F_d − F_m)) + (1 − S) K (x_0 − x),   İ = k_i (F_d − F_m)
 //
-// F_m: the force of the cobot on the load, which the wrist sensor measures with its weight. I is
-// bounded, so that it does not wind up while the load moves freely. wrench_control.h describes the
-// damping, the orientation and the torques. The memory contains I and the last F_d − F_m.
+// F_m is the force of the cobot on the load. The wrist sensor measures it, including the load's
+// weight. I is bounded, so that it does not wind up while the load moves freely. wrench_control.h
+// describes the damping, the orientation and the torques. The memory contains I and the last F_d −
+// F_m.
 #include <algorithm>
 #include <array>
 #include <string>

@@ -36,8 +36,8 @@ class JointImpedance final : public Controller {
     posture_spec_ = posture_;
   }
 
-  // The new set-point satisfies K' (q_0' − q) = K (q_0 − q). A joint uses the factor of the
-  // stiffness of its kind.
+  // The new set-point satisfies K' (q_0' − q) = K (q_0 − q). A joint uses the factor for the
+  // stiffness of its kind (rotation or translation).
   void Tune(const ControllerTuning& tuning, const ControllerInput& input,
             bool keeps_force) noexcept override {
     for (int j = 0; j < K_.size(); ++j) {

@@ -1,7 +1,7 @@
 // The cobot carries a share of a load that it knows (Lawitzky, Mörtl & Hirche 2010, "Load sharing
 // in human-robot cooperative manipulation"; Mörtl, Lawitzky, Kucukyilmaz, Sezgin, Basdogan & Hirche
-// 2012, "The role of roles: physical cooperation between humans and robots"). Both partners divide
-// the force that moves the object in fixed shares.
+// 2012, "The role of roles: physical cooperation between humans and robots"). The cobot and the
+// person divide the force that moves the object in fixed shares.
 //
 //   F = α m g_up + β m ẍ,   at the object's centre of mass
 //
@@ -42,8 +42,8 @@ class LoadSharing final : public WrenchControl {
 
   std::span<double> memory() noexcept override { return velocity_; }
   void Start(const ControllerInput&) noexcept override { velocity_.fill(0); }
-  // The step is implicit, because Compute sees v_f after it. The ẍ of a steady acceleration is then
-  // exact.
+  // The step is implicit, because Compute uses the v_f that results from this step. For a steady
+  // acceleration, ẍ is then exact.
   void Advance(const ControllerInput& input, double dt) noexcept override {
     const Twist V = input.data->FrameTwist(*input.model, input.end_effector);
     auto v_f = Vector3::Map(velocity_.data());

@@ -1,11 +1,12 @@
-// Estimate of a point-to-point movement while it happens, by the minimum-jerk model (Flash & Hogan
+// Estimates a point-to-point movement while it happens, by the minimum-jerk model (Flash & Hogan
 // 1985): x(t) = a p(t / T), p(s) = 10 s³ − 15 s⁴ + 6 s⁵.
 //
 // With the time t since the movement began, the ratio ρ = t ẋ / x depends on the phase s = t / T
-// only: ρ = s p'(s) / p(s) = 30 (1 − s)² / (10 − 15 s + 6 s²), which falls from 3 to 0. Its inverse
-// is a quadratic equation. T = t / s and a = x / p(s) follow without iteration or past samples.
+// only: ρ = s p'(s) / p(s) = 30 (1 − s)² / (10 − 15 s + 6 s²), which falls from 3 to 0. The phase
+// follows from this ratio by a quadratic equation. T = t / s and a = x / p(s) follow without
+// iteration or past samples.
 //
-// A movement is noticed late, when its speed has grown by a factor r² in the time Δ since the last
+// A movement is detected late, when its speed has grown by a factor r² in the time Δ since the last
 // sample at rest. Since the speed is proportional to (s (1 − s))², it began τ = Δ / (r / (1 − Δ /
 // T) − 1) before that sample, which had moved by ẋ τ / ρ(τ / T).
 #pragma once
@@ -23,7 +24,7 @@ struct MinimumJerkEstimate {
   Vector3 Acceleration() const noexcept;  // [m/s²]
 };
 
-// What the estimate must know about the past, as values in a controller's memory that are 0 at the
+// The values in a controller's memory that the estimate needs from the past. They are 0 at the
 // start.
 class MovementOnset {
  public:

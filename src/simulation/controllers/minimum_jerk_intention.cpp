@@ -1,4 +1,4 @@
-// Admittance control that takes part in the movement which the person intends (Maeda, Hara & Arai
+// Admittance control that contributes to the movement that the person intends (Maeda, Hara & Arai
 // 2001, "Human-robot cooperative manipulation with motion estimation"; Corteville, Aertbeliën,
 // Bruyninckx, De Schutter & Van Brussel 2007, "Human-inspired robot assistant for fast
 // point-to-point movements").
@@ -9,9 +9,10 @@
 //
 //   M_d V̇ + D_d V = F + α w (D_d V_e + (M_d + m) V̇_e)
 //
-// V_e and V̇_e: of the estimated movement; m: of the load. With α = 1 and the right m, the movement
-// continues as it began, without a force of the hand. w is less than 1 at both ends of the
-// movement, where the estimate is uncertain. Rotation is plain admittance.
+// V_e and V̇_e are the twist and the acceleration of the estimated movement, and m is the mass of
+// the load. With α = 1 and the right m, the movement continues as it began, without a force of the
+// hand. w is less than 1 at both ends of the movement, where the estimate is uncertain. Rotation is
+// plain admittance.
 #include <algorithm>
 
 #include "simulation/controllers/admittance_law.h"

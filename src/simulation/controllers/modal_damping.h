@@ -1,5 +1,5 @@
-// Damping by double diagonalisation, in which each mode of stiffness and inertia gets the desired
-// ratio.
+// Computes a damping by double diagonalisation, which gives each mode of stiffness and inertia the
+// desired damping ratio.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -7,8 +7,8 @@
 
 namespace predictor {
 
-// For an inertia Λ = L Lᵀ and a diagonal stiffness K, both are diagonal in the basis Q = L U: Λ = Q
-// Qᵀ, K = Q K0 Qᵀ with L⁻¹ K L⁻ᵀ = U K0 Uᵀ. D = Q diag(2 ζ √K0) Qᵀ damps each mode separately
+// An inertia Λ = L Lᵀ and a diagonal stiffness K are both diagonal in the basis Q = L U: Λ = Q Qᵀ,
+// K = Q K0 Qᵀ with L⁻¹ K L⁻ᵀ = U K0 Uᵀ. D = Q diag(2 ζ √K0) Qᵀ damps each mode separately
 // (Albu-Schäffer, Ott, Frese & Hirzinger 2003, "double diagonalization design"). Vector and Matrix
 // are Eigen types of fixed size or of fixed capacity. Does not use the heap.
 template <class Vector, class Matrix>
@@ -18,8 +18,8 @@ class ModalDamping {
   explicit ModalDamping(Eigen::Index size) : eigen_(size), H_(size, size), damping_(size) {}
 
   // `L_inverse_transposed` is L⁻ᵀ, `K` the diagonal of the stiffness, and `ratio` the ζ of each
-  // axis. A mode's ratio is the mean of these, weighted by each axis's share of the energy in the
-  // mode's springs.
+  // axis. The damping ratio of a mode is the mean of the axes' ratios, weighted by each axis's
+  // share of the energy in the mode's springs.
   void Compute(const Matrix& L_inverse_transposed, const Vector& K, const Vector& ratio) {
     // In L⁻¹ K L⁻ᵀ = Hᵀ H, column i of H U contains mode i's displacements times √K.
     H_.noalias() = K.cwiseSqrt().asDiagonal() * L_inverse_transposed;

@@ -91,7 +91,8 @@ class Plugin final : public ExternalController {
     return {};
   }
 
-  // A C++ exception must not leave the library. If one does, its next torques are refused.
+  // A C++ exception must not leave the library. If an exception leaves the library, its next
+  // torques are refused.
   template <class Call>
   void Guard(const char* function, Call call) const noexcept {
     const PluginCall running(&calls_, function);

@@ -87,8 +87,8 @@ class Process final : public ExternalController {
     if (!memory_.empty() && TryStart(Fill(input)) && Request(PREDICTOR_ADVANCE, Fill(input)))
       TakeMemory();
   }
-  // Returns the energy at the input of the last torques. A separate request would take as long as
-  // theirs.
+  // Returns the energy at the input of the last torques. A separate request for the energy would
+  // take as long as a request for torques.
   double StoredEnergy(const ControllerInput&) const noexcept override { return energy_; }
 
  private:
@@ -111,8 +111,8 @@ class Process final : public ExternalController {
     return {};
   }
 
-  // Repeats a start that the program could not answer. Without it, its memory would be that of the
-  // last run. Returns false while the program has not started.
+  // Repeats a start that the program could not answer. Without this start, the program's memory
+  // would be that of the last run. Returns false while the program has not started.
   bool TryStart(const PredictorControllerInput& input) noexcept {
     if (!must_start_) return true;
     if (!Request(PREDICTOR_START, input)) return false;
@@ -124,7 +124,7 @@ class Process final : public ExternalController {
   bool Request(int kind, const PredictorControllerInput& input) noexcept {
     if (process_.IsBusy()) {
       // The shared memory belongs to the program at present. In virtual time, the program has been
-      // given up.
+      // abandoned.
       return false;
     }
     PredictorControllerMemory& shared = process_.shared();
@@ -134,8 +134,8 @@ class Process final : public ExternalController {
                       : process_.AskAndWait(kind, kLongestWait);
   }
 
-  // The program can change these numbers at any time. A number that is not
-  // finite would corrupt every later step.
+  // The program can change these numbers at any time. A number that is not finite would make every
+  // later step invalid.
   void TakeMemory() noexcept {
     std::array<double, PREDICTOR_MAX_MEMORY> taken;
     std::copy_n(process_.shared().memory, memory_.size(), taken.begin());

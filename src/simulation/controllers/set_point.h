@@ -1,4 +1,5 @@
-// Set-points over time, with minimum jerk from waypoint to waypoint and from rest to rest.
+// Computes set-points over time, which move from waypoint to waypoint with minimum jerk and from
+// rest to rest.
 #pragma once
 
 #include <vector>

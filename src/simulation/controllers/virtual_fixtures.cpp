@@ -1,13 +1,13 @@
 // Virtual fixtures (Rosenberg 1993, "Virtual fixtures: perceptual tools for telerobotic
 // manipulation"; Abbott, Marayong & Okamura 2007, "Haptic virtual fixtures for robot-assisted
 // manipulation"; Bowyer, Davies & Rodriguez y Baena 2014, "Active constraints/virtual fixtures: a
-// survey"). A guide is a line or a plane, with a spring and a damper across it; a zone limits the
-// speed.
+// survey"). A guide is a line or a plane, with a spring and a damper perpendicular to it. A zone
+// limits the speed.
 //
 //   F = −K P (x − x_0) − D P ẋ,   P = 1 − u uᵀ (line along u), u uᵀ (plane normal to u)
 //
-// The zone is a sphere with a damper: F = −D_z s ẋ. s falls smoothly from 1 to 0
-// over its edge. The cobot carries a known load. wrench_control.h describes the torques.
+// The zone is a sphere with a damper: F = −D_z s ẋ. s falls smoothly from 1 to 0 across the edge of
+// the sphere. The cobot carries a known load. wrench_control.h describes the torques.
 #include <string>
 
 #include "core/error.h"

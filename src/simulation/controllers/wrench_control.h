@@ -26,7 +26,7 @@ void Fields(V& v, WrenchControlParameters& p) {
     Number("N·m/rad", "stiffness towards the orientation at the start", From(0, 1e4)));
 }
 
-// What the controller knows of the object.
+// The data of the object that the controller knows.
 struct KnownLoad {
   double mass = 0;                     // [kg]
   Vector3 center_of_mass = {0, 0, 0};  // p in E [m]

@@ -225,7 +225,7 @@ class DartEngine final : public Engine {
         motion_.mass_matrix);
   }
 
-  // Returns whether the present state is that of the last answer.
+  // Returns whether the present state is the state in the last answer.
   bool IsPrepared() noexcept {
     TakeShared();
     const auto same = [](const auto& a, const auto& b) {
@@ -235,7 +235,7 @@ class DartEngine final : public Engine {
     return is_prepared_ && same(state_.q, at.q) && same(state_.v, at.v) &&
            same(state_.hand_mass, at.hand_mass) && state_.removed == at.removed;
   }
-  // Takes over what all states of the scene share.
+  // Copies the data that all states of the scene share.
   void TakeShared() noexcept {
     std::copy_n(scene_->hand_mass.data(), kHands, state_.hand_mass);
     state_.removed = scene_->removed;
@@ -265,7 +265,7 @@ class DartEngine final : public Engine {
 
 std::unique_ptr<Engine> MakeDartEngine(const Scenario& scenario, const RobotModel& cobot,
                                        Holding holding) {
-  // Both engines refuse the same scenarios, with the same words.
+  // Both engines refuse such scenarios with the same messages.
   Scenario same = scenario;
   same.simulation = {};
   const Scene checked = ComposeScene(same, cobot, false, holding);

@@ -1,4 +1,4 @@
-// DART, the engine of Gazebo's dartsim, as an engine of the virtual world.
+// Makes DART, the engine of Gazebo's dartsim, available as an engine of the virtual world.
 #pragma once
 
 #include <memory>
@@ -7,8 +7,9 @@
 
 namespace predictor {
 
-// As MakeEngine. DART runs in a process of its own and in virtual time only: a step waits for it.
-// A free object cannot be attached: StepMatrix, Forces and AddReactions do not describe contacts.
+// As MakeEngine. DART runs in a separate process and in virtual time only, because each step waits
+// for this process. A free object cannot be attached: StepMatrix, Forces and AddReactions do not
+// describe contacts.
 std::unique_ptr<Engine> MakeDartEngine(const Scenario& scenario, const RobotModel& cobot,
                                        Holding holding);
 

@@ -1,4 +1,4 @@
-// The run's side of the program predictor-dart.
+// Implements the run's side of the connection to the program predictor-dart.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace predictor {
 
 class DartProcess {
  public:
-  // Starts the program and gives it the scene. Throws InputError if the program was not built or
+  // Starts the program and sends it the scene. Throws InputError if the program was not built or
   // cannot read the scene.
   explicit DartProcess(const dart_engine::SceneData& scene);
   ~DartProcess();
@@ -28,7 +28,7 @@ class DartProcess {
 
   // Returns a sentence that states why the program no longer answers, or "" if it does.
   std::string Failure() noexcept;
-  // Starts the program again if it ended; does nothing if that is impossible.
+  // Restarts the program if it has ended. If this is impossible, the function does nothing.
   void Revive() noexcept;
 
  private:
@@ -45,7 +45,8 @@ class DartProcess {
 // Returns whether this build contains the program.
 bool HasDart();
 
-// Returns what the program says, "DART 6.12.1" for example, or "" if there is none.
+// Returns the version that the program reports, for example "DART 6.12.1", or "" if there is no
+// program.
 std::string DartVersion();
 
 }  // namespace predictor

@@ -95,7 +95,8 @@ void AddAttachment(const Scenario& scenario, const ObjectModel& object, Holding 
   scene->lower = (*spec.range)[0], scene->upper = (*spec.range)[1];
 }
 
-// Refuses what a rigid contact cannot do, and contacts of the cobot, whose links are meshes.
+// Refuses properties that a rigid contact cannot have, and contacts of the cobot, because its links
+// are meshes.
 void CheckFixture(const FixtureSpec& fixture, std::size_t i) {
   const std::string path = "environment.fixtures." + std::to_string(i);
   const auto refuse = [&path](const std::string& key, const std::string& why,

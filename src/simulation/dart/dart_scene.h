@@ -15,9 +15,9 @@ dart_engine::SceneData DartScene(const Scenario& scenario, const RobotModel& cob
                                  const ObjectModel& object, double step,
                                  Holding holding = Holding::kJoint);
 
-// Returns the share of its speed with which a body leaves a linear spring and damper that pushes
-// but does not pull, without gravity, for its damping ratio (Schwager and Pöschel, Granular Matter
-// 9:465, 2007, eqs. 20 and 21).
+// Returns the ratio of the speeds with which a body leaves and meets a linear spring and damper of
+// this damping ratio, which pushes but does not pull, without gravity (Schwager and Pöschel,
+// Granular Matter 9:465, 2007, eqs. 20 and 21).
 double RestitutionOf(double damping_ratio);
 
 }  // namespace predictor

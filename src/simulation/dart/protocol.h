@@ -1,7 +1,8 @@
-// The memory that the run shares with the program predictor-dart, which steps a world of DART. It
-// contains only plain numbers, because the two programs are built with different libraries.
+// The memory that the run shares with the program predictor-dart, which simulates a DART world step
+// by step. This memory contains only plain numbers, because the two programs are built with
+// different libraries.
 //
-// Poses are a position [m] and a unit quaternion (w, x, y, z). Axes and wrenches are those of W
+// Poses are a position [m] and a unit quaternion (w, x, y, z). Axes and wrenches are given in W
 // unless stated otherwise. The program keeps no state between two requests except the scene.
 #pragma once
 
@@ -55,7 +56,7 @@ struct CollisionShape {
   FramePose at;  // in O, or in W
 };
 
-// A body of the surroundings, which never moves.
+// A body of the surroundings that never moves.
 struct Obstacle {
   CollisionShape shape;
   double friction;

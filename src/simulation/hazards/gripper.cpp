@@ -1,4 +1,5 @@
-// Commands of the cobot's program to its gripper. They are no hazards, but events like them.
+// Commands of the cobot's program to its gripper. These commands are not hazards, but they are
+// events like the hazards.
 #include "simulation/hazards/hazards.h"
 
 namespace predictor::hazards {

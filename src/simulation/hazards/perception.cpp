@@ -1,4 +1,5 @@
-// Hazards of what the cobot assumes or senses: its payload, its friction and its wrist sensor.
+// Hazards that affect what the cobot assumes or senses. They concern its payload, its friction and
+// its wrist sensor.
 #include "simulation/hazards/hazards.h"
 
 namespace predictor::hazards {

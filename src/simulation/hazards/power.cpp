@@ -1,4 +1,4 @@
-// Hazards of the cobot's drives: closing brakes, and a loss of power.
+// Hazards of the cobot's drives, which are closing brakes and a loss of power.
 #include "simulation/hazards/hazards.h"
 
 namespace predictor::hazards {

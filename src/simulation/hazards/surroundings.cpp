@@ -1,4 +1,4 @@
-// Hazards of what surrounds the cobot and the object.
+// Hazards in the surroundings of the cobot and the object.
 #include <string>
 
 #include "simulation/hazards/hazards.h"
@@ -17,7 +17,7 @@ void Fields(V& v, ObstacleParameters& p) {
                   "begins, and after it ends")));
 }
 
-// The sequence of events knows the number of the fixture.
+// The class EventSequence determines the number of the fixture.
 void Appear(const ObstacleParameters&, double, Disturbance*) noexcept {}
 
 }  // namespace

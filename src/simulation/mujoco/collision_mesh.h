@@ -13,10 +13,10 @@ struct CollisionMesh {
   std::vector<int> faces;       // three vertex indices of each triangle
 };
 
-// Reads the file of a mesh shape (binary STL, OBJ, MSH) with the physics engine's readers. They run
-// in a sandboxed child whose answer is checked: finite numbers, at most kMaxCollisionTriangles
-// triangles, valid vertex indices, and a volume. `key`: of the scenario, for errors. Throws
-// InputError with the place in the URDF, the file, and a remedy. Not for the tick.
+// Reads the file of a mesh shape (binary STL, OBJ, MSH) with the physics engine's readers. The
+// readers run in a sandboxed child. Its answer must contain finite numbers, at most
+// kMaxCollisionTriangles triangles, valid vertex indices, and a volume. `key`: of the scenario, for
+// errors. Throws InputError with the place in the URDF, the file, and a remedy. Not for the tick.
 CollisionMesh ReadCollisionMesh(const ModelShape& shape, const std::string& key);
 
 }  // namespace predictor

@@ -12,19 +12,19 @@
 namespace predictor {
 namespace {
 
-// The share of the motion into a fixture that its contact removes, which is equal at every depth,
-// so that a contact is a linear spring and damper.
+// The share of the motion into a fixture that the fixture's contact removes. It is equal at every
+// depth, so that a contact is a linear spring and damper.
 constexpr double kContactImpedance = 0.99;
-// Time constant with which friction stops a sliding body. With a shorter one, MuJoCo's convex
-// contacts make the body hop more; with a longer one, it stops too late
+// The time constant with which friction stops a sliding body. With a shorter time constant,
+// MuJoCo's convex contacts make the body hop more. With a longer one, the body stops too late
 // (docs/developer/decisions.md) [s].
 constexpr double kFixtureFrictionTime = 0.01;
-// The same for contacts with a stiffness [N/m]. It is small, because the engine's contacts also add
-// an inertia, which is this share of the mass that they move.
+// The same share for contacts with a stiffness [N/m]. This share is small, because the engine's
+// contacts also add an inertia, which is this share of the mass that they move.
 constexpr double kYieldingImpedance = 0.001;
 constexpr double kYieldingFrictionTime = 0.2;  // instead of kFixtureFrictionTime [s]
-// Largest K dt²/m + 2 B dt/m of a point of contact. One spring and damper is stable below 4; a body
-// that turns on several points needs up to ten times less.
+// Largest K dt²/m + 2 B dt/m of a point of contact. A single spring and damper is stable below 4. A
+// body that turns on several points needs a value up to ten times smaller.
 constexpr double kLargestRate = 0.4;
 // The friction of fixtures creeps less than the engine's default friction by this factor.
 constexpr double kFrictionStiffness = 10;
@@ -154,9 +154,9 @@ void SetStiffness(const EnvironmentSpec& environment, const std::vector<int>& fi
   }
 }
 
-// As above: with the impedance I, the engine's contact adds the inertia m I/(1 − I), and its solref
-// of a time constant and a damping ratio ζ gives k = 1/(time ζ)² and b = 2/time (MuJoCo,
-// "Modeling", "Solver parameters").
+// With the impedance I, the engine's contact adds the inertia m I/(1 − I), as above. A solref of a
+// time constant and a damping ratio ζ gives k = 1/(time ζ)² and b = 2/time (MuJoCo, "Modeling",
+// "Solver parameters").
 ContactLaw ContactLawOf(const FixtureSpec& fixture, double mass) {
   if (fixture.stiffness)
     return {*fixture.stiffness, fixture.damping,
@@ -186,7 +186,8 @@ void AddSurroundings(mjSpec* spec, const EnvironmentSpec& environment) {
   }
   for (std::size_t i = 0; i < environment.fixtures.size(); ++i)
     AddFixture(world, environment.fixtures[i], i);
-  // Without them, the engine's default remains, so that earlier recordings replay bit for bit.
+  // Without stiffness and damping, the engine's default remains, so that earlier recordings replay
+  // bit for bit.
   if (!environment.fixtures.empty() || !environment.objects.empty())
     spec->option.impratio = kFrictionStiffness;
 }

@@ -1,4 +1,4 @@
-// The fixed surroundings of the cobot and the object.
+// Adds the fixed surroundings of the cobot and the object to the scene.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ void AddContacts(mjSpec* spec, const EnvironmentSpec& environment, std::size_t i
                  const std::vector<std::string>& shapes,
                  const std::optional<double>& friction = std::nullopt);
 
-// Makes two shapes collide as a fixture does by default.
+// Makes two shapes collide with the default properties of a fixture.
 void AddContact(mjSpec* spec, const std::string& shape, const std::string& other, double friction);
 
 // Returns the friction of a contact between two bodies: the lower one of those given.
@@ -26,9 +26,9 @@ double FrictionBetween(const EnvironmentSpec& environment, const std::optional<d
                        const std::optional<double>& b);
 
 // Gives the contacts of fixtures with a stiffness this stiffness and damping, in the compiled model
-// and, for its text, in `spec`. The engine's own values are relative to a mass that it knows only
-// after compiling. `fixture_of`: number of the fixture of each shape, or −1. Throws InputError if a
-// fixture is too stiff for the simulation's step.
+// and, for its text, in `spec`. The engine's own values are relative to a mass that is known only
+// after the model is compiled. `fixture_of`: number of the fixture of each shape, or −1. Throws
+// InputError if a fixture is too stiff for the simulation's step.
 void SetStiffness(const EnvironmentSpec& environment, const std::vector<int>& fixture_of,
                   mjSpec* spec, mjModel* model);
 

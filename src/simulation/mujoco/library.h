@@ -17,9 +17,9 @@ using SpecPtr = std::unique_ptr<mjSpec, MujocoDeleter>;
 using ModelPtr = std::unique_ptr<mjModel, MujocoDeleter>;
 using DataPtr = std::unique_ptr<mjData, MujocoDeleter>;
 
-// After this call, MuJoCo prints nothing, writes no log file and does not end the process. Its
-// warnings are only counted in mjData, and its errors return to Guarded. Only the first call has an
-// effect, and any thread may call it.
+// After this call, MuJoCo prints nothing, writes no log file and does not end the process. MuJoCo's
+// warnings are then only counted in mjData, and its errors return to Guarded. Only the first call
+// has an effect, and any thread may call it.
 void SilenceMujoco();
 
 // Returns the reason why the engine could not compile `spec`, which is the first line of its

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kShortBar = 0.001;  // shorter bars are omitted [m]
 
-// A shape of a link or of the object, as the engine places it.
+// A shape of a link or of the object, in the place where the engine puts it.
 struct PlacedShape {
   int link = -1;  // index in UrdfModel::links; −1: the object
   Pose X_LG;
@@ -122,7 +122,7 @@ struct LinkGaps::Impl {
     return gaps;
   }
 
-  // The distance of a link's shape from the object [m].
+  // Returns the distance of a link's shape from the object [m].
   double ToObject(int geom) const {
     double least = kFarthestLink;
     for (std::size_t o = 0; o < shapes.size() && shapes[o].link < 0; ++o)

@@ -15,7 +15,8 @@ namespace {
 
 using Point = std::array<float, 3>;
 
-// Index of the first vertex at the same place, for each vertex: files of STL repeat them.
+// For each vertex, the index of the first vertex at the same place, because STL files repeat
+// vertices.
 std::vector<int> Welded(const CollisionMesh& mesh) {
   std::map<Point, int> first;
   std::vector<int> same(mesh.vertices.size() / 3);

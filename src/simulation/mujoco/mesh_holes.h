@@ -1,4 +1,4 @@
-// Finds holes of a mesh, which its convex hull would fill.
+// Finds holes in a mesh, which the mesh's convex hull would fill.
 #pragma once
 
 #include <string>
@@ -9,8 +9,9 @@
 namespace predictor {
 
 // Returns the number of holes through a mesh (the sum of the genus of its closed parts; Euler's
-// formula V − E + F = 2 − 2 g for each). Parts with an open edge, or with an edge of more than two
-// triangles, count as without holes. A hole that does not go through is not counted.
+// formula V − E + F = 2 − 2 g for each). Parts with an open edge, or with an edge that belongs to
+// more than two triangles, are treated as if they had no hole. A hole that does not go through the
+// mesh is not counted.
 int ThroughHoles(const CollisionMesh& mesh);
 
 // Throws InputError if the shape is a mesh with a hole through it. `key`: of the scenario.

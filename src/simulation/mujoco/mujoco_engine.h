@@ -1,4 +1,4 @@
-// MuJoCo as the engine of the virtual world.
+// Makes MuJoCo available as an engine of the virtual world.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace predictor {
 
-// As MakeEngine. Limits of positions are soft; there are none of velocities.
+// As MakeEngine. Limits of positions are soft, and there are no limits of velocities.
 std::unique_ptr<Engine> MakeMujocoEngine(const Scenario& scenario, const RobotModel& cobot,
                                          bool wrist_sensor, Holding holding);
 

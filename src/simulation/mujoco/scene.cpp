@@ -20,8 +20,8 @@ namespace {
 constexpr double kTimestep = 0.001;   // [s]
 constexpr double kHandRadius = 0.04;  // radius of the ball that defines a hand's inertia [m]
 constexpr double kHandleReach = 0.2;  // maximum distance of a handle from the object's shape [m]
-// The engine's Coulomb friction creeps under small forces. With its default constants (0.02, 0.9),
-// it creeps fifty times more than with these.
+// The engine's Coulomb friction creeps under small forces. With the engine's default constants
+// (0.02, 0.9), this friction creeps fifty times more than with the constants below.
 constexpr double kFrictionTime = 0.004;  // [s]
 constexpr double kFrictionImpedance = 0.99;
 constexpr double kFarAway = 1000;  // where a removed fixture is [m]
@@ -46,7 +46,7 @@ void SetOptions(mjSpec* spec, const EnvironmentSpec& environment) {
   if (!environment.objects.empty()) option.jacobian = mjJAC_DENSE;
 }
 
-// The cobot alone, as loaded by the engine.
+// The model of the cobot alone, as the engine loads it.
 SpecPtr CobotSpecOf(const Scenario& scenario) {
   const auto file = ResolveModelPath(scenario.cobot.model, scenario.folder());
   const std::string text =
@@ -119,8 +119,8 @@ mjsBody* AddCobot(mjSpec* spec, const Scenario& scenario, const RobotModel& cobo
   return end_effector;
 }
 
-// Adds the collision shapes of the links that the cobot's joints move, for the fixtures that touch
-// them, and returns their names.
+// Adds the collision shapes of the links that the cobot's joints move, so that fixtures can touch
+// them, and returns the names of these shapes.
 std::vector<std::string> AddCobotShapes(mjSpec* spec, const Scenario& scenario) {
   const UrdfModel urdf = ReadUrdf(ResolveModelPath(scenario.cobot.model, scenario.folder()),
                                   scenario.cobot.remove_links, scenario.folder());
@@ -151,7 +151,7 @@ bool TouchesAny(const EnvironmentSpec& environment, const char* what) {
          std::ranges::any_of(environment.objects, touches);
 }
 
-// Adds the pairs of shapes that can touch. The shapes of the object have already been added.
+// Adds the pairs of shapes that can touch. The shapes of the object must have been added before.
 void AddAllContacts(mjSpec* spec, const Scenario& scenario, const ObjectModel& object,
                     const MovableModels& movables) {
   const EnvironmentSpec& environment = scenario.environment;
@@ -200,7 +200,7 @@ mjsBody* AddObject(mjSpec* spec, mjsBody* end_effector, const Scenario& scenario
   }
   SetInertia(object, model);
   for (std::size_t i = 0; i < model.collisions.size(); ++i) {
-    // Named by index, since several shapes may use one file.
+    // The mesh is named by its index, since several shapes may use the same file.
     SetContact(AddShape(spec, object, model.collisions[i], ObjectShape(i), "object.model"), false,
                scenario.environment.friction);
   }

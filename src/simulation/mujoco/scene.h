@@ -40,16 +40,16 @@ struct Scene {
   std::vector<MovableBody> movables;           // environment.objects
   std::vector<int> movable_of;                 // body: index in environment.objects; −1: another
   std::vector<int> movable_pairs;              // pairs of shapes with which movable objects touch
-  // Numbers of coordinates without those of the movable objects, which are the last ones.
+  // Numbers of coordinates without the coordinates of the movable objects, which are the last ones.
   int own_positions = 0, own_dof = 0;
 };
 
 // Composes and compiles the scene. The attachment's joint connects the object's body to the
 // end-effector's, so that only contacts need the constraint solver. The object collides with floor,
 // table and fixtures, and the cobot's links with the fixtures that touch them. The movable objects
-// are free bodies behind all others. In direct mode, each handle has a body without weight whose
-// mass is set at run time. Throws InputError. `wrist_sensor` states whether a sensor measures the
-// wrench between the end-effector and the object that it carries.
+// are free bodies that come after all other bodies. In direct mode, each handle has a body without
+// weight whose mass is set at run time. Throws InputError. `wrist_sensor` states whether a sensor
+// measures the wrench between the end-effector and the object that it carries.
 Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor = false,
                    Holding holding = Holding::kJoint);
 
@@ -57,8 +57,8 @@ Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist
 std::string SceneText(const Scene& scene);
 
 // Sets the mass [kg] of the body that represents a hand, or does nothing if there is no such body.
-// Returns whether the mass changed. If it did, everything that depends on the state must be
-// computed again.
+// Returns whether the mass changed. If the mass changed, everything that depends on the state must
+// be computed again.
 bool SetHandMass(const Scene& scene, int hand, double mass) noexcept;
 
 // Moves these fixtures far away, and all others to their places: bit = number of the fixture.

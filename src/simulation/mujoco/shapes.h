@@ -1,4 +1,4 @@
-// Shapes in MuJoCo's description of a scene.
+// Adds shapes to MuJoCo's description of a scene.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@ void SetInertia(mjsBody* body, const ObjectModel& model);
 // Floor and table collide with the object; the object does not collide with itself.
 void SetContact(mjsGeom* geom, bool surroundings, double friction);
 
-// Adds a shape to a body. For a mesh, its convex hull collides. `name` is that of the shape
-// and of its mesh, `key` that of the scenario, for errors. Throws InputError.
+// Adds a shape to a body. A mesh collides as its convex hull. `name` is the name of the shape and
+// of its mesh, and `key` is the scenario's key, which error messages state. Throws InputError.
 mjsGeom* AddShape(mjSpec* spec, mjsBody* body, const ModelShape& shape, const std::string& name,
                   const std::string& key);
 

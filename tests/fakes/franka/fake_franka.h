@@ -1,6 +1,7 @@
 // The controller of a Franka arm as its client sees it: Research 3 (interface version 10) or Panda
-// (5). The packets are those of src/devices/franka/packets.h. The behaviour, limits and errors are
-// defined independently of the driver. Tests also use them with third-party clients.
+// (5). The packets are defined in src/devices/franka/packets.h. The behaviour, limits and errors
+// are defined independently of the driver. Some tests also connect third-party clients to this
+// fake.
 #pragma once
 
 #include <bitset>
@@ -19,8 +20,8 @@ struct FakeFrankaOptions {
   bool early = false;  // a Research 3 without accelerometers
   Pose X_FS;           // pose of the sensor in the flange
   std::uint64_t first_message = 1;
-  // For use with sockets: during a motion, the robot's time stops until the next command has
-  // arrived. A client on a busy computer then loses no command.
+  // If true, the robot's time stops during a motion until the next command has arrived. This option
+  // is for use with sockets. With this option, a client on a busy computer loses no command.
   bool patient = false;
   double payload = 0;                   // mass of the end-effector in Desk [kg]
   std::array<double, 3> payload_cog{};  // in the flange [m]

@@ -62,7 +62,7 @@ void FakeFranka::FillWrench(const ArmSample& sample, fci::Signals<Real>* signals
   const Eigen::Isometry3d X_FS =
       Eigen::Translation3d(options_.X_FS.p) * Eigen::Quaterniond(options_.X_FS.q);
   const Eigen::Isometry3d X_KS = (X_FE * X_EK).inverse() * X_FS;
-  // These are the reactions to the force on the sensor, about K.
+  // Force and torque are the reactions to those on the sensor, about the origin of K.
   const Eigen::Vector3d force = -(X_KS.linear() * sample.F_S_raw.head<3>());
   const Eigen::Vector3d torque =
       -(X_KS.linear() * sample.F_S_raw.tail<3>()) + X_KS.translation().cross(force);

@@ -1,5 +1,6 @@
-// Processes joint velocity commands as a Franka arm does. It differentiates them, checks them
-// against the published limits, and extrapolates for a while if they are missing.
+// Processes joint velocity commands as a Franka arm does. The check differentiates the commands and
+// compares them with the published limits. If commands are missing, it extrapolates the motion for
+// a while.
 #pragma once
 
 #include <array>
@@ -14,8 +15,8 @@ namespace predictor {
 using FrankaJoints = std::array<double, 7>;
 FrankaJoints FrankaJointsOf(const JointVector& from);  // missing values become zero
 
-// The limits that the arm enforces for one joint, independent of the driver's limits. They come
-// from Franka's "Robot and interface specifications". The position-dependent velocities of the
+// The limits that the arm enforces for one joint, independent of the driver's limits. The limits
+// come from Franka's "Robot and interface specifications". The position-dependent velocities of the
 // Research 3 come from libfranka's test/fr3.urdf.
 struct FrankaJointLimit {
   double lower, upper;              // of the commanded position [rad]

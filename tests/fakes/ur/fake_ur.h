@@ -1,5 +1,5 @@
 // A fake controller of Universal Robots with RTDE (30004), ports for programs (30001 … 30003), and
-// a dashboard (29999). It executes the URScript that it receives.
+// a dashboard (29999). This controller executes the URScript that it receives.
 #pragma once
 
 #include <deque>
@@ -37,7 +37,7 @@ class FakeUr final : public FakeDevice {
   //               ("freedrive off"), "unlock" (a protective stop), "not a number" (a joint angle),
   //               "slider N" [%], "press N" and "release N" (digital input N)
   // Programs:     "stop program", "pause program", "play" (a paused program), "local control"
-  // The wire:     "freeze" (no more packages) and "thaw", "repeat" (the last package permanently),
+  // The wire:     "freeze" (no more packets) and "thaw", "repeat" (the last packet permanently),
   //               "rewind" (timestamps go back by a second), "late N" [ms], "drop link",
   //               "drop dashboard" (29999), "drop primary" (30001), "mute primary" and "unmute
   //               primary", "malformed", "text", "deaf" (ignores data from clients)

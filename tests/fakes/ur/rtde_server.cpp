@@ -61,7 +61,7 @@ std::vector<int> RtdeServer::links() const {
   return links;
 }
 
-// The numbers are those of the RTDE guide.
+// The RTDE guide defines these numbers.
 int RtdeServer::registers() const {
   const bool cb3 = version_.major == 3;
   if (cb3 && version_.minor < 4) return 0;

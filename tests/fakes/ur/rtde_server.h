@@ -37,7 +37,7 @@ class RtdeServer {
 
   // Performs one cycle, in which it sends the requested outputs to each client.
   void Cycle();
-  // Sends the last package again.
+  // Sends the last packet again.
   void Repeat();
 
   std::uint16_t newest_protocol = 2;
@@ -49,7 +49,7 @@ class RtdeServer {
   struct Session {
     rtde::PacketParser parser;
     std::vector<std::string> outputs;
-    int divisor = 1;  // number of cycles between packages
+    int divisor = 1;  // number of cycles between packets
     bool started = false;
     std::map<int, std::vector<std::string>> inputs;  // by recipe number
     Bytes last;

@@ -11,8 +11,8 @@
 
 namespace predictor {
 
-// The Denavit-Hartenberg parameters that Universal Robots publishes [m]; α is 90, 0, 0, 90, −90,
-// 0°.
+// The Denavit-Hartenberg parameters that Universal Robots publishes [m]. The angles α are 90, 0, 0,
+// 90, −90 and 0°.
 struct UrGeometry {
   const char* model;
   double d1, a2, a3, d4, d5, d6;
@@ -55,7 +55,8 @@ struct UrController {
   bool freedrive = false;
   double slider = 1;         // of the speed slider
   std::uint64_t inputs = 0;  // digital inputs, one bit each
-  // The payload as set at the pendant [kg], [m]. If empty, the controller does not report it.
+  // The mass [kg] and centre of gravity [m] of the payload, as set at the pendant. If empty, the
+  // controller does not report it.
   std::optional<double> payload;
   std::array<double, 3> payload_cog{};
   UrVector q{}, v{}, wrench{};  // measured values

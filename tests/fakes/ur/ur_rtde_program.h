@@ -1,7 +1,7 @@
-// The control program of ur_rtde (SDU Robotics, https://gitlab.com/sdurobotics/ur_rtde). It needs
-// more URScript than this fake supports, so the fake recognises it by its name and its register
-// offset, and implements its protocol natively: integer register 0 contains a command, and output
-// register 0 the answer (ready, done).
+// The control program of ur_rtde (SDU Robotics, https://gitlab.com/sdurobotics/ur_rtde). The
+// program needs more URScript than this fake supports. The fake therefore recognises it by its name
+// and its register offset, and implements its protocol natively: integer register 0 contains a
+// command, and output register 0 contains the answer (ready, done).
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace predictor {
 
-// Returns nullptr if the text is not that of ur_rtde's program.
+// Returns nullptr if the text is not ur_rtde's program.
 std::unique_ptr<UrProgram> RecogniseUrRtde(const std::string& text, UrController* controller);
 
 }  // namespace predictor

@@ -1,4 +1,4 @@
-// The subset of URScript that the driver's program needs. It is compiled for a machine that
+// The subset of URScript that the driver's program needs. A program is compiled for a machine that
 // executes it cycle by cycle. Unknown names are errors, as on a controller.
 #pragma once
 

@@ -1,6 +1,6 @@
-// Writes a recording and a JSON file with the values that other readers must find in it. The JSON
-// is made directly from the records, without the encoder's walk over the fields. Usage: FOLDER
-// [TICKS].
+// Writes a recording and a JSON file with the values that other readers must find in it. The
+// program makes the JSON directly from the records, without the encoder's function that visits the
+// fields. Usage: FOLDER [TICKS].
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>

@@ -1,6 +1,6 @@
 // link_poses SCENARIO cobot|left|right Q... prints the pose in W of each link of the robot at joint
 // angles Q [rad], from the program's own kinematics. Each line has the link's name, p [m], and q
-// (scalar first). The page's tests compare the drawn links with it.
+// (scalar first). The page's tests compare the drawn links with this output.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

@@ -1,5 +1,5 @@
-// Lists the scenario's events for the experimenter: those that are to come, with their triggers, and those
-// that have begun. Only the page at /experimenter receives them.
+// Lists the scenario's events for the experimenter: the events to come with their triggers, and the
+// events that have begun. Only the page at /experimenter receives these events.
 import {h} from '../dom';
 import {EventPlan, PlannedEvent} from '../protocol';
 

@@ -1,4 +1,5 @@
-// Invites a visitor to take the virtual handles, and shows at the handle how hard it is pulled.
+// Invites a visitor to take the virtual handles, and shows at each handle how hard the visitor
+// pulls.
 import {Connection} from '../connection';
 import {h, setText} from '../dom';
 import {Hands} from '../hands';

@@ -1,4 +1,5 @@
-// Shows the elements over the scene: title bar, instruction, guidance error, tools, banner.
+// Shows the elements over the scene: the title bar, the instruction, the guidance error, the tools
+// and the banner.
 import {h, setAttribute, setText} from '../dom';
 import {SceneSpec, State} from '../protocol';
 import {Score} from '../score';
@@ -12,7 +13,8 @@ const kViewWords: Record<View, string> = {
 
 const millimetres = (metres: number) => `${(1000 * metres).toFixed(1)} mm`;
 
-// Returns the length of a run [s]. For a run without a planned end, it is the length of its script.
+// Returns the length of a run [s]. For a run without a planned end, this is the length of its
+// script.
 function lengthOf(spec: SceneSpec): number {
   const script = spec.script.map(({start, duration}) => start + duration);
   return spec.duration > 0 ? spec.duration : Math.max(...script, 1);
@@ -48,7 +50,8 @@ export class Overlay {
   private readonly guidance = h('div', {class: 'guidance', id: 'guidance', hidden: true});
   private readonly score = h('div', {class: 'guidance', id: 'score', role: 'status', hidden: true});
   private readonly hazards = h('div', {class: 'guidance', id: 'hazards', role: 'status', hidden: true});
-  // Appears when the grip changes for the first time, because most cobots never let go.
+  // This line appears when the grip changes for the first time, because most cobots never release
+  // the object.
   private readonly grip = h('div', {class: 'guidance', id: 'grip', role: 'status', hidden: true});
   private readonly progressBar = h('i', {});
   private readonly progress = h(
@@ -101,7 +104,7 @@ export class Overlay {
     this.buildProgress(spec);
   }
 
-  // The person switched the mirror in the headset.
+  // Called when the person has switched the mirror on or off in the headset.
   showMirror(on: boolean) {
     setAttribute(this.mirrorButton, 'aria-pressed', String(on));
   }

@@ -1,4 +1,5 @@
-// Shows the column next to the scene: state in words, stop, commands, leases, sliders, latency.
+// Shows the column next to the scene with the state in words, the stop button, the commands, the
+// leases, the sliders and the latency.
 import {Connection} from '../connection';
 import {h, setAttribute, setText} from '../dom';
 import {kSteps, LatencyLedger} from '../latency';
@@ -232,7 +233,8 @@ export class Panel {
       const button = this.commands.get(command)!;
       if (!possible && document.activeElement === button) this.commandHadFocus = true;
       button.disabled = !possible;
-      // A disabled button loses the focus. Keyboard users then find it on the next enabled button.
+      // A disabled button loses the focus. For keyboard users, the focus therefore moves to the
+      // next enabled button.
       if (possible && this.commandHadFocus) {
         this.commandHadFocus = false;
         if (document.activeElement === document.body) button.focus({preventScroll: true});

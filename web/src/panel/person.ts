@@ -1,5 +1,5 @@
-// Shows the person: gauges with their intervals, classes of the worksheets, damage, fatigue and
-// warnings.
+// Shows the results for the person: gauges with their intervals, classes of the worksheets, damage,
+// fatigue and warnings.
 import {h, setAttribute, setText} from '../dom';
 import {loadColor} from '../load';
 import {kArmParts, kWhyNot} from '../person';
@@ -13,7 +13,8 @@ const kRoom = [1100, 700];  // window in which the card is open at first [px]
 const kLateStart = 0.5;  // if damage is counted from later than this, the card says from when [s]
 const kEveryMs = 100;  // time between updates; warnings appear at once
 
-// How a gauge is shown: its words, the factor from SI, the decimals, and the ends of its bar in SI.
+// The properties of a gauge: its words, the factor from SI units, the number of decimals, and the
+// ends of its bar in SI units.
 interface GaugeLook {
   words: string;
   unit: string;
@@ -163,7 +164,7 @@ export class PersonCard {
         title('Scores', 'standard, probability'), ...[...this.scores.values()].map(({element}) => element),
         title('Muscles', 'modelled, lower bounds'), ...rows(from('muscles')),
         title('This run so far', 'standard'), this.damage, this.fatigue);
-    // The card is open if there is room next to the scene's objects.
+    // The card is open at first if there is room next to the objects of the scene.
     const open = innerWidth >= kRoom[0] && innerHeight >= kRoom[1];
     this.element = h(
         'div', {class: 'person', id: 'person', hidden: true}, this.warnings,
@@ -177,8 +178,8 @@ export class PersonCard {
     this.show(null, false, Infinity);
   }
 
-  // `person` is the newest state, or null if there is none yet. `silent` states whether none has
-  // arrived for too long.
+  // `person` is the newest state, or null if there is none yet. `silent` states whether no state
+  // has arrived for too long.
   show(person: PersonState | null, silent: boolean, nowMs: number, over = false) {
     const judged = this.spec?.person?.judged ?? false;
     const why = !judged ? `Not judged: ${this.spec?.person?.why ?? 'the body or its place is not known.'}` :

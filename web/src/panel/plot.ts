@@ -1,4 +1,4 @@
-// Shows one live plot. It also contains the list of plotted quantities.
+// Shows one live plot. This file also contains the list of plotted quantities.
 import uPlot from 'uplot';
 import {h} from '../dom';
 import {HandState, kSides, kStages, SceneSpec, Side, State} from '../protocol';
@@ -170,7 +170,7 @@ export class Plot {
       legend: {show: false},
       cursor: {
         drag: {x: true, y: false, setScale: false}, points: {show: false}, y: false,
-        // All plots show the same time. The plot in which the person zooms reports it.
+        // All plots show the same time. The plot in which the person zooms reports the new range.
         sync: {
           key: kSync.key, setSeries: false, scales: ['x', null],
           filters: {pub: (type) => type === 'mousemove' || type === 'mouseleave'},
@@ -203,7 +203,8 @@ export class Plot {
     };
   }
 
-  // Returns the upper end of the visible values. It includes a limit once the values approach it.
+  // Returns the upper end of the visible values. The visible range includes a limit once the values
+  // approach this limit.
   private upperEnd(u: uPlot): number {
     const times = u.data[0];
     const [min, max] = this.shown;

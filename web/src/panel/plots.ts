@@ -54,7 +54,7 @@ export class Plots {
     this.append(state, spec, time);
   }
 
-  // This is called after a reconnection or a restart, since times may start again at zero.
+  // Call this after a reconnection or a restart, since times may start again at zero.
   clear() {
     this.waiting.length = 0;
     for (const plot of this.plots) plot.trim(this.times.length);

@@ -1,4 +1,5 @@
-// Shows the results of a run: how it ended, its figures and curves, and the available next steps.
+// Shows the results of a run: the way in which it ended, its figures and curves, and the next steps
+// that are available.
 import uPlot from 'uplot';
 import {h, setAttribute, setText} from '../dom';
 import {Curve, Figure, kSides, Results, SceneSpec, Side} from '../protocol';

@@ -1,5 +1,5 @@
-// Shows one parameter that may change during a run. The server ramps it, and the mark shows its
-// present value.
+// Shows one parameter that may change during a run. The server changes the parameter gradually, and
+// the mark shows its present value.
 import {h, setAttribute, setText} from '../dom';
 import {ParameterName, ParameterSpec} from '../protocol';
 

@@ -1,5 +1,5 @@
-// Shows the controls for playing a recording: position, speed and single steps. They replace the
-// stop button.
+// Shows the controls for playing a recording: position, speed and single steps. These controls
+// replace the stop button.
 import {Connection} from '../connection';
 import {h, setAttribute, setText} from '../dom';
 import {SceneSpec, State} from '../protocol';
@@ -78,7 +78,7 @@ export class Transport {
   }
 
   // A person who opens the page wants to play the recording, so the page requests control. The
-  // first page gets it.
+  // first page that requests control gets it.
   private takeControl() {
     const {phase, role, leases} = this.connection;
     if (this.asked || phase !== 'open') return;
@@ -89,7 +89,7 @@ export class Transport {
   }
 
   // Derives from the received positions whether the recording is playing. Another page may have
-  // started it, or it may have ended.
+  // started the playback, or the recording may have ended.
   private follow(place: number, nowMs: number) {
     const moved = place !== this.place;
     this.place = place;

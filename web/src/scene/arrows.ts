@@ -1,5 +1,5 @@
-// Shows force and torque of a hand at its handle as arrows. Their colour shows how near the
-// threshold is.
+// Shows the force and the torque of a hand as arrows at its handle. The colour of an arrow shows
+// how close the value is to its threshold.
 import {
   ConeGeometry, CylinderGeometry, Group, Mesh, MeshStandardMaterial, Quaternion, TorusGeometry,
   Vector3,
@@ -27,7 +27,7 @@ class Colored {
   private held: Level = 'green';
   private heldUntilMs = -Infinity;
 
-  // Reports a value that was reached, possibly between two frames.
+  // Reports a value that was reached, which may have been between two frames.
   reached(value: number, threshold: number, nowMs: number) {
     const now = level(value, threshold);
     if (nowMs < this.heldUntilMs && kLevels.indexOf(now) < kLevels.indexOf(this.held)) return;

@@ -10,7 +10,7 @@ import {vector} from './frames';
 type PointName = keyof BodyPoints;
 type PartName = keyof PersonState['parts'];
 
-// The rough radii [m] at both ends are those of reports (a design choice).
+// The approximate radii [m] at both ends are the same as in reports (a design choice).
 interface Limb {
   from: PointName;
   to: PointName;
@@ -115,7 +115,7 @@ export class Body {
     this.placeHead(at('neck'), at('head'), at('eyes'), left);
   }
 
-  // `parts` are those of the state of the person, or null if nothing is judged.
+  // `parts` are the parts in the state of the person, or null if nothing is judged.
   paint(parts: PersonState['parts'] | null) {
     const color = (part: PartName) => loadColor(parts?.[part].load ?? null);
     this.trunkMaterial.color.copy(new Color(color('lower_back')));

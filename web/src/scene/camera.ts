@@ -1,5 +1,5 @@
-// Controls the camera of the page: presets and free orbit. World axes in this file are those of
-// three.js, with Y up.
+// Controls the camera of the page: presets and free orbit. In this file, the axes of the world are
+// those of three.js, with Y up.
 import {Object3D, PerspectiveCamera, Vector3} from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {Pose, SceneSpec, Vec3} from '../protocol';
@@ -38,7 +38,7 @@ export class CameraRig {
     });
   }
 
-  // Moves the camera there without an animation, when the page opens.
+  // Moves the camera to its first view without an animation, when the page opens.
   jump(view: View, spec: SceneSpec, object: Vec3) {
     this.view = view;
     this.stand(this.placeOf(view, spec, object));
@@ -80,7 +80,7 @@ export class CameraRig {
     this.camera.updateProjectionMatrix();
   }
 
-  // Otherwise the inertia of the last manual turn would continue after the move.
+  // Without this, the inertia of the last manual turn would continue after the move.
   private stopInertia() {
     this.controls.enableDamping = false;
     this.controls.update();

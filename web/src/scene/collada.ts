@@ -1,6 +1,6 @@
-// Reads Collada files quickly. Their long lists of numbers make up nearly the whole file, and the
-// browser's XML parser would spend most of its time on them. Therefore this file extracts them and
-// returns them as typed arrays.
+// Reads Collada files quickly. Long lists of numbers make up nearly the whole of such a file, and
+// the browser's XML parser would spend most of its time on these lists. Therefore this module
+// extracts the lists and returns them as typed arrays.
 import {Object3D, Texture} from 'three';
 import {ColladaComposer} from 'three/examples/jsm/loaders/collada/ColladaComposer.js';
 import {ColladaParser, Geometry} from 'three/examples/jsm/loaders/collada/ColladaParser.js';

@@ -1,4 +1,5 @@
-// Shows the circle to follow, the object's trail, and its present distance from the circle.
+// Shows the circle that the person must follow, the trail of the object, and the object's present
+// distance from the circle.
 import {
   BufferGeometry, Color, Float32BufferAttribute, Group, Line, LineBasicMaterial, Mesh,
   MeshBasicMaterial, Points, PointsMaterial, SphereGeometry, TorusGeometry,
@@ -100,8 +101,8 @@ export class Guidance {
     if (this.active) this.nearest.position.set(...this.closest(p));
   }
 
-  // This is called for each state, drawn or not, so that the trail is equally fine on a slow
-  // computer.
+  // This is called for each state, even if the state is not drawn, so that the trail has the same
+  // resolution on a slow computer.
   track(p: Vec3, runTime: number) {
     if (this.last && distance(this.last, p) > kJump) this.clear();
     if (this.last && distance(this.last, p) < kTrailStep) return;
@@ -139,8 +140,8 @@ export class Guidance {
     this.nearest.material.color.set(color);
   }
 
-  // On the path, the colour is that of small hand forces. It changes towards red with the distance,
-  // and is constant if there is no path.
+  // On the path, the trail has the colour of small hand forces. With growing distance, the colour
+  // changes towards red. Without a path, it is constant.
   private colorAt(p: Vec3): Color {
     if (!this.active) return this.color.set(this.theme === 'dark' ? '#ffd166' : '#c46b00');
     const off = Math.min(this.error(p) / kFarOff, 1);

@@ -1,5 +1,5 @@
-// Shows the handles. Virtual ones are solid and real ones are outlines, so that their distance is
-// visible.
+// Shows the handles. Virtual handles are solid and real handles are outlines, so that the distance
+// between them is visible.
 import {
   AxesHelper, CapsuleGeometry, CylinderGeometry, EdgesGeometry, Group, LineBasicMaterial,
   LineSegments, Mesh, MeshStandardMaterial, SphereGeometry, TorusGeometry,
@@ -21,7 +21,7 @@ export class Handle {
   readonly group = new Group();
   readonly virtual = new Group();
   readonly real = new Group();
-  // This invisible sphere detects where the pointer hits.
+  // This invisible sphere detects whether the pointer hits the handle.
   readonly target = new Mesh(new SphereGeometry(kPickRadius, 12, 8));
   private readonly material: MeshStandardMaterial;
   private readonly halo: Mesh<TorusGeometry, MeshStandardMaterial>;
@@ -77,13 +77,13 @@ export class Handle {
     this.isHeld = on;
   }
 
-  // The pointer is over the handle and may take it.
+  // Sets whether the pointer is over the handle and may take it.
   setHovered(on: boolean) {
     this.isHovered = on;
   }
 
-  // Shows a second ring around the handle. The ring pulses while it invites, and is bright under
-  // the pointer and while the handle is held.
+  // Shows a second ring around the handle. The ring pulses while it invites the visitor. It is
+  // bright while the pointer is over the handle and while the handle is held.
   invite(on: boolean, nowMs: number) {
     this.halo.visible = on || this.isHovered || this.isHeld;
     const still = this.isHovered || this.isHeld || matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -92,12 +92,13 @@ export class Handle {
     this.halo.material.emissiveIntensity = still ? 1.2 : 0.5 + 0.7 * beat;
   }
 
-  // The radius as drawn [m].
+  // The radius with which the ring is drawn [m].
   get ringRadius(): number {
     return kRingRadius * this.rings.scale.x;
   }
 
-  // `pixelsPerMetre` is the scale at the handle. If infinite, the handle has its true size.
+  // `pixelsPerMetre` is the scale at the handle. If this scale is infinite, the handle has its true
+  // size.
   setScreenScale(pixelsPerMetre: number) {
     const scale = kMinRingRadius / (kRingRadius * pixelsPerMetre);
     this.rings.scale.setScalar(Math.min(Math.max(scale, 1), kMaxScale));

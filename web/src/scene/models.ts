@@ -40,8 +40,8 @@ function finish(root: Object3D) {
   });
 }
 
-// Reports a part that failed or is not shown, while the rest is still shown. It is called once per
-// model.
+// Reports a part that failed or is not shown, while the rest is still shown. This callback is
+// called once per model.
 export type Complaint = (words: string) => void;
 
 export const kPlaceholder = 'placeholder';
@@ -86,7 +86,8 @@ function withMaterial(root: Object3D, material: Material): Object3D {
   return root;
 }
 
-// A wire box takes the place of a mesh. It shows that something is missing, and where.
+// A wire box that replaces a mesh that cannot be shown. The wire box shows that a part is missing,
+// and where.
 function placeholder(): Object3D {
   const box = new BoxGeometry(kPlaceholderSize, kPlaceholderSize, kPlaceholderSize);
   const mesh = new LineSegments(new EdgesGeometry(box), new LineBasicMaterial({color: 0xff9f1c}));
@@ -183,8 +184,8 @@ export async function loadObject(spec: ObjectSpec, token: string,
   return mesh;
 }
 
-// Makes a model translucent, so that it does not distract from the model next to it. Its depth is
-// drawn first, so that only its nearest surface is visible.
+// Makes a model translucent, so that it does not distract from the model next to it. The depth of
+// the model is drawn first, so that only its nearest surface is visible.
 export function makeGhost(root: Object3D) {
   const material = new MeshStandardMaterial({
     transparent: true, opacity: 0.3, depthWrite: false, roughness: 0.9, metalness: 0,

@@ -1,4 +1,4 @@
-// The movable objects of the surroundings, drawn where the states say.
+// Draws the movable objects of the surroundings at the poses in the states.
 import {Group, Object3D} from 'three';
 import {MovableSpec, Pose} from '../protocol';
 import {place} from './frames';
@@ -8,8 +8,8 @@ export class Movables {
   readonly group = new Group();
   private places = new Map<string, Group>();
 
-  // Replaces all objects. Their models appear as they are loaded. `complain` reports in words which
-  // parts of a model are not shown.
+  // Replaces all objects. The models of the objects appear as they are loaded. `complain` reports
+  // in words which parts of a model are not shown.
   async build(specs: MovableSpec[], token: string, complain: (name: string) => Complaint) {
     this.group.clear();
     this.places = new Map(specs.map(({name}) => [name, new Group()]));
@@ -30,7 +30,7 @@ export class Movables {
     for (const at of this.places.values()) place(at, poses[i++]);
   }
 
-  // The frame of an object, or null if there is none of this name.
+  // Returns the frame of an object, or null if there is no object of this name.
   place(name: string): Object3D | null {
     return this.places.get(name) ?? null;
   }

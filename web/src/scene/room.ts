@@ -1,4 +1,4 @@
-// Floor, grid, table, fixtures and light.
+// Shows the floor, the grid, the table, the fixtures and the light.
 import {
   BoxGeometry, BufferGeometry, CapsuleGeometry, CircleGeometry, Color, CylinderGeometry, DirectionalLight, DoubleSide,
   Float32BufferAttribute, Fog, Group, HemisphereLight, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
@@ -127,8 +127,8 @@ export class Room {
     });
   }
 
-  // The ground is where the operator stands. If that is below the virtual floor, the virtual floor is a
-  // plate above it.
+  // The ground is the surface on which the operator stands. If the ground is below the virtual
+  // floor, the virtual floor is drawn as a plate above the ground.
   private stand({viewpoint, floor, cobot}: SceneSpec) {
     const {ground, forward, feet} = viewpoint;
     this.ground.position.z = ground?.[2] ?? 0;

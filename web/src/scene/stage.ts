@@ -20,8 +20,8 @@ import {Room} from './room';
 const kSlowFrameMs = 45;  // if frames take longer for a while: fewer pixels, then fewer shadows
 const kPatienceMs = 3000;
 const kWaitForModelsMs = 1200;   // before an empty room is drawn, because drawing delays the loading
-// This is the maximum time for compiling the shaders in the background. After it, the scene is
-// drawn even if they are not ready.
+// The maximum time for compiling the shaders in the background. After this time, the scene is drawn
+// even if the shaders are not ready.
 const kLongestCompileMs = 4000;
 const kOverArrows = 30;  // order of drawing
 const kShadowEvery = 6;  // frames, on a slow computer
@@ -75,7 +75,7 @@ export interface Thresholds {
   torque: number;
 }
 
-// Returns the present thresholds: the ramped ones, or otherwise those of the scenario.
+// Returns the present thresholds from the state, or otherwise the thresholds of the scenario.
 export function presentThresholds(spec: SceneSpec, state: State): Thresholds {
   const force = state.parameters[3];
   const torque = state.parameters[4];
@@ -151,7 +151,8 @@ export class Stage {
     this.resize();
   }
 
-  // Rebuilds the scene. Models appear as they are loaded, and shaders are compiled meanwhile.
+  // Rebuilds the scene. The models appear as they are loaded, and the shaders are compiled at the
+  // same time.
   build(spec: SceneSpec, token: string) {
     this.token = token;
     const same = this.spec !== null && drawnOf(spec) === drawnOf(this.spec);
@@ -180,13 +181,14 @@ export class Stage {
     if (!this.compiled) this.compile();
   }
 
-  // Before this, nothing is visible.
+  // Before the shaders are compiled, nothing is visible.
   get drawable(): boolean {
     const waited = performance.now() - this.builtMs > kWaitForModelsMs;
     return this.spec !== null && this.compiled && this.standing && (this.modelsLoaded || waited);
   }
 
-  // Shows the real arms next to the virtual scene. They are loaded at the first request.
+  // Shows the real arms next to the virtual scene. The models of the real arms are loaded at the
+  // first request.
   setGhosts(on: boolean) {
     this.ghosts = on;
     this.room.setTranslucent(on);
@@ -257,7 +259,7 @@ export class Stage {
   }
 
   // `points` are the body of the person, or null if it is not known. The wearer of a headset sees
-  // it only in the mirror. The operator's view is from the head of this body.
+  // it only in the mirror. The operator's view is the view from the head of this body.
   applyPerson(points: BodyPoints | null, parts: PersonState['parts'] | null) {
     const {body, mirror} = this;
     body.group.visible = points !== null && this.bodyWanted && !this.renderer.xr.isPresenting;
@@ -391,7 +393,7 @@ export class Stage {
     const gl = this.renderer.getContext();
     if (!gl.getExtension('KHR_parallel_shader_compile')) {
       // The browser does not report when the shaders are ready, but it starts to compile them when
-      // this is flushed.
+      // the commands are flushed.
       for (const group of seen) this.renderer.compile(group, this.camera.camera, this.scene);
       gl.flush();
       done();

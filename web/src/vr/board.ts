@@ -1,5 +1,5 @@
-// Shows the board inside the headset: state, stop cause, warning levels, prompts, and plates to
-// touch.
+// Shows the board inside the headset, with the state, the cause of a stop, the warning levels, the
+// prompts, and the plates that the person can touch.
 import {
   BoxGeometry, CanvasTexture, Group, Mesh, MeshBasicMaterial, PlaneGeometry, SRGBColorSpace, Vector3,
 } from 'three';
@@ -80,7 +80,7 @@ class Plate {
     this.group.add(this.body, front.mesh);
   }
 
-  // Returns true once when one of the points (in the scene's axes) enters.
+  // Returns true once when one of the points (in the scene's axes) enters the plate.
   touched(points: Vector3[]): boolean {
     const was = this.inside;
     this.inside = points.some((point) => {

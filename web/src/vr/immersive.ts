@@ -60,13 +60,14 @@ export class Immersive {
     return (await navigator.xr?.isSessionSupported('immersive-vr').catch(() => false)) ?? false;
   }
 
-  // This must be called in a user action. Throws an Error if the headset refuses.
+  // This function must be called in a user action. Throws an Error if the headset refuses.
   async enter(spec: SceneSpec, state: State): Promise<void> {
     this.tone.unlock();
     const session = await navigator.xr!.requestSession('immersive-vr', {
       requiredFeatures: ['local-floor'], optionalFeatures: ['hand-tracking'],
     });
-    // From now on, the wearer sees only this session, so the run measures the time until the first frame.
+    // From now on, the wearer sees only this session, so the run monitors the time until the first
+    // frame.
     this.connection.send({type: 'immersive', active: true});
     session.addEventListener('end', () => this.left());
     this.inputs.listen(session);

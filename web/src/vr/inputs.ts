@@ -1,5 +1,5 @@
-// A common interface to the headset's controllers and tracked hands: their poses, their touching
-// points, and whether they are closed.
+// A common interface to the headset's controllers and tracked hands. It provides their poses, their
+// touching points, and whether they are closed.
 import {
   BufferGeometry, CapsuleGeometry, Group, InstancedMesh, Line, LineBasicMaterial, Matrix4, Mesh,
   MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
@@ -133,7 +133,7 @@ export class Inputs {
   }
 }
 
-// A plain shape of a controller or hand, which shows the person where it is.
+// A plain shape that shows the person where a controller or hand is.
 class Body {
   readonly group = new Group();
   private readonly material = new MeshStandardMaterial({color: 0xdfe6ee, roughness: 0.6});

@@ -1,5 +1,5 @@
-// Lays out the sentences on the headset's board. They stay above the hands' bars, regardless of
-// their length.
+// Lays out the sentences on the headset's board. The sentences stay above the hands' bars, however
+// long the sentences are.
 
 export interface BoardText {
   title: string;
@@ -26,7 +26,7 @@ const kSmallest = 0.5;  // smaller letters cannot be read
 export const kTones = {calm: '#9aa7b8', ready: '#2fbf71', running: '#2fbf71', warning: '#ff9f1c',
                        stopped: '#f23645'};
 
-// Returns the bottom of the descenders of the last line.
+// Returns the y of the lowest point of the last line.
 export function endOf(lines: Line[]): number {
   const {y, size} = lines[lines.length - 1];
   return y + 0.25 * size;

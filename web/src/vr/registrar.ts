@@ -1,5 +1,6 @@
 // Performs the registration with the person in the headset, who touches known points or places the
-// controllers on the handles. Afterwards, it monitors the registration.
+// controllers on the handles. After the registration, this class monitors whether it is still
+// valid.
 import {kSides, SceneSpec, scenarioOf, Side, State, Vec3} from '../protocol';
 import {distance, matrix, vector} from '../scene/frames';
 import {fit, load, PointPair, Registration, store, toWorld} from './registration';
@@ -60,8 +61,8 @@ export class Registrar {
     this.cancel('');
   }
 
-  // The person touched something at `tip` in W. Near a handle, the touch shows whether the
-  // registration of an earlier session is still valid.
+  // Called when the person has touched something at `tip` in W. Near a handle, the touch shows
+  // whether the registration of an earlier session is still valid.
   check(tip: Vec3, state: State) {
     if (!this.unchecked) return;
     const off = Math.min(...kSides.filter((side) => state.hands[side].present)
@@ -97,7 +98,7 @@ export class Registrar {
     this.askForPoint();
   }
 
-  // The person touched a point, in the headset's space with Z up.
+  // Called when the person has touched a point, in the headset's space with Z up.
   touch(touched: Vec3, spec: SceneSpec, state: State) {
     if (!this.touching) return;
     const {points, pairs} = this.touching;
@@ -192,7 +193,8 @@ export class Registrar {
     this.attach(measured.map((side) => mean(samples[side])), head, spec, state);
   }
 
-  // Determines which controller is on which handle. The person stands opposite the cobot.
+  // Determines which controller is on which handle. The person is assumed to stand opposite the
+  // cobot.
   private attach(touched: Vec3[], head: Vec3, spec: SceneSpec, state: State) {
     const fits = [kSides, [...kSides].reverse()].map((handles) => ({
       handles,
@@ -225,9 +227,9 @@ export class Registrar {
     this.pending = false;
   }
 
-  // A hand that holds a real handle stays where it gripped it. If the sensor still reports a grip,
-  // but the tracked hand or controller leaves the handle or was never near it, the worlds have
-  // drifted apart.
+  // A hand that holds a real handle stays at the place where it gripped the handle. If the sensor
+  // still reports a grip, but the tracked hand or controller leaves the handle or was never near
+  // it, the worlds have drifted apart.
   private watchHeld(nowMs: number, controllers: Controllers, state: State) {
     for (const side of kSides) {
       const {present, gripping, real} = state.hands[side];

@@ -1,6 +1,6 @@
-// Finds the pose of the virtual world W in the headset's space for which the virtual handles
-// coincide with the real ones. It is a rotation about the vertical and a translation, fitted to
-// touched points.
+// Finds the pose of the virtual world W in the headset's space at which the virtual handles
+// coincide with the real handles. This pose consists of a rotation about the vertical and a
+// translation, which are fitted to touched points.
 //
 // Positions in the headset's space have Z up in this file (x right, y forward), like W.
 import {Object3D} from 'three';
@@ -57,8 +57,8 @@ export function fit(pairs: PointPair[]): Registration {
 }
 
 // Places W so that a person at the space's origin who looks ahead is at `eye`, on the ground below
-// it, and faces along `forward` (horizontal). `ground` is its height in W [m]. This applies until
-// the person registers.
+// it, and faces along `forward` (horizontal). `ground` is the height of the ground in W [m]. This
+// pose applies until the person registers the world.
 export function standAt(eye: Vec3, forward: Vec3, ground: number): Registration {
   const yaw = Math.PI / 2 - Math.atan2(forward[1], forward[0]);
   const p = turn([eye[0], eye[1], 0], yaw);
