@@ -30,6 +30,9 @@ namespace predictor::muscles {
 // and palm are left out (D). Optimal fibre length and tendon length follow from the operating range
 // of MuJoCo's muscle: l0 = Δlengthrange/Δrange, slack = lengthrange[0] - range[0] l0.
 //
+// In myo-sim 0.2.4, a point of the middle deltoid is on the inner side of the upper arm. It is
+// moved to the outer side, where the source of MyoArm has it.
+//
 // Throws InputError if the model cannot be read or lacks a joint, a muscle or its tendon.
 std::shared_ptr<const ArmPaths> LoadMyoArm(const std::filesystem::path& model);
 

@@ -1,6 +1,7 @@
 #include "muscles/myo_arm_files.h"
 
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "core/error.h"
@@ -38,10 +39,23 @@ void DeletePictures(mjSpec* spec) {
     DeleteAll(spec, kind);
 }
 
+// The middle deltoid passes through a point of the upper arm. In the MoBL ARMS model, from which
+// MyoArm was converted, this point lies on the outer side of the bone (z > 0). In MyoArm, its z has
+// the opposite sign. The line then runs through the bone, is longer than the muscle's lengthrange,
+// and does not abduct the arm. The point is mirrored to the outer side (D).
+void RepairMiddleDeltoid(mjSpec* spec) {
+  for (const char* name : {"DELT2_DELT2-P2_r", "DELT2_DELT2-P2"})
+    if (mjsElement* point = mjs_findElement(spec, mjOBJ_SITE, name)) {
+      double* z = &mjs_asSite(point)->pos[2];
+      *z = std::abs(*z);
+    }
+}
+
 MyoModel Compile(MyoSpec spec, const Message& error, const std::filesystem::path& source) {
   if (!spec)
     throw InputError(source.string(), "MuJoCo cannot read this model: " + Printable(error.data()));
   DeletePictures(spec.get());
+  RepairMiddleDeltoid(spec.get());
   MyoModel model(mj_compile(spec.get(), nullptr));
   if (!model)
     throw InputError(source.string(),

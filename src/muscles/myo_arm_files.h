@@ -16,8 +16,8 @@ struct MyoDeleter {
 using MyoModel = std::unique_ptr<mjModel, MyoDeleter>;
 using MyoData = std::unique_ptr<mjData, MyoDeleter>;
 
-// Reads a folder with MyoArm's parts or an MJCF file (see LoadMyoArm), without meshes. Throws
-// InputError.
+// Reads a folder with MyoArm's parts or an MJCF file (see LoadMyoArm), without meshes and with
+// the middle deltoid on the outer side of the upper arm. Throws InputError.
 MyoModel ReadMyoArm(const std::filesystem::path& model);
 
 }  // namespace predictor::muscles

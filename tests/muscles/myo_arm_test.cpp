@@ -197,6 +197,33 @@ TEST_F(MyoArmTest, AnArmModelScalesIt) {
   }
 }
 
+// Returns a small arm whose middle deltoid passes through a point of the upper arm at this height
+// above the plane of x and y, in the axes of the upper arm [m].
+std::string ArmWithDeltoidPoint(const char* point, double z) {
+  std::string text = SmallArm();
+  const auto insert = [&](const std::string& before, const std::string& added) {
+    text.insert(text.find(before), added);
+  };
+  insert("<site name=\"DELT2_b\"",
+         Formatted("<site name=\"%s\" pos=\"0.006 -0.03 %g\"/>", point, z));
+  insert("<site site=\"DELT2_b\"", Formatted("<site site=\"%s\"/>", point));
+  return text;
+}
+
+// MyoArm has this point on the inner side, where z is negative.
+TEST_F(MyoArmTest, TheMiddleDeltoidPassesOutsideTheUpperArm) {
+  const int deltoid = IndexOf("deltoid_middle");
+  const auto at = [&](const char* point, double z) {
+    return LoadMyoArm(Write(ArmWithDeltoidPoint(point, z)))->LinesAt(WorkPosture());
+  };
+  const MuscleLines outside = at("DELT2_DELT2-P2_r", 0.03), inside = at("DELT2_DELT2-P2_r", -0.03);
+  EXPECT_NEAR(inside.length[deltoid], outside.length[deltoid], 1e-12);
+  EXPECT_LT((inside.moment_arm - outside.moment_arm).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_NEAR(at("DELT2_DELT2-P2", -0.03).length[deltoid], outside.length[deltoid], 1e-12);
+  // Other points stay where they are.
+  EXPECT_GT(std::abs(at("other", -0.03).length[deltoid] - outside.length[deltoid]), 1e-3);
+}
+
 std::string ErrorOf(const std::string& file) {
   try {
     LoadMyoArm(file);
@@ -266,6 +293,25 @@ TEST_F(MyoArmPackage, MomentArmsAreTheSlopesSoak) {
 
 TEST_F(MyoArmPackage, ActivationsAgreeWithAGeneralSolverSoak) {
   ExpectSameCost(ArmModel({}, 1, paths_));
+}
+
+// A middle deltoid that does not abduct the arm would leave this torque to the supraspinatus. In
+// the working range, the line must also stay within the lengths that MyoArm gives for the muscle.
+TEST_F(MyoArmPackage, TheMiddleDeltoidAbductsSoak) {
+  const ArmModel myo({}, 1, paths_);
+  const int deltoid = IndexOf("deltoid_middle");
+  constexpr double kShortest = 0.14984, kLongest = 0.207283;  // lengthrange of DELT2 [m]
+  for (const double abduction : {5.0, 15.0, 30.0, 45.0, 60.0})
+    for (const double flexion : {0.0, 30.0, 60.0}) {
+      ArmVector q = WorkPosture();
+      q[0] = Radians(flexion);
+      q[1] = Radians(abduction);
+      const auto abducts = static_cast<int>(person::ArmJoint::kShoulderAbduction);
+      EXPECT_GT(myo.LinesAt(q).moment_arm(abducts, deltoid), 0.005) << flexion << " " << abduction;
+      const double length = paths_->LinesAt(q).length[deltoid];
+      EXPECT_GT(length, kShortest) << flexion << " " << abduction;
+      EXPECT_LT(length, kLongest) << flexion << " " << abduction;
+    }
 }
 
 // Prints the comparison in docs/concepts/muscles.md.
