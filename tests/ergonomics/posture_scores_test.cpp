@@ -64,7 +64,7 @@ TEST(PostureScores, AreThoseThatWereScoredByHand) {
 
 TEST(PostureScores, AreThoseOfPublishedExamples) {
   const auto postures = ReadPostures("published_postures.txt");
-  ASSERT_EQ(postures.size(), 4u);
+  ASSERT_EQ(postures.size(), 7u);
   for (const ReferencePosture& p : postures) {
     EXPECT_GE(p.rula.size() + p.reba.size(), 4u) << p.name;
     ExpectScores(p.rula, Named(AssessRula(p.body, p.arm, p.exertion)), p.name + ", RULA");
@@ -72,14 +72,21 @@ TEST(PostureScores, AreThoseOfPublishedExamples) {
   }
 }
 
-// Compares the scores with two published examples: phase 4 of
-// text-id.123dok.com/document/nzw0r4ngy, and a pushed water bottle in wyeokwv4q. Their stored texts
-// contain the scores of the body parts, but not the angles.
+// Compares the scores with four published examples: phase 4 of
+// text-id.123dok.com/document/nzw0r4ngy, a pushed water bottle in wyeokwv4q, an exercise
+// (fdocuments.es/document/ejercicio-reba), and a welder (scribd.com/document/509190964). Their
+// stored texts contain the scores of the body parts, but not the angles.
 TEST(PostureScores, CombineAsInPublishedExamples) {
   EXPECT_EQ(RulaTableC(4 + 1 + 0, 4 + 1 + 0), 6);
   EXPECT_EQ(RulaAction(6).level, 3);
   EXPECT_EQ(RebaTableB(2, 1, 2), 2);
   EXPECT_EQ(RebaTableC(5, 2 + 1), 4);
+  EXPECT_EQ(RebaTableB(4, 2, 2), 6);
+  EXPECT_EQ(RebaTableC(4 + 2, 6 + 3), 10);
+  EXPECT_EQ(RebaAction(10 + 1).level, 5);
+  EXPECT_EQ(RebaTableA(1, 4, 3), 6);
+  EXPECT_EQ(RebaTableB(4, 1, 2), 5);
+  EXPECT_EQ(RebaTableC(6 + 3, 5 + 3), 11);
 }
 
 // Tests the load classes that do not occur in the scored postures (McAtamney & Corlett 1993).
