@@ -78,6 +78,9 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
                    ? MakeStandby(ContextOf(*scenario.cobot.standby_controller, scenario, *robot_,
                                            end_effector_, posture_))
                    : nullptr),
+      taped_(controller_->taped()),
+      has_wrist_sensor_(controller_->uses_wrist_sensor() ||
+                        (standby_ && standby_->uses_wrist_sensor())),
       joint_(scenario.object.attachment.joint),
       payload_(scenario.cobot.payload),
       carried_(MakeEngine(scenario, *robot_, has_wrist_sensor(), Holding::kJoint)),
@@ -109,11 +112,13 @@ bool ControlledScene::Update(Engine* engine) noexcept {
   }
   X_WO_ = engine->PoseOf(SceneBody::kObject);
   robot_data_.UpdateDynamics(*robot_, q_, v_, gravity_);
+  E_.X_W = robot_data_.FramePose(*robot_, end_effector_);
+  E_.V_W = robot_data_.FrameTwist(*robot_, end_effector_);
   return true;
 }
 
 ControllerInput ControlledScene::Input(double t) const {
-  ControllerInput input{t, &q_, &v_, robot_.get(), &robot_data_, end_effector_};
+  ControllerInput input{t, &q_, &v_, robot_.get(), &robot_data_, end_effector_, &E_};
   if (has_wrist_sensor()) input.F_E_W = wrist_.reading() + disturbance_.sensor;
   input.torque = &torque_;
   input.X_WO = X_WO_;
@@ -145,7 +150,7 @@ double ControlledScene::PayloadShare() const noexcept {
 }
 
 void ControlledScene::AddPayload(JointVector* torque) const noexcept {
-  const Pose X_WE = robot_data_.FramePose(*robot_, end_effector_);
+  const Pose& X_WE = E_.X_W;
   Jacobian J;
   robot_data_.FrameJacobian(*robot_, end_effector_, &J);
   Wrench weight = Wrench::Zero();
@@ -405,7 +410,7 @@ Wrench ControlledScene::WristWrench(const Engine& engine) const noexcept {
   if (is_loose_) return loose_->attachment.load();
   Vector3 at;
   const Wrench F_W = engine.LoadWrench(&at);
-  return ShiftWrench(F_W, at - robot_data_.FramePose(*robot_, end_effector_).p);
+  return ShiftWrench(F_W, at - E_.X_W.p);
 }
 
 void ControlledScene::SenseWrist() noexcept {
@@ -435,20 +440,13 @@ void ControlledScene::Archive(StateArchive& a) noexcept {
   }
 }
 
-FrameMotion ControlledScene::EndEffector() const {
-  FrameMotion motion;
-  motion.X_W = robot_data_.FramePose(*robot_, end_effector_);
-  motion.V_W = robot_data_.FrameTwist(*robot_, end_effector_);
-  return motion;
-}
-
 double ControlledScene::Energy(double t) const noexcept {
   if (const ControllerAnswer* played = taped() ? taped()->played() : nullptr) return played->energy;
   const double kinetic = engine().KineticEnergy();
   double energy = kinetic + carried_->object_model().mass * gravity_ * engine().object_com().z() +
                   engine().MovablePotential() + Acting().StoredEnergy(Input(t));
   if (payload_) {
-    const Pose X_WE = robot_data_.FramePose(*robot_, end_effector_);
+    const Pose& X_WE = E_.X_W;
     energy -= PayloadShare() * payload_->mass * gravity_ * (X_WE * payload_->center_of_mass).z();
   }
   return energy;

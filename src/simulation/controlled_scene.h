@@ -58,9 +58,7 @@ class ControlledScene {
   void AdvanceController(double t) noexcept;
 
   // The linearisation needs the states of sensor and controller, and their rates.
-  bool has_wrist_sensor() const {
-    return controller_->uses_wrist_sensor() || (standby_ && standby_->uses_wrist_sensor());
-  }
+  bool has_wrist_sensor() const noexcept { return has_wrist_sensor_; }
   WristSensor& wrist() { return wrist_; }
   std::span<double> memory() { return controller_->memory(); }
   const ControlTiming& timing() const { return timing_; }
@@ -106,14 +104,14 @@ class ControlledScene {
   void SetRealTime(bool real_time) noexcept { controller_->SetRealTime(real_time); }
   std::string PrioritiseProcess(bool on) { return controller_->PrioritiseProcess(on); }
   // Returns null unless the controller is outside the program.
-  TapedController* taped() const noexcept { return controller_->taped(); }
+  TapedController* taped() const noexcept { return taped_; }
   void Archive(StateArchive& a) noexcept;
 
   const JointVector& q() const { return q_; }            // of the cobot [rad]
   const JointVector& v() const { return v_; }            // [rad/s]
   const JointVector& torque() const { return torque_; }  // last applied [N·m]
   void SetTorque(const JointVector& torque) noexcept { torque_ = torque; }
-  FrameMotion EndEffector() const;  // X and V; A is zero
+  const FrameMotion& end_effector() const noexcept { return E_; }  // X and V; A is zero
 
   // Returns the kinetic energy, the potential energy of the object and of the movable objects, and
   // the energy stored in the controller's springs [J]. The cobot's own potential energy is
@@ -153,7 +151,9 @@ class ControlledScene {
   double gravity_;  // [m/s²]
   JointVector posture_;
   std::unique_ptr<Controller> controller_, standby_;  // standby_ may be null
-  JointType joint_;                                   // of the attachment
+  TapedController* const taped_;                      // may be null
+  const bool has_wrist_sensor_;
+  JointType joint_;  // of the attachment
   std::optional<PayloadSpec> payload_;
   std::unique_ptr<Engine> carried_;
   std::unique_ptr<LooseObject> loose_;  // may be null
@@ -165,6 +165,7 @@ class ControlledScene {
   RobotData robot_data_;
   JointVector q_, v_, torque_;
   Pose X_WO_;                          // at the last Update
+  FrameMotion E_;                      // likewise
   JointVector computed_;               // by the controller, before its delay [N·m]
   std::vector<DofFriction> friction_;  // of each joint, with open brakes
   CobotSafety safety_;

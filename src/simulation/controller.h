@@ -26,6 +26,7 @@ struct ControllerInput {
   const RobotModel* model = nullptr;
   const RobotData* data = nullptr;  // after UpdateDynamics at (q, v): poses, Jacobians, M, gravity
   FrameId end_effector;
+  const FrameMotion* E = nullptr;  // pose and twist of the end-effector at (q, v)
   // The reading of the wrist sensor: the wrench of the load on the end-effector, about E, in axes
   // of W. The reading is zero unless the controller uses the sensor.
   Wrench F_E_W = Wrench::Zero();

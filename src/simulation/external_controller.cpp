@@ -51,8 +51,8 @@ const PredictorControllerInput& InterfaceInput::Fill(const ControllerInput& inpu
   Copy(*input.v, to_.v);
   Copy(data.gravity(), to_.g);
   Copy(data.bias(), to_.h);
-  FillPose(data.FramePose(*input.model, input.end_effector), to_.X_WE);
-  Copy(data.FrameTwist(*input.model, input.end_effector), to_.V_WE);
+  FillPose(input.E->X_W, to_.X_WE);
+  Copy(input.E->V_W, to_.V_WE);
   data.FrameJacobian(*input.model, input.end_effector, &J_);
   Copy(J_, to_.J);
   Copy(data.M(), to_.M);

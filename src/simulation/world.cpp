@@ -245,7 +245,7 @@ struct World::Impl {
   // times `rate` [1/s].
   void UpdateMotion(double rate) noexcept {
     const FrameMotion O = engine().MotionOf(SceneBody::kObject);
-    const FrameMotion E = controlled.EndEffector();
+    const FrameMotion& E = controlled.end_effector();
     const Vector6 A_WO = rate * (O.V_W - object.V_W);
     const Vector6 A_WE = rate * (E.V_W - end_effector.V_W);
     object = O;

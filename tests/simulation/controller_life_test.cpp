@@ -59,7 +59,7 @@ TEST(WristSensor, MeasuresTheWeightOfTheLoad) {
   const Vector3 weight = {0, 0, -2 * kGravity};
   const Vector3 com = engine.object_com();
   EXPECT_LT((F.head<3>() - weight).norm(), 1e-6);
-  EXPECT_LT((F.tail<3>() - (com - scene.EndEffector().X_W.p).cross(weight)).norm(), 1e-6);
+  EXPECT_LT((F.tail<3>() - (com - scene.end_effector().X_W.p).cross(weight)).norm(), 1e-6);
 }
 
 TEST(WristSensor, AddsBiasAndNoiseToAFilteredWrench) {

@@ -91,9 +91,11 @@ struct ControlledRobot {
     q = q_;
     v = v_;
     data.UpdateDynamics(*model, q, v, kGravity);
+    E.X_W = data.FramePose(*model, end_effector);
+    E.V_W = data.FrameTwist(*model, end_effector);
   }
   ControllerInput Input(double time = 0) const {
-    return {time, &q, &v, model.get(), &data, end_effector};
+    return {time, &q, &v, model.get(), &data, end_effector, &E};
   }
   JointVector Torque(double time = 0) {
     JointVector torque;
@@ -106,6 +108,7 @@ struct ControlledRobot {
   RobotData data;
   FrameId end_effector;
   JointVector posture, q, v;
+  FrameMotion E;
   std::unique_ptr<Controller> controller;
 };
 

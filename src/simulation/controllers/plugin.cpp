@@ -67,20 +67,16 @@ class Plugin final : public ExternalController {
   bool uses_wrist_sensor() const noexcept override { return uses_wrist_sensor_; }
   void Start(const ControllerInput& input) noexcept override {
     failed_ = false;
-    Guard("start", [&] {
-      if (functions_.start) functions_.start(self_.get(), &Fill(input));
-    });
+    if (functions_.start) Guard("start", [&] { functions_.start(self_.get(), &Fill(input)); });
   }
   void Advance(const ControllerInput& input, double) noexcept override {
-    Guard("advance", [&] {
-      if (functions_.advance) functions_.advance(self_.get(), &Fill(input));
-    });
+    if (functions_.advance)
+      Guard("advance", [&] { functions_.advance(self_.get(), &Fill(input)); });
   }
   double StoredEnergy(const ControllerInput& input) const noexcept override {
+    if (!functions_.stored_energy) return 0;
     double energy = 0;
-    Guard("stored_energy", [&] {
-      if (functions_.stored_energy) energy = functions_.stored_energy(self_.get(), &Fill(input));
-    });
+    Guard("stored_energy", [&] { energy = functions_.stored_energy(self_.get(), &Fill(input)); });
     return IsUsable(energy) ? energy : 0;
   }
 
