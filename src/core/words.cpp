@@ -1,6 +1,7 @@
 #include "core/words.h"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "core/format.h"
@@ -62,9 +63,13 @@ std::string CobotStopWords(CobotStop stop) {
 }
 
 std::string MeasuredWords(const Status& status) {
-  if (status.quantity == Quantity::kNone) return "";
+  if (status.quantity == Quantity::kNone && status.cause != StopCause::kPhysics) return "";
   const std::string measured = SeenAndAllowed(status.value, status.limit, status.quantity);
   if (status.cause != StopCause::kPhysics) return measured;
+  const bool is_acceleration = status.quantity == Quantity::kNone && status.limit > 0;
+  if (!std::isfinite(status.value) || (status.quantity == Quantity::kNone && !is_acceleration))
+    return Message("value.not_finite");
+  if (is_acceleration) return Message("value.joint_acceleration", {{"value", measured}});
   if (status.quantity == Quantity::kCount)
     return Message("value.torques", {{"count", Formatted("%.0f", status.value)}});
   if (status.quantity == Quantity::kTime) return Message("value.silence", {{"value", measured}});
@@ -77,7 +82,8 @@ std::string CauseWords(const Status& status) {
     text = Message("hand.left", {{"text", text}});
   else if (status.hand == 1)
     text = Message("hand.right", {{"text", text}});
-  if (status.quantity != Quantity::kNone) text += " (" + MeasuredWords(status) + ")";
+  if (const std::string measured = MeasuredWords(status); !measured.empty())
+    text += " (" + measured + ")";
   return Capitalised(text);
 }
 

@@ -30,7 +30,8 @@ std::string StopCauseText(StopCause cause, Quantity quantity = Quantity::kNone);
 std::string CobotStopWords(CobotStop stop);
 
 // Returns the measured value and its limit: "12.4 ms, limit 5 ms". Returns "" if there is no
-// quantity.
+// quantity, except for a stop by the simulation: with a limit, its value is then an acceleration,
+// and without a limit, a number was not finite.
 std::string MeasuredWords(const Status& status);
 std::string CauseWords(const Status& status);
 std::string CauseAdvice(const Status& status);

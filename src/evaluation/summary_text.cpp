@@ -87,7 +87,8 @@ void AddResults(const std::vector<ResultGroup>& groups, bool timing, std::string
 void AddStop(const StopSummary& stop, std::string* text) {
   const Status status{stop.cause, -1, stop.value, stop.limit, stop.quantity};
   std::string seen = ".";
-  if (stop.quantity != Quantity::kNone) seen = ": " + MeasuredWords(status) + ".";
+  if (const std::string measured = MeasuredWords(status); !measured.empty())
+    seen = ": " + measured + ".";
   AppendLine(text, "Stopped after %.3f s of emulation by cause '%s'%s%s%s", stop.time,
              Name(stop.cause), stop.hand < 0 ? "" : ", hand ",
              stop.hand < 0 ? "" : kHandNames[static_cast<std::size_t>(stop.hand)], seen.c_str());

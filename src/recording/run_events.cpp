@@ -16,7 +16,7 @@ constexpr int kMaxParameters = 20;                // maximum number of parameter
 std::string CauseText(const Status& s) {
   std::string text = Name(s.cause);
   if (s.hand >= 0 && s.hand < kHands) text += std::string(", ") + HandName(s.hand) + " hand";
-  if (s.quantity != Quantity::kNone) text += ": " + MeasuredWords(s);
+  if (const std::string measured = MeasuredWords(s); !measured.empty()) text += ": " + measured;
   return text;
 }
 

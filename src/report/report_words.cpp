@@ -48,6 +48,13 @@ std::string RunWords(const RunData& run) {
   return text;
 }
 
+// Returns ": 31.2 N, limit 30 N", or "" if nothing was measured.
+std::string MeasuredPart(const StopSummary& stop) {
+  const std::string measured =
+      MeasuredWords({stop.cause, -1, stop.value, stop.limit, stop.quantity});
+  return measured.empty() ? "" : ": " + measured;
+}
+
 std::string StopSentence(const RunData& run) {
   if (run.stops.empty()) return "There was no safety stop.";
   const StopSummary& stop = run.stops.front().summary;
@@ -57,8 +64,7 @@ std::string StopSentence(const RunData& run) {
   text += Round(stop.time, 5) + " s after the start. Its cause was '" +
           EscapeMarkup(Name(stop.cause)) + "'";
   if (stop.hand >= 0) text += std::string(" (") + HandName(stop.hand & 1) + " hand)";
-  if (stop.quantity != Quantity::kNone)
-    text += ": " + MeasuredWords({stop.cause, -1, stop.value, stop.limit, stop.quantity});
+  text += MeasuredPart(stop);
   text += DidNotRest(stop) ? ". The arms did not come to rest."
                            : ". The arms came to rest after " + Round(1e3 * stop.duration) +
                                  " ms and " + Mm(stop.distance) + ".";
@@ -344,8 +350,7 @@ std::string StopWords(const RunData& run, const ReportedStop& stop) {
   std::string text =
       "This stop was decided at " + Round(s.time, 5) + " s with the cause '" + Name(s.cause) + "'";
   if (s.hand >= 0) text += std::string(" (") + HandName(s.hand & 1) + " hand)";
-  if (s.quantity != Quantity::kNone)
-    text += ": " + MeasuredWords({s.cause, -1, s.value, s.limit, s.quantity});
+  text += MeasuredPart(s);
   text += ". ";
   if (s.detection)
     text += "The true force or torque of the hand crossed the threshold " +

@@ -48,7 +48,9 @@ TEST(StopMessage, NamesCauseAdviceAndNextStepOfEachCause) {
     const std::string id = std::string("stop.") + Name(record.cause);
     ASSERT_NE(Text(id + ".cause"), "") << id;
     ASSERT_NE(Text(id + ".advice"), "") << id;
-    EXPECT_EQ(StopCauseWords(record), Capitalised(Text(id + ".cause")) + ".");
+    const bool physics = record.cause == StopCause::kPhysics;
+    EXPECT_EQ(StopCauseWords(record), Capitalised(Text(id + ".cause")) +
+                                          (physics ? " (" + Text("value.not_finite") + ")." : "."));
     const bool device = record.cause == StopCause::kDevice;
     EXPECT_EQ(StopAdvice(record),
               Text(id + ".advice") + " " + Text(device ? "next.restart" : "next.reset"));

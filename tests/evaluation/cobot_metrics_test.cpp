@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -109,7 +110,15 @@ TEST(StopByPhysics, NamesTheJointAndARemedyThatFits) {
   ExpectText(diverged, "The fastest joint of the cobot was its joint 7.");
   ExpectText(diverged, "Run `predictor check`. Reduce the damping");
   EXPECT_EQ(nlohmann::json::parse(SummaryJson(diverged))["stop"]["fastest_joint"], 7);
-  ExpectText(StoppedBy(Quantity::kNone, std::nan(""), 0), "Explanation: the simulation diverged.");
+  const Summary not_finite = StoppedBy(Quantity::kNone, std::nan(""), 0);
+  ExpectText(not_finite, "by cause 'physics': a number that is not finite.");
+  ExpectText(not_finite, "Explanation: the simulation diverged.");
+  ExpectText(StoppedBy(Quantity::kAngularSpeed, std::numeric_limits<double>::infinity(), 100),
+             "by cause 'physics': a number that is not finite.");
+  ExpectText(StoppedBy(Quantity::kNone, 0, 0), "by cause 'physics': a number that is not finite.");
+  ExpectText(StoppedBy(Quantity::kNone, 2.5e6, 1e6),
+             "by cause 'physics': acceleration of a joint in rad/s² or m/s²: 2500000, "
+             "limit 1000000.");
 }
 
 TEST(StopByPhysics, OfAControllerSaysWhatWasCounted) {

@@ -145,6 +145,11 @@ function measured({cause, value, limit, quantity}: Reason): string {
   const numbers = beyond(value, limit, quantity);
   if (cause !== 'physics') return numbers;
   if (quantity === 'count') return message('value.torques', {count: fixed(value, 0)});
+  if (!Number.isFinite(value) || (quantity === 'none' && !(limit > 0)))
+    return message('value.not_finite');
+  if (quantity === 'none')
+    return message('value.joint_acceleration',
+      {value: message('value', {value: value.toFixed(0), limit: limit.toFixed(0)})});
   return message(quantity === 'time' ? 'value.silence' : 'value.joint_speed', {value: numbers});
 }
 
@@ -160,7 +165,8 @@ export function sideWords(side: Side): string {
 function sentence(why: Reason): string {
   const id = stopId(why);
   const text = id ? message(`stop.${id}.cause`) : '';
-  const numbers = why.quantity === 'none' ? '' : ` (${measured(why)})`;
+  const silent = why.quantity === 'none' && why.cause !== 'physics';
+  const numbers = silent ? '' : ` (${measured(why)})`;
   return (why.hand ? message(`hand.${why.hand}`, {text}) : capital(text)) + numbers + '.';
 }
 
