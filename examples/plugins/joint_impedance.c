@@ -56,11 +56,16 @@ static void* create(const PredictorControllerConfig* config, char* error, size_t
 static void compute(void* self_, const PredictorControllerInput* input, double* torque) {
   const JointImpedance* self = self_;
   for (int j = 0; j < self->dof; ++j) {
-    double momentum = 0; /* of joint j, (M v)_j */
-    for (int k = 0; k < self->dof; ++k) momentum += input->M[j + self->dof * k] * input->v[k];
+    double momentum = 0; /* of joint j, (M v)_j; M is symmetric */
+    for (int k = 0; k < self->dof; ++k) momentum += input->M[k + self->dof * j] * input->v[k];
     torque[j] = input->g[j] + self->stiffness * (self->posture[j] - input->q[j]) -
                 self->damping_rate * momentum;
   }
+}
+
+static uint32_t reads(void* self) {
+  (void)self;
+  return PREDICTOR_READS_M;
 }
 
 static double stored_energy(void* self_, const PredictorControllerInput* input) {
@@ -80,6 +85,7 @@ const PredictorController* predictor_controller(void) {
       .create = create,
       .destroy = free,
       .compute = compute,
+      .reads = reads,
       .stored_energy = stored_energy,
   };
   return &functions;

@@ -15,7 +15,7 @@ import struct
 import time
 
 CREATE, START, COMPUTE, ADVANCE, END = 1, 2, 3, 4, 5
-VERSION = 2
+VERSION = 3
 
 # These are offsets in PredictorControllerMemory (predictor/controller.h).
 REQUEST, ANSWER, KIND, REFUSED = 8, 12, 16, 20

@@ -19,7 +19,7 @@ extern "C" {
 #endif
 
 /* Version of this interface. PREDICTOR refuses a controller of another version. */
-#define PREDICTOR_CONTROLLER_VERSION 2u
+#define PREDICTOR_CONTROLLER_VERSION 3u
 
 enum {
   PREDICTOR_MAX_JOINTS = 16,
@@ -49,6 +49,15 @@ typedef struct PredictorControllerInput {
   double X_WO[7]; /* 3632: pose of the object in W, as X_WE. Exact: a camera that measures it would
                            add noise and delay, which the controller may model. */
 } PredictorControllerInput; /* 3688 bytes */
+
+/* The members of the input that take time to compute. The function `reads` of a library states
+ * which of them the controller reads. */
+enum {
+  PREDICTOR_READS_H = 1, /* h */
+  PREDICTOR_READS_J = 2, /* J */
+  PREDICTOR_READS_M = 4, /* M */
+  PREDICTOR_READS_ALL = 7
+};
 
 /* A word of cobot.controller.parameters, "key=value". */
 typedef struct PredictorParameter {
@@ -103,6 +112,9 @@ typedef struct PredictorController {
 
   /* 1 if the input must contain the wrist sensor's reading. May be NULL: 0. */
   int32_t (*uses_wrist_sensor)(void* self);
+  /* Which of h, J and M the controller reads, as a sum of PREDICTOR_READS_*, the same in each call.
+   * PREDICTOR does not compute the others, and they are 0. May be NULL: PREDICTOR_READS_ALL. */
+  uint32_t (*reads)(void* self);
   /* Energy in the controller's springs [J], part of the recorded energy. May be NULL: 0. */
   double (*stored_energy)(void* self, const PredictorControllerInput* input);
 } PredictorController;

@@ -50,12 +50,14 @@ const PredictorControllerInput& InterfaceInput::Fill(const ControllerInput& inpu
   Copy(*input.q, to_.q);
   Copy(*input.v, to_.v);
   Copy(data.gravity(), to_.g);
-  Copy(data.bias(), to_.h);
+  if (reads_ & PREDICTOR_READS_H) Copy(data.bias(), to_.h);
   FillPose(input.E->X_W, to_.X_WE);
   Copy(input.E->V_W, to_.V_WE);
-  data.FrameJacobian(*input.model, input.end_effector, &J_);
-  Copy(J_, to_.J);
-  Copy(data.M(), to_.M);
+  if (reads_ & PREDICTOR_READS_J) {
+    data.FrameJacobian(*input.model, input.end_effector, &J_);
+    Copy(J_, to_.J);
+  }
+  if (reads_ & PREDICTOR_READS_M) Copy(data.M(), to_.M);
   return to_;
 }
 

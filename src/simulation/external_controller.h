@@ -5,6 +5,7 @@
 #include <predictor/controller.h>
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -20,9 +21,13 @@ class InterfaceInput {
   InterfaceInput(double dt, int dof);
   // Writes all values. The result is valid until the next call. Does not use the heap or throw.
   const PredictorControllerInput& Fill(const ControllerInput& input) noexcept;
+  // Restricts h, J and M to those that the controller reads: a sum of PREDICTOR_READS_*. The others
+  // are 0.
+  void Restrict(std::uint32_t reads) noexcept { reads_ = reads; }
 
  private:
   PredictorControllerInput to_{};
+  std::uint32_t reads_ = PREDICTOR_READS_ALL;
   bool is_filled_ = false;
   Jacobian J_;
 };
@@ -59,6 +64,7 @@ class ExternalController : public Controller {
   const PredictorControllerInput& Fill(const ControllerInput& input) const noexcept {
     return input_.Fill(input);
   }
+  void RestrictInput(std::uint32_t reads) noexcept { input_.Restrict(reads); }
   // Returns the silence after which the run stops [s].
   virtual double longest_silence() const noexcept { return 0; }
 

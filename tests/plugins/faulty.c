@@ -20,6 +20,7 @@ typedef struct {
   double at;
   char fault[16];
   double damping, posture[PREDICTOR_MAX_JOINTS];
+  uint32_t reads;
   volatile int zero;     /* always 0 */
   volatile int* nowhere; /* always NULL */
 } Faulty;
@@ -44,9 +45,12 @@ static void* create(const PredictorControllerConfig* config, char* error, size_t
   while (HasParameter(config, "fault", "create")) sleep(1);
   self->at = INFINITY;
   self->damping = 10;
+  self->reads = PREDICTOR_READS_ALL;
   memcpy(self->posture, config->posture, sizeof self->posture);
   for (int i = 0; i < config->parameter_count; ++i) {
     if (strcmp(config->parameters[i].key, "at") == 0) self->at = atof(config->parameters[i].value);
+    if (strcmp(config->parameters[i].key, "reads") == 0)
+      self->reads = (uint32_t)atoi(config->parameters[i].value);
     if (strcmp(config->parameters[i].key, "damping") == 0)
       self->damping = atof(config->parameters[i].value);
     if (strcmp(config->parameters[i].key, "fault") == 0)
@@ -61,6 +65,9 @@ static void compute(void* self_, const PredictorControllerInput* input, double* 
     torque[j] = input->g[j] + 400 * (self->posture[j] - input->q[j]) - self->damping * input->v[j];
   if (input->time < self->at) return;
   if (strcmp(self->fault, "nan") == 0) torque[1] = torque[3] = NAN;
+  if (strcmp(self->fault, "h") == 0) memcpy(torque, input->h, sizeof input->X_WO);
+  if (strcmp(self->fault, "J") == 0) memcpy(torque, input->J, sizeof input->X_WO);
+  if (strcmp(self->fault, "M") == 0) memcpy(torque, input->M, sizeof input->X_WO);
   if (strcmp(self->fault, "object") == 0) memcpy(torque, input->X_WO, sizeof input->X_WO);
   if (strcmp(self->fault, "crash") == 0) abort();
   if (strcmp(self->fault, "access") == 0) *self->nowhere = 1;
@@ -72,6 +79,8 @@ static void compute(void* self_, const PredictorControllerInput* input, double* 
     free(taken);
   }
 }
+
+static uint32_t reads(void* self) { return ((Faulty*)self)->reads; }
 
 static double numbers[PREDICTOR_MAX_MEMORY + 1];
 static double* memory(void* self, int32_t* size) {
@@ -88,9 +97,11 @@ const PredictorController* predictor_controller(void) {
   functions.create = create;
   functions.destroy = free;
   functions.compute = FAULT == NO_COMPUTE ? NULL : compute;
+  functions.reads = reads;
   functions.memory = FAULT == LONG_MEMORY ? memory : NULL;
   return FAULT == NO_TABLE ? NULL : &functions;
 }
 #else
-PREDICTOR_EXPORT void* const unused[] = {(void*)create, (void*)compute, (void*)memory};
+PREDICTOR_EXPORT void* const unused[] = {(void*)create, (void*)compute, (void*)memory,
+                                         (void*)reads};
 #endif

@@ -1,5 +1,6 @@
 // Tests controllers outside the program: shared libraries and processes.
 #include <gtest/gtest.h>
+#include <predictor/controller.h>
 #include <sched.h>
 
 #include <chrono>
@@ -102,6 +103,26 @@ TEST(Plugin, SeesThePoseOfTheObject) {
     const Quaternion q(seen[3], seen[4], seen[5], seen[6]);
     EXPECT_EQ(q.coeffs(), X_WO.q.coeffs()) << controller.type;
     EXPECT_GT(RotationError(ObjectInE(world), at_start).norm(), 1e-3);
+  }
+}
+
+// This controller answers with the first seven numbers of h, J or M.
+TEST(Plugin, GetsWhatItReadsAndZerosOtherwise) {
+  const auto seen = [](const char* member, unsigned reads) {
+    const std::string answer = std::string("fault=") + member + " at=0.05 reads=";
+    const Scenario s = BallScene(Plugin("at_time", answer + std::to_string(reads)));
+    World world(s);
+    Simulate(&world, Push(s, {0, 3, 0}), 0.051);
+    EXPECT_TRUE(world.Step(HandsOff(s), kTick).ok());
+    return JointVector(world.state().torque);
+  };
+  for (const auto& [member, bit] :
+       {std::pair("h", PREDICTOR_READS_H), std::pair("J", PREDICTOR_READS_J),
+        std::pair("M", PREDICTOR_READS_M)}) {
+    const JointVector all = seen(member, PREDICTOR_READS_ALL);
+    EXPECT_GT(all.norm(), 0.01) << member;
+    EXPECT_EQ(seen(member, bit), all) << member;
+    EXPECT_EQ(seen(member, PREDICTOR_READS_ALL - bit), JointVector::Zero(7)) << member;
   }
 }
 

@@ -59,8 +59,7 @@ class Plugin final : public ExternalController {
         functions_(library_.functions()),
         self_(Make(context, parameters), Destroyer{this}) {
     if (functions_.memory) FindMemory(parameters);
-    const PluginCall call(&calls_, "uses_wrist_sensor");
-    uses_wrist_sensor_ = functions_.uses_wrist_sensor && functions_.uses_wrist_sensor(self_.get());
+    AskForInput();
   }
 
   std::span<double> memory() noexcept override { return memory_; }
@@ -101,6 +100,7 @@ class Plugin final : public ExternalController {
 
   void* Make(const ControllerContext& context, const PluginParameters& given);
   void FindMemory(const PluginParameters& parameters);
+  void AskForInput();
   struct Destroyer {
     Plugin* plugin;
     void operator()(void* self) const {
@@ -154,6 +154,18 @@ void Plugin::FindMemory(const PluginParameters& parameters) {
                              std::to_string(size) + " numbers; it must have from 0 to " +
                              std::to_string(PREDICTOR_MAX_MEMORY) + ".");
   memory_ = {numbers, static_cast<std::size_t>(size)};
+}
+
+// Asks which parts of the input the controller needs.
+void Plugin::AskForInput() {
+  if (functions_.uses_wrist_sensor) {
+    const PluginCall call(&calls_, "uses_wrist_sensor");
+    uses_wrist_sensor_ = functions_.uses_wrist_sensor(self_.get()) != 0;
+  }
+  if (functions_.reads) {
+    const PluginCall call(&calls_, "reads");
+    RestrictInput(functions_.reads(self_.get()));
+  }
 }
 
 }  // namespace
