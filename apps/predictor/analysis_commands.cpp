@@ -104,6 +104,12 @@ void AddEvaluate(CLI::App* app, Request* r) {
       evaluate, "Person", "--arm-model", &o->arm_model, "PATH",
       "Use the arm muscles of MyoArm instead of the built-in model: the folder myo_sim/models of "
       "the package myo-sim, or one MJCF file with the whole arm");
+  AddOption(evaluate, "Work", "--limits", &o->limits, "FILE.csv",
+            "Limits of postures, loads or muscles that you take from a standard, in the form of "
+            "assets/limits_template.csv (repeatable)")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
   AddOption(evaluate, "Work", "--contact-limits", &o->contact_limits, "FILE.csv",
             "Limits of force on the body for unintended contact, in the form of "
             "assets/contact_limits_template.csv");

@@ -154,6 +154,7 @@ struct EvaluateOptions : PersonOptions {
   bool intervals = true;
   bool repeated = false, held = false;  // see assessment::WorkPattern
   std::string arm_model;                // MyoArm, folder or MJCF; empty: the built-in model
+  std::vector<std::string> limits;      // files of limits that a run must keep
   std::string contact_limits;           // file of limits for unintended contact; empty: none
   std::string page;                     // empty: NAME.person.html
   std::string csv;                      // empty: no table

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "assessment/comparison.h"
 #include "assessment/output.h"
@@ -37,6 +38,9 @@ void AddSafety(const EvaluatedRun& run, const EvaluateOptions& options,
 
 assessment::Assessment Evaluate(const EvaluateOptions& options, const std::string& file,
                                 const std::vector<std::string>& tracks) {
+  std::vector<assessment::UserLimits> limits;
+  for (const std::string& limit : options.limits)
+    limits.push_back(assessment::ReadUserLimits(limit));
   const EvaluatedRun run = OpenRun(file, options, tracks);
   Progress progress("Evaluating", 1, options.quiet);
   assessment::AssessOptions how = run.Options();
@@ -45,6 +49,7 @@ assessment::Assessment Evaluate(const EvaluateOptions& options, const std::strin
   how.work = {.repeated = options.repeated, .held = options.held};
   how.progress = [&](double share) { progress.Update(share); };
   assessment::Assessment result = Assess(run.scenario, run.object_mass, run.run, how);
+  for (const assessment::UserLimits& limit : limits) JudgeUserLimits(limit, &result);
   AddSafety(run, options, &result);
   progress.Finish();
   result.recording = run.file;

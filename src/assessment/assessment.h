@@ -18,6 +18,7 @@
 #include "assessment/picture.h"
 #include "assessment/quantities.h"
 #include "assessment/safety/safety.h"
+#include "assessment/user_limits.h"
 #include "person/posture_samples.h"
 
 namespace predictor::assessment {
@@ -66,6 +67,7 @@ struct Assessment {
   std::vector<Lift> lifts;
   std::vector<DamageResult> damage;
   std::vector<FatigueResult> fatigue;
+  std::vector<LimitResult> limits;         // filled by JudgeUserLimits
   BodyPicture worst;                       // body at WorstSample()
   std::vector<BodyPicture> pictures;       // evenly spaced over the judged time
   std::optional<SafetyAssessment> safety;  // filled by JudgeSafety; empty: not judged

@@ -71,6 +71,23 @@ Json ToJson(const DamageResult& d) {
           {"probability_of_outcome", d.probability}};
 }
 
+Json OptionalNumber(const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); }
+
+Json ToJson(const LimitResult& r) {
+  return {{"origin", Name(Origin::kStandard)},
+          {"edition", r.edition},
+          {"clause", r.limit.clause},
+          {"quantity", r.limit.kind ? r.limit.kind->path : ""},
+          {"limit", r.limit.value},
+          {"allowed_s", r.limit.allowed},
+          {"verdict", Name(r.verdict)},
+          {"worst", NumberOrNull(r.worst)},
+          {"share_of_time_beyond", r.share},
+          {"longest_s", r.longest},
+          {"surely_longest_s", OptionalNumber(r.surely)},
+          {"possibly_longest_s", OptionalNumber(r.possibly)}};
+}
+
 Json ToJson(const FatigueResult& f) {
   return {{"origin", Name(Origin::kModelled)},
           {"joint", f.joint},
@@ -217,6 +234,7 @@ std::string AssessmentJson(const Assessment& a, const Comparison* comparison) {
                {"person", PersonOf(a)}};
   for (const QuantityResult& q : a.quantities) json["quantities"][q.kind->path] = ToJson(q);
   for (const WorksheetResult& w : a.worksheets) json["worksheets"][w.kind->name] = ToJson(w);
+  json["limits"] = ListOf(a.limits);
   json["lifts"] = ListOf(a.lifts);
   json["damage"] = ListOf(a.damage);
   json["fatigue"] = ListOf(a.fatigue);
@@ -265,6 +283,7 @@ std::string AssessmentSchema() {
             "the person")},
        {"quantities", schema::Object(quantities, "values over time")},
        {"worksheets", schema::Object(worksheets, "scores of observational worksheets")},
+       {"limits", ListSchema("limits of the files that were given", ToJson(LimitResult{}))},
        {"lifts", ListSchema("lifts of the run", ToJson(Lift{}))},
        {"damage", ListSchema("cumulative damage", ToJson(DamageResult{}))},
        {"fatigue", ListSchema("fatigue of joints", ToJson(FatigueResult{}))},

@@ -217,6 +217,12 @@ std::string FatigueTable(const Assessment& a) {
   return HtmlTable(rows);
 }
 
+void AddLimits(const Assessment& a, Outline* outline) {
+  if (a.limits.empty()) return;
+  outline->Begin("limits", "Limits of your files (standard)");
+  for (const LimitResult& limit : a.limits) outline->page().Paragraph(Sentence(limit));
+}
+
 void AddCosts(const Assessment& a, Outline* outline) {
   ReportPage& page = outline->page();
   if (!a.lifts.empty()) outline->Begin("lifts", "Lifts (standard)");
@@ -296,6 +302,7 @@ void AddParts(const Assessment& a, Outline* outline) {
   page.Figure(ScorePlot(a));
   AddMeasured(a.measured, outline);
   AddGroups(a, outline);
+  AddLimits(a, outline);
   AddCosts(a, outline);
   if (a.safety) AddSafety(*a.safety, outline);
   outline->Begin("gaps", "Assumptions and gaps");

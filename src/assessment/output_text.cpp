@@ -145,6 +145,7 @@ std::string AssessmentText(const Assessment& a) {
       "bodies.\n\n";
   AppendQuantities(a, &text);
   AppendWorksheets(a, &text);
+  AppendSentences("Limits of your files (standard)", a.limits, &text);
   AppendSentences("Lifts (standard)", a.lifts, &text);
   AppendSentences("Cumulative damage (standard)", a.damage, &text);
   AppendSentences("Fatigue, 3CC-r (modelled)", a.fatigue, &text);

@@ -109,7 +109,7 @@ YamlNode ParseWaypoints(const std::string& text, const std::string& name) {
     list.items.push_back(WaypointOf(std::move(cells), place));
   }
   if (list.items.empty())
-    throw InputError(name, "the file has no waypoints. Begin it with the header " +
+    throw InputError(name, "the file has no waypoints. Begin the file with the header " +
                                std::string(kPosition) + ", and add a row for each waypoint.");
   return list;
 }

@@ -184,7 +184,13 @@ void ExpectDescribed(const Json& value, const Json& schema, const std::string& p
 
 TEST(AssessmentOutput, ConformsToItsSchema) {
   const Json schema = Json::parse(AssessmentSchema());
-  const Json json = Json::parse(AssessmentJson(Judge(20, true)));
+  Assessment judged = Judge(20, true);
+  JudgeUserLimits(ParseUserLimits("edition,ours\nquantity,limit,unit,allowed_s,clause\n"
+                                  "trunk.flexion_rad,20,deg,0,1\n",
+                                  "limits.csv"),
+                  &judged);
+  const Json json = Json::parse(AssessmentJson(judged));
+  EXPECT_EQ(json["limits"].size(), 1u);
   ExpectDescribed(json, schema, "");
   const Assessment light = Judge(5, true), heavy = Judge(40, true);
   const Comparison comparison = Compare(light, heavy);

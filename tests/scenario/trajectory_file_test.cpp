@@ -67,7 +67,7 @@ TEST_F(TrajectoryFile, ErrorsNameFileAndLine) {
   EXPECT_EQ(Error("time,x,y,z\n1,0,20,0\n"),
             "path.csv:2:5: cobot.controller.trajectory.0.xyz.1 is 20 m; it must be from -10 to "
             "10 m.");
-  EXPECT_NE(Error("time,x,y,z\n").find("the file has no waypoints. Begin it with the header"),
+  EXPECT_NE(Error("time,x,y,z\n").find("the file has no waypoints. Begin the file with the header"),
             std::string::npos);
   EXPECT_NE(Error("").find("no waypoints"), std::string::npos);
   std::string many = "time,x,y,z\n";

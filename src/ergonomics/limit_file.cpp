@@ -1,0 +1,101 @@
+#include "ergonomics/limit_file.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace predictor::ergonomics {
+namespace {
+
+constexpr std::string_view kEdition = "edition";
+constexpr std::size_t kMaxBytes = 1u << 20;
+
+std::string_view Trimmed(std::string_view text) {
+  const std::size_t first = std::min(text.find_first_not_of(" \t\r"), text.size());
+  return text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
+}
+
+std::vector<std::string> CellsOfLine(std::string_view line) {
+  std::vector<std::string> cells;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    cells.emplace_back(Trimmed(line.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return cells;
+}
+
+void CheckCount(const std::vector<std::string>& cells, std::string_view columns,
+                const std::string& place) {
+  const std::size_t count = CellsOfLine(columns).size();
+  if (cells.size() != count)
+    throw InputError(place, "this row has " + std::to_string(cells.size()) +
+                                " values. Give one for each of the " + std::to_string(count) +
+                                " columns: " + std::string(columns) + ".");
+}
+
+}  // namespace
+
+LimitTable ParseLimitTable(const std::string& text, const std::string& name,
+                           std::string_view columns) {
+  LimitTable table;
+  bool header = false;
+  std::istringstream lines(text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string place = name + ":" + std::to_string(++number);
+    const std::string_view content = Trimmed(line);
+    if (content.empty() || content.starts_with('#')) continue;
+    const std::vector<std::string> cells = CellsOfLine(content);
+    if (table.edition.empty()) {
+      if (cells.size() < 2 || cells[0] != kEdition || cells[1].empty())
+        throw InputError(place,
+                         "the file does not name its edition. Begin the file with a line such as "
+                         "\"edition,ISO/TS 15066:2016 Annex A\".");
+      table.edition = std::string(Trimmed(content.substr(content.find(',') + 1)));
+    } else if (!header) {
+      if (Join(cells, ",") != columns)
+        throw InputError(place, "the header is " + Quote(content) + "; it must be " +
+                                    std::string(columns) + ".");
+      header = true;
+    } else {
+      CheckCount(cells, columns, place);
+      table.rows.push_back({place, cells});
+    }
+  }
+  if (table.rows.empty())
+    throw InputError(name, "the file contains no limits. Give the edition, then the header " +
+                               std::string(columns) + ", then a row for each limit.");
+  return table;
+}
+
+std::string ReadLimitFile(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in)
+    throw InputError(file.string(), "the file cannot be read. Check its name and permissions.");
+  std::string text(kMaxBytes + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.size() > kMaxBytes)
+    throw InputError(file.string(), "the file is larger than 1 MiB. Give a table of limits.");
+  return text;
+}
+
+double NumberInCell(const std::string& cell, std::string_view name, double least, bool or_equal,
+                    const std::string& place) {
+  double x = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
+  const bool number = error == std::errc() && end == cell.data() + cell.size() && std::isfinite(x);
+  if (!number || x < least || (x == least && !or_equal))
+    throw InputError(place, std::string(name) + " is " + Quote(cell) + ". Give a number " +
+                                (or_equal ? "of at least " : "above ") + FormatNumber(least) +
+                                ", with a point and without a unit.");
+  return x;
+}
+
+}  // namespace predictor::ergonomics
