@@ -17,7 +17,7 @@ namespace predictor::assessment {
 namespace {
 
 constexpr const char* kColumns = "quantity,limit,unit,allowed_s,clause";
-constexpr double kLeast = -1e9;  // no lower bound for a limit: a trunk bends backward, too
+constexpr double kLowest = -1e9;  // no lower bound for a limit: a trunk bends backward, too
 
 const QuantityKind& KindOf(const std::string& path, const std::string& place) {
   std::vector<std::string> paths;
@@ -44,7 +44,7 @@ double FactorOf(const std::string& unit, const QuantityKind& kind, const std::st
 UserLimit LimitOf(const ergonomics::LimitRow& row) {
   UserLimit limit;
   limit.kind = &KindOf(row.cells[0], row.place);
-  limit.value = ergonomics::NumberInCell(row.cells[1], "limit", kLeast, true, row.place) *
+  limit.value = ergonomics::NumberInCell(row.cells[1], "limit", kLowest, true, row.place) *
                 FactorOf(row.cells[2], *limit.kind, row.place);
   limit.allowed = ergonomics::NumberInCell(row.cells[3], "allowed_s", 0, true, row.place);
   limit.clause = row.cells[4];
