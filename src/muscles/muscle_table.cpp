@@ -300,13 +300,6 @@ constexpr MuscleSpec kTable[kMuscles] = {
 
 }  // namespace
 
-const char* GroupName(int group) {
-  constexpr const char* kNames[kMuscleGroups] = {
-      "shoulder flexors", "shoulder extensors", "shoulder abductors", "rotator cuff",
-      "elbow flexors",    "elbow extensors",    "forearm and wrist"};
-  return kNames[group];
-}
-
 std::span<const MuscleSpec, kMuscles> MuscleTable() { return kTable; }
 
 }  // namespace predictor::muscles

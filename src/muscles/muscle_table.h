@@ -28,7 +28,6 @@ enum class MuscleGroup : int {
   kForearm,  // rotation of the forearm, wrist and fingers
 };
 inline constexpr int kMuscleGroups = 7;
-const char* GroupName(int group);
 // Returns whether the group's muscles act at the shoulder, where the model is not valid with a
 // raised arm.
 constexpr bool ActsAtShoulder(int group) {

@@ -56,24 +56,4 @@ Vector3 PrincipalStiffness(const Matrix3& stiffness) noexcept {
   return Eigen::SelfAdjointEigenSolver<Matrix3>(stiffness, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-double CoContractionFor(const ArmModel& arm, const ArmVector& q, const MuscleForces& forces,
-                        const HandPoint& point, double target,
-                        ActivationProblem* problem) noexcept {
-  constexpr int kSteps = 256;
-  const auto reaches = [&](int step) {
-    problem->lower.setConstant(static_cast<double>(step) / kSteps);
-    const MuscleVector active = Activate(*problem).activation.cwiseProduct(forces.active);
-    const ArmMatrix K = JointStiffness(arm, q, active, active + forces.passive);
-    const auto stiffness = EndpointStiffness(K, point);
-    return stiffness && PrincipalStiffness(*stiffness)[0] >= target;
-  };
-  int low = -1, high = kSteps;  // reaches(high), or high is the largest possible value
-  while (high - low > 1) {
-    const int middle = (low + high) / 2;
-    (reaches(middle) ? high : low) = middle;
-  }
-  problem->lower.setConstant(static_cast<double>(high) / kSteps);
-  return problem->lower[0];
-}
-
 }  // namespace predictor::muscles

@@ -42,11 +42,4 @@ std::optional<Matrix3> EndpointStiffness(const ArmMatrix& joint_stiffness,
 // Returns the principal stiffnesses in ascending order [N/m].
 Vector3 PrincipalStiffness(const Matrix3& stiffness) noexcept;
 
-// Returns the smallest common lower bound of all activations at which the smallest principal
-// stiffness of the hand's point reaches `target` [N/m], or 1 if no bound suffices. The bound is
-// searched in steps of 1/256. Afterwards, `problem` contains that bound. `forces` are the muscle
-// forces of `problem`.
-double CoContractionFor(const ArmModel& arm, const ArmVector& q, const MuscleForces& forces,
-                        const HandPoint& point, double target, ActivationProblem* problem) noexcept;
-
 }  // namespace predictor::muscles

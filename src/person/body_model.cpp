@@ -132,12 +132,6 @@ BodyVector BodyModel::upper() const {
   return x;
 }
 
-double BodyModel::mass_above_hips() const {
-  double sum = 0;
-  for (const BodyJoint& joint : joints_) sum += joint.mass;
-  return sum;
-}
-
 Pose Placement::FrameOf(int joint) const { return {p[At(joint)], Quaternion(R[At(joint)])}; }
 
 Placement Place(const BodyModel& model, const BodyVector& q) {

@@ -88,10 +88,6 @@ class BodyModel {
   BodyVector lower() const;
   BodyVector upper() const;
 
-  // Returns the mass of the segments above the hip joints [kg]. The legs are not part of the tree;
-  // see person/legs.h.
-  double mass_above_hips() const;
-
  private:
   void AddTrunk();
   void AddArm(int hand);
@@ -139,10 +135,6 @@ struct JointLoads {
 JointLoads InverseDynamics(const BodyModel& model, const BodyVector& q, const BodyVector& v,
                            const BodyVector& a, std::span<const ExternalWrench> wrenches,
                            double gravity = kStandardGravity);
-
-// Returns the body as a MuJoCo model, with the joints' names and order of this file. The legs stand
-// upright and do not move.
-std::string MjcfOf(const BodyModel& model);
 
 // A part of the body that moves as one rigid body. The joints first ... last are at one place, and
 // the last carries its mass.

@@ -105,27 +105,5 @@ TEST(Stiffness, IsEmptyIfThePostureIsNotStable) {
       EndpointStiffness(0.1 * ArmMatrix::Identity(), PointAt(arm, q, Vector3(-500, 0, 0))));
 }
 
-TEST(Stiffness, CoContractionReachesTheTarget) {
-  const ArmModel arm({}, 1);
-  const ArmVector q = WorkPosture();
-  const MuscleForces forces = arm.ForcesAt(arm.LinesAt(q), ArmVector::Zero());
-  const HandPoint point = PointAt(arm, q, Vector3::Zero());
-  ActivationProblem problem = ProblemAt(arm, q, ArmVector::Zero());
-  const auto stiffness = [&] {
-    const MuscleVector active = Activate(problem).activation.cwiseProduct(forces.active);
-    const auto K =
-        EndpointStiffness(JointStiffness(arm, q, active, active + forces.passive), point);
-    return K ? PrincipalStiffness(*K)[0] : 0.0;
-  };
-  const double relaxed = stiffness();
-  const double floor = CoContractionFor(arm, q, forces, point, relaxed + 200, &problem);
-  EXPECT_GT(floor, 0);
-  EXPECT_LT(floor, 1);
-  EXPECT_GE(stiffness(), relaxed + 200);
-  problem.lower.setConstant(floor - 1 / 256.0);
-  EXPECT_LT(stiffness(), relaxed + 200);
-  EXPECT_EQ(CoContractionFor(arm, q, forces, point, 1e9, &problem), 1);
-}
-
 }  // namespace
 }  // namespace predictor::muscles

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
+#include "mjcf.h"
 #include "people.h"
 
 namespace predictor::person {
