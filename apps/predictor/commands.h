@@ -53,9 +53,6 @@ struct OutputOptions {
   void Write(const std::string& text, const std::string& result) const;
 };
 
-// Writes a whole file. Throws InputError if that fails.
-void WriteFile(const std::string& name, const std::string& text);
-
 // Options of all commands that use a scenario.
 struct ScenarioOptions : OutputOptions {
   std::string file;

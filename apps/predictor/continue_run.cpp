@@ -4,6 +4,7 @@
 #include "analysis/continuation/continuation.h"
 #include "commands.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "progress.h"
 #include "recorded_run.h"
@@ -51,7 +52,7 @@ int ContinueCommand(const ContinueCommandOptions& options) {
   const Continuation result = Continue(run, arm, how);
   progress.Finish();
   const std::string name = file.filename().string();
-  WriteFile(page, ContinuationPage(result, name, PREDICTOR_VERSION));
+  WriteWholeFile(page, ContinuationPage(result, name, PREDICTOR_VERSION));
   options.Write(ContinuationText(result) + "Wrote " + page + ". Open it in a browser.\n",
                 ContinuationJson(result, name));
   return kFinished;

@@ -8,6 +8,7 @@
 #include "assessment/comparison.h"
 #include "assessment/output.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "evaluated_run.h"
 #include "muscles/myo_arm.h"
@@ -107,8 +108,8 @@ int EvaluateCommand(const EvaluateOptions& options) {
     comparison = Compare(result, Evaluate(options, options.against, options.against_tracks));
     text += ComparisonText(*comparison);
   }
-  WriteFile(page, AssessmentPage(result, PREDICTOR_VERSION));
-  if (!options.csv.empty()) WriteFile(options.csv, AssessmentCsv(result));
+  WriteWholeFile(page, AssessmentPage(result, PREDICTOR_VERSION));
+  if (!options.csv.empty()) WriteWholeFile(options.csv, AssessmentCsv(result));
   options.Write(text + "Wrote " + page + ". Open it in a browser.\n",
                 AssessmentJson(result, comparison ? &*comparison : nullptr));
   return kFinished;

@@ -5,6 +5,7 @@
 #include "assessment/opensim_files.h"
 #include "commands.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "evaluated_run.h"
 
 namespace predictor {
@@ -29,7 +30,7 @@ int ExportPersonCommand(const ExportPersonOptions& options) {
   if (error) throw InputError(folder.string(), "The folder cannot be created: " + error.message());
   nlohmann::ordered_json names = nlohmann::ordered_json::array();
   for (const assessment::NamedFile& file : files) {
-    WriteFile(folder / file.name, file.text);
+    WriteWholeFile(folder / file.name, file.text);
     names.push_back(file.name);
   }
   const nlohmann::ordered_json result = {{"folder", folder.string()}, {"files", names}};

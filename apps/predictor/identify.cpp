@@ -1,12 +1,10 @@
 #include "analysis/identify/identify.h"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "commands.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/format.h"
 #include "recorded_run.h"
 #include "recording/provenance.h"
@@ -61,11 +59,7 @@ void WriteScenario(const IdentifyCommandOptions& options, const RecordingHeader&
                    const Identification& result) {
   const Scenario scenario = WithFriction(CopyOf(options, header), result);
   CheckModels(scenario, options.output);
-  std::ofstream out(options.output);
-  out << HeadingOf(result, options.recording) << SaveScenario(scenario);
-  if (!out.flush())
-    throw InputError(options.output,
-                     std::string("The file cannot be written: ") + std::strerror(errno) + ".");
+  WriteWholeFile(options.output, HeadingOf(result, options.recording) + SaveScenario(scenario));
 }
 
 Identification IdentifyRecording(const IdentifyCommandOptions& options, RecordingReader* reader) {

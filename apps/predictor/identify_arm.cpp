@@ -1,12 +1,10 @@
 #include "analysis/identify_arm/identify_arm.h"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "commands.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "recorded_run.h"
 #include "recording/provenance.h"
@@ -33,11 +31,7 @@ void WriteArm(const ArmIdentification& result, int hand, const std::string& sour
   if (!result.hands[static_cast<std::size_t>(hand)].identified())
     throw InputError(file, std::string("Not written, because the ") + HandName(hand) +
                                " arm was not identified.");
-  std::ofstream out(file);
-  out << ArmFile(result, hand, source);
-  if (!out.flush())
-    throw InputError(file,
-                     std::string("The file cannot be written: ") + std::strerror(errno) + ".");
+  WriteWholeFile(file, ArmFile(result, hand, source));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "commands.h"
+#include "core/file.h"
 #include "scenario/yaml_tree.h"
 #include "tracks/person_file.h"
 
@@ -18,7 +19,7 @@ int ImportCommand(const ImportOptions& options) {
   const tracks::ImportMap map =
       tracks::ParseImportMap(ReadYamlText(options.map, "a mapping"), options.map);
   const tracks::SeriesFile file = tracks::ReadSeries(options.file, map.channels.TimeOf());
-  WriteFile(output, tracks::ImportPerson(map, file));
+  WriteWholeFile(output, tracks::ImportPerson(map, file));
   const tracks::PersonFile written = tracks::ReadPersonFile(output);
   std::string text = "Wrote " + output + ". Next: predictor evaluate " + output + "\n";
   for (const std::string& note : written.header.notes) text += "Note: " + note + "\n";

@@ -13,6 +13,7 @@
 #include "analysis/check/check.h"
 #include "commands.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/format.h"
 #include "core/text.h"
 #include "core/types.h"
@@ -295,7 +296,7 @@ int InitCommand(const InitOptions& given) {
         "--end-effector names a link of your own cobot. Also give the URDF of this cobot with "
         "--urdf FILE.");
   const Draft draft = Choose(options, file);
-  WriteFile(file, TextOf(options, draft));
+  WriteWholeFile(file, TextOf(options, draft));
   for (const std::string& problem : draft.problems) TheScreen().Print("Unfit: " + problem);
   options.Write(ResultText(options, draft, file), JsonOf(draft, file));
   return draft.problems.empty() ? kFinished : kUnfit;

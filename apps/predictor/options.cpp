@@ -46,12 +46,6 @@ void WriteRaw(const std::string& text) {
 
 void WriteOut(const std::string& text) { WriteRaw(Printable(text, Lines::kMany)); }
 
-void WriteFile(const std::string& name, const std::string& text) {
-  std::ofstream out(name, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw InputError(name, "The file could not be written.");
-}
-
 void ShowProblem(const std::string& problem) {
   if (!problem.empty()) TheScreen().Print(problem);
 }

@@ -10,6 +10,7 @@
 #include "assessment/output.h"
 #include "commands.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/format.h"
 #include "evaluate.h"
 #include "models/arm_model.h"
@@ -173,7 +174,7 @@ int ReportCommand(const ReportOptions& options) {
     if (contacts.size() == 1) AddContactChapter(contacts.front(), page);
     assessment::AddPersonChapter(persons, page);
   });
-  WriteFile(output, report.html);
+  WriteWholeFile(output, report.html);
   const nlohmann::json result = {{"page", output}, {"recordings", options.recordings}};
   options.Write("Wrote " + output + ". Open it in a browser.\n", result.dump(2) + "\n");
   return kFinished;

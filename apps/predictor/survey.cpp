@@ -5,12 +5,12 @@
 #include <atomic>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "commands.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/format.h"
 #include "evaluation/questionnaire_files.h"
 #include "evaluation/questionnaire_report.h"
@@ -193,12 +193,8 @@ int SurveyReportCommand(const SurveyOptions& options) {
   options.CheckWritable();
   options.RefuseToReplace(options.output);
   const SurveyReport report = SummariseSurvey(ReadSurveyAnswers(PlacesOf(options)));
-  const fs::path file = options.output;
-  std::ofstream out(file, std::ios::binary);
-  out << SurveyPage(report);
-  out.close();
-  if (!out) throw InputError(file.string(), "The report could not be written.");
-  options.Write(SurveyTable(report) + "Wrote " + file.string() + ".\n", JsonOf(report));
+  WriteWholeFile(options.output, SurveyPage(report));
+  options.Write(SurveyTable(report) + "Wrote " + options.output + ".\n", JsonOf(report));
   return kFinished;
 }
 

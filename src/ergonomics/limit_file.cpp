@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 
 namespace predictor::ergonomics {
@@ -75,12 +75,7 @@ LimitTable ParseLimitTable(const std::string& text, const std::string& name,
 }
 
 std::string ReadLimitFile(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in)
-    throw InputError(file.string(), "the file cannot be read. Check its name and permissions.");
-  std::string text(kMaxBytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
+  const std::string text = ReadWholeFile(file, kMaxBytes + 1);
   if (text.size() > kMaxBytes)
     throw InputError(file.string(), "the file is larger than 1 MiB. Give a table of limits.");
   return text;

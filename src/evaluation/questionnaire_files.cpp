@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "scenario/pseudonym.h"
 
@@ -86,11 +85,7 @@ std::vector<fs::path> FindFiles(const std::vector<fs::path>& places) {
 }
 
 SurveyAnswer ReadFile(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text(kLongestAnswer + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (!in.eof() && !in) throw InputError(file.string(), "The file cannot be read.");
+  const std::string text = ReadWholeFile(file, kLongestAnswer + 1);
   try {
     return ParseSurveyAnswer(text);
   } catch (const InputError& error) {

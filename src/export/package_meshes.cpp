@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <functional>
 #include <sstream>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "scenario/paths.h"
 
@@ -34,14 +34,6 @@ std::string Plain(std::string name) {
     if (byte >= 0x80 || (std::isalnum(byte) == 0 && c != '-')) c = '_';
   }
   return name;
-}
-
-std::string ReadText(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw InputError(file.string(), "The file cannot be read. Check its permissions.");
-  return text.str();
 }
 
 std::string Trim(const std::string& text) {
@@ -140,7 +132,7 @@ std::string PackageMeshes::AddReferring(const fs::path& file, const std::string&
   const std::string extension = Extension(file);
   const bool is_library = extension == ".mtl";
   if (extension != ".dae" && extension != ".obj" && !is_library) return name;
-  const std::string text = ReadText(file);
+  const std::string text = ReadWholeFile(file);
   const auto rename = [&](const std::string& uri) { return AddReferred(uri, file); };
   std::string rewritten =
       extension == ".dae" ? RewriteCollada(text, rename) : RewriteObj(text, is_library, rename);

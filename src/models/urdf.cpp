@@ -1,10 +1,10 @@
 #include "models/urdf.h"
 
-#include <fstream>
 #include <system_error>
 #include <unordered_map>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "models/urdf_planar.h"
 #include "models/urdf_tree.h"
@@ -30,12 +30,7 @@ std::string ReadText(const std::filesystem::path& file) {
                                         std::to_string(kMaxUrdfBytes) +
                                         ". Move shapes into mesh files.");
   }
-  std::string text(bytes, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.read(text.data(), static_cast<std::streamsize>(bytes))) {
-    throw InputError(file.string(), "The file cannot be read. Check its permissions.");
-  }
-  return text;
+  return ReadWholeFile(file, bytes);
 }
 
 // Maps each name to its index. Duplicate names are refused.

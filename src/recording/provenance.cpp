@@ -6,14 +6,13 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <memory>
 #include <set>
-#include <sstream>
 #include <utility>
 #include <vector>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "models/urdf.h"
 #include "scenario/kind_groups.h"
@@ -32,14 +31,6 @@ constexpr const char* kAssetsFolder = "assets";
 constexpr const char* kPackagesFolder = "packages";
 constexpr const char* kControllerTape = "controller/tape.f64";
 constexpr const char* kPinnedFolder = "pinned";  // files that come with the program; only compared
-
-std::string Read(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw InputError(file.string(), "The file cannot be read. Check its permissions.");
-  return text.str();
-}
 
 std::string Sha256(const std::string& bytes) {
   unsigned char digest[EVP_MAX_MD_SIZE];
@@ -109,19 +100,10 @@ fs::path PlaceFor(const std::string& name, const fs::path& folder) {
   return folder / path;
 }
 
-void Write(const fs::path& file, const std::string& bytes) {
-  fs::create_directories(file.parent_path());
-  std::ofstream stream(file, std::ios::binary);
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!stream.flush())
-    throw InputError(file.string(),
-                     "The file could not be written. Check the free space on the disk.");
-}
-
 void ComparePinned(const std::string& name, const std::string& hash) {
   const fs::path file =
       PlaceFor(name.substr(std::string(kPinnedFolder).size() + 1), PinnedRobots());
-  if (fs::exists(file) && Sha256(Read(file)) == hash) return;
+  if (fs::exists(file) && Sha256(ReadWholeFile(file)) == hash) return;
   throw InputError("The recording was made with a different " + Quote(name) +
                    ". Use the program version that made it.");
 }
@@ -180,7 +162,7 @@ RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program
   RecordingHeader header;
   for (const fs::path& file : files) {
     const std::string name = NameOf(file, folder);
-    std::string bytes = Read(file);
+    std::string bytes = ReadWholeFile(file);
     header.model_hashes[name] = Sha256(bytes);
     if (!IsPinned(name) || IsUrdf(name))
       header.attachments.push_back(
@@ -215,14 +197,18 @@ Scenario RecordedScenario(const RecordingHeader& header, const std::string& file
 
 Scenario RestoreScenario(const RecordingHeader& header, const fs::path& folder) {
   ExpectScenario(header, "");
+  const auto write = [](const fs::path& file, const std::string& bytes) {
+    fs::create_directories(file.parent_path());
+    WriteWholeFile(file, bytes);
+  };
   for (const RecordingAttachment& file : header.attachments)
-    if (!IsPinned(file.name)) Write(PlaceFor(file.name, folder), file.bytes);
+    if (!IsPinned(file.name)) write(PlaceFor(file.name, folder), file.bytes);
   for (const auto& [name, hash] : header.model_hashes)
     if (IsPinned(name)) ComparePinned(name, hash);
   if (fs::is_directory(folder / kPackagesFolder)) AddPackagePath(folder / kPackagesFolder);
   const std::string name = header.scenario_name.empty() ? "scenario" : header.scenario_name;
   const fs::path file = PlaceFor(kScenarioFolder + ("/" + name + ".yaml"), folder);
-  Write(file, ScenarioText(header, file.string()));
+  write(file, ScenarioText(header, file.string()));
   Scenario scenario = LoadScenario(file);
   UseTape(header, &scenario);
   return scenario;

@@ -3,28 +3,20 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <vector>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 
 namespace predictor {
 namespace {
 
-bool ReadFile(const std::filesystem::path& file, std::string* bytes) {
-  std::ifstream stream(file, std::ios::binary);
-  bytes->assign(std::istreambuf_iterator<char>(stream), {});
-  return stream.good() || stream.eof();
-}
-
 // Returns the beginning of all lines about the library as it is now. Throws InputError if it cannot
 // be read.
 std::string StartOf(const std::filesystem::path& library) {
-  std::string bytes;
-  if (!ReadFile(library, &bytes))
-    throw InputError(library.string(), "The library cannot be read. Check its permissions.");
+  const std::string bytes = ReadWholeFile(library);
   char hash[17];
   std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(Fnv1a(bytes)));
   return library.filename().string() + " (" + std::to_string(bytes.size()) + " bytes, hash " +
@@ -60,16 +52,11 @@ void NoteTrial(const std::filesystem::path& library, const std::string& paramete
   for (const std::string& other : LinesOf(file))
     if (other.starts_with(start) && other != line) note += other + "\n";
   if (passed) note += line + "\n";
+  if (!note.empty()) return WriteWholeFile(file, note);
   std::error_code error;
-  if (note.empty()) {
-    std::filesystem::remove(file, error);
-    if (!std::filesystem::exists(file, error)) return;
-  } else {
-    std::ofstream stream(file);
-    stream << note;
-    if (stream.flush()) return;
-  }
-  throw InputError(file.string(), "The note could not be written. Check the permissions.");
+  std::filesystem::remove(file, error);
+  if (std::filesystem::exists(file, error))
+    throw InputError(file.string(), "The note could not be removed. Check the permissions.");
 }
 
 bool HasPassedTrial(const std::filesystem::path& library, const std::string& parameters) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <system_error>
 #include <utility>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "scenario/yaml_scalar.h"
 
@@ -177,13 +177,8 @@ std::string ReadYamlText(const std::filesystem::path& file, const std::string& w
     throw InputError(file.string(), "the file does not exist. Give the path of " + what + ".");
   if (!fs::is_regular_file(status))
     throw InputError(file.string(), "this is not a file. Give the path of " + what + ".");
-  std::ifstream stream(file, std::ios::binary);
   // One byte more than permitted shows that the text is too long.
-  std::string text(kMaxYamlBytes + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.eof() && !stream) throw InputError(file.string(), "the file cannot be read.");
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
+  return ReadWholeFile(file, kMaxYamlBytes + 1);
 }
 
 }  // namespace predictor

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <map>
 #include <span>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "tracks/ros_messages.h"
 
@@ -58,11 +58,7 @@ std::string ReadBytes(const std::filesystem::path& file) {
     throw InputError(file.string(), "The file has more than " +
                                         std::to_string(kMaxFileBytes >> 20U) +
                                         " MiB. Export a shorter part of it.");
-  std::string bytes(size, '\0');
-  std::ifstream in(file, std::ios::binary);
-  if (!in.read(bytes.data(), static_cast<std::streamsize>(size)))
-    throw InputError(file.string(), "The file cannot be read. Check its permissions.");
-  return bytes;
+  return ReadWholeFile(file, size);
 }
 
 SeriesFile ReadSeries(const std::filesystem::path& file, const TimeColumn& time) {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <utility>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "viewer/page_files.h"
 
@@ -42,11 +42,7 @@ std::string ReadFile(const std::filesystem::path& file, std::size_t max_bytes) {
                                         " bytes, but the viewer has space for only " +
                                         std::to_string(max_bytes) +
                                         " more bytes. Simplify the mesh.");
-  std::string text(bytes, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.read(text.data(), static_cast<std::streamsize>(bytes)))
-    throw InputError(file.string(), "The file cannot be read. Check its permissions.");
-  return text;
+  return ReadWholeFile(file, bytes);
 }
 
 // Decodes an attribute's value as the URDF's printer wrote it.

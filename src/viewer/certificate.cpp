@@ -20,11 +20,10 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 #include "viewer/address.h"
 
@@ -55,10 +54,7 @@ std::string ReadText(const fs::path& file) {
   if (fs::file_size(file, error) > kMaxCertificateBytes || error)
     throw InputError(file.string(),
                      "This file does not contain a certificate or key in PEM format.");
-  std::ifstream stream(file, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(stream), {});
-  if (!stream) throw InputError(file.string(), "The file cannot be read. Check its permissions.");
-  return text;
+  return ReadWholeFile(file, kMaxCertificateBytes);
 }
 
 X509Ptr ParseCertificate(const std::string& pem) {

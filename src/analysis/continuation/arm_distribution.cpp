@@ -3,10 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/text.h"
 
 namespace predictor {
@@ -42,11 +42,7 @@ ArmDistribution::Matrix RootOf(const ArmDistribution::Matrix& covariance) {
 }
 
 nlohmann::json ParseArm(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file, "The file cannot be read.");
-  std::string text(kMaxFile + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
+  const std::string text = ReadWholeFile(file, kMaxFile + 1);
   if (text.size() > kMaxFile) throw InputError(file, "The file is larger than 1 MiB.");
   try {
     return nlohmann::json::parse(text);

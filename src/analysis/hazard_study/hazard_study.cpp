@@ -8,8 +8,8 @@
 #include "analysis/hazard_study/run_store.h"
 #include "analysis/parallel.h"
 #include "analysis/stability_map/store.h"
-#include "analysis/text_file.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/format.h"
 #include "core/norm.h"
 #include "emulator/emulator.h"
@@ -226,8 +226,8 @@ HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
   HazardStudy study;
   study.kept = kept;
   for (Piece& piece : pieces) study.cells.push_back(std::move(piece.cell));
-  WriteText(options.folder / "hazards.csv", HazardStudyCsv(study));
-  WriteText(options.folder / "hazards.md", HazardStudyTables(study));
+  WriteWholeFile(options.folder / "hazards.csv", HazardStudyCsv(study));
+  WriteWholeFile(options.folder / "hazards.md", HazardStudyTables(study));
   return study;
 }
 

@@ -1,9 +1,9 @@
 #include "analysis/identify/real.h"
 
 #include <cmath>
-#include <fstream>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/format.h"
 #include "models/robot.h"
 #include "models/urdf.h"
@@ -73,12 +73,6 @@ void Perturb(const RealCobot& real, UrdfModel* urdf) {
   }
 }
 
-void Write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file);
-  out << text;
-  if (!out.flush()) throw InputError(file.string(), "This file could not be written.");
-}
-
 }  // namespace
 
 RealCobot DrawRealCobot(int joints, std::uint64_t seed) {
@@ -98,10 +92,10 @@ Scenario MakeReal(const Scenario& nominal, const RealCobot& real,
   UrdfModel cobot = ReadUrdf(ResolveModelPath(nominal.cobot.model, nominal.folder()),
                              nominal.cobot.remove_links, nominal.folder());
   Perturb(real, &cobot);
-  Write(folder / "cobot.urdf", DynamicsText(cobot));
+  WriteWholeFile(folder / "cobot.urdf", DynamicsText(cobot));
   if (!nominal.object.model.empty()) {
     const auto object = ResolveModelPath(nominal.object.model, nominal.folder());
-    Write(folder / "object.urdf", ReadUrdf(object, {}, nominal.folder()).text);
+    WriteWholeFile(folder / "object.urdf", ReadUrdf(object, {}, nominal.folder()).text);
     s.object.model = "object.urdf";
   }
   s.name += ", the real cobot";

@@ -8,8 +8,8 @@
 #include "analysis/parallel.h"
 #include "analysis/population/run_store.h"
 #include "analysis/stability_map/store.h"
-#include "analysis/text_file.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/format.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
@@ -115,10 +115,10 @@ std::vector<Prepared> PrepareDesigns(const PopulationOptions& options, const Sam
 
 void WriteResults(const PopulationStudy& study, const PopulationOptions& options) {
   const std::filesystem::path& folder = options.folder;
-  WriteText(folder / "persons.csv", PersonsCsv(study));
-  WriteText(folder / "designs.csv", DesignsCsv(study));
-  WriteText(folder / "differences.csv", DifferencesCsv(study));
-  WriteText(folder / "population.html", PopulationPage(study, options.program_version));
+  WriteWholeFile(folder / "persons.csv", PersonsCsv(study));
+  WriteWholeFile(folder / "designs.csv", DesignsCsv(study));
+  WriteWholeFile(folder / "differences.csv", DifferencesCsv(study));
+  WriteWholeFile(folder / "population.html", PopulationPage(study, options.program_version));
 }
 
 }  // namespace

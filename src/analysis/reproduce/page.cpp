@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "analysis/reproduce/runs.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/format.h"
 #include "core/json_schema.h"
 #include "core/text.h"
@@ -59,12 +59,6 @@ std::string Overview(const Reproduction& reproduction) {
       numbers.push_back(std::move(n));
     }
   return numbers.empty() ? "" : NumbersTable(numbers);
-}
-
-void WriteFile(const std::filesystem::path& file, const std::string& bytes) {
-  std::ofstream out(file, std::ios::binary);
-  out << bytes;
-  if (!out.flush()) throw InputError(file.string(), "The file could not be written.");
 }
 
 }  // namespace
@@ -176,12 +170,12 @@ void WriteReproduction(const Reproduction& reproduction, const std::filesystem::
   const std::filesystem::path figures = folder / "figures";
   std::error_code error;
   std::filesystem::create_directories(figures, error);
-  WriteFile(folder / "index.html", ReproductionPage(reproduction));
-  WriteFile(folder / "numbers.json", ReproductionJson(reproduction));
-  WriteFile(folder / "numbers.csv", ReproductionCsv(reproduction));
+  WriteWholeFile(folder / "index.html", ReproductionPage(reproduction));
+  WriteWholeFile(folder / "numbers.json", ReproductionJson(reproduction));
+  WriteWholeFile(folder / "numbers.csv", ReproductionCsv(reproduction));
   for (const ReproducedExperiment& e : reproduction.experiments)
     for (const ReproducedImage& image : e.images)
-      WriteFile(figures / (image.id + ".png"), image.bytes);
+      WriteWholeFile(figures / (image.id + ".png"), image.bytes);
 }
 
 }  // namespace predictor

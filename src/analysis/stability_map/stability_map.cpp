@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -13,6 +12,7 @@
 #include "analysis/stability_map/store.h"
 #include "analysis/stability_map/wall_map.h"
 #include "core/error.h"
+#include "core/file.h"
 #include "core/format.h"
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
@@ -382,12 +382,7 @@ StabilityMap MakeStabilityMap(const Scenario& scenario, const MapOptions& option
 }
 
 void WriteStabilityMap(const StabilityMap& map, const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / kPageFile;
-  std::ofstream out(file);
-  out << MapPage(map);
-  if (!out.flush())
-    throw InputError("--map: '" + file.string() +
-                     "' could not be written. Give a folder on a disk with free space.");
+  WriteWholeFile(folder / kPageFile, MapPage(map));
 }
 
 }  // namespace predictor
