@@ -1,4 +1,4 @@
-// The physics engine alone, for comparison.
+// The physics engine without the rest of the program, for comparison.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ struct Still {
   std::vector<double> start;
 };
 
-// MuJoCo alone, with its own model and state.
+// MuJoCo without the rest of the program, with its own model and state.
 struct Bare {
   explicit Bare(const Scenario& scenario)
       : still(scenario),

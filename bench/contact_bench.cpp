@@ -1,4 +1,4 @@
-// Measures the tick of a scene with many contacts.
+// Measures the duration of a tick in a scene with many contacts.
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
 #include "samples.h"

@@ -39,7 +39,7 @@ void PrintRuns(const RunTimes& t, double mj_step) {
               verdict(t.start_up < 1));
 }
 
-// Removes an option from the arguments. Returns whether the arguments contained the option.
+// Removes an option from the arguments, and returns whether the arguments contained this option.
 bool Take(const std::string& option, int* argc, char** argv) {
   char** end = std::remove(argv + 1, argv + *argc, option);
   const bool found = end != argv + *argc;

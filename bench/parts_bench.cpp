@@ -48,7 +48,7 @@ void Register(const char* name, Function function) {
   benchmark::RegisterBenchmark(name, function)->Unit(benchmark::kMicrosecond);
 }
 
-// The inputs of all ticks, built before the measurement.
+// The inputs of all ticks, which are built before the measurement.
 struct Inputs {
   std::vector<WorldInput> world;
   std::vector<DeviceCommand> command;
@@ -194,8 +194,8 @@ std::map<std::string, double> TimeParts(const Recording& recording, int* argc, c
   RegisterSensing(recording, inputs);
   RegisterRender(recording);
   RegisterRig(recording, inputs);
-  // All repetitions run in random order, so that a disturbance affects them equally. The caller's
-  // options follow these options and therefore override them.
+  // All repetitions run in random order, so that a disturbance affects all repetitions equally. The
+  // caller's options follow these default options and therefore override the default options.
   std::vector<char*> arguments = {argv[0]};
   std::array<std::string, 3> defaults = {"--benchmark_repetitions=11", "--benchmark_min_time=0.03",
                                          "--benchmark_enable_random_interleaving=true"};

@@ -1,5 +1,5 @@
-// Measures the computing time of the evaluation of the person: for posture, loads, muscles, 64
-// possible people, and the complete evaluation during a run.
+// Measures how long the parts of the person's evaluation take: posture, loads, muscles, 64 possible
+// people, and the complete evaluation during a run.
 #include <cmath>
 
 #include "assessment/live_person.h"
@@ -29,8 +29,8 @@ person::BodySample HandlesAt(const person::Stance& stance, double time) {
   return sample;
 }
 
-// Computes activations and stiffness of both arms. Returns their sum, so that the compiler does not
-// remove the computation.
+// Computes activations and stiffness of both arms. Returns the sum of all results, so that the
+// compiler does not remove the computation.
 double MusclesAt(const std::array<muscles::ArmModel, kHands>& arms,
                  const person::BodyMotion& motion, const person::BodyLoads& loads) {
   double sum = 0;

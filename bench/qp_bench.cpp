@@ -17,7 +17,7 @@ struct Score {
 constexpr std::size_t kBlock = 50;  // number of problems that a candidate solves consecutively
 
 // The candidates take turns after each block of problems. A disturbance therefore affects all
-// candidates equally, and the code of each candidate stays in the cache.
+// candidates equally. Within a block, the candidate's code stays in the cache.
 std::vector<Score> Run(const ProblemSet& set,
                        const std::vector<std::unique_ptr<Candidate>>& candidates, int repetitions) {
   const std::size_t count = set.problems.size();

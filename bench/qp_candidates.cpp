@@ -24,7 +24,7 @@ class Ours final : public Candidate {
   QpSolver solver_;
 };
 
-// DAQP, with the equality rows before the other rows.
+// The solver DAQP, which receives the equality rows before the other rows.
 class HardDaqp final : public Candidate {
  public:
   explicit HardDaqp(const Problem& example)
@@ -128,7 +128,8 @@ std::vector<std::unique_ptr<Candidate>> MakeCandidates(const Problem& example) {
 double Residual(const Problem& problem, bool hard, const Answer& answer) {
   if (!answer.solution.solved) return HUGE_VAL;
   if (!hard) return KktResidual(problem.weighed, answer.solution);
-  // Since the multipliers of the equalities are known, the gradient of the equalities is constant.
+  // The multipliers of the equalities are known, so the equalities contribute a constant to the
+  // gradient.
   Qp qp = problem.hard;
   qp.f() += problem.E.transpose() * answer.equality;
   const Eigen::Map<const Eigen::VectorXd> x(answer.solution.x.data(), qp.n());

@@ -32,7 +32,8 @@ std::unique_ptr<Candidate> MakeEiquadprogRt(
     const Problem& example);  // null unless there are two arms with 7 joints
 std::unique_ptr<Candidate> MakeProxQp(const Problem& example, bool hard, bool warm);
 
-// Returns the KktResidual of the formulation that the candidate solved, or infinity if it failed.
+// Returns the KktResidual of the formulation that the candidate solved, or infinity if the
+// candidate failed.
 double Residual(const Problem& problem, bool hard, const Answer& answer);
 
 }  // namespace predictor::bench

@@ -51,7 +51,7 @@ ProblemSet FromRecording(const Recording& recording, const std::string& name, in
   RenderResult result;
   for (std::size_t k = 1; k + 1 < recording.ticks.size(); ++k) {
     input.Load(recording, k);
-    // The recorded run is valid, but random postures may not be. Both are included in the set.
+    // The set contains this problem even if rendering reports an error.
     std::ignore = renderer.Render(input.arms(), input.target, input.last, &result);
     if (k % static_cast<std::size_t>(stride) != 0) continue;
     set.problems.push_back(Extract(renderer));
@@ -92,7 +92,7 @@ ProblemSet AtTheLimits(const Recording& recording, int count) {
       D.V_W << random_vector(0.05), random_vector(0.2);
       D.A_W << random_vector(0.2), random_vector(0.5);
     }
-    // The recorded run is valid, but random postures may not be. Both are included in the set.
+    // Random postures may be invalid. The set contains their problems nevertheless.
     std::ignore = renderer.Render(input.arms(), input.target, input.last, &result);
     set.problems.push_back(Extract(renderer));
     set.problems.back().gap = -1;

@@ -133,7 +133,7 @@ std::uint64_t Now() {
          static_cast<std::uint64_t>(t.tv_nsec);
 }
 
-// Acts as an operator would act in the present state.
+// Acts like an operator in the present state of the run.
 void Hold(Emulator* emulator, int tick, FarEnd* far_end) {
   RunInput key;
   key.kind = InputKind::kEnable;

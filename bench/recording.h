@@ -36,7 +36,8 @@ class RenderInput {
 
   // Loads the inputs of tick k, with 1 ≤ k < ticks.size() − 1.
   void Load(const Recording& recording, std::size_t k) noexcept;
-  // Sets the inputs for the given joints. `last` [rad/s] is the previous command.
+  // Sets the inputs of rendering for the given joint positions. `last` [rad/s] is the previous
+  // command.
   void Place(const std::array<JointVector, kHands>& q,
              const std::array<JointVector, kHands>& last) noexcept;
 

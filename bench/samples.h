@@ -9,7 +9,7 @@
 
 namespace predictor::bench {
 
-// Returns the p-quantile of the samples, or 0 without samples.
+// Returns the p-quantile of the samples, or 0 if there are no samples.
 inline double Quantile(std::vector<double> samples, double p) {
   if (samples.empty()) return 0;
   const auto rank = static_cast<std::ptrdiff_t>(p * static_cast<double>(samples.size() - 1) + 0.5);

@@ -15,7 +15,8 @@ namespace predictor::bench {
 // Measurements of whole runs in virtual time.
 struct RunTimes {
   std::array<double, kStages> p50{}, p99{};  // of ticks in RUN [µs], medians over the runs
-  // Simulated time divided by CPU time, and by wall-clock time.
+  // The simulated time divided by the CPU time, and the simulated time divided by the wall-clock
+  // time.
   double cpu_factor = 0, wall_factor = 0;
   double start_up = 0;  // from the scenario file to the end of the first tick [s]
 };

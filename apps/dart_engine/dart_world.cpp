@@ -33,8 +33,9 @@ using Eigen::Vector3d;
 // If contacts and limits add less than this share of the largest acceleration, the addition counts
 // as a rounding error.
 constexpr double kRounding = 1e-9;
-// DART takes the smaller friction of two shapes and the product of their restitutions. Because of
-// these values for the object, the friction and restitution of the surroundings apply.
+// DART takes the smaller friction of two shapes and the product of their restitutions. With
+// infinite friction and a restitution of 1 for the object, the friction and restitution of the
+// surroundings apply.
 constexpr double kObjectFriction = std::numeric_limits<double>::infinity();
 constexpr double kObjectRestitution = 1;
 
@@ -61,7 +62,7 @@ BodyNode::Properties BodyOf(const std::string& name, const Inertia& inertia) {
   return BodyNode::Properties(BodyNode::AspectProperties(name, InertiaOf(inertia)));
 }
 
-// Limits of a joint with one degree of freedom; infinite ones have no effect.
+// Limits of a joint with one degree of freedom. An infinite limit has no effect.
 void SetLimits(Joint* joint, double lower, double upper, double speed) {
   joint->setPositionLowerLimit(0, lower);
   joint->setPositionUpperLimit(0, upper);
@@ -216,8 +217,9 @@ void DartWorld::AddObject() {
     SetLimits(joint, scene_.lower, scene_.upper, std::numeric_limits<double>::infinity());
 }
 
-// DART's own free joint uses velocities in axes of the body, but the protocol does not. The object
-// therefore has a sliding joint along the axes of W, whose body has no mass, and a ball joint.
+// DART's own free joint expresses velocities in the axes of the body, but the protocol does not.
+// The object therefore has a sliding joint along the axes of W, whose body has no mass, and a ball
+// joint.
 void DartWorld::AddFreeObject(const BodyNode::Properties& body) {
   using dart::dynamics::BallJoint;
   using dart::dynamics::TranslationalJoint;
@@ -398,7 +400,8 @@ bool DartWorld::WriteContacts(const dart::collision::CollisionResult& result,
   for (std::size_t i = 0; i < result.getNumContacts(); ++i) {
     const dart::collision::Contact& from = result.getContact(i);
     const auto* first = from.collisionObject1->getShapeFrame()->asShapeNode();
-    // DART reports the normal and the force that act on the first body.
+    // DART reports the normal and the force of a contact as they act on the first of the two
+    // bodies.
     const double sign = first != nullptr && first->getBodyNodePtr().get() == object_ ? 1 : -1;
     ContactData& to = motion->contact[motion->contacts++];
     Write(from.point, to.p);
@@ -478,7 +481,7 @@ Result DartWorld::Advance(Memory* memory) {
   ReadState(&next);
   if (!WriteContacts(world_->getLastCollisionResult(), &memory->motion))
     return Result::kTooManyContacts;
-  // The part of the accelerations that contacts, limits and friction cause.
+  // The part of the accelerations that is caused by contacts, limits and friction.
   VectorX reaction = total - step;
   if (reaction.lpNorm<Eigen::Infinity>() <= kRounding * (1 + total.lpNorm<Eigen::Infinity>()))
     reaction.setZero();

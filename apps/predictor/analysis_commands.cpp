@@ -145,8 +145,8 @@ void AddContinue(CLI::App* app, Request* r) {
             "Page to write [default: NAME.continued.html]");
   AddOutput(go_on, o);
   go_on->footer(
-      "The command can continue only runs with the simulated rig that stopped at a limit of the "
-      "force, torque, coupling or tracking.\n"
+      "The command can continue only those runs that used the simulated rig and stopped at a limit "
+      "of force, torque, coupling or tracking.\n"
       "Example:\n  predictor continue runs/push_2026-01-31_14-05-09.mcap --json continued.json\n");
 }
 
@@ -172,7 +172,8 @@ void AddTrial(CLI::App* app, Request* r) {
   AddOutput(trial, &r->scenario);
   trial->footer(
       "Example:\n  predictor trial mine.yaml runs/mine_2026-01-31_14-05-09.mcap\n"
-      "Exit code 1: the library allocates, takes too long, or gives no usable torques.\n");
+      "Exit code 1: the library allocates, takes too long, or returns torques that cannot be "
+      "used.\n");
 }
 
 void AddIdentify(CLI::App* app, Request* r) {

@@ -32,15 +32,15 @@
 namespace predictor {
 namespace {
 
-// Returns "2026-11-22T14-03-59" in local time.
+// Returns the local time in a form such as "2026-11-22T14-03-59".
 std::string Date() { return LocalTime("%Y-%m-%dT%H-%M-%S", std::time(nullptr)); }
 
 using Json = nlohmann::ordered_json;
 
-// The terminal through which a person beside the arms controls the calibration.
-// This class prints lines, and reads keys without Enter and without showing them. The destructor
-// restores the terminal. The constructor throws InputError if standard input is not a terminal. Key
-// also throws InputError after Ctrl-C or if the terminal was closed.
+// The terminal at which a person beside the arms controls the calibration.
+// This class prints lines. It reads keys without waiting for Enter, and does not show these keys.
+// The destructor restores the terminal. The constructor throws InputError if standard input is not
+// a terminal. The function Key also throws InputError, after Ctrl-C and if the terminal was closed.
 class Terminal final : public commissioning::Person {
  public:
   Terminal();
@@ -75,8 +75,8 @@ char Terminal::Key() {
   return RawKeys::Read(key);
 }
 
-// A calibration session: a machine, its connected arms, and a person at the terminal. Each step of
-// the calibration returns its result.
+// A calibration session: a machine, its connected arms, and a person at the terminal. Each function
+// for a step of the calibration returns the result of this step.
 class Commissioner {
  public:
   explicit Commissioner(const CalibrateOptions& options)
@@ -180,7 +180,8 @@ class Commissioner {
     return *arm;
   }
 
-  // Returns the hand of --arm, or the only hand, or `usual` if there are two and no --arm.
+  // Returns the index of the hand to use: the hand that --arm names or, without --arm, the
+  // machine's only hand. If the machine has two hands and --arm is missing, returns `usual`.
   int OneHand(int usual = -1) const {
     if (options_.arm == kHandNames[0]) return 0;
     if (options_.arm == kHandNames[1]) return 1;
@@ -257,7 +258,8 @@ class Commissioner {
     return key == 'n' ? commissioning::SwingFile::Kept{} : kept;
   }
 
-  // The file's hash covers the model's path but not the model, which may have changed.
+  // The hash of the machine file covers the path of the model but not the model itself, which may
+  // have changed.
   int JointsOf(int hand) const try {
     const char* name = HandName(hand);
     const ArmSpec& arm = machine_.arm(hand)->arm;
@@ -266,8 +268,9 @@ class Commissioner {
     throw Located(error, machine_);
   }
 
-  // Runs at the end of every session, even after an error. `before` is the number of swings from
-  // earlier sessions. The date of these swings is kept if this session added no swings.
+  // The session calls this function at its end, even after an error. `before` is the number of
+  // swings from earlier sessions. If this session added no swings, the date of the earlier swings
+  // is kept.
   void KeepSwings(const commissioning::SwingFile& file, int before,
                   commissioning::SwingFile::Kept* kept) {
     const commissioning::Swings& swings = kept->swings;
@@ -286,7 +289,7 @@ class Commissioner {
     }
   }
 
-  // Swings that cannot be fitted are not kept.
+  // Fits the loop to the swings. If this fails, removes the file in which the swings are stored.
   static commissioning::LoopFit Fit(commissioning::Session* alone,
                                     const commissioning::SwingFile& file,
                                     const commissioning::Swings& swings) try {
@@ -335,8 +338,8 @@ class Commissioner {
     session->OnStep({});
   }
 
-  // Asks whether to write the values that `found` describes, and does so. Returns the step's
-  // result.
+  // Asks whether to write the values that `found` describes, and writes them if the person agrees.
+  // Returns the step's result.
   Json Keep(commissioning::Session* session, int hand, const Json& found,
             const std::function<void(Machine*)>& change) {
     Json result = {{"step", options_.what},

@@ -11,7 +11,7 @@
 
 namespace predictor {
 
-// The values of all options, and the chosen command.
+// Contains the values of all options and the chosen command.
 struct Request {
   ScenarioOptions scenario;
   ServeOptions serve;
@@ -41,7 +41,7 @@ struct Request {
   std::function<int()> command;
 };
 
-// Each of these functions adds some commands. `r` must outlive `app`.
+// Each of these functions adds a group of commands. `r` must outlive `app`.
 void AddRunCommands(CLI::App* app, Request* r);
 void AddAnalysisCommands(CLI::App* app, Request* r);
 void AddRigCommands(CLI::App* app, Request* r);
@@ -59,11 +59,11 @@ CLI::Option* AddOption(CLI::App* app, const char* group, const char* name, T* va
 
 // Options that several commands share.
 void AddPersonOverrides(CLI::App* app, std::vector<std::string>* set);
-// Adds --set and --track of the person in a recording.
+// Adds the options --set and --track, which describe the person in a recording.
 void AddPerson(CLI::App* app, PersonOptions* o);
 void AddScenario(CLI::App* app, ScenarioOptions* o);
 void AddRecording(CLI::App* app, std::string* recording);
-// Adds --json, --force and --quiet.
+// Adds the options --json, --force and --quiet.
 void AddOutput(CLI::App* app, OutputOptions* o);
 void AddJson(CLI::App* app, OutputOptions* o);
 void AddQuiet(CLI::App* app, OutputOptions* o);
@@ -80,12 +80,12 @@ class HelpFormatter : public CLI::FormatterBase {
                         CLI::AppFormatMode mode) const override;
 };
 
-// Returns the same help for man(1), in groff.
+// Returns the same help in groff, as a manual page for man(1).
 std::string ManPage(const CLI::App& app);
 // Returns a script that completes commands and options in bash.
 std::string BashCompletion(const CLI::App& app);
 
-// Returns "predictor survey ask" and the like.
+// Returns the full name of a command, for example "predictor survey ask".
 std::string PathOf(const CLI::App& app);
 // Returns the commands that the help shows.
 std::vector<const CLI::App*> CommandsOf(const CLI::App& app);
@@ -93,12 +93,14 @@ std::vector<std::string> CommandNames(const CLI::App& app);
 // Returns long names of an option as shown in the help: "--json", "--[no-]viewer".
 std::string LongNameOf(const CLI::Option& option);
 
-// Returns "predictor: error: ..." and "hint: ..." for a command that `app` does not have.
+// Returns an error message and a hint ("predictor: error: ..." and "hint: ...") for a command that
+// `app` does not have.
 std::string UnknownCommand(const CLI::App& app, const std::string& word);
 // Returns the error and hint for a command line that cannot be parsed.
 std::string UsageError(const CLI::App& app, const CLI::ParseError& error);
 
-// Returns "predictor 0.1.0 (a1b2c3d), recording format 2, MuJoCo 4.0.0, DART 6.12.1" and the like.
+// Returns the versions as text, for example "predictor 0.1.0 (a1b2c3d), recording format 2, MuJoCo
+// 4.0.0, DART 6.12.1".
 std::string VersionText();
 
 }  // namespace predictor

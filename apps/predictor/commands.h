@@ -39,10 +39,11 @@ struct OutputOptions {
   // Throws InputError if the file `json` cannot be written, or if it exists and may not be
   // replaced.
   void CheckWritable() const;
-  // Throws InputError if the file exists and may not be replaced; "" and "-" are not files.
+  // Throws InputError if the file exists and may not be replaced. The names "" and "-" do not
+  // denote files.
   void RefuseToReplace(const std::string& file) const;
-  // Does the same as RefuseToReplace, and also removes an existing file that may be replaced. This
-  // is for outputs that must be new files.
+  // Does the same as RefuseToReplace, and also removes an existing file that may be replaced. Use
+  // this function for outputs that must be new files.
   void MakeRoom(const std::string& file) const;
   // Prints text for the user unless quiet. The text is printed to standard error if standard output
   // gets the JSON.
@@ -60,16 +61,17 @@ struct ScenarioOptions : OutputOptions {
   std::optional<std::string> seed, duration;  // values of these keys, as typed
   std::string machine;  // machine file of the real arms; empty: the scenario's own device
 
-  // Loads the scenario. Throws InputError if the scenario is invalid or the JSON file could not be
-  // written later. `on` is a machine whose arms replace the arms of the scenario.
+  // Loads the scenario. Throws InputError if the scenario is invalid, or if the JSON file cannot be
+  // written. `on` is a machine whose arms replace the arms of the scenario.
   Scenario Load(const Machine* on = nullptr) const;
 };
 
 // The servers that `run` starts alongside the loop.
 struct ServeOptions {
   bool viewer = true;
-  // Whether the program waits at rest after the run until the user ends it. By default, the program
-  // waits at a terminal, and while a page shows the results.
+  // States whether, after the run, the program waits with the arms at rest until the user ends the
+  // program. By default, the program waits if it runs at a terminal, and also while a page shows
+  // the results.
   std::optional<bool> stay;
   viewer::ViewerOptions page;
   bool evaluation = true;  // the person is judged live, if the scenario describes the person
@@ -77,7 +79,7 @@ struct ServeOptions {
   ros_tcp::RosTcpOptions ros;
 };
 
-// The recording to read, and the data to take from it.
+// The recording to read, and the data to take from this recording.
 struct RecordingOptions : OutputOptions {
   std::string recording;
   std::vector<std::string> channels;  // export data: patterns of names; empty: all
@@ -108,7 +110,7 @@ struct ExportOptions {
 
 // Input and output of the `survey` commands.
 struct SurveyOptions : OutputOptions {
-  // The recording that the questionnaire is about, or answers and folders with answers.
+  // The recording to which the questionnaire refers, or files and folders with answers.
   std::vector<std::string> places;
   std::string condition;      // "real", "emulated"; empty: the page asks the person
   std::uint16_t port = 8081;  // 0: any free port; the page of a run may use 8080
@@ -137,7 +139,7 @@ struct ReproduceCommandOptions : OutputOptions {
   std::string only;  // name of a single experiment; empty: all
 };
 
-// Who held the handles in a recording.
+// The person who held the handles in a recording.
 struct PersonOptions : OutputOptions {
   std::string recording;
   std::vector<std::string> set;     // overrides of the recorded scenario, for body and stance
@@ -235,7 +237,8 @@ struct CalibrateOptions : OutputOptions {
 
 // Writes `text`, made printable, to standard output. Throws std::runtime_error on a write error.
 void WriteOut(const std::string& text);
-// Prints a problem of a recording to standard error, unless it is empty.
+// Prints the description of a recording's problem to standard error, unless the description is
+// empty.
 void ShowProblem(const std::string& problem);
 
 // Every command throws InputError.
@@ -250,9 +253,10 @@ int CompareCommand(const CompareOptions& options);
 int ExportDataCommand(const RecordingOptions& options);
 int ExportEventsCommand(const RecordingOptions& options);
 int ListChannelsCommand(const RecordingOptions& options);
-// Writes to `output`, or to NAME.repaired.mcap next to the recording.
+// Writes the repaired recording to `output`, or to NAME.repaired.mcap next to the recording if
+// `output` is empty.
 int RepairCommand(const RecordingOptions& options);
-// Writes to `output`, or to NAME.shared.mcap next to the recording.
+// Writes the copy to `output`, or to NAME.shared.mcap next to the recording if `output` is empty.
 int ShareCommand(const RecordingOptions& options);
 // Returns the exit code kUnfit if data of the person remain, or if a place could not be searched.
 int ForgetCommand(const ForgetOptions& options);
@@ -260,8 +264,8 @@ int ForgetCommand(const ForgetOptions& options);
 int ReplayCommand(const std::string& recording, const ServeOptions& options);
 // Returns the exit code kDeparted if the recomputed run differs.
 int VerifyCommand(const RecordingOptions& options);
-// Tries the library of a controller on a recorded run. Returns the exit code kUnfit if the library
-// fails the trial.
+// Tests the library of a controller with a recorded run. Returns the exit code kUnfit if the
+// library fails the trial.
 int TrialCommand(const ScenarioOptions& options, const std::string& recording);
 // Returns the exit code kUnfit if a joint was rejected.
 int IdentifyCommand(const IdentifyCommandOptions& options);
@@ -278,8 +282,8 @@ int SurveyAskCommand(const SurveyOptions& options);
 int SurveyReportCommand(const SurveyOptions& options);
 int SurveyRemoveCommand(const SurveyOptions& options);
 int SurveyPaperCommand();
-// Returns the exit code kDeviceFailure if a device does not answer correctly, kUnfit if a device
-// differs from the machine file.
+// Returns the exit code kDeviceFailure if a device does not answer correctly, and kUnfit if a
+// device differs from the machine file.
 int DevicesCommand(const DevicesOptions& options);
 int CalibrateCommand(const CalibrateOptions& options);
 

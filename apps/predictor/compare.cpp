@@ -75,16 +75,16 @@ void WarnOfOtherTask(const Compared& first, const Compared& other, FidelityRepor
   report->warnings.push_back(
       other.name + " has a different task from " + first.name + ": " + Join(different) +
       (different.size() == 1 ? " differs" : " differ") +
-      ". This difference alone may explain other differences in the figures.");
+      ". This difference between the runs may explain all other differences in the figures.");
 }
 
-// The emulator's stop ends what the person would have felt.
+// A stop by the emulator cuts off the forces that the person would have felt later.
 void WarnOfStop(const Compared& run, FidelityReport* report) {
   if (!IsLimit(run.stopped)) return;
-  report->warnings.push_back(Formatted(
-      "The emulator stopped %s at a limit (%s), so its largest values are only lower bounds. "
-      "`predictor continue` predicts what would have happened.",
-      run.name.c_str(), Name(run.stopped)));
+  report->warnings.push_back(
+      Formatted("The emulator stopped %s at a limit (%s), so the largest values of this run are "
+                "only lower bounds. `predictor continue` predicts what would have happened.",
+                run.name.c_str(), Name(run.stopped)));
 }
 
 }  // namespace

@@ -15,7 +15,8 @@
 namespace predictor {
 namespace {
 
-// The recorded models, which the continuation needs as well, are written to `folder`.
+// The function writes the recorded models to `folder`, because the continuation needs these models,
+// too.
 StoppedRun ReadStop(const ContinueCommandOptions& options, const TemporaryFolder& folder) {
   RecordingReader reader(options.recording);
   ShowProblem(reader.problem());

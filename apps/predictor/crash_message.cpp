@@ -21,8 +21,8 @@ namespace {
 constexpr std::array kCrashes = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr int kReaderPatience = 1000;  // for the reader of standard error [ms]
 
-// The text is composed without memory from the heap. A pipe accepts this many bytes at once
-// (PIPE_BUF).
+// The text is composed without allocating memory on the heap. A pipe accepts this many bytes at
+// once (PIPE_BUF).
 class CrashText {
  public:
   CrashText& operator<<(std::string_view more) {
@@ -31,8 +31,8 @@ class CrashText {
     size_ += n;
     return *this;
   }
-  // Waits only briefly for the reader, because the watchdog stops the arms only when this process
-  // ends.
+  // The function waits only briefly for the reader of the text, because the watchdog stops the arms
+  // only when this process ends.
   void Write() const {
     pollfd ready{STDERR_FILENO, POLLOUT, 0};
     if (poll(&ready, 1, kReaderPatience) <= 0) return;
@@ -86,8 +86,9 @@ void OnCrash(int signal, siginfo_t* info, void*) {
     WriteMessage(signal);
     RawKeys::RestoreAtOnce();
   }
-  // SA_RESETHAND has restored the default action. A faulty instruction is repeated on return, so a
-  // core dump shows it. A signal that another process sent must be raised again.
+  // The flag SA_RESETHAND has restored the signal's default action. After the handler returns, the
+  // processor repeats a faulty instruction, so a core dump shows this instruction. A signal that
+  // another process sent must be raised again.
   if (info->si_code <= 0) raise(signal);
 }
 

@@ -89,8 +89,8 @@ assessment::PersonOfRun PersonIn(const std::string& file, double duration,
   }
   if (too_long)
     person.assessment->warnings.push_back(
-        "This is a long run, so there are no intervals and probabilities. To compute them, run: "
-        "predictor evaluate " +
+        "The run is long, so the report contains no intervals and probabilities. To compute them, "
+        "run: predictor evaluate " +
         file);
   return person;
 }

@@ -8,9 +8,9 @@
 
 namespace predictor {
 
-// Judges the person of a recording. The result has 90 % intervals unless the run's duration [s] is
-// too long for a report. If the person cannot be judged, the result contains the reason. Throws
-// InputError if the recording cannot be read or an override is invalid.
+// Judges the person of a recording. The result contains 90 % intervals unless the run is too long
+// for a report. If the person cannot be judged, the result contains the reason. Throws InputError
+// if the recording cannot be read or an override is invalid.
 assessment::PersonOfRun PersonIn(const std::string& file, double duration,
                                  const ReportOptions& options);
 

@@ -33,10 +33,11 @@ std::optional<assessment::SceneMasses> MassesOf(const RecordingHeader& header) {
 
 void RefuseUnknown(const Scenario& scenario, const std::string& file) {
   if (const auto missing = assessment::MissingForPosture(scenario); !missing.empty())
-    throw InputError(file, missing.front() +
-                               " For this recording, give it on the command line, for example "
-                               "--set 'operator.body={height: 1.75, mass: 75, sex: male}' --set "
-                               "'operator.stance={ground: [1, 0, -0.85], facing: 180 deg}'.");
+    throw InputError(
+        file, missing.front() +
+                  " For this recording, give the missing value on the command line, for example "
+                  "--set 'operator.body={height: 1.75, mass: 75, sex: male}' --set "
+                  "'operator.stance={ground: [1, 0, -0.85], facing: 180 deg}'.");
 }
 
 EvaluatedRun OpenTicks(const std::string& file, const PersonOptions& options) {

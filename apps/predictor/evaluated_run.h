@@ -25,7 +25,7 @@ struct EvaluatedRun {
   assessment::AssessOptions Options() const;
 };
 
-// Throws InputError if person or place are not known, or a track cannot be read.
+// Throws InputError if the person or the person's place is unknown, or if a track cannot be read.
 EvaluatedRun OpenRun(const std::string& file, const PersonOptions& options,
                      const std::vector<std::string>& tracks);
 

@@ -92,7 +92,7 @@ std::vector<Column> Chosen(const std::vector<std::string>& channels, const TickR
                 patterns);
 }
 
-// Returns false at the end and at damage, which `damage` then describes.
+// Returns false at the end of the recording and at a damaged part, which `damage` then describes.
 bool NextOrDamage(RecordingReader* reader, TickRecord* record, std::string* damage) {
   try {
     return reader->Next(record);
@@ -102,8 +102,8 @@ bool NextOrDamage(RecordingReader* reader, TickRecord* record, std::string* dama
   }
 }
 
-// To count the ticks of a truncated recording, the whole file must be read, which fails at damaged
-// parts.
+// To count the ticks of a truncated recording, the program must read the whole file, and reading
+// fails at damaged parts.
 double CountOrNothing(RecordingReader* reader) {
   try {
     return static_cast<double>(reader->count());

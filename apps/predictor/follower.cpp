@@ -33,7 +33,8 @@ Summary Follower::Finish() {
   return summary;
 }
 
-// A person who cannot see the arms' state must not be asked to hold the handles.
+// Ends the run, because a person who cannot see the arms' state must not be asked to hold the
+// handles.
 void Follower::Fail(const char* why) {
   failed_ = true;
   *quit_ = true;
@@ -84,7 +85,7 @@ void Follower::ReportHeld(const TickRecord& record) {
   is_held_ = held;
 }
 
-// Reports why a page's request was refused; the pages show the same text.
+// Reports why a page's request was refused. The pages show the same text.
 void Follower::ReportRefusal(const TickRecord& record) {
   if (const std::string why = refusals_.See(record); !why.empty()) TheScreen().Print(why);
 }

@@ -1,5 +1,5 @@
-// Follows the records of a run. Like any other reader, the follower may be slow; it counts the
-// records that it missed.
+// Follows the records of a run. Like any other reader, the follower may be slow. The follower
+// counts the records that it missed.
 #pragma once
 
 #include <array>

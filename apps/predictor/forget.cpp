@@ -16,10 +16,10 @@ namespace predictor {
 namespace {
 
 constexpr const char* kNotReached =
-    "This command does not remove backups and snapshots of the file system, copies in other "
-    "folders and on other computers, and exports under names of your own that do not contain the "
-    "pseudonym. It also does not overwrite deleted blocks of a disk (an SSD keeps some blocks that "
-    "no program can reach).";
+    "This command does not remove backups or snapshots of the file system, copies in other folders "
+    "or on other computers, or exports to which you gave names without the pseudonym. The command "
+    "also does not overwrite deleted blocks of a disk (an SSD keeps some blocks that no program "
+    "can reach).";
 
 void PrintList(const std::string& title, const std::vector<PersonalFile>& list) {
   if (list.empty()) return;

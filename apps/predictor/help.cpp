@@ -89,7 +89,7 @@ std::string UsageOf(const CLI::App& app, const std::string& name) {
   return usage;
 }
 
-// Groups in order of their first appearance.
+// The groups, in the order in which they first appear.
 template <typename Item>
 std::vector<std::string> GroupsOf(const std::vector<const Item*>& items) {
   std::vector<std::string> groups;
@@ -99,7 +99,7 @@ std::vector<std::string> GroupsOf(const std::vector<const Item*>& items) {
   return groups;
 }
 
-// Escapes text for groff, so that a backslash or leading dot is not a command.
+// Escapes text for groff, so that groff does not treat a backslash or a leading dot as a command.
 std::string Groff(const std::string& text) {
   std::string out;
   for (const char c : text) {

@@ -21,7 +21,7 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-// Returns the scenario that receives the friction, with its paths unchanged.
+// Returns the scenario into which the friction is written. The paths in the scenario are unchanged.
 Scenario CopyOf(const IdentifyCommandOptions& options, const RecordingHeader& header) {
   if (!options.scenario.empty()) return LoadScenario(FindShipped(options.scenario));
   return RecordedScenario(header, options.recording, FolderOf(options.output));

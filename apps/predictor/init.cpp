@@ -1,6 +1,6 @@
 // predictor init: writes a commented scenario that passes its check and runs unchanged, for one or
-// two arms, a given cobot and an object. The scenario places the object and the arms at the cobot's
-// end-effector.
+// two arms, a given cobot and an object. In the scenario, the object and the arms are placed
+// relative to the cobot's end-effector.
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -27,10 +27,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Masses of the object to try [kg]; a smaller mass leaves too little stability margin.
+// The masses of the object that `init` tries [kg]. A smaller mass leaves too little stability
+// margin.
 constexpr double kMasses[] = {9, 6};
 constexpr double kDampingRatios[] = {1, 1.5, 2};
-// Angles of the last link from straight down to try [rad].
+// The angles between the last link and straight down that `init` tries [rad].
 constexpr double kTilts[] = {0, 30 / kDegrees, 60 / kDegrees, 90 / kDegrees};
 // Position of the handles for a standing person: distance in front of the feet, and height above
 // the ground [m].
@@ -188,8 +189,8 @@ std::string TextOf(const InitOptions& o, const Draft& draft) {
          OperatorText(o, draft);
 }
 
-// Returns the reasons for which the scenario `text` would be refused or would fail its check. An
-// object that the floor carries or that is inside the cobot is such a reason.
+// Returns the reasons for which the scenario `text` would be refused or would fail its check. One
+// such reason is an object that the floor carries or that overlaps the cobot.
 std::vector<std::string> ProblemsOf(const std::string& text, const fs::path& file) {
   try {
     CheckOptions how;
@@ -205,7 +206,7 @@ std::vector<std::string> ProblemsOf(const std::string& text, const fs::path& fil
 }
 
 // Returns the first draft that passes its check. If no draft passes, returns the first draft with
-// its problems; if there is no draft, returns nothing. `tilt` is passed to OwnCobots.
+// its problems. If there is no draft, returns nothing. `tilt` is passed to OwnCobots.
 std::optional<Draft> ChooseAt(double tilt, const InitOptions& o, const fs::path& file) {
   std::optional<Draft> first;
   for (const double mass : kMasses) {
@@ -230,11 +231,11 @@ Draft Choose(const InitOptions& o, const fs::path& file) {
   throw InputError(
       o.urdf,
       Formatted(
-          "The lightest object that leaves enough stability margin weighs %g kg. No posture was "
-          "found in which the arm of this robot can carry it outside its links and with its last "
-          "link not above the horizontal. Check the effort limits of its joints, or choose "
-          "the link that holds the object: --end-effector LINK. If this is a small robot, "
-          "see docs/tutorials/own-cobot.md, \"A small cobot\".",
+          "The lightest object that leaves enough stability margin weighs %g kg. No posture "
+          "was found in which this robot's arm can carry such an object clear of the arm's "
+          "links and with the last link pointing horizontally or down. Check the effort "
+          "limits of the robot's joints, or choose the link that holds the object: --end-effector "
+          "LINK. If this is a small robot, see docs/tutorials/own-cobot.md, \"A small cobot\".",
           *std::ranges::min_element(kMasses)));
 }
 
@@ -268,8 +269,8 @@ std::string ResultText(const InitOptions& o, const Draft& draft, const std::stri
            cobot.removed_mass, Join(cobot.remove_links).c_str());
   if (cobot.base_height > 0)
     Append(&text,
-           "On the floor, the cobot could not hold the object freely with its last link pointing "
-           "down, so its base is %g m above the floor.\n",
+           "If the base stood on the floor, the cobot could not hold the object freely with its "
+           "last link pointing down. The base is therefore %g m above the floor.\n",
            cobot.base_height);
   if (cobot.tilt > 0)
     Append(&text,

@@ -48,7 +48,7 @@ bool Attach(const LinkGaps& gaps, const InitPosture& posture, const Vector3& out
   });
 }
 
-// Returns the robot of `base`, at the height of `base`, in suitable postures.
+// Returns the robot of `base` in suitable postures, with its base at the same height as in `base`.
 std::vector<InitCobot> InPostures(const InitCobot& base, const fs::path& folder,
                                   const InitObject& object, double tilt) {
   Scenario scenario;  // of which only cobot and object matter

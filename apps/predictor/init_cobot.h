@@ -15,7 +15,7 @@ inline constexpr const char* kPandaUrdf =
     "package://example-robot-data/robots/panda_description/urdf/panda.urdf";
 inline constexpr double kInitStiffness = 500;  // vertical stiffness of the controller [N/m]
 
-// The object that the cobot holds from above, by the centre of its upper face.
+// The object, which the cobot holds from above at the centre of the object's upper face.
 struct InitObject {
   PrimitiveSpec primitive;
   double half_height = 0;  // [m]
@@ -32,7 +32,7 @@ struct InitCobot {
   Vector3 attachment = Vector3::Zero();  // where the object is attached, in E [m]
   double tilt = 0;                       // of the last link from straight down [rad]
 
-  // Returns the object's centre in W, before the cobot sags [m].
+  // Returns the position in W that the object's centre has before the cobot sags [m].
   Vector3 ObjectAt(const InitObject& object) const;
 };
 
@@ -41,9 +41,10 @@ InitCobot PandaCobot();
 // Returns the robot of a URDF in postures in which it can carry the object, beginning with the most
 // suitable posture. Returns nothing if no posture was found. The last link leans by `tilt` from
 // straight down [rad]. The object is on the outer side of the last link, clear of the other links
-// and of the floor. If the robot is too small for this, its base stands higher. The result is the
-// same in each call. `urdf` is a path or package://... URL of a file in a folder from which the
-// scenario may read. For `end_effector`, see FindArm. Throws InputError.
+// and of the floor. If the robot is too small to hold the object clear of the floor, the robot's
+// base stands higher. The result is the same in each call. `urdf` is a path or package://... URL of
+// a file in a folder from which the scenario may read. For `end_effector`, see FindArm. Throws
+// InputError.
 std::vector<InitCobot> OwnCobots(const std::string& urdf, const std::string& end_effector,
                                  const std::filesystem::path& scenario, const InitObject& object,
                                  double tilt);

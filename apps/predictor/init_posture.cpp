@@ -83,7 +83,7 @@ class Search {
   }
 
  private:
-  // Makes one step of damped least squares. Returns true, without a step, at the demanded pose.
+  // Makes one step of damped least squares. At the demanded pose, makes no step and returns true.
   bool Improve(JointVector* q) {
     data_.UpdateKinematics(model_, *q, rest_);
     data_.FrameJacobian(model_, end_effector_, &J_);

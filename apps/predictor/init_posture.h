@@ -21,10 +21,10 @@ struct InitPosture {
   Pose X_WE;
 };
 
-// Returns postures in which the end-effector is in front of the base, the last link has the
-// demanded direction, and each joint carries the object with at most 60 % of its effort limit. The
-// best postures come first. Returns an empty list if no posture was found. The result is the same
-// in each call.
+// Returns postures in which the end-effector is in front of the base and the last link has the
+// demanded direction. In these postures, each joint carries the object with at most 60 % of the
+// joint's effort limit. The best postures come first. Returns an empty list if no posture was
+// found. The result is the same in each call.
 std::vector<InitPosture> FindPostures(const RobotModel& model, const FrameId& end_effector,
                                       const PostureDemand& demand);
 

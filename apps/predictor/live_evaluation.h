@@ -12,9 +12,9 @@ namespace predictor {
 
 class LiveEvaluation {
  public:
-  // Starts the evaluator if it is wanted and the scenario describes the person sufficiently. If the
-  // evaluator cannot start, the run continues. why_not() returns the reason and, if the reason is
-  // an error, `show` receives it. `board` is borrowed.
+  // Starts the evaluator if the user wants an evaluation and the scenario describes the person
+  // sufficiently. If the evaluator cannot start, the run continues. why_not() returns the reason
+  // and, if the reason is an error, `show` receives it. `board` is borrowed.
   LiveEvaluation(bool wanted, const Scenario& scenario, const Shared<RunBoard>& board,
                  const std::function<void(const std::string&)>& show);
 

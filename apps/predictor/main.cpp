@@ -35,9 +35,9 @@ constexpr const char* kFooter =
     "\n"
     "No command replaces an existing file without --force.\n";
 
-// Runs the helper processes that a run starts: for its page, for Unity, as its watchdog and to
-// judge the person. Users do not start these processes. Returns a negative value if the command
-// line does not name a helper process.
+// Runs one of the helper processes that a run starts: the process for the viewer's page, the
+// process for Unity, the watchdog, or the evaluator. Users do not start these processes. Returns a
+// negative value if the command line does not name a helper process.
 int RunHelperProcess(int argc, char** argv) {
   if (argc != 2) return -1;
   const std::string name = argv[1];

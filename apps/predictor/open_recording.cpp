@@ -21,8 +21,8 @@ std::function<void()> closer;
 OpenRecording::OpenRecording(const std::string& file, std::function<void()> close) {
   const std::string name = Printable(file);
   std::snprintf(open_remedy.data(), open_remedy.size(),
-                "The recording %s has no end. To restore it to the last second, run: predictor "
-                "repair %s",
+                "The recording %s is incomplete. To restore the recording up to its last second, "
+                "run: predictor repair %s",
                 name.c_str(), name.c_str());
   const std::scoped_lock lock(closer_mutex);
   closer = std::move(close);

@@ -109,8 +109,8 @@ void OutputOptions::Write(const std::string& text, const std::string& result) co
 
 void OutputOptions::WriteJson(const std::string& result) const {
   if (json.empty()) return;
-  // A terminal must get no control characters. In JSON, control characters are replaced by escape
-  // sequences.
+  // Control characters must not reach a terminal. In JSON, control characters are replaced by
+  // escape sequences.
   if (json == "-")
     return WriteRaw(isatty(STDOUT_FILENO) == 1 ? Printable(result, Lines::kMany) : result);
   std::ofstream out(json);

@@ -6,8 +6,8 @@
 
 namespace predictor {
 
-// Returns "12 min left" after `elapsed` [s] for the completed share of the work (0 to 1), or ""
-// while it is unknown.
+// Returns the remaining time, for example "12 min left", after `elapsed` [s], given the completed
+// share of the work (0 to 1). Returns "" while the remaining time is unknown.
 std::string RemainingText(double share, double elapsed);
 
 class Progress {
@@ -16,8 +16,8 @@ class Progress {
   // printed.
   Progress(std::string title, double total, bool quiet);
   ~Progress();
-  // Redraws at most ten times per second. Without a terminal, prints a line for each tenth of the
-  // work. `note` is a short text that is shown after the bar.
+  // Redraws at most ten times per second. If there is no terminal, prints a line for each tenth of
+  // the work. `note` is a short text that is shown after the bar.
   void Update(double done, const std::string& note = "");
   void Finish();
 

@@ -35,17 +35,19 @@ class RawKeys {
   RawKeys& operator=(const RawKeys&) = delete;
 
   // Restores the terminal before the program ends without destructors. A signal handler may call
-  // this. A program in the background would be suspended.
+  // this function. In the background, the function does nothing, because the system would suspend
+  // the program.
   static void RestoreAtOnce() noexcept {
     if (changed_ && tcgetpgrp(STDIN_FILENO) == getpgrp())
       tcsetattr(STDIN_FILENO, TCSANOW, &before_);
   }
 
-  // Ctrl-Space sends 0, but in other code 0 means that no key was pressed.
+  // The key Ctrl-Space sends the value 0, but elsewhere in the program 0 means that no key was
+  // pressed.
   static char Read(char byte) { return byte != 0 ? byte : '\x01'; }
 
  private:
-  // Only one object of this class exists at a time.
+  // At most one object of this class may exist at a time.
   static inline termios before_{};
   static inline std::atomic<bool> changed_{false};
 };

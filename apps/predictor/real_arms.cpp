@@ -18,14 +18,15 @@
 namespace predictor {
 namespace {
 
-// Checks the parsed address, because a host name may begin with the same digits.
+// The function also parses the address, because a host name may begin with "127.", too.
 bool IsLoopback(const std::string& host) {
   in_addr address{};
   return host == "localhost" ||
          (host.starts_with("127.") && inet_pton(AF_INET, host.c_str(), &address) == 1);
 }
 
-// Returns whether all addresses are this computer's, so that all its devices are fakes.
+// Returns whether all addresses belong to this computer, which means that all devices of the
+// machine are fakes.
 bool OnThisComputer(const Machine& machine) {
   for (const std::optional<MachineArm>* arm : {&machine.left, &machine.right}) {
     if (!*arm) continue;
@@ -56,8 +57,8 @@ void RequireRealTime(const Machine& machine) {
     throw DeviceError("The real arms were not moved, because real-time scheduling was " +
                       now.got() + ". Then start again.");
   std::fprintf(stderr,
-               "Warning: real-time scheduling was %s. With real arms, this program would refuse to "
-               "start.\n",
+               "Warning: real-time scheduling was %s. If the arms were real, the program would "
+               "refuse to start.\n",
                now.got().c_str());
 }
 
@@ -94,7 +95,7 @@ void ConfirmPerturbation(const Scenario& scenario) {
       1e3 * p.amplitude, p.force);
   std::fputs(question.c_str(), stderr);
   std::string answer;
-  // Reads single characters, so that keys that are meant for the run are not lost.
+  // The loop reads single characters, so that keys that are meant for the run are not lost.
   for (char c = 0; answer.size() < 16 && read(STDIN_FILENO, &c, 1) == 1 && c != '\n';) answer += c;
   if (answer == "yes") return;
   throw Located(InputError::At("perturbation.consent",

@@ -9,11 +9,12 @@
 
 namespace predictor {
 
-// The models of a machine's arms; null for an arm that it does not have.
+// The models of a machine's arms. The model is null for an arm that the machine does not have.
 using ArmModels = std::array<std::shared_ptr<const RobotModel>, kHands>;
 
-// Reads the models from their files. Call this before a device is connected: if a file stops the
-// program, no arm may be under its control. Throws InputError with the machine file's line.
+// Reads the models from their files. Call this function before a device is connected. If a file
+// stops the program, no arm may be under the program's control. Throws InputError with the machine
+// file's line.
 ArmModels LoadArmModels(const Machine& machine);
 
 // Throws DeviceError if the system grants no real-time scheduling, because a loop that other

@@ -48,10 +48,9 @@ std::map<std::string, std::string> RecordOptions::Labels() const {
       throw InputError("--label: " + Quote(label) + " is not a label. Write key=value.");
     const std::string key = label.substr(0, equals);
     if (IsParticipantLabel(key))
-      throw InputError(
-          "--label: " + Quote(key) +
-          " belongs to the data of the participant, which the program checks first. Write "
-          "it into a file, and give the file with --participant.");
+      throw InputError("--label: " + Quote(key) +
+                       " belongs to the data of the participant, which the program checks first. "
+                       "Write these data into a file, and give the file with --participant.");
     result[key] = label.substr(equals + 1);
   }
   return result;

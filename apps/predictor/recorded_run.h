@@ -36,12 +36,12 @@ struct RecordOptions {
 // Returns the header for a recording of `emulator`'s run that begins now.
 RecordingHeader HeaderOf(const Emulator& emulator, const RecordOptions& options);
 
-// Returns "runs/box_9kg_2026-01-31_14-05-09.mcap", with a number if that file exists. Creates the
-// folder.
+// Returns a name such as "runs/box_9kg_2026-01-31_14-05-09.mcap". If that file exists, the name
+// also contains a number. Creates the folder.
 std::string NewRecordingName(const Scenario& scenario);
 
-// Reads the remaining ticks and shows the progress. Another thread reads, because unpacking and
-// checking take twice as long as evaluating. Throws InputError.
+// Reads the remaining ticks and shows the progress. A separate thread reads the ticks, because
+// unpacking and checking take twice as long as evaluating. Throws InputError.
 void ReadTicks(RecordingReader* reader, const std::string& title, bool quiet,
                const std::function<void(const TickRecord&)>& add);
 
@@ -51,7 +51,7 @@ class VirtualRecording {
  public:
   // Throws InputError if the file cannot be created.
   VirtualRecording(Emulator* emulator, const RecordOptions& options);
-  // Call this after each tick. Throws RecordingError.
+  // Call this function after each tick. Throws RecordingError.
   void Add(const TickRecord& record);
   void Close();
   std::string Summary() const;  // summary of the written file, as a sentence
@@ -68,10 +68,10 @@ class VirtualRecording {
 // Records a run in real time.
 class RunRecording final : public SnapshotSink {
  public:
-  // Records everything that is published on the board from now on to `options.file` or to the file
-  // of NewRecordingName. The board shows whether the recorder is recording. `person` is the board
-  // of the evaluator's states, which are also recorded, or null. Both boards are borrowed. Throws
-  // InputError.
+  // Records everything that is published on the board after this call. The file is `options.file`
+  // or, if this name is empty, the file of NewRecordingName. The board shows whether the recorder
+  // is recording. `person` is the board of the evaluator's states, which are also recorded, or
+  // null. Both boards are borrowed. Throws InputError.
   RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board,
                const EvaluationBoard* person);
 
@@ -79,7 +79,8 @@ class RunRecording final : public SnapshotSink {
   void Commit(std::uint64_t tick, std::size_t bytes) noexcept override {
     recorder_.SnapshotTaken(tick, bytes);
   }
-  // Updates the board's recording state. Call this regularly, but not in the tick's thread.
+  // Updates the board's recording state. Call this function regularly, but not in the tick's
+  // thread.
   void Look();
   // Adds a marker that helps people who evaluate the recording.
   void Mark(const std::string& text) { recorder_.Mark(text); }

@@ -27,7 +27,7 @@ namespace predictor {
 namespace {
 
 constexpr double kTurn = 0.01;  // time between two displayed states [s]
-// For distances up to this value, continuing to read is faster than seeking [s].
+// Up to this distance, reading on is faster than seeking in the file [s].
 constexpr double kNear = 2;
 
 std::uint64_t Nanoseconds(std::chrono::steady_clock::time_point t) {
@@ -59,8 +59,8 @@ class Player {
   // InputError if the recording is damaged.
   void Play();
 
-  // Advances by `dt` [s]. `now`, the monotonic clock [ns], replaces the recorded time, because
-  // pages compute a state's age from this time.
+  // Advances by `dt` [s]. The time `now` of the monotonic clock [ns] replaces the recorded time,
+  // because pages compute the age of a state from this time.
   void Step(double dt, std::uint64_t now);
 
  private:

@@ -1,4 +1,4 @@
-// Output of `run` and `simulate` before and after the run.
+// The output that `run` and `simulate` print before and after the run.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,14 @@
 
 namespace predictor {
 
-// Prints device, lead and stability margin to standard error.
+// Prints the device, the lead and the stability margin to standard error.
 void PrintSetup(const Emulator& emulator, bool quiet);
 
 // Returns the prediction for the haptic loop, or no value if the run has no arms.
 std::optional<PredictedLoop> PredictedLoopOf(const Emulator& emulator);
 
-// Adds the measurements of the run to the summary, prints and writes it, and returns the exit code.
-// `wall` is the time from the first to the last tick [s].
+// Adds the measurements of the run to the summary, prints and writes the summary, and returns the
+// exit code. `wall` is the time from the first to the last tick [s].
 int Report(const Emulator& emulator, RunEnd end, double wall, const ScenarioOptions& options,
            Summary* summary);
 

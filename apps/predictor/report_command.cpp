@@ -24,8 +24,8 @@ namespace predictor {
 namespace {
 
 constexpr std::size_t kMaxRecordings = 8;  // the number of available colours
-// Largest total duration of all recordings for which the report keeps every tick [s], so that the
-// page stays below 20 MB.
+// Largest total duration of the recordings for which the report keeps every tick [s]. This limit
+// keeps the page below 20 MB.
 constexpr double kDetail = 120;
 
 // The data that the report shows about one recording.
@@ -34,7 +34,7 @@ struct ReportedRun {
   ContactRun contact;
 };
 
-// The recorded scenario with those of its model files that are not lost.
+// The recorded scenario, with those of its model files that the recording still contains.
 class RestoredScenario {
  public:
   explicit RestoredScenario(const RecordingHeader& header) {
@@ -53,8 +53,8 @@ class RestoredScenario {
   std::string problem_;
 };
 
-// Returns which joints of the recorded cobot are prismatic. If the model of the cobot is lost, the
-// list is empty.
+// Returns which joints of the recorded cobot are prismatic. If the recording has lost the model of
+// the cobot, the list is empty.
 std::vector<bool> PrismaticJointsOf(const RestoredScenario& restored) try {
   return restored.scenario() ? PrismaticJoints(*restored.scenario()) : std::vector<bool>();
 } catch (const InputError&) {

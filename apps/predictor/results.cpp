@@ -30,7 +30,8 @@ std::string Time(double seconds) {
   return Formatted("%ld min %02ld s", whole / 60, whole % 60);
 }
 
-// A row with a value for each existing hand, from the results PREFIX.left.KEY and PREFIX.right.KEY.
+// A row with one value for each existing hand. The values come from the results PREFIX.left.KEY and
+// PREFIX.right.KEY.
 struct HandsRow {
   const char* name;
   const char* prefix;
@@ -148,7 +149,7 @@ std::filesystem::path WriteRunReport(const std::string& recording, double durati
   }
   if (duration > kMaxReported) {
     *remark =
-        "This was a long run, so its report was not made. To make it, run: predictor report " +
+        "The run was long, so the program made no report. To make it, run: predictor report " +
         recording;
     return {};
   }

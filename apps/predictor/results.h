@@ -13,14 +13,15 @@
 
 namespace predictor {
 
-// The largest force and tracking error in each piece of a run, in at most 240 pieces regardless of
-// the run's length.
+// The largest force and the largest tracking error in each piece of a run. A run of any length is
+// divided into at most 240 pieces.
 class ResultCurves {
  public:
   explicit ResultCurves(const Scenario& scenario);
   // Call this in order. Ticks outside RUN are ignored. After a reset, the curves start again.
   void Add(const TickRecord& record);
-  // Returns [{"title", "unit", "limit", "step": s, "left": [...] | null, "right": ...}, ...].
+  // Returns the curves as JSON: [{"title", "unit", "limit", "step": s, "left": [...] | null,
+  // "right": ...}, ...].
   nlohmann::ordered_json ToJson() const;
 
  private:
@@ -44,8 +45,8 @@ nlohmann::ordered_json ResultsJson(const Summary& summary, const ResultCurves& c
                                    const std::string& remark);
 
 // Writes the report of a recording to the folder of the recording. Returns the report's file, or an
-// empty path and the reason in `remark`. `duration` is the duration of the run [s]; reports of long
-// runs must be made by `predictor report`.
+// empty path and the reason in `remark`. `duration` is the duration of the run [s]. For long runs,
+// the user must make the report with `predictor report`.
 std::filesystem::path WriteRunReport(const std::string& recording, double duration,
                                      std::string* remark);
 

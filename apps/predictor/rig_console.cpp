@@ -67,8 +67,8 @@ void RigConsole::Listen() {
       // A closed terminal is treated as an absent operator.
       if (count <= 0) return request_(RunEvent::kStopRequested);
     }
-    // Queued input was typed at unknown earlier times. All queued keys are read at once and get the
-    // same time.
+    // Queued input was typed at unknown earlier times. The console reads all queued keys at once
+    // and gives these keys the same time.
     const double now = Now();
     for (ssize_t i = 0; i < count; ++i) Key(RawKeys::Read(keys[static_cast<std::size_t>(i)]), now);
     for (Asking& asking : askings_) Hear(&asking, 0, now);
@@ -106,11 +106,11 @@ void RigConsole::ReportIgnored(const Asking& asking, KeySign sign) {
     TheScreen().Print(
         Formatted("Key %c had no effect, because it was only tapped. Hold it down.", key));
   if (sign == KeySign::kLate)
-    TheScreen().Print(
-        Formatted("Key %c had no effect, because its presses arrived late and all at once. %s it "
-                  "again. If the "
-                  "connection stalls, use the keyboard of this computer.",
-                  key, asking.by_touch ? "Tap" : "Hold"));
+    TheScreen().Print(Formatted(
+        "Key %c had no effect, because the presses of this key arrived late and all at once. %s it "
+        "again. If the "
+        "connection stalls, use the keyboard of this computer.",
+        key, asking.by_touch ? "Tap" : "Hold"));
 }
 
 // While a command is typed, keys that do not belong to text (Esc, Tab, an arrow) stop the run, too.

@@ -16,8 +16,9 @@
 
 namespace predictor {
 
-// The arms move only while a key is held. A repeating key proves that a hand presses it. Once it
-// counts as held, it makes its request, and each repetition keeps motion enabled.
+// The arms move only while a key is held. The repeated characters of a held key prove that a hand
+// still presses this key. Once it counts as held, it makes its request, and each repetition keeps
+// motion enabled.
 //   a (held)  align        s (held)  start and run        r (held)  recover
 // If the operator holds an enabling device, touching the key makes the request.
 //   z (touched) reset      : LINE    a command, as without real arms
@@ -25,16 +26,17 @@ namespace predictor {
 //   any other key: stop; while a command is typed, any key that is not text (Esc)
 class RigConsole {
  public:
-  // This object's thread calls `request` to request an event of the run, and `line` with each typed
-  // command. With an `enabling_device`, the operator holds this device instead of a key. Standard
-  // input must be a terminal; the destructor restores its settings.
+  // The thread of this object calls `request` to request an event of the run, and calls `line` with
+  // each command that the operator typed. If the machine has an `enabling_device`, the operator
+  // holds this device instead of a key. Standard input must be a terminal. The destructor restores
+  // the settings of this terminal.
   RigConsole(std::function<void(RunEvent)> request, std::function<void(const std::string&)> line,
              bool enabling_device);
   ~RigConsole();
   RigConsole(const RigConsole&) = delete;
   RigConsole& operator=(const RigConsole&) = delete;
 
-  // Returns how many signs of a held key this object has received so far.
+  // Returns the number of signs, received so far, that the operator holds a key.
   const std::atomic<std::uint32_t>& enabling() const { return enabling_; }
 
   const char* Help() const;

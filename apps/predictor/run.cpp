@@ -108,8 +108,8 @@ class Commands {
   RunRecording* recording_;
 };
 
-// Reads commands from standard input if no real arm moves. A process in the background receives no
-// commands.
+// Reads commands from standard input during runs without real arms. A process in the background
+// receives no commands.
 class Console {
  public:
   explicit Console(Commands* commands) : commands_(commands) {
@@ -203,7 +203,8 @@ class Run {
     viewer_.emplace(scenario, page, board_, mailbox_, show, evaluation_->states());
   }
 
-  // Returns an exit code. `next` is the scenario that a page chose to run after this one.
+  // Returns an exit code. `next` is the scenario that a page chose to run after the present
+  // scenario.
   int Go(bool by_itself, std::optional<NextRun>* next) {
     Commands commands(viewer_ ? &*viewer_ : nullptr, recording_ ? &*recording_ : nullptr);
     std::optional<Console> console;
@@ -261,7 +262,7 @@ class Run {
     return code == kFinished && (!recorded || follower.failed()) ? kDeviceFailure : code;
   }
 
-  // Passes the ports and the list of removed clients on to the program's next run.
+  // Copies the ports and the list of removed clients into the options of the program's next run.
   void HandOn(ServeOptions* next) const {
     if (ros_) next->ros.port = ros_->port();
     if (!viewer_) return;
@@ -270,16 +271,16 @@ class Run {
   }
 
  private:
-  // Returns whether results may be shown. This requires simulated arms, and that a page is
-  // connected or the program should stay.
+  // Returns whether results may be shown. Results may be shown only with simulated arms, and only
+  // if a page is connected or the program should stay.
   bool MayShowResults() {
     return viewer_ && emulator_.setup().rules.may_switch_scenario && !quit &&
            serve_.stay.value_or(mailbox_->clients.load(std::memory_order_relaxed) > 0);
   }
 
   // Starts a new viewer with the results and the report, which replaces the run's viewer. A new
-  // viewer is needed because a viewer can read files only before it begins to serve pages. Returns
-  // the scenario that a page chose.
+  // viewer is needed because a viewer can read files only before the viewer begins to serve pages.
+  // Returns the scenario that a page chose.
   std::optional<NextRun> ShowResults(const Summary& summary, const ResultCurves& curves,
                                      const std::string& how) {
     std::string remark;
@@ -338,8 +339,8 @@ class Run {
   std::optional<viewer::ViewerProcess> viewer_;
 };
 
-// Returns "out.json", "out-2.json", ... for the first run, the second, .... Standard output gets
-// the results of all runs.
+// Returns the name of a run's JSON file: "out.json" for the first run, "out-2.json" for the second
+// run, and so on. Standard output gets the results of all runs.
 std::string SummaryOf(const std::string& file, int run) {
   if (file.empty() || file == "-" || run == 1) return file;
   const std::filesystem::path path(file);
@@ -382,12 +383,12 @@ Scenario LoadForRealTime(const ScenarioOptions& options) {
                                  "time only. Remove this line, or use `predictor simulate`."),
                   scenario);
   if (scenario.simulation.engine != EngineKind::kMujoco)
-    throw Located(
-        InputError::At("simulation.engine",
-                       "simulation.engine is dart, which runs in virtual time only. "
-                       "DART's steps allocate memory and wait for another process, so a step "
-                       "may be late. Set it to mujoco, or use `predictor simulate`."),
-        scenario);
+    throw Located(InputError::At(
+                      "simulation.engine",
+                      "simulation.engine is dart, which runs in virtual time only. "
+                      "DART's steps allocate memory and wait for another process, so a step "
+                      "may be late. Set simulation.engine to mujoco, or use `predictor simulate`."),
+                  scenario);
   return scenario;
 }
 
@@ -407,8 +408,8 @@ void CheckArms(const Machine& machine, const ArmModels& models, const RealDevice
 }
 
 // Runs one scenario with real arms and a person at the console. Pages cannot choose scenarios.
-// The program reads every file from elsewhere before it connects to the arms (decisions.md); tests
-// in tests/machine/foreign_file_test.cpp rely on this order.
+// The program reads every file that came from elsewhere before it connects to the arms
+// (decisions.md); tests in tests/machine/foreign_file_test.cpp rely on this order.
 int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptions record) {
   if (isatty(STDIN_FILENO) != 1)
     throw InputError(
@@ -440,8 +441,8 @@ int RunOnMachine(const ScenarioOptions& options, ServeOptions serve, RecordOptio
 }  // namespace
 
 int RunCommand(const ScenarioOptions& first, ServeOptions serve, RecordOptions record) {
-  // Every signal that ends the program brings the arms to rest first. A closed pipe does not end
-  // the program.
+  // Every signal that ends the program brings the arms to rest first. When a pipe that the program
+  // writes to is closed, the program continues.
   QuitOn({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
   BoundOutput();
   ExpectPromptPlugins();

@@ -25,7 +25,7 @@ void AddRecordOptions(CLI::App* app, RecordOptions* o, const char* what) {
             "The person in a study: pseudonym, consent, handedness, body");
 }
 
-// Uses the body of the participant unless --set gives another one.
+// Uses the body of the participant unless --set gives another body.
 void TakeBody(const RecordOptions& record, ScenarioOptions* scenario) {
   if (record.participant.empty()) return;
   const ParticipantFile participant = LoadParticipant(record.participant);

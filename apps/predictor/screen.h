@@ -1,5 +1,5 @@
-// Writes permanent lines to standard error and, below them, one changing line (the progress, or the
-// command that the operator is typing).
+// Writes permanent lines to standard error and, below these lines, one changing line: the progress,
+// or the command that the operator is typing.
 #pragma once
 
 #include <mutex>
@@ -7,7 +7,7 @@
 
 namespace predictor {
 
-// The terminal of the operator, shared by all threads. Without a terminal, or with TERM=dumb, the
+// The terminal of the operator, which all threads share. Without a terminal, or with TERM=dumb, the
 // screen prints only the permanent lines. The screen first makes all text printable, because some
 // texts come from files, other processes and robots.
 class Screen {
@@ -34,11 +34,12 @@ class Screen {
 // Returns the only instance.
 Screen& TheScreen();
 
-// A command that is typed letter by letter and shown at the bottom of the screen.
+// A command that the operator types letter by letter. The command is shown at the bottom of the
+// screen.
 class TypedLine {
  public:
-  // Adds a letter or erases the last letter. Returns false and ignores the key if the key neither
-  // adds nor erases a letter.
+  // Adds a letter or erases the last letter. If the key neither adds nor erases a letter, ignores
+  // the key and returns false.
   bool Type(char key);
   // Shows that a command has begun or continues.
   void Show() const;

@@ -3,8 +3,8 @@
 namespace predictor {
 namespace {
 
-// Returns the reason why a text is not an origin in the form that browsers send: scheme and host,
-// and optionally a port.
+// Returns the reason why a text is not an origin in the form that browsers send, which consists of
+// a scheme, a host and optionally a port.
 std::string NoOrigin(const std::string& text) {
   const std::size_t scheme = text.find("://");
   const bool web = text.starts_with("http://") || text.starts_with("https://");

@@ -90,7 +90,7 @@ void WriteNewline(int) {
   [[maybe_unused]] const ssize_t written = write(signal_pipe, &newline, 1);
 }
 
-// Makes Ctrl-C end the server in the same way as a finished survey.
+// Makes Ctrl-C end the server in the same way as the end of a survey does.
 void StopAtSignal(viewer::Server* server) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0)
@@ -103,8 +103,8 @@ void StopAtSignal(viewer::Server* server) {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-// After this, browsers' input is parsed with restricted rights: the process may only write answers
-// into this folder.
+// After this call, the process parses the browsers' input with restricted rights and may only write
+// answers into this folder.
 void GiveUpRights(const fs::path& folder) {
   if (kSanitized) return;
   Preparation may;
@@ -181,7 +181,8 @@ int SurveyAskCommand(const SurveyOptions& options) {
                 static_cast<unsigned>(server.port()), app.code().c_str()));
   server.Run();
   running = false;
-  // The pseudonym is not printed: only the person and the file should contain it.
+  // The pseudonym is not printed, because only the person should know the pseudonym and only the
+  // file should contain it.
   if (app.end() == survey::SurveyEnd::kStored)
     TheScreen().Print("The answer was stored in " + to.folder.string() + ".");
   else

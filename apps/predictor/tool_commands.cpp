@@ -1,4 +1,4 @@
-// The commands that convert, print and describe.
+// The commands that convert recordings and print descriptions.
 #include <algorithm>
 
 #include "analysis/check/check.h"

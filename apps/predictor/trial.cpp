@@ -27,7 +27,7 @@ TriedLibrary LibraryOf(const Scenario& scenario) {
   const YamlNode* parameters = scenario.cobot.controller.parameters.Find("parameters");
   if (kind == nullptr || kind->place != ControllerPlace::kLibrary || library == nullptr)
     throw InputError("cobot.controller.type is " + Quote(scenario.cobot.controller.type) +
-                     ", which needs no trial. Give a scenario with type: plugin.");
+                     ", which needs no trial. Give a scenario with cobot.controller.type: plugin.");
   return {ResolveModelPath(library->text, scenario.folder()), parameters ? parameters->text : ""};
 }
 

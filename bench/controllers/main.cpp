@@ -1,6 +1,7 @@
-// Measures the time that a controller outside the program adds to a tick. The program and a library
-// in C compute the same torques for the same scene, in turn, tick by tick. Then a Python process
-// computes the torques in virtual time, where the tick waits for the process.
+// Measures the time that a controller outside the program adds to a tick. The built-in controller
+// and a library in C compute the same torques for the same scene and take turns in each tick.
+// Afterwards, a Python process computes the torques in virtual time, in which the tick waits for
+// the process.
 #include <algorithm>
 #include <array>
 #include <cstdio>

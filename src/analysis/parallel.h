@@ -6,9 +6,10 @@
 
 namespace predictor {
 
-// Executes pieces 0 to count − 1 on this number of threads; the pieces start in ascending order.
-// Meanwhile, the calling thread calls `wait` from time to time. If a piece throws an exception, the
-// other threads stop before their next piece, and the first exception is rethrown to the caller.
+// Executes the pieces 0 to count − 1 on the given number of threads. The pieces start in ascending
+// order. Meanwhile, the calling thread calls `wait` from time to time. If a piece throws an
+// exception, the other threads stop before their next piece, and the first exception is rethrown to
+// the caller.
 void DoInParallel(std::size_t count, unsigned threads,
                   const std::function<void(std::size_t)>& piece, const std::function<void()>& wait);
 

@@ -34,7 +34,7 @@ TickRecord WithWarningsOf(const TickRecord& recorded, const TickRecord& computed
     const HandRecord& from = recorded.hands[hand];
     HandRecord& to = with.hands[hand];
     for (std::size_t w = 0; w < kWarnings; ++w) {
-      // This warning is derived from the readings, so the replay computes it.
+      // The bias-drift warning is derived from the readings, so the replay computes this warning.
       if (static_cast<Warning>(w) == Warning::kBiasDrift) continue;
       const auto bit = static_cast<std::uint8_t>(1U << w);
       to.warnings = static_cast<std::uint8_t>((to.warnings & ~bit) | (from.warnings & bit));

@@ -1,4 +1,4 @@
-// Replays a recording by computing the run again from its recorded inputs.
+// Replays a recording by computing the run again from the recorded inputs.
 #pragma once
 
 #include <cstdint>
@@ -31,13 +31,13 @@ struct Verification {
 // Computes the run again from the start and, after lost ticks, from the next saved state. With real
 // arms, each tick receives the recorded samples of arms and sensors. Everything else is computed,
 // except the warnings about losses on the connections to the arms. Stops at the first difference.
-// `scenario` comes from RestoreScenario. `progress` receives the number of ticks so far. Throws
-// InputError if the recording cannot be read.
+// `scenario` comes from RestoreScenario. The function `progress` receives the number of ticks that
+// have been computed so far. Throws InputError if the recording cannot be read.
 Verification Verify(RecordingReader* reader, const Scenario& scenario,
                     const std::function<void(std::uint64_t)>& progress);
 
-// Returns the first field in which two records of the same tick differ, except wall-clock times, or
-// no value if they agree bit for bit.
+// Returns the first field in which two records of the same tick differ, or no value if the records
+// agree bit for bit. Wall-clock times are not compared.
 std::optional<Departure> FirstDifference(const TickRecord& recorded, const TickRecord& computed);
 
 }  // namespace predictor

@@ -13,7 +13,8 @@
 namespace predictor::assessment {
 namespace {
 
-// The smallest score that is exceeded during at most 5 % of the time. share[score]: share of time.
+// Returns the smallest score that is exceeded during at most 5 % of the time. The element
+// share[score] is the share of time with that score.
 int ScoreExceededRarely(const std::vector<double>& share) {
   constexpr double kRounding = 1e-9;
   std::size_t score = 0;
@@ -197,9 +198,9 @@ void CheckPlace(std::span<const PersonSample> samples, Assessment* a) {
 void AddStopWarning(const PersonRun& run, Assessment* a) {
   if (!IsLimit(run.stopped)) return;
   a->warnings.push_back(
-      Formatted("The emulator stopped this run at a limit (%s). Its largest values are therefore "
-                "only lower bounds of what the person would have experienced; `predictor continue` "
-                "predicts the values of a run without this stop.",
+      Formatted("The emulator stopped this run at a limit (%s). The largest values of this run are "
+                "therefore only lower bounds of what the person would have experienced. The "
+                "command `predictor continue` predicts the values of a run without this stop.",
                 Name(run.stopped)));
 }
 

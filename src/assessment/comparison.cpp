@@ -47,7 +47,7 @@ Comparison Compare(const Assessment& a, const Assessment& b) {
   if (std::abs(a.held - b.held) > kSameLength * std::max(a.held, b.held))
     comparison.warning = Formatted(
         "The hands held the handles for %.1f s in one run and for %.1f s in the other. A run that "
-        "ended early looks better than it is.",
+        "ended early looks better than a complete run.",
         a.held, b.held);
   return comparison;
 }
@@ -78,9 +78,9 @@ std::string ComparisonText(const Comparison& comparison) {
                    (a.tool + ", " + a.part + ", reference day per run [%]").c_str(),
                    100 * a.day_share, 100 * b.day_share);
   text +=
-      "The values are 95th percentiles over time (5th percentile for balance). \"Better for\" is "
-      "the share of 64 possible postures and bodies for which this recording has the better "
-      "value.\n";
+      "The values are 95th percentiles over time (5th percentile for balance). The column \"Better "
+      "for\" contains the share of 64 possible postures and bodies for which this recording has "
+      "the better value.\n";
   return text;
 }
 

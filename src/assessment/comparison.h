@@ -12,9 +12,8 @@ namespace predictor::assessment {
 struct Difference {
   const QuantityKind* kind = nullptr;
   double a = 0, b = 0;  // QuantityResult::tail()
-  // 90 % interval of a - b over the possible people. Each person in one run is
-  // compared with the same person in the other, so most of the uncertainty about the posture
-  // cancels.
+  // 90 % interval of a - b over the possible people. The comparison uses the same person in both
+  // runs, so most of the uncertainty about the posture cancels.
   std::optional<person::Interval> interval;
   std::optional<double> share_better;  // share of the possible people for whom a is better than b
 };
@@ -26,8 +25,8 @@ struct Comparison {
   std::string warning;  // why the runs can hardly be compared; empty if they can
 };
 
-// Throws InputError if the bodies differ: the difference would then not be due to the designs
-// alone.
+// Throws InputError if the bodies differ, because the difference would then not be due to the
+// designs alone.
 Comparison Compare(const Assessment& a, const Assessment& b);
 
 std::string ComparisonText(const Comparison& comparison);

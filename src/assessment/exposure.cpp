@@ -25,8 +25,8 @@ std::vector<double> Coarse(std::span<const double> load) {
   return coarse;
 }
 
-// Applies a first-order filter forward and backward, and therefore without delay. The filter begins
-// and ends at rest.
+// Applies a first-order filter forward and backward, so that the result has no delay. The filter
+// begins and ends at rest.
 std::vector<double> Smooth(std::span<const double> values, double cutoff) {
   const auto rest = static_cast<std::size_t>(kSampleRate / cutoff);
   std::vector<double> smooth(values.size() + 2 * rest, 0);

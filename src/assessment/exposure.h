@@ -21,9 +21,9 @@ struct DamageResult {
 };
 
 // `moment` [N·m] covers a run at 100 Hz and is 0 at rest. The moment is low-passed at kDamageCutoff
-// in both directions. Ranges smaller than kMinRange or than kMinRangeShare of the largest range are
-// ignored. Without these thresholds, tremor and noise would count as lifts, because in this method
-// each cycle causes some damage even without a load.
+// in both directions. Ranges below kMinRange, or below the share kMinRangeShare of the largest
+// range, are ignored. Without these thresholds, tremor and noise would count as lifts, because, in
+// this method, each cycle causes some damage even without a load.
 DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
                             std::span<const double> moment, double (*per_cycle)(double),
                             const ergonomics::DamageRisk& risk);

@@ -37,8 +37,8 @@ ergonomics::ArmPosture ArmOf(const person::ArmAngles& a) {
   return arm;
 }
 
-// Returns the exertion of both hands. The load is the sum of their forces, so opposite forces of
-// the hands on the object do not count as a load.
+// Returns the exertion of both hands. The load is the sum of the forces of both hands, so opposite
+// forces of the hands do not count as a load.
 ergonomics::Exertion ExertionOf(const FrameInput& input, const WorkPattern& work) {
   ergonomics::Exertion exertion;
   Vector3 force = Vector3::Zero();

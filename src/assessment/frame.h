@@ -1,4 +1,4 @@
-// Everything that is judged about the person at one time, from posture and loads.
+// Everything that is judged about the person at one time, based on the posture and the loads.
 #pragma once
 
 #include <array>
@@ -26,12 +26,13 @@ struct WorkPattern {
 struct Frame {
   person::PostureAngles angles;
   person::BodyLoads loads;
-  // Scores of the worse of the arms that hold a handle, with the force of both hands together.
+  // The scores of the arm with the worse score, among the arms that hold a handle. The scores use
+  // the force of both hands together.
   ergonomics::RulaScores rula;
   ergonomics::RebaScores reba;
   ergonomics::OwasScore owas;
-  // Torque divided by the strength in its direction (flexion or extension), which is the mean for
-  // the person's sex times WorkPattern::strength.
+  // The torque divided by the strength in the torque's direction (flexion or extension). This
+  // strength is the mean for the person's sex times WorkPattern::strength.
   std::array<double, kHands> elbow_use = {}, shoulder_use = {};
   bool reached = false;  // whether the hands reach the handles in this posture
   // The use of the muscles is computed for the nominal person only.

@@ -51,7 +51,7 @@ std::optional<PersonSample> SampleBuilder::Add(const TickRecord& record) {
   if (!start_) start_ = record.tick;
   const bool follows = !last_time_ || record.run_time < *last_time_ + 1.5 * dt_;
   if (!record.ran || !follows) {
-    // A partial sample would have a different bandwidth, so it is dropped.
+    // A partial sample is dropped, because it would have a different bandwidth.
     interrupted_ = interrupted_ || last_time_;
     pending_.clear();
   }

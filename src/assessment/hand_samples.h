@@ -21,13 +21,13 @@ struct PersonSample {
   person::BodySample body;
   double recorded = 0;                         // time since the first tick of the recording [s]
   std::array<double, kHands> peak_force = {};  // largest over the ticks of the sample [N]
-  // False if simulated time was paused, ticks were lost, or a hand gripped or let go immediately
-  // before this sample.
+  // The value is false if, immediately before this sample, simulated time was paused, ticks were
+  // lost, or a hand gripped or let go.
   bool continues = true;
 };
 
-// Makes one sample from successive ticks: the means of position and wrench, and the orientation at
-// the middle tick. A hand is present if it grips in most of the ticks.
+// Makes one sample from successive ticks. The sample contains the means of position and wrench, and
+// the orientation at the middle tick. A hand is present if it grips in most of the ticks.
 PersonSample SampleOf(std::span<const TickRecord> ticks);
 
 // Builds a sample from every 10 ms of ticks (see SampleOf). The builder uses only ticks in RUN.
@@ -76,8 +76,8 @@ inline bool IsHeld(const PersonSample& sample) {
   return sample.body.hands[0].present || sample.body.hands[1].present;
 }
 
-// Passes on the samples in which a hand holds a handle. While no hand holds a handle, the posture
-// is unknown.
+// Passes on only the samples in which a hand holds a handle. While no hand holds a handle, the
+// posture is unknown.
 class HeldFilter {
  public:
   std::optional<PersonSample> Take(PersonSample sample);

@@ -28,8 +28,8 @@ ergonomics::HandPlace PlaceOf(const Vector3& middle) {
           .asymmetry = std::abs(std::atan2(middle.y(), middle.x()))};
 }
 
-// Returns the first sample at which the height is close to its maximum, because the object may then
-// move at this height for a long time.
+// Returns the first sample at which the height is close to its maximum. After this sample, the
+// object may move at this height for a long time.
 std::size_t ArrivalAt(const std::vector<std::optional<Vector3>>& middle, std::size_t low,
                       std::size_t high) {
   while (low < high && middle[low]->z() < middle[high]->z() - kReversal / 2) ++low;
@@ -40,7 +40,8 @@ struct Rise {
   std::size_t from = 0, to = 0;  // samples
 };
 
-// Returns the last sample before the object leaves its lowest height, where it may have waited.
+// Returns the last sample before the object leaves its lowest height. The object may have stayed at
+// this height for some time.
 std::size_t DepartureAt(const std::vector<std::optional<Vector3>>& middle, std::size_t low,
                         std::size_t high) {
   std::size_t last = low;

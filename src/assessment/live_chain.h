@@ -13,7 +13,8 @@ namespace predictor::assessment {
 // design choice of 0.1 s is five time constants of the smoothing filter, so later samples would
 // hardly change its result.
 inline constexpr std::size_t kLiveDelay = 10;
-// Earlier postures that the filter uses. After 0.5 s, its initial state has no more influence.
+// Number of earlier postures that the filter uses. After 0.5 s, the initial state of the filter has
+// no more influence.
 inline constexpr std::size_t kLiveHistory = 60;
 
 struct JudgedSample {
@@ -23,9 +24,9 @@ struct JudgedSample {
   Frame frame;
 };
 
-// Postures, measured forces and force rates are the same as in RunNominal. Motions are exactly
-// equal if the whole uninterrupted part is known and has at most kLiveHistory samples; otherwise,
-// they are approximately equal.
+// Postures, measured forces and force rates are the same as in RunNominal. Motions are exactly the
+// same as in RunNominal if the whole uninterrupted part is known and has at most kLiveHistory
+// samples. Otherwise, the motions are approximately the same.
 class LiveChain {
  public:
   LiveChain(const PersonSetup& setup, const WorkPattern& work)
@@ -36,7 +37,7 @@ class LiveChain {
   // Returns the posture of the newest sample.
   const person::Posture& newest() const { return postures_.back(); }
   // Gets the next sample that can be judged. Set `all` if no later sample continues the known
-  // samples; then all of these can be judged. Returns false if no sample can be judged yet.
+  // samples. All known samples can then be judged. Returns false if no sample can be judged yet.
   bool Next(bool all, JudgedSample* judged);
 
   const person::BodyModel& model() const { return person_.model(); }

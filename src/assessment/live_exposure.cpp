@@ -5,7 +5,7 @@
 namespace predictor::assessment {
 namespace {
 
-// Limits the memory that a run without an end needs.
+// Limits the memory that a run of unlimited duration needs.
 constexpr std::size_t kMaxSamples = 8 * 3600 * 100;  // a shift
 
 }  // namespace

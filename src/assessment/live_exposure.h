@@ -11,15 +11,16 @@
 
 namespace predictor::assessment {
 
-// The damage is DamageOfMoment of the samples so far, as if the run ended now at rest.
+// The damage is the result of DamageOfMoment for the samples so far, as if the run ended now at
+// rest.
 class LiveExposure {
  public:
   explicit LiveExposure(const Scenario& scenario);
   // Adds the next sample. A null `frame` means that no hand holds a handle, so the arms rest.
   void Add(const Frame* frame);
   // Writes damage and capacity into `state`. To limit the computing time, the damage is computed
-  // again only when the samples have grown by 2 % and by at least 1 s. With `now`, the damage is
-  // computed immediately.
+  // again only when the samples have grown by 2 % and by at least 1 s. If `now` is true, the damage
+  // is computed immediately.
   void Write(bool now, PersonState* state);
 
  private:

@@ -80,7 +80,7 @@ void LivePerson::Begin() {
   intervals_.emplace(*setup_, work_);
 }
 
-// The initial places of the handles remain known.
+// Starts the evaluation again but keeps the initial places of the handles.
 void LivePerson::BeginAgain() {
   builder_ = SampleBuilder(scenario_);
   held_ = {};

@@ -43,13 +43,14 @@ constexpr std::array<double (*)(const Frame&), kPersonWarnings> kWarningValues =
     [](const Frame& f) { return f.reached ? 0.0 : 1.0; },
 };
 
-// Returns the hand that the gauge belongs to: 0, 1, or −1 if it belongs to neither hand.
+// Returns the hand to which the gauge belongs: 0, 1, or −1 if the gauge belongs to neither hand.
 constexpr int HandOf(std::size_t gauge) {
   if (gauge < static_cast<std::size_t>(PersonGauge::kLeftShoulderUse)) return -1;
   return static_cast<int>(gauge - static_cast<std::size_t>(PersonGauge::kLeftShoulderUse)) % 2;
 }
 
-// Returns whether this hand is present. Returns true for −1, which means neither hand.
+// Returns whether the given hand holds a handle. For −1, which stands for neither hand, returns
+// true.
 bool IsPresent(int hand, const PersonSample& sample) {
   return hand < 0 || sample.body.hands[static_cast<std::size_t>(hand)].present;
 }

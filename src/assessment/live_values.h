@@ -19,12 +19,13 @@ void WriteIntervals(std::span<const Frame> frames, const PersonSample& sample, P
 // Sets all values that WriteFrame and WriteIntervals write to unknown.
 void ForgetValues(PersonState* state);
 
-// Evaluates the possible people a few at a time, so that the nominal person is never delayed.
+// Evaluates the possible people a few at a time, so that the evaluation of the nominal person is
+// never delayed.
 class LiveIntervals {
  public:
   LiveIntervals(const PersonSetup& setup, const WorkPattern& work);
-  // Call with each judged sample: every kSampledStride-th sample is evaluated for all people.
-  // Writes the results when all people have been evaluated.
+  // Call this function with each judged sample. Every kSampledStride-th sample is evaluated for all
+  // people. Writes the results when all people have been evaluated.
   void Add(const JudgedSample& judged, PersonState* state);
 
  private:
@@ -36,7 +37,7 @@ class LiveIntervals {
   std::vector<Frame> frames_;  // frames of the people evaluated so far
 };
 
-// Warnings with hysteresis and a delay for each direction, so that they do not flicker.
+// Computes the warnings. A hysteresis, and a delay for each direction, prevent flicker.
 class WarningKeeper {
  public:
   // Returns the bits of PersonState::warnings. `time` is the simulated time [s] of the judged

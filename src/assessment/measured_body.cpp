@@ -12,8 +12,8 @@
 namespace predictor::assessment {
 namespace {
 
-// Limits of what is possible, as shares of the height (design choices). These limits only need to
-// reveal a wrong unit, frame or marker.
+// Limits of possible positions, as shares of the person's height (design choices). These limits
+// only need to reveal a wrong unit, frame or marker.
 constexpr double kLowest = 0.1, kHighest = 1.25, kFarthest = 1.0;
 constexpr double kElbowToHandle = 0.4;
 
@@ -115,7 +115,8 @@ void AddSignals(const tracks::BodyTrack& track, const UsedTrack& used,
   }
 }
 
-// Returns the clock offset that was estimated with the hand whose speeds agree better.
+// Returns the clock offset that was estimated from the hand whose measured and recorded speeds
+// agree better.
 tracks::ClockOffset Estimate(const tracks::BodyTrack& track,
                              const std::vector<PersonSample>& samples) {
   std::vector<double> times;
@@ -175,7 +176,7 @@ void CheckOverlap(const tracks::BodyTrack& track, const UsedTrack& used,
                              samples.back().recorded));
 }
 
-// Two measurements of the same part would contradict each other.
+// Two measurements of the same part of the body could contradict each other.
 void CheckUnique(const MeasuredBody& body) {
   for (const MeasuredPart& a : body.parts)
     for (const MeasuredPart& b : body.parts)

@@ -49,10 +49,11 @@ struct MeasuredBody {
 // Adds the measured head and elbows to the samples. Missing values are not extrapolated, and are
 // interpolated only in gaps of up to 0.05 s. `start_unix` is the start of the recording [s].
 //
-// Throws InputError with the file if two tracks measure the same part, a track has no measurement
-// during the run, its clock's offset cannot be estimated, or most of its positions are impossible
-// for this person at this place (wrong unit, frame or marker). Single impossible positions are left
-// out and counted. Electromyograms are converted by AddEmg.
+// Throws InputError, which names the file, if two tracks measure the same part or if a track has no
+// measurement during the run. Also throws InputError if the offset of a track's clock cannot be
+// estimated, or if most positions of a track are impossible for this person at this place (wrong
+// unit, frame or marker). If only a few positions are impossible, these positions are left out and
+// counted. Electromyograms are converted by AddEmg.
 MeasuredBody AddTracks(std::span<const tracks::BodyTrack> tracks, const PersonSetup& setup,
                        double start_unix, std::vector<PersonSample>* samples);
 
@@ -62,7 +63,7 @@ void AddMisfit(std::span<const person::Posture> postures, MeasuredBody* measured
                std::vector<std::string>* warnings);
 inline constexpr double kMaxMisfit = 0.08;
 
-// Returns "These were measured: the hands, the head (98 % of the time), ...", for example.
+// Returns a sentence such as "These were measured: the hands, the head (98 % of the time), ...".
 std::string MeasuredSentence(const MeasuredBody& measured);
 // Each of the following functions returns one sentence.
 std::string Sentence(const UsedTrack& track);

@@ -96,10 +96,10 @@ Activations ActivationsOf(const tracks::EmgTrack& track) {
     if (part.Duration() >= kShortestEmg) AddPart(part, track.map, &all);
   }
   if (all.times.empty())
-    throw InputError(Formatted(
-        "No part of the channel lasts %.1f s without a gap of more than %.2f s; the longest lasts "
-        "%.2f s. Check the unit of the times.",
-        kShortestEmg, tracks::PartTrack::kMaxGap, longest));
+    throw InputError(
+        Formatted("No part of the channel lasts %.1f s without a gap of more than %.2f s. The "
+                  "longest part lasts %.2f s. Check the unit of the times.",
+                  kShortestEmg, tracks::PartTrack::kMaxGap, longest));
   return all;
 }
 
@@ -115,7 +115,7 @@ int MuscleOf(const std::string& key, const std::string& source) {
                                                 : "Did you mean " + nearest + "?"));
 }
 
-// Two measurements of a muscle would contradict each other.
+// Two measurements of the same muscle could contradict each other.
 void CheckUnique(const MeasuredEmg& added, const std::vector<MeasuredEmg>& channels) {
   for (const MeasuredEmg& other : channels)
     for (const int muscle : added.muscles)
@@ -143,8 +143,8 @@ void WarnAboutGaps(const tracks::EmgTrack& track, const std::string& name, Measu
     longest = std::max(longest, parts[i].times.front() - parts[i - 1].times.back());
   if (parts.size() > 1)
     emgs->warnings.push_back(
-        Formatted("%s has gaps that are not used: %zu, of up to %.2f s. If its recorder did not "
-                  "pause, the clock of the recorder jumped, and later times are wrong.",
+        Formatted("%s has gaps that are not used: %zu, of up to %.2f s. If the recorder of the "
+                  "channel did not pause, the recorder's clock jumped, and later times are wrong.",
                   name.c_str(), parts.size() - 1, longest));
 }
 

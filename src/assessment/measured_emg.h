@@ -14,7 +14,7 @@
 
 namespace predictor::assessment {
 
-// One channel. Its activation applies to each muscle that is assigned to the channel.
+// One channel. The channel's activation applies to each muscle that is assigned to the channel.
 struct MeasuredEmg {
   std::string channel, source;  // source: file
   int hand = 0;                 // side of the arm
@@ -35,15 +35,15 @@ struct MeasuredEmgs {
   std::vector<NotEvaluable> gaps;  // channels that cannot be used
 };
 
-// Converts the electromyograms of a file with muscles::EmgActivation and adds them. `offset` is
-// added to the times of the file [s]. A channel is split where values are missing for more than
-// PartTrack::kMaxGap. Shorter gaps are closed, because the envelope changes more slowly. At both
-// ends of each part, one period of the low-pass (kEmgSettling) is left out, and so are parts
-// shorter than kShortestEmg (D).
+// Converts the electromyograms of a file with muscles::EmgActivation and adds the results. `offset`
+// is added to the times of the file [s]. A channel is split where values are missing for more than
+// PartTrack::kMaxGap. Shorter gaps do not split a channel, because the envelope changes more
+// slowly. At both ends of each part, one period of the low-pass (kEmgSettling) is left out. Parts
+// shorter than kShortestEmg are left out, too (D).
 //
 // A channel is left out if it is constant, has no part that is long enough, or has too low a
-// sampling rate for its band. `gaps` then contains the reason. Throws InputError with the file if a
-// muscle is unknown, or is measured twice.
+// sampling rate for its band. `gaps` then contains the reason. Throws InputError, which names the
+// file, if a muscle is unknown or is measured twice.
 void AddEmg(const tracks::BodyTrack& track, double offset, std::span<const PersonSample> samples,
             MeasuredEmgs* emgs);
 inline constexpr double kEmgSettling = 1.0 / 6, kShortestEmg = 0.5;  // [s]
@@ -55,9 +55,9 @@ std::array<MeasuredActivations, kHands> ActivationsAt(std::span<const MeasuredEm
 // Stores what the model computed for the muscles of the channels at the next sample.
 void AddModelled(const std::array<ArmMuscleUse, kHands>& use, std::vector<MeasuredEmg>* channels);
 
-// Adds to `gaps` the channels that had no influence because, during their measurement, their arm
-// held no handle or was raised above 90°. Adds to `assumptions` a description of how the model uses
-// the other channels.
+// Adds to `gaps` the channels that had no influence on the result. A channel has no influence if,
+// during the measurement, its arm held no handle or was raised above 90°. Adds to `assumptions` a
+// description of how the model uses the other channels.
 void AddEmgWords(const std::vector<MeasuredEmg>& channels, std::vector<std::string>* assumptions,
                  std::vector<NotEvaluable>* gaps);
 

@@ -176,8 +176,8 @@ void AddMuscleWords(const NominalChain& chain, std::vector<std::string>* warning
                     std::vector<std::string>* assumptions, std::vector<NotEvaluable>* gaps) {
   assumptions->emplace_back(
       "The model distributes the torques among the muscles such that the sum of squared "
-      "activations is smallest. It assumes no co-contraction, so activations and stiffness are "
-      "lower bounds.");
+      "activations is smallest. The model assumes no co-contraction, so activations and stiffness "
+      "are lower bounds.");
   gaps->push_back({"muscles that grip, and the muscle forces on the shoulder joint",
                    "the effort of the grip is not measured, and the shoulder girdle does not move "
                    "in the model"});

@@ -55,7 +55,8 @@ struct ArmMuscleUse {
   }
 };
 
-// Activations from electromyograms, and their weights: see muscles::ActivationProblem.
+// Activations from electromyograms and the weights of these activations, as in
+// muscles::ActivationProblem.
 struct MeasuredActivations {
   muscles::MuscleVector value = muscles::MuscleVector::Zero();
   muscles::MuscleVector trust = muscles::MuscleVector::Zero();  // 0: not measured

@@ -1,4 +1,4 @@
-// Writes an assessment as text, JSON, CSV and as a page.
+// Writes an assessment as text, as JSON, as CSV and as a page.
 #pragma once
 
 #include <optional>
@@ -31,21 +31,21 @@ struct PersonOfRun {
   std::string why;
 };
 // Adds the chapter "person". For one run, the chapter contains everything that AssessmentPage
-// shows; for several runs, it contains a table.
+// shows. For several runs, the chapter contains a table.
 void AddPersonChapter(std::span<const PersonOfRun> runs, ReportPage* page);
 
 // Returns a value as a number in its display unit, without the name of the unit.
 std::string NumberText(const Unit& unit, double x);
 std::string ValueText(const QuantityKind& kind, double x);
-// Returns "low … high" in the display unit, or "" if there is no interval.
+// Returns an interval as "low … high" in the display unit, or "" if there is no interval.
 std::string RangeText(const QuantityKind& kind, const std::optional<person::Interval>& range);
-// Returns "measured by ...", an explanation of the words for Origin.
+// Returns an explanation of the words for Origin, which begins with "measured by ...".
 std::string OriginWords();
 // These functions return one sentence for each lift, damage and fatigue result.
 std::string Sentence(const Lift& lift);
 std::string Sentence(const DamageResult& damage);
 std::string Sentence(const FatigueResult& fatigue);
-// Returns "The body reaches the handles 98 % of the time ...", for example.
+// Returns a sentence such as "The body reaches the handles 98 % of the time ...".
 std::string ReachSentence(const Assessment& a);
 // Returns a sentence that states who moved the handles.
 std::string OperatorSentence(const Assessment& a);

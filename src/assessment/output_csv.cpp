@@ -8,7 +8,7 @@
 namespace predictor::assessment {
 namespace {
 
-// Appends ",trunk.flexion_rad.low [rad]", for example.
+// Appends a column's name, for example ",trunk.flexion_rad.low [rad]".
 void AppendHead(const QuantityKind& kind, const char* part, std::string* text) {
   Append(text, ",%s%s", kind.path, part);
   if (*kind.unit.si != 0) Append(text, " [%s]", kind.unit.si);

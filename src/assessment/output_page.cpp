@@ -230,9 +230,9 @@ void AddCosts(const Assessment& a, Outline* outline) {
   outline->Begin("damage", "Cumulative damage (standard)");
   page.Html(DamageTable(a));
   page.Html(
-      "<p class=\"caption\">As shares of the reference day. With the damage of that day, the "
-      "method gives a probability of one half that the job is a job with many injuries. "
-      "This is not the risk of a person.</p>\n");
+      "<p class=\"caption\">The values are shares of the reference day. For the damage of the "
+      "reference day, the method gives a probability of one half that the job causes many "
+      "injuries. This probability is not the risk of a single person.</p>\n");
   outline->Begin("fatigue", "Fatigue by 3CC-r (modelled)");
   page.Html(FatigueTable(a));
   page.Html(

@@ -21,7 +21,7 @@ struct View {
   Vector3 right, away;
   double left_edge, right_edge;  // [m]
 };
-// The body is drawn from the person's right side, and from the front.
+// The picture shows the body from the person's right side and from the front.
 const View kSide = {"from the side", Vector3::UnitX(), Vector3::UnitY(), -0.6, 0.95};
 const View kFront = {"from the front", Vector3::UnitY(), -Vector3::UnitX(), -0.72, 0.72};
 
@@ -147,7 +147,7 @@ void DrawTrunk(const Skeleton& s, const std::string& color, Drawing* d) {
 }
 
 void DrawBody(const Skeleton& s, const Colors& colors, Drawing* d) {
-  // Draws the far side first, which is the left side if the person is seen from the right.
+  // Draws the far side of the body first. The far side is the left side in the view from the right.
   const std::size_t near = d->view().away.y() > 0 ? 1 : 0, far = 1 - near;
   const bool from_front = d->view().away.x() < 0;
   DrawLeg(s.sides[far], d);

@@ -8,7 +8,8 @@
 namespace predictor::assessment {
 
 // Returns the colour "#rrggbb" of a load: light green at 0, then amber, and dark red at 1 and
-// above. The colours become steadily darker, so that colour-blind people can distinguish them too.
+// above. The colours become steadily darker, so that colour-blind people can also distinguish the
+// colours.
 std::string LoadColor(double share);
 
 // Shows the body at the worst time from the side and from the front, its loads as a table, and

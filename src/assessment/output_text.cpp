@@ -84,7 +84,7 @@ std::string OperatorSentence(const Assessment& a) {
 
 std::string ReachSentence(const Assessment& a) {
   std::string text = Formatted(
-      "A hand held a handle for %.1f of %.1f s; only this time is judged. The body reaches the "
+      "A hand held a handle for %.1f of %.1f s. Only this time is judged. The body reaches the "
       "handles for %.0f %% of it",
       a.held, a.duration, 100 * a.reached);
   if (a.worst_miss > 5e-4) Append(&text, " and misses them by up to %.0f mm", 1e3 * a.worst_miss);
@@ -101,8 +101,8 @@ std::string Sentence(const Lift& lift) {
         lift.begin, lift.end, lift.origin.height, lift.destination.height);
   return Formatted(
       "%.1f to %.1f s, from %.2f to %.2f m above the ground: the hands carry %.1f kg. Lifting "
-      "index %s (%s), %s without the cobot. This load for a day is acceptable to %.0f %% of people "
-      "of this sex (LM-MMH%s).",
+      "index %s (%s), %s without the cobot. Lifting this load for a day is acceptable to %.0f %% "
+      "of people of the operator's sex (LM-MMH%s).",
       lift.begin, lift.end, lift.origin.height, lift.destination.height,
       lift.vertical_force / kStandardGravity, Index(lift.niosh.carried.index).c_str(),
       ergonomics::AssistedLift::kCarriedLabel, Index(lift.niosh.unassisted.index).c_str(),
@@ -121,7 +121,8 @@ std::string Sentence(const FatigueResult& fatigue) {
       Formatted("%s: %.1f %% of strength on average, %.1f %% of strength left.",
                 fatigue.joint.c_str(), 100 * fatigue.mean_load, 100 * fatigue.capacity);
   if (std::isfinite(fatigue.time_to_limit))
-    Append(&text, " Repeated without a break, the run becomes too demanding after %.0f min.",
+    Append(&text,
+           " If the run is repeated without a break, it becomes too demanding after %.0f min.",
            fatigue.time_to_limit / 60);
   else
     text += " The run can be repeated without a break for 8 h.";

@@ -37,12 +37,13 @@ class NominalPerson {
 };
 
 // Returns the motions of the postures of an uninterrupted part. Trunk and head are treated as being
-// at rest at each time. The posture model assumes that they follow the hands immediately, but the
-// resulting acceleration was not observed.
+// at rest at each time. The posture model assumes that trunk and head follow the hands immediately,
+// but the resulting acceleration was not observed.
 std::vector<person::BodyMotion> MotionsOfPart(std::span<const person::BodyVector> postures);
 
 // Returns the rate [N/s] at which each hand's force changed before sample i. The rate is averaged
-// over 0.1 s to suppress noise and tremor. It is 0 if the samples are interrupted in these 0.1 s.
+// over 0.1 s to suppress noise and tremor. The rate is 0 if the samples are interrupted in these
+// 0.1 s.
 std::array<double, kHands> ForceRates(std::span<const PersonSample> samples, std::size_t i);
 
 // The nominal person at each sample.
@@ -58,8 +59,8 @@ NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> 
 Frame FrameOfPerson(const person::SampledPosture& person, const FrameInput& input, Sex sex,
                     const WorkPattern& work);
 
-// The number of samples from one evaluation of all possible people to the next, which gives a rate
-// of 5 Hz.
+// The number of samples from one evaluation of all possible people to the next evaluation, which
+// gives a rate of 5 Hz.
 inline constexpr std::size_t kSampledStride = 20;
 
 // All possible people at every `stride`-th sample: frames[time][person].

@@ -19,7 +19,7 @@ struct PersonRun {
 
 PersonRun RunOf(const SampleCollector& ticks);
 // A hand counts as holding a handle only in rows that contain a measurement of the hand and state
-// that it holds.
+// that the hand holds a handle.
 PersonRun RunOf(const tracks::PersonFile& file);
 
 // Returns a scenario made from the person, place and grips of an imported recording. The type of

@@ -1,4 +1,4 @@
-// The person of a recorded run: body, stance and grips, and a list of unknown values.
+// The person in a recorded run: the body, the stance, the grips, and a list of unknown values.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ struct NotEvaluable {
   std::string what, why;
 };
 
-// Returns instructions that state which keys the user must add to the scenario before a posture can
-// be judged. The list is empty if nothing is missing.
+// Returns instructions that state which keys the scenario needs before a posture can be judged. The
+// list is empty if nothing is missing.
 std::vector<std::string> MissingForPosture(const Scenario& scenario);
 
 struct PersonSetup {

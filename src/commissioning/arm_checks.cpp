@@ -25,8 +25,8 @@ bool Fits(const Pose& X_BF, const Pose& reported) {
          RotationError(reported.q, X_BF.q).norm() <= kFlangeRotation;
 }
 
-// Tolerances of the payload. Larger errors noticeably affect the arm's protective stops and
-// free-drive.
+// Tolerances of the payload. Errors above these values noticeably affect the arm's protective stops
+// and free-drive.
 constexpr double kMass = 0.1;      // [kg]
 constexpr double kMassPart = 0.1;  // share of the handle's mass
 constexpr double kSensor = 1.0;    // largest mass of a separate sensor [kg]
@@ -43,10 +43,9 @@ Vector3 CentreOf(const ArmSpec& arm) {
 std::string TakenOffTwice(const ReportedPayload& reported, const HandlePayloadSpec& handle) {
   if (!(reported.mass > kMass && handle.mass > kMass)) return "";
   return Formatted(
-      "Its controller subtracts %.2f kg from its own wrench, and the machine file gives the handle "
-      "a mass of %.2f kg, so the weight would be subtracted twice. Enter the handle either in Desk "
-      "or "
-      "as payload.mass in the machine file, and zero in the other place.",
+      "The arm's controller subtracts %.2f kg from the arm's own wrench, and the machine file "
+      "gives the handle a mass of %.2f kg, so the weight would be subtracted twice. Enter the "
+      "handle either in Desk or as payload.mass in the machine file, and zero in the other place.",
       reported.mass, handle.mass);
 }
 
@@ -58,7 +57,8 @@ std::string KinematicsRefusal(const DeviceFacts& facts, const ArmSpec& arm,
   const ReportedFlange& reported = *facts.flange;
   if (reported.q.size() != model.dof())
     return Formatted(
-        "It has %d joints, but arm.model has %d. Give the model of this arm in the machine file.",
+        "The arm has %d joints, but arm.model has %d. Give the model of this arm in the machine "
+        "file.",
         static_cast<int>(reported.q.size()), model.dof());
   RobotData data(model);
   data.UpdateKinematics(model, reported.q, JointVector::Zero(model.dof()));
@@ -69,17 +69,17 @@ std::string KinematicsRefusal(const DeviceFacts& facts, const ArmSpec& arm,
   const bool nearer = (reported.X_BF.p - turned.p).norm() < (reported.X_BF.p - X_BF.p).norm();
   const Pose& ours = nearer ? turned : X_BF;
   std::string text = Formatted(
-      "At its present joint angles, it reports its flange at %s in its base. According to %s of "
-      "the machine file's arm.model, the flange is at %s: %.0f mm and %.1f° away. Either the model "
-      "describes another arm (UR5 and UR5e differ), or it lacks this arm's calibration. Give a "
-      "calibrated model of this arm.",
+      "At the present joint angles, the arm reports its flange at %s in its base. According to %s "
+      "of the machine file's arm.model, the flange is at %s: %.0f mm and %.1f° away. Either the "
+      "model describes another arm (UR5 and UR5e differ), or the model lacks this arm's "
+      "calibration. Give a calibrated model of this arm.",
       Millimetres(reported.X_BF.p).c_str(), link.c_str(), Millimetres(ours.p).c_str(),
       1e3 * (reported.X_BF.p - ours.p).norm(),
       kDegrees * RotationError(reported.X_BF.q, ours.q).norm());
   if (!reported.tool_known)
     text +=
-        " (It does not report its tool centre point, so zero is assumed. Set the tool centre point "
-        "to zero at the pendant.)";
+        " (The arm does not report its tool centre point, so zero is assumed. Set the tool centre "
+        "point to zero at the pendant.)";
   return text;
 }
 
@@ -94,8 +94,9 @@ std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& machine) 
   const Vector3 c = CentreOf(machine.arm);
   if (!(reported.mass >= handle.mass - slack && reported.mass <= most))
     return Formatted(
-        "Its controller is set to %.2f kg at the flange, but the handle weighs %.2f kg%s. Enter "
-        "%.2f kg%s at the pendant; otherwise its protective stops and free-drive are wrong.",
+        "The arm's controller is set to %.2f kg at the flange, but the handle weighs %.2f kg%s. "
+        "Enter %.2f kg%s at the pendant; otherwise the arm's protective stops and free-drive are "
+        "wrong.",
         reported.mass, handle.mass, own ? "" : " without the sensor", handle.mass,
         own ? "" : " plus the sensor's mass");
   // The mass of a separate sensor is unknown, but its upper bound is known.
@@ -103,8 +104,9 @@ std::string PayloadRefusal(const DeviceFacts& facts, const MachineArm& machine) 
   const double moment = (reported.mass * reported.center_of_mass - handle.mass * c).norm();
   if (moment <= kMoment + sensor) return "";
   return Formatted(
-      "Its controller is set to a centre of gravity at (%.0f, %.0f, %.0f) mm from the flange, but "
-      "the handle's is at (%.0f, %.0f, %.0f) mm. Enter %s at the pendant.",
+      "The arm's controller is set to a centre of gravity at (%.0f, %.0f, %.0f) mm from the "
+      "flange, but the handle's centre of gravity is at (%.0f, %.0f, %.0f) mm. Enter %s at the "
+      "pendant.",
       1e3 * reported.center_of_mass.x(), 1e3 * reported.center_of_mass.y(),
       1e3 * reported.center_of_mass.z(), 1e3 * c.x(), 1e3 * c.y(), 1e3 * c.z(),
       own ? "this position" : "the mass and centre of gravity of sensor and handle together");

@@ -15,8 +15,8 @@ namespace {
 // Smallest permitted rms distance of the points from their best-fitting line [m]. If the points are
 // closer to a line, they determine the rotation about this line too poorly.
 constexpr double kMinSpread = 0.05;
-// The largest permitted residual of touched points [m]. A person places a tip with an accuracy of
-// about 1 mm.
+// The largest permitted residual of touched points [m]. A person can place a tip with an accuracy
+// of about 1 mm.
 constexpr double kMaxResidual = 0.005;
 
 using Points = std::span<const TouchedPoint>;
@@ -67,8 +67,8 @@ void CheckResiduals(const BaseCalibration& found) {
                 1e3 * kMaxResidual));
 }
 
-// The errors of the points are assumed to be equal in all directions. Rotation about the centre and
-// translation are independent.
+// The errors of the points are assumed to be equal in all directions. The errors of the rotation
+// about the centre and of the translation are then independent.
 void AddCovariance(Points points, const Centres& centres, BaseCalibration* found) {
   const int freedom = 3 * static_cast<int>(points.size()) - 6;
   double squares = 0;
@@ -94,15 +94,16 @@ void AddCovariance(Points points, const Centres& centres, BaseCalibration* found
 
 BaseCalibration CalibrateBases(Points points) {
   if (points.size() < static_cast<std::size_t>(kMinBasePoints))
-    throw InputError(Formatted("%zu points are too few. Touch at least %d; six are better.",
-                               points.size(), kMinBasePoints));
+    throw InputError(
+        Formatted("%zu points are too few. Touch at least %d points; six points are better.",
+                  points.size(), kMinBasePoints));
   const Centres centres(points);
   if (const double spread = SpreadOf(points, centres.A); spread < kMinSpread)
-    throw InputError(
-        Formatted("The points are nearly on a line or too close together (%.0f mm from their "
-                  "common line; %.0f mm are needed). Choose points further apart, for example the "
-                  "corners of a table and a point above it.",
-                  1e3 * spread, 1e3 * kMinSpread));
+    throw InputError(Formatted(
+        "The points are nearly on a line or too close together (their distance from a common line "
+        "is %.0f mm, but %.0f mm are needed). Choose points further apart, for example the "
+        "corners of a table and a point above it.",
+        1e3 * spread, 1e3 * kMinSpread));
   BaseCalibration found;
   found.X_AB.q = BestRotation(points, centres);
   found.X_AB.p = centres.A - found.X_AB.q * centres.B;

@@ -11,7 +11,8 @@
 
 namespace predictor::commissioning {
 
-// One point of the room that the tips of both arms touched, as computed from each arm's joints.
+// A point in the room that the tips of both arms touched. The point's positions are computed from
+// the joints of each arm.
 struct TouchedPoint {
   Vector3 p_A = Vector3::Zero();  // position in the base of A [m]
   Vector3 p_B = Vector3::Zero();  // position in the base of B [m]
@@ -32,7 +33,7 @@ inline constexpr int kMinBasePoints = 3;
 // Returns the rigid motion that maps the points p_B onto the points p_A with the least squared
 // error, and its covariance from the residuals. The method of Horn 1987 uses an eigenvector of a 4
 // × 4 matrix, so the result is never a reflection. Throws InputError if there are too few points,
-// if they are on a line or too close together, or if they do not fit.
+// if the points are on a line or too close together, or if the points do not fit.
 BaseCalibration CalibrateBases(std::span<const TouchedPoint> points);
 
 // Returns the result as a table. `before` is the nominal X_AB.

@@ -29,14 +29,14 @@ std::string TakePose(Session* session, const Station& station, PoseRecorder* rec
   return recorder->Refusal();
 }
 
-// Describes a pose in a way that helps the person to choose the next pose.
+// Describes a pose to help the person choose the next pose.
 std::string PoseText(std::size_t number, const RestingPose& pose) {
   const Vector3 down = pose.g_S.normalized();
   return Formatted("Pose %zu taken. Down is (%+.2f, %+.2f, %+.2f) in the sensor's frame.", number,
                    down.x(), down.y(), down.z());
 }
 
-// Returns the position of the tip in the arm's base frame, once the tip rests.
+// Waits until the tip rests, and returns the tip's position in the frame of the arm's base.
 Vector3 TakePoint(Session* session, const Station& station, const Vector3& tip) {
   constexpr int kSamples = 100;
   constexpr double kRests = 0.0005;  // [m]
@@ -54,8 +54,9 @@ Vector3 TakePoint(Session* session, const Station& station, const Vector3& tip) 
       ++n;
     }
     if (moved <= kRests) return sum / kSamples;
-    session->Ask(Formatted("The tip moved by %.1f mm. Hold it still and press Enter.", 1e3 * moved),
-                 {kEnter});
+    session->Ask(
+        Formatted("The tip moved by %.1f mm. Hold the tip still and press Enter.", 1e3 * moved),
+        {kEnter});
   }
 }
 
@@ -81,11 +82,12 @@ std::vector<Vector3> TakePoints(Session* session, const Station& station, const 
 // A wrong tip shifts the bases, and the residuals may not reveal it.
 void AskForNoTip(Session* session, const Station& a, const Station& b) {
   const char answer = session->Ask(
-      Formatted(
-          "No --tip was given, so the end-effector's origin must touch the points (frame of the %s "
-          "arm: %s; frame of the %s arm: %s). Is this true of both arms? Press y or n.",
-          a.name().c_str(), a.spec().arm.end_effector.c_str(), b.name().c_str(),
-          b.spec().arm.end_effector.c_str()),
+      Formatted("No --tip was given, so the end-effector's origin must touch the points (the "
+                "end-effector of the %s arm is %s; the end-effector of the %s arm is %s). Do the "
+                "end-effectors' origins of both arms touch the "
+                "points? Press y or n.",
+                a.name().c_str(), a.spec().arm.end_effector.c_str(), b.name().c_str(),
+                b.spec().arm.end_effector.c_str()),
       "yn");
   if (answer == 'n')
     throw InputError(
@@ -100,8 +102,8 @@ Wrench Feel(Feeler* feeler, const Station& station) {
   return hand.F_H_W;
 }
 
-// One push that is read incorrectly shows that there is an error, but only all three pushes
-// together show which error.
+// One push that is read incorrectly shows that there is an error, but only the three pushes
+// together identify this error.
 void ShowReading(Session* session, const PushTest& test, int axis) {
   session->Show(Formatted("  reads %s.", Name(test.readings()[static_cast<std::size_t>(axis)])));
   if (const std::string wrong = test.Wrong(axis); !wrong.empty())
@@ -115,18 +117,19 @@ void ShowReading(Session* session, const PushTest& test, int axis) {
 }  // namespace
 
 HandleCalibration MeasureHandle(Session* session, const Station& station) {
-  session->Show(
-      Formatted("The handle of the %s arm must be measured in at least %d poses. For each pose, "
-                "guide the arm in free-drive and tilt the handle in a new direction. It is best if "
-                "each axis of the handle points down once. Then take your hands off.",
-                station.name().c_str(), kMinHandlePoses));
+  session->Show(Formatted(
+      "The handle of the %s arm must be measured in at least %d poses. For each pose, "
+      "guide the arm in free-drive and tilt the handle in a new direction. For the best "
+      "result, let each axis of the handle point down once. Then take your hands off the arm.",
+      station.name().c_str(), kMinHandlePoses));
   PoseRecorder recorder(station.spec().arm.sensor);
   std::vector<RestingPose> poses;
   for (;;) {
     const char key = session->Ask(
-        Formatted("Pose %zu: Enter takes the pose%s; u removes the last pose; q cancels.",
-                  poses.size() + 1,
-                  poses.size() >= static_cast<std::size_t>(kMinHandlePoses) ? "; d finishes" : ""),
+        Formatted(
+            "Pose %zu: press Enter to take the pose%s, u to remove the last pose, or q to cancel.",
+            poses.size() + 1,
+            poses.size() >= static_cast<std::size_t>(kMinHandlePoses) ? ", d to finish" : ""),
         {kEnter, 'd', 'u'});
     if (key == 'u') {
       if (!poses.empty()) poses.pop_back();
@@ -181,7 +184,7 @@ void TestPushes(Session* session, const Station& pushed, const Station* other) {
                     pushed.name().c_str(), "xyz"[shown], shown == 2 ? " (up)" : ""));
       since = session->Now();
     }
-    // A hint is shown once it persists, and is repeated after a while.
+    // A hint is shown when its reason has persisted for some time, and is repeated later.
     if (test.hint() != hint || test.hint() == PushTest::Hint::kNone) since = session->Now();
     hint = test.hint();
     if (session->Now() - since > 2) {

@@ -1,5 +1,5 @@
 // Measurements in which a person next to the arms takes part: handle, bases, velocity loop, and the
-// push test. Each function instructs the person and returns a result; the caller writes the machine
+// push test. Each function instructs the person and returns a result. The caller writes the machine
 // file. The functions throw InputError (if a result is refused or the person gives up) and
 // DeviceError.
 #pragma once
@@ -21,8 +21,8 @@ namespace predictor::commissioning {
 HandleCalibration MeasureHandle(Session* session, const Station& station);
 
 // The person touches points with the tip of arm A and then, in the same order, with the tip of arm
-// B. `tip` is the position of the tip in E [m], for both arms. Without a tip, the program asks the
-// person whether E's origin touches the points.
+// B. `tip` is the position of the tip in E [m], for both arms. If `tip` is empty, the program asks
+// the person whether the origin of E touches the points.
 BaseCalibration MeasureBases(Session* session, const Station& a, const Station& b,
                              const std::optional<Vector3>& tip);
 
@@ -35,13 +35,13 @@ struct SwingOptions {
 // Swings one joint after the other, while the person consents (motion_watch.h) and no one touches
 // the handle. The speed of each joint is limited so that the handle does not exceed
 // `limits.align_speed`. If the person releases the key, the joint comes to rest and is measured
-// again. Any condition that would stop a run is an error, and so is a joint that leaves its planned
-// path. In every case, the arm first comes to rest, and the person is notified. Only joints that
-// `swings` does not contain yet are measured. Finished joints are added to `swings` even if the
-// function throws.
+// again. Any condition that would stop a run is an error. A joint that leaves its planned path is
+// also an error. In every case, the arm first comes to rest, and the person is notified. The
+// function measures only the joints that `swings` does not contain yet. Finished joints are added
+// to `swings` even if the function throws.
 inline constexpr char kSwingKey = 's';
 void SwingJoints(Session* session, Station* station, const SwingOptions& options, Swings* swings);
-// Fits the loop to the swings, and shows each joint's own result.
+// Fits the loop to the swings, and shows the separate result of each joint.
 LoopFit FitSwings(Session* session, const std::vector<LoopRecord>& records);
 
 // The person pushes the handle along the axes of the world. `other` is the station of the other

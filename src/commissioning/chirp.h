@@ -13,16 +13,17 @@ struct ChirpOptions {
 };
 
 // v(t) = w(t) a(f) sin φ(t), f = φ'/(2π) grows exponentially from low to high, a(f) is the speed or
-// what the acceleration allows, w is a window that begins and ends with zero. The second half is
-// −v(2T − t), so the swing begins and ends at rest, and ends at its initial position.
+// what the acceleration allows, w is a window that begins and ends with zero. The second half of
+// the velocity is −v(2T − t), so the swing begins and ends at rest and ends at its initial
+// position.
 class Chirp {
  public:
   explicit Chirp(const ChirpOptions& options);
 
   double duration() const { return 2 * options_.time; }          // [s]
   double acceleration() const { return options_.acceleration; }  // maximum [rad/s²]
-  // Returns the velocity at t after the start [rad/s], or 0 outside the duration. Does not use the
-  // heap.
+  // Returns the velocity at t after the start [rad/s], or 0 outside the duration. This function
+  // does not use the heap.
   double v(double t) const noexcept;
   // Returns the largest distance from the start [rad].
   double reach() const { return reach_; }

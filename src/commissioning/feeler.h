@@ -12,8 +12,8 @@ class Feeler {
   // Asks the person to take the hands off, and tares the sensor. Throws DeviceError if the sensor
   // is beyond its range.
   void Tare(Session* session);
-  // Uses the station's last reading. Returns kSensor, with a wrench of zero, if this reading cannot
-  // be used.
+  // Estimates the wrench from the station's last reading. If this reading cannot be used, returns
+  // kSensor and a wrench of zero.
   Status Feel(HandWrench* hand) noexcept;
 
  private:

@@ -75,7 +75,7 @@ struct Allowed {
         torque(kResidualTorque + sensor.torque_resolution +
                kResidualPart * 9.81 * fit.moment().norm()) {}
   // Returns the ratio of an error to its allowed value: the larger of the ratios for force and
-  // torque. If the ratio is above 1, the pose does not fit.
+  // torque. A ratio above 1 means that the pose does not fit.
   double Share(const HandleFit& fit, std::size_t pose) const {
     return std::max(fit.ForceError(pose) / force, fit.TorqueError(pose) / torque);
   }
@@ -116,17 +116,17 @@ std::pair<std::size_t, double> OddOne(Poses poses, const Allowed& allowed) {
 [[noreturn]] void RefuseResiduals(Poses poses, const HandleFit& fit, const Allowed& allowed) {
   const auto [odd, rest] = OddOne(poses, allowed);
   if (rest <= 1)
-    throw InputError(
-        Formatted("Pose %zu does not fit the others (error %.2f N and %.3f N·m). The handle may "
-                  "have been touched, or a cable may have pulled on it. Repeat the poses.",
-                  odd + 1, fit.ForceError(odd), fit.TorqueError(odd)));
+    throw InputError(Formatted(
+        "Pose %zu does not fit the other poses (error %.2f N and %.3f N·m). The handle may "
+        "have been touched, or a cable may have pulled on it. Repeat the poses.",
+        odd + 1, fit.ForceError(odd), fit.TorqueError(odd)));
   std::size_t worst = 0;
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (allowed.Share(fit, i) > allowed.Share(fit, worst)) worst = i;
   throw InputError(Formatted(
-      "No handle explains the readings: %.2f N and %.3f N·m remain in pose %zu. Either the handle "
-      "was touched in several poses, or the orientation of arm.base or sensor.pose in the machine "
-      "file is wrong, or the sensor itself subtracts a weight.",
+      "No handle explains the readings: %.2f N and %.3f N·m remain unexplained in pose %zu. Either "
+      "the handle was touched in several poses, or the orientation of arm.base or sensor.pose in "
+      "the machine file is wrong, or the sensor itself subtracts a weight.",
       fit.ForceError(worst), fit.TorqueError(worst), worst + 1));
 }
 
@@ -145,7 +145,7 @@ void CheckSureness(const HandleCalibration& found) {
   if (sure && placed) return;
   throw InputError(
       Formatted("The result is too uncertain: ± %.0f g for the mass, ± %.1f mm for the centre of "
-                "mass. Add more poses that differ more.",
+                "mass. Add further poses that differ more from one another.",
                 1e3 * found.mass.half_width, 1e3 * center));
 }
 
@@ -222,11 +222,11 @@ HandleCalibration CalibrateHandle(Poses poses, const SensorSpec& sensor) {
     throw InputError(
         Formatted("%zu poses are too few. Take at least %d.", poses.size(), kMinHandlePoses));
   if (const double tilt = TiltOf(poses); tilt < kMinTilt)
-    throw InputError(
-        Formatted("The poses are too alike (the direction of gravity at the handle varies by %.2f; "
-                  "%.2f is needed about two axes). Tilt the handle far to the left, right, front "
-                  "and back. It is best if each axis of the handle points down once.",
-                  tilt, kMinTilt));
+    throw InputError(Formatted(
+        "The poses are too alike (the direction of gravity at the handle varies by %.2f, "
+        "but a variation of %.2f about two axes is needed). Tilt the handle far to the "
+        "left, right, front and back. It is best if each axis of the handle points down once.",
+        tilt, kMinTilt));
   const HandleFit fit(poses);
   const Allowed allowed(fit, sensor);
   if (allowed.WorstShare(fit, poses.size()) > 1) RefuseResiduals(poses, fit, allowed);

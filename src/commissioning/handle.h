@@ -24,8 +24,8 @@ struct RestingPose {
   Wrench F_S = Wrench::Zero();    // mean of the readings, about S, axes of S
 };
 
-// Collects the readings of one pose, and their mean, if the arm rests and no one touches the
-// handle.
+// Collects the readings of one pose and computes their mean, provided that the arm rests and no one
+// touches the handle.
 class PoseRecorder {
  public:
   static constexpr int kReadings = 500;    // number of readings per pose
@@ -70,9 +70,9 @@ HandleCalibration CalibrateHandle(std::span<const RestingPose> poses, const Sens
 // Returns the result as a table. `before` is the nominal payload.
 std::string HandleText(const HandleCalibration& found, const HandlePayloadSpec& before);
 
-// Returns the payload with the identified values. The inertia is scaled with the mass, because it
-// is not measured. If the handle has no weight (the arm subtracts it), the centre of mass is
-// unchanged.
+// Returns the payload with the identified values. The inertia is scaled with the mass, because the
+// inertia is not measured. If the handle has no weight because the arm subtracts the weight, the
+// centre of mass is unchanged.
 HandlePayloadSpec WithCalibration(const HandlePayloadSpec& before, const HandleCalibration& found);
 
 }  // namespace predictor::commissioning

@@ -18,7 +18,7 @@ constexpr double kDifference = 1e-4;  // step of a logarithm for a numerical der
 constexpr int kIterations = 60;
 constexpr double kConverged = 1e-7;
 constexpr int kLags = 40;  // lags of the residuals' autocorrelation [samples]
-// Limits beyond which a fit is refused.
+// The following limits determine whether a fit is refused.
 constexpr std::size_t kMinSamples = 300;
 constexpr double kMaxRelativeWidth = 0.10;  // half-width of the intervals of bandwidth and damping
                                             // ratio
@@ -262,9 +262,10 @@ LoopRecord FittableBlocks(const LoopRecord& record, double noise) {
 
 // Returns the unexplained share of the motion in the worst block. Blocks correspond to frequencies
 // of the chirp. An arm may apply each command one cycle earlier or later. Within a block, the
-// accumulated offset can be as large as the smallest motion of the fastest swings. This is some
-// hundredths of a milliradian, so such blocks contain no information about the loop. Therefore,
-// only blocks are evaluated whose motion is a sufficient share of the largest block's motion.
+// accumulated offset can be as large as the smallest motion of the fastest swings. This motion is
+// some hundredths of a milliradian, so such blocks contain no information about the loop.
+// Therefore, the function evaluates only blocks whose motion is a sufficient share of the largest
+// block's motion.
 double Misfit(const LoopRecord& record, const Eigen::VectorXd& residual, double noise) {
   double largest = 0;
   ForBlocks(record.samples, [&](std::size_t from, std::size_t to) {
@@ -297,7 +298,7 @@ void CheckGaps(const Gaps& gaps) {
                                          : ""));
 }
 
-// Adds gaps in the measurement as a possible reason.
+// Throws InputError with a message that mentions gaps in the measurement as a possible reason.
 [[noreturn]] void Refuse(const Gaps& gaps, const std::string& why) {
   throw InputError(why + (gaps.late + gaps.lost == 0
                               ? " No tick was late and no sample was lost."
@@ -313,9 +314,10 @@ void Check(const LoopFit& fit) {
                      "or an acceleration limit may have cut the commands.",
                      1e2 * fit.misfit));
   if (std::abs(fit.gain.value - 1) > kMaxGainError)
-    Refuse(fit.gaps, Formatted("The joint moved by %.2f of the commanded distance. Something "
-                               "limits its speed, or another program moves the joint.",
-                               fit.gain.value));
+    Refuse(fit.gaps,
+           Formatted("The joint moved by only %.2f times the commanded distance. Something "
+                     "limits its speed, or another program moves the joint.",
+                     fit.gain.value));
   const bool sure = fit.bandwidth.half_width <= kMaxRelativeWidth * fit.bandwidth.value &&
                     fit.damping_ratio.half_width <= kMaxRelativeWidth * fit.damping_ratio.value &&
                     fit.delay.half_width <= kMaxDelayWidth;

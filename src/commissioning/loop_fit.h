@@ -29,8 +29,9 @@ struct LoopFit {
 };
 
 // Fits one loop to all records. Throws InputError if too much of the measurement is missing, if
-// there is too little motion, or if no such loop explains the motion (because of a hand on the
-// handle, a limit of speed or acceleration, or missing samples).
+// there is too little motion, or if no such loop explains the motion. Possible reasons for
+// unexplained motion are a hand on the handle, a limit of speed or acceleration, and missing
+// samples.
 LoopFit FitLoop(std::span<const LoopRecord> records);
 
 std::string LoopText(const LoopFit& fit, const VelocityLoopSpec& before);

@@ -19,7 +19,8 @@ void LoopRecorder::AddCommand(double due, double time, double u) {
   commands_.push_back(u);
 }
 
-// An arm's clock and the age of a sample vary, so lost samples are counted over the whole record.
+// The clock of an arm and the age of samples vary, so lost samples can be counted only over the
+// whole record.
 Gaps LoopRecorder::FindGaps() const {
   Gaps gaps;
   gaps.ticks = static_cast<long>(times_.size());
@@ -47,7 +48,7 @@ LoopRecord LoopRecorder::Finish() && {
       static_cast<std::size_t>(std::ceil((times_.back() - start) / LoopRecord::kStep)) + 1;
   record_.u.assign(steps, 0);
   times_.push_back(start + LoopRecord::kStep * static_cast<double>(steps));
-  // Each step contains the mean of the commands within it, so that no displacement is lost.
+  // Each step contains the mean of the commands within this step, so that no displacement is lost.
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     double from = (times_[i] - start) / LoopRecord::kStep;
     const double to = (times_[i + 1] - start) / LoopRecord::kStep;

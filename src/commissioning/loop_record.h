@@ -6,7 +6,7 @@
 
 namespace predictor::commissioning {
 
-// Gaps in a measurement that are caused by a busy computer or a bad network. A command holds until
+// Gaps in a measurement that are caused by a busy computer or a bad network. A command acts until
 // the next tick. The response of an arm to a late command is not known.
 struct Gaps {
   long ticks = 0, late = 0;    // late: ticks before which at least one step was skipped
@@ -22,7 +22,8 @@ struct Gaps {
     return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
   }
 };
-// Returns "31 of 62104 ticks were late (0.0 %; longest interval 5.1 ms), 12 of 31052 samples ...".
+// Returns a text such as "31 of 62104 ticks were late (0.0 %; longest interval 5.1 ms), 12 of 31052
+// samples ...".
 std::string GapsText(const Gaps& gaps);
 
 // The record of one swing of one joint.
@@ -46,7 +47,7 @@ struct Swings {
   bool complete() const { return joints > 0 && measured() == joints; }
 };
 
-// Makes a record from ticks at arbitrary times. A command holds until the next command.
+// Makes a record from ticks at arbitrary times. A command acts until the next command.
 class LoopRecorder {
  public:
   // `period` is the sample period of the arm [s].

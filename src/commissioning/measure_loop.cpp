@@ -133,8 +133,8 @@ bool Consents(Consent* consent, Session* session, double until) {
   return false;
 }
 
-// If `continues`, the previous joint was measured to its end, so the person may still be
-// consenting.
+// Waits until the person consents. If `continues` is true, the measurement of the previous joint
+// was completed, so the person may still be consenting.
 void Await(Consent* consent, Session* session, const std::string& joint, bool continues) {
   if (continues && Consents(consent, session, session->Now() + kHeldOn)) {
     session->Show(joint + " starts immediately, because the key or device is still held.");

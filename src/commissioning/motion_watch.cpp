@@ -45,7 +45,7 @@ std::array<JointBounds, kHands> BoundsOf(const Station& station) {
   return bounds;
 }
 
-// Returns the remedy in commissioning, where there is no run to reset.
+// Returns the remedy during commissioning, where there is no run to reset.
 std::string Advice(const Status& wrong) {
   switch (wrong.cause) {
     case StopCause::kForce:

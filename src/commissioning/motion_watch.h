@@ -12,26 +12,26 @@
 
 namespace predictor::commissioning {
 
-// The input of an enabling device, if there is one.
+// The input of the enabling device, if the machine has such a device.
 struct EnablingContact {
   const Station* station = nullptr;  // read in each step; null: a key is held instead
   int digital_input = 0;
 };
 
-// A held key lets the arm move. If there is an enabling device, the held device lets the arm move
-// once the key has been pressed. Any other key revokes consent. A device that is pressed from the
-// beginning, or that is still pressed after another key, may be jammed. Such a device counts only
-// after it has been released.
+// The arm may move while the key is held. If there is an enabling device, the key must be pressed
+// once, and the arm may then move while the device is held. Any other key revokes consent. A device
+// that is pressed from the beginning, or that is still pressed after another key, may be jammed.
+// Such a device counts as held only after a release.
 class Consent {
  public:
   Consent(char key, const EnablingContact& contact) : key_(key), held_(key), contact_(contact) {}
-  // Call this in each step. `key` is a newly received key, or 0. `now` is in [s].
+  // Call this function in each step. `key` is a newly received key, or 0. `now` is in [s].
   bool Update(char key, double now);
-  // From `now` [s] on, there is no consent until the key has been silent and the device has been
-  // released.
+  // Revokes the consent at the time `now` [s]. The person cannot consent again until no key has
+  // arrived for some time and the device has been released.
   void Revoke(double now);
-  // Returns the action by which the person consents, according to the last Update, such as "hold
-  // s".
+  // Returns the action with which the person can consent, such as "hold s". The action depends on
+  // the last call of Update.
   std::string Wanted() const;
 
  private:
@@ -46,7 +46,8 @@ class Consent {
   double silent_since_ = 0;  // while consent is revoked: start of the silence [s]
 };
 
-// Thrown if the arm must stop because readings or ticks are late. Such a delay may end immediately.
+// The error that is thrown if the arm must stop because readings or ticks are late. Such a delay
+// may end immediately.
 class HeldUp : public DeviceError {
  public:
   using DeviceError::DeviceError;
@@ -54,8 +55,8 @@ class HeldUp : public DeviceError {
 
 class MotionWatch {
  public:
-  // Above these limits, or above the machine's limits if they are lower, the watch assumes that a
-  // hand is on the handle.
+  // If a reading exceeds these limits, or the machine's limits where the machine's limits are
+  // lower, the watch assumes that a hand is on the handle.
   static constexpr double kTouch = 15, kTouchTorque = 3;  // [N], [N·m]
   // If the wrench is above these limits, the motion does not start.
   static constexpr double kFree = 5, kFreeTorque = 1;  // [N], [N·m]
@@ -64,13 +65,14 @@ class MotionWatch {
   // its controller differs from the file.
   MotionWatch(const Station& station, const MachineLimits& limits);
 
-  // Asks the person to take the hands off.
+  // Asks the person to take the hands off the handle.
   void Tare(Session* session) { feeler_.Tare(session); }
   // Call this at rest. Throws InputError if something presses on the handle.
   void Begin();
-  // Call this in each step after reading the arm. `due` [s] is the scheduled time of the session.
-  // If a condition would stop a run, throws an error with a sentence for the person: InputError for
-  // people's actions, DeviceError for devices, or HeldUp for delays.
+  // Call this in each step after reading the arm. `due` [s] is the scheduled time of the session's
+  // current step. If a condition would stop a run, the function throws an error with a sentence for
+  // the person. The error is InputError if a person caused the condition, DeviceError if a device
+  // caused it, and HeldUp if a delay caused it.
   void Check(double due);
   // Returns the permitted part of a command [rad/s].
   JointVector Bounded(const JointVector& v);

@@ -105,8 +105,8 @@ class Prober {
       }
       if (arrivals.Silence(now, start) > options_.patience) {
         probed->trouble = Formatted(
-            "It has sent no sample for %.1f s. Check its cable, and check that no other program "
-            "uses it.",
+            "The device has sent no sample for %.1f s. Check its cable, and check that no other "
+            "program uses it.",
             options_.patience);
         return;
       }
@@ -124,7 +124,8 @@ class Prober {
         arrivals,
         [&](double now) -> std::string {
           Status status = arm->Read(&reading);
-          // If the driver runs a program on the controller, the program must receive data from us.
+          // If the driver runs a program on the controller, that program must receive data from
+          // this process.
           if (status.ok() && now >= next) {
             status = arm->Write(rest, false);
             next = now + kTick;
@@ -158,14 +159,15 @@ class Prober {
     probed->times = arrivals.Finish();
     mean.Write(probed);
     if (reading.saturated)
-      probed->remarks.emplace_back("It reports that its range is exceeded. Remove the load.");
+      probed->remarks.emplace_back(
+          "The sensor reports that its range is exceeded. Remove the load.");
   }
 
  private:
   template <class Device>
   static std::string TroubleOf(const Device& device) {
     const std::string trouble = device.Trouble();
-    return trouble.empty() ? "It reports a fault without naming it." : trouble;
+    return trouble.empty() ? "The device reports a fault without naming this fault." : trouble;
   }
   double Now() const { return 1e-9 * static_cast<double>(network_->Now()); }
 
@@ -173,23 +175,23 @@ class Prober {
   const ProbeOptions& options_;
 };
 
-// Compares measured rates. A rate of 0 means that it was not measured.
+// Compares measured rates. A rate of 0 means that the rate was not measured.
 bool DiffersMuch(double rate, double said) {
   return rate > 0 && std::abs(rate - said) > kRatePart * said;
 }
 
-// `rate` is the rate of the device's version or, if the version does not determine it, the measured
-// rate.
+// `rate` is the rate that the device's version determines or, if the version does not determine a
+// rate, the measured rate.
 void CompareRate(double rate, double said, const std::string& key, Probed* probed) {
   if (!DiffersMuch(rate, said)) return;
-  probed->mismatches.push_back(
-      Formatted("It sends %.0f samples per second, but the machine file says %.0f. Correct %s, or "
-                "check that this is the intended device.",
-                rate, said, key.c_str()));
+  probed->mismatches.push_back(Formatted(
+      "The device sends %.0f samples per second, but the machine file says %.0f. Correct %s, or "
+      "check that this is the intended device.",
+      rate, said, key.c_str()));
 }
 
-// Compares the answering arm with the model in the file. Drivers cannot distinguish a
-// manufacturer's arms with the same number of joints.
+// Compares the arm that answers with the model in the machine file. Drivers cannot distinguish arms
+// of one manufacturer that have the same number of joints.
 void CompareModel(const Machine& machine, int hand, const DeviceFacts& facts, Probed* probed) {
   const ArmSpec& spec = machine.arm(hand)->arm;
   const std::string key = std::string("arms.") + HandName(hand) + ".arm";
@@ -209,17 +211,18 @@ void CompareModel(const Machine& machine, int hand, const DeviceFacts& facts, Pr
     for (int j = 0; j < model->dof() && j < probed->q.size(); ++j)
       if (probed->q[j] < model->position_lower()[j] - kBeyond ||
           probed->q[j] > model->position_upper()[j] + kBeyond)
-        probed->mismatches.push_back(
-            Formatted("Its joint %s is at %.3f rad, but %s.model allows %.3f to %.3f rad. Check "
-                      "that this is the model of this arm.",
-                      model->joint_name(j).c_str(), probed->q[j], key.c_str(),
-                      model->position_lower()[j], model->position_upper()[j]));
+        probed->mismatches.push_back(Formatted(
+            "The arm's joint %s is at %.3f rad, but %s.model allows %.3f to %.3f rad. Check "
+            "that this is the model of this arm.",
+            model->joint_name(j).c_str(), probed->q[j], key.c_str(), model->position_lower()[j],
+            model->position_upper()[j]));
   } catch (const InputError& error) {
     probed->mismatches.emplace_back(Located(error, machine).what());
   }
 }
 
-// Connects by `connect` and observes by `watch`. Any error is recorded as a problem of this device.
+// Connects to a device with `connect` and observes the device with `watch`. This function records
+// any error as a problem of this device.
 template <class Connect, class Watch>
 void Try(const std::string& place, const Connect& connect, const Watch& watch,
          std::vector<Probed>* all) {
@@ -262,20 +265,21 @@ std::vector<Probed> ProbeMachine(const Machine& machine, const Connector& connec
           CompareRate(reported > 0 ? reported : probed->times.rate, side.arm.sample_rate,
                       "arms." + name + ".arm.sample_rate", probed);
           if (reported > 0 && DiffersMuch(probed->times.rate, reported))
-            probed->remarks.push_back(
-                Formatted("It should send %.0f samples per second. Check whether the network or "
-                          "this computer is busy.",
-                          reported));
+            probed->remarks.push_back(Formatted(
+                "The arm should send %.0f samples per second. Check whether the network or "
+                "this computer is busy.",
+                reported));
           CompareModel(machine, hand, arm->facts(), probed);
           probed->remarks.insert(probed->remarks.end(), arm->facts().remarks.begin(),
                                  arm->facts().remarks.end());
           if (const std::string refusal = PayloadRefusal(arm->facts(), side); !refusal.empty())
             probed->remarks.push_back(refusal);
           if (side.sensor.make == SensorMake::kOwn && !arm->facts().own_wrench)
-            probed->trouble += (probed->trouble.empty() ? "" : " ") +
-                               std::string(
-                                   "It does not measure a wrench at its handle. Add a force/torque "
-                                   "sensor to this arm.");
+            probed->trouble +=
+                (probed->trouble.empty() ? "" : " ") +
+                std::string(
+                    "The arm does not measure a wrench at its handle. Add a force/torque "
+                    "sensor to this arm.");
         },
         &all);
     Try(

@@ -1,5 +1,5 @@
-// Checks which arms and sensors of a machine answer, measures rates, ages, wrench and payload, and
-// checks whether each device matches the machine file. Nothing moves.
+// Checks which arms and sensors of a machine answer, and whether each device matches the machine
+// file. Measures the rates and the ages of the samples, the wrench and the payload. Nothing moves.
 #pragma once
 
 #include <functional>
@@ -13,8 +13,9 @@
 
 namespace predictor::commissioning {
 
-// The functions that connect to arms and sensors (devices/connect.h, but tests use other
-// functions). Each throws DeviceError. The sensor is null if the arm has a built-in sensor.
+// The functions that connect to arms and sensors. The program uses the functions in
+// devices/connect.h; tests use other functions. Each throws DeviceError. The sensor is null if the
+// arm has a built-in sensor.
 struct Connector {
   std::function<std::unique_ptr<Arm>(const MachineArm&, Network*)> arm;
   std::function<std::unique_ptr<WrenchSensor>(const MachineArm&, Network*)> sensor;

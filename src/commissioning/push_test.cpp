@@ -23,7 +23,8 @@ AxisReading DirectionOf(const Vector3& force) noexcept {
   return {static_cast<std::int8_t>(axis), force[axis] < 0, false};
 }
 
-// Returns R such that reading = R · push. Each column is one of W's axes, possibly negative.
+// Returns the matrix R for which reading = R · push. Each column of R is one of W's axes, possibly
+// with the opposite sign.
 Matrix3 MatrixOf(const Readings& readings) {
   Matrix3 R = Matrix3::Zero();
   for (int i = 0; i < 3; ++i) {
@@ -66,7 +67,8 @@ std::string LooksLike(const Readings& readings) {
   if (determinant < -0.5)
     return "The axes are mirrored, which no mounting can cause. Either one push was in the wrong "
            "direction, or sensor.make in the machine file is wrong. Repeat the test first.";
-  return "Two pushes gave the same axis, so one was in the wrong direction. Repeat the test.";
+  return "Two pushes gave the same axis, so one of the pushes was in the wrong direction. Repeat "
+         "the test.";
 }
 
 }  // namespace
@@ -83,7 +85,7 @@ const char* Sentence(PushTest::Hint hint) noexcept {
     case PushTest::Hint::kPush:
       return "Push with 5 to 25 N.";
     case PushTest::Hint::kSofter:
-      return "Push more gently: 25 N at most.";
+      return "Push more gently, with at most 25 N.";
     case PushTest::Hint::kStraighter:
       return "Push along this axis only.";
     case PushTest::Hint::kLetGo:

@@ -1,6 +1,5 @@
-// Tests whether a push along an axis of the world is read as a push along that axis. A sensor that
-// is rotated, mirrored, or connected to the other arm's socket would drive the arms against the
-// hand.
+// Tests whether a push along an axis of the world is read as a push along that axis. If a sensor is
+// rotated, mirrored, or connected to the other arm's socket, the arms would move against the hand.
 #pragma once
 
 #include <array>
@@ -19,8 +18,9 @@ struct AxisReading {
   bool operator==(const AxisReading&) const = default;
 };
 
-// The test of one handle: the person pushes along +x, +y and +z of W, one after the other. The test
-// receives the estimated wrenches of the hands. Does not use the heap or throw.
+// The test of one handle. The person pushes along +x, +y and +z of W, one after the other. The test
+// receives the estimated wrenches of the hands. The function does not use the heap and does not
+// throw.
 class PushTest {
  public:
   static constexpr double kMinForce = 5,
@@ -32,12 +32,12 @@ class PushTest {
 
   enum class Hint : std::uint8_t { kNone, kPush, kSofter, kStraighter, kLetGo };
 
-  // `pushed` and `other` are the wrenches F_H_W of the pushed handle and of the other handle (zero
-  // if there is no other handle). `dt` is the time since the last call [s].
+  // `pushed` is the wrench F_H_W of the pushed handle. `other` is the wrench of the other handle,
+  // or zero if there is no other handle. `dt` is the time since the last call [s].
   void Update(const Wrench& pushed, const Wrench& other, double dt) noexcept;
 
-  // Returns the axis along whose + direction the person must push now, or kAxes when the test is
-  // done.
+  // Returns the axis along which the person must push now, in its positive direction, or kAxes when
+  // the test is done.
   int axis() const noexcept { return axis_; }
   bool done() const noexcept { return axis_ == kAxes; }
   // Returns whether every push was read correctly. The result is valid only when the test is done.
@@ -45,11 +45,11 @@ class PushTest {
   const std::array<AxisReading, kAxes>& readings() const noexcept { return readings_; }
   Hint hint() const noexcept { return hint_; }  // the person's next action
 
-  // Describes how the push along this axis, 0 … 2, was read incorrectly. Returns "" if the push was
-  // read correctly or has not been made yet. Do not call this function in a tick.
+  // Describes how the push along this axis (0 to 2) was read incorrectly. Returns "" if the push
+  // was read correctly or has not been made yet. Do not call this function in a tick.
   std::string Wrong(int axis) const;
-  // Returns the pattern of the readings and the remedy, or "" if the test passed or is not done. It
-  // must not be called in a tick.
+  // Returns the pattern of the readings and the remedy, or "" if the test passed or is not done. Do
+  // not call this function in a tick.
   std::string Refusal() const;
 
  private:
@@ -63,7 +63,7 @@ class PushTest {
   Hint hint_ = Hint::kLetGo;
 };
 
-// Returns "+x" or "−y", for example.
+// Returns the name of an axis, such as "+x" or "−y".
 const char* Name(const AxisReading& reading) noexcept;
 // Returns the current instruction to the person.
 const char* Sentence(PushTest::Hint hint) noexcept;

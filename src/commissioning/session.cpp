@@ -17,9 +17,9 @@ constexpr double kLeaving = 0.1;       // time in which an arm leaves its motion
 
 }  // namespace
 
-// Waits until the next step of the clock, not for a fixed duration. With a fixed duration, delays
-// and computing time would lengthen every step, and a robot's states and commands would be lost.
-// Missed steps are skipped.
+// Waits until the next step of the clock is due, and not for a fixed duration. With a fixed
+// duration, delays and computing time would lengthen every step. The program would then lose states
+// of the robot, and the robot would miss commands. Missed steps are skipped.
 std::string Session::Wait(bool moves) {
   constexpr std::uint64_t kPeriod = 1'000'000;  // kStep [ns]
   const std::uint64_t now = network_->Now(), late = now > due_ ? now - due_ : 0;
@@ -85,11 +85,11 @@ std::string Session::BringToRest(Station* moving, double deceleration) {
   double time = 0;
   switch (SlowDown(moving, deceleration, &time)) {
     case Rest::kSilent:
-      return arm +
-             Formatted(
-                 "no longer accepts commands. It brakes by itself within %.0f ms after the last "
-                 "command. Check that the arm stands still; otherwise, use the emergency stop.",
-                 1e3 * moving->facts().watchdog);
+      return arm + Formatted(
+                       "no longer accepts commands. The arm brakes by itself within %.0f ms after "
+                       "the last command. Check that the arm stands still; otherwise, use the "
+                       "emergency stop.",
+                       1e3 * moving->facts().watchdog);
     case Rest::kMoves:
       return arm +
              "was commanded to stop, but does not report a standstill. USE THE EMERGENCY STOP.";

@@ -17,23 +17,23 @@ class Station {
   static constexpr double kOld = 0.2;                   // a sample this old cannot be used [s]
 
   // `sensor` is null if the arm has a built-in sensor. Throws DeviceError if there is no wrench or
-  // the arm's flange differs from the model, and InputError for an invalid model or a different
-  // number of joints.
+  // if the arm's flange pose differs from the model. Throws InputError if the model is invalid or
+  // has a different number of joints.
   Station(int hand, const MachineArm& spec, std::unique_ptr<Arm> arm,
           std::unique_ptr<WrenchSensor> sensor);
 
-  // Call this once per millisecond. The function reads the arm and commands it to rest. An arm that
-  // a person guides reports that it cannot move. This report is accepted as long as the arm's
-  // samples are new. Throws DeviceError.
+  // Call this once per millisecond. The function reads the arm and commands the arm to rest. An arm
+  // that a person guides by hand reports that it cannot move. The function accepts this report as
+  // long as the arm's samples are new. Throws DeviceError.
   void Watch();
-  // Reads an arm that is about to move. In this function, every fault of the arm is a DeviceError.
+  // Reads an arm that is about to move. The function throws DeviceError for every fault of the arm.
   void Sense() { Read(true); }
   // Sends a command [rad/s]. Call this after Sense. Throws DeviceError if the arm does not accept
   // the command.
   void Move(const JointVector& v);
-  // Brings the arm to rest in spite of any other fault. If `motion` is false, the arm also leaves
-  // its motion mode. Returns false if the arm does not accept the command or if its samples are
-  // old.
+  // Brings the arm to rest, even if there is another fault. If `motion` is false, the arm also
+  // leaves its motion mode. Returns false if the arm does not accept the command or if its samples
+  // are old.
   bool Slow(const JointVector& v, bool motion) noexcept;
 
   int hand() const { return hand_; }
@@ -47,12 +47,12 @@ class Station {
   const WrenchReading& wrench() const { return wrench_; }
   bool fresh_joints() const { return fresh_joints_; }
   bool fresh_wrench() const { return fresh_wrench_; }
-  // Returns the sample as the devices of a run would return it for an arm at rest.
+  // Returns the sample that the devices of a run would return for an arm at rest.
   ArmSample sample() const;
   Pose EndEffectorPose() const;
   Pose HandlePose() const;
   Vector3 GravityInSensor() const;  // gravity in axes of S [m/s²]
-  // Returns the speed of the handle per speed of a joint [m].
+  // Returns the speed of the handle divided by the speed of a joint [m].
   double Lever(int joint) const;
 
  private:

@@ -1,6 +1,6 @@
-// Stores measured swings next to the machine file until the arm's loop is written to the machine
-// file, so that an interrupted session need not be repeated. Only `calibrate loop` reads these
-// swings.
+// Stores measured swings in a file next to the machine file, until the arm's loop is written to the
+// machine file. An interrupted session therefore need not be repeated. Only `calibrate loop` reads
+// these swings.
 #pragma once
 
 #include <filesystem>
@@ -24,7 +24,7 @@ class SwingFile {
     std::string date;    // date of the last swing
     std::string remark;  // why an existing file cannot be used; empty without a problem
   };
-  // Does not throw: a file that cannot be read counts as absent.
+  // The function does not throw. A file that cannot be read counts as absent.
   Kept Load() const;
   // `date` is one word. Throws InputError, in which case the old file is unchanged.
   void Save(const Swings& swings, const std::string& date) const;

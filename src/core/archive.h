@@ -1,9 +1,10 @@
-// Saves the state that the emulator keeps between ticks as bytes after a tick, and loads such a
-// state before a tick.
+// The emulator keeps a state between ticks. This archive saves that state as bytes after a tick,
+// and loads such a state before a tick.
 //
 // A class with state lists it once, for both directions:
 //   void Archive(StateArchive& a) { a(x_, v_, count_); }
-// Values that follow from the scenario are not listed: the loading emulator was built from it.
+// Values that follow from the scenario are not listed, because the emulator that loads the state
+// was built from the same scenario.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,7 +29,7 @@ namespace predictor {
 class StateArchive {
  public:
   static StateArchive ToSave(std::span<std::byte> to) { return {to.data(), to.size(), true}; }
-  // Returns an archive that only reads from `from`.
+  // Returns an archive that only loads, from the bytes in `from`.
   static StateArchive ToLoad(std::span<const std::byte> from) {
     return {const_cast<std::byte*>(from.data()), from.size(), false};
   }
@@ -40,8 +41,8 @@ class StateArchive {
   }
 
   bool saves() const noexcept { return saves_; }
-  // Returns false if there were too few bytes or if they did not describe this state. The loaded
-  // state is then invalid.
+  // Returns false if there were too few bytes or if the bytes did not describe this state. The
+  // loaded state is then invalid.
   bool ok() const noexcept { return ok_; }
   void Fail() noexcept { ok_ = false; }
   std::size_t used() const noexcept { return used_; }
@@ -63,8 +64,8 @@ class StateArchive {
   template <class T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
   void Field(T& x) noexcept { Bytes(&x, sizeof x); }
-  // The bytes may be forged. Therefore, every number that is used to compute, count or index is
-  // checked against bounds.
+  // The bytes may be forged. Therefore, every loaded number that is used for computing, counting or
+  // indexing is checked against bounds.
   void Field(double& x) noexcept {
     Bytes(&x, sizeof x);
     if (!(x == HUGE_VAL)) Bound(x);  // infinity means no limit or never
@@ -100,7 +101,7 @@ class StateArchive {
       auto rows = static_cast<std::int32_t>(x.rows());
       auto cols = static_cast<std::int32_t>(x.cols());
       Field(rows), Field(cols);
-      // The scenario fixes the dimensions.
+      // The scenario determines the dimensions, so a state with other dimensions is invalid.
       if (rows != x.rows() || cols != x.cols()) return Fail();
     }
     Bytes(x.data(), sizeof(T) * static_cast<std::size_t>(x.size()));
@@ -116,7 +117,7 @@ class StateArchive {
   void Field(T (&x)[N]) noexcept {
     for (T& element : x) Field(element);
   }
-  // The scenario fixes the length and whether the value is present.
+  // The scenario determines the length and whether the value is present.
   template <class T>
   void Field(std::vector<T>& x) noexcept {
     for (T& element : x) Field(element);
@@ -129,7 +130,7 @@ class StateArchive {
   void Field(std::unique_ptr<T, D>& x) noexcept {
     if (x) Field(*x);
   }
-  // A class lists its own state; a plain struct is archived member by member.
+  // A class lists its own state. A plain struct is archived member by member.
   template <class T>
   requires std::is_class_v<T>
   void Field(T& x) noexcept {

@@ -7,13 +7,14 @@
 
 namespace predictor {
 
-// A low-pass or high-pass filter from the bilinear transform with a prewarped frequency. The filter
-// starts as if it had always received its first sample.
+// A low-pass or high-pass filter, designed with the bilinear transform and a prewarped cut-off
+// frequency. The filter starts in the state that it would have if it had always received its first
+// sample.
 template <class T>
 class Butterworth {
  public:
   enum class Pass { kLow, kHigh };
-  // `cutoff` is in [Hz] and must be below half of the sampling rate. `dt` is in [s].
+  // `cutoff` [Hz] must be below half of the sampling rate. `dt` is in [s].
   Butterworth(Pass pass, double cutoff, double dt, const T& start)
       : x1_(start), x2_(start), y1_(start), y2_(start) {
     const double w = std::tan(std::numbers::pi * cutoff * dt);

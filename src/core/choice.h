@@ -5,11 +5,12 @@
 
 namespace predictor {
 
-// RunInput::value of a kStop input that ends a run as planned: the arms brake, and no cause is
-// recorded.
+// RunInput::value of a kStop input that ends a run as planned. In this case, the arms brake, and no
+// cause is recorded.
 inline constexpr double kEndAsPlanned = 1;
 
-// Returns whether a page may select the next scenario. This requires that nothing moves.
+// Returns whether a page may select the next scenario. A page may select the next scenario only if
+// nothing moves.
 constexpr bool MayChooseScenario(RunState state) noexcept {
   return state == RunState::kIdle || state == RunState::kHeld || state == RunState::kUnpowered;
 }

@@ -1,4 +1,5 @@
-// The exception that loading throws. The exception states the error, its place, and the remedy.
+// The exception that is thrown if loading fails. The exception states the error, the place of the
+// error, and the remedy.
 #pragma once
 
 #include <stdexcept>
@@ -6,8 +7,8 @@
 
 namespace predictor {
 
-// Invalid input, found before anything moves. what() returns one or more full sentences for the
-// user, prefixed by "file:line:column: " if the place is known.
+// Reports invalid input, which is found before anything moves. The function what() returns one or
+// more full sentences for the user, prefixed by "file:line:column: " if the place is known.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& sentence) : std::runtime_error(sentence) {}
@@ -21,9 +22,9 @@ class InputError : public std::runtime_error {
     error.key_ = key;
     return error;
   }
-  // Returns this error with its key placed within a group: "velocity_limit" in "device.arms.left".
-  // An error without a key (for example, in a model file) is attributed to `group`, and its
-  // sentence names the group.
+  // Returns this error with its key prefixed by a group: "velocity_limit" in the group
+  // "device.arms.left" becomes "device.arms.left.velocity_limit". An error without a key (for
+  // example, in a model file) is attributed to `group`, and its sentence names the group.
   InputError Within(const std::string& group) const {
     if (key_.empty()) return At(group, group + ": " + what());
     return At(group + "." + key_, group + "." + what());

@@ -16,9 +16,9 @@ T ZeroOf() {
     return T{};
 }
 
-// First-order low-pass, y' = (x − y)·2π f, discretised exactly for an input that is constant
-// between samples.
-// The group delay of the filter at low frequency is 1/(2π f) plus half a sample.
+// First-order low-pass, y' = (x − y)·2π f. The discretisation is exact for an input that is
+// constant between samples. The group delay of the filter at low frequency is 1/(2π f) plus half a
+// sample.
 template <class T>
 class LowPass {
  public:
@@ -43,7 +43,7 @@ class LowPass {
   T y_ = ZeroOf<T>();
 };
 
-// Pure delay by a whole number of samples, at most N.
+// Pure delay by a whole number of samples. The number is at most N.
 template <class T, int N>
 class Delay {
  public:
@@ -53,7 +53,8 @@ class Delay {
     buffer_.fill(value);
     head_ = 0;
   }
-  // Stores x and returns the value stored `samples` calls ago (x itself for 0).
+  // Stores x and returns the value that was stored `samples` calls ago. If `samples` is 0, returns
+  // x itself.
   T Update(const T& x) {
     buffer_[static_cast<std::size_t>(head_)] = x;
     const int tail = (head_ + N + 1 - samples_) % (N + 1);
@@ -104,8 +105,9 @@ class FractionalDelay {
   double fraction_ = 0;
 };
 
-// First-order low-pass of a signal that is linear between its samples (first-order hold), exact at
-// any sampling time. The lag of a slow signal is 1/(2π f), independent of the sampling time.
+// First-order low-pass of a signal that is linear between its samples (first-order hold). The
+// filter is exact at any sampling time. The lag of a slow signal is 1/(2π f), independent of the
+// sampling time.
 template <class T>
 class RampLowPass {
  public:

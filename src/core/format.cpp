@@ -88,7 +88,7 @@ ReadableUnit UnitOf(Quantity quantity) {
   }
 }
 
-// Counts and long times keep all their digits before the decimal point.
+// Counts and long times are written with all digits before the decimal point.
 std::string Digits(double x, int digits) {
   const bool large = std::abs(x) >= std::pow(10.0, digits) - 0.5;
   return large ? Formatted("%.0f", x) : Formatted("%.*g", digits, x);

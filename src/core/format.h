@@ -12,14 +12,14 @@ __attribute__((format(printf, 1, 2))) std::string Formatted(const char* format, 
 
 // Appends to `text`.
 __attribute__((format(printf, 2, 3))) void Append(std::string* text, const char* format, ...);
-// Appends like Append, followed by a newline.
+// Appends text in the same way as Append, and then a newline.
 __attribute__((format(printf, 2, 3))) void AppendLine(std::string* text, const char* format, ...);
 
 // Returns the local time in the format of strftime.
 std::string LocalTime(const char* format, std::time_t time);
 
-// Formats SI values in the units that the user sees: "30.5 N, limit 30 N". Uses three digits, or as
-// many more as are needed to distinguish the two values. Counts are plain numbers.
+// Formats SI values in the units that the user sees, for example "30.5 N, limit 30 N". Uses three
+// digits, or more if more are needed to distinguish the two values. Counts are plain numbers.
 std::string SeenAndAllowed(double seen, double allowed, Quantity quantity);
 
 }  // namespace predictor

@@ -5,7 +5,8 @@
 
 namespace predictor {
 
-// A set of hands (0: left, 1: right). for (const int hand : hands) visits its members, left first.
+// A set of hands (0: left, 1: right). The loop `for (const int hand : hands)` visits its members,
+// left first.
 class Hands {
  public:
   constexpr Hands() = default;

@@ -7,8 +7,9 @@ namespace predictor {
 
 class Heartbeat {
  public:
-  // Returns the time since the count of heartbeats last changed [s]. `beats` is the count so far
-  // and `now` the monotonic clock [ns]. This class does not trust the sender's clock and count.
+  // Returns the time since the count of heartbeats last changed [s]. `beats` is the count so far,
+  // and `now` is the monotonic clock [ns]. This class trusts neither the sender's clock nor its
+  // count.
   double Silence(std::uint32_t beats, std::uint64_t now) noexcept {
     if (!known_ || beats != beats_) {
       known_ = true;

@@ -13,8 +13,8 @@ KeySign HeldKey::Update(char key, double now) {
   return late_ ? KeySign::kLate : KeySign::kNotHeld;
 }
 
-// Decides, after kTogether without another letter, whether the last letter counts. If more than
-// kSilence has passed, it is too late to report the letter.
+// Decides whether the last letter counts. This requires kTogether without another letter. The
+// letter is no longer reported if more than kSilence has passed since it arrived.
 KeySign HeldKey::Settle(double now) {
   if (!waits_ || now - last_ < kTogether) return KeySign::kNone;
   waits_ = false;

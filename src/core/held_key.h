@@ -20,8 +20,8 @@ enum class KeySign {
 // stalled network or a busy computer), the queued letters arrive together, perhaps after the hand
 // has moved elsewhere. Neither a person nor a terminal repeats a letter within kTogether. Letters
 // that follow each other so closely are therefore a backlog and do not count. The first letter of a
-// backlog looks like any other. Therefore, a letter counts only if no other letter follows within
-// kTogether.
+// backlog cannot be distinguished from another letter. Therefore, a letter counts only if no other
+// letter follows within kTogether.
 //
 // A backlog does not release a key that is already held, because on a busy computer two letters
 // sometimes arrive together. These letters count as one event, provided that they arrived within
@@ -34,9 +34,9 @@ class HeldKey {
 
   explicit HeldKey(char key) : key_(key) {}
 
-  // Call this at least every kTogether, and with each received key; `key` is 0 if no key was
-  // received. Any other key releases the held key. `now` is the time at which the key was read [s];
-  // keys read together have the same time.
+  // Call this function at least every kTogether, and with each received key. If no key was
+  // received, `key` is 0. Any other key releases the held key. `now` is the time at which the key
+  // was read [s]. Keys that were read together have the same time.
   KeySign Update(char key, double now);
   bool held() const { return letters_ >= 2; }
   char key() const { return key_; }

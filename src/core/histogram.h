@@ -8,7 +8,7 @@
 
 namespace predictor {
 
-// Estimates quantiles of positive values from 0.01 to 1e7 with logarithmic buckets, each 1 % wide.
+// Estimates quantiles of positive values from 0.01 to 1e7. Uses logarithmic buckets, each 1 % wide.
 class Histogram {
  public:
   void Add(double x) {

@@ -1,5 +1,5 @@
-// Builds parts of a JSON Schema (draft-07) and JSON numbers that may be null. Not for use in the
-// tick.
+// Builds parts of a JSON Schema (draft-07) and JSON numbers that may be null. These functions are
+// not for use in the tick.
 #pragma once
 
 #include <cmath>
@@ -22,8 +22,8 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr const char* kDraft = "http://json-schema.org/draft-07/schema#";
 
-// Returns the schema of a value with one or several permitted types, and with its meaning for the
-// reader.
+// Returns the schema of a value that has one or several permitted types. The schema contains the
+// meaning of the value for the reader.
 inline Json Value(Json type, const std::string& meaning) {
   return {{"type", std::move(type)}, {"description", meaning}};
 }
@@ -46,7 +46,8 @@ inline Json Array(Json items, const std::string& meaning) {
   return {{"type", "array"}, {"description", meaning}, {"items", std::move(items)}};
 }
 
-// The meaning of each key, and the keys whose value can be null although it is not a number.
+// The meaning of each key, and the list of keys whose value can be null although the value is not a
+// number.
 struct Words {
   std::map<std::string, const char*> meanings;
   std::set<std::string> can_miss;

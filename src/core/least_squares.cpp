@@ -13,7 +13,7 @@ constexpr double kMinMode = 1e-15;  // smallest eigenvalue of a Gram matrix of u
 }  // namespace
 
 double StudentQuantile95(double n) {
-  // Cornish–Fisher expansion about the normal quantile.
+  // Uses the Cornish–Fisher expansion about the normal quantile.
   const double z = 1.959963985;
   n = std::max(n, 3.0);
   const double z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;

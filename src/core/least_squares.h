@@ -30,8 +30,8 @@ struct LinearFit {
   Estimate estimate(int i) const { return {value[i], half_width_95(i)}; }
 };
 
-// A has at least as many rows as columns. If the columns of A are nearly dependent, the spread is
-// very large.
+// The matrix A has at least as many rows as columns. If the columns of A are nearly dependent, the
+// spread is very large.
 LinearFit FitLinear(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 }  // namespace predictor

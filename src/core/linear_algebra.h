@@ -1,6 +1,6 @@
-// Decompositions of matrices of any size. They are compiled in only one file, because each of them
-// would lengthen the compilation of every file that uses it by seconds. They allocate memory, so
-// the tick must not use them.
+// Decompositions of matrices of any size. These functions are compiled in only one file. Otherwise,
+// each of them would lengthen the compilation of every file that uses it by seconds. These
+// functions allocate memory, so the tick must not use them.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,8 +26,8 @@ SymmetricModes SymmetricModesOf(const Eigen::MatrixXd& K, const Eigen::MatrixXd&
 // Solves A X = B for X. A is square and regular.
 Eigen::MatrixXd Solve(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
 
-// Returns the x that minimises |A x − b|. If there are several, the function returns the x with the
-// smallest norm.
+// Returns the x that minimises |A x − b|. If several x minimise this norm, the function returns the
+// smallest x.
 Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 }  // namespace predictor

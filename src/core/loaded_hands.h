@@ -19,9 +19,10 @@ bool ArmAtFault(const TickRecord& record);
 // had a fault.
 bool NothingMovesAnyMore(const TickRecord& record);
 
-// A stopped arm is held stiffly, and an arm without power is heavy, so a hand may be trapped at any
-// time after a stop. The message appears once when a force has acted on a hand for kPatience. It
-// appears again only after the handle has been free for kPatience or the arms have moved.
+// A stopped arm with power is stiff, and an arm without power is heavy. A hand may therefore be
+// trapped at any time after a stop. The message appears once when a force has acted on a hand for
+// kPatience. The message appears again only after the handle has been free for kPatience or after
+// the arms have moved.
 class LoadedHands {
  public:
   static constexpr double kPatience = 0.5;  // [s]
@@ -30,8 +31,8 @@ class LoadedHands {
   // the person holds this device instead of a key.
   LoadedHands(double force, double rate, bool enabling_device = false)
       : force_(force), patience_(kPatience * rate), enabling_device_(enabling_device) {}
-  // Call this with each record, in order. Returns sentences for the operator; the list is usually
-  // empty.
+  // Call this with each record, in order. Returns a list of sentences for the operator. The list is
+  // usually empty.
   std::vector<std::string> See(const TickRecord& record);
 
  private:

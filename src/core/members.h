@@ -1,4 +1,5 @@
-// Visits the members of an aggregate in declaration order, so no separate list of them is needed.
+// Visits the members of an aggregate in declaration order, so that no separate list of the members
+// is needed.
 #pragma once
 
 #include <cstddef>

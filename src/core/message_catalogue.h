@@ -1,5 +1,5 @@
 // Texts shown at the console, on the page, in the headset and in reports. Each text has an ID in
-// message_catalogue.json, which the page imports too. Not for use in the tick.
+// message_catalogue.json. The page imports this file too. Not for use in the tick.
 #pragma once
 
 #include <initializer_list>
@@ -39,7 +39,7 @@ class MessageId {
   std::string_view text_;
 };
 
-// Replaces {name} in a text.
+// Replaces the placeholder {name} in a text.
 struct MessageValue {
   std::string_view name;
   std::string value;

@@ -1,5 +1,5 @@
 // Data that the modules pass to one another within a tick. The comment at each struct names the
-// module that writes it.
+// module that writes this struct.
 #pragma once
 
 #include <array>
@@ -12,14 +12,15 @@
 
 namespace predictor {
 
-// Packet counts of a link since it was opened.
+// Numbers of packets on a link since the link was opened.
 struct LinkCounts {
   std::uint64_t taken = 0;
   std::uint64_t lost = 0;     // never arrived, or arrived too late to be used
   std::uint64_t refused = 0;  // of the wrong size, unreadable, or from another sender
 };
 
-// One arm and its force/torque sensor as read from the device. Devices write it.
+// The values of one arm and its force/torque sensor, as read from the device. Devices write this
+// struct.
 struct ArmSample {
   bool present = false;
   JointVector q;                      // joint positions [rad]
@@ -43,7 +44,8 @@ struct DeviceSample {
   std::array<ArmSample, kHands> arms;
 };
 
-// An operator's hand as a page sends it. The emulator writes this struct, only for a simulated rig.
+// The state of an operator's hand that a page sends. The emulator writes this struct, only for a
+// simulated rig.
 struct HandInput {
   bool grip = false;
   Pose X_WH;         // set-point of the handle
@@ -59,14 +61,14 @@ struct DeviceCommand {
   std::array<HandInput, kHands> hands;  // simulated rig: the operator's hands, if a page moves them
 };
 
-// Motion of one frame in the world. The modules that compute kinematics write this struct.
+// Motion of a frame in the world. The modules that compute kinematics write this struct.
 struct FrameMotion {
   Pose X_W;                       // pose in W
   Twist V_W = Twist::Zero();      // twist in W, about the frame's origin
   Vector6 A_W = Vector6::Zero();  // its time derivative (classical acceleration, not spatial)
 };
 
-// Wrench of one hand, estimated from the raw reading. Sensing writes it.
+// Wrench of one hand, estimated from the raw reading. Sensing writes this struct.
 struct HandWrench {
   bool present = false;
   Wrench F_H_W = Wrench::Zero();  // exerted by the hand on the handle, about H, axes of W
@@ -81,8 +83,8 @@ struct WorldInput {
   std::array<double, kHands> hand_mass = {};  // direct mode: mass of the hand on D [kg]
 };
 
-// Live tuning of the virtual cobot's controller: factors by which the scenario's values are
-// multiplied. The emulator writes it.
+// Settings of the virtual cobot's controller that can be changed during a run. They are factors by
+// which the scenario's values are multiplied. The emulator writes this struct.
 struct ControllerTuning {
   double stiffness_translation = 1;
   double stiffness_rotation = 1;
@@ -102,7 +104,7 @@ struct Movables {
   std::array<MovableMotion, kMaxMovables> motion;
 };
 
-// The virtual world after a step. The simulation writes it.
+// The virtual world after a step. The simulation writes this struct.
 struct WorldState {
   double time = 0;  // simulated time [s]
   int cobot_dof = 0;
@@ -121,7 +123,7 @@ struct WorldState {
   Movables movables;
 };
 
-// For a replay: the answer of a controller outside the program, from the record of the tick.
+// In a replay, the answer of a controller outside the program, taken from the record of the tick.
 struct ControllerAnswer {
   JointVector torque;  // torque that was applied [N·m]
   double energy = 0;   // energy of the virtual world [J]
@@ -131,7 +133,7 @@ struct ControllerAnswer {
 
 inline constexpr int kMaxLimits = 8;  // number of limits registered with rendering
 
-// Result of haptic rendering. Haptics writes it.
+// Result of haptic rendering. Haptics writes this struct.
 struct RenderResult {
   std::array<JointVector, kHands> v;                   // joint velocities [rad/s]
   Vector6 relative_slack = Vector6::Zero();            // of the relative-pose task [m/s, rad/s]
@@ -149,11 +151,12 @@ struct RenderResult {
   std::array<double, kHands> manipulability = {};  // sqrt(det(J Jᵀ)), translational
 };
 
-// Linear model of the virtual world about a state at rest: dx/dt = A x + B u, y = C x. The state x
+// Linear model of the virtual world near a state at rest: dx/dt = A x + B u, y = C x. The state x
 // contains positions (tangent space), then velocities, then any states of the wrist sensor, of the
 // controller's memory and of the controller's delay. The displacement of the handles is the
-// velocity part of C times the positions. u contains the wrenches on the handles (left, right; 12),
-// and y contains the twists of the handles (12). Entries of an absent side are zero.
+// velocity part of C times the positions. The input u contains the 12 components of the wrenches on
+// the left and right handles, and the output y contains the 12 components of the handles' twists.
+// Entries of an absent side are zero.
 struct LinearModel {
   Eigen::MatrixXd A, B, C;
   int dof = 0;  // number of positions, which is also that of velocities

@@ -1,11 +1,12 @@
-// Movement with minimum jerk, from rest to rest (Flash & Hogan 1985).
+// Computes a movement with minimum jerk, from rest to rest (Flash & Hogan 1985).
 #pragma once
 
 #include <algorithm>
 
 namespace predictor {
 
-// Returns s(x) = 10x³ − 15x⁴ + 6x⁵, from 0 to 1 over x in [0, 1] and constant outside.
+// Returns s(x) = 10x³ − 15x⁴ + 6x⁵, which rises from 0 to 1 for x in [0, 1]. Outside this range,
+// the result is constant.
 inline double MinimumJerk(double x) noexcept {
   x = std::clamp(x, 0.0, 1.0);
   return x * x * x * (10 + x * (-15 + 6 * x));

@@ -8,13 +8,13 @@
 namespace predictor {
 
 // A handle slower than this counts as stationary [m/s]. The speeds that arms report at rest are
-// lower.
+// lower than this speed.
 inline constexpr double kStandstillSpeed = 0.01;
 
-// Lever arm by which a handle's rotation is multiplied when motion is detected [m]. A rotation
-// about the handle's own axis would otherwise not be detected.
+// Lever arm [m] by which a handle's rotation is multiplied so that the detection of motion includes
+// rotation. A rotation about the handle's own axis would otherwise not be detected.
 inline constexpr double kHandleLength = 0.1;
-// Returns the larger of a handle's speed and its angular speed times `length` [m/s].
+// Returns a handle's speed or its angular speed times `length`, whichever is larger [m/s].
 inline double HandleSpeed(const Twist& V, double length = kHandleLength) {
   return std::max(V.head<3>().norm(), length * V.tail<3>().norm());
 }
@@ -22,10 +22,11 @@ inline double HandleSpeed(const Twist& V, double length = kHandleLength) {
 // Lever arm that converts rotation to the speed that a stop must brake [m]. A scenario cannot
 // change this value, because a longer lever arm would make stops longer.
 inline constexpr double kStopLength = 0.2;
-// Returns the speed of a handle as used for a stop [m/s].
+// Returns the speed of a handle that is used for a stop [m/s].
 inline double StopSpeed(const Twist& V) { return HandleSpeed(V, kStopLength); }
 
-// Returns the twist and classical acceleration of B, fixed to A at X_AB, from the motion of A.
+// Computes the twist and the classical acceleration of frame B from the motion of frame A. B is
+// fixed to A with the pose X_AB.
 inline FrameMotion MotionOfFixed(const FrameMotion& A, const Pose& X_AB) {
   const Vector3 r_AB_W = A.X_W.q * X_AB.p;
   const Vector3 w = A.V_W.tail<3>();

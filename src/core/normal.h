@@ -3,8 +3,8 @@
 
 namespace predictor {
 
-// These functions are the cumulative distribution function of the standard normal distribution and
-// its inverse (0 < probability < 1).
+// Cumulative distribution function of the standard normal distribution and the inverse of this
+// function (0 < probability < 1).
 double NormalProbability(double z);
 double NormalQuantile(double probability);
 

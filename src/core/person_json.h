@@ -7,8 +7,9 @@
 
 namespace predictor {
 
-// Returns {"type": "person", "tick": …, …} on one line, with five digits (nine for times). The
-// state may come from another process. The text is valid JSON for every content of the state.
+// Returns {"type": "person", "tick": …, …} on one line. Times have nine digits, and other numbers
+// have five. The state may come from another process. The text is valid JSON for every content of
+// the state.
 std::string PersonJson(const PersonState& state);
 // Returns the JSON Schema (draft-07) of PersonJson.
 std::string PersonSchema();

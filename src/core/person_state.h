@@ -1,5 +1,5 @@
-// The state of the person at one time of a run, as the evaluator reports it: posture, loads, scores
-// and damage.
+// The state of the person at one time of a run: posture, loads, scores and damage. The evaluator
+// reports this state.
 //
 // The page, the recording and the page's TypeScript are derived from the tables in this file.
 #pragma once
@@ -20,9 +20,9 @@ enum class PersonStatus : std::uint8_t {
 inline constexpr std::array kPersonStatusNames = {"judged", "waiting", "no_hand", "below_ground"};
 inline constexpr std::size_t kPersonStatuses = kPersonStatusNames.size();
 
-// Points of the body, for drawing. Most are joints. The points of the eyes and the head are their
-// centres, the point of the hand is at the knuckles, and the point of the toes is at the front of
-// the foot on the ground.
+// Points of the body, for drawing. Most are joints. The points of the eyes and of the head are at
+// their centres. The point of the hand is at the knuckles, and the point of the toes is at the
+// front of the foot, on the ground.
 enum class BodyPoint : std::uint8_t {
   kPelvis,  // middle of the hip joints
   kL5S1,
@@ -137,7 +137,7 @@ inline constexpr std::array kPersonGaugeRows = {
 };
 inline constexpr std::size_t kPersonGauges = kPersonGaugeRows.size();
 
-// Worksheets. A class is an action level of the worksheet; level 1 is the lowest.
+// Worksheets. A class is an action level of the worksheet. Level 1 is the lowest.
 enum class PersonScore : std::uint8_t { kRula, kReba, kOwas };
 struct PersonScoreRow {
   const char* name;
@@ -149,8 +149,9 @@ inline constexpr std::array kPersonScoreRows = {
 inline constexpr std::size_t kPersonScores = kPersonScoreRows.size();
 inline constexpr std::size_t kMaxClasses = 5;
 
-// Warnings, as bits. A warning begins when its value has been at or beyond `on` for kWarnAfter, and
-// ends when the value has been back beyond `off` for kCalmAfter (design choices).
+// Warnings, as bits. A warning begins when its value has been at or beyond `on` for kWarnAfter. The
+// warning ends when the value has returned past `off` for kCalmAfter. Both times are design
+// choices.
 enum class PersonWarning : std::uint8_t {
   kCompression,
   kShear,
@@ -169,9 +170,9 @@ struct PersonWarningRow {
   double on, off;  // if on < off, low values are bad
   const char* words;
 };
-// The warning about a joint begins at half of the mean strength. If the standard deviation is 0.3
-// of the mean, one person in twenty has at most this strength. The warning of a worksheet begins at
-// its highest action level.
+// The warning about a joint begins at half of the mean strength. If the standard deviation of the
+// strength is 0.3 times its mean, one person in twenty is at most this strong. The warning of a
+// worksheet begins at its highest action level.
 inline constexpr double kUseWarning = 0.5, kUseCalm = 0.4;
 inline constexpr std::array kPersonWarningRows = {
     PersonWarningRow{"lower_back_compression", kCompressionLimit, 3100,
@@ -207,13 +208,13 @@ struct ScoreState {
   std::uint8_t score = 0;  // of the nominal posture; 0: not known
   std::uint8_t level = 0;  // its action level
   std::uint16_t reserved = 0;
-  // Share of the possible people at each action level, at interval_time; the first element belongs
+  // Share of the possible people at each action level, at interval_time. The first element belongs
   // to level 1.
   std::array<float, kMaxClasses> probability = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
 };
 struct PartState {
-  // Loads that determine the colours: the compression of the lower back divided by its limit and,
-  // for other parts, the torque divided by the mean strength.
+  // Loads that determine the colours. For the lower back, the load is the compression divided by
+  // its limit; for the other parts, the load is the torque divided by the mean strength.
   float load = kUnknown;
   float capacity = kUnknown;   // strength that remains despite fatigue (3CC-r), as a share
   float damage = kUnknown;     // of the run so far: LiFFT for the lower back, Shoulder Tool

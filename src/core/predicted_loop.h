@@ -1,4 +1,4 @@
-// Prediction of a run's haptic loop, made before its first tick.
+// Prediction of a run's haptic loop, which is computed before the first tick of the run.
 #pragma once
 
 namespace predictor {

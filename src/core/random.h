@@ -1,4 +1,4 @@
-// Random numbers from one seed, identical on every machine.
+// Generates random numbers from one seed. The numbers are identical on every computer.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,8 @@
 namespace predictor {
 
 // One stream of random numbers (xoshiro256++, Blackman & Vigna 2019). Each stream is named after
-// its use, so additional draws from one stream do not change the others. It does not allocate.
+// its use. Additional numbers drawn from one stream therefore do not change the other streams. It
+// does not allocate.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::string_view use) {
@@ -31,10 +32,11 @@ class RandomStream {
     return result;
   }
 
-  // Returns a number uniform in [0, 1).
+  // Returns a number that is uniformly distributed in [0, 1).
   double Uniform() { return static_cast<double>(Next() >> 11) * 0x1.0p-53; }
 
-  // Returns a normal number with mean 0 and standard deviation 1 (Box-Muller; both values used).
+  // Returns a normally distributed number with mean 0 and standard deviation 1. The Box-Muller
+  // method computes two such numbers at a time, and both are used.
   double Normal() {
     if (has_spare_) {
       has_spare_ = false;

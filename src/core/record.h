@@ -1,5 +1,5 @@
-// The record of one tick, which recorder, viewer, evaluation and terminal read. core/tick_fields.h
-// describes each field; add new fields there too.
+// The record of one tick, which the recorder, the viewer, the evaluation and the terminal read. The
+// file core/tick_fields.h describes each field. Add new fields there too.
 #pragma once
 
 #include <array>
@@ -12,16 +12,16 @@
 
 namespace predictor {
 
-// Stages of a tick whose durations are measured. kTick is the whole tick.
+// Stages of a tick whose durations are measured. The value kTick stands for the whole tick.
 enum class Stage : int { kRead, kSense, kSimulate, kRender, kMonitor, kGuard, kWrite, kTick };
 inline constexpr int kStages = 8;
 inline constexpr std::array<const char*, kStages> kStageNames = {
     "read", "sense", "simulate", "render", "monitor", "guard", "write", "tick"};
 
-// Inputs accepted per tick. Any further inputs wait for the next tick.
+// Inputs accepted per tick. Any further inputs are processed in the next tick.
 inline constexpr int kInputsPerTick = 4;
 
-// Position [m], then quaternion, scalar first (Hamilton).
+// Position [m], then quaternion with the scalar first (Hamilton).
 struct PoseRecord {
   std::array<double, 3> p;
   std::array<double, 4> q;
@@ -39,8 +39,8 @@ struct HandRecord {
   std::uint8_t sensor_saturated;
   std::uint8_t arm_fault;  // the arm reports a fault
   std::uint8_t warnings;   // active warnings, bit = Warning
-  // Joints whose position, velocity or acceleration bound limited the command. Each bit stands for
-  // a joint.
+  // Joints for which the bound of the position, velocity or acceleration limited the command. Each
+  // bit stands for a joint.
   std::uint16_t at_lower, at_upper;
   std::uint8_t arm_in_motion;  // the driver is still ramping the arm down
   std::uint8_t arm_waits;      // the arm's controller has not started the motion yet
@@ -56,9 +56,9 @@ struct HandRecord {
   double arm_age, sensor_age;                   // [s]
   std::uint64_t arm_sequence, sensor_sequence;  // counters of the device's samples
   double manipulability;
-  // Values for each Warning, active or not: share of the arm's samples lost within a second, share
-  // of the sensor's samples lost within a second, packets refused [1/s], and last measured drift of
-  // the bias [N/min].
+  // Values for each Warning, whether the warning is active or not. They are the share of the arm's
+  // samples lost within a second, the share of the sensor's samples lost within a second, the
+  // number of packets refused [1/s], and the last measured drift of the bias [N/min].
   std::array<double, kWarningValues> warning_values;
 };
 
@@ -67,7 +67,7 @@ inline bool Has(const HandRecord& hand, Warning warning) noexcept {
   return (hand.warnings >> static_cast<unsigned>(warning) & 1U) != 0;
 }
 
-// A Status without padding bytes.
+// The same content as Status, without padding bytes.
 struct StatusRecord {
   StopCause cause;
   std::int8_t hand;
@@ -77,11 +77,12 @@ struct StatusRecord {
   double value, limit;  // SI
 };
 
-// Bit of TickRecord::requests that ends the run; the other bits are the bits of RunEvent.
+// Bit of TickRecord::requests that ends the run. The other bits are the bits of RunEvent.
 inline constexpr std::uint16_t kEndRequest = 1U << 15U;
 
 // TickRecord is trivially copyable and has no padding bytes, so it can be placed in shared memory
-// and compared byte by byte. Together with the scenario, it contains every input of a tick.
+// and compared byte by byte. A TickRecord, together with the scenario, contains every input of a
+// tick.
 struct TickRecord {
   std::uint64_t tick;     // counted from the start of the process
   double run_time;        // simulated time since RUN began [s]
@@ -109,7 +110,7 @@ struct TickRecord {
   std::uint8_t movable_count;  // entries of the scenario's environment.objects
   std::array<std::uint8_t, 3> reserved;
   StatusRecord read, written;  // result of the device's read and write
-  // Fault that escalated a stop from hold (S2) to power-off (S1); latched.
+  // Latched fault that escalated a stop from hold (S2) to power-off (S1).
   StatusRecord harder;
   std::array<RunInput, kInputsPerTick> inputs;  // from people and pages, taken in this tick
   std::array<double, kParameters> parameters;   // current values, by Parameter

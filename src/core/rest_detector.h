@@ -1,4 +1,4 @@
-// Detects whether the handles move, for stops and their summary.
+// Detects whether the handles move. The stops and the summary of the stops use this.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ class RestDetector {
   // Rotation is multiplied by kHandleLength.
   static constexpr double kMaxMotion = 5e-5;
 
-  // X_WH contains the poses of the handles. The poses of absent handles must be constant.
+  // `X_WH` contains the poses of the handles in W. The poses of absent handles must be constant.
   void Start(const std::array<Pose, kHands>& X_WH) noexcept {
     still_ = X_WH;
     mover_ = -1;

@@ -1,5 +1,5 @@
-// An overwriting ring buffer with one writer that never waits and any number of readers, which may
-// be slow or dead.
+// A ring buffer that overwrites its oldest items. It has one writer, which never waits, and any
+// number of readers, which may be slow or dead.
 #pragma once
 
 #include <atomic>
@@ -11,8 +11,8 @@
 namespace predictor {
 
 // Each slot has a version (a sequence lock) that is odd while the slot is being written. A reader
-// that was overtaken skips to the oldest slot still available and counts the lost items. The
-// storage contains no pointers, so it may be placed in shared memory. N must be a power of two.
+// that the writer has overtaken skips to the oldest slot still available and counts the lost items.
+// The storage contains no pointers, so it may be placed in shared memory. N must be a power of two.
 template <class T, std::size_t N>
 class RingStorage {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -24,7 +24,7 @@ class RingStorage {
   void Publish(const T& value) noexcept {
     const std::uint64_t index = written_.load(std::memory_order_relaxed);
     Slot& slot = slots_[index & (N - 1)];
-    // A reader that sees a word of the new item also sees that the slot is being written.
+    // A reader that reads a word of the new item also detects that the slot is being written.
     slot.version.store(2 * index + 1, std::memory_order_relaxed);
     std::uint64_t words[kWords] = {};
     std::memcpy(words, &value, sizeof(T));

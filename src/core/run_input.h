@@ -1,4 +1,5 @@
-// Inputs that people and pages may submit to a run: of fixed size, typed and bounded.
+// Inputs that people and pages may submit to a run. Every input has a type, a fixed size and
+// bounded values.
 #pragma once
 
 #include <array>
@@ -30,8 +31,8 @@ enum class InputKind : std::uint8_t {
 };
 inline constexpr int kInputKinds = 17;
 
-// Parameters that can be changed during a run. Stiffness and damping are factors of the scenario's
-// values; thresholds have their own unit.
+// Parameters that can be changed during a run. Stiffness and damping are factors by which the
+// scenario's values are multiplied. Thresholds have their own units.
 enum class Parameter : std::uint8_t {
   kStiffnessTranslation,  // factor
   kStiffnessRotation,     // factor
@@ -50,21 +51,21 @@ struct RunInput {
   std::uint8_t grip = 0;     // the hand is closed
   std::uint32_t client = 0;  // the sender, as numbered by the viewer
   double value = 0;
-  // Position of the hand in W [m]. A kLatency input contains three times [ms]: the server's clock
-  // minus the page's clock, the time from the start of a tick to its reception, and the time from
-  // the start of the tick to its display.
+  // Position of the hand in W [m]. A kLatency input contains three times [ms] instead. They are the
+  // server's clock minus the page's clock, the time from the start of a tick to its reception by
+  // the page, and the time from the start of the tick to its display.
   std::array<double, 3> p = {};
   std::array<double, 4> q = {1, 0, 0, 0};  // orientation of the hand, scalar first
 };
 static_assert(std::is_trivially_copyable_v<RunInput>);
 
-// A queue from one writer to one reader, also in shared memory. Neither waits. If the queue is
-// full, the newest input is refused. The reader must validate every input.
+// A queue from one writer to one reader, which may be in shared memory. Neither waits. If the queue
+// is full, the newest input is refused. The reader must validate every input.
 class InputQueue {
  public:
   static constexpr std::uint32_t kCapacity = 256;
 
-  // This function is for the writer, and returns false if the queue is full.
+  // Only the writer may call this function. It returns false if the queue is full.
   bool Push(const RunInput& input) noexcept {
     const std::uint32_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_.load(std::memory_order_acquire) >= kCapacity) return false;
@@ -72,8 +73,9 @@ class InputQueue {
     head_.store(head + 1, std::memory_order_release);
     return true;
   }
-  // This function is for the reader, and returns false if the queue is empty. A dead or malicious
-  // writer cannot block this function, because an impossible count empties the queue.
+  // Only the reader may call this function. It returns false if the queue is empty. A dead or
+  // malicious writer cannot block this function: if the writer's count is impossible, the queue is
+  // emptied.
   bool Pop(RunInput* input) noexcept {
     const std::uint32_t tail = tail_.load(std::memory_order_relaxed);
     const std::uint32_t waiting = head_.load(std::memory_order_acquire) - tail;

@@ -34,7 +34,7 @@ Shared<T>::Shared() {
   if (descriptor_ < 0 || ftruncate(descriptor_, sizeof(T)) != 0)
     throw std::runtime_error(
         std::string("shared memory could not be created: ") + std::strerror(errno) +
-        (errno == EFBIG ? ". Allow larger files: `ulimit -f unlimited`." : ""));
+        (errno == EFBIG ? ". Allow larger files with `ulimit -f unlimited`." : ""));
   memory_ = new (Map(descriptor_, sizeof(T), PROT_READ | PROT_WRITE)) T;
   // A process that receives the descriptor can neither shrink the memory that the run uses nor
   // write records.

@@ -1,5 +1,5 @@
-// Memory that a run shares with the processes alongside it. All of them read one piece, and each
-// process that may send something has a piece of its own.
+// Memory that a run shares with the processes alongside it. All these processes read one piece of
+// memory. Each process that may send something has its own piece.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace predictor {
 inline constexpr std::size_t kRecordRing = 8192;  // about eight seconds
 using RecordRing = RingStorage<TickRecord, kRecordRing>;
 
-// The run writes the board, and every process reads the board. The other processes map it
+// The run writes the board, and every process reads the board. The other processes map the board
 // read-only.
 struct RunBoard {
   static constexpr std::uint64_t kMagic = 0x3352'4f54'4349'4450;  // identifies this layout
@@ -25,13 +25,14 @@ struct RunBoard {
   RecordRing records;
 };
 
-// The viewer's process writes the mailbox. The run validates everything it reads from it.
+// The viewer's process writes the mailbox. The run validates everything that it reads from the
+// mailbox.
 struct RunMailbox {
   InputQueue inputs;
   // Counts stop requests. This counter is separate from the queue, so a stop never waits behind
   // other inputs.
   std::atomic<std::uint32_t> stops{0};
-  // Client that sent the last stop request; 0 if the request did not come from a client of the
+  // Client that sent the last stop request, or 0 if the request did not come from a client of the
   // viewer.
   std::atomic<std::uint32_t> stop_client{0};
   // Inputs of the viewer's clients.
@@ -53,21 +54,21 @@ struct WatchdogMailbox {
 
 inline constexpr std::size_t kPersonRing = 256;  // two and a half seconds
 
-// The evaluator's process writes this board. The run's recorder and the viewer read it and do not
-// trust its content.
+// The evaluator's process writes this board. The run's recorder and the viewer read this board and
+// do not trust its content.
 struct EvaluationBoard {
   RingStorage<PersonState, kPersonRing> states;
 };
 
-// A piece of shared memory that holds one T. The memory has no name; processes pass its descriptor
-// to one another.
+// A piece of shared memory that contains one object of type T. The memory has no name. Processes
+// pass its descriptor to one another.
 template <class T>
 class Shared {
  public:
   // Creates the memory. Throws std::runtime_error.
   Shared();
-  // Maps another process's memory, read-only unless `writable`. Throws std::runtime_error if the
-  // descriptor is invalid or the memory is too small for a T.
+  // Maps the memory of another process. The mapping is read-only unless `writable` is true. Throws
+  // std::runtime_error if the descriptor is invalid or if the memory is smaller than a T.
   Shared(int descriptor, bool writable);
   ~Shared();
   Shared(const Shared&) = delete;

@@ -1,6 +1,6 @@
-// Sines and cosines of several angles at once, without branches, so that the compiler computes two
-// or more at a time. A tick needs about fifty sines and cosines. If they were computed with the C
-// library, they would take a twentieth of the tick's time.
+// Computes sines and cosines of several angles at once. The code has no branches, so the compiler
+// can compute two or more values at a time. A tick needs about fifty sines and cosines. The C
+// library would need a twentieth of the tick's time to compute them.
 #pragma once
 
 namespace predictor {
@@ -9,10 +9,10 @@ namespace predictor {
 // must not overlap. For |angle| ≤ 10 000 rad, which no joint reaches, the error is at most 2.3e-16.
 // If an angle is not finite, the result is NaN.
 //
-// The angle is reduced to x = angle − k π/2 with |x| ≤ π/4. π/2 is written as a sum of three parts,
-// of which the first two have so few digits that their products with k are exact (Cody and Waite
-// 1980, Software Manual for the Elementary Functions). Sine and cosine of x are Taylor polynomials,
-// whose first omitted terms are below 5e-17.
+// The angle is reduced to x = angle − k π/2 with |x| ≤ π/4. For this purpose, π/2 is written as a
+// sum of three parts. The first two parts have so few digits that their products with k are exact
+// (Cody and Waite 1980, Software Manual for the Elementary Functions). Sine and cosine of x are
+// computed with Taylor polynomials. Their first omitted terms are below 5e-17.
 inline void SinesAndCosines(const double* __restrict angles, int n, double* __restrict sines,
                             double* __restrict cosines) noexcept {
   constexpr double kRounds = 0x1.8p52;  // adding and subtracting it rounds to an integer
@@ -39,8 +39,8 @@ inline void SinesAndCosines(const double* __restrict angles, int n, double* __re
     c = c * z - 1.0 / 720;
     c = c * z + 1.0 / 24;
     const double cosine = 1 - (0.5 * z - z * z * c);
-    // k = 4 q + 2 half + odd. An odd k exchanges sine and cosine, and the second half of a turn
-    // changes the signs.
+    // k = 4 q + 2 half + odd. If k is odd, sine and cosine are exchanged. In the second half of a
+    // turn, the signs change.
     const double pairs = ((0.5 * k - 0.25) + kRounds) - kRounds;
     const double turns = ((0.5 * pairs - 0.25) + kRounds) - kRounds;
     const double odd = k - 2 * pairs, sign = 1 - 2 * (pairs - 2 * turns);

@@ -33,7 +33,7 @@ inline constexpr int kStopCauses = 19;
 // Returns the name as in the summary ("force", "torque", ...), or "none" for kNone.
 const char* Name(StopCause cause);
 
-// Quantity that a measured value and its limit belong to.
+// Quantity to which a measured value and its limit belong.
 enum class Quantity : std::uint8_t {
   kNone,          // no number
   kCount,         // of ticks, readings or joints
@@ -50,8 +50,8 @@ enum class Quantity : std::uint8_t {
 };
 inline constexpr int kQuantities = 12;
 
-// Returns the quantity that belongs to a cause, unless the Status of the cause names another
-// quantity.
+// Returns the quantity that belongs to a cause. The Status of the cause may name another quantity,
+// which then takes precedence.
 constexpr Quantity UsualQuantity(StopCause cause) {
   switch (cause) {
     case StopCause::kForce:
@@ -89,7 +89,8 @@ enum class ControllerOutcome : std::uint8_t {
 };
 inline constexpr int kControllerOutcomes = 3;
 
-// Outcome of a step of the tick: the fault, its side, the value and the limit.
+// Outcome of a step of the tick: the fault, the side where it occurred, the measured value and its
+// limit.
 struct [[nodiscard]] Status {
   StopCause cause = StopCause::kNone;
   std::int8_t hand = -1;                     // 0 left, 1 right, −1 neither or both
@@ -120,8 +121,8 @@ enum class CobotStop : std::uint8_t { kNone, kForce, kSpeed, kMomentum, kJointTo
 inline constexpr int kCobotStops = 5;
 const char* Name(CobotStop stop);  // "none", "force", ...
 
-// State of the attachment between cobot and object: it holds, slips, is open, or stayed open
-// because the object was too far away for a grasp.
+// State of the attachment between cobot and object. The attachment holds, slips, is open, or stayed
+// open because the object was too far away to be grasped.
 enum class AttachmentState : std::uint8_t { kHolds, kSlips, kOpen, kMissed };
 
 // States of a run, as docs/concepts/states.md describes them.
@@ -142,12 +143,12 @@ inline constexpr int kRunStates = 10;
 // Returns "INIT", "SELFTEST", ...
 const char* Name(RunState state);
 
-// Returns whether arms follow a task in a state. In STOPPING, the arms move too, but only to come
-// to rest.
+// Returns whether the arms follow a task in this state. In STOPPING, the arms also move, but only
+// until they come to rest.
 constexpr bool FollowsTask(RunState state) noexcept {
   return state == RunState::kAlign || state == RunState::kRun || state == RunState::kRecovery;
 }
-// Returns whether velocities other than zero may be sent in a state.
+// Returns whether velocities other than zero may be sent in this state.
 constexpr bool MayMove(RunState state) noexcept {
   return FollowsTask(state) || state == RunState::kStopping;
 }

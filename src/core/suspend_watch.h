@@ -1,5 +1,5 @@
-// Detects that the computer was suspended. During a suspend, CLOCK_MONOTONIC stops but
-// CLOCK_BOOTTIME continues. Ages that are measured with CLOCK_MONOTONIC are therefore too small
+// Detects that the computer was suspended. While the computer is suspended, CLOCK_MONOTONIC stops,
+// but CLOCK_BOOTTIME continues. Ages that are measured with CLOCK_MONOTONIC are therefore too small
 // afterwards.
 #pragma once
 
@@ -11,9 +11,10 @@ namespace predictor {
 class SuspendWatch {
  public:
   // Returns a lower bound of the time for which the computer was suspended since the last call
-  // [ns], or 0 if it was not suspended. `before` and `after` are CLOCK_MONOTONIC, read before and
-  // after `boot`, which is CLOCK_BOOTTIME [ns]. The difference of the clocks lies between boot −
-  // after and boot − before, even if the thread was delayed between the readings.
+  // [ns], or 0 if the computer was not suspended. `boot` is the reading of CLOCK_BOOTTIME. `before`
+  // and `after` are readings of CLOCK_MONOTONIC that were taken before and after the reading of
+  // `boot` [ns]. The difference between the clocks is between boot − after and boot − before, even
+  // if the thread was delayed between the readings.
   std::int64_t Look(std::int64_t before, std::int64_t boot, std::int64_t after) noexcept {
     constexpr std::int64_t kRounding = 1'000'000;  // shorter than any suspend [ns]
     const std::int64_t least = boot - after, most = boot - before;

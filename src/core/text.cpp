@@ -14,7 +14,8 @@ constexpr std::size_t kLongestName = 100;  // comparing longer words would take 
 
 char Lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
-// Returns the optimal string alignment distance. Both words have at most kLongestName characters.
+// Returns the optimal string alignment distance. Both words must have at most kLongestName
+// characters.
 std::size_t EditDistance(const std::string& a, const std::string& b) {
   using Row = std::array<std::size_t, kLongestName + 1>;
   Row before{}, last{}, row{};
@@ -34,7 +35,8 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
   return last[b.size()];
 }
 
-// Returns whether a character is a C1 control, changes the text direction or breaks the line.
+// Returns whether a character is a C1 control character, changes the text direction or breaks the
+// line.
 bool IsHidden(char32_t c) {
   return (c >= 0x80 && c < 0xa0) || c == 0x061c || c == 0x200e || c == 0x200f ||
          (c >= 0x2028 && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
@@ -49,7 +51,7 @@ std::string Hex(char32_t number, int digits) {
 
 }  // namespace
 
-// The function rejects overlong forms, surrogates and code points beyond U+10FFFF.
+// This function rejects overlong forms, surrogates and code points beyond U+10FFFF.
 Character FirstCharacter(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return {byte(0), 1};

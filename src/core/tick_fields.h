@@ -1,9 +1,9 @@
 // The table of recorded quantities: name, unit, frame and meaning of every field of TickRecord.
 //
-// All code that reads records by name is derived from this table: the schema, writer and reader of
-// recordings, the columns of `export-data`, `replay --verify`, the states that pages receive with
-// their TypeScript types, and the topics for Foxglove. To add a quantity, add the member to
-// TickRecord, its row here, and the line that fills it in.
+// All code that reads records by name is derived from this table: the schema, the writer and the
+// reader of recordings; the columns of `export-data`; `replay --verify`; the states that pages
+// receive, with their TypeScript types; and the topics for Foxglove. To add a quantity, add a
+// member to TickRecord, a row for the member here, and the line that sets the member.
 //
 // A visitor V offers a method for each kind of row, called with the row and the member:
 //   Value      a number or an enumeration       Flag      0 or 1
@@ -33,8 +33,8 @@ struct TickField {
   const char* unit = "";   // "" for counts, ratios, flags and enumerations
   const char* frame = "";  // frame whose axes the components refer to
   const char* meaning = "";
-  // Name in the states sent to pages, appended to the names of its group and message. If the name
-  // is null, the field is not sent.
+  // Name of the field in the states that are sent to pages. It is appended to the names of the
+  // field's group and message. If the name is null, the field is not sent.
   const char* page = nullptr;
   bool of_clock = false;  // measured by the computer's clock, so a replay does not reproduce it
 };
@@ -309,8 +309,8 @@ constexpr std::size_t VisitedBytes() {
   for (int g = 0; g < kTickGroupCount; ++g) VisitGroup(static_cast<TickGroup>(g), v, r);
   return v.bytes;
 }
-static_assert(
-    VisitedBytes() == sizeof(TickRecord),
-    "A field of TickRecord has no row in this table, or TickRecord has padding between fields.");
+static_assert(VisitedBytes() == sizeof(TickRecord),
+              "Either a field of TickRecord has no row in this table, or TickRecord has padding "
+              "between fields.");
 
 }  // namespace predictor

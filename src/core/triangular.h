@@ -5,9 +5,9 @@
 
 namespace predictor {
 
-// X ← X L⁻ᵀ, for L in the lower triangle of `L`. The product is computed column by column, because
-// Eigen's solver for several right-hand sides is designed for large matrices and takes several
-// times as long.
+// Replaces X by X L⁻ᵀ. The matrix L is in the lower triangle of `L`. The product is computed column
+// by column, because Eigen's solver for several right-hand sides is designed for large matrices and
+// takes several times as long.
 template <class Lower, class Matrix>
 void MultiplyByInverseTranspose(const Lower& L, Matrix* X) noexcept {
   for (Eigen::Index j = 0; j < L.cols(); ++j) {

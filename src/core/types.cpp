@@ -24,7 +24,7 @@ Vector3 RotationError(const Quaternion& to, const Quaternion& from) {
   if (d.w() < 0) d.coeffs() = -d.coeffs();  // same rotation, on the nearer hemisphere
   const double s = d.vec().norm();
   const double angle = 2 * std::atan2(s, d.w());
-  // Near zero, angle/s tends to 2/w.
+  // Near zero, the quotient angle/s tends to 2/w.
   return d.vec() * (s > 1e-9 ? angle / s : 2 / d.w());
 }
 

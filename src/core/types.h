@@ -1,9 +1,9 @@
 // Vectors, poses, twists and wrenches that all modules share.
 //
-// Frame names use monogram notation: X_AB is the pose of frame B in frame A, V_WB is the twist of B
-// in W (linear, then angular), and F_B_W is the wrench acting at B's origin in the axes of W
-// (force, then torque). W world, R rig (frame of the arms' bases), H real handle, D virtual handle,
-// E end-effector, B base, O object, S sensor.
+// The names of quantities use monogram notation. X_AB is the pose of frame B in frame A. V_WB is
+// the twist of B in W (linear, then angular). F_B_W is the wrench that acts at B's origin, in the
+// axes of W (force, then torque). The frames are: W world, R rig (frame of the arms' bases), H real
+// handle, D virtual handle, E end-effector, B base, O object, S sensor.
 #pragma once
 
 #include <Eigen/Core>
@@ -46,38 +46,39 @@ struct Pose {
   static Pose Identity() { return {}; }
   Matrix3 R() const { return q.toRotationMatrix(); }
   Pose Inverse() const { return {-(q.conjugate() * p), q.conjugate()}; }
-  // X_AC = X_AB * X_BC.
+  // Poses are multiplied as X_AC = X_AB * X_BC.
   Pose operator*(const Pose& X_BC) const { return {p + q * X_BC.p, (q * X_BC.q).normalized()}; }
   // p_A = X_AB * p_B.
   Vector3 operator*(const Vector3& p_B) const { return p + q * p_B; }
 };
 
-// Returns a pose from a position [m] and roll, pitch, yaw [rad] about the fixed axes x, y, z (as in
-// URDF).
+// Converts a position [m] and roll, pitch and yaw [rad] about the fixed axes x, y and z (as in
+// URDF) to a pose.
 Pose PoseFromXyzRpy(const Vector3& xyz, const Vector3& rpy);
 
 // Returns roll, pitch and yaw [rad] of a rotation, in the convention of PoseFromXyzRpy. Roll is 0
 // if the pitch is ±90°.
 Vector3 RpyOf(const Quaternion& q);
 
-// Returns the rotation vector [rad], in A, that rotates `from` into `to` by the shortest path.
+// Returns the rotation vector [rad] in A that rotates `from` to `to` on the shortest path.
 Vector3 RotationError(const Quaternion& to, const Quaternion& from);
 
 // Returns the quaternion of a rotation vector [rad].
 Quaternion RotationFromVector(const Vector3& w);
 
-// Returns the difference of set-point and pose in W (impedance error): position [m], then rotation
-// vector [rad].
+// Returns the difference between set-point and pose in W, as in impedance control: position [m],
+// then rotation vector [rad].
 Vector6 PoseError(const Pose& X_Wset, const Pose& X_W);
 
-// Returns the matrix S(a) with S(a) b = a × b.
+// Returns the matrix S(a) for which S(a) b = a × b.
 Matrix3 Skew(const Vector3& a);
 
-// Returns the twist of C, fixed to B, from the twist of B. r_BC_W is the lever arm in W [m].
+// Computes the twist of frame C, which is fixed to frame B, from the twist of B. r_BC_W is the
+// lever arm from B to C in W [m].
 Twist ShiftTwist(const Twist& V_WB, const Vector3& r_BC_W);
 
-// Returns the wrench about B's origin from the wrench about C's origin; r_BC_W = p_C − p_B in W
-// [m].
+// Computes the wrench about B's origin from the wrench about C's origin. The lever arm in W is
+// r_BC_W = p_C − p_B [m].
 Wrench ShiftWrench(const Wrench& F_C_W, const Vector3& r_BC_W);
 
 bool IsFinite(const Pose& X);

@@ -43,7 +43,7 @@ constexpr std::array<MessageId, kRefusals - 1> kRefusalTexts = {
 }  // namespace
 
 const char* Sentence(Refusal refusal) {
-  // The texts in the table are string literals, so they end with a zero.
+  // The texts in the table are string literals, so they end with a null character.
   return refusal == Refusal::kNone
              ? ""
              : kRefusalTexts[static_cast<std::size_t>(refusal) - 1].text().data();
@@ -106,7 +106,7 @@ std::string StopCauseWords(const TickRecord& record) {
 }
 
 std::string RefusalWords::See(const TickRecord& record) {
-  // If a stop was decided in the same tick, only the stop is reported, because it is more
+  // If a stop was decided in the same tick, only the stop is reported, because the stop is more
   // informative.
   if (record.refused == 0 || record.state == RunState::kStopping) return "";
   const auto why = static_cast<Refusal>(record.why_refused);

@@ -30,13 +30,13 @@ struct ArmReading {
   std::uint64_t sequence = 0;  // counts the arm's samples
   double age = 1e9;            // age of q and v [s]
   bool fault = false;  // the arm cannot move: no power, protective stop, emergency stop, …
-  // Whether the arm is coming to rest in its own way, because its driver still moves it or the arm
-  // reports motion. In this state, a command to rest would not be sent immediately. The value is
-  // always false for an arm that executes commands directly.
+  // True if the arm is still coming to rest, because its driver still moves it or because the arm
+  // reports motion. In this state, the driver would not send a command to rest immediately. This
+  // value is always false for an arm that executes commands directly.
   bool in_motion = false;
-  // Whether the arm does not obey commands yet, because its controller has not received the request
-  // or has not started the requested motion. The value is always false for an arm that needs no
-  // request.
+  // True if the arm does not execute commands yet, because its controller has not received the
+  // request or has not started the requested motion. This value is always false for an arm that
+  // needs no request before it moves.
   bool waits = false;
   bool no_power_off = false;  // the channel for power-off requests existed, but is lost
   bool keeps_power = false;   // the arm still reports power one second after PowerOff
@@ -45,13 +45,14 @@ struct ArmReading {
   LinkCounts link;
 };
 
-// The payload configured in an arm's controller, that is, everything mounted on the flange.
+// The payload that is configured in an arm's controller. It includes everything that is mounted on
+// the flange.
 struct ReportedPayload {
   double mass = 0;                           // [kg]
   Vector3 center_of_mass = Vector3::Zero();  // centre of mass in the flange [m]
 };
 
-// The flange pose that an arm's controller reports for the joints q.
+// The flange pose that an arm's controller reports for the joint positions q.
 struct ReportedFlange {
   JointVector q;     // [rad]
   Pose X_BF;         // pose of the flange in the base, with the manufacturer's axes
@@ -60,7 +61,8 @@ struct ReportedFlange {
                            // of the tool
 };
 
-// Information about an arm or a sensor, collected while connecting.
+// Information about an arm or a sensor, which is collected while the program connects to the
+// device.
 struct DeviceFacts {
   std::string name;         // name for the user: manufacturer, model, versions, address
   int joints = 0;           // number of joints of an arm
@@ -75,30 +77,30 @@ struct DeviceFacts {
   std::vector<std::string> remarks = {};  // notes for the user, one sentence each
 };
 
-// The tick calls Read and Write, which never block, allocate or throw. A fault of the arm is
-// reported by Status and is permanent until the arm is constructed again.
+// The tick calls Read and Write. These functions never block, allocate or throw. Status reports a
+// fault of the arm. The fault remains until the arm object is constructed again.
 class Arm {
  public:
   virtual ~Arm() = default;
   virtual const DeviceFacts& facts() const = 0;
   // Reads the newest sample. Returns kDevice if the connection is lost or the arm reports that it
-  // cannot move. In this case, the sample is the last one, with its age.
+  // cannot move. In this case, the function returns the last sample, with its age.
   virtual Status Read(ArmReading* reading) noexcept = 0;
-  // Sends joint velocities [rad/s], one set per tick. The guard ensures that they are finite and
-  // limited. `motion` states whether the arm may move in this state. If the arm may not move, v is
-  // zero, and the arm need not be in its motion mode.
+  // Sends the joint velocities [rad/s]. Call this function once per tick. The guard ensures that
+  // the velocities are finite and limited. `motion` states whether the arm may move in this state.
+  // If the arm may not move, v is zero, and the arm need not be in its motion mode.
   virtual Status Write(const JointVector& v, bool motion) noexcept = 0;
   // Call this in each tick. `wanted` states whether the run is UNPOWERED. When `wanted` becomes
-  // true, the driver requests the robot to cut its power. If the robot still reports power,
+  // true, the driver requests the robot to switch off its power. If the robot still reports power,
   // ArmReading::keeps_power is set. A robot that has no such request (a Franka) holds its position
   // with power until someone uses its own enabling device or emergency stop.
   virtual void PowerOff(bool wanted) noexcept { static_cast<void>(wanted); }
-  // Describes the last fault for the user ("protective stop"), or returns "" if there was no fault.
-  // It must not be called in a tick.
+  // Returns a description of the last fault for the user, such as "protective stop", or "" if there
+  // was no fault. It must not be called in a tick.
   virtual std::string Trouble() const = 0;
 };
 
-// The rules of Arm apply.
+// The same rules apply as for Arm.
 class WrenchSensor {
  public:
   virtual ~WrenchSensor() = default;

@@ -1,4 +1,4 @@
-// The real device that a machine file describes.
+// Connects to the real device that a machine file describes.
 #pragma once
 
 #include <memory>
@@ -19,10 +19,10 @@ enum class ArmUse {
 std::unique_ptr<Arm> ConnectArm(const MachineArm& side, ArmUse use, Network* network);
 std::unique_ptr<WrenchSensor> ConnectSensor(const MachineArm& side, Network* network);
 
-// Connects to the arms and sensors of the hands in `scenario` (with the machine applied). Reduces
-// the joint velocities and accelerations in `scenario` to the limits of the drivers. If a driver
-// limited a single joint during the run, the handle would leave its path. Throws DeviceError with
-// the faulty device and the remedy.
+// Connects to the arms and sensors of the hands in `scenario`, which must already include the
+// machine file. Reduces the joint velocities and accelerations in `scenario` to the limits of the
+// drivers. If a driver limited a single joint during the run, the handle would leave its path.
+// Throws DeviceError, whose text names the faulty device and the remedy.
 std::unique_ptr<RealDevice> ConnectMachine(const Machine& machine, Scenario* scenario,
                                            std::unique_ptr<Network> network);
 

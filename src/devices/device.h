@@ -45,7 +45,7 @@ class Device {
   // Saves or loads the state of a simulated device. The state of a real device cannot be restored.
   virtual void Archive(StateArchive&) noexcept {}
 
-  // Returns one line for the user: name, rates, versions.
+  // Returns one line for the user, with the name, the rates and the versions of the device.
   virtual std::string Describe() const = 0;
 };
 

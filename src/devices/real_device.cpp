@@ -9,7 +9,7 @@ namespace {
 constexpr double kSilent = 0.05;  // a device that has been silent for longer is named [s]
 
 // Adds a fault of the arm or the sensor of a hand. The first fault is reported. A fault that
-// forbids holding takes precedence, because it determines how the stop ends.
+// forbids holding takes precedence, because this fault determines how the stop ends.
 void Add(const Status& status, std::size_t hand, Status* all) noexcept {
   const bool severer = status.power_off && !all->power_off;
   if (status.ok() || !(all->ok() || severer)) return;
@@ -118,7 +118,7 @@ std::string RealDevice::Describe() const {
   return text;
 }
 
-// Names the silent device of a hand: its arm or its sensor.
+// Names the silent device of a hand: the arm or the sensor.
 std::string RealDevice::Silence(std::size_t hand) const {
   const RealSide& side = sides_[hand];
   constexpr const char* kSee =
@@ -127,7 +127,7 @@ std::string RealDevice::Silence(std::size_t hand) const {
   if (ages_[hand].sensor <= kSilent) return "";
   if (side.sensor) return "the sensor, " + side.sensor->facts().name + "," + kSee;
   return "the arm, " + side.arm->facts().name +
-         ", no longer sends a wrench. A Franka does this near a singular pose.";
+         ", no longer sends a wrench. A Franka sends no wrench near a singular pose.";
 }
 
 std::string RealDevice::Trouble() const {

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::uint16_t kPrimaryPort = 30001;
 constexpr double kConnectTimeout = 2;  // [s]
-// Limits of the controller's silence [ns]. The controller sends its state to this port ten times
-// per second.
+// Longest times for which the controller may be silent [ns]. The controller sends its state to this
+// port ten times per second.
 constexpr std::uint64_t kSilence = 500'000'000, kLongSilence = 3'000'000'000;
 constexpr const char* kBrake = "def predictor_watchdog():\n  stopj(10.0)\nend\n";
 

@@ -1,4 +1,4 @@
-// A second way to stop an arm, for use by a process other than the loop.
+// A second way to stop an arm, which a process other than the loop can use.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ class StopChannel {
 };
 
 // Opens a stop channel to a UR at its program port. To stop the arm, the channel sends a program
-// that only brakes; this program replaces the running program. Returns null for a robot that
+// that only brakes. This program replaces the running program. Returns null for a robot that
 // accepts only one client (Franka), because such a robot stops by itself when its client is silent.
 // Throws DeviceError. `network` must outlive the channel.
 std::unique_ptr<StopChannel> OpenStopChannel(const ArmConnection& arm, Network* network);

@@ -1,4 +1,5 @@
-// One arm of the device as the pipeline uses it: measured joints, handle, and the hand's wrench.
+// One arm of the device, as the pipeline uses it: the measured joints, the handle and the hand's
+// wrench.
 #pragma once
 
 #include <memory>
@@ -20,14 +21,15 @@ class ArmSide {
   // reading cannot be used. Does not use the heap or throw.
   Status Update(const ArmSample& sample) noexcept;
 
-  // Predicts the kinematics at the time when the arm will obey the next command. An arm obeys a
-  // velocity after a lag, during which the joints continue to move. `last` is the command last sent
-  // [rad/s].
+  // Predicts the kinematics at the time when the arm will follow the next command. An arm follows a
+  // commanded velocity after a lag, during which the joints continue to move. `last` is the command
+  // last sent [rad/s].
   void LookAhead(const JointVector& last) noexcept;
   // Advances the prediction by `time` [s] when the latest joint sample is stale.
   void Extrapolate(const JointVector& last, double time) noexcept;
 
-  // Averages the readings of the unloaded sensor into its bias. The hands must be off.
+  // Averages the readings of the unloaded sensor to determine its bias. The hands must be off the
+  // handles.
   Status Tare(const ArmSample& sample) noexcept;
   void BeginTare() noexcept { estimator_.BeginTare(); }
   Status FinishTare() noexcept { return estimator_.FinishTare(); }

@@ -1,5 +1,5 @@
-// In each tick, the emulator reads the device, moves the virtual world, renders it to the arms, and
-// checks the safety limits.
+// In each tick, the emulator reads the device, moves the virtual world, renders this world with the
+// arms, and checks the safety limits.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ namespace predictor {
 
 inline constexpr std::size_t kStateBytes = std::size_t{1} << 18;  // largest size of a saved state
 
-// Facts and choices established before the first tick.
+// Facts that are known, and choices that are made, before the first tick.
 struct EmulatorSetup {
   LeadChoice lead;                        // lead of the reference, with its stability margin
   std::array<JointVector, kHands> start;  // joint positions at which the real handles coincide with
@@ -37,30 +37,31 @@ struct EmulatorSetup {
 
 class Emulator {
  public:
-  // Loads models, finds the world's equilibrium, and places the arms. `device` contains the real
-  // arms, or null for the simulated rig. Throws InputError, which states the remedy.
+  // Loads the models, finds the world's equilibrium, and places the arms. `device` contains the
+  // real arms, or is null for the simulated rig. Throws InputError, which states the remedy.
   explicit Emulator(const Scenario& scenario, std::unique_ptr<Device> device = nullptr);
   ~Emulator();
 
   // Executes one tick of dt = 1/scenario.rate. `wall_ns` is the monotonic clock at the start of the
   // tick, or 0 in virtual time. `missed` is the number of consecutive deadlines that the loop
-  // missed. Does not use the heap, a lock or a blocking call, and does not throw or log. record()
-  // returns the record of the tick until the next tick.
+  // missed. The function does not use the heap, locks or blocking calls, and does not throw or log.
+  // Until the next tick, record() returns the record of this tick.
   void Tick(std::uint64_t wall_ns = 0, int missed = 0) noexcept;
 
-  // Sets, for a replay, the answer of a controller outside the program in the tick that follows.
+  // For a replay, this function sets the answer of a controller outside the program in the next
+  // tick.
   void Play(const TickRecord& record) noexcept;
 
-  // Gives the process of the cobot's controller a real-time priority if the scenario requests it,
-  // or removes this priority again (Controller::PrioritiseProcess). Returns what the system
-  // granted.
+  // If the scenario requests it, gives the process of the cobot's controller a real-time priority
+  // or removes this priority again (Controller::PrioritiseProcess). Returns a text that states what
+  // the system granted.
   std::string PrioritiseController(bool on);
 
-  // Accepts an input for the next tick, at most kInputsPerTick between two ticks. Only the tick's
-  // thread may call this. Returns false if the input is out of range or the operating rules refuse
-  // it. With real arms, inputs that request alignment, start or reset are refused. Instead, a
-  // person at the rig requests these events with Request, and must continue to enable motion
-  // (kEnable) while the arms may move.
+  // Accepts an input for the next tick. At most kInputsPerTick inputs are accepted between two
+  // ticks. Only the tick's thread may call this. Returns false if the input is out of range or the
+  // operating rules refuse it. With real arms, inputs that request alignment, start or reset are
+  // refused. Instead, a person at the rig makes these requests through Request, and must enable
+  // motion (kEnable) as long as the arms may move.
   bool Submit(const RunInput& input) noexcept;
   // Returns whether the next tick accepts another input.
   bool HasRoomForInput() const noexcept;
@@ -68,13 +69,15 @@ class Emulator {
   // Requests an event for the next tick. Any thread may call this function, which does not wait.
   // The record shows whether the request was refused, and why.
   void Request(RunEvent event) noexcept;
-  // Brings the arms to rest as a stop does, but without a fault. May be called from any thread.
+  // Brings the arms to rest in the same way as a stop, but without a fault. May be called from any
+  // thread.
   void RequestEnd() noexcept;
 
-  // Saves the complete state between two ticks. An emulator of the same scenario that loads this
-  // state continues identically bit for bit, provided that it receives the same inputs and, with a
-  // real device, the same samples. Returns the size, at most kStateBytes, or 0 if `to` is too
-  // small. Does not use the heap. Only the tick's thread may call this.
+  // Saves the complete state. Call this function between two ticks. An emulator of the same
+  // scenario that loads this state continues identically, bit for bit. This requires that it
+  // receives the same inputs and, with a real device, the same samples. Returns the size of the
+  // saved state, which is at most kStateBytes, or 0 if `to` is too small. Does not use the heap.
+  // Only the tick's thread may call this.
   std::size_t SaveState(std::span<std::byte> to) noexcept;
   // Throws InputError if the bytes are not a state of this scenario and version.
   void LoadState(std::span<const std::byte> from);
@@ -84,9 +87,9 @@ class Emulator {
   StopLevel level() const;         // level of the current or last stop
   double run_time() const;         // [s]
   const StopReport& stop() const;  // report of the last stop
-  // Describes why ALIGN was refused in the last tick: the two parts that are too close to each
-  // other, the key in the scenario's file, and the remedy. Returns "" if ALIGN was not refused. It
-  // must not be called in a tick.
+  // Describes why ALIGN was refused in the last tick. The text names the two parts that are too
+  // close to each other, the key in the scenario's file, and the remedy. Returns "" if ALIGN was
+  // not refused. It must not be called in a tick.
   std::string WhyNotAligned() const;
   // Returns a sentence that states why the physics engine has stopped computing, or "" if the
   // engine works.

@@ -1,5 +1,5 @@
-// Parameters that people change during a run. Each parameter ramps to its new value within one
-// second.
+// Holds the parameters that people change during a run. Each parameter ramps to its new value
+// within one second.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ class ParameterRamps {
     }
   }
 
-  // Starts a parameter's ramp to `value`. If the value is out of range, returns false and changes
-  // nothing.
+  // Starts a parameter's ramp to `value`. If the value is out of range, the function returns false
+  // and changes nothing.
   bool Set(Parameter parameter, double value) noexcept {
     const int k = static_cast<int>(parameter);
     if (k < 0 || k >= kParameters) return false;
@@ -46,7 +46,7 @@ class ParameterRamps {
   }
 
   // Restores the scenario's values. If the rules require it, a reset keeps thresholds that were
-  // tightened: only a person may decide to loosen them.
+  // tightened, because only a person may decide to loosen them.
   void Reset() noexcept {
     for (int k = 0; k < kParameters; ++k) {
       const auto parameter = static_cast<Parameter>(k);

@@ -17,7 +17,7 @@ constexpr double kSmoothing = 2;  // cutoff of that smoothing [Hz]
 
 }  // namespace
 
-// With s = time/T, these polynomials bring an initial position, velocity and acceleration of 1 to
+// With s = time/T, these polynomials bring an initial position, velocity or acceleration of 1 to
 // zero. The polynomial 10 s³ − 15 s⁴ + 6 s⁵ leads to the goal.
 QuinticMotion::Point QuinticMotion::At(double time) const noexcept {
   const double T = duration_;
@@ -41,14 +41,13 @@ Perturbation::Perturbation(const Scenario& scenario, double margin, double dt)
     : spec_(scenario.perturbation), dt_(dt), random_(scenario.seed, "perturbation") {
   if (!spec_) return;
   if (!(margin >= spec_->margin))
-    throw InputError(
-        "perturbation.margin",
-        "perturbation.margin is " + FormatNumber(spec_->margin) +
-            ", but the haptic loop's predicted stability margin is only " +
-            FormatNumber(std::round(100 * margin) / 100) +
-            ". Displacements could make a loop vibrate that is so close to instability. Set "
-            "rendering.lead: auto, make the cobot softer or the object "
-            "heavier (see predictor check), or set perturbation: null.");
+    throw InputError("perturbation.margin",
+                     "perturbation.margin is " + FormatNumber(spec_->margin) +
+                         ", but the haptic loop's predicted stability margin is only " +
+                         FormatNumber(std::round(100 * margin) / 100) +
+                         ". Displacements could cause vibration in a loop that is so close to "
+                         "instability. Set `rendering.lead: auto`, make the cobot softer or the "
+                         "object heavier (see `predictor check`), or set `perturbation: null`.");
   expected_force_ = PerturbationForce(*spec_, scenario.operator_.hand);
   plane_ = PerturbationPlane(*spec_);
   Reset();
@@ -75,7 +74,7 @@ bool Perturbation::MayBegin(const PerturbationInput& input) const noexcept {
   return true;
 }
 
-// Draws a direction that has not been used in the present round, so that all directions are used
+// Draws a direction that has not been used in the current round, so that all directions are used
 // equally often.
 void Perturbation::Begin() noexcept {
   const int count = spec_->directions;

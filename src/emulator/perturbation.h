@@ -1,5 +1,5 @@
-// Displaces the real handles by a few millimetres while a person holds them, so that the impedance
-// of the person's arm can be identified afterwards (docs/how-to/identify-arm.md).
+// Displaces the real handles by a few millimetres while a person holds them. The impedance of the
+// person's arm can then be identified from the recording (docs/how-to/identify-arm.md).
 #pragma once
 
 #include <array>
@@ -13,8 +13,9 @@
 
 namespace predictor {
 
-// A motion along a line with continuous position, velocity and acceleration that ends at rest: a
-// polynomial of fifth order, which has minimum jerk if it starts from rest (Flash & Hogan 1985).
+// A motion along a line that ends at rest, with continuous position, velocity and acceleration. The
+// motion is a polynomial of fifth order, which has minimum jerk if it starts from rest (Flash &
+// Hogan 1985).
 class QuinticMotion {
  public:
   struct Point {
@@ -50,15 +51,16 @@ class Perturbation {
   // Throws InputError if the margin is smaller than the scenario requires.
   Perturbation(const Scenario& scenario, double margin, double dt);
 
-  // Performs one tick of RUN. Does not use the heap or a lock, or throw.
+  // Advances the displacement by one tick of RUN. The function uses neither the heap nor a lock,
+  // and does not throw.
   void Step(const PerturbationInput& input) noexcept;
-  // The real handles are at the virtual handles. Directions and times are drawn again, because a
-  // person may remember those of the last run.
+  // Sets the displacement to zero. Directions and times are drawn again, because a person may
+  // remember the directions and times of the last run.
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept;
 
-  // Returns the displacement of the real handles relative to the virtual handles, in W [m], and its
-  // derivatives.
+  // Returns the displacement of the real handles relative to the virtual handles in W [m], and the
+  // derivatives of this displacement.
   Vector3 displacement() const noexcept { return now_.position * direction_; }
   Vector3 velocity() const noexcept { return now_.velocity * direction_; }
   Vector3 acceleration() const noexcept { return now_.acceleration * direction_; }
@@ -76,7 +78,8 @@ class Perturbation {
   std::array<Vector3, 2> plane_ = {Vector3::UnitX(), Vector3::UnitY()};  // axes of the plane
 
   RandomStream random_;
-  // The numbers of the directions. The last `left_` numbers have not been used in this round.
+  // The numbers of the directions. The last `left_` numbers in this list have not been used in this
+  // round.
   std::array<std::uint8_t, 16> order_{};
   int left_ = 0;
   Phase phase_ = Phase::kWait;

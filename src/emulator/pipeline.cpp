@@ -85,8 +85,8 @@ void Pipeline::SenseArm(const TickPlan& plan, int hand, TickData* data) noexcept
   data->wrench[hand] = plan.wrench_known ? arm.wrench() : HandWrench();
 }
 
-// A sensor between hand and handle would measure the hand's force without the force of the hand's
-// inertia, because this inertia is part of the scene in direct mode.
+// In direct mode, the hand's inertia is part of the scene. A sensor between hand and handle would
+// therefore measure the hand's force without the force of its inertia.
 void Pipeline::SenseDirectly(const TickPlan& plan, TickData* data) noexcept {
   OperatorInput input;
   input.dt = dt_;
@@ -117,7 +117,7 @@ void Pipeline::Simulate(const TickPlan& plan, TickData* data) noexcept {
   input.present = hands_;
   input.coupled = !direct_;
   input.handle = data->real;
-  // The coupling must not pull the virtual handles after a commanded displacement.
+  // A commanded displacement must not make the coupling pull the virtual handles.
   if (perturbation_) {
     for (const int i : hands_) {
       input.handle[i].X_W.p -= perturbation_->displacement();
@@ -147,7 +147,7 @@ std::array<RenderArm, kHands> Pipeline::View() const noexcept {
   return view;
 }
 
-// Outside RUN there is no displacement, because only a stop or the alignment moves the arms.
+// Outside RUN, there is no displacement, because only a stop or the alignment moves the arms.
 void Pipeline::Perturb(const TickPlan& plan, TickData* data) noexcept {
   data->perturbation.setZero();
   if (!perturbation_ || plan.state != RunState::kRun || !plan.time_passes) return;
@@ -172,8 +172,8 @@ void Pipeline::Render(const TickPlan& plan, TickData* data) noexcept {
   const WorldState& after = world_.state();
   for (const int i : hands_) {
     arms_[i]->LookAhead(guard_.last()[i]);
-    // Both poses belong to the time of the sample, so that their difference is the error.
-    // Velocities and accelerations are the values after the step.
+    // Both poses are poses at the time of the sample, so their difference is the error. These
+    // velocities and accelerations are the values after the step.
     target.handle[i] = data->before.handle[i];
     target.handle[i].V_W = target.aligning ? Twist(Twist::Zero()) : after.handle[i].V_W;
     target.handle[i].A_W = after.handle[i].A_W;
@@ -218,12 +218,12 @@ StopGeometry Pipeline::GeometryForStop(const MotionOrder& order, const TickData&
   return geometry;
 }
 
-// Slows both arms by the same factor so that no handle exceeds its cap, regardless of which module
+// Slows both arms by the same factor, so that no handle exceeds its cap, regardless of which module
 // computed the command. Returns the number of joints changed.
 int Pipeline::KeepToCap(const MotionOrder& order, const std::array<Jacobian, kHands>& J,
                         std::array<JointVector, kHands>* v) const noexcept {
-  // In the previous posture of the arms, the last command did not exceed the cap, but it may exceed
-  // the cap in this posture.
+  // The last command did not exceed the cap in the previous posture of the arms. In the new
+  // posture, it may exceed the cap.
   double factor = 1, last_factor = 1;
   for (const int i : hands_) {
     if ((*v)[i].size() != J[i].cols()) continue;
@@ -236,18 +236,18 @@ int Pipeline::KeepToCap(const MotionOrder& order, const std::array<Jacobian, kHa
     last_factor = std::min(last_factor, allowed(guard_.last()[i]));
   }
   // Recovery ignores the joints' acceleration limits. If the guard limited each joint separately,
-  // the handles would move in another direction than commanded, and perhaps faster.
+  // the handles would move in a direction other than the commanded one, and perhaps faster.
   return factor < 1 || order.motion == Motion::kRecover ? guard_.Slow(factor, v, last_factor) : 0;
 }
 
 void Pipeline::ApplyGuard(const MotionOrder& order, TickData* data) noexcept {
   data->guard_altered = 0;
   if (direct_) return;
-  // Joint positions of the last valid sample. An invalid sample has already stopped the arms and
-  // must not replace the stop's profile with the guard's own braking.
+  // Joint positions of the last valid sample. An invalid sample has already stopped the arms. It
+  // must not cause the guard's own braking to replace the stop's profile.
   std::array<JointVector, kHands> q;
-  // These Jacobians are valid at the time when the command will take effect. Rendering and braking
-  // use the same prediction.
+  // These Jacobians are the predicted Jacobians at the time when the command will take effect.
+  // Rendering and braking use the same prediction.
   std::array<Jacobian, kHands> J;
   for (int i = 0; i < kHands; ++i) {
     if (!arms_[i]) continue;

@@ -1,5 +1,5 @@
-// The physical part of a tick: from the device's sample to joint velocities that may be sent. The
-// pipeline has no state except the state of its models; all other data are passed as values.
+// The physical part of a tick, from the device's sample to the joint velocities that may be sent.
+// The pipeline has no state except the state of its models. All other data is passed as values.
 #pragma once
 
 #include <array>
@@ -31,33 +31,34 @@ class Pipeline {
 
   // -- Stages of a tick, in this order. They do not use the heap or a lock, and do not throw. --
 
-  // Computes the handles and the hands' wrenches from the sample. In direct mode the operator acts
+  // Computes the handles and the hands' wrenches from the sample. In direct mode, the operator acts
   // on the virtual handles instead.
   void Sense(const TickPlan& plan, TickData* data) noexcept;
-  // Performs one step of the virtual world if simulated time passes.
+  // Advances the virtual world by one step if simulated time passes.
   void Simulate(const TickPlan& plan, TickData* data) noexcept;
-  // Computes joint velocities by the QP if the plan requires rendering.
+  // Computes joint velocities with the QP if the plan requires rendering.
   void Render(const TickPlan& plan, TickData* data) noexcept;
   // Computes joint velocities for every kind of motion except braking.
   void Command(const MotionOrder& order, TickData* data) noexcept;
-  // Returns the handles at the time when the arms will follow a stop's next command.
+  // Returns the motion of the handles at the time when the arms will follow a stop's next command.
   StopGeometry GeometryForStop(const MotionOrder& order, const TickData& data) noexcept;
-  // Limits the command for the handles and for each joint. Updates data->sent.
+  // Limits the command so that the limits of the handles and of each joint are kept. Updates
+  // data->sent.
   void ApplyGuard(const MotionOrder& order, TickData* data) noexcept;
 
   // -- Between the stages. These do not use the heap or a lock, and do not throw. --
 
   // Returns the condition that prevents the arms from starting at their current position.
   Beyond FindBeyond() const noexcept;
-  // Describes the place of this condition and the remedy for the user. It must not be called in a
-  // tick.
+  // Returns a text for the user that describes the place of this condition and the remedy. It must
+  // not be called in a tick.
   std::string DescribeBeyond(Refusal refusal) const;
   void BeginTare() noexcept;
-  // Returns kSensor with the hand if a sensor was not quiet.
+  // Returns kSensor and the hand if a sensor was not quiet.
   Status FinishTare() noexcept;
-  // Returns to the scenario's start.
+  // Brings the virtual world back to the scenario's start.
   void Reset(SentMotion* sent) noexcept;
-  // Updates `sent` from the guard's state after a state was loaded.
+  // After a state was loaded, this function updates `sent` from the guard's state.
   void UpdateSent(SentMotion* sent) const noexcept;
 
   bool direct() const { return direct_; }

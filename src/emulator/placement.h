@@ -22,12 +22,12 @@ std::array<JointVector, kHands> PlaceArms(
 bool PlaceArm(const ArmSpec& spec, const RobotModel& model, const FrameId& handle, const Pose& X_WD,
               double offset, JointVector* q);
 
-// Loads the model of a hand's arm. Throws InputError at a key of the scenario whose links or joints
-// do not fit the model.
+// Loads the model of a hand's arm. Throws InputError for a key of the scenario whose links or
+// joints do not fit the model.
 std::shared_ptr<const RobotModel> LoadArm(const Scenario& scenario, int hand);
 
 // Returns joint positions from a list in a scenario. If the list is empty, each joint is in the
-// middle of its range, limited to ±3.
+// middle of its range. For this purpose, the range is limited to ±3.
 JointVector StartingJoints(const ArmSpec& spec, const RobotModel& model);
 
 }  // namespace predictor

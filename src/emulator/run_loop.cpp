@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kStartTimeout = 30;  // longest time from the first tick to RUN [s]
 // The loop wakes up this long before a tick is due [ns]. Wake-ups are late by tens of microseconds,
-// and after sleep a core is slow for about the same time.
+// and a core is slow for about the same time after it has slept.
 constexpr std::uint64_t kAwakeBefore = 150'000;
 
 std::uint64_t TimeOf(clockid_t clock) {
@@ -43,7 +43,7 @@ bool AtRest(const Emulator& e) {
   return e.state() == RunState::kHeld || e.state() == RunState::kUnpowered;
 }
 
-// `began` states whether the run reached RUN, even if it was reset later.
+// `began` states whether the run has reached RUN, even if the run was reset later.
 RunEnd EndOf(const Emulator& e, bool began) {
   if (e.record().cause != StopCause::kNone) return RunEnd::kStopped;
   return began ? RunEnd::kFinished : RunEnd::kNotStarted;
@@ -51,8 +51,8 @@ RunEnd EndOf(const Emulator& e, bool began) {
 
 constexpr double kMaxScenarios = 1e6;  // maximum length of a list of scenarios
 
-// Submits a stop if the count `asked` has changed since `seen`. `client` is the page that sent the
-// last stop request.
+// Submits a stop if the count `asked` differs from the count `seen`. `client` is the page that sent
+// the last stop request.
 void TakeStop(const std::atomic<std::uint32_t>& asked, const std::atomic<std::uint32_t>* client,
               std::uint32_t* seen, Emulator* emulator) noexcept {
   const std::uint32_t now = asked.load(std::memory_order_acquire);
@@ -63,7 +63,7 @@ void TakeStop(const std::atomic<std::uint32_t>& asked, const std::atomic<std::ui
   if (emulator->Submit(input)) *seen = now;
 }
 
-// Inputs that do not fit into this tick wait in the mailbox, but a stop request never waits.
+// Inputs that do not fit into this tick remain in the mailbox, but a stop request never waits.
 // `scenario` is null if no scenario may be selected.
 void TakeInputs(RunMailbox* mailbox, std::uint32_t* stops, Emulator* emulator,
                 std::optional<std::size_t>* scenario) noexcept {
@@ -101,8 +101,8 @@ void WatchTheWatchdog(const std::atomic<std::uint32_t>& beats, std::uint64_t now
   if (input.value > kWatchdogSilence && MayMove(emulator->state())) emulator->Submit(input);
 }
 
-// Stops the arms after a suspend, because all data about arms and people are then stale. `now` is
-// in [ns].
+// Stops the arms after the computer was suspended, because all data about arms and people is then
+// stale. `now` is in [ns].
 void WatchForSuspend(std::uint64_t now, SuspendWatch* watch, Emulator* emulator) noexcept {
   const std::uint64_t boot = TimeOf(CLOCK_BOOTTIME);
   RunInput input;
@@ -113,7 +113,7 @@ void WatchForSuspend(std::uint64_t now, SuspendWatch* watch, Emulator* emulator)
   if (input.value > 0) emulator->Submit(input);
 }
 
-// `seen` is the number of signs of life that were already processed.
+// `seen` is the number of signals that were already processed.
 void TakeEnabling(const std::atomic<std::uint32_t>& enabling, std::uint32_t* seen,
                   Emulator* emulator) noexcept {
   const std::uint32_t now = enabling.load(std::memory_order_acquire);
@@ -151,8 +151,8 @@ RunEnd Simulate(Emulator* emulator, double duration,
                 const std::function<void(const TickRecord&)>& on_record) {
   if (!(duration > 0))
     throw InputError(
-        "A run in virtual time needs a length, because no one can end it. Give the length with "
-        "--duration.");
+        "A run in virtual time needs a length, because no one can end the run. Give the length "
+        "with --duration.");
   const double dt = emulator->dt();
   for (double t = 0; !AtRest(*emulator); t += dt) {
     emulator->Tick();
@@ -175,7 +175,7 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
   const auto period = static_cast<std::uint64_t>(dt * 1e9);
   std::uint64_t due = Now() + period;
   int missed = 0;
-  // Stop requests in the mailboxes that were already processed.
+  // Numbers of stop requests in the mailboxes that were already processed.
   std::uint32_t page_stops = 0, ros_stops = 0;
   std::uint32_t enabled = 0;
   Heartbeat watchdog;
@@ -204,12 +204,12 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
       if (StartIsRefused(*emulator)) break;
       AutoStart(emulator);
     }
-    // The last record of a run must show the arms at rest. Otherwise, a viewer would mistake the
-    // end of the run for a hang.
+    // The last record of a run must show the arms at rest. Otherwise, it would appear to a viewer
+    // that the run hangs.
     const bool may_move = MayMove(emulator->state()) || MayMove(emulator->record().state);
     const bool asked_to_end = quit.load(std::memory_order_relaxed);
     if (asked_to_end && !may_move) break;
-    // Pages that select the next scenario need a last record that shows that nothing moves.
+    // A page may select the next scenario only if the last record shows that nothing moves.
     const bool shown = !options.allow_scenario_switch || !MayMove(emulator->record().state);
     const bool as_planned =
         options.allow_scenario_switch && emulator->record().cause == StopCause::kNone;
@@ -217,7 +217,8 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
     if (asked_to_end || IsOver(*emulator, options.duration)) emulator->RequestEnd();
     if (options.auto_start && !began && emulator->setup().rules.auto_start && t > kStartTimeout)
       break;
-    // Missed periods are not repeated, because the arms held their command meanwhile.
+    // Missed periods are not repeated, because the arms continued with their last command
+    // meanwhile.
     due += period;
     missed = 0;
     const std::uint64_t now = Now();

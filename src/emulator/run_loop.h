@@ -1,5 +1,5 @@
-// The two loops that execute the tick: one runs as fast as the computer allows, the other is paced
-// by the clock.
+// The two loops that execute the tick. One loop runs as fast as the computer allows, and the clock
+// paces the other.
 #pragma once
 
 #include <atomic>
@@ -21,16 +21,16 @@ enum class RunEnd { kFinished, kStopped, kNotStarted };
 // arms, only a person may request these steps. Call this after each tick.
 void AutoStart(Emulator* emulator) noexcept;
 
-// Returns whether a request of AutoStart was refused in the last tick. Because the arms do not
-// move, the same request would be refused every time.
+// Returns whether a request of AutoStart was refused in the last tick. The arms do not move, so the
+// same request would be refused every time.
 bool StartIsRefused(const Emulator& emulator) noexcept;
 
 // Returns whether `duration` [s] of run time has passed in RUN. Returns false if `duration` is 0.
 // RECOVERY may still free a hand afterwards.
 bool IsOver(const Emulator& emulator, double duration) noexcept;
 
-// Executes ticks in virtual time until `duration` [s] of run time has passed, until a stop is at
-// rest, or until the start is refused. `on_record` receives every record. Throws InputError if
+// Executes ticks in virtual time until `duration` [s] of run time has passed, the arms are at rest
+// after a stop, or the start is refused. `on_record` receives every record. Throws InputError if
 // `duration` is 0.
 RunEnd Simulate(Emulator* emulator, double duration,
                 const std::function<void(const TickRecord&)>& on_record);
@@ -44,8 +44,8 @@ struct RealTimeReport {
                                         // in a list
 };
 
-// Receives snapshots of the emulator's complete state. The tick's thread calls it between two
-// ticks, so it must not use the heap or a lock, or throw.
+// An interface that receives snapshots of the emulator's complete state. The thread of the tick
+// calls the functions between two ticks, so they must not throw and must not use the heap or locks.
 class SnapshotSink {
  public:
   virtual ~SnapshotSink() = default;
@@ -63,20 +63,21 @@ struct RealTimeOptions {
   bool auto_start = true;             // call AutoStart until RUN is reached for the first time
   bool watch_headsets = false;        // a silent headset stops the run
   SnapshotSink* snapshots = nullptr;  // null without a recording
-  // Counts the signs of a held enabling key; null without real arms.
+  // Counts the signals of a held enabling key. The pointer is null without real arms.
   const std::atomic<std::uint32_t>* enabling = nullptr;
   const StopMailbox* stops = nullptr;  // stop requests of ROS-TCP clients; null without the server
-  // Counts the watchdog's signs of life; null without real arms.
+  // Counts the heartbeats of the watchdog. The pointer is null without real arms.
   const std::atomic<std::uint32_t>* watchdog = nullptr;
   bool allow_scenario_switch = false;  // a page may select the next scenario while the arms are at
                                        // rest
 };
 
-// Executes ticks in real time in the calling thread, one per period of the monotonic clock. If
+// Executes ticks in real time in the calling thread, one tick per period of the monotonic clock. If
 // permitted, the thread has real-time scheduling and locked memory. Publishes each record to
-// `ring`. Returns when the arms are at rest after `duration` or a stop, when `quit` is set, when a
-// page has selected the next scenario, or when an automatic start is refused. (With keep_running, a
-// stop does not end the loop, and `duration` ends it only with allow_scenario_switch.)
+// `ring`. The function returns in one of four cases: the arms are at rest after `duration` or a
+// stop, `quit` is set, a page has selected the next scenario, or an automatic start is refused.
+// (With keep_running, a stop does not end the loop, and `duration` ends it only with
+// allow_scenario_switch.)
 RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
                    const std::atomic<bool>& quit, RecordRing* ring, RealTimeReport* report);
 

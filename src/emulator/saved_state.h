@@ -1,4 +1,4 @@
-// The saved state of an emulator, which contains everything that a later tick depends on.
+// The saved state of an emulator, which contains everything on which a later tick depends.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,8 @@ struct SavedState {
   std::uint64_t& tick;
 };
 
-// Saves or loads the parts of the state in the order of the bytes. Does not use the heap or throw.
+// Saves or loads the parts of the state in the order in which they are stored. Does not use the
+// heap or throw.
 void ArchiveState(StateArchive& a, const SavedState& state) noexcept;
 
 }  // namespace predictor

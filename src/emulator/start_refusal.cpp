@@ -28,7 +28,7 @@ InputError LinkRefusal(const BeyondPlace& at, const std::array<std::string, 2>& 
                            links[0].c_str(), at.value, links[1].c_str(), at.low));
 }
 
-// Returns "link "panda_link4" of the left arm", for example.
+// Returns, for example, "link "panda_link4" of the left arm".
 std::string LinkWords(const RobotModel& model, const FrameId& frame, int hand) {
   for (const std::string& link : model.link_names()) {
     const FrameId named = model.Frame(link);

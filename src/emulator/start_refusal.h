@@ -13,7 +13,7 @@
 namespace predictor {
 
 // Names the two parts that are too close to each other, the key in the scenario's file, and the
-// remedy. If no two parts are too close, returns the sentence of `refusal`.
+// remedy. If no two parts are too close to each other, returns the sentence of `refusal`.
 std::string StartRefusal(const Scenario& scenario, const BeyondPlace& at,
                          const std::array<RenderArm, kHands>& arms, Refusal refusal);
 

@@ -77,7 +77,7 @@ StopBudget StopOfArms(const Scenario& s, double acceleration) {
   const double dt = 1 / s.rate, speed = s.safety.handle_speed, jerk = s.safety.stop_jerk;
   double latest = 0;
   for (const int hand : s.hands()) latest = std::max(latest, Overrun(s.arm(hand), dt));
-  // The handles move at constant speed, or accelerate to this speed as in WorstStop.
+  // The handles move at constant speed or accelerate to this speed, as in WorstStop.
   const double rate = std::min(acceleration, std::sqrt(0.4 * jerk * speed));
   StopBudget worst{0, 0};
   for (const double up : {0.0, rate}) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double kInitPatience = 0.2;  // longest wait for fresh samples in INIT [s]
 constexpr double kTareTime = 0.3;      // duration of averaging the sensors with hands off [s]
 constexpr int kMinTareTicks = HandEstimator::kTareSamples + 1;
-// ALIGN ends early if the error of no handle exceeds these values [m], [rad], ...
+// ALIGN ends early when the errors of all handles are at most these values [m], [rad], ...
 constexpr double kAlignedWell = 1e-4, kAlignedWellRotation = 1e-3;
 // ... and after this time [s] if all errors are within the scenario's tolerance.
 constexpr double kAlignPatience = 3;
@@ -43,7 +43,7 @@ std::array<SamplePeriods, kHands> PeriodsOf(const Scenario& s) {
   return periods;
 }
 
-// Returns whether a driver still moves its arm, regardless of the commands.
+// Returns whether a driver still moves its arm by itself.
 bool InMotion(const DeviceSample& sample) {
   return sample.arms[0].in_motion || sample.arms[1].in_motion;
 }
@@ -154,7 +154,7 @@ void Supervisor::HandleFault(const Status& fault, const SentMotion& sent) noexce
 
 // The first fault stops the arms in the same tick. A later fault may only raise the level of the
 // stop. If a run ended without a fault and the arms are at rest, a fault that would only hold the
-// arms does not act before the reset.
+// arms has no effect before the reset.
 void Supervisor::HandleFault(const Status& fault, RunEvent stop, const SentMotion& sent) noexcept {
   if (fault.ok()) return;
   const RunState state = states_.state();
@@ -168,8 +168,8 @@ void Supervisor::HandleFault(const Status& fault, RunEvent stop, const SentMotio
   BeginStop(fault, stop, sent);
 }
 
-// Makes a stop that would have held the arms end without power. If the run ended without a fault,
-// this fault becomes the fault of the run.
+// Raises the level of a stop that would have held the arms, so that the stop ends without power. If
+// the run ended without a fault, this fault becomes the fault of the run.
 void Supervisor::EscalateToPowerOff(const Status& fault) noexcept {
   if (states_.level() != StopLevel::kHold) return;
   states_.Handle(RunEvent::kStopAndPowerOff);
@@ -178,8 +178,8 @@ void Supervisor::EscalateToPowerOff(const Status& fault) noexcept {
   cause.power_off = true;
 }
 
-// A stop that is in progress continues. The cause of the stop may become known later, and its level
-// may rise.
+// A stop in progress continues. The cause of the stop may become known later, and the level of the
+// stop may rise.
 void Supervisor::BeginStop(const Status& cause, RunEvent stop, const SentMotion& sent) noexcept {
   if (states_.Handle(stop)) state_time_ = 0;
   if (states_.state() != RunState::kStopping) return;
@@ -187,9 +187,9 @@ void Supervisor::BeginStop(const Status& cause, RunEvent stop, const SentMotion&
   stopper_.Begin(cause, run_time_, sent.v, sent.handle_speed, sent.handle_rate, &sent.handle_twist);
 }
 
-// Returns the fault of an arm that still moves after the stop timed out: the arm that was last seen
-// moving, otherwise the arm whose driver reports motion. The result includes the speed if the speed
-// is the only evidence of motion.
+// Returns the fault of an arm that still moves after the stop timed out. This is the arm that was
+// last seen moving or, if there is none, the arm whose driver reports motion. The result includes
+// the speed of the arm if this speed is the only evidence of motion.
 Status Supervisor::StillMoving(const TickData& data) const noexcept {
   const int hand = stopper_.mover() >= 0 ? stopper_.mover() : data.sample.arms[0].in_motion ? 0 : 1;
   const double speed = HandleSpeed(data.real[hand].V_W);
@@ -201,8 +201,8 @@ Status Supervisor::StillMoving(const TickData& data) const noexcept {
 }
 
 // Returns the number of ticks since the last command. A stop needs this number to keep its timing,
-// because the arms continued to move meanwhile. During longer gaps than those that stop a run, the
-// arms' own controllers stop the arms.
+// because the arms continued to move between the commands. If the gap is longer than a gap that
+// stops a run, the arms' own controllers stop the arms.
 int Supervisor::TicksPassed(const TickData& data) const noexcept {
   if (!rules_.arms_move_between_ticks) return 1;
   return 1 + std::min(static_cast<int>(data.missed), Monitor::kMissedDeadlines);
@@ -279,7 +279,7 @@ bool Supervisor::Advance(const TickData& data, Beyond beyond,
   } else if (state == RunState::kAlign && aligned_ && !InMotion(data.sample)) {
     changed = states_.Handle(RunEvent::kAligned);
   } else if (state == RunState::kStopping && (direct_ || stopper_.done())) {
-    // Arms that continue to move although they were commanded to rest must not be held.
+    // Arms that continue to move although they were commanded to rest must not be held with power.
     if (rules_.cuts_power_of_moving_arms && stopper_.timed_out())
       EscalateToPowerOff(StillMoving(data));
     changed = states_.Handle(RunEvent::kStandstill);
@@ -290,8 +290,8 @@ bool Supervisor::Advance(const TickData& data, Beyond beyond,
   return state == RunState::kInit;
 }
 
-// Returns whether each handle is at most this far from its virtual handle [m], [rad]. The result is
-// valid only in states in which the virtual world is paused.
+// Returns whether the distance of each handle from its virtual handle is at most this large [m],
+// [rad]. The result is valid only in states in which the virtual world is paused.
 bool Supervisor::Within(double position, double rotation, const TickData& data) const noexcept {
   for (const int i : hands_) {
     const Pose &goal = data.after->handle[i].X_W, &real = data.real[i].X_W;
@@ -301,8 +301,8 @@ bool Supervisor::Within(double position, double rotation, const TickData& data) 
   return true;
 }
 
-// Returns whether the handles are at their virtual handles. After their errors were small once, the
-// handles may move within the tolerance while the arms come to rest.
+// Returns whether the handles are at their virtual handles. Once the errors of the handles have
+// been small, the handles may move within the tolerance while the arms come to rest.
 bool Supervisor::Aligned(const TickData& data) const noexcept {
   if (!Within(safety_.align_tolerance, safety_.align_tolerance_rotation, data)) return false;
   if (aligned_) return true;
@@ -312,8 +312,8 @@ bool Supervisor::Aligned(const TickData& data) const noexcept {
 }
 
 // Returns whether RECOVERY may end. The arms must be at rest, no part may be beyond its limit, and
-// the key must be released (with a simulated rig, nothing must be left to do). After a stop,
-// RECOVERY may end earlier, because the reset checks this again.
+// with real arms the key must be released. After a stop, RECOVERY may end earlier, because the
+// reset checks these conditions again.
 bool Supervisor::Recovered(const TickData& data, Beyond beyond) const noexcept {
   for (const JointVector& v : data.sent.v)
     if ((v.array() != 0).any()) return false;

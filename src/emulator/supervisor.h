@@ -1,5 +1,5 @@
-// The decisions of a tick: the requests that are granted, the faults that stop the arms, and the
-// next state. The supervisor knows neither models nor physics, and judges only the values of the
+// Makes the decisions of a tick: which requests are granted, which faults stop the arms, and which
+// state is next. The supervisor knows neither models nor physics, and judges only the values of the
 // tick.
 #pragma once
 
@@ -24,7 +24,7 @@
 
 namespace predictor {
 
-// Properties of the arms known before the first tick. Absent arms: empty, zero.
+// Properties of the arms that are known before the first tick. Absent arms: empty, zero.
 struct ArmsSpec {
   std::array<JointBounds, kHands> bounds;
   std::array<double, kHands> lags = {};      // lag behind the commands [s]
@@ -32,7 +32,7 @@ struct ArmsSpec {
                                              // divided by the speed before [s]
 };
 
-// The request that was refused in this tick, in the form in which it is recorded.
+// The request that was refused in this tick, in the form used in the record.
 struct RefusedRequest {
   std::uint8_t event = 0;  // 1 + RunEvent; 0: none
   Refusal why = Refusal::kNone;
@@ -51,13 +51,14 @@ class Supervisor {
   // -- Steps of a tick, in this order. They do not use the heap or a lock, and do not throw. --
 
   RunRequests TakeRequests() noexcept;
-  // Grants or refuses the requests. `data` contains the values of the previous tick. `beyond` is
-  // the condition that prevents the arms from starting, if ALIGN is requested. Returns true if the
+  // Grants or refuses the requests. `data` contains the values of the previous tick. If ALIGN is
+  // requested, `beyond` is the condition that prevents the arms from starting. Returns true if the
   // run was reset. In this case, the pipeline must also be reset.
   bool HandleRequests(const TickData& data, Beyond beyond) noexcept;
   // Returns the work that the pipeline must do in this tick.
   TickPlan Plan(const DeviceSample& sample) noexcept;
-  // Runs the safety monitor, checks enabling, and updates the warnings. A fault starts a stop.
+  // Runs the safety monitor, checks whether motion is enabled, and updates the warnings. A fault
+  // starts a stop.
   void Check(const TickPlan& plan, const TickData& data) noexcept;
   // Returns the motion of the arms in this tick.
   MotionOrder Order(const TickPlan& plan, const TickData& data) const noexcept;
@@ -72,9 +73,10 @@ class Supervisor {
   void EndTick(const TickPlan& plan) noexcept;
   // Returns whether the self-test ends in this tick. In this case, the pipeline must finish taring.
   bool SelfTestEnds() const noexcept;
-  // Makes those transitions that do not need a person. `beyond` is the condition that prevents the
-  // arms from starting, in RECOVERY. If the self-test ends, `self_test` is the result of taring.
-  // Returns true if the self-test begins. In this case, the pipeline must start taring.
+  // Makes the transitions between states that do not need a person. In RECOVERY, `beyond` is the
+  // condition that prevents the arms from starting. When the self-test ends, `self_test` is the
+  // result of taring. Returns true if the self-test begins. In this case, the pipeline must start
+  // taring.
   bool Advance(const TickData& data, Beyond beyond,
                const std::optional<Status>& self_test) noexcept;
   void FollowEnablingDevice(Enabling now) noexcept;

@@ -67,7 +67,8 @@ bool Supervisor::Accept(const RunInput& input) noexcept {
   }
 }
 
-// The first fault of a tick counts. If a fault has no duration, the request is refused.
+// Only the first fault of a tick counts. If a requested fault has no duration, the request is
+// refused.
 bool Supervisor::ReportFault(const Status& fault) noexcept {
   if (!(fault.value > 0)) return false;
   if (reported_.ok()) reported_ = fault;
@@ -99,7 +100,7 @@ RunRequests Supervisor::TakeRequests() noexcept {
   return requests;
 }
 
-// Stops are processed first and in any state, beginning with the most severe stop. Other requests
+// Stops are processed first and in every state, beginning with the most severe stop. Other requests
 // in the same tick as a stop are dropped.
 bool Supervisor::HandleRequests(const TickData& data, Beyond beyond) noexcept {
   const RunRequests& requests = data.requests;
@@ -124,7 +125,7 @@ bool Supervisor::HandleRequests(const TickData& data, Beyond beyond) noexcept {
   return reset;
 }
 
-// If the run already has a fault, that fault remains its cause.
+// If the run already has a fault, this fault remains the cause of the stop.
 void Supervisor::StopOnRequest(RunEvent stop, const SentMotion& sent) noexcept {
   const RunState state = states_.state();
   const bool at_rest = state == RunState::kHeld || state == RunState::kUnpowered;
@@ -145,8 +146,8 @@ bool Supervisor::HandsFree(const TickData& data) const noexcept {
   return true;
 }
 
-// In direct mode, there are no arms. The handles belong to the object, and simulated time is
-// paused.
+// In direct mode, there are no haptic arms. The handles are part of the object, and simulated time
+// is paused.
 bool Supervisor::ArmsStand(const TickData& data) const noexcept {
   if (direct_) return true;
   for (const int i : hands_)
@@ -176,8 +177,8 @@ Refusal Supervisor::WhyRefused(RunEvent event, const TickData& data, Beyond beyo
                                     : Refusal::kNone;
 }
 
-// Returns whether the run was reset. In the wrong state, the table may convert a request into a
-// stop.
+// Returns whether the run was reset. If a request arrives in the wrong state, the table of states
+// may convert the request into a stop.
 bool Supervisor::Grant(RunEvent event, const TickData& data, Beyond beyond) noexcept {
   if (direct_ && event == RunEvent::kRecoverRequested) return false;  // no arms to recover
   if (const Refusal why = WhyRefused(event, data, beyond); why != Refusal::kNone) {
@@ -199,7 +200,7 @@ bool Supervisor::Grant(RunEvent event, const TickData& data, Beyond beyond) noex
   return false;
 }
 
-// Returns to the scenario's start without any motion.
+// Resets the run to the scenario's start without any motion.
 void Supervisor::ResetRun() noexcept {
   fault_ = power_off_cause_ = Status::Ok();
   run_time_ = state_time_ = healthy_time_ = 0;
@@ -221,11 +222,11 @@ Status Supervisor::CheckEnabling() const noexcept {
   return {StopCause::kEnabling, -1, enabling_age_, kEnablingSilence};
 }
 
-// The signs of the device are submitted as inputs of the next tick, like the signs of a key, and
-// are therefore recorded. A device that is already pressed when the program starts, or is still
-// pressed after a stop, may be jammed or taped down. Such a device counts only after it has been
-// released, even if it was silent during the stop. While the device is silent, there are no signs,
-// and after the time-out the device counts as released.
+// The signals of the device are submitted as inputs of the next tick, like the signals of a key,
+// and are therefore recorded. A device that is already pressed when the program starts, or is still
+// pressed after a stop, may be jammed or taped down. Such a device enables motion only after it has
+// been released, even if it was silent during the stop. While the device is silent, it sends no
+// signals. After the time-out, the device counts as released.
 void Supervisor::FollowEnablingDevice(Enabling now) noexcept {
   if (states_.state() == RunState::kStopping) device_was_released_ = false;
   if (now == Enabling::kNone || now == Enabling::kSilent) return;

@@ -24,7 +24,7 @@ struct RunRequests {
   }
 };
 
-// The joint velocities last sent, and the resulting motion of the handles.
+// The joint velocities that were last sent, and the resulting motion of the handles.
 struct SentMotion {
   std::array<JointVector, kHands> v;  // [rad/s]
   bool may_rest_next = true;          // the next command may be zero
@@ -66,8 +66,8 @@ struct MotionOrder {
   int ticks = 1;  // ticks since the last command; more than 1 only if braking is late
 };
 
-// Each stage reads what the previous stages wrote. Values that a stage does not write keep their
-// values from the previous tick.
+// Each stage reads the values that the previous stages wrote. Values that a stage does not write
+// keep their values from the previous tick.
 struct TickData {
   std::uint32_t missed = 0;  // consecutive missed deadlines, as reported by the loop
   RunRequests requests;

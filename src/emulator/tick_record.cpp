@@ -121,8 +121,7 @@ void FillDecisions(const RecordSources& from, TickRecord* record) noexcept {
   std::copy_n(supervisor.parameters().values(), kParameters, r.parameters.begin());
 }
 
-// If the hands of a person are not measured, the recorded action is the current action in the
-// script.
+// If no hands of a person are measured, the recorded action is the current action of the script.
 int ActionOf(const RecordSources& from) noexcept {
   if (from.simulated_operator) return from.data.person.action;
   if (from.supervisor.state() != RunState::kRun) return -1;

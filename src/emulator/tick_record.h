@@ -22,7 +22,7 @@ struct RecordSources {
                                     // person holds the handles
 };
 
-// Writes everything except the times of the stages. Increments record->tick.
+// Writes the whole record except the times of the stages. Increments record->tick.
 void BuildRecord(const RecordSources& from, std::uint64_t wall_ns, TickRecord* record) noexcept;
 
 }  // namespace predictor

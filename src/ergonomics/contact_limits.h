@@ -1,10 +1,10 @@
 // Limits of force and pressure on the body in an *unintended* contact with a robot, after the model
-// of ISO/TS 15066: a person lets go and is hit, is clamped against a fixture, or the cobot moves
-// unexpectedly.
+// of ISO/TS 15066. Such a contact occurs, for example, if a person lets go and is hit, if a person
+// is clamped against a fixture, or if the cobot moves unexpectedly.
 //
 // These limits never judge the forces at a handle, because holding a handle is intended contact
-// (hand guiding). They also do not prove conformity, because a real application must be measured
-// (ISO/PAS 5672).
+// (hand guiding). The limits also do not prove conformity, because a real application must be
+// measured (ISO/PAS 5672).
 //
 // The limits come from a file that the user provides. This file names the edition of the
 // specification. The formulas of the model (spring and two masses) are verified.
@@ -47,18 +47,18 @@ enum class ContactKind {
   kQuasiStatic,  // the body part is clamped, for example against a fixture
 };
 
-// These functions return the limits at this point, or 0 if the point must not be hit.
+// These functions return the limits at this point of the body, or 0 if the point must not be hit.
 double ForceLimit(const ContactLimit& limit, ContactKind kind);     // [N]
 double PressureLimit(const ContactLimit& limit, ContactKind kind);  // [Pa]
 
-// Returns m_R = M/2 + m_L [kg]: half of the moving mass of the robot, plus its load including the
-// object.
+// Returns m_R = M/2 + m_L [kg], which is half of the moving mass of the robot plus its load,
+// including the object.
 double EffectiveRobotMass(double moving_mass, double load);
-// Returns 1 / (1/m_H + 1/m_R) [kg]. With a heavy load, this mass hardly depends on the robot.
+// Returns 1 / (1/m_H + 1/m_R) [kg]. If the load is heavy, this mass hardly depends on the robot.
 double ReducedMass(double body_mass, double robot_mass);
 
-// A transient or clamping contact. `area` is the area of the contact [m²]. A value of 0 means that
-// the area is unknown; then only the force counts.
+// A transient contact or a clamping contact. `area` is the area of the contact [m²]. A value of 0
+// means that the area is unknown. In this case, only the force counts.
 struct Contact {
   ContactKind kind = ContactKind::kTransient;
   double robot_mass = 0;  // [kg] effective
@@ -70,7 +70,7 @@ struct ContactSpeed {
   double energy = 0;         // [J] energy F²/2k that the body part then absorbs
   bool by_pressure = false;  // the limit of pressure is reached first
 };
-// The speed is 0 if the point must not be hit.
+// The permitted speed is 0 if the point must not be hit.
 ContactSpeed MaxContactSpeed(const ContactLimit& limit, const Contact& contact);
 
 // A measured or simulated peak as a multiple of the limits. The multiple is infinite if the point

@@ -29,8 +29,8 @@ double DamageRisk::DailyDamage(double probability) const {
 double LiftDamage(double load_moment) { return std::exp(0.038 * load_moment + 0.32) / 1902416; }
 
 double HandDamage(double effort) {
-  // The greatest effort strains a tendon to 1/1.4 of failure. DUET's table assigns 3.6 % to effort
-  // 0.
+  // The greatest effort loads a tendon to 1/1.4 of its failure stress. DUET's table assigns a
+  // stress of 3.6 % to effort 0.
   return TendonDamage(std::max(3.6, 10 * effort / 1.4));
 }
 

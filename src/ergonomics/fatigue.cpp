@@ -29,7 +29,7 @@ constexpr JointFatigue kJointFatigue[kFatigueJoints] = {
 
 const JointFatigue& Of(FatigueJoint joint) { return kJointFatigue[static_cast<int>(joint)]; }
 
-// Returns the flow from the resting into the active share [1/s].
+// Returns the flow from the resting share to the active share of the muscle [1/s].
 double Recruitment(const Compartments& m, double load) {
   if (m.active >= load) return kDevelopment * (load - m.active);
   return kDevelopment * std::min(load - m.active, m.resting);

@@ -1,4 +1,5 @@
-// The parts that the worksheets of RULA and REBA have in common, and how their tables are stored.
+// The parts that the worksheets of RULA and REBA have in common, and the format in which their
+// tables are stored.
 #pragma once
 
 #include <algorithm>
@@ -16,22 +17,22 @@ constexpr int Cell(std::string_view row, int column) {
   return cell >= 'A' ? cell - 'A' + 10 : cell - '0';
 }
 
-// Returns 1 for an upper arm within 20° of hanging, 2 up to 45° or if stretched backwards, 3 up to
-// 90°, and 4 above.
+// Returns 1 if the upper arm is within 20° of the hanging position, 2 up to 45° or if the arm is
+// stretched backwards, 3 up to 90°, and 4 above 90°.
 inline int UpperArmFlexionScore(double flexion) {
   if (flexion > Degrees(90)) return 4;
   if (flexion > Degrees(45)) return 3;
   return std::abs(flexion) > Degrees(20) ? 2 : 1;
 }
 
-// Returns 1 between 60° and 100°, and otherwise 2.
+// Returns 1 if the elbow angle is between 60° and 100°, and otherwise 2.
 inline int ElbowScore(double flexion) {
   return flexion >= Degrees(60) && flexion <= Degrees(100) ? 1 : 2;
 }
 
-// Returns 1 for an upright trunk, 2 up to 20° in either direction, 3 up to 60° or for more than 20°
-// backwards, and 4 above. RULA's worksheet does not include extension, so extension is scored as in
-// REBA (design choice).
+// Returns 1 for an upright trunk, 2 for a bend of up to 20° in either direction, 3 for up to 60°
+// forwards or more than 20° backwards, and 4 for more than 60°. RULA's worksheet does not include
+// extension, so extension is scored as in REBA (design choice).
 inline int TrunkFlexionScore(double flexion, const PostureThresholds& thresholds) {
   if (std::abs(flexion) <= thresholds.neutral) return 1;
   if (flexion > Degrees(60)) return 4;

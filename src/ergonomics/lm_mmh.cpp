@@ -14,7 +14,8 @@ constexpr double kMaxStudiedFrequency = 20;         // [1/min]
 constexpr double kMinStudiedTravel = 0.25;          // [m]
 constexpr double kMinStudiedDistance = 2.1;         // [m]
 
-// A factor: constant + x / linear + x² / square. A divisor of 0 means that the term is absent.
+// A factor of the form constant + x / linear + x² / square. A divisor of 0 means that the term is
+// absent.
 struct Factor {
   double constant, linear, square = 0;
   double At(double x) const { return constant + x / linear + (square == 0 ? 0 : x * x / square); }
@@ -57,7 +58,8 @@ double LogRate(double frequency, bool* outside) {
   return std::log(Limited(frequency, kMinStudiedFrequency, kMaxStudiedFrequency, outside));
 }
 
-// Lifting and lowering differ in the reference, the variation and the men's frequency factor.
+// The equations for lifting and lowering differ in the reference, the variation and the men's
+// frequency factor.
 Acceptable Vertical(const VerticalHandling& task, Sex sex, double reference, double variation,
                     const Factor& rate) {
   const bool male = sex == Sex::kMale;
@@ -73,7 +75,8 @@ Acceptable Vertical(const VerticalHandling& task, Sex sex, double reference, dou
   return a;
 }
 
-// The distance factor of women is a function of d, and that of men is a function of ln d.
+// The distance factor of women is a function of d, and the distance factor of men is a function of
+// ln d.
 struct HorizontalEquation {
   double reference, variation;
   const Factor &height, &distance;
@@ -93,7 +96,7 @@ Acceptable Horizontal(const HorizontalHandling& task, const HorizontalEquation& 
   return a;
 }
 
-// Pushing and pulling by women differ only in the variation.
+// For women, the equations for pushing and pulling differ only in the variation.
 HorizontalEquation ForceEquation(bool push, ForcePhase phase, Sex sex) {
   const bool initial = phase == ForcePhase::kInitial;
   if (sex == Sex::kFemale) {

@@ -1,11 +1,11 @@
-// The Liberty Mutual equations for manual materials handling (LM-MMH): the load or force that a
-// share of women or men accepts for a working day.
+// The Liberty Mutual equations for manual materials handling (LM-MMH). They give the load or force
+// that a share of women or men accepts for a working day.
 //
 // Source: Potvin, Ciriello, Snook, Maynard & Brogmus 2021, Ergonomics 64, 955–970. Two public
-// transcriptions in one repository and our recollection agree with these constants (verified). The
-// exception is one transcription that has 0.6687 instead of 0.6887 for the sustained push of men.
-// Only 0.6887 gives a factor of 1 under the reference condition, like all other factors (tested).
-// The paper itself was not available.
+// transcriptions in one repository and our recollection agree with these constants (verified).
+// There is one exception: for the sustained push of men, one transcription has 0.6687 instead of
+// 0.6887. Only 0.6887 gives a factor of 1 under the reference condition. All other factors are also
+// 1 under this condition (tested). The paper itself was not available.
 //
 // The method is not suitable for work with one hand or for sitting. The method is also not suitable
 // for judging injury risk, because its limits are loads that people found acceptable, not loads
@@ -22,8 +22,8 @@ struct Acceptable {
   double variation = 0;  // standard deviation / mean
   bool outside = false;  // an input was outside the range of the study and was limited to it
 
-  // Returns the load that this share of people accepts, at least 0. ForShare(0.75) is the usual
-  // design limit.
+  // Returns the load that this share of people accepts. The load is at least 0. ForShare(0.75) is
+  // the usual design limit.
   double ForShare(double share) const;
   // Returns the share of people, 0 … 1, who accept this load.
   double ShareThatAccepts(double load) const;

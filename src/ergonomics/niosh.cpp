@@ -77,7 +77,8 @@ RatedTask Rate(const LiftTask& task) {
           Ratio(task.mean_load, lift.limit)};
 }
 
-// Returns the lowest frequency multiplier of these tasks at the sum of their frequencies.
+// Returns the lowest of the frequency multipliers that these tasks have at the sum of their
+// frequencies.
 double CombinedMultiplier(std::span<const RatedTask> tasks) {
   double frequency = 0, lowest = 1;
   for (const RatedTask& rated : tasks) frequency += rated.task->frequency;

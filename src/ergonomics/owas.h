@@ -1,11 +1,12 @@
 // OWAS, Ovako Working posture Analysing System (Karhu, Kansi & Kuorinka 1977).
 //
-// Source: a stored copy of the table (verified) and our recollection of it. The two sources differ
-// in one cell: back 3, arms 3, legs 7, load 3 (recollection 1, stored copy 2). The larger value is
-// used, and `contested` marks it.
+// Sources: a stored copy of the table (verified) and our recollection of the table. The two sources
+// differ in the cell for back 3, arms 3, legs 7 and load 3: our recollection is 1, and the stored
+// copy has
+// 2. The larger value is used, and `contested` marks it.
 //
-// The method is not suitable for judging arms, because it has only three classes for them, or for
-// judging neck and wrists, which it ignores.
+// The method is not suitable for judging arms, because it has only three classes for arms. It is
+// also not suitable for judging neck and wrists, because it ignores them.
 #pragma once
 
 #include "ergonomics/posture.h"
@@ -41,8 +42,8 @@ Action OwasAction(int category);
 OwasScore AssessOwas(OwasBack back, OwasArms arms, OwasLegs legs, OwasLoad load);
 
 // Returns the classes of a measured posture. Kneeling and walking cannot be detected from the
-// posture, so pass the classes to the function above in these cases. A knee counts as bent beyond
-// 30° (design choice). Does not allocate.
+// posture. In these cases, pass the classes to the function above. A knee counts as bent beyond 30°
+// (design choice). Does not allocate.
 OwasScore AssessOwas(const BodyPosture& body, const ArmPosture& left, const ArmPosture& right,
                      double load,  // [kg]
                      const PostureThresholds& thresholds = kDeclaredThresholds);

@@ -1,8 +1,8 @@
 // A person's posture and exertion, which RULA, REBA and OWAS assess.
 //
-// All angles are in radians and finite, which the assessments do not check. Signs give the
-// direction in which a joint bends, as stated for each member. Side bend and twist count equally in
-// both directions.
+// All angles must be finite and in radians. The assessments do not check this. The sign of an angle
+// gives the direction in which a joint bends, as stated for each member. Side bend and twist count
+// equally in both directions.
 #pragma once
 
 #include <numbers>
@@ -24,8 +24,8 @@ struct BodyPosture {
   bool sitting = false;
 };
 
-// One arm. The members have the same meaning for both arms: in a mirrored posture, the other arm
-// has the same values.
+// One arm. The members have the same meaning for both arms. In a mirrored posture, the other arm
+// therefore has the same values.
 struct ArmPosture {
   double upper_arm_flexion = 0;    // [rad] relative to the trunk; 0: hangs; forward positive
   double upper_arm_abduction = 0;  // [rad] away from the body positive
@@ -52,9 +52,10 @@ struct Exertion {
   Coupling coupling = Coupling::kGood;
 };
 
-// The worksheets were made for observers who see "neutral", "twisted" or "abducted". A measured
-// angle is never exactly zero, so these limits are needed. The values of these limits are a design
-// choice, because no source states them. A report must state these limits with its scores.
+// The worksheets were made for observers, who judge a posture with words such as "neutral",
+// "twisted" or "abducted". A measured angle is never exactly zero, so limits are needed for these
+// words. The values of these limits are a design choice, because no source states them. A report
+// must state these limits with its scores.
 struct PostureThresholds {
   double neutral = Degrees(5);             // |wrist| flexion, trunk upright, neck not in extension
   double side_or_twist = Degrees(10);      // neck, trunk: side bend or twist; wrist: deviation

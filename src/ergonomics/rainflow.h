@@ -1,7 +1,7 @@
-// Rainflow counting: the load cycles of a signal.
+// Rainflow counting finds the load cycles of a signal.
 //
-// Source: ASTM E1049-85, section 5.4.4 (three points). The worked example of this standard is one
-// of our tests.
+// Source: ASTM E1049-85, section 5.4.4 (three-point method). The worked example of this standard is
+// one of our tests.
 #pragma once
 
 #include <span>

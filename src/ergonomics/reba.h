@@ -1,9 +1,9 @@
 // REBA, Rapid Entire Body Assessment (Hignett & McAtamney 2000), for one arm.
 //
-// Sources: the tables agree cell by cell with two copies of the worksheet (tested) and with our
-// recollection, and increase monotonically with every score (verified). Other public code contains
-// invented tables. The definitions of group A were compared with a stored handbook chapter
-// (verified). Thresholds of measured angles are a design choice (posture.h).
+// The tables agree cell by cell with two copies of the worksheet (tested) and with our
+// recollection. The table values increase monotonically with every score (verified). Other public
+// code contains invented tables. The definitions of group A were compared with a stored handbook
+// chapter (verified). The thresholds of measured angles are a design choice (posture.h).
 //
 // The method is not suitable for judging the risk of an individual, or for choosing between designs
 // with the same score.
@@ -36,12 +36,13 @@ struct RebaScores {
   Action action;     // level 1 … 5
 };
 
-// Returns the scores of the posture with this arm. A person's score is the worse of the two arms'
+// Returns the scores of the posture with this arm. A person's score is the higher of the two arms'
 // scores. Does not allocate.
 RebaScores AssessReba(const BodyPosture& body, const ArmPosture& arm, const Exertion& exertion,
                       const PostureThresholds& thresholds = kDeclaredThresholds);
 
-// These functions return the printed tables, for values within their axes.
+// These functions return cells of the printed tables. The arguments must be within the axes of the
+// tables.
 int RebaTableA(int neck, int trunk, int legs);
 int RebaTableB(int upper_arm, int lower_arm, int wrist);
 int RebaTableC(int score_a, int score_b);

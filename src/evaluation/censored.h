@@ -1,8 +1,8 @@
-// Statistics of values for some of which only a lower bound was observed.
+// Statistics of a set of values. For some of the values, only a lower bound was observed.
 //
-// The emulator stops a run at its limit of force. The largest force of such a run is a lower bound
-// of what the person would have felt without the stop. Such a lower bound is a right-censored
-// observation.
+// The emulator stops a run when the force reaches its limit. The largest force of such a run is a
+// lower bound of what the person would have felt without the stop. Such a lower bound is a
+// right-censored observation.
 #pragma once
 
 #include <cstddef>
@@ -26,17 +26,16 @@ struct SurvivalStep {
   double standard_error = 0;  // standard error of share_above, by Greenwood's formula
 };
 
-// Returns the steps in ascending order. By convention, a bound counts as larger than an observed
-// value that equals it. The estimate assumes that whether a value is censored does not depend on
-// what the value would have been. This assumption is true for a stop at a fixed limit, but doubtful
-// for other stops.
+// Returns the steps in ascending order. By convention, a lower bound counts as larger than an
+// observed value that equals this bound. The estimate assumes that censoring is independent of the
+// true values. This assumption holds for a stop at a fixed limit but is doubtful for other stops.
 std::vector<SurvivalStep> KaplanMeier(std::span<const CensoredValue> values);
 
-// Returns the smallest observed value that is exceeded by a share of at most 1 − probability. If
-// too many values are censored, the estimate does not reach this probability. In this case, the
-// result is a lower bound: the quantile of all values, censored or not (Quantile), or the largest
-// exact value if this value is larger. Without censored values, the result equals Quantile. Without
-// any values, the result is kUndefined.
+// Returns the smallest observed value that at most a share of 1 − probability of the values
+// exceeds. If too many values are censored, the estimate does not reach this probability. In this
+// case, the result is a lower bound. It is the quantile of all values, censored or not (Quantile),
+// or the largest exact value if that value is larger. Without censored values, the result equals
+// Quantile. If there are no values, the result is kUndefined.
 CensoredValue CensoredQuantile(std::span<const CensoredValue> values, double probability);
 
 // Returns "31.2 N" or "at least 31.2 N".

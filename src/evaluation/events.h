@@ -29,7 +29,7 @@ struct CobotStopSummary {
   double time;  // run time [s]
 };
 
-// Collects the events of the run since its last reset. Add does not use the heap.
+// Collects the events of the run since its last reset. The function Add does not use the heap.
 class EventLog {
  public:
   explicit EventLog(const Scenario& scenario);

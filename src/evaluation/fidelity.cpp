@@ -37,7 +37,7 @@ std::vector<Run> RunsOf(std::span<const FidelitySignals> all) {
   std::vector<Run> runs;
   for (const FidelitySignals& signals : all) {
     if (static_cast<double>(LengthOf(signals)) < kFidelityRate)
-      throw InputError("A run is shorter than one second, which is too short to compare.");
+      throw InputError("A run is shorter than one second and therefore too short to be compared.");
     Run run{&signals, CyclePhase(signals.path_x, signals.path_y), 0};
     run.cycles = CyclesIn(run.phase);
     runs.push_back(std::move(run));
@@ -59,8 +59,8 @@ double PeriodOf(const Run& run, std::size_t cycles) {
 
 using Repeats = std::vector<std::vector<double>>;
 
-// Returns those parts of one channel of one run that are compared: the cycles, or the first
-// `length` samples as a single part.
+// Returns the parts of one channel of one run that are compared. The parts are the cycles, or the
+// first `length` samples as a single part.
 Repeats RepeatsOf(const Run& run, const std::string& name, bool by_phase, std::size_t length) {
   const FidelityChannel* channel = FindChannel(*run.signals, name);
   if (!channel) return {};
@@ -101,7 +101,7 @@ double MeanPeak(const Repeats& repeats) {
   return repeats.empty() ? kUndefined : sum / static_cast<double>(repeats.size());
 }
 
-// The alignment of the first runs of the two sides.
+// The alignment in time between the first runs of the two sides.
 struct Alignment {
   bool by_phase = false;
   std::size_t cycles = 1;   // number of compared cycles
@@ -213,7 +213,7 @@ void FidelityCollector::Add(const TickRecord& record) {
   if (!record.ran || !(record.run_time >= 0)) return;
   if (!(record.run_time < kLongestRun))
     throw InputError(
-        "The times of a run span more than six hours: either the run is too long to be compared, "
+        "The times of a run span more than six hours. Either the run is too long to be compared, "
         "or its times are damaged. Compare a shorter one.");
   if (record.run_time < last_time_) steps_.clear(), present_ = {};
   last_time_ = record.run_time;
@@ -282,7 +282,7 @@ FidelityReport CompareFidelity(std::span<const FidelitySignals> a,
       ComparePerceived(a[0], PartsOf(runs_a[0], alignment), b[0], PartsOf(runs_b[0], alignment));
   if (std::any_of(report.perceived.begin(), report.perceived.end(), ErrorUnknown))
     report.warnings.emplace_back(
-        "A run has fewer than two cycles, so the standard errors are not known. The verdicts about "
+        "A run has fewer than two cycles, so the standard errors are unknown. The verdicts about "
         "whether a person would feel a difference are based on single values.");
   return report;
 }

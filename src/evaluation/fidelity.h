@@ -1,5 +1,6 @@
-// Measures how similar two recordings are: a real run and its emulation, or the same task on two
-// devices. docs/how-to/compare-runs.md explains the meaning and the limits of the results.
+// Measures how similar two recordings are. They may be a real run and its emulation, or the same
+// task on two devices. The page docs/how-to/compare-runs.md explains the meaning and the limits of
+// the results.
 #pragma once
 
 #include <array>
@@ -27,21 +28,22 @@ struct FidelityChannel {
 // One run, sampled in steps of 1 / kFidelityRate.
 struct FidelitySignals {
   std::vector<FidelityChannel> channels;
-  // The horizontal path of the object in W [m], by which cycles are counted. It may be empty.
+  // The horizontal path of the object in W [m], which is used to count cycles. It may be empty.
   std::vector<double> path_x, path_y;
   std::size_t filled = 0;  // number of samples without a record, which are interpolated
 };
 // Returns the channel of this name, or null if no channel has it.
 const FidelityChannel* FindChannel(const FidelitySignals& signals, const std::string& name);
 
-// Converts records, in order, to signals: the position of the end-effector and the force of each
-// present hand in the axes of W, each averaged over a step. Only those ticks count in which
-// simulated time passed. If the run starts again, earlier samples are discarded. At the edges of a
-// step, a tolerance of one millionth of a step keeps rounded times in their step.
+// Converts records, in order, to signals. The signals are the position of the end-effector and the
+// force of each present hand in the axes of W, averaged over each step. Only ticks in which
+// simulated time passed count. If the run starts again, the earlier samples are discarded. At the
+// edges of a step, there is a tolerance of one millionth of a step, so that times with rounding
+// errors remain in their step.
 class FidelityCollector {
  public:
-  // Throws InputError beyond six hours. The limit exists because memory grows with the run time,
-  // which an untrusted file may overstate.
+  // Throws InputError if the run time exceeds six hours. The limit exists because the required
+  // memory grows with the run time, and an untrusted file may contain an excessive run time.
   void Add(const TickRecord& record);
   FidelitySignals signals() const;
 
@@ -57,8 +59,8 @@ class FidelityCollector {
   std::array<bool, kHands> present_ = {};
 };
 
-// One channel of run b, compared with the same channel of run a. If a result needs more cycles or
-// repeats than exist, it is NaN.
+// One channel of run b, compared with the same channel of run a. A result is NaN if it needs more
+// cycles or repeats than exist.
 struct ChannelFidelity {
   std::string name, unit;
   double range = 0;               // largest minus smallest value of a [unit]
@@ -77,8 +79,8 @@ struct ChannelFidelity {
 };
 inline constexpr double kHighestCoherence = 3;  // [Hz]
 
-// The just noticeable difference (JND) as a share of the first of two stimuli. Published values lie
-// between these two numbers.
+// The just noticeable difference (JND), as a share of the first of two stimuli. Published values
+// lie between these two numbers.
 struct NoticeableDifference {
   double low = 0, high = 0;
 };
@@ -94,13 +96,13 @@ struct PerceivedQuantity {
   double difference = 0;            // (b − a) / |a|
   double error = 0;                 // standard error of the difference
   NoticeableDifference jnd;
-  // The verdict is kUndecided if the standard error of the quantity in run a or of the difference
-  // reaches the JND. If the standard errors are unknown, the values alone decide, and the report
-  // contains a warning.
+  // The verdict is kUndecided if either the standard error of the quantity in run a or the standard
+  // error of the difference reaches the JND. If the standard errors are unknown, the verdict is
+  // based only on the values, and the report contains a warning.
   Noticed noticed = Noticed::kUndecided;
 };
 
-// Returns whether there is a verdict although the standard errors are unknown.
+// Returns whether a verdict was reached although the standard errors are unknown.
 bool ErrorUnknown(const PerceivedQuantity& quantity);
 
 struct FidelityReport {
@@ -116,11 +118,12 @@ struct FidelityReport {
                                       // than they seem
 };
 
-// Compares the first run of `a` with the first run of `b`, each channel with the channel of the
-// same name. The other runs of each side must be repeats of the same task; they show how much
-// repeats differ. The comparison is by phase if the path of every run has at least two cycles,
-// unless `by_phase` is set. Throws InputError if a side is empty, if no channel name occurs on both
-// sides, or if a run is shorter than one second.
+// Compares the first run of `a` with the first run of `b`. Each channel is compared with the
+// channel of the same name. The other runs of each side must be repeats of the same task. These
+// repeats show how much runs differ. `by_phase` states whether the runs are compared by phase.
+// Without this argument, they are compared by phase if the path of every run has at least two
+// cycles. Throws InputError if a side is empty, if no channel name occurs on both sides, or if a
+// run is shorter than one second.
 FidelityReport CompareFidelity(std::span<const FidelitySignals> a,
                                std::span<const FidelitySignals> b,
                                std::optional<bool> by_phase = {});

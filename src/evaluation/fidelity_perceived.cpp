@@ -34,7 +34,7 @@ std::vector<double> TotalForce(const FidelitySignals& signals, const std::string
   return total;
 }
 
-// Returns |F| of one hand, or an empty result if the hand is absent.
+// Returns the magnitude of the force of one hand, or an empty result if the hand is absent.
 std::vector<double> ForceSize(const FidelitySignals& signals, const std::string& hand) {
   std::vector<double> size;
   for (const char* axis : {"x", "y", "z"}) {
@@ -53,15 +53,15 @@ std::span<const double> Part(const std::vector<double>& samples, const SampleRan
   return std::span(samples).subspan(begin, end - begin);
 }
 
-// If the standard deviation of the motion is below this value [m], the hand yields and does not
-// lead the object. In this case, motion and force show the stiffness and mass of the hand itself,
-// with the opposite sign.
+// If the standard deviation of the motion is below this value [m], the hand does not lead the
+// object but yields to it. In this case, motion and force show the stiffness and mass of the hand
+// itself, with the opposite sign.
 constexpr double kLed = 5e-3;
 
-// Smooths with w = (1 − cos)² and differentiates through integration by parts. The means of x' and
-// x'' weighted with w equal the means of −x weighted with w' and of x weighted with w'' (modulating
-// functions). Motion and force therefore pass through exactly the same filter, and no noise is
-// differentiated sample by sample.
+// Smooths a signal with w = (1 − cos)² and differentiates it through integration by parts. The mean
+// of x' weighted with w equals the mean of −x weighted with w'. The mean of x'' weighted with w
+// equals the mean of x weighted with w'' (modulating functions). Motion and force therefore pass
+// through exactly the same filter, and noise is not differentiated sample by sample.
 class Kernels {
  public:
   explicit Kernels(std::size_t length) : values_(3, std::vector<double>(length)) {
@@ -92,8 +92,8 @@ struct Estimate {
   double mean = kUndefined, error = kUndefined;
 };
 
-// Returns the mean over the parts and its standard error. The independent repeats are the parts,
-// not the samples.
+// Returns the mean over the parts and its standard error. The parts, and not the samples, are the
+// independent repeats.
 Estimate OverParts(std::span<const SampleRange> parts,
                    const std::function<double(const SampleRange&)>& figure) {
   std::vector<double> figures;
@@ -195,7 +195,7 @@ PerceivedQuantity Perceive(PerceivedQuantity q) {
   q.difference = (q.b - q.a) / std::abs(q.a);
   q.error = std::hypot(q.error_a * q.b / q.a, q.error_b) / std::abs(q.a);
   const double size = std::abs(q.difference);
-  // Without repeats, the errors are unknown, so the values alone decide.
+  // Without repeats, the standard errors are unknown, so the verdict is based only on the values.
   const bool known =
       size == size && !(q.error >= q.jnd.high) && !(q.error_a >= q.jnd.high * std::abs(q.a));
   if (!known)

@@ -47,8 +47,8 @@ Circle FitCircle(std::span<const double> x, std::span<const double> y) {
   return circle;
 }
 
-// Returns the Fourier transform of one segment at one frequency [cycles/sample], windowed, with the
-// mean removed.
+// Returns the Fourier transform of one segment at one frequency [cycles/sample]. The mean of the
+// segment is removed, and a window is applied.
 std::complex<double> Transform(std::span<const double> segment, double frequency) {
   const double mean = Mean(segment);
   const double n = static_cast<double>(segment.size());
@@ -105,7 +105,7 @@ double PlaceOfPhase(std::span<const double> phase, double at) {
   const auto after = std::upper_bound(phase.begin(), phase.end(), at);
   if (after == phase.begin()) return 0;
   if (after == phase.end()) {
-    // Returns the first sample at the final phase, after which the phase is constant.
+    // Returns the first sample that has the final phase. After this sample, the phase is constant.
     return static_cast<double>(std::lower_bound(phase.begin(), phase.end(), phase.back()) -
                                phase.begin());
   }
@@ -141,7 +141,7 @@ double RootMeanSquare(std::span<const double> a) {
 
 Lag LagOf(std::span<const double> a, std::span<const double> b, std::size_t longest) {
   const auto n = static_cast<std::ptrdiff_t>(std::min(a.size(), b.size()));
-  // At least half of the signals must overlap, because two samples always correlate.
+  // The overlap must be at least half of the signals, because two samples always correlate.
   const auto most = std::min(static_cast<std::ptrdiff_t>(longest), n / 2);
   const auto at = [&](std::ptrdiff_t lag) {
     const auto overlap = static_cast<std::size_t>(n - std::abs(lag));
@@ -153,7 +153,8 @@ Lag LagOf(std::span<const double> a, std::span<const double> b, std::size_t long
   if (n < 2) return best;
   std::ptrdiff_t place = 0;
   for (std::ptrdiff_t step = 0; step <= 2 * most; ++step) {
-    // The order is 0, 1, −1, 2, −2, ..., so that the shortest of equally good lags is chosen.
+    // The lags are tried in the order 0, 1, −1, 2, −2, ..., so that the shortest of equally good
+    // lags is chosen.
     const std::ptrdiff_t lag = step % 2 == 0 ? -step / 2 : (step + 1) / 2;
     const double correlation = at(lag);
     if (best.correlation != best.correlation || correlation > best.correlation)
@@ -173,7 +174,7 @@ double WarpedDistance(std::span<const double> a, std::span<const double> b, doub
   constexpr double kFar = std::numeric_limits<double>::infinity();
   const double longer = static_cast<double>(std::max(a.size(), b.size()));
   const double slope = static_cast<double>(b.size()) / static_cast<double>(a.size());
-  // With a smaller reach, no step would be possible.
+  // With a narrower band, no step would be possible.
   const double reach = std::max(band * longer, slope);
   std::vector<double> row(b.size() + 1, kFar), above(b.size() + 1, kFar);
   above[0] = 0;

@@ -14,12 +14,12 @@ namespace {
 double Shown(double value, const std::string& unit) { return unit == "m" ? 1e3 * value : value; }
 const char* ShownUnit(const std::string& unit) { return unit == "m" ? "mm" : unit.c_str(); }
 
-// Aligns a value to the right in `width`, and writes a dash for an undefined value.
+// Aligns a value to the right in a column of `width` characters. An undefined value becomes a dash.
 std::string Figure(const char* format, double value, std::size_t width) {
   char buffer[48] = "-";
   if (value == value) std::snprintf(buffer, sizeof buffer, format, value);
   std::string text = buffer;
-  // Zero must have no sign.
+  // A value of zero must have no sign.
   if (const std::size_t sign = text.find_first_of("+-");
       sign != std::string::npos && text.find('0') != std::string::npos &&
       text.find_first_of("123456789") == std::string::npos)

@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// Returns the distance [m], or no value if there is no path. `object` and `start` are the positions
-// of the object now and when RUN began, in W [m].
+// Returns the distance [m], or no value if there is no path. `object` is the current position of
+// the object, and `start` is the position of the object when RUN began, in W [m].
 inline std::optional<double> GuidanceDistance(const GuidanceSpec& guidance,
                                               const std::array<double, 3>& object,
                                               const std::array<double, 3>& start) noexcept {

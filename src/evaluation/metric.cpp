@@ -8,7 +8,8 @@
 namespace predictor {
 namespace {
 
-// Returns the index of the element that `is` selects. If the element is missing, appends it.
+// Returns the index of the element for which `is` returns true. If the element is missing, appends
+// it.
 template <class List, class Predicate>
 std::size_t Place(List* list, const Predicate& is) {
   const auto found = std::find_if(list->begin(), list->end(), is);

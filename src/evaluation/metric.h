@@ -1,6 +1,6 @@
 // The interface of a metric, which accumulates the records of a run and lists its results. The
-// printed summary, its JSON and JSON Schema, the report and the comparison of runs are made from
-// this list. To add a metric, see docs/developer/add-a-metric.md.
+// printed summary, its JSON form and JSON Schema, the report and the comparison of runs are made
+// from this list of results. To add a metric, see docs/developer/add-a-metric.md.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace predictor {
 
-// The SI unit, used in files, and the unit in which a value is displayed.
+// The SI unit that is used in files, and the unit in which a value is displayed.
 struct Unit {
   const char* si = "";
   const char* shown = "";
@@ -43,26 +43,29 @@ struct Quantiles {
 };
 Quantiles QuantilesOf(const Histogram& histogram);
 
-// A number that is not finite, statistics without samples, and monostate are missing values.
-// Missing values are null in files and are omitted from text.
+// The following are missing values: a number that is not finite, statistics without samples, and
+// monostate. Missing values are null in files and are omitted from text.
 using ResultValue =
     std::variant<std::monostate, double, std::uint64_t, bool, std::string, Statistics, Quantiles>;
 
-// The chapter of the report that shows a result. Results of kTiming depend on the computer's speed.
+// The chapter of the report that shows a result. The results in the chapter kTiming depend on the
+// computer's speed.
 enum class Chapter { kSummary, kTracking, kForces, kRendering, kTiming };
 
 struct Result {
-  // The path of keys in the summary JSON, which ends in the SI unit: "wrench.left.force_n".
+  // The path of keys in the summary JSON, which ends with the SI unit, for example
+  // "wrench.left.force_n".
   std::string path;
-  // The following texts are for people. Adjacent results of one group form a table of statistics or
-  // of quantiles, or a line of single values.
+  // The following texts are for people. Adjacent results of one group form a table of statistics, a
+  // table of quantiles, or a line of single values.
   std::string group;   // title
   std::string label;   // row, or the words after a single value
   std::string column;  // column in a table of statistics
   Unit unit = units::kNone;
   std::string meaning;  // description for the reference
   ResultValue value;
-  // Whether the printed summary and the report of one run show the result in a table or line.
+  // States whether the printed summary and the report of one run show the result in a table or
+  // line.
   bool shown = true;
   bool compared = true;                 // whether it is shown in the comparison of runs
   Chapter chapter = Chapter::kSummary;  // set from the metric's kind
@@ -72,10 +75,10 @@ class Metric {
  public:
   virtual ~Metric() = default;
   // Adds the next record. This function is called for every tick, in order, even while simulated
-  // time is paused (`ran` is 0). It must not use the heap.
+  // time is paused (`ran` is 0). The function must not use the heap.
   virtual void Add(const TickRecord& record) noexcept = 0;
-  // Appends the results so far. The number of results and their paths must not depend on the
-  // records.
+  // Appends the results of the records so far. The number of results and their paths must not
+  // depend on the records.
   virtual void AppendTo(std::vector<Result>* results) const = 0;
 };
 
@@ -95,8 +98,8 @@ std::span<const MetricKind* const> Metrics();
 
 bool IsMissing(const ResultValue& value);
 
-// The results of one group, in the form in which text and report show them. Missing values and
-// empty rows are omitted.
+// The results of one group, in the form in which the printed summary and the report show them.
+// Missing values and empty rows are omitted.
 struct ResultGroup {
   struct Row {
     std::string label;
@@ -108,10 +111,10 @@ struct ResultGroup {
   std::vector<Row> rows;
   std::string line;  // the single values: "3 solved, 0 failed"
 };
-// Groups the results that are shown.
+// Returns the groups of the results that are shown.
 std::vector<ResultGroup> GroupResults(const std::vector<Result>& results);
 
-// Returns "force [N]", for example.
+// Returns a name with its unit, for example "force [N]".
 std::string WithUnit(const std::string& name, const Unit& unit);
 
 }  // namespace predictor

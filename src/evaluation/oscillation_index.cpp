@@ -52,7 +52,7 @@ void OscillationIndex::Close() noexcept {
   double total = 0, high = 0;  // [N²]
   for (int k = 1; k / length <= kHigh + 1e-9; ++k) {
     const double f = k / length;
-    // Returns the factor by which averaging the ticks of a sample attenuates this frequency.
+    // Returns the factor by which the averaging of a sample's ticks attenuates this frequency.
     const double gain = std::abs(std::sin(kPi * f * step) / (each_ * std::sin(kPi * f * dt_)));
     const std::complex<double> turn = std::polar(1.0, -2 * kPi * k / static_cast<double>(kSamples));
     std::array<std::complex<double>, 3> sum{};

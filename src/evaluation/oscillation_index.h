@@ -9,10 +9,11 @@
 
 namespace predictor {
 
-// Divides the power from 3 to 10 Hz by the power from 0 to 10 Hz, in windows of 4 s that overlap by
-// half. In each window, the mean is removed and a Hann window is applied; the powers of the axes
-// are summed (similar to the index of Dimeas and Aspragathos, 2016). The index does not detect
-// oscillations below 3 Hz. An underdamped cobot at 1 Hz is detected by the growth of its cycles.
+// Divides the power from 3 to 10 Hz by the power from 0 to 10 Hz. The windows have a length of 4 s
+// and overlap by half. In each window, the mean is removed and a Hann window is applied. The powers
+// of the axes are summed (similar to the index of Dimeas and Aspragathos, 2016). The index does not
+// detect oscillations below 3 Hz. The oscillation of an underdamped cobot at 1 Hz is detected from
+// the growth of its cycles.
 class OscillationIndex {
  public:
   static constexpr double kWindow = 4;               // [s]
@@ -32,10 +33,10 @@ class OscillationIndex {
   };
 
   explicit OscillationIndex(double dt);
-  // `force` [N] is in axes of W, and `time` is the time of the tick [s]. Returns the window that
-  // this force completes, or null. Does not use the heap.
+  // `force` [N] is in the axes of W, and `time` is the time of the tick [s]. Returns the window
+  // that this force completes, or null. Does not use the heap.
   const Window* Add(double time, const Vector3& force) noexcept;
-  // Call this if the next force does not follow the last force immediately.
+  // Call this function if the next force does not follow the last force immediately.
   void Break() noexcept;
 
  private:

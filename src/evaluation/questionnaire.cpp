@@ -117,8 +117,8 @@ SurveyAnswer ReadFields(const Json& object) {
   if (!answer.pseudonym.empty() && !IsPseudonym(answer.pseudonym))
     throw InputError::At(
         "pseudonym",
-        "This is not a pseudonym from this questionnaire. Check the pseudonym that you wrote down, "
-        "or leave the field empty if you have no pseudonym yet.");
+        "The text is not a pseudonym from this questionnaire. Check the pseudonym "
+        "that you wrote down, or leave the field empty if you have no pseudonym yet.");
   return answer;
 }
 
@@ -211,11 +211,12 @@ std::string SurveyAnswerJson(const SurveyAnswer& answer) {
 SurveyAnswer ParseSurveyAnswer(std::string_view text) {
   const Json json = ParseObject(text);
   if (json.value("predictor_survey", Json()) != kFormat)
-    throw InputError("This is not a stored answer of this version (\"predictor_survey\": 1).");
+    throw InputError("The file is not a stored answer of this version (\"predictor_survey\": 1).");
   RefuseUnknown(json, {"predictor_survey", "pseudonym", "recording", "condition", "answers", "age",
                        "sex", "comment", "consent"});
   if (const Json* consent = Find(json, "consent"); !consent || *consent != kConsentVersion)
-    throw InputError::At("consent", "The answer contains no consent, so it may not be used.");
+    throw InputError::At("consent",
+                         "The answer contains no consent, so the answer may not be used.");
   SurveyAnswer answer = ReadFields(json);
   if (answer.pseudonym.empty()) throw InputError::At("pseudonym", "The answer has no pseudonym.");
   answer.recording = ReadText(json, "recording");

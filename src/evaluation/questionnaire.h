@@ -1,4 +1,5 @@
-// The questionnaire of the paper's user study: statements S1 to S8, and the answers of one person.
+// The questionnaire of the paper's user study. This file defines the statements S1 to S8 and the
+// answers of one person.
 #pragma once
 
 #include <array>
@@ -24,7 +25,7 @@ struct Statement {
 };
 // Returns the statements in the wording of the paper.
 const std::array<Statement, kStatements>& Statements();
-// Returns "Strongly disagree" and so on, starting with the lowest score.
+// Returns the names of the levels ("Strongly disagree" and so on), starting with the lowest score.
 const std::array<const char*, kScores>& ScoreNames();
 
 // The system that the person used before answering: the real system (mode: direct) or its
@@ -53,9 +54,10 @@ struct SurveyAnswer {
   std::string comment;  // UTF-8
 };
 
-// Parses the text that the page sends: {"consent": true, "condition", "answers": {"S1": 2, ...},
-// "age", "sex", "comment", "pseudonym"}. The answer to a statement, the age and the sex may be
-// null. Throws InputError with a sentence for the person. The key() of the error names the field.
+// Parses the text that the page sends, which has the form {"consent": true, "condition", "answers":
+// {"S1": 2, ...}, "age", "sex", "comment", "pseudonym"}. The answer to a statement, the age and the
+// sex may be null. Throws InputError with a sentence for the person. The key() of the error is the
+// name of the field.
 SurveyAnswer ParseSurveyForm(std::string_view json);
 
 // Converts a stored answer to text and back. Parsing throws InputError.

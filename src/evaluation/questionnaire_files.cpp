@@ -35,7 +35,7 @@ int WriteAll(int descriptor, std::string_view text) {
   return fsync(descriptor) == 0 ? 0 : errno;
 }
 
-// Synchronises the folder, so that the new file name is on the disk.
+// Writes the folder to the disk, so that the new file name is stored.
 void SyncFolder(const fs::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -77,7 +77,7 @@ std::vector<fs::path> FindFiles(const std::vector<fs::path>& places) {
     else
       throw InputError(place.string(), "There is no such file or folder.");
   }
-  // The user may name both a folder and a file in this folder.
+  // The user may name a folder and, in addition, a file in this folder.
   for (fs::path& file : files) file = file.lexically_normal();
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());

@@ -1,5 +1,5 @@
-// Stores answers to the questionnaire as files. Each answer has its own file, so it can be removed
-// separately.
+// Stores answers to the questionnaire as files. Each answer has its own file, so each answer can be
+// removed separately.
 #pragma once
 
 #include <filesystem>
@@ -10,14 +10,14 @@
 
 namespace predictor {
 
-// Returns "RECORDING.PSEUDONYM.CONDITION.survey.json", with the recording's name without its
-// extension. If there is no recording, the first part of the name is omitted.
+// Returns "RECORDING.PSEUDONYM.CONDITION.survey.json", where RECORDING is the recording's name
+// without its extension. If there is no recording, the first part of the name is omitted.
 std::string SurveyFileName(const SurveyAnswer& answer);
 
-// Writes the answer into `folder`, readable only by the owner, and waits until it is on the disk.
-// Returns its path. Throws InputError with key "pseudonym" if this person has already answered for
-// this recording and condition. Throws InputError without a key if the file cannot be written. In
-// this case, no partial file remains.
+// Writes the answer to a file in `folder` that only the owner can read, and waits until the file is
+// on the disk. Returns its path. Throws InputError with key "pseudonym" if this person has already
+// answered for this recording and condition. Throws InputError without a key if the file cannot be
+// written. In this case, no partial file remains.
 std::filesystem::path StoreSurveyAnswer(const std::filesystem::path& folder,
                                         const SurveyAnswer& answer);
 
@@ -26,8 +26,8 @@ struct StoredAnswer {
   SurveyAnswer answer;
 };
 
-// Reads the answers in these files and in these folders with their subfolders (links are not
-// followed). The answers are sorted by pseudonym. Throws InputError, which names a missing or
+// Reads the answers in these files, and in these folders and their subfolders. Links are not
+// followed. The answers are sorted by pseudonym. Throws InputError, whose text names the missing or
 // invalid file.
 std::vector<StoredAnswer> ReadSurveyAnswers(const std::vector<std::filesystem::path>& places);
 

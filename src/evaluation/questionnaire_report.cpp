@@ -44,7 +44,8 @@ void CountPerson(const SurveyAnswer& answer, ConditionSummary* summary,
   summary->other += answer.sex == "other" ? 1 : 0;
 }
 
-// Returns each person's score or difference for one statement, if available.
+// Returns, for one statement, the score or the difference of each person for whom this value is
+// available.
 std::vector<double> ScoresOf(const Answers& people, std::size_t condition, std::size_t statement) {
   std::vector<double> scores;
   for (const auto& [pseudonym, answers] : people)

@@ -14,13 +14,13 @@ namespace predictor {
 struct StatementSummary {
   ScoreCounts counts{};
   int answers = 0;
-  // Undefined values are NaN. The deviation is computed with n − 1.
+  // Undefined values are NaN. The denominator of the standard deviation is n − 1.
   double mean = 0, deviation = 0, median = 0;
   double agreeing = 0;  // share of "agree" and "strongly agree"
 };
 
-// The location of a statement's scores, or of the differences between the two answers of each
-// person.
+// The location parameter of a statement's scores, or of the differences between the two answers of
+// each person.
 struct ShiftSummary {
   int count = 0;
   SignedRankTest test;  // against 0; zeros are dropped

@@ -53,10 +53,11 @@ std::string CountsText(const ScoreCounts& counts) {
 
 RoundedFigures FiguresOf(const ScoreCounts& counts) {
   const auto [n, sum, squares] = SumsOf(counts);
-  // The absolute mean in hundredths is 100 |sum| / n plus one half, rounded down.
+  // The rounded absolute mean in hundredths is 100 |sum| / n plus one half, rounded down.
   const std::int64_t size = (200 * std::abs(sum) + n) / (2 * n);
-  // The square of the deviation is spread / (n (n − 1)). The rounded deviation in hundredths is the
-  // largest m for which m − 1/2 does not exceed the exact deviation in hundredths.
+  // The square of the standard deviation is spread / (n (n − 1)). The rounded deviation in
+  // hundredths is the largest m for which m − 1/2 does not exceed the exact deviation in
+  // hundredths.
   const std::int64_t spread = n * squares - sum * sum;
   std::int64_t m = 0;
   while ((2 * m + 1) * (2 * m + 1) * n * (n - 1) <= 40000 * spread) ++m;

@@ -7,7 +7,8 @@
 
 namespace predictor {
 
-// Computes the mean, the standard deviation (n − 1) and the largest value (Welford's method).
+// Computes the mean, the standard deviation (denominator n − 1) and the largest value with
+// Welford's method.
 class Statistics {
  public:
   void Add(double x) {

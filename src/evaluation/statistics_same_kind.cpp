@@ -13,7 +13,7 @@ namespace {
 constexpr double kRounding = 1e-12;  // accounts for rounding of the sums: distances that differ by
                                      // less count as equal
 
-// Sums over pairs, grouped by how many of the two repeats belong to set a.
+// Sums over pairs of repeats, grouped by how many of the two repeats belong to set a.
 double EnergyDistance(const Eigen::MatrixXd& distances, const std::vector<bool>& is_a) {
   double sums[3] = {}, pairs[3] = {};
   for (std::size_t j = 1; j < is_a.size(); ++j)

@@ -21,12 +21,13 @@ struct SameKindTest {
   bool distinguished() const { return p <= kSignificance; }
 };
 
-// `a` and `b` contain repeats, each a series of the same length. The distance of two repeats is
-// their rms difference. The test permutes whole repeats, because distances that share a repeat are
-// correlated. For sets with the same distribution, whichever it is, the test reports a difference
-// in at most a share kSignificance of cases. The test uses `draws` permutations, which are the same
-// in each call. The actual sets count as an additional permutation, so p is never too small
-// (Phipson & Smyth 2010). Each set needs at least two repeats.
+// `a` and `b` contain repeats, each a series of the same length. The distance between two repeats
+// is their rms difference. The test permutes whole repeats, because distances that share a repeat
+// are correlated. If the sets have the same distribution, the test reports a difference in at most
+// a share kSignificance of cases. This holds for every distribution. The test uses `draws`
+// permutations, which are the same in each call. The actual division into sets counts as an
+// additional permutation, so p is never too small (Phipson & Smyth 2010). Each set needs at least
+// two repeats.
 SameKindTest TestSameKind(std::span<const std::vector<double>> a,
                           std::span<const std::vector<double>> b, int draws = 9999);
 

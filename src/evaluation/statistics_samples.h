@@ -15,11 +15,11 @@ double Mean(std::span<const double> samples);
 // The denominator is n − 1.
 double SampleDeviation(std::span<const double> samples);
 double Median(std::span<const double> samples);
-// Interpolates linearly between the order statistics, with the extremes at 0 and 1 (definition 7 of
-// Hyndman & Fan). `probability` is from 0 to 1.
+// Interpolates linearly between the order statistics, with the smallest sample at 0 and the largest
+// at 1 (definition 7 of Hyndman & Fan). `probability` is from 0 to 1.
 double Quantile(std::span<const double> samples, double probability);
 
-// Returns Pearson's correlation, or NaN if either side is constant. Both sides have the same
+// Returns Pearson's correlation, or NaN if either side is constant. Both sides must have the same
 // length.
 double Correlation(std::span<const double> a, std::span<const double> b);
 

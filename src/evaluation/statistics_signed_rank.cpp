@@ -46,8 +46,8 @@ double ExactTwoSided(const std::vector<std::size_t>& ranks, std::size_t smaller_
   return std::min(1.0, std::ldexp(2 * tail, -static_cast<int>(ranks.size())));
 }
 
-// Selects the Walsh averages that bound the interval: one plus the number of Walsh averages outside
-// the interval on each side. Also contains the confidence.
+// The place of the Walsh averages that bound the interval, and the confidence of this interval. The
+// place is one plus the number of Walsh averages outside the interval on each side.
 struct CriticalPlace {
   std::size_t place = 1;  // counted from 1
   double confidence = 0;

@@ -1,4 +1,4 @@
-// Wilcoxon's signed-rank test of paired differences, and the corresponding shift.
+// Wilcoxon's signed-rank test of paired differences, and the corresponding estimate of the shift.
 #pragma once
 
 #include <cstddef>
@@ -6,13 +6,13 @@
 
 namespace predictor {
 
-// Treatment of zero differences. In both cases, equal absolute values share their mean rank.
+// Treatment of zero differences. In both cases, equal absolute values are given their mean rank.
 enum class ZeroRule {
   kDropped,  // Wilcoxon (1949): dropped before ranking
   kPratt,    // Pratt (1959): ranked with the others, then dropped
 };
 
-// Up to this number of differences, the distribution is enumerated. For more differences, the
+// Up to this number of differences, the exact distribution is enumerated. For more differences, the
 // normal approximation is used.
 inline constexpr std::size_t kMaxEnumerated = 50;
 
@@ -28,10 +28,10 @@ struct SignedRankTest {
                  // if all are zero
 };
 
-// If p is exact, it is based on all 2^ranked sign assignments of the actual ranks, including ties.
-// The approximation uses the variance of the actual ranks, which corrects for ties, and a
-// continuity correction. Absolute values are tied only if they are exactly equal, so round measured
-// values first.
+// An exact p is based on all 2^ranked sign assignments of the actual ranks, including ties. The
+// approximation uses a continuity correction and the variance of the actual ranks. This variance
+// accounts for ties. Absolute values are tied only if they are exactly equal. Therefore, round
+// measured values first.
 SignedRankTest TestSignedRank(std::span<const double> differences,
                               ZeroRule zeros = ZeroRule::kDropped,
                               std::size_t max_enumerated = kMaxEnumerated);
@@ -39,15 +39,15 @@ SignedRankTest TestSignedRank(std::span<const double> differences,
 struct ShiftEstimate {
   double estimate = 0;          // median of the Walsh averages (Hodges & Lehmann 1963)
   double lower = 0, upper = 0;  // confidence interval, closed
-  // Lower bound of the interval's confidence, also for tied or discrete differences (Noether 1967).
-  // If there are too few differences, this bound is below the requested confidence, and the
-  // interval is the range of the differences.
+  // Lower bound of the interval's confidence. The bound is also valid for tied or discrete
+  // differences (Noether 1967). If there are too few differences, this bound is below the requested
+  // confidence, and the interval is the range of the differences.
   double confidence = 0;
 };
 
 // Returns the centre of symmetry of the differences, including zeros. The ends of the interval are
-// Walsh averages chosen by the untied distribution of the signed-rank statistic. Without
-// differences, the result is NaN.
+// Walsh averages. They are chosen with the distribution of the signed-rank statistic without ties.
+// Without differences, the result is NaN.
 ShiftEstimate HodgesLehmann(std::span<const double> differences, double confidence = 0.95,
                             std::size_t max_enumerated = kMaxEnumerated);
 

@@ -8,7 +8,7 @@
 namespace predictor {
 namespace {
 
-// Returns the measured poses of the handles. Poses of absent handles are constant.
+// Returns the measured poses of the handles. The poses of absent handles are constant.
 std::array<Pose, kHands> HandlesOf(const TickRecord& record) {
   std::array<Pose, kHands> X_WH;
   for (std::size_t i = 0; i < kHands; ++i)

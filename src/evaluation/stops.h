@@ -20,28 +20,30 @@ struct StopSummary {
   double time = 0;      // emulated time until the stop, including the time before resets [s]
   double duration = 0;  // time from the decision to rest [s]
   double distance = 0;  // path of the faster handle from the decision to rest [m]
-  // For a simulated rig only: the time from the moment at which the true force (torque) crosses its
-  // threshold to the decision to stop.
+  // The time from the moment when the true force (or torque) crosses its threshold to the decision
+  // to stop. This time is known only for a simulated rig.
   std::optional<double> detection;  // [s]
-  // If the simulation diverged: the joint of the cobot that was fastest in the last step before the
-  // divergence, counted from 0. Otherwise −1.
+  // If the simulation diverged, this is the joint of the cobot that was fastest in the last step
+  // before the divergence, counted from 0. Otherwise −1.
   int fastest_joint = -1;
   StatusRecord harder = {};  // the fault that removed the power at the end of a stop that would
                              // otherwise have held
 };
 
-// Returns whether the arms did not come to rest although they were commanded to stop. The result
-// follows from the final fault of the stop or, if the run had ended without a cause, from the cause
-// of the stop. In this case, duration and distance are only the values that were observed so far.
+// Returns whether the arms did not come to rest although they were commanded to stop. The result is
+// based on the final fault of the stop. If the run had ended without a cause, the result is based
+// on the cause of the stop. In this case, duration and distance are only the values that were
+// observed so far.
 bool DidNotRest(const StopSummary& stop);
 
-// Returns whether a stop censors what the person feels. Such stops are caused by the force or the
-// torque of a hand, by the coupling, or by tracking. (A stop by tracking ends runs in which the
-// handles would have to exceed their speed cap.) The largest values of such a run are lower bounds.
+// Returns whether a stop censors what the person feels. The cause of such a stop is the force or
+// the torque of a hand, the coupling, or tracking. (A stop because of tracking ends runs in which
+// the handles would have to exceed their speed cap.) The largest values of such a run are lower
+// bounds.
 bool IsLimit(StopCause cause);
 
-// Measures the lengths of the handles' paths in steps of kStep, because the encoders' quantisation
-// would otherwise accumulate.
+// Measures the lengths of the handles' paths in steps of kStep. With shorter steps, the
+// quantisation of the encoders would accumulate.
 class HandleOdometer {
  public:
   static constexpr double kStep = 1e-4;  // [m]
@@ -52,7 +54,7 @@ class HandleOdometer {
   double Add(const std::array<Pose, kHands>& X_WH) noexcept;
 
  private:
-  // The end of the last step of each path.
+  // The position at the end of the last step of each path.
   std::array<Vector3, kHands> corner_ = {Vector3::Zero(), Vector3::Zero()};
   std::array<double, kHands> path_ = {};  // length up to the corner [m]
 };
@@ -86,7 +88,8 @@ class StopLog {
   double before_ = 0, run_time_ = 0;  // emulated time before the last reset, and since then [s]
   StopCause cause_ = StopCause::kNone;
 
-  // For the last stop, the path and time of the handles from the decision to stop until they rest.
+  // For the last stop, the path and the time of the handles from the decision to stop until the
+  // handles are at rest.
   bool stopping_ = false;
   HandleOdometer odometer_;
   RestDetector rest_;

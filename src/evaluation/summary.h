@@ -27,7 +27,7 @@ struct Summary {
   std::vector<EventSummary> events;  // events in the order of the scenario
   std::optional<CobotStopSummary> cobot_stop;
 
-  // The caller provides the following values.
+  // The caller must set the following values.
   double real_time_factor = 0;
   bool by_the_clock = false;  // the run was paced by the clock, so its real-time factor does not
                               // show the computer's speed
@@ -35,7 +35,7 @@ struct Summary {
                                       // it
   std::uint64_t overruns = 0, records_dropped = 0;
 
-  // Returns the result with this path, which must exist.
+  // Returns the result with this path. The result must exist.
   const Result& At(std::string_view path) const;
   template <class T>
   const T& Get(std::string_view path) const {
@@ -45,8 +45,9 @@ struct Summary {
   std::uint64_t ticks() const { return Get<std::uint64_t>("ticks"); }  // number of ticks in RUN
 };
 
-// Builds a summary from records, in order. Statistics include every tick in which simulated time
-// passed, including the tick in which a stop was decided and the value that caused it.
+// Builds a summary from records, in order. The statistics include every tick in which simulated
+// time passed. They also include the tick in which a stop was decided, and the value that caused
+// the stop.
 class SummaryBuilder {
  public:
   explicit SummaryBuilder(const Scenario& scenario);
@@ -62,8 +63,8 @@ class SummaryBuilder {
   EventLog events_;
 };
 
-// Returns the summary as JSON for scripts, which depend on this format. `timing` states whether to
-// include the values that depend on the computer's speed.
+// Returns the summary as JSON for scripts. Scripts depend on this format. `timing` states whether
+// to include the values that depend on the computer's speed.
 std::string SummaryJson(const Summary& summary, bool timing = true);
 
 // Returns the JSON Schema of SummaryJson.
@@ -72,7 +73,7 @@ std::string SummarySchema();
 // Returns the summary as text for the user, with tables in mm, degrees and N.
 std::string SummaryTable(const Summary& summary);
 
-// Describes lead, margin and prediction in a sentence.
+// Describes the lead, the stability margin and the predicted loop in a sentence.
 std::string LoopWords(const PredictedLoop& loop);
 
 }  // namespace predictor

@@ -1,4 +1,5 @@
-// Writes the summary as JSON, and its schema. JSON and schema are made from lists of results.
+// Writes the summary as JSON, and its schema. The JSON and its schema are made from lists of
+// results.
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>

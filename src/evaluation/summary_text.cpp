@@ -23,7 +23,8 @@ void EndLine(std::string* text) {
   *text += '\n';
 }
 
-// The columns "mean ± deviation   largest" have widths that suit the unit's decimals.
+// The widths of the columns "mean ± deviation largest" depend on the number of decimals of the
+// unit.
 int RoomOf(const Unit& unit) { return std::max(unit.decimals, 2); }
 int WidthOf(const Unit& unit) { return 3 * RoomOf(unit) + 16; }
 std::string CellText(const Result& result) {
@@ -67,7 +68,7 @@ void AddQuantiles(const ResultGroup& group, std::string* text) {
   }
 }
 
-// If `timing` is true, adds only the results that depend on the computer's speed; otherwise, adds
+// If `timing` is true, adds only the results that depend on the computer's speed. Otherwise, adds
 // only the other results.
 void AddResults(const std::vector<ResultGroup>& groups, bool timing, std::string* text) {
   const ResultGroup* above = nullptr;
@@ -144,8 +145,8 @@ void AddStops(const Summary& s, std::string* text) {
                static_cast<unsigned long long>(s.stop_count - listed), s.stops.size());
 }
 
-// An object that stays where it is, for example because it stands on the floor, makes the results
-// of a run meaningless.
+// If the object does not move, for example because it stands on the floor, the results of a run are
+// meaningless.
 void AddLift(const Summary& s, std::string* text) {
   constexpr double kLifted = 0.1;  // share of the intended height
   const double intended = s.Get<double>("object.scripted_lift_m");
@@ -154,7 +155,7 @@ void AddLift(const Summary& s, std::string* text) {
   AppendLine(
       text,
       "Warning: the script moves the object up by %.0f mm, but the object rose by only %.0f mm. "
-      "`predictor check` reports whether it rests on the floor at the start.",
+      "`predictor check` reports whether the object rests on the floor at the start.",
       kMillimetres * intended, kMillimetres * rise);
 }
 

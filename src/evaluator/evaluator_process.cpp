@@ -17,7 +17,7 @@ namespace {
 constexpr int kPause = 5;      // pause between two checks of the ring [ms]
 constexpr int kPriority = 10;  // niceness: lower priority than the run and the viewer
 
-// Returns false if the run has ended, which closes the channel.
+// Returns false if the run has ended. The end of the run closes the channel.
 bool WaitAWhile() {
   pollfd run{kControlDescriptor, POLLIN, 0};
   return poll(&run, 1, kPause) == 0 || (run.revents & (POLLHUP | POLLERR | POLLIN)) == 0;
@@ -34,7 +34,7 @@ class Evaluator {
   }
 
  private:
-  // A contradiction would persist, so the evaluator reports it once and stops judging.
+  // A contradiction in the input would persist, so the evaluator reports it once and stops judging.
   bool Add(const TickRecord& record) {
     try {
       return person_.Add(record);

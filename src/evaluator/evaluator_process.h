@@ -1,4 +1,4 @@
-// The evaluator is a process alongside the run that judges the person live.
+// The evaluator is a process that runs alongside the run and judges the person during the run.
 #pragma once
 
 #include <functional>
@@ -16,15 +16,16 @@ int EvaluatorMain();
 
 class EvaluatorProcess {
  public:
-  // Shows a message to the user. A separate thread calls this function.
+  // Shows a message to the user. A separate thread calls this callback.
   using Notify = std::function<void(const std::string& text)>;
 
   // Starts the evaluator and waits until it follows `board`. The evaluator writes its states to
-  // `states` and may do nothing else. The evaluator runs at a lower priority than the run's
-  // threads, and the run never waits for the evaluator. If the evaluator ends unexpectedly, a
-  // message reports this, and the evaluator is restarted. Damage and fatigue then start from zero
-  // again. The descriptors of `board` and `states` are borrowed. Throws InputError if body or
-  // stance are missing or impossible, or std::runtime_error if no process can be started.
+  // `states` and is not permitted to do anything else. The evaluator runs at a lower priority than
+  // the run's threads, and the run never waits for the evaluator. If the evaluator ends
+  // unexpectedly, a message reports this, and the evaluator is restarted. Damage and fatigue then
+  // start from zero again. The caller continues to own the descriptors of `board` and `states`.
+  // Throws InputError if the body or the stance is missing or impossible. Throws std::runtime_error
+  // if no process can be started.
   EvaluatorProcess(const Scenario& scenario, const Shared<RunBoard>& board,
                    const Shared<EvaluationBoard>& states, Notify show);
   int pid() const { return process_.pid(); }  // 0 while no process is running

@@ -140,7 +140,7 @@ std::string PackageMeshes::AddReferring(const fs::path& file, const std::string&
   return name;
 }
 
-// If a file cannot be copied, only a colour is wrong, so the scene is exported nevertheless.
+// If a file cannot be copied, only a colour is wrong. The scene is therefore exported nevertheless.
 std::string PackageMeshes::AddReferred(const std::string& uri, const fs::path& by) {
   try {
     const fs::path file = ResolveModelPath(uri, by.parent_path(), scenario_folder_);

@@ -1,5 +1,5 @@
-// The mesh and texture files of a package: their names in the package, and the files that they
-// refer to.
+// Manages the mesh and texture files of a package, their names in the package, and the files to
+// which they refer.
 #pragma once
 
 #include <filesystem>
@@ -13,9 +13,9 @@
 
 namespace predictor::scene_export {
 
-// All files are in the package's folder "meshes". The names differ even without extension and if
-// case is ignored, because Unity's URDF-Importer and MuJoCo use the file name without its extension
-// as the name of an asset or mesh.
+// All files are in the package's folder "meshes". The file names differ even without their
+// extensions and if case is ignored. This is necessary because Unity's URDF-Importer and MuJoCo use
+// the file name without its extension as the name of an asset or mesh.
 class PackageMeshes {
  public:
   // `scenario_folder` is the folder of the scenario. Textures must be in a place that the scenario
@@ -24,16 +24,16 @@ class PackageMeshes {
       : scenario_folder_(std::move(scenario_folder)) {}
 
   // Adds a shape's mesh and returns its path in the package. `role` ("visual", "collision") is the
-  // prefix of a new file's name. The function also adds files that the mesh refers to (textures,
-  // material libraries). Throws InputError if URDF-Importer does not read the format or if the file
-  // cannot be read.
+  // prefix of a new file's name. The function also adds the files to which the mesh refers
+  // (textures, material libraries). Throws InputError if URDF-Importer does not read the format or
+  // if the file cannot be read.
   std::string Add(const ModelShape& shape, const std::string& role);
-  // Adds a texture that a URDF refers to, and returns its path in the package.
+  // Adds a texture to which a URDF refers, and returns its path in the package.
   std::string AddTexture(const std::filesystem::path& file);
 
   const std::map<std::string, PackageFile>& files() const { return files_; }
-  // Returns files that could not be added, such as "lost.png of box.dae", and sentences with the
-  // reasons.
+  // Returns the files that could not be added, such as "lost.png of box.dae", and sentences with
+  // the reasons.
   const std::vector<std::string>& left_out() const { return left_out_; }
   const std::vector<std::string>& notes() const { return notes_; }
 

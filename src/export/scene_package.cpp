@@ -67,8 +67,8 @@ void AddGeometry(XmlElement* parent, const ModelShape& shape, const std::string&
   }
 }
 
-// URDF-Importer keeps materials by name, even across imports. Therefore, the name describes the
-// material.
+// URDF-Importer stores materials by name, even across imports. Therefore, the name of a material
+// describes its properties.
 void AddMaterial(XmlElement* visual, const SceneShape& shape, PackageMeshes* meshes) {
   if (!shape.texture.empty()) {
     const std::string file = meshes->AddTexture(shape.texture);
@@ -141,11 +141,11 @@ void AddMujoco(XmlElement* robot, double gravity) {
   Set(Add(mujoco, "option"), "gravity", Text(Vector3(0, 0, -gravity)));
 }
 
-// Returns the URDF. Gravity [m/s²] is in MuJoCo's element, which other readers ignore. The text
-// contains what URDF-Importer requires beyond the format's rules: an axis on every moving joint,
-// effort and velocity in every limit, a name for every material, and the same name only for the
-// same colour. Meshes and textures are added to `meshes`. Throws the same InputError as
-// PackageMeshes.
+// Returns the URDF. MuJoCo's element contains the gravity [m/s²]. Other readers ignore this
+// element. URDF-Importer has requirements beyond the format's rules, which the text meets: every
+// moving joint has an axis, every limit has an effort and a velocity, every material has a name,
+// and only materials of the same colour have the same name. Meshes and textures are added to
+// `meshes`. Throws the same InputError as PackageMeshes.
 std::string UrdfText(const SceneTree& tree, double gravity, PackageMeshes* meshes) {
   tinyxml2::XMLDocument doc;
   doc.InsertEndChild(doc.NewDeclaration());

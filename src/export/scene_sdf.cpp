@@ -71,8 +71,8 @@ class SdfWriter {
     const auto found = above_.find(link.name);
     return found != above_.end() && found->second->type != UrdfJointType::kFixed;
   }
-  // Returns the first link that is "world" or a <link>, beginning with this link and continuing
-  // with its ancestors.
+  // Returns the first link that is "world" or a <link>. The search begins with this link and
+  // continues with its ancestors.
   std::string CarrierOf(const std::string& name) const {
     const SceneLink& link = *links_.at(name);
     if (name == "world" || IsLink(link)) return name;
@@ -145,7 +145,7 @@ class SdfWriter {
     AddPlace(frame, link);
   }
 
-  // Names of links, frames and joints must differ.
+  // The names of links, frames and joints must differ.
   std::string JointName(std::string name) {
     while (links_.contains(name) || !joints_.insert(name).second) name += '_';
     return name;

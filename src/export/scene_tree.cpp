@@ -19,8 +19,8 @@
 namespace predictor::scene_export {
 namespace {
 
-// Returns the material of the robot that has the same name. It supplies the values that the
-// visual's own material omits.
+// Returns the material of the robot that has the same name. This material supplies the values that
+// the visual's own material omits.
 const XmlElement* GlobalMaterial(const XmlElement& robot, const XmlElement& material) {
   const char* name = material.Attribute("name");
   for (const XmlElement* global = robot.FirstChildElement("material");
@@ -54,7 +54,7 @@ SceneShape Read(const XmlElement& robot, const XmlElement& visual, const ModelSh
 }
 
 // Returns the shapes of the <visual> elements of each link of a URDF, and whether they have their
-// own material. A mesh without its own material has the colours of its file. `scenario_folder` is
+// own material. A mesh without its own material has the colours in its file. `scenario_folder` is
 // the folder of the scenario that refers to the URDF.
 std::vector<std::vector<SceneShape>> VisualsOf(const UrdfModel& urdf,
                                                const std::filesystem::path& scenario_folder) {
@@ -86,7 +86,7 @@ constexpr std::array<double, 4> kTableColor = {0.61, 0.48, 0.34, 1};
 
 constexpr const char* kFixturePrefix = "fixture_";
 
-// Names of the scene's own links, except those of fixtures.
+// The names of the scene's own links, except the links of fixtures.
 const std::set<std::string>& OwnLinks() {
   static const std::set<std::string> names = {"world",
                                               "floor",
@@ -167,8 +167,8 @@ class Composer {
   }
 
  private:
-  // Returns a name for a joint that the scene adds. The name differs from the names of the cobot's
-  // joints, which the topics use.
+  // Returns a name for a joint that the scene adds. The name must differ from the names of the
+  // cobot's joints, because the topics use those names.
   std::string JointName(std::string name) {
     while (!joint_names_.insert(name).second) name += '_';
     return name;
@@ -321,7 +321,7 @@ class Composer {
     Join("object_joint", parent, link, spec.attachment.on_object.ToPose().Inverse());
   }
 
-  // Returns the shapes of the merged links in order, with the materials of the object's file.
+  // Returns the shapes of the merged links, in order and with the materials from the object's file.
   std::vector<SceneShape> ObjectVisuals(const ObjectModel& model) const {
     const UrdfModel urdf = ReadUrdf(ResolveModelPath(scenario_.object.model, scenario_.folder()),
                                     {}, scenario_.folder());
@@ -374,8 +374,8 @@ class Composer {
     if (environment.table) {
       AddStatic("table", environment.table->top, environment.table->size, kTableColor);
     }
-    // A fixture that an event lets appear is left out, because it is absent at first and the
-    // participant may see the scene.
+    // A fixture that appears in an event is omitted. It is absent at first, and the participant may
+    // see the scene.
     for (std::size_t i = 0; i < environment.fixtures.size(); ++i)
       if (EventsOfFixture(scenario_, i) == 0)
         AddFixture(kFixturePrefix + std::to_string(i), environment.fixtures[i]);

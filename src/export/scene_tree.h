@@ -1,5 +1,5 @@
-// A scenario's virtual scene as one tree of links: cobot, attachment, object, handles, floor and
-// table.
+// Represents a scenario's virtual scene as one tree of links: cobot, attachment, object, handles,
+// floor and table.
 #pragma once
 
 #include <array>
@@ -14,11 +14,12 @@
 
 namespace predictor::scene_export {
 
-// The mass [kg] and principal moments [kg·m²] of links that have no mass or that only connect other
-// links. URDF has no joint with three axes, so the ball joint becomes three single-axis joints with
-// two links between them. MuJoCo and our own reader refuse a moving link without mass. Unity's
-// URDF-Importer would give it 0.1 kg, or 1 kg if it has no <inertial>. All these programs accept
-// these values, which change any sum by less than 1e-9.
+// The mass [kg] and the principal moments of inertia [kg·m²] of links that have no mass or that
+// only connect other links. URDF has no joint with three axes, so the ball joint becomes three
+// single-axis joints with two links between them. MuJoCo and our own reader refuse a moving link
+// without mass. Unity's URDF-Importer would give such a link a mass of 0.1 kg, or of 1 kg if the
+// link has no <inertial>. All these programs accept the values given here. Together, the values
+// change any sum of masses or moments of inertia by less than 1e-9.
 inline constexpr double kTinyMass = 1e-10;
 inline constexpr double kTinyInertia = 1e-11;
 

@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The name of the list of files that an export wrote. The name begins with a dot, so Unity ignores
-// the list.
+// The name of the file that lists the files of an export. This name begins with a dot, so Unity
+// ignores the file.
 constexpr const char* kManifest = ".predictor-scene";
 constexpr const char* kManifestHeader = "# What predictor export scene wrote here";
 
@@ -25,7 +25,7 @@ constexpr const char* kManifestHeader = "# What predictor export scene wrote her
                    (error ? ": " + error.message() : std::string()) + ". Give a writable folder.");
 }
 
-// Returns whether a relative path stays within its starting folder.
+// Returns whether a relative path remains within the folder in which it starts.
 bool IsInside(const fs::path& path) {
   return !path.empty() && path.is_relative() &&
          std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; });
@@ -66,14 +66,14 @@ void CheckFolder(const fs::path& folder, bool force) {
       " is not empty. Give another folder, or use --force to replace an earlier export.");
 }
 
-// Returns whether no symbolic link leads the path out of the folder.
+// Returns whether the path remains within the folder even if symbolic links are followed.
 bool IsBelow(const fs::path& folder, const std::string& path) {
   std::error_code error;
   const fs::path parent = fs::weakly_canonical((folder / path).parent_path(), error);
   return !error && parent == (fs::weakly_canonical(folder, error) / path).parent_path();
 }
 
-// Refuses to overwrite files that no earlier export wrote.
+// Throws InputError if the export would overwrite a file that no earlier export wrote.
 void CheckFiles(const ScenePackage& package, const fs::path& folder,
                 const std::set<std::string>& mine) {
   std::set<std::string> paths = {kManifest};

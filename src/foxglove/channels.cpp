@@ -1,6 +1,6 @@
-// The topics, which use Foxglove's well-known schemas where they exist. Topics of recorded
-// quantities are derived from core/tick_fields.h. This file contains the topics that combine or
-// compare quantities.
+// The topics for Foxglove. They use Foxglove's well-known schemas where such schemas exist. Topics
+// of recorded quantities are derived from core/tick_fields.h. This file contains the topics that
+// combine or compare quantities.
 #include <cmath>
 #include <utility>
 
@@ -44,7 +44,7 @@ FoxgloveChannel JointStates(const Scenario& scenario) {
           }};
 }
 
-// Publishes the wrench that the hand exerts on the handle, in W [N], [N·m], with the active
+// Publishes the wrench that the hand exerts on the handle in W [N], [N·m], and the active
 // thresholds.
 FoxgloveChannel WrenchOf(std::size_t h) {
   return {std::string("/wrench_") + kHandNames[h], "predictor.Wrench",
@@ -69,8 +69,8 @@ FoxgloveChannel WrenchOf(std::size_t h) {
           }};
 }
 
-// Returns the errors of the real handles and the distance of the nearest link pair. Absent hands
-// and pairs are omitted.
+// Returns the errors of the real handles and the distance between the links of the nearest pair.
+// Absent hands and pairs are omitted.
 FoxgloveChannel Tracking(const Scenario& scenario) {
   const Json hand = Numbers({"translation_m", "rotation_rad"});
   const double threshold = scenario.safety.tracking;

@@ -15,7 +15,7 @@ namespace predictor {
 
 using Json = nlohmann::ordered_json;
 
-// A topic, with its advertisement and the conversion of a record to a message.
+// A topic: its description for clients, and the conversion of a record to a message.
 struct FoxgloveChannel {
   std::string topic, schema_name;
   Json schema;

@@ -1,4 +1,4 @@
-// Makes values and schemas of Foxglove's channels. Only this folder uses this file.
+// Makes the values and schemas of the channels for Foxglove. Only this folder uses this file.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ Json Message(const char* title, Fields fields, std::initializer_list<const char*
 Json TimeSchema();
 Json XyzSchema();
 
-// These are Foxglove's well-known messages, including fields that this program never sets.
+// The schemas of Foxglove's well-known messages, including fields that this program never sets.
 Json FrameTransformsSchema();
 Json SceneUpdateSchema();
 Json JointStatesSchema();

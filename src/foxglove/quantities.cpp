@@ -1,4 +1,5 @@
-// Publishes the recorded quantities as JSON topics, with the same names as in a recording.
+// Publishes the recorded quantities as JSON topics. The quantities have the same names as in a
+// recording.
 #include <cmath>
 #include <string>
 #include <type_traits>

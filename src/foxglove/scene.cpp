@@ -22,7 +22,7 @@ constexpr int kCirclePoints = 72;
 
 Json Xyzw(const Quaternion& q) { return {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}}; }
 
-// Returns the colour green below half of the limit, orange up to 80 %, and red above, as in the
+// Returns green below half of the limit, orange up to 80 % of the limit, and red above, as in the
 // viewer.
 Json WarningColor(double share) {
   if (share < 0.5) return Color(0.2, 0.7, 0.3, 1);
@@ -40,7 +40,7 @@ class Cobot {
         links_(model_->link_names()) {
     for (const std::string& link : links_) frames_.push_back(model_->Frame(link));
     const FrameId end_effector = model_->Frame(scenario.cobot.end_effector);
-    // Only the joints that move the end-effector are drawn; the joints of a gripper are not drawn.
+    // Only the joints that move the end-effector are drawn. The joints of a gripper are not drawn.
     Jacobian J(6, model_->dof());
     const JointVector zero = JointVector::Zero(model_->dof());
     data_.UpdateKinematics(*model_, zero, zero);
@@ -81,7 +81,7 @@ Json TransformJson(const std::string& child, const Pose& X, std::uint64_t ns) {
           {"rotation", Xyzw(X.q)}};
 }
 
-// Returns an empty entity. Each kind of primitive is a list.
+// Returns an empty entity. The message contains a list for each kind of primitive.
 Json Entity(const std::string& id, const std::string& frame, std::uint64_t ns) {
   Json entity = {{"timestamp", Time(ns)}, {"frame_id", frame},    {"id", id},
                  {"lifetime", Time(0)},   {"frame_locked", true}, {"metadata", Json::array()}};

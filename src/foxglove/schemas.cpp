@@ -1,5 +1,5 @@
-// Foxglove's well-known schemas. Foxglove defines these schemas. A test compares them, field by
-// field, with the schemas in Foxglove's own packages.
+// Foxglove's well-known schemas. Foxglove defines these schemas. A test compares the schemas, field
+// by field, with the schemas in Foxglove's own packages.
 #include <algorithm>
 
 #include "foxglove/json.h"

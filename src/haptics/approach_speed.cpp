@@ -8,8 +8,8 @@ namespace predictor {
 double ApproachSpeed(double distance, double gain, double acceleration) noexcept {
   if (distance <= 0) return 0;
   // On the line v = gain·d, the deceleration is gain·v. At this distance, the deceleration reaches
-  // `acceleration`. At larger distances, a parabola with this deceleration continues with the same
-  // slope.
+  // `acceleration`. At larger distances, the speed follows a parabola with this deceleration, which
+  // begins with the same slope.
   const double joint = acceleration / (gain * gain);
   if (distance <= joint) return gain * distance;
   return std::sqrt(2 * acceleration * (distance - joint / 2));

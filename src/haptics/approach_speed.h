@@ -5,13 +5,14 @@
 
 namespace predictor {
 
-// Returns the largest speed [1/s] at which a distance [·] may shrink so that it never falls below
-// zero if the deceleration is at most `acceleration`. For small distances, the speed is
-// proportional to the distance (velocity damper with slope `gain` [1/s]). A parabola continues
-// smoothly at larger distances. For negative distances, the speed is zero.
+// Returns the largest speed [·/s] at which a distance [·] may shrink. At this speed, the distance
+// never falls below zero even if the deceleration is at most `acceleration`. For small distances,
+// the speed is proportional to the distance (velocity damper with slope `gain` [1/s]). At larger
+// distances, the speed follows a parabola, which continues this line smoothly. For negative
+// distances, the speed is zero.
 double ApproachSpeed(double distance, double gain, double acceleration) noexcept;
 
-// The velocity damper of a limit, either as printed in the paper or with our repairs.
+// The velocity damper of a limit, either in the form printed in the paper or with our repairs.
 struct VelocityDamper {
   double gain = 0;          // slope [1/s]
   double influence = 0;     // distance beyond which the paper's damper does not act [·]

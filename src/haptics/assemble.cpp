@@ -104,7 +104,7 @@ void Assembler::AddLimits(const RenderContext& context, Precedence form, Qp* qp)
     row += limit->rows();
   }
   if (form == Precedence::kHard) return;
-  // Each row has a slack variable, scaled so that its weight in H is 1.
+  // Each row has a slack variable. The slack variable is scaled so that its weight in H is 1.
   for (int r = 0; r < row; ++r) {
     qp->H()(joints_ + r, joints_ + r) = 1;
     qp->A()(r, joints_ + r) = 1 / std::sqrt(kLimitSlackWeight);
@@ -126,8 +126,8 @@ void AddByWeight(const TaskTerm& term, Qp* qp) noexcept {
   }
 }
 
-// Adds six rows J x + s/√w = rate starting at `row`, each with a slack variable s. For an inactive
-// term, s is 0. The hard form has no slack, and has no row for an inactive term.
+// Adds six rows J x + s/√w = rate, starting at `row`. Each of these rows has a slack variable s.
+// For an inactive term, s is 0. The hard form has neither slack nor rows for inactive terms.
 void Assembler::AddRows(const TaskTerm& term, int row, Precedence form, Qp* qp) const noexcept {
   const bool in_force = term.J.cols() > 0;
   const bool hard = form == Precedence::kHard;

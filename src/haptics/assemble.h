@@ -15,7 +15,7 @@ namespace predictor {
 inline constexpr double kLimitSlackWeight = 1e9;
 inline constexpr double kSingularDamping = 1e-2;  // damping of joints at a singularity
 
-// Form of the problem. The first two have the same solution.
+// Form of the problem. The first two forms have the same solution.
 enum class Precedence {
   kWeights,  // tasks with precedence get large weights: takes half the time to solve
   kRows,     // tasks with precedence become rows with slack: widely differing weights do not worsen
@@ -39,8 +39,8 @@ class Assembler {
   // Writes the whole problem. Call this after Update, any number of times.
   void Assemble(const RenderContext& context, Precedence form, Qp* qp) noexcept;
 
-  // Writes the values that tasks and limits publish. `x` is the solution, or null if no solution
-  // was found.
+  // Writes the values that the tasks and limits publish. `x` is the solution, or null if no
+  // solution was found.
   void Publish(const double* x, RenderResult* result) const noexcept;
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept;
@@ -49,7 +49,7 @@ class Assembler {
   bool is_soft() const { return soft_; }
   int joints() const { return joints_; }
   int limit_rows() const { return limit_rows_; }
-  // Terms of the tasks with precedence in this tick.
+  // Terms of the tasks that have precedence in this tick.
   std::vector<TaskTerm> PrecedenceTerms() const;
 
  private:

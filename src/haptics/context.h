@@ -1,4 +1,5 @@
-// The data available to a task or a limit of rendering: the setup of a run and the state of a tick.
+// The data that is available to a task or a limit of rendering: the setup of a run and the state of
+// a tick.
 #pragma once
 
 #include <array>
@@ -15,8 +16,8 @@ namespace predictor {
 
 // Constant during a run. Tasks and limits are created from this setup.
 struct RenderSetup {
-  // Each of the `models` has a handle frame; absent sides are null. lead and dt are in [s]. Throws
-  // InputError.
+  // Each of the `models` has a handle frame. The entries of absent sides are null. The values lead
+  // and dt are in [s]. Throws InputError.
   RenderSetup(const Scenario& scenario,
               const std::array<std::shared_ptr<const RobotModel>, kHands>& models, double lead,
               double dt);
@@ -33,7 +34,7 @@ struct RenderSetup {
 // State of one tick. The joints of both arms, left before right, are the variables x of the QP.
 struct RenderContext {
   RenderContext() = default;
-  // `last` contains the joint velocities [rad/s] that were sent last. Does not use the heap or
+  // `last` contains the last joint velocities that were sent [rad/s]. Does not use the heap or
   // throw.
   RenderContext(const std::array<RenderArm, kHands>& arms, const RenderTarget& target,
                 const std::array<JointVector, kHands>& last, double dt) noexcept;

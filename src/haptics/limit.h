@@ -1,5 +1,5 @@
-// A limit of haptic rendering: bounds of joint velocities, or rows of the QP. To add a limit, see
-// docs/developer/add-a-limit.md.
+// A limit of haptic rendering, which consists of bounds of joint velocities or of rows of the QP.
+// To add a limit, see docs/developer/add-a-limit.md.
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,14 @@ class LimitRows {
  public:
   using Matrix = Eigen::Map<Qp::RowMajor, 0, Eigen::OuterStride<>>;
 
-  // There are `count` rows starting at `first`, over `joints` variables.
+  // There are `count` rows, starting at `first`. Each row has `joints` variables.
   LimitRows(Qp* qp, int joints, int first, int count)
       : lower_(qp->lower().data()),
         upper_(qp->upper().data()),
         A(qp->A().data() + first * qp->n(), count, joints, Eigen::OuterStride<>(qp->n())),
         b(qp->b().data() + first, count) {}
 
-  // Restricts joint velocity `k` to this range as far as earlier limits allow.
+  // Restricts the velocity of joint `k` to this range, as far as earlier limits allow.
   void Narrow(int k, double lowest, double highest) noexcept {
     const double low = lower_[k], high = upper_[k];
     lower_[k] = std::clamp(lowest, low, high);

@@ -12,8 +12,8 @@ struct NamedLink {
   std::string link;
 };
 
-// Parses "left:link", "right:link", or a link without side. For a link without a side, the position
-// in the pair determines the side.
+// Parses "left:link", "right:link", or a link without side. If a link is given without a side, its
+// position in the pair determines the side.
 NamedLink ParseLink(const std::string& name, int side) {
   for (int arm = 0; arm < kHands; ++arm) {
     const std::string prefix = std::string(kHandNames[static_cast<std::size_t>(arm)]) + ":";

@@ -24,8 +24,8 @@ struct LinkPair {
 Vector3 Between(const std::array<RenderArm, kHands>& arms, const LinkPair& pair) noexcept;
 
 // Returns the pairs that a scenario keeps apart: rendering.link_pairs or, if this key is not set,
-// the two elbows. For real arms, the elbows are always included. Throws InputError if a link is
-// unknown or if there are too many pairs.
+// the two elbows. For real arms, the pair of elbows is always included. Throws InputError if a link
+// is unknown or if there are too many pairs.
 std::vector<LinkPair> LinkPairs(
     const Scenario& scenario, const std::array<std::shared_ptr<const RobotModel>, kHands>& models);
 

@@ -8,7 +8,7 @@
 namespace predictor {
 namespace {
 
-// Scales the velocities of both arms by one factor so that no handle and no joint is too fast.
+// Scales the velocities of both arms by one factor, so that no handle and no joint is too fast.
 void Bound(const std::array<RenderArm, kHands>& arms, std::array<JointVector, kHands>* v) noexcept {
   double scale = 1;
   for (std::size_t i = 0; i < kHands; ++i) {
@@ -34,8 +34,8 @@ Recovery::Recovery(const Scenario& scenario,
     const ArmLimits limits = LimitsOf(scenario.arm(i), *models[i]);
     lower_[i] = limits.lower.array() + scenario.rendering.joint_security;
     upper_[i] = limits.upper.array() - scenario.rendering.joint_security;
-    // If a joint's whole range is within this distance of its limits, the joint may stay in the
-    // middle.
+    // If a joint's whole range is within this distance of its limits, the joint may remain in the
+    // middle of its range.
     for (Eigen::Index j = 0; j < lower_[i].size(); ++j)
       if (lower_[i][j] > upper_[i][j])
         lower_[i][j] = upper_[i][j] = (limits.lower[j] + limits.upper[j]) / 2;
@@ -77,7 +77,7 @@ bool Recovery::JointsBack(const std::array<RenderArm, kHands>& arms,
       const double low = lower_[i][j] + kInside - q, high = upper_[i][j] - kInside - q;
       if (!(low > kInside || high < -kInside)) continue;
       any = true;
-      // The target is inside the limit instead of on it, and the speed has a minimum.
+      // The target is inside the limit and not on it, and the speed has a minimum.
       const double way = low > 0 ? low : high;
       (*v)[i][j] = std::copysign(std::max(kGain * std::abs(way), 0.02), way);
     }
@@ -109,8 +109,8 @@ bool Recovery::LinksApart(const std::array<RenderArm, kHands>& arms,
   return true;
 }
 
-// The velocity is v = Jᵀ F · c. Because Fᵀ J v = c |Jᵀ F|² ≥ 0, the handle yields to the hand in
-// any posture.
+// The joint velocity is v = Jᵀ F · c. Because Fᵀ J v = c |Jᵀ F|² ≥ 0, the handle yields to the hand
+// in any posture.
 void Recovery::WithTheHands(const std::array<RenderArm, kHands>& arms,
                             const std::array<HandWrench, kHands>& wrench, bool goes_back,
                             std::array<JointVector, kHands>* v) noexcept {

@@ -1,6 +1,6 @@
-// RECOVERY: the only motion without a simulation. RECOVERY only moves joints back into their
-// permitted range, moves links apart, or moves a handle away from an obstacle that presses the
-// hand.
+// RECOVERY is the only motion without a simulation. RECOVERY only moves joints back into their
+// permitted range, moves links apart, or moves a handle so that the hand is no longer pressed
+// against an obstacle.
 #pragma once
 
 #include <array>
@@ -35,25 +35,26 @@ class Recovery {
   static constexpr double kJointSpeed = 0.2;  // maximum speed of a joint [rad/s]
   static constexpr double kInside = 0.002;    // distance that a joint moves inside its limit [rad]
   // Rendering stops a joint at its security distance with the accuracy of the encoder's resolution.
-  // Therefore, a joint counts as beyond its limit only if it is beyond by more than this distance
-  // [rad].
+  // Therefore, a joint counts as beyond its limit only if it exceeds the limit by more than this
+  // distance [rad].
   static constexpr double kJointMargin = 0.001;
   static constexpr double kForce = 5;  // smaller forces of the hand are ignored [N]
 
-  // The elements of `models` are null for absent sides. Throws InputError.
+  // The entries of `models` for absent sides are null. Throws InputError.
   Recovery(const Scenario& scenario,
            const std::array<std::shared_ptr<const RobotModel>, kHands>& models);
 
-  // Returns the first violation found: a joint nearer to its limit than rendering.joint_security,
-  // or a pair of links nearer than rendering.security_distance. Rendering never moves the arms into
-  // such a position, and could not move them back. Does not use the heap or throw.
+  // Returns the first violation found. A violation is a joint that is nearer to its limit than
+  // rendering.joint_security, or a pair of links that are nearer to each other than
+  // rendering.security_distance. Rendering never moves the arms to such a position, and could not
+  // move them out of it. Does not use the heap or throw.
   BeyondPlace Where(const std::array<RenderArm, kHands>& arms) const noexcept;
   Beyond Find(const std::array<RenderArm, kHands>& arms) const noexcept { return Where(arms).what; }
 
   // Computes joint velocities [rad/s] that reduce the violation found by Where. Without a
-  // violation, each handle yields to a hand that presses on it. The power of this motion and the
-  // hand's wrench is therefore never negative. The velocities are zero if no motion is necessary.
-  // Does not use the heap or throw.
+  // violation, each handle yields to a hand that presses on it. The power that the hand's wrench
+  // has in this motion is therefore never negative. The velocities are zero if no motion is
+  // necessary. Does not use the heap or throw.
   void Step(const std::array<RenderArm, kHands>& arms, const std::array<HandWrench, kHands>& wrench,
             std::array<JointVector, kHands>* v) const noexcept;
 
@@ -62,8 +63,8 @@ class Recovery {
                   std::array<JointVector, kHands>* v) const noexcept;
   bool LinksApart(const std::array<RenderArm, kHands>& arms,
                   std::array<JointVector, kHands>* v) const noexcept;
-  // Arms on which a hand presses yield to this hand. An arm that is already moving back yields only
-  // if its motion would increase the pressure on the hand.
+  // An arm on which a hand presses yields to this hand. An arm that is already moving back to its
+  // permitted range yields only if its motion would increase the force on the hand.
   static void WithTheHands(const std::array<RenderArm, kHands>& arms,
                            const std::array<HandWrench, kHands>& wrench, bool goes_back,
                            std::array<JointVector, kHands>* v) noexcept;

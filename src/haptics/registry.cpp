@@ -15,8 +15,8 @@ constexpr const ParameterKind* kParts[] = {PREDICTOR_TASKS(PREDICTOR_TASK)
 #undef PREDICTOR_LIMIT
 static_assert(std::size(kLimits) <= kMaxLimits, "RenderResult::slack_by_limit has no room");
 
-// Registration happens when the program starts, so that every scenario is read with the parameters
-// of these tasks and limits.
+// The tasks and limits are registered when the program starts, so that their parameters are known
+// when a scenario is read.
 [[maybe_unused]] const bool kDeclared = (DeclareRenderingParts(kParts), true);
 
 }  // namespace

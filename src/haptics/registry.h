@@ -26,8 +26,8 @@
 
 namespace predictor {
 
-// A kind of task or limit; Made is the type of the object. The parameters of a kind are the group
-// rendering.NAME of a scenario.
+// A kind of task or limit. `Made` is the type of its objects. The parameters of a kind form the
+// group rendering.NAME of a scenario.
 template <class Made>
 struct RenderingKind : ParameterKind {
   std::unique_ptr<Made> (*make)(const RenderSetup&, const OwnParameters&);  // throws InputError

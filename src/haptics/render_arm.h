@@ -16,7 +16,7 @@ struct RenderTarget {
   bool aligning = false;                   // ALIGN: no lead, separate gains
 };
 
-// One arm's model, state and handle, for rendering.
+// The model, the state and the handle of one arm, for rendering.
 struct RenderArm {
   bool present = false;
   const RobotModel* model = nullptr;

@@ -55,10 +55,11 @@ Renderer::~Renderer() = default;
 const Qp& Renderer::qp() const { return impl_->qp; }
 const Assembler& Renderer::assembler() const { return impl_->assembler; }
 
-// The weighted form takes half the time to solve. If many joints are at their limits, however, a
+// Solving the weighted form takes half the time. If many joints are at their limits, however, a
 // condition number of 1e10 may prevent the solver from finding a solution. In this case, the form
-// with rows is solved and, if this fails, the same form with the joint damping that is used at a
-// singularity. Only a verified solution is accepted. The paper's formulation has only one form.
+// with rows is solved. If this fails, the form with rows is solved again, with the joint damping
+// that is used at a singularity. The renderer accepts only a verified solution. The paper's
+// formulation has only one form.
 void Renderer::Impl::Solve(RenderResult* result) noexcept {
   assembler.Update(context);
   assembler.Assemble(context, form, &qp);
@@ -96,7 +97,8 @@ void Renderer::Impl::PublishActive(const Qp& solved, RenderResult* result) const
     if (multiplier(solved.n() + r) != 0) result->rows |= bit(r);
 }
 
-// The solution may violate a bound within the solver's tolerance, but the command must not.
+// The solution may violate a bound within the solver's tolerance, but the command must not violate
+// any bound.
 void Renderer::Impl::PublishCommand(RenderResult* result) const noexcept {
   for (int i = 0; i < kHands; ++i) {
     if (!context.Has(i)) continue;
@@ -109,9 +111,10 @@ void Renderer::Impl::PublishCommand(RenderResult* result) const noexcept {
   }
 }
 
-// If there is no solution, multiplies the last command by a common factor, so that the faster
-// handle slows down as at the beginning of a stop. The common factor keeps the handles' relative
-// pose to first order. Stronger braking would cause a jerk that a subsequent stop could not undo.
+// If there is no solution, this function multiplies the last command by a common factor, so that
+// the faster handle slows down as at the beginning of a stop. Because of the common factor, the
+// relative pose of the handles is constant to first order. Stronger braking would cause a jerk that
+// a subsequent stop could not undo.
 void Renderer::Impl::SlowDown(RenderResult* result) const noexcept {
   double speed = 0;
   for (int i = 0; i < kHands; ++i)
@@ -126,8 +129,7 @@ void Renderer::Impl::SlowDown(RenderResult* result) const noexcept {
     if (context.Has(i)) result->v[i] = std::max(0.0, factor) * context.last[i];
 }
 
-// Checks whether the slack of the relative pose, in translation or in rotation, has lasted too
-// long.
+// Checks whether the relative pose has had slack, in translation or in rotation, for too long.
 Status Renderer::Impl::CheckSlack(const Vector6& slack) noexcept {
   const double speed = slack.head<3>().norm();
   const double rotation = slack.tail<3>().norm();
@@ -160,7 +162,7 @@ Status Renderer::Render(const std::array<RenderArm, kHands>& arms, const RenderT
   return s.CheckSlack(result->relative_slack);
 }
 
-// The solver's state need not be saved, because it solves each problem from scratch.
+// The solver's state need not be saved, because the solver solves each problem from scratch.
 void Renderer::Archive(StateArchive& a) noexcept {
   a(impl_->failures, impl_->slack_time, impl_->assembler);
 }

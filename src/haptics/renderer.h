@@ -1,11 +1,11 @@
 // In haptic rendering, a QP computes joint velocities that make the real handles follow the virtual
 // handles.
 //
-// Priorities, highest first: joint position and velocity limits (hard); joint acceleration; link
-// pairs; relative pose of the handles; tracking. The weight of each level is so much larger than
-// that of the next level that, within numerical precision, the higher level does not yield. The
-// amount by which a level yields is published as slack. The paper's formulation
-// (scenario/formulation.h) has no slacks.
+// The priorities, beginning with the highest, are: joint position and velocity limits (hard); joint
+// acceleration; link pairs; relative pose of the handles; tracking. The weight of each level is
+// much larger than the weight of the next level. Within numerical precision, the higher level
+// therefore does not yield. The amount by which a level yields is published as slack. The paper's
+// formulation (scenario/formulation.h) has no slacks.
 #pragma once
 
 #include <array>
@@ -24,9 +24,10 @@ class Qp;
 
 class Renderer {
  public:
-  // Each of the `models` has a handle frame; absent sides are null. `lead` is the lead of the
-  // scenario, with `auto` replaced by its value [s]. `dt` is the duration of a tick [s]. Throws
-  // InputError if a link of a pair is unknown or if there are too many pairs.
+  // Each of the `models` has a handle frame. The entries of absent sides are null. `lead` is the
+  // lead of the scenario [s]. The setting `auto` must have been replaced by its value. `dt` is the
+  // duration of a tick [s]. Throws InputError if a link of a pair is unknown or if there are too
+  // many pairs.
   Renderer(const Scenario& scenario,
            const std::array<std::shared_ptr<const RobotModel>, kHands>& models, double lead,
            double dt);

@@ -15,7 +15,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kSmallestGain = 1.0 / 16;
 constexpr double kPrecision = 1.02;
 
-// An all-pass section (s² − b s + c)/(s² + b s + c), or (b − s)/(b + s) if c is 0. Times are in
+// An all-pass section (s² − b s + c)/(s² + b s + c), or (b − s)/(b + s) if c is 0. The times are in
 // units of the delay to which the section belongs.
 struct AllPass {
   double b, c;
@@ -26,9 +26,9 @@ std::vector<AllPass> EqualSections(int order) {
   return std::vector<AllPass>(static_cast<std::size_t>(order), {2.0 * order, 0});
 }
 
-// Returns the Padé approximation of e^−sT of an even order n. Its phase error is below 0.01 rad up
-// to |sT| = 3.7 (n = 4), 6.4 (n = 6) and 12 (n = 10). The denominator is Σ c_k (sT)^k with c_k =
-// (2n − k)! n! / ((2n)! k! (n − k)!).
+// Returns the Padé approximation of e^−sT with an even order n. The phase error of the
+// approximation is below 0.01 rad up to |sT| = 3.7 (n = 4), 6.4 (n = 6) and 12 (n = 10). The
+// denominator is Σ c_k (sT)^k with c_k = (2n − k)! n! / ((2n)! k! (n − k)!).
 std::vector<AllPass> PadeSections(int order) {
   const double scale = order;  // scale of the roots, so that the matrix entries have similar
                                // magnitudes
@@ -46,7 +46,8 @@ std::vector<AllPass> PadeSections(int order) {
   return sections;
 }
 
-// A linear system that is built step by step. A signal is a row of weights of the states.
+// A linear system that is built step by step. A signal is a row vector that contains the weights of
+// the states.
 class System {
  public:
   using Signal = Eigen::RowVectorXd;
@@ -66,7 +67,7 @@ class System {
     return State(z);
   }
 
-  // Applies a delay [s] by all-pass sections. Adds as many states as the total order of the
+  // Applies a delay [s] with all-pass sections. Adds as many states as the total order of the
   // sections.
   Signal Delay(Signal input, double delay, const std::vector<AllPass>& sections) {
     if (delay <= 0) return input;
@@ -99,7 +100,7 @@ int OrderOf(const std::vector<AllPass>& sections) {
 
 }  // namespace
 
-// Models of the loop's delays.
+// Models of the delays in the loop.
 struct LoopDelays {
   std::vector<AllPass> arm;  // arm and sensor, a few milliseconds
   std::vector<AllPass> reflex, sight;
@@ -135,8 +136,9 @@ HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
   const System::Signal a_d = lead_cutoff * (v_d - s->LowPass(v_d, lead_cutoff));
   const double gain = turn ? rendering.ko / 2 : rendering.kp;  // (9) uses half the angle
   const System::Signal command = v_d + lead * a_d + gain * (x_d - s->State(h));
-  // This value is the sum of all pure delays of the chain. The hold of the force adds half a tick,
-  // and the virtual handles are half a tick ahead of the sample, so these two effects cancel.
+  // This value is the sum of all pure delays in the loop. The hold of the force adds half a tick,
+  // but the virtual handles are half a tick ahead of the sample. These two effects cancel each
+  // other.
   const double delay = arm.loop.delay + arm.sensor.delay + delays.reserve * dt;
   const System::Signal u = s->Delay(command, delay, delays.arm);
   const int v = s->AddState();
@@ -149,8 +151,8 @@ HandleAxis AddArm(System* s, const ArmSpec& arm, const RenderingSpec& rendering,
 }
 
 // Adds the hand's reaction to the handle's motion along one axis (0–2 translation, 3–5 rotation).
-// `seen` is the displacement of the object along this axis; the hand corrects this displacement by
-// sight.
+// `seen` is the displacement of the object along this axis. The operator sees this displacement,
+// and the hand corrects it.
 System::Signal AddHand(System* s, const HandSpec& hand, const LoopDelays& delays, int axis,
                        const HandleAxis& handle, const System::Signal& seen) {
   const bool turn = axis >= 3;
@@ -276,8 +278,8 @@ LeadChoice ChooseLead(const HapticLoop& loop, const Scenario& scenario, double d
   constexpr int kSteps = 5;
   for (int k = kSteps; k >= 0; --k) {
     const double lead = choice.lag * k / kSteps;
-    // The loop must be stable with the nominal impedance of the hands and with the impedance
-    // increased by the margin.
+    // The loop must be stable with the nominal impedance of the hands, and also if the margin
+    // increases this impedance.
     if (loop.GrowthRate(hand, lead, margin) > HapticLoop::kGrowing ||
         loop.GrowthRate(hand, lead, 1) > HapticLoop::kGrowing)
       continue;

@@ -6,8 +6,8 @@ namespace predictor {
 
 Vector6 TaskTerm::Slack(const double* x) const noexcept {
   if (J.cols() == 0) return Vector6::Zero();
-  // Adds column by column, starting with −rate. Existing recordings depend on this order of
-  // summation.
+  // The sum is computed column by column, starting with −rate. Existing recordings depend on this
+  // order of summation.
   Vector6 slack = -rate;
   for (int c = 0; c < J.cols(); ++c) slack += J.col(c) * x[first + c];
   return slack;

@@ -1,5 +1,5 @@
 // A task of haptic rendering is a goal of the arms, expressed as terms of the QP's objective. To
-// add one, see docs/developer/add-a-limit.md.
+// add a task, see docs/developer/add-a-limit.md.
 #pragma once
 
 #include <span>
@@ -33,13 +33,13 @@ class Task {
  public:
   virtual ~Task() = default;
 
-  // Updates terms() and adds to the objective of single joints. This function is called once per
-  // tick and must not use the heap or throw.
+  // Updates terms() and adds the task's terms for single joints to the objective. This function is
+  // called once per tick and must not use the heap or throw.
   virtual void Update(const RenderContext& context, JointObjective* joints) noexcept = 0;
   std::span<const TaskTerm> terms() const { return terms_; }
-  // Returns whether the weights of the terms are so much larger than those of ordinary tasks that
-  // the terms yield only to limits. If the solver finds no precise solution with such weights, the
-  // terms become rows with slack.
+  // Returns whether the task has precedence over ordinary tasks. The weights of its terms are then
+  // so large that the terms yield only to limits. If the solver finds no precise solution with such
+  // weights, the terms are replaced by rows with slack.
   virtual bool has_precedence() const { return false; }
 
   // Writes the values that the task publishes per tick. `x` is the solution, or null if none was
@@ -54,13 +54,13 @@ class Task {
 };
 
 // Returns the vector part of the quaternion that rotates `from` into `to` by the shorter path. For
-// small rotations, this vector is half of the rotation vector. The result equals η ε^d − η^d ε −
-// S(ε^d) ε of (9). If `nearer` is false, the signs of the quaternions determine the path, as in
-// (9).
+// small rotations, this vector is half of the rotation vector. The result equals the expression η
+// ε^d − η^d ε − S(ε^d) ε in (9) of the paper. If `nearer` is false, the signs of the quaternions
+// determine the path, as in (9) of the paper.
 Vector3 QuaternionError(const Quaternion& to, const Quaternion& from, bool nearer = true) noexcept;
 
-// Returns the weights of a handle's twist: 1 for translation, and the square of
-// `rendering.characteristic_length` for rotation, or 1 in the paper's (7).
+// Returns the weights of a handle's twist. The weight of translation is 1. The weight of rotation
+// is the square of `rendering.characteristic_length`, or 1 in (7) of the paper.
 Vector6 TwistWeight(const RenderSetup& setup);
 
 // Returns a factor in (0, 1] that reduces a twist to the speed caps of a handle.

@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-// Returns the wrench, about the handle's origin, that a unit force along the normal exerts. The
+// Returns the wrench about the handle's origin that a unit force along the normal exerts. The
 // transpose of this wrench maps the handle's twist to the point's velocity along the normal.
 Vector6 UnitForce(const Wall& wall) {
   Vector6 w;
@@ -29,7 +29,7 @@ RowVectorXd Displacement(const LinearModel& world, const RowVectorXd& velocity) 
   return row;
 }
 
-// Solves (s − A) x = b for s = jω, as a real system of twice the size.
+// Solves (s − A) x = b for s = jω as a system of real equations of twice the size.
 Eigen::VectorXcd Response(const MatrixXd& A, const VectorXd& b, double omega) {
   const Eigen::Index n = A.rows();
   MatrixXd system(2 * n, 2 * n);

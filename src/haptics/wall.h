@@ -1,5 +1,5 @@
-// Adds a wall that the object touches to the linear model of the virtual world, and computes the
-// impedance that the hands then feel.
+// Models a wall that the object touches, as part of the linear model of the virtual world. Computes
+// the impedance that the hands then feel.
 #pragma once
 
 #include <complex>
@@ -23,13 +23,13 @@ struct Wall {
 // Returns the model with the wall.
 LinearModel WithWall(const LinearModel& world, const Wall& wall);
 
-// Returns the mass that a force at the wall's point and along its normal moves [kg].
+// Returns the effective mass at the wall's point along its normal [kg].
 double MassAt(const LinearModel& world, const Wall& wall);
 
-// The impedance that the hands feel if all of them press along `direction`: their total force
-// divided by the mean displacement of their handles [N/m] at one frequency. The real part is a
-// stiffness. The imaginary part divided by 2π·frequency is a damping. If this damping is negative,
-// the device feeds energy into the hands.
+// The impedance that the hands feel if all of them press along `direction`. The impedance at one
+// frequency is the total force of the hands divided by the mean displacement of their handles
+// [N/m]. The real part is a stiffness. The imaginary part divided by 2π·frequency is a damping. If
+// this damping is negative, the device feeds energy into the hands.
 struct FeltImpedance {
   std::complex<double> requested;  // of the virtual world
   std::complex<double> rendered;   // by the arms, through the force sensors

@@ -58,8 +58,9 @@ class Arms {
   int carriers(int link) const { return at(carriers_, link); }  // number of movable joints
   int above(int link) const { return at(above_, link); }        // joint; −1 at the root
 
-  // Returns the link that is carried by the largest number of an arm's joints. If several links
-  // are, it is the last one that is not part of a finger.
+  // Returns the link that is carried by the largest number of an arm's joints. If several links are
+  // carried by this number of joints, it returns the last of these links that is not part of a
+  // finger.
   int EndEffector() const {
     int best = urdf_.root;
     const auto rank = [this](int link) {
@@ -76,7 +77,8 @@ class Arms {
     return list[static_cast<std::size_t>(i)];
   }
 
-  // The loop runs from the tips to the base, so that all joints after a joint are known.
+  // The loop runs from the tips to the base, so that a joint is visited after all joints that it
+  // carries.
   void MarkGrippers() {
     std::vector<bool> carries_arm(urdf_.links.size(), false);
     for (std::size_t j = urdf_.joints.size(); j-- > 0;) {

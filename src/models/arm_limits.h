@@ -6,8 +6,9 @@
 
 namespace predictor {
 
-// Each list has one entry per joint. The quantities are position [rad], velocity [rad/s] (80 % of
-// the vendor's limit unless the scenario sets a lower one) and acceleration [rad/s²].
+// Each list of limits has one entry per joint. The limits are positions [rad], velocities [rad/s]
+// and accelerations [rad/s²]. The velocity limit is 80 % of the vendor's limit unless the scenario
+// sets a lower one.
 struct ArmLimits {
   JointVector lower, upper, velocity, acceleration;
 };

@@ -25,8 +25,8 @@ std::shared_ptr<const RobotModel> LoadCobotModel(const Scenario& scenario);
 // (prismatic joints: [N]). Throws InputError if the number of values does not fit.
 JointVector EffortLimit(const CobotSpec& spec, const RobotModel& robot);
 
-// Returns for each joint of the cobot whether it is prismatic. Throws InputError if its model
-// cannot be loaded.
+// Returns, for each joint of the cobot, whether the joint is prismatic. Throws InputError if the
+// cobot's model cannot be loaded.
 std::vector<bool> PrismaticJoints(const Scenario& scenario);
 
 // Refuses an angle for a prismatic joint and a length for a revolute joint, in the list at `key` of
@@ -34,7 +34,7 @@ std::vector<bool> PrismaticJoints(const Scenario& scenario);
 void CheckPostureUnits(const YamlNode& tree, const RobotModel& model, const std::string& key);
 
 // Loads the model of an arm and checks its links and posture. `base` is the pose of the arm's base
-// in the frame in which the model computes. This frame is W for an emulation (Scenario::X_WB) and
+// in the frame that the model uses. The frame of `base` is W for an emulation (Scenario::X_WB) and
 // the rig's frame R for commissioning (BaseSpec::X_RB). Relative paths are resolved from `folder`.
 // Throws InputError at the invalid key within `key` ("device.arms.left").
 std::shared_ptr<const RobotModel> LoadArmModel(const ArmSpec& spec, const Pose& base,

@@ -8,11 +8,11 @@
 
 namespace predictor {
 
-// Thickness of the box that represents a plane; its upper face is the plane [m].
+// The thickness of the box that represents a plane. The upper face of the box is the plane [m].
 inline constexpr double kPlaneDepth = 0.05;
 
-// The fixture as boxes, cylinders and balls, in W: a capsule as a cylinder and two balls, a plane
-// as a thin box.
+// Returns boxes, cylinders and balls in W that represent the fixture. A capsule becomes a cylinder
+// and two balls, and a plane becomes a thin box.
 std::vector<ModelShape> FixtureShapes(const FixtureSpec& fixture);
 
 }  // namespace predictor

@@ -22,7 +22,7 @@ class Solver {
     still_.setZero(model.dof());
   }
 
-  // Returns the weighted error [m] at q. Sets error_ and the kinematics.
+  // Returns the weighted error [m] at q. Sets error_ and updates the kinematics.
   double Error(const JointVector& q) {
     data_.UpdateKinematics(model_, q, still_);
     error_ = PoseError(goal_, data_.FramePose(model_, frame_));
@@ -72,8 +72,8 @@ class Solver {
   }
 
  private:
-  // Takes a damped least-squares step within the limits. Joints that would exceed a limit are set
-  // to it, and the system is solved again for the other joints.
+  // Takes a damped least-squares step within the limits. A joint that would exceed a limit is set
+  // to this limit, and the system is solved again for the other joints.
   JointVector Step(const JointVector& q, double damping) {
     data_.UpdateKinematics(model_, q, still_);
     Jacobian J;

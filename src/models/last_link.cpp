@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kShort = 0.02;  // lengths below this one have no reliable direction [m]
 
-// Returns whether `v` is long enough, and whether its angle to the axis is more than 60° (`across`)
-// or at most 60° (otherwise).
+// Returns whether `v` is long enough and has the required angle to the axis: more than 60° if
+// `across` is true, and at most 60° otherwise.
 bool Points(const Vector3& v, const Vector3& axis, bool across) {
   return v.norm() > kShort && (std::fabs(v.dot(axis)) < 0.5 * v.norm()) == across;
 }

@@ -19,8 +19,8 @@ std::array<std::uint32_t, N> ReadNumbers(std::ifstream* stream, std::streamoff o
   return numbers;
 }
 
-// Returns whether the file has at least this many bytes. If the file is shorter, the bytes that
-// were read are not a binary header, because the first bytes of a text file also form a number.
+// Returns whether the file has at least this many bytes. If the file is shorter, its first bytes
+// are not a binary header, because the first bytes of a text file also form a number.
 bool HasBytes(std::ifstream* stream, std::uint64_t bytes) {
   stream->seekg(0, std::ios::end);
   const std::streamoff end = stream->tellg();

@@ -17,7 +17,7 @@ void DeleteChildren(XmlElement* element, const std::set<std::string>& names) {
   }
 }
 
-// MuJoCo mistakes a link named "world" for its own world and loses the link's mass.
+// MuJoCo mistakes a link named "world" for MuJoCo's own world and loses the link's mass.
 void RenameWorld(const UrdfModel& urdf, XmlElement* robot) {
   const std::vector<std::string> names = urdf.LinkNames();
   std::string name = "world_link";

@@ -114,7 +114,7 @@ ObjectModel MakeObject(const UrdfModel& urdf) {
     throw InputError(
         urdf.file.string(),
         "The object " + Quote(urdf.name) + " has the mass " + FormatNumber(object.mass) +
-            " kg, but it needs a mass and an inertia about all axes. Give its link an <inertial>.");
+            " kg, but it needs a mass and an inertia about all axes. Give the link of the object an <inertial>.");
   }
   return object;
 }
@@ -145,7 +145,7 @@ ObjectModel LoadObject(const ObjectSpec& spec, const std::filesystem::path& fold
                        const std::string& key) {
   if (spec.model.empty()) {
     if (spec.primitive) return MakeObject(*spec.primitive, key);
-    throw InputError::At(key, key + " has neither a model nor a primitive. Give one of the two.");
+    throw InputError::At(key, key + " has neither a model nor a primitive. Give a model or a primitive.");
   }
   try {
     const std::filesystem::path from = folder.empty() ? "." : folder;

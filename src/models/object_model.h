@@ -22,12 +22,13 @@ struct ObjectModel {
 
 // The largest total number of triangles in all collision meshes of an object. At start-up, the
 // physics engine computes the convex hull of each mesh. In the worst case (every vertex on the
-// hull), the computation takes 0.7 s for this number of triangles and 4 s for 100 000.
+// hull), this computation takes 0.7 s for the permitted number of triangles, and 4 s for 100 000
+// triangles.
 inline constexpr std::size_t kMaxCollisionTriangles = 20000;
 
 // Reads an object's URDF. The URDF has one link, or several links that are connected by fixed
-// joints and are merged here. Throws InputError if ReadUrdf does, if a joint is movable, if mass or
-// inertia is missing, or if there are too many triangles.
+// joints. These links are merged into one. Throws InputError if ReadUrdf does, if a joint is
+// movable, if mass or inertia is missing, or if there are too many triangles.
 ObjectModel ReadObject(const std::filesystem::path& file);
 ObjectModel MakeObject(const UrdfModel& urdf);
 

@@ -7,9 +7,9 @@
 namespace predictor {
 namespace {
 
-// Writes the same body in another frame, in which its present frame is at (R, p). By Steiner's rule
-// with the first moment h, the inertia is R I Rᵀ − [p][h] − [h][p] − m [p][p], where −[a][b] =
-// (a·b) 1 − b aᵀ.
+// Expresses the inertia of a body in another frame, in which its present frame is at (R, p). By
+// Steiner's rule with the first moment h, the inertia is R I Rᵀ − [p][h] − [h][p] − m [p][p], where
+// −[a][b] = (a·b) 1 − b aᵀ.
 void Transform(const BodyInertia& body, const Matrix3& R, const Vector3& p, BodyInertia* out) {
   const Vector3 h = R * body.moment;
   out->mass = body.mass;
@@ -44,7 +44,7 @@ EngineJoint MakeJoint(const UrdfJoint& joint, std::size_t parent, const Pose& X_
   return made;
 }
 
-// Turns R about the joint's axis by an angle with this sine and cosine.
+// Turns R about the joint's axis by the angle that has the given sine and cosine.
 void Turn(const EngineJoint& joint, double sine, double cosine, Matrix3* R) {
   if (joint.own_axis < 0) {  // Rodrigues' formula
     const Matrix3 K = Skew(joint.axis);
@@ -80,9 +80,9 @@ void ComputeCoriolis(const EngineModel& model, EngineState* state) {
   }
 }
 
-// Computes the mass matrix by composite rigid bodies (table 6.2): a joint's acceleration moves
-// everything that it carries, which loads the joints that carry it. The torques of gravity follow
-// from the weight that each joint carries.
+// Computes the mass matrix with the algorithm of composite rigid bodies (table 6.2). The
+// acceleration of a joint moves all bodies that the joint carries, and these bodies load all joints
+// that carry them. The torques of gravity follow from the weight that each joint carries.
 void ComputeComposite(const EngineModel& model, double gravity, EngineState* state) {
   state->composite = state->inertia;
   for (std::size_t j = model.joints.size(); j > 0; --j) {

@@ -1,4 +1,4 @@
-// Computes kinematics and dynamics of a tree of joints. All quantities are in W, because there the
+// Computes kinematics and dynamics of a tree of joints. All quantities are in W, because in W the
 // results are plain sums along the tree (Featherstone 2008, "Rigid body dynamics algorithms").
 #pragma once
 
@@ -44,7 +44,7 @@ struct EngineModel {
   std::vector<EngineJoint> joints;
 };
 
-// Results, and memory for intermediate results.
+// The results of the computation, and memory for intermediate results.
 struct EngineState {
   JointVector v;  // [rad/s]
   std::array<Matrix3, kMaxJoints + 1> R_WJ;
@@ -58,8 +58,8 @@ struct EngineState {
   const EngineModel* waits_for_bias = nullptr;        // model to compute `bias` with; null: done
 };
 
-// Builds the model. `body` and `X_JL` give, for each link, the joint that carries it and its pose
-// in that joint's frame.
+// Builds the model. `body` and `X_JL` state, for each link, the joint that carries the link and the
+// link's pose in the frame of this joint.
 EngineModel MakeEngineModel(const UrdfModel& urdf, const Pose& X_WB, std::vector<int>* body,
                             std::vector<Pose>* X_JL);
 
@@ -73,7 +73,8 @@ void ComputeKinematics(const EngineModel& model, const JointVector& q, EngineSta
 void ComputeDynamics(const EngineModel& model, const JointVector& q, const JointVector& v,
                      double gravity, EngineState* state) noexcept;
 // Returns the bias torques at (q, v) of the last ComputeDynamics [N·m]. The bias torques are
-// computed at the first request, because most controllers do not need them. Does not allocate.
+// computed only when a caller requests them, because most controllers do not need them. Does not
+// allocate.
 const JointVector& Bias(EngineState* state) noexcept;
 
 // A twist [m/s, rad/s] or a wrench [N, N·m] at W's origin. The linear and the angular half are

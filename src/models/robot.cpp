@@ -72,7 +72,7 @@ std::shared_ptr<const RobotModel> RobotModel::Load(const RobotSource& source) {
   } catch (const InputError& error) {
     if (source.key.empty()) throw;
     // Errors from the model's reader have the key remove_links or no key. Errors without a key
-    // concern the file.
+    // refer to the file.
     throw error.Within(error.key().empty() ? source.key + ".model" : source.key);
   }
 }
@@ -152,7 +152,7 @@ FrameMotion RobotData::MotionOf(const RobotModel& model, const FrameId& frame,
                                 const JointVector& a) const {
   // The loop sums along the chain with the columns S_k of J_W, in W. Each column is moved by the
   // preceding joints, so the spatial acceleration gains V × S_k v_k (Featherstone 2008, (2.47)).
-  // The result is then converted to the classical acceleration.
+  // The sum is then converted to the classical acceleration.
   const LinkPoint point = At(model, impl_->state, frame);
   const JointVector& v = impl_->state.v;
   Spatial V = Spatial::Zero(), A = V;

@@ -1,4 +1,4 @@
-// Kinematics and dynamics of one arm, from its URDF.
+// Computes the kinematics and dynamics of one arm from its URDF.
 //
 // RobotModel is constant after loading, and RobotData is the writable workspace. After
 // construction, only Load, Build, Frame, link_names and KinematicHessian allocate memory.
@@ -26,7 +26,7 @@ struct RobotSource {
 };
 
 // A frame that moves with a robot: a link's origin or a point fixed to a link. A FrameId is a plain
-// value that RobotModel::Frame makes. Any number of frames may be made at any time.
+// value that RobotModel::Frame makes. FrameIds may be made at any time, in any number.
 struct FrameId {
   int body = -1;  // the movable joint that carries it, counted from 1; 0: the base
   Pose X_JF;      // pose in the frame of that joint; in W if fixed to the base
@@ -36,9 +36,9 @@ struct FrameId {
 class RobotModel {
  public:
   // Reads and checks a URDF (see models/urdf.h) and builds the model. The base is fixed. The model
-  // has 1 to kMaxJoints revolute, continuous or prismatic joints. They are ordered depth-first and,
-  // for each link, in the file's order. A mimic joint is treated as an independent joint (see
-  // models/urdf.h). Throws InputError that names file, link or joint and the remedy.
+  // has 1 to kMaxJoints revolute, continuous or prismatic joints. The joints are ordered
+  // depth-first and, for each link, in the file's order. A mimic joint is treated as an independent
+  // joint (see models/urdf.h). Throws InputError that names file, link or joint and the remedy.
   static std::shared_ptr<const RobotModel> Load(const RobotSource& source);
   // Builds the model from a URDF that has already been read.
   static std::shared_ptr<const RobotModel> Build(const UrdfModel& urdf, const Pose& X_WB);
@@ -81,7 +81,7 @@ class RobotData {
   Twist FrameTwist(const RobotModel& model, const FrameId& frame) const;  // V_WF, axes of W
   // Returns pose, twist, and acceleration J a + dJ/dt v for joint accelerations a [rad/s²], [m/s²].
   FrameMotion MotionOf(const RobotModel& model, const FrameId& frame, const JointVector& a) const;
-  // Writes J with V_WF = J v, in the axes of W; 6 × dof.
+  // Writes the Jacobian J (6 × dof) with V_WF = J v, in the axes of W.
   void FrameJacobian(const RobotModel& model, const FrameId& frame, Jacobian* J) const;
 
   // Computes the mass matrix M [kg·m²], bias h = C v + g [N·m] and gravity torques g [N·m] at (q,
@@ -92,10 +92,10 @@ class RobotData {
   const JointVector& bias() const;
   const JointVector& gravity() const;
 
-  // Computes the gradient with respect to the joints of a frame's translational manipulability m =
-  // sqrt(det(J_v J_vᵀ)), from the kinematic Hessian (Haviland & Corke 2021): dm/dq_i = m tr((J_v
-  // J_vᵀ)^-1 H_i J_vᵀ). Also writes m. At a singularity (m < 1e-9), the gradient is zero. The
-  // function uses the state of the last Update.
+  // Computes the gradient of a frame's translational manipulability m = sqrt(det(J_v J_vᵀ)) with
+  // respect to the joints. The gradient follows from the kinematic Hessian (Haviland & Corke 2021):
+  // dm/dq_i = m tr((J_v J_vᵀ)^-1 H_i J_vᵀ). Also writes m. At a singularity (m < 1e-9), the
+  // gradient is zero. The function uses the state of the last Update.
   void ManipulabilityGradient(const RobotModel& model, const FrameId& frame, double* m,
                               JointVector* gradient) const;
 
@@ -112,7 +112,7 @@ void KinematicHessian(const Jacobian& J, std::vector<Jacobian>* H);
 // Finds joint positions q within the limits that bring frame F to X_WF. The search uses damped
 // least squares, first from `start` and then from `restarts` random starts, which are the same in
 // each call. Returns whether the position error is below 1e-6 m and the rotation error below 1e-6
-// rad. If they are not, q is the best solution found.
+// rad. If an error is larger, q is the best solution that was found.
 bool SolveInverseKinematics(const RobotModel& model, const FrameId& frame, const Pose& X_WF,
                             const JointVector& start, int restarts, JointVector* q);
 

@@ -1,4 +1,4 @@
-// Defines the members of RobotModel and RobotData.
+// Defines the data members of RobotModel and RobotData.
 #pragma once
 
 #include <array>

@@ -10,8 +10,8 @@ namespace predictor {
 
 struct EngineRegressor;
 
-// The ten inertial parameters of a body: mass m [kg], m c [kg·m], and inertia about the body's
-// frame, xx xy yy xz yz zz [kg·m²], all in the axes of that frame.
+// The ten inertial parameters of a body are the mass m [kg], m c [kg·m], and the inertia about the
+// body's frame, xx xy yy xz yz zz [kg·m²], all in the axes of that frame.
 using InertialParameters = Eigen::Matrix<double, 10, 1>;
 
 class TorqueRegressor {
@@ -19,9 +19,10 @@ class TorqueRegressor {
   // `model` must outlive this object. `gravity` [m/s²] acts along −z of W.
   TorqueRegressor(const RobotModel& model, double gravity);
 
-  // Returns Y(q, v, a), dof × 10 dof, of τ = Y π. τ [N·m] moves the arm without friction and with
-  // nothing at its end-effector. π are the parameters of its moving bodies (Atkeson, An &
-  // Hollerbach 1986). The result is valid until the next call.
+  // Returns the matrix Y(q, v, a) in τ = Y π, with dof rows and 10 dof columns. The torques τ [N·m]
+  // move the arm without friction and with nothing at its end-effector. The vector π contains the
+  // parameters of the arm's moving bodies (Atkeson, An & Hollerbach 1986). The result is valid
+  // until the next call.
   const Eigen::MatrixXd& Compute(const JointVector& q, const JointVector& v, const JointVector& a);
 
   // Returns the parameters π of the model. Fixed links are included in the bodies that carry them.

@@ -21,14 +21,15 @@ constexpr double kMinInertia = 1e-11;  // smallest trace that counts as inertia 
 std::string ReadText(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
-    throw InputError(file.string(), "This file does not exist or is not a file. Give a URDF file.");
+    throw InputError(file.string(),
+                     "This file does not exist or is not a regular file. Give a URDF file.");
   }
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   if (error || bytes > kMaxUrdfBytes) {
     throw InputError(file.string(), "The file has " + std::to_string(bytes) +
                                         " bytes, but a URDF can have at most " +
                                         std::to_string(kMaxUrdfBytes) +
-                                        ". Move shapes into mesh files.");
+                                        ". Move the shapes into mesh files.");
   }
   return ReadWholeFile(file, bytes);
 }
@@ -93,7 +94,7 @@ void ReadJointNames(const UrdfSource& source, XmlElement* robot, const Names& li
   }
 }
 
-// Checks that everything that moves as one body has mass and inertia. Without them, the
+// Checks that everything that moves as one body has mass and inertia. Without mass and inertia, the
 // acceleration of a joint would be undefined.
 void CheckMovingMasses(const UrdfSource& source, const UrdfModel& model) {
   std::vector<double> mass(model.links.size()), inertia(model.links.size());

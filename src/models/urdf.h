@@ -12,7 +12,7 @@ namespace predictor {
 
 enum class ShapeKind { kBox, kCylinder, kSphere, kMesh };
 
-// A visual or collision shape of a link or an object.
+// One visual or collision shape of a link or an object.
 struct ModelShape {
   ShapeKind kind = ShapeKind::kBox;
   Vector3 size = Vector3::Zero();  // box: x y z; cylinder: radius, length; sphere: radius [m];
@@ -77,9 +77,9 @@ struct UrdfModel {
 //
 // A planar joint becomes two prismatic joints and a continuous one (models/urdf_planar.h).
 //
-// A mimic joint becomes an independent joint: it is a degree of freedom and does not follow the
-// other joint. Grippers have mimic joints, but an arm's end-effector does not move with them. If
-// the fingers do not matter, remove the gripper with remove_links.
+// A mimic joint becomes an independent joint. It is then a degree of freedom that does not follow
+// the other joint. Grippers have mimic joints, but the arm's end-effector does not move with these
+// joints. If the fingers do not matter, remove the gripper with remove_links.
 UrdfModel ReadUrdf(const std::filesystem::path& file,
                    const std::vector<std::string>& remove_links = {},
                    const std::filesystem::path& scenario_folder = {});

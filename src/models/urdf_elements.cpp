@@ -26,7 +26,7 @@ double PositiveNumber(const UrdfSource& source, const XmlElement& element, const
   return x;
 }
 
-// Returns the file that a <mesh> or <texture> refers to. Its absolute path replaces the URI.
+// Returns the file that a <mesh> or <texture> refers to. The file's absolute path replaces the URI.
 std::filesystem::path ResolveFile(const UrdfSource& source, XmlElement* element,
                                   const std::string& link) {
   const std::string uri = source.Text(*element, "filename");
@@ -155,8 +155,8 @@ void ReadLimits(const UrdfSource& source, const XmlElement& joint, UrdfJoint* to
   if (to->lower >= to->upper) {
     source.Fail(*limit, "Joint " + Quote(to->name) + " has the limits lower " +
                             FormatNumber(to->lower) + " and upper " + FormatNumber(to->upper) +
-                            ", but lower must be below upper. For a joint that does not move, "
-                            "write type=\"fixed\".");
+                            ", but lower must be below upper. Write type=\"fixed\" for a joint "
+                            "that does not move.");
   }
 }
 

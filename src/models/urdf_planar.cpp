@@ -31,7 +31,7 @@ class Splitter {
     for (const char* ending : {"_x", "_y", "_yaw"}) RefuseTaken("joint", name_ + ending);
     for (const char* ending : {"_x_link", "_y_link"}) RefuseTaken("link", name_ + ending);
     // The planar joint is read as a prismatic joint, so that errors in its axis and limits refer to
-    // its place in the file.
+    // the joint's place in the file.
     joint_->SetAttribute("type", "prismatic");
     UrdfJoint plane;
     plane.name = name_;

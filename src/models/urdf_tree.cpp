@@ -31,7 +31,7 @@ Indices JointsAbove(const UrdfSource& source, const UrdfModel& model) {
 
 [[noreturn]] void FailCycle(const UrdfSource& source, const UrdfModel& model, const Indices& above,
                             int link) {
-  // If the walk goes upwards by as many steps as there are links, it ends inside the cycle.
+  // A walk upwards by as many steps as there are links ends inside the cycle.
   const auto parent = [&](int i) {
     return model.joints[static_cast<std::size_t>(above[static_cast<std::size_t>(i)])].parent;
   };
@@ -84,9 +84,9 @@ std::size_t FindLink(const UrdfModel& model, const std::string& name, std::size_
                                   Quote(model.name) + ". " + Suggestion(name, model.LinkNames()));
   }
   if (found - model.links.begin() == model.root) {
-    throw InputError::At(key, key + ": " + Quote(name) + " is the root of the robot " +
-                                  Quote(model.name) +
-                                  ", so nothing would remain. Give a link farther from the root.");
+    throw InputError::At(
+        key, key + ": " + Quote(name) + " is the root of the robot " + Quote(model.name) +
+                 ", so nothing would remain. Give a link that is farther from the root.");
   }
   return static_cast<std::size_t>(found - model.links.begin());
 }

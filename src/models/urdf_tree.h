@@ -9,7 +9,7 @@
 
 namespace predictor {
 
-// A URDF while it is being read: each link and joint with its XML element.
+// The state of a URDF while it is being read, with the XML element of each link and joint.
 struct UrdfDocument {
   UrdfModel model;
   std::vector<XmlElement*> links, joints;

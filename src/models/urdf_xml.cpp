@@ -36,15 +36,15 @@ std::size_t EndOfTag(const std::string& text, std::size_t at, const std::string&
     } else if (c == '=' && ++attributes > kMaxAttributes) {
       FailAt(text, at, name,
              "An element has more than " + std::to_string(kMaxAttributes) +
-                 " attributes. No element of a URDF needs that many attributes.");
+                 " attributes. No element of a URDF needs as many attributes as this one.");
     }
   }
   return text.size();
 }
 
-// Refuses, before parsing, content with which a small file would take much time or memory. Entities
-// can do so, and they can also read other files. Therefore only comments and character data may
-// begin with "<!".
+// Refuses text that would make the parser use much time or memory although the file is small. This
+// check runs before parsing. XML entities can use much time and memory, and they can also read
+// other files. Therefore only comments and character data may begin with "<!".
 void RefuseHostile(const std::string& text, const std::string& name) {
   const std::size_t zero = text.find('\0');
   if (zero != std::string::npos) {
@@ -70,7 +70,7 @@ void RefuseHostile(const std::string& text, const std::string& name) {
   }
 }
 
-// Reads the numbers in `text`. Returns false if it contains anything else.
+// Reads the numbers in `text`. Returns false if the text contains anything other than numbers.
 bool ParseNumbers(const std::string& text, std::vector<double>* numbers) {
   const char* at = text.data();
   const char* const end = at + text.size();
@@ -101,11 +101,12 @@ std::vector<double> Numbers(const UrdfSource& source, const XmlElement& element,
   std::vector<double> numbers;
   if (!ParseNumbers(text, &numbers) || numbers.size() != count) {
     const bool is_xacro = text.find("${") != std::string::npos;
-    source.Fail(element, Of(element, attribute) + " is " + Quote(text) + "; it must be " +
-                             (count == 1 ? "a number." : std::to_string(count) + " numbers.") +
-                             (is_xacro ? " This is an expression of xacro. Expand the file first: "
-                                         "xacro FILE.urdf.xacro > FILE.urdf."
-                                       : ""));
+    source.Fail(element,
+                Of(element, attribute) + " is " + Quote(text) + "; it must be " +
+                    (count == 1 ? "a number." : std::to_string(count) + " numbers.") +
+                    (is_xacro ? " The value is an expression of xacro. Expand the file first: "
+                                "xacro FILE.urdf.xacro > FILE.urdf."
+                              : ""));
   }
   for (const double x : numbers) {
     if (std::isfinite(x) && std::abs(x) <= largest) continue;

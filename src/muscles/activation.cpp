@@ -10,7 +10,7 @@ namespace {
 constexpr int kMaxIterations = 200;
 constexpr double kTolerance = 1e-10;  // tolerance of the slope, relative to the largest torque
 
-// The value of the dual function at one λ, negated so that it can be minimised.
+// The negated value of the dual function at one λ, which is minimised.
 struct Dual {
   double value = 0;
   ArmVector slope;
@@ -24,12 +24,12 @@ double CostOf(const ActivationProblem& p, double square, int i, double a) {
   return p.weight[i] * effort + p.trust[i] * miss * miss / 2;
 }
 
-// Returns the activation at which the marginal cost equals `gain`, and the derivative of that
-// activation with respect to `gain`.
+// Returns the activation at which the marginal cost equals `gain`, and the activation's derivative
+// with respect to `gain`.
 double ActivationAt(const ActivationProblem& p, double square, int i, double gain, double* slope) {
   const double w = p.weight[i];
   const double pulled = gain + p.trust[i] * p.measured[i];
-  // Twice the coefficient of the squared activation in the cost.
+  // `v` is twice the coefficient of the squared activation in the cost.
   const double v = p.trust[i] + square * w;
   if (p.power == 2) {
     *slope = 1 / v;

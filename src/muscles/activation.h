@@ -15,7 +15,8 @@ struct ActivationProblem {
   MuscleVector lower = MuscleVector::Zero(), upper = MuscleVector::Ones();
   MuscleVector weight = MuscleVector::Ones();  // w > 0
   // 2 gives the least sum of squares. 3 (Crowninshield & Brand 1981, R) distributes the load more
-  // evenly. To bound the slope, kSquareShare of the cost for p = 2 is added.
+  // evenly. For p = 3, the share kSquareShare of the cost for p = 2 is added, which bounds the
+  // slope.
   int power = 2;
   // Measured activations e with weights v ≥ 0 (0 if not measured).
   MuscleVector measured = MuscleVector::Zero(), trust = MuscleVector::Zero();
@@ -37,9 +38,9 @@ struct ActivationResult {
 };
 
 // Applies a semismooth Newton method to the dual problem, which has one unknown λ for each joint.
-// a(λ) minimises the cost minus λᵀ B a within the bounds, and s = λ r² / c. The slope of the
-// strictly convex dual is B a(λ) + s(λ) - τ. With a line search, the method converges from any
-// start. The method is deterministic and does not use the heap.
+// The activations a(λ) minimise the cost minus λᵀ B a within the bounds, and s = λ r² / c. The
+// slope of the strictly convex dual is B a(λ) + s(λ) - τ. With a line search, the method converges
+// from any start. The method is deterministic and does not use the heap.
 ActivationResult Activate(const ActivationProblem& problem) noexcept;
 
 }  // namespace predictor::muscles

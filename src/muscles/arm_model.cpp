@@ -32,7 +32,7 @@ constexpr int LevelOf(Part part) {
   }
 }
 
-// The joints of an arm in the axes of a torso that stands upright.
+// The positions and axes of the joints of an arm, in the axes of a torso that stands upright.
 struct ArmPlacement {
   std::array<Vector3, person::kArmJoints> p, axis;
   std::array<Matrix3, person::kArmJoints> R;
@@ -60,8 +60,8 @@ struct Point {
   int level;
 };
 
-// Adds the straight line between two points: its length, and -∂l/∂q for the joints that move only
-// one of them.
+// Adds the length of the straight line between two points to `length`. Adds -∂l/∂q to the moment
+// arms of the joints that move only one of these points.
 void AddStraight(const ArmPlacement& arm, const Point& from, const Point& to, double* length,
                  ArmVector* moment_arm) {
   const Vector3 way = to.p - from.p;
@@ -122,7 +122,7 @@ double StrengthOf(const BodySpec& spec, MuscleGroup group) {
   }
 }
 
-// Returns for each joint the end of its working range that bit i of `corner` selects (D).
+// Returns, for each joint, the end of its working range that bit i of `corner` selects (D).
 ArmVector WorkingCorner(int corner) {
   constexpr double kRange[person::kArmJoints][2] = {{0, 90},   {0, 60},   {-30, 45}, {0, 130},
                                                     {-70, 70}, {-45, 45}, {-15, 25}};

@@ -50,14 +50,15 @@ class ArmPaths {
 class ArmModel {
  public:
   // An arm of the body (hand 0: left). The paths scale with the lengths of upper arm, forearm and
-  // hand. Forces scale with mass times height over length, relative to 75 kg and 1.75 m, because a
-  // muscle's volume is proportional to mass times height (R). They are also multiplied by 0.7 for
-  // women (D), and by the person's own strength. Tendon lengths are chosen so that the longest
-  // fibre at all corners of the working range has the length kLongestFibre. This range comprises
-  // flexion from 0 to 90°, abduction from 0 to 60° and so on (D).
+  // hand. Forces are proportional to mass times height over length, relative to a person of 75 kg
+  // and 1.75 m, because a muscle's volume is proportional to mass times height (R). The forces are
+  // also multiplied by 0.7 for women (D), and by the person's own strength. Tendon lengths are
+  // chosen so that the longest fibre at all corners of the working range has the length
+  // kLongestFibre. The working range comprises flexion from 0 to 90°, abduction from 0 to 60° and
+  // so on (D).
   //
-  // With `paths`, the paths and parameters of the muscles are those of another model, and all
-  // lengths scale with the upper arm. Forces are scaled in the same way.
+  // If `paths` is given, the paths and parameters of the muscles are those of another model, and
+  // all lengths scale with the upper arm. Forces are scaled in the same way.
   ArmModel(const BodySpec& spec, int hand, std::shared_ptr<const ArmPaths> paths = nullptr);
 
   int hand() const { return hand_; }

@@ -26,7 +26,8 @@ void Check(const EmgProcessing& p) {
     throw InputError("The electromyogram has " + FormatNumber(p.rate) +
                      " samples per second and a band from " + FormatNumber(p.band_low) + " to " +
                      FormatNumber(p.band_high) +
-                     " Hz. Give a rising band, and a rate above twice its upper end.");
+                     " Hz. Give a band whose upper end is above its lower end, and a sampling rate "
+                     "above twice the upper end.");
   if (!(p.envelope > 0 && p.envelope < p.band_low))
     throw InputError("The envelope's cutoff is " + FormatNumber(p.envelope) +
                      " Hz. Give a cutoff between 0 and the lower end of the band.");

@@ -1,8 +1,8 @@
 // A muscle with a stiff tendon: the force that its fibres can produce at a given length and
 // velocity.
 //
-// A letter at each figure states its origin. V: agrees with an independent copy. R: quoted from
-// memory of the literature. D: our choice.
+// The letter at each number states the number's origin. V: agrees with an independent copy. R:
+// quoted from memory of the literature. D: our choice.
 #pragma once
 
 namespace predictor::muscles {
@@ -34,8 +34,9 @@ double ActiveForceLength(double length);
 // Returns the passive force over max_force, (exp(4 (l - 1) / 0.6) - 1) / (exp(4) - 1) above the
 // optimal length, else 0 (Thelen 2003, R).
 double PassiveForceLength(double length);
-// Returns the factor of the active force (V: MuJoCo's muscle with fvmax 1.2): (1 + v)² while
-// shortening, 0 below -1; 1.2 - (0.2 - v)² / 0.2 up to v = 0.2 while lengthening, then 1.2.
+// Returns the factor by which the velocity v changes the active force (V: MuJoCo's muscle with
+// fvmax 1.2). While shortening, the factor is (1 + v)², and it is 0 below -1. While lengthening,
+// the factor is 1.2 - (0.2 - v)² / 0.2 up to v = 0.2, and 1.2 above.
 double ForceVelocity(double velocity);
 
 // The forces along the tendon [N]: `active` at full activation, and `passive` without activation.

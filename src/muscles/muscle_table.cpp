@@ -98,8 +98,8 @@ constexpr MuscleSpec kTable[kMuscles] = {
      138.5,
      25,
      {{{kTorso, 73, 132, -110}, {kTorso, 62, 75, -75}, OverHead(kUpperArm, 12, -9, -44, 22)}}},
-    // The three lines of Holzbaur et al. are combined into two, each with half of the summed
-    // forces.
+    // The three lines of Holzbaur et al. are combined into two, and each of these has half of the
+    // summed forces.
     {"latissimus dorsi, upper",
      "latissimus_upper",
      kShoulderExtensors,

@@ -1,15 +1,16 @@
 // The muscles of an arm: their names, paths and strengths.
 //
 // Sources of the paths: attachments and via points were read from the MyoArm model of the package
-// myo-sim 0.2.4 (Apache-2.0) in the posture of zero angles. They were expressed in the segments of
-// our body, rounded to millimetres and reduced to a few points. What was read is V, and what was
-// omitted or moved is D. The wrapping obstacles are D. They were chosen so that the moment arms
-// agree with measured ones (docs/concepts/muscles.md). Sources of the forces: Holzbaur, Murray &
-// Delp 2005 for shoulder and elbow, and MyoArm (V) for the forearm. In the former, triceps, biceps
-// and brachialis are V (compared with the public model arm26), and the others are R. MyoArm's
-// forces are larger. The forces of the four paths of each finger muscle are added up. The muscles
-// of wrist and fingers have half of MyoArm's forces (D). Source of fibre lengths and pennation:
-// Holzbaur et al. 2005 (V for the same six muscles, R for the others).
+// myo-sim 0.2.4 (Apache-2.0) in the posture of zero angles. Attachments and via points were
+// expressed in the segments of our body, rounded to millimetres and reduced to a few points. Values
+// that were read from MyoArm are V, and values that were changed or omitted are D. The wrapping
+// obstacles are D. The wrapping obstacles were chosen so that the moment arms agree with measured
+// ones (docs/concepts/muscles.md). Sources of the forces: Holzbaur, Murray & Delp 2005 for shoulder
+// and elbow, and MyoArm (V) for the forearm. Of the forces from Holzbaur et al., those of triceps,
+// biceps and brachialis are V (compared with the public model arm26), and the others are R.
+// MyoArm's forces are larger. The forces of the four paths of each finger muscle are added up. The
+// muscles of wrist and fingers have half of MyoArm's forces (D). Fibre lengths and pennation are
+// from Holzbaur et al. 2005 (V for the same six muscles, R for the others).
 #pragma once
 
 #include <array>
@@ -35,7 +36,8 @@ constexpr bool ActsAtShoulder(int group) {
 }
 
 // A rigid part to which a muscle is attached. The coordinates apply to a right arm in the zero
-// posture (hanging, straight, thumb forward), with x forward, y to the left and z up.
+// posture (hanging, straight, thumb forward). In these coordinates, x points forward, y to the left
+// and z up.
 enum class Part : int {
   kNone,
   kTorso,     // origin at the shoulder joint; the shoulder girdle does not move relative to it
@@ -45,7 +47,7 @@ enum class Part : int {
   kHand,      // origin at the wrist joint
 };
 
-// The round obstacles. A muscle takes the shortest path around the obstacle, on the given side.
+// The round obstacles. A muscle takes the shortest path around its obstacle on the given side.
 enum class Wrap : int {
   kNone,
   kHead,          // ball about the shoulder joint; the shorter side
@@ -57,7 +59,7 @@ enum class Wrap : int {
   kForearmInner,  // cylinder about the forearm's axis; the muscle pronates
 };
 
-// A point of a path, and the obstacle between it and the previous point.
+// A point of a muscle's path, and the obstacle between this point and the previous one.
 struct PathPoint {
   Part part = Part::kNone;
   double x = 0, y = 0, z = 0;  // [mm]

@@ -67,7 +67,7 @@ struct MyoJoint {
   int q = -1, v = -1, id = -1;  // index in qpos, index in qvel, number of the joint
 };
 
-// A joint that follows another one.
+// A joint whose position is coupled to that of another joint.
 struct Coupling {
   MyoJoint dependent, independent;
   std::array<double, 5> polynomial = {};
@@ -82,14 +82,14 @@ struct Coupling {
   }
 };
 
-// A tendon and its share of one of our muscles.
+// A tendon of MyoArm and the tendon's share of one of our muscles.
 struct Strand {
   int tendon = -1, muscle = -1;
   double share = 0;
 };
 
-// The rotations about the axis of the plane of elevation, about the axis of elevation, and about
-// the first axis again.
+// The angles of three successive rotations: about the axis of the plane of elevation, about the
+// axis of elevation, and again about the first axis.
 struct ShoulderAngles {
   double plane = 0, elevation = 0, rotation = 0;
 };
@@ -122,8 +122,8 @@ class MyoArm final : public ArmPaths {
   MyoData data_;
   MyoJoint plane_, elevation_, rotation_, elbow_, pronation_, flexion_, deviation_;
   // Three additional joints at the centre of the shoulder. The axes of these joints are never in
-  // one plane. The axes of plane, elevation and rotation are, if the upper arm hangs, which makes
-  // this posture singular.
+  // one plane. If the upper arm hangs, the axes of plane, elevation and rotation are in one plane,
+  // so this posture is singular.
   std::array<MyoJoint, 3> ball_;
   std::vector<Coupling> couplings_;
   std::vector<Strand> strands_;
@@ -158,13 +158,14 @@ MyoArm::MyoArm(MyoModel model, const std::string& source)
   SetFrames();
 }
 
-// Names of the right arm may end with _r.
+// The names of the joints and muscles of the right arm may end with _r.
 int MyoArm::IdOf(mjtObj kind, const std::string& name, const char* what) const {
   for (const std::string& full : {name + "_r", name})
     if (const int id = mj_name2id(model_.get(), kind, full.c_str()); id >= 0) return id;
-  throw InputError(source_, std::string("The model has no ") + what + " " + Quote(name) +
-                                ", so it is not MyoArm. Give myo_sim/models of the package myo-sim "
-                                "0.2.4, or an MJCF file with its whole right arm.");
+  throw InputError(source_,
+                   std::string("The model has no ") + what + " " + Quote(name) +
+                       ", so it is not MyoArm. Give the folder myo_sim/models of the package "
+                       "myo-sim 0.2.4, or an MJCF file that contains its whole right arm.");
 }
 
 MyoJoint MyoArm::JointOf(const std::string& name) const {
@@ -241,8 +242,8 @@ void MyoArm::SetFrames() {
   R_shoulder_.col(1) = R_shoulder_.col(2).cross(R_shoulder_.col(0));
 }
 
-// Returns the angles of R = Rz Rx Rz in the axes of the shoulder. For a hanging arm, only the sum
-// of plane and rotation is known, and the plane is set to 0.
+// Returns the angles of R = Rz Rx Rz in the axes of the shoulder. If the arm hangs, only the sum of
+// plane and rotation is known, so the plane is set to 0.
 ShoulderAngles MyoArm::ShoulderAt(const Matrix3& R) const noexcept {
   const Matrix3 S = R_shoulder_.transpose() * R * R_shoulder_;
   ShoulderAngles angles;
@@ -266,7 +267,7 @@ void MyoArm::SetPosture(const ArmVector& q, const Matrix3& R_upper_arm) const no
   qpos[plane_.q] = shoulder.plane;
   qpos[elevation_.q] = shoulder.elevation;
   // A coupled joint turns the upper arm back by the angle of the plane (see couplings_), so this
-  // angle is added here.
+  // angle is added to the rotation.
   qpos[rotation_.q] = shoulder.rotation + shoulder.plane;
   const auto at = [&](ArmJoint joint) { return q[static_cast<int>(joint)]; };
   qpos[elbow_.q] = at(ArmJoint::kElbowFlexion);
@@ -289,8 +290,9 @@ MuscleLines MyoArm::LinesAt(const ArmVector& q) const noexcept {
   const Matrix3 R = R_WS_ * at.R[kFirst + kShoulder - 1] * R_WS_.transpose();
   SetPosture(q, R);
 
-  // The shoulder turns about three axes, and its girdle follows the elevation, whose slope is
-  // -e·(a × u)/sin(elevation) for the axis a, the vertical e and the direction u of the upper arm.
+  // The shoulder turns about three axes, and its girdle follows the elevation. The slope of the
+  // elevation is -e·(a × u)/sin(elevation), where a is the axis, e is the vertical and u is the
+  // direction of the upper arm.
   const mjModel* m = model_.get();
   const Vector3 vertical = R_shoulder_.col(2), along = R * vertical;
   const double elevation = data_->qpos[elevation_.q], sine = std::sin(elevation);

@@ -22,8 +22,8 @@ void DeleteAll(mjSpec* spec, mjtObj kind) {
   }
 }
 
-// The file contains the inertias of the bodies, so the shapes of the bones are needed only for
-// pictures. Tendons wrap around other shapes than those of the bones.
+// The file contains the inertias of the bodies, so only pictures need the shapes of the bones. The
+// shapes around which tendons wrap are not shapes of the bones.
 void DeletePictures(mjSpec* spec) {
   for (mjsElement* element = mjs_firstElement(spec, mjOBJ_GEOM); element != nullptr;) {
     mjsElement* next = mjs_nextElement(spec, element);

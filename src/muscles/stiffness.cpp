@@ -31,7 +31,7 @@ HandPoint HandPointAt(const person::BodyModel& body, const person::Placement& at
   point.J = person::JacobianAt(body, at, last, p).middleCols<person::kArmJoints>(first);
   for (int i = 0; i < person::kArmJoints; ++i)
     for (int j = 0; j <= i; ++j) {
-      // The inner joint rotates the axis and the lever arm of the outer one.
+      // The inner joint rotates the axis and the lever arm of the outer joint.
       const Vector3& inner = at.axis[static_cast<std::size_t>(first + j)];
       const Vector3 lever = point.J.col(i).head<3>();
       point.turning(i, j) = point.turning(j, i) = inner.cross(lever).dot(force);

@@ -7,19 +7,20 @@
 
 namespace predictor::muscles {
 
-// The factor of a muscle's stiffness along its path, k = 23 F / l0, where l0 is the optimal fibre
-// length (short-range stiffness of active fibres, Rack & Westbury 1974, Cui et al. 2008, R). The
-// tendon is assumed to be rigid, so k is too large for muscles with a long tendon.
+// The factor in a muscle's stiffness along its path, k = 23 F / l0, where l0 is the optimal fibre
+// length. The factor is that of the short-range stiffness of active fibres (Rack & Westbury 1974,
+// Cui et al. 2008, R). The tendon is assumed to be rigid, so k is too large for muscles with a long
+// tendon.
 inline constexpr double kShortRangeStiffness = 23;
 
 // Returns K = -∂τ/∂q [N·m/rad] at constant activations: Rᵀ diag(k) R - (∂Rᵀ/∂q) F, where R is the
 // matrix of moment arms with one row for each muscle. Only `active_force` [N] contributes to the
-// stiffness k, while all of `force` [N] contributes to the second term. The second term is a
-// central difference of the moment arms.
+// stiffness k, while all of `force` [N] contributes to the term with ∂Rᵀ/∂q. The derivative ∂Rᵀ/∂q
+// is computed by a central difference of the moment arms.
 ArmMatrix JointStiffness(const ArmModel& arm, const ArmVector& q, const MuscleVector& active_force,
                          const MuscleVector& force) noexcept;
 
-// A point of the hand, in a posture of the whole body.
+// A point of the hand for a given posture of the whole body.
 struct HandPoint {
   // The Jacobian that maps the velocities of the arm's joints to the twist of the frame at the
   // point.

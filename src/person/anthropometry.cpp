@@ -12,9 +12,9 @@
 namespace predictor::person {
 namespace {
 
-// A row of de Leva's table. The mass is a fraction of the body's mass. The centre of mass (from the
-// proximal end) and the radii of gyration (about the sagittal, transverse and longitudinal axes)
-// are fractions of the length. The length applies to a person of the table's mean height [m].
+// One row of de Leva's table. The mass is a fraction of the body's mass. The centre of mass (from
+// the proximal end) and the radii of gyration (about the sagittal, transverse and longitudinal
+// axes) are fractions of the length. The length applies to a person of the table's mean height [m].
 struct Row {
   double mass, com;
   Vector3 radii;
@@ -27,8 +27,9 @@ struct Table {
   double shoulder_height;  // height of the shoulder joints above the hip joints [m]
 };
 
-// As in the paper, the trunk's rows are given from the cranial end and the head's row from the
-// vertex. The hand's proximal end is the wrist, and its length ends at the third knuckle.
+// As in the paper, the centres of mass are measured from the cranial end in the trunk's rows, and
+// from the vertex in the head's row. The hand's proximal end is the wrist, and the hand's length
+// ends at the third knuckle.
 const Table kMaleTable = {1.741,
                           {.0694, .5002, {.303, .315, .261}, .2429},
                           {.1596, .5066, {.505, .320, .465}, .2421},
@@ -60,7 +61,7 @@ constexpr double kMinBodyMassIndex = 12, kMaxBodyMassIndex = 70;  // [kg/m²]
 // The permitted range of a measured length, relative to the estimated length.
 constexpr double kMinLengthFactor = 0.7, kMaxLengthFactor = 1.4;
 // The possible heights of the head, as fractions of the body's height. The height of the head is
-// what remains of the body's height after the other lengths.
+// the difference between the body's height and the sum of the other lengths.
 constexpr double kMinHeadHeight = 0.08, kMaxHeadHeight = 0.2;
 
 [[noreturn]] void Refuse(const std::string& key, const std::string& sentence) {
@@ -80,10 +81,11 @@ double Measured(const char* key, const std::optional<double>& measured, double e
   const double low = std::round(kMinLengthFactor * estimate * 1000) / 1000;
   const double high = std::round(kMaxLengthFactor * estimate * 1000) / 1000;
   if (*measured >= low && *measured <= high) return *measured;
-  Refuse(key, "is " + FormatNumber(*measured) + " m, but " + FormatNumber(low) + " to " +
-                  FormatNumber(high) +
-                  " m is possible for this height. Measure between the joints' centres, in m, or "
-                  "omit it.");
+  Refuse(
+      key,
+      "is " + FormatNumber(*measured) + " m, but " + FormatNumber(low) + " to " +
+          FormatNumber(high) +
+          " m is possible for this height. Measure between the joints' centres, in m, or omit it.");
 }
 
 Segment Make(const Row& row, double mass, double length) {
@@ -123,7 +125,7 @@ void CheckPerson(const BodySpec& spec) {
     Refuse("mass", "is " + FormatNumber(spec.mass) + " kg at a height of " +
                        FormatNumber(spec.height) + " m, which is a body-mass index of " +
                        FormatNumber(std::round(index * 10) / 10) +
-                       " kg/m². Check both; 12 to 70 kg/m² is possible.");
+                       " kg/m². Check both values. Indices from 12 to 70 kg/m² are possible.");
 }
 
 void AddTrunk(const Table& table, const BodySpec& spec, double mass, Anthropometry* a) {

@@ -1,8 +1,8 @@
 // Computes the masses, centres of mass, inertias and lengths of a person's segments from height,
 // mass and sex.
 //
-// Marks at the figures state their origin. V: agrees with an independent copy (the biobuddy 0.3.2
-// package). R: quoted from memory of the literature. D: our choice.
+// The following letters state the origin of each number. V: agrees with an independent copy (the
+// biobuddy 0.3.2 package). R: quoted from memory of the literature. D: our choice.
 #pragma once
 
 #include "core/types.h"
@@ -10,8 +10,8 @@
 
 namespace predictor::person {
 
-// A rigid segment. In the upright posture, with hanging arms and thumbs forward, the segment's axes
-// are x forward, y left, z up.
+// A rigid segment. In the upright posture, the arms hang and the thumbs point forward. In this
+// posture, the segment's axes are x forward, y to the left and z up.
 struct Segment {
   double mass = 0;                    // [kg]
   double length = 0;                  // [m]
@@ -37,17 +37,18 @@ struct Anthropometry {
   double hip_height() const { return ankle_height + shank.length + thigh.length; }  // [m]
 };
 
-// Masses, centres of mass, radii of gyration and lengths are those of de Leva, "Adjustments to
-// Zatsiorsky-Seluyanov's segment inertia parameters", J. Biomech. 29 (1996) 1223-1230 (V; shoulder
-// height R). Lengths scale with the height; inertia = m (r L)². Masses are scaled by at most 0.01 %
-// so that they sum to the person's mass. The distance of the upper arm's centre of mass from the
-// shoulder is 0.5772 (0.5754) of its length. biobuddy measures this fraction from the elbow, and
-// Winter gives 0.436. The trunk is upright and straight, so the height of the head is what remains
-// of the body's height after the other lengths. Further lengths, as fractions of the height: ankle
-// 0.039 (Winter, R), hip joints 0.05 and shoulder joints 0.105 from the midplane (D), L5/S1 0.058
-// above (Chaffin & Andersson: a fifth of the way from hip to shoulder, R) and 0.018 behind the hips
-// (D), eyes at 0.936 (Drillis & Contini, R). Throws InputError, with the key of BodySpec, for
-// values that no adult has.
+// The masses, centres of mass, radii of gyration and lengths are those of de Leva, "Adjustments to
+// Zatsiorsky-Seluyanov's segment inertia parameters", J. Biomech. 29 (1996) 1223-1230 (V; the
+// shoulder height is R). Lengths are proportional to the person's height, and the inertia is m (r
+// L)². Masses are scaled by at most 0.01 % so that they sum to the person's mass. The distance of
+// the upper arm's centre of mass from the shoulder is 0.5772 of the upper arm's length for men and
+// 0.5754 for women. The package biobuddy measures this fraction from the elbow, and Winter gives
+// 0.436. The trunk is upright and straight, so the height of the head is the difference between the
+// body's height and the sum of the other lengths. Further lengths, as fractions of the height:
+// ankle 0.039 (Winter, R), hip joints 0.05 and shoulder joints 0.105 from the midplane (D), L5/S1
+// 0.058 above (Chaffin & Andersson: a fifth of the way from hip to shoulder, R) and 0.018 behind
+// the hips (D), eyes at 0.936 (Drillis & Contini, R). Throws InputError, with the key of BodySpec,
+// for values that no adult has.
 Anthropometry AnthropometryOf(const BodySpec& spec);
 
 }  // namespace predictor::person

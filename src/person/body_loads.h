@@ -10,13 +10,14 @@
 
 namespace predictor::person {
 
-// A posture and its derivatives [rad, rad/s, rad/s²; for the pelvis's position m, m/s, m/s²].
+// A posture and its derivatives [rad, rad/s, rad/s²]. The position of the pelvis and its
+// derivatives are in [m, m/s, m/s²].
 struct BodyMotion {
   BodyVector q = BodyVector::Zero(), v = BodyVector::Zero(), a = BodyVector::Zero();
 };
 
-// The loads of the disc between the fifth lumbar vertebra and the sacrum. This disc carries the
-// whole body above it.
+// The loads of the disc between the fifth lumbar vertebra and the sacrum. The disc carries the
+// weight of the whole body above it.
 struct DiscLoads {
   double flexion_moment = 0;  // moment that the back muscles must produce, positive: extensors
                               // [N·m]
@@ -43,13 +44,14 @@ struct BodyLoads {
   Balance balance;
 };
 
-// The model is a single equivalent extensor (Chaffin & Andersson; marks R). The disc is
-// perpendicular to a direction that is fixed to the pelvis and leans forward by kSacralAngle from
-// the pelvis's long axis. Compression = force along this direction + √(flexion² + lateral moment²)
-// / muscle_arm. Shear = forward force perpendicular to this direction. The muscle pulls along the
-// compression. Abdominal pressure and co-contraction are neglected, so the loads of upright
-// standing are underestimated. Compare with 3.4 kN (NIOSH, R) and with a shear of 0.7 to 1 kN
-// (Gallagher & Marras 2012, R).
+// The extensor muscles are modelled as a single equivalent muscle (Chaffin & Andersson; marks R).
+// The disc is perpendicular to a direction that is fixed to the pelvis and leans forward by
+// kSacralAngle from the pelvis's long axis. The compression is the force along this direction +
+// √(flexion² + lateral moment²) / muscle_arm. The shear is the forward force perpendicular to this
+// direction. The muscle pulls in the direction of the compression. Abdominal pressure and
+// co-contraction are neglected, so the loads of upright standing are underestimated. Literature for
+// comparison gives a limit of 3.4 kN for the compression (NIOSH, R), and of 0.7 to 1 kN for the
+// shear (Gallagher & Marras 2012, R).
 inline constexpr double kSacralAngle = 0.698;   // 40° [rad]
 inline constexpr double kBackMuscleArm = 0.06;  // 0.05 to 0.07 [m]
 
@@ -70,7 +72,7 @@ class BodyDynamics {
   double muscle_arm_;
 };
 
-// Calls f(name, value&) for the values of the lower back and the balance.
+// Calls f(name, value&) for each value of the lower back and the balance.
 template <class Loads, class F>
 void ForEachBodyValue(Loads& loads, F f) {
   f("l5s1_flexion_moment", loads.l5s1.flexion_moment);
@@ -85,11 +87,11 @@ void ForEachBodyValue(Loads& loads, F f) {
 }
 
 // Smooths postures at the constant interval dt [s] without phase shift and computes their
-// derivatives. It runs a second-order Butterworth filter forward and backward, with the overall
-// cutoff `cutoff` [Hz] (Winter 2009: each pass has 1/0.802 of it), and then takes central
-// differences. The filter causes no delay, but the results of the last half second change when
-// samples are added. The cutoff is at most half of the Nyquist frequency. With fewer than three
-// postures, the derivatives are zero.
+// derivatives. The function runs a second-order Butterworth filter forward and backward, and then
+// takes central differences. `cutoff` [Hz] is the overall cutoff, and the cutoff of each pass is
+// 1/0.802 of it (Winter 2009). The filter causes no delay, but the results of the last half second
+// change if samples are added afterwards. The cutoff is at most half of the Nyquist frequency. If
+// there are fewer than three postures, the derivatives are zero.
 std::vector<BodyMotion> SmoothMotion(std::span<const BodyVector> q, double dt, double cutoff = 6);
 
 }  // namespace predictor::person

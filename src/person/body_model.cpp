@@ -88,9 +88,9 @@ void BodyModel::AddTrunk() {
   Carry(kNeckTwist, a.head, {0, 0, a.head.com});
 }
 
-// The limits of rotation, pronation and deviation are from the MyoArm model (V). The elbow reaches
-// 2.5 rad (D). Wrist flexion and shoulder flexion are clinical values (R). Abduction ends before
-// the singularity of the sequence (D).
+// The limits of rotation, pronation and deviation are from the MyoArm model (V). The elbow can be
+// flexed to 2.5 rad (D). The limits of wrist flexion and shoulder flexion are clinical values (R).
+// The permitted abduction ends before the singularity of the sequence (D).
 void BodyModel::AddArm(int hand) {
   const Anthropometry& a = anthropometry_;
   const double side = hand == 0 ? 1 : -1;  // sign of y on the arm's side

@@ -36,8 +36,8 @@ inline constexpr int kArmJoints = 7;
 inline constexpr int kRightArm = kLeftArm + kArmJoints;
 inline constexpr int kBodyJoints = kRightArm + kArmJoints;
 
-// The joints of an arm. Of() returns the index of such a joint in the body. The shoulder is a
-// sequence of flexion, abduction and rotation. This sequence is singular at an abduction of 90°,
+// The joints of an arm. Of() returns the index of one of these joints in the body. The shoulder is
+// a sequence of flexion, abduction and rotation. This sequence is singular at an abduction of 90°,
 // but not for a hanging upper arm.
 enum class ArmJoint : int {
   kShoulderFlexion,    // positive forward
@@ -60,8 +60,8 @@ constexpr bool IsPrismatic(int joint) { return joint <= kPelvisZ; }
 using BodyVector = Eigen::Matrix<double, kBodyJoints, 1>;
 using BodyJacobian = Eigen::Matrix<double, 6, kBodyJoints>;
 
-// A joint and the segment that it moves. If several joints are at the same place, only the last one
-// carries mass.
+// A joint and the segment that it moves. If several joints are at the same place, only the last of
+// these joints carries mass.
 struct BodyJoint {
   int parent = -1;                   // parent joint; -1: S
   Vector3 offset = Vector3::Zero();  // position of this joint in the parent's frame [m]
@@ -121,12 +121,12 @@ struct ExternalWrench {
 };
 
 struct JointLoads {
-  // The generalised forces of the joints [N·m; N for the pelvis's translations], which the muscles
-  // must produce, positive in the direction of the joint. The first six are the forces that the
-  // legs exert on the pelvis.
+  // The generalised forces that the muscles must produce at the joints [N·m]. The forces of the
+  // pelvis's translations are in [N]. Each force is positive in the direction of its joint. The
+  // first six forces are those that the legs exert on the pelvis.
   BodyVector torque;
-  // The force [N] and moment [N·m] that the inner segment exerts on the outer segment at each
-  // joint's origin, in the axes of S.
+  // The force [N] and moment [N·m] that the inner segment exerts on the outer segment at the origin
+  // of each joint, in the axes of S.
   std::array<Vector3, kBodyJoints> force, moment;
 };
 
@@ -137,7 +137,7 @@ JointLoads InverseDynamics(const BodyModel& model, const BodyVector& q, const Bo
                            double gravity = kStandardGravity);
 
 // A part of the body that moves as one rigid body. The joints first ... last are at one place, and
-// the last carries its mass.
+// the last of these joints carries the part's mass.
 struct BodyPart {
   const char* name;  // "pelvis", "left_hand"
   int first, last;

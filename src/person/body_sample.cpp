@@ -33,8 +33,8 @@ Pose GripOn(const Vector3& bar, const Vector3& wrist) {
   const Vector3 across = wrist - wrist.dot(x) * x;
   if (!(across.norm() > 1e-6 * wrist.norm()) || !(bar.norm() > 0))
     throw InputError(
-        "The direction of the wrist is parallel to the bar of the handle. Give two directions at "
-        "an angle, neither of them zero.");
+        "The direction of the wrist is parallel to the bar of the handle. Give two directions that "
+        "are at an angle to each other, neither of them zero.");
   Matrix3 R;
   R.col(0) = x;
   R.col(2) = across.normalized();

@@ -16,7 +16,8 @@ struct Stance {
   double width = 0.25;  // distance between the ankles [m]
 };
 // Returns the stance at the point `ground` of W [m]. The person faces the horizontal part of
-// `direction`. Throws InputError if that part is zero, or if the width is outside 0 to 1 m.
+// `direction`. Throws InputError if the horizontal part is zero, or if the width is outside 0 to
+// 1 m.
 Stance StanceAt(const Vector3& ground, const Vector3& direction, double width = 0.25);
 // Returns the stance of a scenario.
 Stance StanceOf(const StanceSpec& spec);
@@ -25,13 +26,13 @@ Stance StanceOf(const StanceSpec& spec);
 struct Grip {
   GripKind kind = GripKind::kPower;
   Pose X_DG;
-  // Whether the hand may grip at any angle about the bar (x of G) and the bar may lie obliquely in
-  // the hand. The arm's comfort then determines these angles.
+  // Whether the hand may grip at any angle about the bar (x of G) and may hold the bar obliquely.
+  // The arm's comfort then determines these angles.
   bool turns = true;
 };
 // Returns X_DG of a hand that holds a bar at D's origin. The bar has the direction `bar` (towards
-// the thumb), and the wrist lies in the direction `wrist` from the origin. Both directions are in
-// D. Throws InputError if they are parallel.
+// the thumb), and the wrist lies in the direction `wrist` from the origin. The two directions are
+// in D. Throws InputError if they are parallel.
 Pose GripOn(const Vector3& bar, const Vector3& wrist);
 
 struct HandSample {

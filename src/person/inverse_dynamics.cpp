@@ -10,8 +10,8 @@ struct Motion {
   Vector3 a = Vector3::Zero();      // acceleration of the origin, minus gravity [m/s²]
 };
 
-// Computes the motion of a joint's frame from the motion of its parent's frame. `r` starts at the
-// parent's origin [m, in S].
+// Computes the motion of a joint's frame from the motion of the frame of its parent joint. `r`
+// starts at the parent's origin [m, in S].
 Motion Outward(const Motion& parent, const Vector3& axis, const Vector3& r, bool prismatic,
                double v, double acceleration) {
   Motion m = parent;

@@ -25,9 +25,9 @@ struct BodyLegs {
 // inertia.
 BodyLegs LegsOf(const BodyModel& model, const BodyVector& q, double width);
 
-// The rectangle around both feet, which are parallel to x of S. The heel is behind the ankle by
-// 0.25 of the foot's length, and the width of the foot is 0.055 of the body's height (Drillis &
-// Contini, R).
+// The rectangle around both feet, which are parallel to x of S. The heel is 0.25 of the foot's
+// length behind the ankle, and the foot's width is 0.055 of the body's height (Drillis & Contini,
+// R).
 struct Footprint {
   double back = 0, front = 0, half_width = 0;  // x = back ... front, |y| ≤ half_width [m]
   // Returns the distance of (x, y) from the nearest edge of the rectangle [m], positive inside.

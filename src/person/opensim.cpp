@@ -43,7 +43,7 @@ std::string Frame(const std::string& name, const std::string& body, const Vector
                    Tag("orientation", "0 0 0"));
 }
 
-// If `joint` is -1, this axis does not move.
+// An axis with a `joint` of -1 does not move.
 std::string Axis(const std::string& name, int joint, const Vector3& axis) {
   const std::string function =
       joint < 0 ? Named("Constant", "function", Tag("value", "0"))
@@ -53,7 +53,8 @@ std::string Axis(const std::string& name, int joint, const Vector3& axis) {
                    function);
 }
 
-// The joints of a part follow one another. Axes that do not move must be independent of the others.
+// The joints of a part follow one another. The axes that do not move must be linearly independent
+// of the other axes.
 std::string SpatialTransform(const BodyModel& model, const BodyPart& part) {
   std::vector<std::pair<int, Vector3>> rotations, translations;
   for (int i = part.first; i <= part.last; ++i)

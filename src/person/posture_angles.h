@@ -8,8 +8,9 @@
 namespace predictor::person {
 
 struct ArmAngles {
-  // The angle between the upper arm and the torso, in the torso's midplane [rad]. It is 0 along the
-  // torso, positive in front of it and negative behind it (RULA and REBA: flexion, extension).
+  // The angle between the upper arm and the torso, in the torso's midplane [rad]. This angle is 0
+  // along the torso, positive in front of the torso (flexion in RULA and REBA) and negative behind
+  // the torso (extension).
   double upper_arm_flexion = 0;
   // The angle of the upper arm to the torso's midplane, positive away from the body [rad].
   double upper_arm_abduction = 0;
@@ -20,20 +21,20 @@ struct ArmAngles {
   double wrist_flexion = 0;       // positive towards the palm, negative extension [rad]
   double wrist_deviation = 0;     // positive ulnar, negative radial [rad]
   double forearm_twist = 0;       // 0 with the thumb up, positive pronation (palm down) [rad]
-  // The distance of the knuckles from the torso's midplane, towards the arm's own side [m]. This
-  // distance is negative if the forearm crosses the midline, and larger than the shoulder's
-  // distance if the forearm points outwards.
+  // The distance of the knuckles from the torso's midplane, towards the arm's own side [m]. The
+  // value of hand_beside_midline is negative if the forearm crosses the midline, and larger than
+  // the shoulder's distance if the forearm points outwards.
   double hand_beside_midline = 0;
-  // hand_beside_midline minus the distance of the shoulder joint from the midplane [m]. Positive if
-  // the hand is further out to the side than the shoulder.
+  // hand_beside_midline minus the distance of the shoulder joint from the midplane [m]. This value
+  // is positive if the hand is further out to the side than the shoulder.
   double hand_beside_shoulder = 0;
 };
 
 // The shoulder girdle does not move in this model, so a raised shoulder cannot be detected.
 struct PostureAngles {
   std::array<ArmAngles, kHands> arms;
-  // The angle of the torso to the vertical in the direction that the pelvis faces, positive forward
-  // and negative in extension [rad].
+  // The angle between the torso and the vertical in the direction that the pelvis faces [rad]. This
+  // angle is positive if the torso leans forward and negative in extension.
   double trunk_flexion = 0;
   double trunk_side_bend = 0;  // torso relative to the vertical, positive to the right [rad]
   double trunk_twist = 0;      // torso relative to the pelvis, positive to the left [rad]

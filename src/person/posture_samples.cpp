@@ -12,8 +12,8 @@ namespace {
 // The standard normal numbers of one person, for the prior, the body and the back muscle.
 constexpr int kDraws = kPriorVariations + kBodyVariations + 1;
 
-// Draws antithetic pairs. Every second person has the negated numbers of the previous one, so the
-// mean of each varied parameter is its nominal value.
+// Draws antithetic pairs. Every second person has the negated numbers of the previous person. The
+// mean of each varied parameter is therefore its nominal value.
 std::vector<std::array<double, kDraws>> DrawPersons(std::uint64_t seed) {
   std::vector<std::array<double, kDraws>> z(kPostureSamples);
   RandomStream random(seed, "posture");
@@ -26,7 +26,7 @@ std::vector<std::array<double, kDraws>> DrawPersons(std::uint64_t seed) {
   return z;
 }
 
-// Extracts one quantity's interval for all members that ForEach visits.
+// Computes the interval of one quantity from all members that ForEach visits.
 template <class T, class Get, class ForEach>
 void Summarise(std::vector<SampledPosture>& samples, Get get, ForEach for_each, Range<T>* range) {
   std::vector<std::vector<double>> values;

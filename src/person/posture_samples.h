@@ -35,8 +35,9 @@ inline constexpr int kPostureSamples = 64;
 struct Interval {
   double median = 0, low = 0, high = 0;
 };
-// Returns the median, and the ⌊n/20⌋-th smallest and largest value (of 64: the third). Reorders
-// `values`. Throws std::invalid_argument if it is empty.
+// Returns the median and the ⌊n/20⌋-th smallest and largest values. For 64 values, these are the
+// third smallest and the third largest. Reorders `values`. Throws std::invalid_argument if `values`
+// is empty.
 Interval IntervalOf(std::span<double> values);
 
 // One possible person.

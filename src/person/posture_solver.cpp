@@ -30,7 +30,7 @@ constexpr Stage kCompromise = {false, 1e-3, 1e-9, 1e-6, 0, 80};
 constexpr Stage kExact = {true, 1e-6, 1e-10, 1e-13, 1e-10, 60};
 constexpr Stage kFollow = {false, 1e-5, 1e-9, 1e-6, 0, kFollowIterations};
 
-// All memory that the descent needs.
+// The memory that the search for a posture needs.
 struct Workspace {
   TaskRows rows;
   Qp qp{kBodyJoints, 0};

@@ -8,8 +8,8 @@
 
 namespace predictor::person {
 
-// Weights of squared deviations, which determine the part of the posture that the measurements
-// leave open (all figures D). A hand's squared position error has the weight 1 [1/m²], and its
+// The weights of squared deviations, which determine the part of the posture that the measurements
+// leave open (all values D). A hand's squared position error has the weight 1 [1/m²], and its
 // squared rotation error 0.04 [1/rad²].
 struct PosturePrior {
   BodyVector comfort;  // [rad], [m]
@@ -19,10 +19,11 @@ struct PosturePrior {
   // direction, tilted backwards by 30°.
   std::array<double, kHands> swivel = {0.35, 0.35};
   double swivel_weight = 0.1;
-  // The cost of lowering the hips [1/m]. This cost is nearly linear, so the knees stay straight
-  // unless bending them lowers the total cost. The squared knee angle is linear too: it is 8 d /
-  // length of the leg for hips lowered by d. The weight is four times that of an arm's joint. The
-  // cost is lowering · (√(z² + s²) - s) with s = kLoweringSmooth.
+  // The cost of lowering the hips [1/m]. The cost of lowering is nearly linear, so the knees stay
+  // straight unless bending them lowers the total cost. The squared knee angle is also nearly
+  // linear: for hips lowered by d, it is 8 d divided by the length of the leg. This weight is four
+  // times the weight of an arm's joint. The cost is lowering · (√(z² + s²) - s) with s =
+  // kLoweringSmooth.
   double lowering = 3.5e-2;
 };
 inline constexpr double kLoweringSmooth = 0.01;  // [m]
@@ -31,16 +32,16 @@ PosturePrior DefaultPrior();
 struct Posture {
   BodyVector q;
   // The remaining errors of the handles' poses, or 0 for an absent hand. For a grip that can turn,
-  // only the part of the bar's oblique angle in the hand that exceeds 0.7 rad counts as rotation
-  // error.
+  // the rotation error is only the part of the bar's oblique angle in the hand that exceeds 0.7
+  // rad.
   std::array<double, kHands> position_error = {};  // [m]
   std::array<double, kHands> rotation_error = {};  // [rad]
   std::array<double, kHands> oblique = {};         // angle of the bar in a grip that turns [rad]
   std::array<double, kHands> elbow_error = {};     // [m]; 0 if not measured
   double head_error = 0;                           // [m]; 0 if not measured
   int iterations = 0;
-  // Whether the errors of both hands are at most 1e-6 m and 1e-6 rad. If the errors are larger, the
-  // posture is the nearest one found.
+  // `reached` is true if the errors of both hands are at most 1e-6 m and 1e-6 rad. If the errors
+  // are larger, the posture is the nearest one found.
   bool reached = false;
 };
 

@@ -91,7 +91,8 @@ Vector6 PostureTasks::HandError(const Placement& at, int hand) const {
   Vector6 error;
   error.head<3>() = goal.q.conjugate() * (goal.p - now.p);
   if (turns_[k]) {
-    // Only the direction of the bar counts, measured by the chord between the unit vectors.
+    // The error concerns only the direction of the bar, and is measured by the chord between the
+    // unit vectors.
     error.tail<3>() = Vector3::UnitX() - goal.q.conjugate() * (now.q * Vector3::UnitX());
   } else {
     error.tail<3>() = goal.q.conjugate() * RotationError(goal.q, now.q);
@@ -186,7 +187,8 @@ void PostureTasks::Judge(Posture* posture) const {
       posture->oblique[k] = 2 * std::asin(std::min(1.0, posture->rotation_error[k] / 2));
       posture->rotation_error[k] = std::max(0.0, posture->oblique[k] - kMaxOblique);
     }
-    // The comparison is written so that it is also false if measurements are not finite.
+    // The condition is written as a negated comparison so that it also holds if measurements are
+    // not finite.
     if (!(posture->position_error[k] <= 1e-6 && posture->rotation_error[k] <= 1e-6))
       posture->reached = false;
   }

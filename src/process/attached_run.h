@@ -1,4 +1,4 @@
-// The access of a process alongside the run to the run's data.
+// Gives a process alongside the run access to the run's data.
 #pragma once
 
 #include "core/shared_run.h"
@@ -7,8 +7,8 @@
 
 namespace predictor {
 
-// The file descriptors that such a process inherits. Each kind of process may write only into its
-// own mailbox. The last descriptor is for reading the evaluator's states.
+// The file descriptors that a process alongside the run inherits. Each kind of process may write
+// only into its own mailbox. The last descriptor is for reading the evaluator's states.
 enum : int {
   kBoardDescriptor = 3,
   kMailboxDescriptor = 4,
@@ -16,8 +16,8 @@ enum : int {
   kEvaluationDescriptor = 6
 };
 
-// Returns the first line sent to every such process: the scenario, and the position of its object
-// at the start [m in W].
+// Returns the first line that is sent to every process alongside the run. The line contains the
+// scenario and the position of the object at the start [m in W].
 Json RunLine(const Scenario& scenario, const Vector3& object_start);
 
 // The run as seen by a process alongside it, constructed from the board and the first line.

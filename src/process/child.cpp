@@ -27,8 +27,8 @@ void Limit(int resource, rlim_t most) {
     throw std::runtime_error("The process cannot limit its resources.");
 }
 
-// Makes the process end when the run ends, whatever ends the run. (The kernel discards this setting
-// when the user changes.)
+// Makes this process end when the run ends, for whatever reason the run ends. (The kernel discards
+// this setting when the user changes.)
 void DieWithParent(const Json& start) {
   if (start.contains(kOutlivesTheRun)) return;
   prctl(PR_SET_PDEATHSIG, SIGKILL);

@@ -10,13 +10,12 @@
 
 namespace predictor {
 
-// This key of the first line keeps the process running after the run, because it must react to the
-// run's end. Such a process then ends by itself.
+// Such a process must end by itself. Such a process then ends by itself.
 inline constexpr const char* kOutlivesTheRun = "outlives_the_run";
 
-// Runs such a process from start to end. It limits the process's resources, reads the first line
-// from the run, and serves. Exceptions thrown by `serve` are reported to the run. Returns an exit
-// code. `name` has at most 15 characters, and `ps` shows it.
+// Runs a process alongside the run from start to end. The function limits the process's resources,
+// reads the first line from the run, and calls `serve`. Exceptions thrown by `serve` are reported
+// to the run. Returns an exit code. `name` has at most 15 characters, and `ps` shows it.
 int ChildMain(const char* name, const std::function<void(const Json& start)>& serve);
 
 // Call this function before any data from elsewhere are read. Enters the first stage of the sandbox
@@ -24,11 +23,12 @@ int ChildMain(const char* name, const std::function<void(const Json& start)>& se
 // that this system lacks.
 void Prepare(const Preparation& may);
 
-// Call this function when everything has been read and the port is open. From then on, the process
-// cannot open files, start processes, make connections, or affect other processes. If the user was
-// root, it becomes the user `nobody`. The process ends when the run ends, unless kOutlivesTheRun is
-// set. Restrictions that this system does not support are reported to the run. `who` is "The
-// viewer", for example. Throws std::runtime_error if root's rights cannot be given up.
+// Call this function when everything has been read and the port is open. After this call, the
+// process cannot open files, start processes, make connections, or affect other processes. If the
+// user was root, the process continues as the user `nobody`. The process ends when the run ends,
+// unless kOutlivesTheRun is set. Restrictions that this system does not support are reported to the
+// run. `who` is "The viewer", for example. Throws std::runtime_error if root's rights cannot be
+// given up.
 void GiveUpRights(const Json& start, const std::string& who);
 
 }  // namespace predictor

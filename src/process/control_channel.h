@@ -15,9 +15,10 @@ using Json = nlohmann::ordered_json;
 
 inline constexpr std::size_t kLongestControlLine = 4u << 20;  // a scenario is at most 1 MiB
 
-// Writes a line. With `wait`, the function blocks until the whole line is written. Otherwise the
-// function writes only the part that can be written without blocking. Returns false if the other
-// side has closed the channel or, without `wait`, if part of the line was not written.
+// Writes a line. If `wait` is true, the function blocks until the whole line is written. Without
+// `wait`, the function writes only the part of the line that can be written without blocking.
+// Returns false if the other side has closed the channel or, without `wait`, if part of the line
+// was not written.
 inline bool SendLine(int descriptor, const Json& line, bool wait) {
   const std::string text = line.dump() + "\n";
   for (std::size_t sent = 0; sent < text.size();) {

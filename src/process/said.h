@@ -22,8 +22,8 @@ class SaidFilter {
     return text.size() <= kLongest ? text : text.substr(0, kLongest) + " ...";
   }
 
-  // Returns the messages to show for `text`, received at `now`: none if there were too many
-  // messages recently, otherwise the text. The text is shortened if necessary. If messages were
+  // Returns the messages to show for `text`, which was received at `now`. If there were too many
+  // messages recently, no message is returned. The text is shortened if necessary. If messages were
   // omitted before, a message with their number precedes the text.
   std::vector<std::string> Take(const std::string& text, Time now) {
     const std::chrono::duration<double> since = now - std::exchange(last_, now);

@@ -57,7 +57,7 @@ Ruleset EverythingOf(long version) {
   return all;
 }
 
-// Older versions have a shorter ruleset.
+// Older versions of Landlock have a shorter ruleset.
 std::size_t SizeOf(long version) {
   if (version >= 6) return sizeof(Ruleset);
   return version >= 4 ? offsetof(Ruleset, scopes) : offsetof(Ruleset, ports);
@@ -74,8 +74,8 @@ bool Allow(int rules, const std::filesystem::path& path, std::uint64_t access) {
   return added;
 }
 
-// Allows only what `may` lists. Everything else that this kernel's Landlock can refuse is refused.
-// Returns false if the kernel has no Landlock.
+// Allows only the actions that `may` lists. All other actions that this kernel's Landlock can
+// refuse are refused. Returns false if the kernel has no Landlock.
 bool EnterLandlock(const Preparation& may) {
   const long version = syscall(kCreateRuleset, nullptr, 0, kAskVersion);
   if (version < 1) return false;
@@ -95,8 +95,8 @@ bool EnterLandlock(const Preparation& may) {
 
 // ---- seccomp: restricts the system calls
 
-// The lists come from traces, with glibc 2.36, of a run with viewer, TLS and ROS-TCP, and of the
-// questionnaire. The lists also include calls that other versions of glibc use for the same
+// The lists were made from traces of a run with viewer, TLS and ROS-TCP, and of the questionnaire,
+// all with glibc 2.36. The lists also include calls that other versions of glibc use for the same
 // functions.
 
 // The calls that a server needs, and the calls that the C library needs to allocate memory, wait,
@@ -116,7 +116,7 @@ constexpr const char* kWritingFiles =
     "rename renameat renameat2 unlink unlinkat fsync fdatasync pwrite64";
 constexpr const char* kListening = "bind listen epoll_create1 eventfd2 timerfd_create";
 constexpr const char* kGivingUpMore = "setgroups setresgid setresuid setrlimit prctl seccomp";
-// The names of these calls may be missing in libseccomp.
+// Some versions of libseccomp do not know the names of these calls.
 constexpr int kLandlockCalls[] = {444, 445, 446};
 
 using Context = std::unique_ptr<void, decltype(&seccomp_release)>;
@@ -150,7 +150,7 @@ class List {
   bool good_ = false;
 };
 
-// Requires that argument `index`, an int, has the value `bits` in the bits of `mask`.
+// Requires that the bits of `mask` in argument `index`, an int, have the value `bits`.
 scmp_arg_cmp Has(unsigned index, std::uint32_t mask, std::uint32_t bits) {
   return {index, SCMP_CMP_MASKED_EQ, mask, bits};
 }

@@ -28,15 +28,16 @@ struct Preparation {
 // return a description of the protections that this system lacks, or "" if it lacks none. Each of
 // these functions uses Landlock and a list of allowed system calls (seccomp). A call that is not on
 // the list fails with EPERM and does not end the process. If a C library uses a different call for
-// the same purpose, the user therefore sees an error message, whereas a killed process would only
-// restart and be killed again. A call of another architecture ends the process. Both functions
-// refuse: executing programs, new processes and threads, connections, signals to other processes,
-// tracing, shared memory, and changing file attributes.
+// the same purpose, the user then sees an error message. If the process were killed instead, it
+// would only restart and be killed again. A call that belongs to another processor architecture
+// ends the process. Both functions refuse to execute programs, to create processes and threads, to
+// open connections, to send signals to other processes, to trace, to share memory, and to change
+// file attributes.
 //
-// First stage, entered before any foreign data is read. Paths that do not exist are ignored.
+// Enters the first stage, before any foreign data is read. Paths that do not exist are ignored.
 std::string EnterPreparation(const Preparation& may);
-// In the second stage, files and sockets that are open remain usable (reading, writing, accepting).
-// No file or port can be opened, and no file can be looked up.
+// After the second stage, the process can still read from, write to and accept from the files and
+// sockets that are open. No file or port can be opened, and no file can be looked up.
 std::string EnterSandbox();
 
 }  // namespace predictor

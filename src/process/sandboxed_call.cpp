@@ -52,8 +52,8 @@ void Confine(int pipe_end, pid_t parent, const std::vector<std::filesystem::path
   LimitIfPossible(RLIMIT_FSIZE, 0);
   if (kSanitized) return;
   LimitIfPossible(RLIMIT_AS, kMaxMemory);
-  // Servers report if the kernel lacks a part of the sandbox. A sandboxed call need not do so,
-  // because even without that part of the sandbox, a crash or a hang is confined to the child.
+  // Servers report if the kernel lacks a part of the sandbox. A sandboxed call does not report a
+  // missing part, because even without this part a crash or a hang is confined to the child.
   EnterPreparation({.read = readable});
 }
 
@@ -78,7 +78,7 @@ void Confine(int pipe_end, pid_t parent, const std::vector<std::filesystem::path
   std::_Exit(0);  // no destructors: the objects belong to the parent
 }
 
-// The child process. The child is killed if it has not ended by itself.
+// The child process. The function kills the child if the child has not ended by itself.
 class Child {
  public:
   Child(pid_t id, int descriptor) : id_(id), descriptor_(descriptor) {}
@@ -92,7 +92,7 @@ class Child {
     }
   }
 
-  // Reads everything that the child writes until it closes its end of the pipe.
+  // Reads all bytes that the child writes until the child closes its end of the pipe.
   std::vector<std::byte> Read(const SandboxedLimits& limits) {
     using Clock = std::chrono::steady_clock;
     const auto end = Clock::now() + std::chrono::duration<double>(limits.max_time);

@@ -11,8 +11,8 @@
 
 namespace predictor {
 
-// Why a sandboxed call returned nothing, as a clause without a full stop: "its reader crashed
-// (signal 11)".
+// The reason why a sandboxed call returned nothing, as a clause without a full stop: "its reader
+// crashed (signal 11)".
 struct SandboxedFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

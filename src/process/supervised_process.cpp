@@ -59,18 +59,19 @@ class Descriptor {
   int descriptor_;
 };
 
-// Returns the few environment variables that such a process needs.
+// Returns the few environment variables that a process alongside the run needs.
 std::vector<std::string> Environment() {
   std::vector<std::string> variables;
-  // A library that replaces the clocks (tests/support/slow_clock.cpp) must do so in all processes.
+  // LD_PRELOAD is passed on, because a library that replaces the clocks
+  // (tests/support/slow_clock.cpp) must do so in all processes.
   for (const char* name : {"PREDICTOR_PACKAGE_PATH", "LANG", "LC_ALL", "LD_PRELOAD",
                            "PREDICTOR_REAL_TIME", "ASAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS"})
     if (const char* value = std::getenv(name)) variables.push_back(std::string(name) + "=" + value);
   return variables;
 }
 
-// Starts this program again with these descriptors, numbered from kBoardDescriptor (negative for
-// none). Throws std::runtime_error.
+// Starts this program again. The process inherits these descriptors, numbered from kBoardDescriptor
+// (a negative one is omitted). Throws std::runtime_error.
 pid_t Spawn(std::string subcommand, const std::array<int, 4>& descriptors) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -93,7 +94,8 @@ pid_t Spawn(std::string subcommand, const std::array<int, 4>& descriptors) {
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
-  // Ctrl-C at the terminal is meant for the run, which then ends the process by itself.
+  // Ctrl-C at the terminal is meant for the run, so this process does not receive the signal. The
+  // run then ends the process.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
 
   std::string program = "predictor";
@@ -213,11 +215,11 @@ void SupervisedProcess::Impl::WaitUntilReady() {
     const std::string status = HowItEnded(Reap());
     throw InputError(!error.empty() ? error
                                     : setup.name + "'s process did not start (" + status +
-                                          "). To continue, run without it.");
+                                          "). To continue, start the run without this process.");
   }
 }
 
-// Returns false if it has been without a sign of life, or not ready, for too long.
+// Returns false if the process has shown no sign of life, or has not become ready, for too long.
 bool SupervisedProcess::Impl::IsAlive() {
   const auto now = std::chrono::steady_clock::now();
   if (!ready) return now - born < kStartTime;
@@ -248,14 +250,14 @@ SupervisedProcess::Impl::End SupervisedProcess::Impl::Listen() {
   }
 }
 
-// Returns false if the run ends during the pause.
+// Waits for `time`. Returns false if the run ends during the pause.
 bool SupervisedProcess::Impl::Pause(std::chrono::milliseconds time) {
   pollfd wait{wake.get(), POLLIN, 0};
   if (poll(&wait, 1, static_cast<int>(time.count())) < 0) std::this_thread::sleep_for(time);
   return wait.revents == 0;
 }
 
-// This function returns when the run ends. Errors are reported, and the process is started again.
+// This function returns when the run ends. It reports errors and starts the process again.
 void SupervisedProcess::Impl::Supervise() noexcept {
   pthread_setname_np(pthread_self(), "supervisor");
   while (!over) {
@@ -294,8 +296,8 @@ void SupervisedProcess::Impl::StartAgain() {
   Start();
 }
 
-// Ends the process if it is still running, and returns its wait status. Concurrent calls of Ask do
-// not block.
+// Ends the process if it is still running. Returns the wait status of the process. Concurrent calls
+// of Ask do not block meanwhile.
 int SupervisedProcess::Impl::Reap() {
   pid_t child = 0;
   {
@@ -313,7 +315,7 @@ int SupervisedProcess::Impl::Reap() {
   return status;
 }
 
-// The messages are only shown to the user, and nothing else depends on them.
+// The messages of the process are only shown to the user, and nothing else depends on them.
 void SupervisedProcess::Impl::Hear(const Json& line) {
   if (line.contains("error")) {
     error = SaidFilter::Shortened(Text(line, "error"));

@@ -28,8 +28,8 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
   const auto A = qp.A();
   double scale = std::max(1.0, qp.f().lpNorm<Eigen::Infinity>());
   for (int k = 0; k < n + m; ++k) scale = std::max(scale, std::abs(y[k]));
-  // H is symmetric, so its rows are also its columns, and the sums for all elements are computed
-  // together.
+  // H is symmetric, so its rows are equal to its columns, and the sums for all elements are
+  // computed together.
   Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMaxQpVariables> gradient(n);
   for (int i = 0; i < n; ++i) gradient[i] = qp.f()[i] + y[i];
   for (int j = 0; j < n; ++j) gradient += x[j] * H.row(j);
@@ -55,8 +55,8 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
       upper = qp.b_upper()[k - n];
     }
     residual = std::max({residual, lower - value, value - upper});
-    // A multiplier has the sign that pushes away from its bound, and it is nonzero only if the
-    // bound is active.
+    // A multiplier must have the sign that pushes away from its bound, and it may be nonzero only
+    // if the bound is active.
     sum += y[k];
     const double push = std::abs(y[k]) / scale;
     const double gap = y[k] > 0 ? upper - value : value - lower;
@@ -67,8 +67,8 @@ double KktResidual(const Qp& qp, const QpSolution& solution) noexcept {
 
 struct QpSolver::Impl {
   Impl(int variables, int rows) : problem(variables, rows) {
-    // The setup solves no problem. The setup only allocates the memory for these sizes and types of
-    // constraint.
+    // The setup solves no problem. The setup only allocates the memory for problems of this size
+    // and with these types of constraint.
     problem.H().setIdentity();
     if (variables > 1)
       // Without a nonzero element off the diagonal, the solver would assume a diagonal matrix.
@@ -96,7 +96,7 @@ struct QpSolver::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  // Copies only the numbers in use: the arrays have room for the largest problem.
+  // Copies only the numbers in use, because the arrays have room for the largest problem.
   void Load(const Qp& qp) noexcept {
     const int n = qp.n(), m = qp.m();
     std::copy_n(qp.H().data(), n * n, problem.H().data());

@@ -14,7 +14,7 @@ namespace predictor {
 inline constexpr int kMaxQpRows = 28;
 inline constexpr int kMaxQpVariables = kHands * kMaxArmJoints + kMaxQpRows;
 
-// min ½ xᵀ H x + fᵀ x  subject to  lower ≤ x ≤ upper  and  b ≤ A x ≤ b_upper. Sizes are set once,
+// min ½ xᵀ H x + fᵀ x subject to lower ≤ x ≤ upper and b ≤ A x ≤ b_upper. The sizes are set once,
 // and the storage is inside the object. H is symmetric positive definite.
 class Qp {
  public:
@@ -57,7 +57,8 @@ class Qp {
 
 struct QpSolution {
   std::array<double, kMaxQpVariables> x;
-  // Multipliers of the bounds, then of the rows: ≥ 0 at an upper bound, ≤ 0 at a lower one.
+  // The multipliers of the bounds, followed by those of the rows. A multiplier is ≥ 0 at an upper
+  // bound and ≤ 0 at a lower bound.
   std::array<double, kMaxQpVariables + kMaxQpRows> multiplier;
   bool solved = false;  // the solver's own report; KktResidual verifies it
   int iterations = 0;
@@ -65,8 +66,8 @@ struct QpSolution {
 
 // Returns the largest violation of the optimality conditions of (qp, solution). The conditions are
 // stationarity relative to max(1, |f|∞, |multipliers|∞), primal feasibility [unit of x], and the
-// signs and the complementarity of the multipliers, also relative. Returns +inf if the solver found
-// no solution. This check does not use the solver.
+// signs and the complementarity of the multipliers, which are also relative. Returns +inf if the
+// solver found no solution. The check of the optimality conditions does not use the solver.
 double KktResidual(const Qp& qp, const QpSolution& solution) noexcept;
 
 class QpSolver {
@@ -74,8 +75,8 @@ class QpSolver {
   // Allocates all memory for problems of this size.
   QpSolver(int variables, int rows);
   ~QpSolver();
-  // Solves from scratch, so previously solved problems change the result at most by rounding. Does
-  // not use the heap or throw.
+  // Solves each problem from scratch, so previously solved problems change the result at most by
+  // rounding. Does not use the heap or throw.
   void Solve(const Qp& qp, QpSolution* solution) noexcept;
 
  private:

@@ -1,5 +1,5 @@
-// Common Data Representation as ROS 2 writes it (little-endian, with each value aligned to its
-// size), based on core/tick_fields.h.
+// Reads and writes the Common Data Representation as ROS 2 uses it (little-endian, with each value
+// aligned to its size), based on core/tick_fields.h.
 #pragma once
 
 #include <array>
@@ -16,11 +16,11 @@ namespace predictor::recording {
 
 static_assert(std::endian::native == std::endian::little);
 inline constexpr std::size_t kCdrHead = 4;  // marks little-endian data
-// The upper bound of the size of a tick's messages. Each value costs at most its alignment in
-// addition to its size.
+// The upper bound of the size of a tick's messages. Each value needs at most its size plus the
+// padding for its alignment.
 inline constexpr std::size_t kLongestTickMessage = 2 * sizeof(TickRecord) + 64;
 
-// Compares bitwise, so −0 differs from 0, and a NaN equals itself.
+// Compares the bits of two records, so −0 differs from 0, and a NaN equals itself.
 template <class T>
 bool SameBits(const T& a, const T& b) {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -58,7 +58,7 @@ class CdrWriter {
     for (const auto& value : x) Put(value);
   }
   void Named(const TickField& f, const auto&, const auto& x) { Values(f, x); }
-  // Writes as many values as there are joints, or more if later values are not zero.
+  // Writes one value for each joint, or more values if later ones are not zero.
   template <std::size_t N>
   void Joints(const TickField&, const std::array<double, N>& x, std::uint8_t dof) {
     std::size_t n = N;
@@ -70,7 +70,7 @@ class CdrWriter {
     Values(f, x.p);
     for (const std::size_t k : {1U, 2U, 3U, 0U}) Put(x.q[k]);
   }
-  // Writes as many poses as there are, or more if later ones are not zero.
+  // Writes the poses that are present, or more poses if later ones are not zero.
   template <std::size_t N>
   void Poses(const TickField& f, const std::array<PoseRecord, N>& x, std::uint8_t count) {
     const PoseRecord none{};
@@ -83,7 +83,7 @@ class CdrWriter {
   void Wrench(const TickField& f, const std::array<double, 6>& x) { Values(f, x); }
   void Reserved(const auto&) {}
   void Message(const TickField&, const char*, auto&& visit) { visit(*this); }
-  // Writes as many inputs as were used, or more if a later one is not in its initial state.
+  // Writes the inputs that were used, or more inputs if a later one is not in its initial state.
   void Inputs(const TickField&, const char*, const auto& list, std::uint8_t count, auto&& visit) {
     const RunInput none;
     std::size_t n = list.size();
@@ -96,7 +96,8 @@ class CdrWriter {
   std::byte *start_, *at_;
 };
 
-// Reads untrusted bytes. ok() is false from the first value that is missing or impossible.
+// Reads untrusted bytes. The function ok() returns false from the first value that is missing or
+// impossible.
 class CdrReader {
  public:
   explicit CdrReader(std::span<const std::byte> from) {
@@ -126,7 +127,7 @@ class CdrReader {
   void Value(const TickField&, Quantity& x) { Bounded(&x, kQuantities); }
   void Flag(const TickField&, std::uint8_t& x) { Get(x); }
   void Presence(const TickField&, std::uint8_t& x) { Get(x); }
-  // The code that uses the value checks it.
+  // The code that uses this value must check it.
   void Unchecked(const TickField&, auto& x) { Bounded(&x, 256); }
   void Values(const TickField&, auto& x) {
     for (auto& value : x) Get(value);

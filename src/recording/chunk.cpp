@@ -10,8 +10,8 @@ namespace predictor::recording {
 namespace {
 
 constexpr std::size_t kMessageHead = mcap::kHead + 2 + 4 + 8 + 8;
-// Level 1 takes half the time of level 3, and its chunks are only a few percent larger, because
-// floating-point noise does not compress.
+// Compression level 1 takes half the time of level 3. The chunks are only a few percent larger,
+// because floating-point noise cannot be compressed.
 constexpr int kLevel = 1;
 
 }  // namespace

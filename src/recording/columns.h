@@ -1,5 +1,5 @@
-// Gives access to the numbers of a record by name. Tables use these names, and so does the message
-// that states in which quantity two records differ.
+// Gives access to the numbers of a record by name. These names are used in tables and in the
+// message that states which quantity of two records differs.
 #pragma once
 
 #include <cstddef>
@@ -45,8 +45,8 @@ std::vector<Column> ColumnsOf(const TickRecord& record,
                               InputColumns inputs = InputColumns::kLeftOut);
 
 // Returns the columns whose names match one of the patterns. `*` matches any text, and the name of
-// a group, such as "hands.left", selects the whole group. If a pattern matches nothing, throws
-// InputError with the most similar name.
+// a group, such as "hands.left", selects the whole group. Throws InputError with the most similar
+// name if a pattern matches no column.
 std::vector<Column> Select(const std::vector<Column>& columns,
                            const std::vector<std::string>& patterns);
 

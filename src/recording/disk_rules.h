@@ -12,11 +12,11 @@ namespace predictor {
 struct DiskRules {
   std::uint64_t warn_below = 10'000'000'000;  // free space below which a warning is given [bytes]
   std::uint64_t end_below = 1'000'000'000;    // space below which the recording is closed [bytes]
-  // The interval of synchronisation, to which half a second and the duration of the synchronisation
-  // are added.
+  // The base of the interval between two synchronisations. Half a second and the duration of the
+  // last synchronisation are added.
   std::chrono::milliseconds sync_period{2000};
-  // Receives sentences for the user, which say that little space is left or that the recording has
-  // ended. A thread of the recorder calls this function.
+  // Receives sentences for the user. The sentences say that little space is left or that the
+  // recording has ended. A thread of the recorder calls this function.
   std::function<void(const std::string&)> notify;
 };
 

@@ -142,7 +142,8 @@ void Encoder::AddScene(const TickRecord& record, std::uint64_t time) {
   }
 }
 
-// The state has the time of its tick. The messages of this tick were added before.
+// The person's state has the time of its tick. The messages of this tick must have been added
+// before.
 void Encoder::AddPerson(const PersonState& state) {
   if (person_channel_ == 0) return;
   std::uint64_t time = now_ns_;

@@ -9,7 +9,8 @@
 
 namespace predictor {
 
-// Each behaves like the system call of the same name: it returns −1 and sets errno on failure.
+// Each function behaves like the system call of the same name: it returns −1 and sets errno on
+// failure.
 class FileCalls {
  public:
   virtual ~FileCalls() = default;

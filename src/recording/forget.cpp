@@ -37,7 +37,7 @@ bool IsMcap(const InputFile& file) {
   return file.size() >= n && file.Read(0, n) == mcap::kMagic;
 }
 
-// Returns the name of the compression of the chunk at `at`, or "" if it is not compressed.
+// Returns the name of the compression of the chunk at `at`, or "" if the chunk is not compressed.
 std::string CompressionAt(const InputFile& file, std::uint64_t at, std::uint64_t length) {
   const std::string head = file.Read(at + mcap::kHead, std::min<std::uint64_t>(length, 64));
   mcap::Parser from{head};
@@ -54,14 +54,16 @@ bool HasInChunks(const InputFile& file, const std::string& text) {
     if (head->op == mcap::Op::kDataEnd) return false;  // the rest of the file is not compressed
     if (head->op == mcap::Op::kChunk && !CompressionAt(file, at, head->length).empty()) {
       const auto index = recording::ChunkAt(file, at);
-      if (!index) file.Fail(at, "Its chunks are compressed in a way that is not known here.");
+      if (!index)
+        file.Fail(
+            at, "The chunks of the file are compressed in a way that this program does not know.");
       if (ReadChunk(file, *index).find(text) != std::string::npos) return true;
     }
     at += mcap::kHead + head->length;
   }
 }
 
-// Returns the program that compressed the file, or null if it is not known.
+// Returns the name of the program that compressed the file, or null if the program is not known.
 const char* ArchiveKind(const InputFile& file) {
   using namespace std::string_view_literals;
   static constexpr std::array<std::pair<std::string_view, const char*>, 8> kMagics = {
@@ -81,14 +83,14 @@ const char* ArchiveKind(const InputFile& file) {
   return nullptr;
 }
 
-// Returns the time at which the run of a recording started [ns]. Copies of the recording have the
-// same time.
+// Returns the time at which the run of a recording started [ns]. Copies of a recording return the
+// same time as the original.
 std::optional<std::int64_t> StartOf(const InputFile& file) {
   try {
     const std::int64_t start = ReadOpening(file).header.start_unix_ns;
     if (start != 0) return start;
   } catch (const InputError&) {
-    // The file was written by another program.
+    // Another program wrote the file.
   }
   return {};
 }
@@ -200,7 +202,7 @@ class Search {
           if (const auto start = StartOf(InputFile(found.path.string())))
             starts_[*start] = found.path.filename().string();
         } catch (const InputError&) {
-          // The start of a damaged file is not needed, because the file is deleted in any case.
+          // A damaged file needs no start time, because the file is deleted in any case.
         }
     for (const auto& [path, start] : recordings_)
       if (const auto of = starts_.find(start); of != starts_.end() && !IsFound(path))
@@ -216,7 +218,7 @@ class Search {
             !IsFound(other))
           result_.found.push_back({other, "made from " + run.path.filename().string()});
     }
-    // A file that will be deleted needs no search.
+    // A file that will be deleted does not need to be searched.
     std::erase_if(result_.not_searched, [&](const PersonalFile& f) { return IsFound(f.path); });
   }
 
@@ -250,10 +252,9 @@ PersonSearch FindPerson(const fs::path& folder, const std::string& pseudonym,
   if (!fs::is_directory(folder)) throw InputError(folder.string(), "There is no such folder.");
   const fs::path whole = fs::canonical(folder);
   if (whole.string().find(pseudonym) != std::string::npos)
-    throw InputError(
-        folder.string(),
-        "The name of this folder contains the pseudonym, so it must be deleted too. Give the "
-        "folder that contains it.");
+    throw InputError(folder.string(),
+                     "The name of this folder contains the pseudonym, so it must be deleted too. "
+                     "Give the parent folder.");
   return Search(pseudonym, progress).Run(folder);
 }
 

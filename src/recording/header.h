@@ -35,16 +35,16 @@ struct RecordingHeader {
   std::int64_t start_unix_ns = 0;  // time of tick 0 in virtual time, or of the first record [ns]
 };
 
-// A topic in JSON, with at most 50 messages per second.
+// A topic whose messages are JSON, with at most 50 messages per second.
 struct JsonChannel {
   std::string topic, schema_name;
   std::string schema;  // JSON Schema
-  // Converts a record to a message. This function is empty if the messages do not follow from
-  // ticks.
+  // Converts a record of a tick to a message. `message` is empty if the topic's messages are not
+  // computed from ticks.
   std::function<std::string(const TickRecord& record, std::uint64_t unix_ns)> message;
 };
 
-// The topic of the person's states (core/person_json.h), at most 100 per second.
+// The topic of the person's states (core/person_json.h), with at most 100 messages per second.
 inline constexpr const char* kPersonTopic = "/person/state";
 JsonChannel PersonChannel();
 
@@ -52,9 +52,10 @@ JsonChannel PersonChannel();
 struct RecordingEvent {
   std::uint64_t tick = 0;  // the newest tick when the event was recorded
   std::uint64_t unix_ns = 0;
-  // "event"; "marker": a person set it; "loss": ticks before `tick` are missing. The following
-  // kinds are derived from the ticks: "state", "stop", "reset", "parameter", "hazard", and
-  // "omitted" (number of events above the limit).
+  // The kind is "event", "marker" if a person set the marker, or "loss" if ticks before `tick` are
+  // missing. The following kinds are derived from the ticks: "state", "stop", "reset", "parameter",
+  // "hazard", and "omitted". An event of the kind "omitted" contains the number of events above the
+  // limit.
   std::string kind;
   std::string text;
   std::uint64_t lost = 0;  // number of lost ticks

@@ -57,7 +57,7 @@ std::string InputFile::Read(std::uint64_t offset, std::uint64_t n) const {
     if (got <= 0)
       Fail(offset + done, std::string("Reading failed: ") +
                               (got < 0 ? std::strerror(errno) : "the file was shortened") +
-                              ". Copy it to another disk and try again.");
+                              ". Copy the file to another disk and try again.");
     done += static_cast<std::size_t>(got);
   }
   return bytes;
@@ -134,7 +134,8 @@ std::optional<mcap::ChunkIndex> ChunkAt(const InputFile& file, std::uint64_t off
 
 std::string ReadChunk(const InputFile& file, const mcap::ChunkIndex& index) {
   const auto fail = [&](const std::string& why) {
-    file.Fail(index.offset, "This chunk " + why + ". `predictor repair` recovers the others.");
+    file.Fail(index.offset,
+              "This chunk " + why + ". `predictor repair` recovers the other chunks.");
   };
   if (index.length < mcap::kHead + mcap::kChunkHead ||
       index.length > ZSTD_compressBound(kLargestChunk) + mcap::kHead + mcap::kChunkHead)
@@ -181,7 +182,7 @@ bool TakeMessage(std::string_view* rest, Message* message) {
 
 namespace {
 
-// Sides are used as indices: left, right, or neither.
+// Returns whether `hand` is valid as an index of a side: left, right, or neither.
 bool IsSide(std::int8_t hand) { return hand >= -1 && hand < kHands; }
 bool MayBeOmitted(TickGroup group) {
   return group == TickGroup::kInputs || group == TickGroup::kLeft || group == TickGroup::kRight ||

@@ -45,11 +45,12 @@ struct RecordHead {
 };
 std::optional<RecordHead> ReadHead(const InputFile& file, std::uint64_t offset);
 
-// Finds the possible starts of records in order. Each byte is read only once.
+// Finds, in order, the positions in the file at which a record may start. Each byte is read only
+// once.
 class MarkFinder {
  public:
-  // Searches for records `op` that have `mark` at `mark_at` bytes after their start, before
-  // `farthest`.
+  // Searches, before `farthest`, for records of type `op` that contain `mark` at `mark_at` bytes
+  // after their start.
   MarkFinder(const InputFile& file, std::string mark, std::uint64_t mark_at, mcap::Op op,
              std::uint64_t farthest = ~std::uint64_t{0});
 

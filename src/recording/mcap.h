@@ -1,5 +1,5 @@
-// The container format MCAP, with its records as bytes. https://mcap.dev/spec describes their
-// contents.
+// Reads and writes the records of the container format MCAP as bytes. The format is specified at
+// https://mcap.dev/spec.
 #pragma once
 
 #include <cstdint>
@@ -65,8 +65,8 @@ class Bytes {
 // Returns a complete record.
 std::string Record(Op op, std::string_view content);
 
-// Parses untrusted bytes. ok is false from the first missing byte on, and no memory is allocated
-// for missing data.
+// Parses untrusted bytes. The member `ok` is false from the first missing byte on, and no memory is
+// allocated for missing data.
 struct Parser {
   std::string_view rest;
   bool ok = true;

@@ -45,8 +45,8 @@ bool McapFile::Fail(const char* what) {
   return false;
 }
 
-// If the file system cannot reserve space, the file is written without a reservation. There may
-// then be no space for the end of the file.
+// If the file system cannot reserve space, the file is written without a reservation. In that case,
+// the space may not suffice for the end of the file.
 bool McapFile::Reserve(std::uint64_t bytes) {
   const std::uint64_t size = size_.load();
   if (!can_reserve_ || size + bytes <= reserved_) return true;
@@ -126,7 +126,7 @@ std::string McapFile::Statistics() const {
   return mcap::Record(mcap::Op::kStatistics, content.text);
 }
 
-// The ending consists of data end, summary, summary offsets, footer and magic.
+// The end of the file consists of data end, summary, summary offsets, footer and magic.
 std::string McapFile::Ending() const {
   mcap::Bytes end;
   end.text = mcap::Record(mcap::Op::kDataEnd, mcap::Bytes().U32(crc_).text);
@@ -179,7 +179,8 @@ bool McapFile::End() {
 }
 
 std::string McapFile::EndBecause(const std::string& why) {
-  // After a failed sync, the system may report success for the next one although data are lost.
+  // If a synchronisation fails, the system may report success for the next one although data have
+  // been lost.
   const bool lasts = End() && !sync_failed_;
   const std::string sentence = path_ + ": The recording ended: " + why + ". ";
   const std::string ticks = std::to_string(ticks_.load()) + " ticks";

@@ -15,7 +15,7 @@
 
 namespace predictor::recording {
 
-// The part before the first chunk, and its entries in the index.
+// The bytes before the first chunk, and their entries in the index.
 struct Preamble {
   std::string bytes;                           // including the magic
   std::vector<std::string> schemas, channels;  // their records
@@ -34,15 +34,16 @@ class McapFile {
   McapFile(const McapFile&) = delete;
   McapFile& operator=(const McapFile&) = delete;
 
-  // Returns false if it fails. In this case, the file is unchanged, and error() gives the reason.
+  // Returns false if the chunk cannot be written. If the chunk cannot be written, the file is
+  // unchanged, and error() gives the reason.
   bool Put(Chunk chunk);
-  // Writes index and footer. No data can be added afterwards. Returns false if the end of the file
-  // cannot be written. The chunks can still be read in this case.
+  // Writes index and footer. No data can be added after this call. Returns false if the end of the
+  // file cannot be written. The chunks can still be read in this case.
   bool End();
   // Ends the file early. Returns the outcome of the recording as sentences for the user.
   std::string EndBecause(const std::string& why);
-  // Makes the written data durable in case of a loss of power. Any thread may call this while the
-  // file is open.
+  // Makes the written data durable in case of a loss of power. Any thread may call this function
+  // while the file is open.
   bool Sync();
   std::uint64_t FreeBytes() const { return calls_->FreeBytes(fd_); }
 

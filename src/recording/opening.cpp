@@ -173,9 +173,9 @@ class OpeningReader {
     if (!ParseNumber(Entry(run, "seed"), &header.seed) ||
         !ParseNumber(Entry(run, "dt"), &header.dt) ||
         !ParseNumber(Entry(run, "start_unix_ns"), &header.start_unix_ns))
-      file_.Fail(
-          at,
-          "The recording's data about its run are invalid. It was not written by this program.");
+      file_.Fail(at,
+                 "The recording's data about its run are invalid. The recording was not written by "
+                 "this program.");
     if (PredictedLoop loop; ParseNumber(Entry(run, kLead), &loop.lead) &&
                             ParseNumber(Entry(run, kMargin), &loop.margin) &&
                             std::isfinite(loop.lead) && std::isfinite(loop.margin))
@@ -214,8 +214,8 @@ class OpeningReader {
     }
     if (!from.ok)
       file_.Fail(piece.at,
-                 "The data before the first tick are invalid, or there are more of them than this "
-                 "program writes.");
+                 "The recording has invalid data before the first tick, or more data than this "
+                 "program writes there.");
   }
 
   bool TakeRecord(mcap::Op op, mcap::Parser from) {
@@ -240,7 +240,7 @@ class OpeningReader {
     schemas_[id] = {name, std::string(from.String())};
     return from.ok;
   }
-  // Topics other than the program's own belong to the scene.
+  // All topics that are not the program's own belong to the scene.
   bool TakeChannel(mcap::Parser from) {
     const std::uint16_t id = from.U16();
     const auto schema = schemas_.find(from.U16());
@@ -308,8 +308,8 @@ class OpeningReader {
     lost.erase(std::unique(lost.begin(), lost.end()), lost.end());
     if (opening_.damaged)
       opening_.damage =
-          "The recording is damaged before its first tick. The intact parts were read from there "
-          "or from the copy behind the first chunk.";
+          "The recording is damaged before its first tick. The intact parts were read from the "
+          "start of the file or from the copy behind the first chunk.";
     for (const std::string& name : lost)
       opening_.damage +=
           (opening_.damage.empty() ? "`" : " `") + name + "` is lost: " + Consequence(name) + ".";
@@ -317,9 +317,10 @@ class OpeningReader {
 
   const InputFile& file_;
   Opening opening_;
-  // The position after the run's metadata, in the original and in the copy.
+  // The position after the run's metadata in the original, and the same position in the copy.
   std::uint64_t start_ = 0, copy_start_ = 0;
-  // The start of the copy's data, once it has been searched for.
+  // The position at which the copy's data start. The outer optional is empty until this position
+  // has been searched for.
   std::optional<std::optional<std::uint64_t>> copy_;
   std::size_t records_ = 0;
   std::map<std::uint16_t, std::pair<std::string, std::string>> schemas_;  // name, text

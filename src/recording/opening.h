@@ -1,4 +1,4 @@
-// Reads the preamble of a recording back, even if it is partly damaged.
+// Reads the preamble of a recording, even if the preamble is partly damaged.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Opening {
 // places.
 Opening ReadOpening(const InputFile& file);
 
-// Returns true for complete data between chunks: an index of messages, or the copy.
+// Returns true for complete data between chunks, which are an index of messages or the copy.
 bool IsBetweenChunks(const InputFile& file, std::uint64_t offset, const RecordHead& head);
 
 }  // namespace predictor::recording

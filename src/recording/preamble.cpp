@@ -61,7 +61,8 @@ class PreambleBuilder {
   static std::string MetadataRecord(const std::string& name, const mcap::Map& map) {
     return mcap::Record(mcap::Op::kMetadata, mcap::Bytes().String(name).Strings(map).text);
   }
-  // Returns one line per part: its length, its CRC, whether it is copied, and its name.
+  // Returns one line for each part. The line contains the part's length, its CRC, whether the part
+  // is copied, and its name.
   std::string Contents() {
     std::string lines;
     std::uint64_t copied = 0;

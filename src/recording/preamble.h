@@ -1,5 +1,5 @@
-// Writes the part of a recording before the first chunk. Each part of it has a CRC, and all parts
-// except large files have a copy after the first chunk.
+// Writes the part of a recording before the first chunk. Each part of the preamble has a CRC, and
+// all parts except large files have a copy after the first chunk.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,8 @@ inline constexpr std::uint16_t kSnapshotChannel = kTickGroupCount + 1;
 inline constexpr std::uint16_t kEventChannel = kTickGroupCount + 2;
 inline constexpr std::uint16_t kFirstJsonChannel = kTickGroupCount + 3;
 
-// The names of the metadata and attachments, and of the parts of the preamble that contain them.
+// The names of the metadata and attachments, and of the parts of the preamble that contain these
+// metadata and attachments.
 inline constexpr const char* kRunMetadata = "predictor.run";
 inline constexpr const char* kLabelMetadata = "predictor.labels";
 inline constexpr const char* kModelMetadata = "predictor.models";
@@ -35,16 +36,17 @@ inline constexpr const char* kTopics = "topics";  // the part with the schemas a
 inline constexpr const char* kCopy = "predictor.copy";
 inline constexpr const char* kBytes = "application/octet-stream";
 
-// The entries in the run's metadata: the list of the parts that follow it, and the CRC of the
-// metadata itself.
+// The names of entries in the run's metadata: the list of the parts that follow the metadata, the
+// CRC of the layout of ticks, and the CRC of the metadata itself.
 inline constexpr const char* kContents = "contents";
 inline constexpr const char* kLayout = "layout";
 inline constexpr const char* kCrc = "crc32";
-// The entries with the lead and the stability margin of the predicted haptic loop, if available.
+// The names of the entries with the lead and the stability margin of the predicted haptic loop,
+// which exist only if these values are available.
 inline constexpr const char* kLead = "lead_s";
 inline constexpr const char* kMargin = "stability_margin";
 
-// Larger parts are not written twice.
+// Parts that are larger than this are not copied.
 inline constexpr std::uint64_t kLargestCopied = 256U << 10U;  // maximum per part [bytes]
 inline constexpr std::uint64_t kLargestCopy = 8U << 20U;      // [bytes]
 inline constexpr std::uint64_t kLargestRun = 2U << 20U;       // the run's metadata [bytes]
@@ -55,8 +57,8 @@ const std::string& Beginning();
 // Returns the CRC of all entries except the CRC entry itself.
 std::string CrcOfRun(mcap::Map run);
 
-// Returns the CRC of the layout of a tick's bytes. With this CRC, ticks can be read even if their
-// schemas are lost.
+// Returns the CRC of the layout of a tick's bytes. The CRC of the layout makes it possible to read
+// ticks even if their schemas are lost.
 std::string LayoutCrc();
 
 // Returns the preamble's bytes, its index entries, and the parts that are written again.

@@ -45,15 +45,15 @@ std::string Sha256(const std::string& bytes) {
   return text;
 }
 
-// Returns the path of `file` below `root`, or "" if it is not below.
+// Returns the path of `file` relative to `root`, or "" if the file is not below `root`.
 std::string Below(const fs::path& file, const fs::path& root) {
   if (root.empty()) return "";
   const fs::path relative = file.lexically_relative(root);
   return relative.empty() || *relative.begin() == ".." ? "" : relative.generic_string();
 }
 
-// Returns the name of the file in a recording. Symlinks in `file` and in the scenario's `folder`
-// are resolved.
+// Returns the name under which a recording stores the file. Symlinks in `file` and in the
+// scenario's `folder` are resolved.
 std::string NameOf(const fs::path& file, const fs::path& folder) {
   const auto at = [&](const char* place, const fs::path& root) {
     const std::string below = Below(file, root);
@@ -69,8 +69,8 @@ std::string NameOf(const fs::path& file, const fs::path& folder) {
   throw InputError(file.string(), "The file is outside the folders that a scenario can use.");
 }
 
-// Records a URDF that the scenario refers to, with its meshes. Afterwards the scenario refers to
-// the recorded file.
+// Records a URDF that the scenario refers to, with its meshes. After this call, the scenario refers
+// to the recorded file.
 void Describe(std::string* model, const std::vector<std::string>& remove_links,
               const fs::path& folder, std::set<fs::path>* files) {
   if (model->empty()) return;
@@ -105,7 +105,7 @@ void ComparePinned(const std::string& name, const std::string& hash) {
       PlaceFor(name.substr(std::string(kPinnedFolder).size() + 1), PinnedRobots());
   if (fs::exists(file) && Sha256(ReadWholeFile(file)) == hash) return;
   throw InputError("The recording was made with a different " + Quote(name) +
-                   ". Use the program version that made it.");
+                   ". Use the program version that made the recording.");
 }
 
 void ExpectScenario(const RecordingHeader& header, const std::string& file) {
@@ -113,7 +113,8 @@ void ExpectScenario(const RecordingHeader& header, const std::string& file) {
   throw InputError(
       file,
       "The recording is damaged and its scenario is lost, so the run cannot be shown or "
-      "recomputed. `predictor export data` and `compare` can still read its ticks.");
+      "recomputed. `predictor export data` and `predictor compare` can still read the ticks of "
+      "this recording.");
 }
 
 void AddPackagePath(const fs::path& packages) {
@@ -125,7 +126,7 @@ void AddPackagePath(const fs::path& packages) {
   setenv("PREDICTOR_PACKAGE_PATH", path.c_str(), 1);
 }
 
-// Recordings of earlier versions contain the parameters of all controllers and actions.
+// Only recordings of earlier versions contain the parameters of all controllers and actions.
 std::string ScenarioText(const RecordingHeader& header, const std::string& file) {
   YamlNode tree = ParseYaml(header.scenario_yaml, file);
   bool is_earlier = false;
@@ -134,7 +135,8 @@ std::string ScenarioText(const RecordingHeader& header, const std::string& file)
   return is_earlier ? WriteYaml(tree) : header.scenario_yaml;
 }
 
-// A replay never runs a program. A replay uses the controller's recorded answers instead.
+// A replay never runs a program. Instead of running a controller's program, a replay uses the
+// controller's recorded answers.
 void UseTape(const RecordingHeader& header, Scenario* scenario) {
   std::vector<double> tape;
   for (const RecordingAttachment& file : header.attachments) {

@@ -1,4 +1,5 @@
-// Stores the files from which a run was made, so that it can be displayed and repeated elsewhere.
+// Stores the files from which a run was made, so that the run can be displayed and repeated
+// elsewhere.
 #pragma once
 
 #include <filesystem>
@@ -11,15 +12,16 @@
 
 namespace predictor {
 
-// Returns the header of a recording that starts now. It contains the scenario with all its values,
-// its model files (every URDF, and all other files that no pinned package contains), and the hashes
-// of all these files. File references in COLLADA files (textures) are not followed. Throws
-// InputError if a model cannot be read.
+// Returns the header of a recording that starts now. The header contains the scenario with all its
+// values, the model files of the scenario, and the hashes of all these files. The model files are
+// every URDF, and all other files that no pinned package contains. File references in COLLADA files
+// (textures) are not followed. Throws InputError if a model cannot be read.
 RecordingHeader DescribeRun(const Scenario& scenario, const std::string& program_version,
                             const std::map<std::string, std::string>& labels);
 
-// Adds the answers of a controller outside the program while the run was set up
-// (EmulatorSetup::controller_tape), so that the run can be repeated without the controller.
+// Adds the answers that a controller outside the program gave while the run was set up
+// (EmulatorSetup::controller_tape). With these answers, the run can be repeated without the
+// controller.
 void AddControllerTape(const std::vector<double>& tape, RecordingHeader* header);
 
 // Returns the recorded scenario from its text. `file` is the name of the recording, which error

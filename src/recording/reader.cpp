@@ -20,8 +20,8 @@ using recording::TickDecoder;
 
 namespace {
 
-// A hostile file must not exhaust memory. No real run has this many events, and further events are
-// only counted.
+// The following limits ensure that a hostile file does not exhaust memory. No real run has as many
+// events as this limit, and further events are only counted.
 constexpr std::size_t kMaxLoggedEvents = 200'000;
 constexpr std::size_t kMaxEventBytes = 64U << 20U;
 constexpr std::size_t kLongestEvent = 64 * 1024;  // [bytes]
@@ -56,7 +56,7 @@ struct RecordingReader::Impl {
   std::vector<mcap::ChunkIndex> chunks;
   std::optional<std::uint64_t> count;
 
-  // The position of the next call of Next().
+  // The position at which the next call of Next() reads.
   std::size_t next_chunk = 0;
   std::size_t chunk = 0;  // chunk that `rest` belongs to
   std::string messages;
@@ -68,7 +68,7 @@ struct RecordingReader::Impl {
     std::size_t chunk;
     std::uint64_t offset;
   };
-  // The first tick of each chunk, if known.
+  // The first tick of each chunk, or no value if the chunk has not been read.
   std::vector<std::optional<std::optional<std::uint64_t>>> first_ticks;
   bool others_found = false;
   std::vector<RecordingEvent> events;
@@ -230,7 +230,7 @@ void RecordingReader::Impl::FindOthersIn(std::size_t i) {
   if (!complete) count = count.value_or(0) + ticks;
 }
 
-// Uses the index. If the recording is truncated, reads all of it.
+// Uses the index. If the recording is truncated, the function reads the whole recording.
 void RecordingReader::Impl::FindOthers() {
   if (others_found) return;
   events.clear(), snapshots.clear(), places.clear();
@@ -245,7 +245,7 @@ void RecordingReader::Impl::FindOthers() {
 
 // ---- the whole file -----------------------------------------------------------------------------
 
-// The message indexes after a chunk give the positions of its messages.
+// The message indexes after a chunk contain the positions of the chunk's messages.
 void RecordingReader::Impl::CheckIndexes(const mcap::ChunkIndex& index) const {
   const std::string bytes = ReadChunk(file, index);
   std::map<std::uint16_t, std::string> expected;
@@ -265,11 +265,11 @@ void RecordingReader::Impl::CheckIndexes(const mcap::ChunkIndex& index) const {
     content.U16(channel).String(entries);
     const std::string record = mcap::Record(mcap::Op::kMessageIndex, content.text);
     if (it == index.indexes.end() || it->second != at || file.Read(at, record.size()) != record)
-      file.Fail(at, "The index of the messages here is wrong.");
+      file.Fail(at, "The index of the messages at this place is wrong.");
     at += record.size();
   }
   if (expected.size() != index.indexes.size() || at - start != index.indexes_length)
-    file.Fail(at, "The index of the messages here is wrong.");
+    file.Fail(at, "The index of the messages at this place is wrong.");
 }
 
 // ---- the interface ------------------------------------------------------------------------------
@@ -339,7 +339,8 @@ bool RecordingReader::SnapshotAt(std::uint64_t tick, RecordedSnapshot* snapshot)
   Message message;
   recording::SnapshotView view;
   if (!TakeMessage(&from, &message) || !recording::ParseSnapshot(message.data, &view))
-    impl_->file.Fail(impl_->chunks[place.chunk].offset, "The saved state is missing here.");
+    impl_->file.Fail(impl_->chunks[place.chunk].offset,
+                     "The saved state is missing at this place.");
   const auto* data = reinterpret_cast<const std::byte*>(view.data.data());
   snapshot->tick = view.tick;
   snapshot->bytes.assign(data, data + view.data.size());
@@ -369,7 +370,8 @@ void RecordingReader::Check() {
   if (r.opening.damaged) r.file.Fail(0, r.problem);
   std::uint64_t end = r.opening.end;
   for (const mcap::ChunkIndex& index : r.chunks) {
-    if (index.offset != end) r.file.Fail(end, "The chunk that the index lists is missing here.");
+    if (index.offset != end)
+      r.file.Fail(end, "The chunk that the index lists is missing at this place.");
     r.CheckIndexes(index);
     end += index.length + index.indexes_length;
     const auto next = ReadHead(r.file, end);

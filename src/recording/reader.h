@@ -17,9 +17,9 @@ struct RecordedSnapshot {
   std::vector<std::byte> bytes;
 };
 
-// Compares all data with their CRC. Data that cannot be trusted are never returned. Instead, an
-// InputError states their position. The memory that is used is limited, whatever sizes the file
-// claims.
+// Compares all data with their CRC. Data that cannot be trusted are never returned. Instead of such
+// data, the reader throws an InputError that states their position. The memory use is limited,
+// whatever sizes the file claims.
 class RecordingReader {
  public:
   // Throws InputError if the file is not a recording, has another version, or its description is
@@ -31,27 +31,27 @@ class RecordingReader {
 
   const RecordingHeader& header() const;
   // Returns whether the recording was closed, so that its index exists and is valid. A recording
-  // that was not closed is truncated, or its index is damaged. It is read up to its last complete
-  // chunk.
+  // that was not closed is truncated, or its index is damaged. Such a recording is read up to its
+  // last complete chunk.
   bool complete() const;
-  // Returns sentences for the user: whether the recording is incomplete, which parts of its header
-  // were read from the copy, and which are lost. The text is empty if there has been no problem so
-  // far.
+  // Returns sentences for the user. They state whether the recording is incomplete, which parts of
+  // its header were read from the copy, and which parts are lost. The text is empty if there has
+  // been no problem so far.
   const std::string& problem() const;
   std::uint64_t bytes() const;  // size of the file
 
-  // Returns the number of ticks. If the recording is truncated, this reads all of it. Throws
-  // InputError.
+  // Returns the number of ticks. If the recording is truncated, this function reads the whole
+  // recording. Throws InputError.
   std::uint64_t count();
-  // Reads the next tick. Returns false after the last one. Throws InputError.
+  // Reads the next tick. Returns false after the last tick. Throws InputError.
   bool Next(TickRecord* record);
   // Makes Next() continue with the first tick at or after `tick`. Throws InputError.
   void Seek(std::uint64_t tick);
 
   // Returns the ticks with snapshots in ascending order. Throws InputError.
   const std::vector<std::uint64_t>& snapshots();
-  // Reads the newest snapshot at or before `tick`. Returns false if there is none. Throws
-  // InputError.
+  // Reads the newest snapshot at or before `tick`. Returns false if there is no such snapshot.
+  // Throws InputError.
   bool SnapshotAt(std::uint64_t tick, RecordedSnapshot* snapshot);
 
   // Returns the events in order, at most the first 200 000. Throws InputError.

@@ -29,7 +29,7 @@ constexpr std::uint64_t kLossPeriod = 1'000'000'000;
 
 constexpr int kThrown = -1;  // means an exception where an errno value is expected
 
-// Stores the text, or a short one if memory is insufficient.
+// Stores the text, or a shorter text if memory is insufficient.
 void Note(const char* why, std::string* text) noexcept {
   try {
     *text = why;
@@ -223,7 +223,7 @@ void Recorder::Impl::Encode() {
   queue.NoMore();
 }
 
-// All chunks in the queue are still written. Then the recording ends.
+// All chunks that are already in the queue are still written. Then the recording ends.
 void Recorder::Impl::EncodingFailed(const char* why) {
   {
     const std::scoped_lock lock(mutex);
@@ -247,8 +247,8 @@ void Recorder::Impl::Drain() {
   }
 }
 
-// A recorder with too little processor time finds many gaps. Therefore one event reports all gaps
-// within a second.
+// A recorder with too little processor time finds many gaps. A recorder therefore reports all gaps
+// within a second as one event.
 void Recorder::Impl::FollowLoss(const TickRecord& record) {
   if (reader.lost() > seen) {
     seen = reader.lost();
@@ -283,9 +283,9 @@ void Recorder::Impl::TakeMarks() {
   }
 }
 
-// A state that was read before its tick waits for that tick, because it is stored with the tick's
-// time. States that were overwritten are missing from the recording without a notice, because
-// nothing depends on them.
+// A person's state that was read before its tick waits for this tick, because the state is stored
+// with the tick's time. States that were overwritten are missing from the recording, and no event
+// reports them, because nothing depends on them.
 void Recorder::Impl::TakePersons(bool all) {
   for (std::size_t k = 0; persons && k < kPersonRing; ++k) {
     PersonState state;
@@ -296,7 +296,8 @@ void Recorder::Impl::TakePersons(bool all) {
   }
 }
 
-// Passes on the data that are due, or all data. Returns false if the queue has ended.
+// Passes on the data that are due or, if `all` is true, all data. Returns false if the queue has
+// ended.
 bool Recorder::Impl::Pass(bool all) {
   const auto now = Clock::now();
   if (encoder.empty()) passed = now;
@@ -328,7 +329,7 @@ void Recorder::Impl::Write() {
   recording = false;
 }
 
-// If the recording had already ended, its end was the only event that could not be recorded.
+// If the recording had already ended, only its final event could not be recorded.
 void Recorder::Impl::WritingFailed(const char* why) {
   queue.Abandon();
   {

@@ -34,9 +34,9 @@ struct RecorderOptions : DiskRules {
       nullptr;  // source of the person's states to record; null: none; borrowed
 };
 
-// The first thread reads the ring, encodes and compresses; the second writes; the third
-// synchronises the disk. A slow disk therefore delays the second and the third thread. It delays
-// the first thread only when `max_queued` is reached.
+// The first thread reads the ring, encodes and compresses. The second thread writes, and the third
+// thread synchronises the disk. A slow disk therefore delays the second and the third thread. A
+// slow disk delays the first thread only when `max_queued` is reached.
 class Recorder {
  public:
   // Records everything that is published from now on. `ring` and `calls` must outlive this object.
@@ -49,13 +49,14 @@ class Recorder {
   Recorder& operator=(const Recorder&) = delete;
 
   // The following functions are wait-free, and only the thread of the control loop may call them.
-  // If a snapshot of the complete state is wanted, SnapshotBuffer returns its buffer, and otherwise
-  // an empty span. SnapshotTaken then reports the tick after which it was taken, and its size (0 if
-  // it could not be taken).
+  // SnapshotBuffer returns its buffer if a snapshot of the complete state is wanted, and otherwise
+  // returns an empty span. SnapshotTaken then reports the size of the snapshot and the tick after
+  // which the snapshot was taken. The size is 0 if the snapshot could not be taken.
   std::span<std::byte> SnapshotBuffer() noexcept;
   void SnapshotTaken(std::uint64_t tick, std::size_t bytes) noexcept;
 
-  // Records an event at the newest tick. May be called from any thread except the one that ticks.
+  // Records an event at the newest tick. Any thread except that of the control loop may call this
+  // function.
   void Mark(const std::string& text);
   RecorderStatus status() const;  // may be called from the same threads as Mark
 

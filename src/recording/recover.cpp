@@ -19,12 +19,13 @@ namespace predictor {
 namespace recording {
 namespace {
 
-// Among arbitrary bytes, a chunk is identified by the name of its compression. This name is at the
-// following distance from the start of the chunk.
+// Among arbitrary bytes, a chunk is identified by the name of its compression. This name is kMarkAt
+// bytes after the start of the chunk.
 constexpr std::string_view kMark{"\4\0\0\0zstd", 8};
 constexpr std::uint64_t kMarkAt = mcap::kHead + 8 + 8 + 8 + 4;
-// The limits for bytes that are read or decompressed in vain. A hostile file may contain many
-// apparent chunks, each of which seems to contain the rest of the file.
+// The largest numbers of bytes that are read or decompressed without finding a valid chunk. A
+// hostile file may contain many apparent chunks, each of which seems to contain the rest of the
+// file.
 constexpr std::uint64_t kMaxWasted = 2 * kLargestChunk, kMaxWastedPerByte = 16;  // [bytes]
 
 // Returns the part of the chunk at `offset` (which ends before `end`) that can be decompressed,
@@ -195,7 +196,7 @@ class Recovery {
   RecoverReport report_;
   ChunkBuilder builder_;
   TickDecoder decoder_;
-  // The messages of the current incomplete tick.
+  // The messages of the tick that is not complete yet.
   std::vector<std::pair<std::uint16_t, std::string>> parts_;
   std::optional<std::uint64_t> last_;  // newest recovered tick
   bool damage_ = false;                // whether damage was found since the last tick

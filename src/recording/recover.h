@@ -26,7 +26,7 @@ struct RecoverReport {
   std::string Text() const;  // Sentences for the user.
 };
 
-// The changes to be made in the copy.
+// The changes that are made in the copy of a recording.
 struct Rewriting {
   std::function<void(RecordingHeader*)> change;  // changes the header; may throw; empty: no change
   bool person = true;  // keep events with free text, and the states of the person

@@ -53,7 +53,7 @@ void RunEvents::NewSecond(const TickRecord& record, std::uint64_t unix_ns) {
   Log(record, "omitted", count + " events before this one were omitted", kMaxPerSecond);
 }
 
-// The event of the cause precedes the event of the state to which the cause leads.
+// The event that describes a cause precedes the event that describes the resulting state.
 void RunEvents::FollowRun(const TickRecord& record) {
   if (record.cause != cause_) {
     if (record.cause != StopCause::kNone)

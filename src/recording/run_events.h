@@ -12,7 +12,7 @@ namespace predictor::recording {
 
 // Compares each record with the previous one. Returns at most kMaxPerSecond events per second.
 // Events about parameters have a lower priority than other events of the run. Events that were
-// omitted are counted.
+// omitted are only counted.
 class RunEvents {
  public:
   static constexpr int kMaxPerSecond = 50;

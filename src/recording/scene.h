@@ -8,8 +8,8 @@
 
 namespace predictor {
 
-// Returns "/tf" and "/scene" in Foxglove's schemas. `object_start` is O in W at the start [m].
-// Throws InputError.
+// Returns "/tf" and "/scene" in Foxglove's schemas. `object_start` is the position of O in W at the
+// start [m]. Throws InputError.
 std::vector<JsonChannel> RecordedScene(const Scenario& scenario, const Vector3& object_start);
 
 }  // namespace predictor

@@ -84,7 +84,7 @@ class SchemaVisitor {
   }
 
  private:
-  // Adds the comment "[unit] in frame: meaning", without the parts that the row does not have.
+  // Adds the comment "[unit] in frame: meaning", and omits the parts that the row does not have.
   void Line(const std::string& type, const TickField& f) {
     const std::string unit = *f.unit ? std::string("[") + f.unit + "]" : "";
     const std::string frame = *f.frame ? std::string("in ") + f.frame : "";

@@ -16,8 +16,8 @@ inline constexpr const char* kSnapshotDefinition =
     "uint64 tick  # after which the state was so\nuint8[] data  # of this build of the program\n";
 
 inline constexpr const char* kEventsTopic = "/events";
-// The type of the events is Foxglove's, so that Foxglove's log panel shows them. The tick and the
-// number of lost ticks are added.
+// The events have Foxglove's type, so that Foxglove's log panel shows them. The fields for the tick
+// and the number of lost ticks are added to Foxglove's type.
 inline constexpr const char* kEventType = "foxglove.Log";
 const std::string& EventSchema();  // JSON Schema
 

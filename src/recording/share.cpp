@@ -9,7 +9,7 @@
 namespace predictor {
 namespace {
 
-// These labels describe the run and not the person.
+// Labels that describe the run and not the person.
 constexpr const char* kConditionLabel = "condition";
 
 bool IsTrue(const YamlNode* node) { return node != nullptr && node->text == "true"; }
@@ -24,7 +24,8 @@ std::vector<std::string> RemovePerson(RecordingHeader* header) {
       if (IsTrue(person->Find("embodied")))
         throw InputError(
             "The operator was simulated with this body (operator.embodied). The run cannot be "
-            "repeated without it, and it describes no person: share the recording as it is.");
+            "repeated without this body. Share the recording unchanged, because this body does not "
+            "describe a real person.");
       std::erase_if(person->items, [&](const YamlNode& item) {
         const bool personal = item.key == "body" || item.key == "stance";
         if (personal && item.kind != YamlNode::Kind::kNull)

@@ -1,4 +1,4 @@
-// Writes a recording in the calling thread, for virtual time. For real time use the Recorder.
+// Writes a recording in the calling thread, for virtual time. Use the Recorder for real time.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,21 @@
 
 namespace predictor {
 
-// A recording could not continue, because the disk is full or nearly full or writing failed. what()
-// gives the reason and the amount of data kept, and states that the file can be read up to there.
+// A recording ended early because the disk is full, the disk is nearly full, or writing failed. The
+// text of what() gives the reason and the amount of data kept, and states that the file can be read
+// up to there.
 class RecordingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// Add, AddSnapshot, AddEvent, NoteLoss and Close throw RecordingError once. The file is then
-// closed, and further data are ignored. The destructor closes the file without reporting errors.
+// The first failure makes Add, AddSnapshot, AddEvent, NoteLoss or Close throw RecordingError once.
+// The file is then closed, and further data are ignored. The destructor closes the file without
+// reporting errors.
 class RecordingWriter {
  public:
-  // Throws InputError if the file exists or cannot be created. `calls` is borrowed. Without rules,
-  // the recording may fill the disk completely.
+  // Throws InputError if the file exists or cannot be created. `calls` is borrowed. If no rules are
+  // given, the recording may fill the disk completely.
   RecordingWriter(const std::string& path, const RecordingHeader& header,
                   std::vector<JsonChannel> scene = {}, FileCalls* calls = nullptr,
                   const DiskRules& rules = {.warn_below = 0, .end_below = 0});
@@ -36,8 +38,8 @@ class RecordingWriter {
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
   void Add(const TickRecord& record);
-  // Adds the complete state after `tick`, as opaque bytes of at most 32 MiB (more:
-  // std::invalid_argument).
+  // Adds the complete state after `tick` as opaque bytes. Throws std::invalid_argument for more
+  // than 32 MiB.
   void AddSnapshot(std::uint64_t tick, std::span<const std::byte> bytes);
   void AddEvent(const std::string& text, std::uint64_t tick);
   // Records that `count` ticks before `tick` are missing.

@@ -1,4 +1,4 @@
-// Makes the table of what the hands felt after the events of a scenario.
+// Makes the table that shows what the hands felt after the events of a scenario.
 #include <algorithm>
 #include <array>
 

@@ -10,7 +10,7 @@
 
 namespace predictor {
 
-// The build embeds this file.
+// This file is embedded by the build.
 std::string_view ReportStyleFile(std::string_view name);
 std::string_view ReportScriptFile(std::string_view name);
 
@@ -57,8 +57,8 @@ Json List(const Items& items, Function function) {
   return list;
 }
 
-// Time axes have a resolution of a tenth of a millisecond, so that no point moves by a pixel.
-// Logarithmic axes need the same resolution, because their smallest values are small.
+// Time axes have a resolution of 0.1 ms, so that rounding moves no point by a pixel. Logarithmic
+// axes need the same resolution, because their smallest values are small.
 double StepOfX(const Plot& plot) { return plot.x.unit == "s" || plot.x.log ? 1e-4 : 0; }
 
 Json ToJson(const Plot& plot, PageData* data) {
@@ -89,7 +89,7 @@ std::string Dump(const Json& json) {
   return JsonInScript(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-// Larger numbers are no longer exact integers in a browser.
+// In a browser, larger numbers are not stored as exact integers.
 constexpr double kMaxSteps = 4e15;
 
 double StepOf(const std::vector<double>& values, double step) {
@@ -105,7 +105,7 @@ double StepOf(const std::vector<double>& values, double step) {
   return std::max(step, least);
 }
 
-// Titles may come from files, so all their characters must be visible to the reader.
+// Titles may come from files, so control characters in them are made visible to the reader.
 std::string Heading(const std::string& title) { return EscapeMarkup(Printable(title)); }
 
 }  // namespace
@@ -199,7 +199,7 @@ std::string ReportPage::Finish() {
   std::string html =
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      // The page loads nothing, whatever text a recording contains.
+      // The page may not load anything, whatever text a recording contains.
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
       "'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action "
       "'none'\">\n<title>" +

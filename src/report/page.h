@@ -11,9 +11,9 @@
 namespace predictor {
 
 // Rounds each value to a whole number of steps. A byte 0 represents a value that is not finite.
-// Otherwise the byte 1 is followed by the zigzag-coded difference from the previous value, in
-// groups of seven bits with the lowest group first. The eighth bit means that more bytes follow.
-// Slowly varying values take one byte each.
+// For a finite value, the byte 1 is followed by the zigzag-coded difference from the previous
+// value, in groups of seven bits with the lowest group first. The eighth bit of a byte means that
+// more bytes follow. Slowly varying values take one byte each.
 std::string EncodeSteps(const std::vector<double>& values, double step);
 
 std::string Base64(const std::string& bytes);

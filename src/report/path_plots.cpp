@@ -13,7 +13,8 @@
 namespace predictor {
 namespace {
 
-// `a` is the horizontal and `b` the vertical axis of a path in W on the page.
+// `a` and `b` are the indices of the coordinates in W that the path's horizontal and vertical axes
+// on the page show.
 Plot PathPlot(const Runs& runs, const char* id, const char* title, std::size_t a, std::size_t b) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
   Plot plot;
@@ -64,8 +65,9 @@ std::vector<Plot> PathPlots(const Runs& runs) {
   plots.push_back(PathPlot(runs, "path-top", "The path from above", 0, 1));
   plots.push_back(PathPlot(runs, "path-side", "The path from the side", 0, 2));
   plots.back().caption =
-      "The paths are in the world frame, with one point every 50 ms. The object is shown by its "
-      "origin, the handles at their measured positions. Both axes have the same scale.";
+      "The paths are in the world frame, with one point every 50 ms. The positions of the object "
+      "are those of its origin, and the positions of the handles are measured. Both axes have the "
+      "same scale.";
   return plots;
 }
 

@@ -1,5 +1,5 @@
-// Describes a plot: its curves, units and limits. page.h writes the description into a page, and
-// the page's script (web/report) draws it.
+// Describes a plot by its curves, units and limits. The file page.h writes the description into a
+// page, and the page's script (web/report) draws the plot.
 #pragma once
 
 #include <memory>
@@ -46,8 +46,7 @@ struct PlotSeries {
   PlotSymbol symbol = PlotSymbol::kDot;
   Samples base;   // lower edge of an area
   Samples error;  // of markers: half the length of the error bars; null: none
-  // For a line, all samples of some of its parts. The page draws these samples when the reader
-  // zooms in.
+  // All samples of some parts of a line. The page draws these samples when the reader zooms in.
   Samples x_detail, y_detail;
   double resolution = 0;   // step to which the page rounds y; 0: 1/50000 of the range
   double bar_width = 0.8;  // of kBars, in x's unit; for a logarithmic axis, a ratio above 1
@@ -58,7 +57,7 @@ struct PlotSeries {
   }
 };
 
-// A permitted value, drawn across the panel.
+// A permitted value, which is drawn as a line across the panel.
 struct PlotLimit {
   double value = 0;
   std::string label;
@@ -108,7 +107,7 @@ struct Plot {
   std::string group;        // plots of the same group zoom together; empty: independent
 };
 
-// Returns "Force [N]", for example.
+// Returns a label such as "Force [N]".
 std::string AxisTitle(const PlotAxis& axis);
 
 // Formats `x` with `digits` significant digits and at most `decimals` digits after the decimal

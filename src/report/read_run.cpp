@@ -159,7 +159,8 @@ void RunCollector::Impl::FollowEvents(const TickRecord& record) {
        true);
 }
 
-// The result of the summary is used here, because the summary has already processed this record.
+// The function uses the result of the summary, because the summary has already processed this
+// record.
 void RunCollector::Impl::FollowStop(const TickRecord& record) {
   const std::vector<StopSummary>& stops = summary_.stops().stops();
   if (d_.stops.size() != stops.size()) {
@@ -171,9 +172,9 @@ void RunCollector::Impl::FollowStop(const TickRecord& record) {
   FollowPower(record);
 }
 
-// The fault that removes the power occurs with the decision or long after it, and belongs to the
-// last stop. If the last stop was not kept because there were too many, the fault belongs to none
-// of the kept stops.
+// The fault that removes the power occurs with the decision to stop or long after it. This fault
+// belongs to the last stop. If there were too many stops and the last one was therefore not kept,
+// the fault belongs to none of the kept stops.
 void RunCollector::Impl::FollowPower(const TickRecord& record) {
   const StopCause before = std::exchange(harder_, record.harder.cause);
   if (harder_ == StopCause::kNone || before != StopCause::kNone) return;

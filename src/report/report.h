@@ -17,7 +17,7 @@ struct ReportDocument {
 
 class ReportPage;
 
-// A function that adds chapters of another module to the page.
+// A function with which another module adds chapters to the page.
 using AddChapters = std::function<void(ReportPage*)>;
 
 // `runs` contains at least one run. `program_version` is the version of the program that makes the

@@ -26,8 +26,8 @@ std::string Count(std::uint64_t n) {
 }
 std::string Times(std::uint64_t n) { return n == 1 ? "once" : Count(n) + " times"; }
 
-// Returns "0.098 ± 0.088", for example. Both numbers have the same number of decimal places, which
-// gives the larger number three significant digits.
+// Returns a text such as "0.098 ± 0.088". Both numbers have the same number of decimal places,
+// which gives the larger number three significant digits.
 std::string Spread(double mean, double deviation, int decimals) {
   const double larger = std::max(std::abs(mean), deviation);
   const int exponent = larger > 0 ? static_cast<int>(std::floor(std::log10(larger))) : 0;
@@ -135,7 +135,7 @@ std::string OscillationWords(const RunData& run) {
            "from 3 to 10 Hz was at most " +
            Significant(rms, 2) + " N.";
   if (index == 0) return "The hands' forces were too small for an oscillation between 3 and 10 Hz.";
-  // Even a small share of a large force may be a large force.
+  // A small share of a large force may still be a large force.
   return "From 3 to 10 Hz, each hand's force had an rms of at most " + Significant(rms, 2) +
          " N, which is small compared with slower changes of the force (index at most " +
          Significant(index, 2) + " while the force varied by more than " +
@@ -162,7 +162,8 @@ std::string FileWords(const RunData& run) {
   std::string text;
   if (run.lost > 0)
     text += "<b>" + Count(run.lost) + " ticks are missing</b> in " + Count(run.gaps) +
-            " places. The plotted lines are interrupted there, and sums omit these ticks. ";
+            " places. The plotted lines are interrupted at the missing ticks, and sums omit these "
+            "ticks. ";
   if (run.disordered > 0)
     text += Count(run.disordered) + " records were out of order, so the report omits them. ";
   if (!run.info.problem.empty()) text += EscapeMarkup(run.info.problem) + " ";
@@ -268,7 +269,7 @@ struct NamedNumber {
   double value;      // NaN: none
 };
 
-// Returns the numbers of a result that are compared, in the unit in which it is shown.
+// Returns the numbers of a result that are compared, in the unit in which the result is shown.
 std::vector<NamedNumber> NumbersOf(const Result& result) {
   const double factor = IsMissing(result.value) ? NAN : result.unit.factor;
   if (const auto* s = std::get_if<Statistics>(&result.value))
@@ -280,7 +281,7 @@ std::vector<NamedNumber> NumbersOf(const Result& result) {
   return {};
 }
 
-// Returns the figures of all metrics, followed by the number of stops.
+// Returns the numbers of all metrics, followed by the number of stops.
 std::vector<Figure> FiguresOf(const Summary& summary) {
   std::vector<Figure> figures;
   for (const Result& result : summary.results) {
@@ -371,7 +372,7 @@ std::string DetailWords(const Runs& runs) {
     if (run.trace.complete()) {
       html += Paragraph(of +
                         "This page contains every tick. In wide views, the plots show the minimum "
-                        "and maximum of each 50 ms.");
+                        "and maximum of each interval of 50 ms.");
       continue;
     }
     std::string list;
@@ -384,14 +385,15 @@ std::string DetailWords(const Runs& runs) {
         " s around stops, markers and worst values, except in wide views:");
     html.append("<ul>").append(list).append("</ul>\n");
     html += Paragraph(
-        "This page does not contain the other ticks. To see them, show the recording with "
-        "<code>predictor replay</code>.");
+        "This page does not contain the other ticks. To see the other ticks, show the recording "
+        "with <code>predictor replay</code>.");
   }
-  return html + Paragraph(
-                    "To keep the page small, the values in the plots are rounded: translations to "
-                    "0.1 µm, angles of errors to 0.00001°, joints to 0.002°, forces to 5 mN, "
-                    "torques to 0.5 mN·m, energies to 0.1 mJ, positions to 0.1 mm or better. "
-                    "All statistics use the unrounded values of every tick.");
+  return html +
+         Paragraph(
+             "To keep the page small, the values in the plots are rounded. Translations are "
+             "rounded to 0.1 µm, angles of errors to 0.00001°, joints to 0.002°, forces to 5 mN, "
+             "torques to 0.5 mN·m, energies to 0.1 mJ, and positions to 0.1 mm or better. "
+             "All statistics use the unrounded values of every tick.");
 }
 
 std::string ResultTables(const RunData& run, Chapter chapter) {
@@ -430,8 +432,8 @@ std::string EnergyTable(const RunData& run) {
              Significant(run.stored) +
              " J more than at the start. Its friction and damping dissipated " +
              Significant(run.dissipated) +
-             " J of the energy from the hands and the coupling. A controller that moves its "
-             "set-point can also supply energy.");
+             " J of the energy from the hands and the coupling. If a controller moves its "
+             "set-point, it can also supply energy.");
 }
 
 std::string LatencyTable(const RunData& run) {
@@ -451,11 +453,11 @@ std::string LatencyTable(const RunData& run) {
   }
   std::string html = HtmlTable(rows);
   if (run.pages.empty())
-    html += Paragraph("No page reported how long a state takes to reach its screen.");
+    html += Paragraph("No page reported the time that a state takes to reach its screen.");
   else
     html += Paragraph(
-        "Each page reports the medians of each second. Its clock is synchronised to the program's "
-        "clock.");
+        "Each page reports the medians of each second. The page's clock is synchronised to the "
+        "program's clock.");
   return html;
 }
 

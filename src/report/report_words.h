@@ -22,10 +22,10 @@ std::string ResultTables(const RunData& run, Chapter chapter);
 std::string EnergyTable(const RunData& run);
 std::string LatencyTable(const RunData& run);
 std::string EventTable(const RunData& run);
-// Describes the scenario's events and what the hands felt after them, as HTML.
+// Describes, as HTML, the scenario's events and what the hands felt after them.
 std::string HazardTable(const RunData& run);
-// Returns a table of all compared results with a column per run, including the difference from the
-// first run.
+// Returns a table of all compared results with one column per run. The columns of later runs
+// include the difference from the first run.
 std::string ComparisonTable(const std::vector<RunData>& runs);
 
 }  // namespace predictor

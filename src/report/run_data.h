@@ -20,7 +20,7 @@
 
 namespace predictor {
 
-// The origin of a recording: everything about it except its ticks.
+// Everything about a recording except its ticks.
 struct RunInfo {
   std::string name;           // file name, or another name that distinguishes the run
   std::string file;           // full file name, if `name` is shortened
@@ -88,7 +88,7 @@ constexpr std::size_t ChannelOf(RunChannel channel, int joint = 0) {
          static_cast<std::size_t>(joint);
 }
 
-// A stop, with its time and distance.
+// A stop of the run, with its time and distance.
 struct ReportedStop {
   std::uint64_t tick = 0;       // tick of the decision
   StopSummary summary;          // its time is on the report's time axis

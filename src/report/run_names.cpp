@@ -17,8 +17,8 @@ bool Differ(const Names& names) {
   return std::set<std::string>(names.begin(), names.end()).size() == names.size();
 }
 
-// Returns the name preceded by a given number of its folders. For a/b/run.mcap and one folder, this
-// is "b/run".
+// Returns the name preceded by a given number of its folders. For a/b/run.mcap and one folder, the
+// result is "b/run".
 std::string NameOf(const std::filesystem::path& file, int folders) {
   std::string name = file.stem().string();
   std::filesystem::path folder = file.parent_path();

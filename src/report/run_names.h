@@ -13,8 +13,8 @@ struct NamedRun {
 };
 
 // Returns a distinct name for each run. The name is the run's condition if the conditions are short
-// and distinguish the runs. Otherwise the name is the file name with as many of its folders as are
-// needed to distinguish the runs, without the part that all names have in common.
+// and distinguish the runs. Otherwise, the name is the file name with as many of its folders as are
+// needed to distinguish the runs. The part that all names have in common is omitted.
 std::vector<std::string> ShortNames(const std::vector<NamedRun>& runs);
 
 }  // namespace predictor

@@ -52,8 +52,8 @@ Plot TimePlot(const Runs& runs, const std::string& id, const std::string& title)
   return plot;
 }
 
-// A quantity of both hands. A single run shows both in one panel; several runs use one panel per
-// hand.
+// A quantity of both hands. For a single run, both hands are shown in one panel. For several runs,
+// each hand has its own panel.
 struct HandQuantity {
   HandChannel channel;
   std::string title;
@@ -137,8 +137,9 @@ Plot TrackingPlot(const Runs& runs) {
   AddPair(runs, "Relative angle of the handles", "their relative angle", angle, RunChannel::kAngle,
           1e-5, &plot);
   plot.caption =
-      "Errors of the real handles relative to the virtual ones, and errors of the handles' "
-      "distance and relative angle, while simulated time advances (the paper's Fig. 7).";
+      "The plots show the errors of the real handles relative to the virtual ones, and the errors "
+      "of the handles' distance and relative angle, while simulated time advances (the paper's "
+      "Fig. 7).";
   return plot;
 }
 
@@ -157,7 +158,7 @@ Plot ForcePlot(const Runs& runs) {
                                    ChannelOf(RunChannel::kLinkDistance), 1e-4,
                                    {LimitAt(rendering.influence_distance, "slowed below", "m"),
                                     LimitAt(rendering.security_distance, "stop below", "m")}));
-  plot.caption = "Compared with the thresholds at the end of the run (the paper's Fig. 8).";
+  plot.caption = "The plots also show the thresholds at the end of the run (the paper's Fig. 8).";
   return plot;
 }
 
@@ -168,7 +169,7 @@ Plot ForceAxesPlot(const Runs& runs) {
   constexpr const char* kNames[] = {"x", "y", "z"};
   for (std::size_t k = 0; k < 3; ++k)
     AddHandPanels(runs, {kAxes[k], kNames[k], Axis("Force", "N", 1), 0.005}, {}, &plot);
-  plot.caption = "Force of the hand on the handle (the paper's Fig. 12).";
+  plot.caption = "The plots show the force of the hand on the handle (the paper's Fig. 12).";
   return plot;
 }
 
@@ -197,7 +198,7 @@ Plot JointPlot(const RunCurves& curves) {
   const auto of_cobot = [](int j) { return ChannelOf(RunChannel::kCobotJoint, j); };
   add("Virtual cobot", angle, turning, of_cobot);
   add("Virtual cobot, prismatic joints", Axis("Position", "mm", 1, false), sliding, of_cobot);
-  plot.caption = "Measured values (the paper's Fig. 9).";
+  plot.caption = "The plots show measured values (the paper's Fig. 9).";
   return plot;
 }
 
@@ -268,8 +269,10 @@ Plot EnergyPlot(const RunCurves& curves) {
   stored.series.push_back(curves.Line(ChannelOf(RunChannel::kStored), "", kPair, 1e-4));
   plot.panels.push_back(std::move(stored));
   plot.caption =
-      "Integrals of force times velocity and torque times angular velocity. Stored: kinetic "
-      "energy, potential energy of the object, and energy of the controller's springs.";
+      "The plots show integrals of force times velocity and torque times angular velocity. The "
+      "stored energy is "
+      "the kinetic energy, the potential energy of the object, and the energy of the controller's "
+      "springs.";
   return plot;
 }
 
@@ -310,9 +313,9 @@ Plot OscillationPlot(const Runs& runs) {
   }
   plot.panels = {std::move(index), std::move(rms)};
   plot.caption =
-      "Windows of 4 s, shown at their centres. Bad: an index above 0.5 with more than 3 N about "
-      "the mean. The index is omitted where the force varies by 1 N or less about its mean. It "
-      "does not include motion slower than 3 Hz.";
+      "Each bar shows a window of 4 s at its centre. A window is bad if its index exceeds 0.5 and "
+      "its force varies by more than 3 N about the mean. The index is omitted where the force "
+      "varies by 1 N or less about its mean. The index does not include motion slower than 3 Hz.";
   return plot;
 }
 

@@ -1,5 +1,5 @@
-// Makes the plots of a report. For one run, both hands share a panel. For several runs, there is
-// one panel per hand and one colour per run.
+// Makes the plots of a report. For one run, both hands are shown in one panel. For several runs,
+// there is one panel per hand and one colour per run.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace predictor {
 
-// The curves of a run that several of its plots use.
+// The curves of a run that are used in several of the run's plots.
 class RunCurves {
  public:
   explicit RunCurves(const RunData& run)

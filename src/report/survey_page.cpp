@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-// Formats a value with a true minus sign, or as a dash if it is undefined.
+// Formats a value with a true minus sign, or as a dash if the value is undefined.
 std::string Figure(const char* format, double value) {
   if (value != value) return "–";
   char buffer[32];
@@ -26,8 +26,8 @@ std::string MeanText(const StatementSummary& s) {
   return Figure("%.2f", s.mean) + " ± " + Figure("%.2f", s.deviation);
 }
 
-// `counted` is the name of the counted items. `zero` is the heading of the column that counts the
-// zeros.
+// `counted` is the name of the counted items. `zero` is the heading of the column that contains the
+// number of zeros.
 std::string ShiftTable(const char* counted, const char* zero, const ShiftSummaries& summaries) {
   Rows rows = {{"", counted, zero, "shift", "interval", "its confidence", "p", "p (Holm)"}};
   for (std::size_t i = 0; i < kStatements; ++i) {
@@ -87,7 +87,8 @@ void AddPaired(const SurveyReport& report, ReportPage* page) {
   page->Section("paired", "Emulated minus real");
   if (report.paired_people == 0) {
     page->Paragraph(
-        "No one answered for both systems, so the answers are compared with neutral only.");
+        "No person answered for both systems, so the answers are only compared with the neutral "
+        "answer.");
     return;
   }
   page->Paragraph(std::to_string(report.paired_people) + " answered for both.");

@@ -16,7 +16,7 @@ struct LikertSeries {
   std::array<ScoreCounts, kStatements> counts{};
 };
 // Makes a plot like Fig. 11 of the paper for one or two series. The plot has a cross for each
-// answer, with equal answers side by side, and a dot with a bar for the mean and the standard
+// answer, with equal answers side by side. A dot with a bar shows the mean and the standard
 // deviation.
 Plot LikertPlot(const std::vector<LikertSeries>& series);
 

@@ -40,8 +40,8 @@ PlotSeries Markers(const std::string& label, int color, PlotSymbol symbol, Point
   return series;
 }
 
-// Adds the answers and their means of series number `which`. The `of` series share the width of a
-// statement.
+// Adds the answers of series number `which`, and their means. The `of` series of the plot share the
+// width of a statement.
 void AddSeries(const LikertSeries& series, std::size_t which, std::size_t of, PlotPanel* panel) {
   const double width = 1.0 / static_cast<double>(of);
   Points answers, means;

@@ -12,12 +12,12 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-// The maximum number of interests. Without this limit, a recording with a thousand markers would
-// cause a thousand searches per second.
+// The maximum number of interests, around which every tick is kept. Without this limit, a recording
+// with a thousand markers would cause a thousand searches per second.
 constexpr std::size_t kMaxInterests = 64;
 // The maximum number of blocks whose lowest and highest values are kept (350 MB for all channels).
-// These blocks cover eight hours if no ticks are missing. A hostile recording may have a single
-// tick in each block.
+// The blocks cover eight hours if no ticks are missing. A hostile recording may have a single tick
+// in each block.
 constexpr std::size_t kMaxBlocks = 8 * 3600;
 
 // Writes the lowest and highest of n values, in order of occurrence.
@@ -56,9 +56,10 @@ void Trace::Add(std::uint64_t tick, const float* values) {
 
 void Trace::Close() {
   if (bins_.size() == kMaxBlocks)
-    throw InputError("The recording has ticks in more than " + std::to_string(kMaxBlocks) +
-                     " seconds (eight hours), which is more than a report can show. View it with "
-                     "`predictor replay`, or export channels with `predictor export data`.");
+    throw InputError(
+        "The recording has ticks in more than " + std::to_string(kMaxBlocks) +
+        " seconds (eight hours), which is more than a report can show. View the recording with "
+        "`predictor replay`, or export channels with `predictor export data`.");
   Bins bins{open_.number, std::vector<float>(channels_ * 2 * kBinsPerBlock)};
   for (std::size_t c = 0; c < channels_; ++c)
     for (std::size_t b = 0; b < kBinsPerBlock; ++b)
@@ -105,7 +106,7 @@ std::vector<std::uint64_t> Trace::Wanted(std::size_t room) const {
   return wanted;
 }
 
-// Recent blocks are kept because a later event may need them.
+// Recent blocks are kept, because a later event may need the ticks in these blocks.
 void Trace::Prune() {
   complete_ = false;
   const std::vector<std::uint64_t> wanted = Wanted(room_);

@@ -1,5 +1,5 @@
-// Stores channels of a run over time, in bounded memory and in one pass. It keeps the lowest and
-// the highest value of each 50 ms, and every tick of the important parts.
+// Stores channels of a run over time, in bounded memory and in one pass. A trace keeps the lowest
+// and the highest value of each interval of 50 ms, and every tick of the important parts.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace predictor {
 
-// A reason to keep every tick of a part.
+// A reason to keep every tick of a part of the run.
 struct TraceInterest {
   std::uint64_t tick = 0;
   double before = 5, after = 5;  // time kept before and after it [s]
@@ -30,14 +30,14 @@ class Trace {
   // [s]. A run of at most this length is kept completely.
   Trace(std::size_t channels, double dt, double detail);
 
-  // Adds a tick with a value of each channel (NaN if there is none). The numbers of the ticks must
-  // ascend. Missing ticks become gaps. Throws InputError if the ticks cover more time than memory
-  // allows (eight hours).
+  // Adds a tick with one value for each channel. The value is NaN if the channel has none. The
+  // numbers of the ticks must ascend. Missing ticks become gaps. Throws InputError if the ticks
+  // cover more time than memory allows (eight hours).
   void Add(std::uint64_t tick, const float* values);
   // Keeps every tick near a given time, which may be at most kBefore in the past. Returns the
   // interest's number.
   std::size_t Keep(TraceInterest interest);
-  // Moves an interest, for example when a new worst value replaces the old one.
+  // Moves an interest to another time, for example when a new worst value replaces the old one.
   void Move(std::size_t interest, std::uint64_t tick) { interests_[interest].tick = tick; }
   void Finish();  // throws like Add
 
@@ -49,7 +49,8 @@ class Trace {
   // Returns the ticks in (from, to) that were kept, with their times.
   void Part(std::uint64_t from, std::uint64_t to, std::uint64_t origin, std::size_t channel,
             std::vector<double>* times, std::vector<double>* values) const;
-  // Returns the interests for which every tick was kept. Interests without room are omitted.
+  // Returns the interests for which every tick was kept. Interests for which there was no room are
+  // omitted.
   std::vector<TraceInterest> Kept() const;
   bool complete() const { return complete_; }  // every tick of the run was kept
   double detail_seconds() const;               // total time kept with every tick [s]

@@ -12,14 +12,14 @@ namespace predictor {
 
 // Returns the largest share of a load, from 0 to 1, for which at_rest + share · load is between
 // lower and upper. If at_rest is outside this range, returns 1 if the load moves the value back
-// towards the range, and otherwise 0.
+// towards the range, and returns 0 otherwise.
 inline double LargestShare(double at_rest, double load, double lower, double upper) {
   if (load == 0) return 1;
   return std::clamp(((load > 0 ? upper : lower) - at_rest) / load, 0.0, 1.0);
 }
 
-// A joint's muscle torque at_rest + per_force · F, for a force F of the hand on the handle [N], and
-// the person's strength in both directions.
+// The muscle torque of a joint is at_rest + per_force · F for a force F of the hand on the handle
+// [N]. This torque is limited by the person's strength in both directions.
 struct JointAbility {
   double at_rest = 0;                   // torque that carries the arm [N·m]
   Vector3 per_force = Vector3::Zero();  // [m]
@@ -66,7 +66,7 @@ inline Vector3 WithinReach(const Vector3& p, const Vector3& shoulder, double sho
   return shoulder + arm * (std::clamp(length, shortest, longest) / length);
 }
 
-// A person who stands still and holds nothing, in S.
+// The weight and the feet, in S, of a person who stands still and holds nothing.
 struct Standing {
   double weight = 0;           // [N]
   double x = 0, y = 0;         // position of the centre of mass [m]
@@ -78,14 +78,15 @@ struct Standing {
     a(weight, x, y, back, front, half_width);
   }
 };
-// A force of a hand on its handle, at p, both in S.
+// The force of a hand on its handle and the point p at which the force acts, both in S.
 struct HandForce {
   Vector3 p = Vector3::Zero(), F = Vector3::Zero();
 };
 // The largest shares of the forces' x and y components for which the centre of pressure stays
-// within the footprint. Static: N = W + Σ Fz carries c = (x W + Σ (px Fz - pz Fx)) / N along x, and
-// likewise along y. A force along y does not move the centre of pressure along x, so a person who
-// stands at the front edge of the feet can still push sideways.
+// within the footprint. In the static case, the normal force is N = W + Σ Fz. This force acts at c
+// = (x W + Σ (px Fz - pz Fx)) / N along x, and similarly along y. A force along y does not move the
+// centre of pressure along x, so a person who stands at the front edge of the feet can still push
+// sideways.
 struct BalanceShares {
   double x = 1, y = 1;
 };

@@ -1,6 +1,6 @@
-// A person who moves the handles by mouse or VR controllers. The page sends the hand's pose. This
-// file computes the resulting force: a spring and a damper between hand and handle, with a limit.
-// The hand releases its handle when the page stops sending messages.
+// Models a person who moves the handles with a mouse or VR controllers. The page sends the hand's
+// pose. This file computes the resulting force, which is that of a spring and a damper between hand
+// and handle, up to a limit. The hand releases its handle when the page stops sending messages.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@
 namespace predictor {
 namespace {
 
-// After this time without a message from a page, its hands release the handles [s].
+// If a page sends no message for this time, the page's hands release the handles [s].
 constexpr double kSilence = 0.250;
 constexpr double kMaxForce = 25;          // maximum force of a hand [N]
 constexpr double kMaxTorque = 2;          // [N·m]
@@ -39,14 +39,14 @@ HandSpec HandOf(const Scenario& scenario) {
   return hand;
 }
 
-// Follows a pose that arrives in steps, with a continuous velocity.
+// Follows, with a continuous velocity, a pose that changes in steps.
 class SmoothPose {
  public:
   void Reset(const Pose& X) noexcept { X_ = X, V_.setZero(); }
   void Step(const Pose& goal, double dt) noexcept {
     const double w = 2 * 3.14159265358979323846 * kSmoothing;
     const Vector6 error = PoseError(goal, X_);
-    // The step is implicit in the velocity, and therefore stable for any step size.
+    // The step is implicit in the velocity, so it is stable for any step size.
     V_ = (V_ + dt * w * w * error) / (1 + 2 * w * dt + w * w * dt * dt);
     X_.p += dt * V_.head<3>();
     X_.q = (RotationFromVector(dt * V_.tail<3>()) * X_.q).normalized();
@@ -71,7 +71,7 @@ class BrowserOperator final : public Operator {
 
   void Step(const OperatorInput& input, OperatorOutput* output) noexcept override {
     *output = OperatorOutput();
-    // The script does not move the hands. It only shows the person what to do and when.
+    // The script does not move the hands. The script only shows the person what to do and when.
     if (input.running) output->action = ActionAt(script_, input.run_time);
     if (input.dt != dt_) {
       dt_ = input.dt;

@@ -6,7 +6,7 @@
 namespace predictor {
 
 Wrench HandleLoad(const HandlePayloadSpec& handle, const FrameMotion& sensor, double gravity) {
-  // The Newton-Euler equations about the centre of mass C, in axes of S.
+  // Applies the Newton-Euler equations about the centre of mass C, in the axes of S.
   const FrameMotion C = MotionOfFixed(sensor, {handle.center_of_mass, Quaternion::Identity()});
   const Quaternion to_S = sensor.X_W.q.conjugate();
   const Vector3 a = to_S * Vector3(C.A_W.head<3>() + Vector3(0, 0, gravity));

@@ -80,7 +80,8 @@ Vector3 HandModel::Impedance(const Vector3& error, const Vector3& rate,
 Wrench HandModel::Intend(const HandGoal& goal, const FrameMotion& handle,
                          const ArmAbility* arm) noexcept {
   StepGrip(goal.hold, goal.grip_time);
-  // Samples are also drawn while the hand is free, so that later samples do not depend on the grip.
+  // Noise samples are also drawn while the hand is free, so that later samples do not depend on the
+  // grip.
   Wrench noise;
   for (int i = 0; i < 6; ++i) noise[i] = noise_[static_cast<std::size_t>(i)].Step(dt_);
   Vector3 tremor;

@@ -14,7 +14,7 @@
 
 namespace predictor {
 
-// What a hand should do with its handle now.
+// The present goal of a hand for its handle.
 struct HandGoal {
   bool hold = false;
   double grip_time = 0.3;                  // time in which the grip closes [s]
@@ -25,11 +25,12 @@ struct HandGoal {
 };
 
 // The force is F = s · (sat[K e + D de/dt + reflex + visual + feed-forward + noise + tremor] − M
-// a), where e is the reference minus the handle's pose. The reflex is a delayed share of K e + D
-// de/dt. The torque about H follows the same law. If the arm's ability is modelled, noise and
-// tremor are divided by the capacity that is left after fatigue, because tired muscles work harder
-// for the same force. The stiffness K_x and the damping D_x = 2 ζ √(M K_x) of the arm were measured
-// with reflexes. In a slow motion, a reflex of gain g and delay τ adds the force g (K e + D de/dt)
+// a), where e is the reference minus the handle's pose. The reflex force is a delayed share of K e
+// + D de/dt. The torque about H is computed in the same way. If the arm's ability is modelled,
+// noise and tremor are divided by the capacity that is left after fatigue, because a tired muscle
+// needs more activation for the same force. The stiffness K_x and the damping D_x = 2 ζ √(M K_x) of
+// the arm were measured with reflexes. In a slow motion, a reflex of gain g and delay τ adds the
+// force g (K e + D de/dt)
 // - g τ K de/dt. Therefore K = K_x / (1 + g) and D = (D_x + g τ K) / (1 + g).
 class HandModel {
  public:
@@ -38,14 +39,15 @@ class HandModel {
   // `name` identifies the hand's random streams.
   HandModel(const HandSpec& spec, HandInertia inertia, std::uint64_t seed, const std::string& name);
 
-  // Resets the hand to a state in which it is free. `dt` is the step time [s].
+  // Resets the hand, which is then free. `dt` is the step time [s].
   void Reset(double dt) noexcept;
   // Advances by one step and returns the wrench F_H_W on the handle, whose motion is `handle`.
   Wrench Step(const HandGoal& goal, const FrameMotion& handle) noexcept {
     return Deliver(Intend(goal, handle, nullptr), handle);
   }
-  // The following functions are the two parts of Step. They are separate, so that a body can limit
-  // the muscles' wrench between them. `arm` is null if the stiffness does not depend on a posture.
+  // The following functions are the two parts of Step. The two parts are separate so that a body
+  // can limit the muscles' wrench between them. `arm` is null if the stiffness does not depend on a
+  // posture.
   Wrench Intend(const HandGoal& goal, const FrameMotion& handle, const ArmAbility* arm) noexcept;
   Wrench Deliver(const Wrench& muscles, const FrameMotion& handle) const noexcept;
 
@@ -57,7 +59,7 @@ class HandModel {
 
  private:
   void StepGrip(bool hold, double grip_time) noexcept;
-  // Returns K e + D de/dt, with e and its rate in W.
+  // Returns the force K e + D de/dt, with e and its rate in W.
   Vector3 Impedance(const Vector3& error, const Vector3& rate,
                     const ArmAbility* arm) const noexcept;
 

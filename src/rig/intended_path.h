@@ -1,4 +1,5 @@
-// The object's motion that a script intends: the operator's reference, without hands or cobot.
+// The motion of the object that a script intends. It is the operator's reference, without hands or
+// cobot.
 #pragma once
 
 #include <vector>
@@ -15,8 +16,8 @@ struct IntendedSample {
   bool held = false;           // whether any hand holds the object
 };
 
-// The behaviour of an object that no hand holds. Without a simulation, only two extreme cases are
-// known.
+// The behaviour of an object that no hand holds. Without a simulation, only the two extreme cases
+// of this behaviour can be computed.
 enum class AfterRelease {
   kStays,    // stays where it was released
   kReturns,  // returns smoothly to its start until a hand grips it again or the run ends
@@ -27,7 +28,7 @@ enum class AfterRelease {
 std::vector<IntendedSample> IntendedPath(const Scenario& scenario, const Pose& X_WO,
                                          AfterRelease after, double step);
 
-// Returns whether a hand grips again after all hands have released the object. The motion of the
+// Returns whether a hand grips the object again after all hands have released it. The motion of the
 // released object matters only in this case.
 bool GripsAgain(const Scenario& scenario);
 

@@ -10,9 +10,9 @@
 
 namespace predictor {
 
-// What a person feels and sees: the present motion of the handles, and whether the run is active.
-// The state of the simulation is not included: the object's pose is derived from the handles, to
-// which it is rigidly attached.
+// The quantities that a person perceives: the present motion of the handles, and whether the run is
+// active. The state of the simulation is not included. The object's pose is derived from the
+// handles, which are rigidly attached to the object.
 struct OperatorInput {
   double dt = 0.001;    // time since the last call [s]
   double run_time = 0;  // time of the run [s]; advances only while running
@@ -50,12 +50,12 @@ class Operator {
   virtual void Archive(StateArchive& a) noexcept = 0;
 };
 
-// How the hand's inertia acts. In emulation, the inertial force −M_h·a of the hand is part of the
-// wrench. In direct mode, the hand's mass is part of the scene, and the wrench excludes it.
+// The treatment of the hand's inertia. In emulation, the inertial force −M_h·a of the hand is part
+// of the wrench. In direct mode, the hand's mass is part of the scene, and the wrench excludes it.
 enum class HandInertia { kInWrench, kInScene };
 
-// Makes the operator of the scenario, who is either simulated and follows the script or a person at
-// a page. Throws InputError.
+// Makes the operator of the scenario. The operator is either simulated and follows the script, or
+// is a person who uses a page. Throws InputError.
 std::unique_ptr<Operator> MakeOperator(const Scenario& scenario, HandInertia inertia);
 
 std::unique_ptr<Operator> MakeVirtualOperator(const Scenario& scenario, HandInertia inertia);

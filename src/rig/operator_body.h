@@ -23,7 +23,8 @@ class OperatorBody {
   static constexpr double kPosturePeriod = 0.04;  // [s]
   static constexpr double kStiffnessTime = 0.1;   // [s]
 
-  // The scenario must have a body and a stance. Throws InputError if no adult has such a body.
+  // The scenario must have a body and a stance. Throws InputError if the values of the body are
+  // impossible for an adult.
   explicit OperatorBody(const Scenario& scenario);
 
   // Restores the initial state: a rested person (except for body.fatigue) in a comfortable posture.
@@ -38,8 +39,8 @@ class OperatorBody {
   // shoulder.
   Vector3 Reachable(int hand, const Vector3& p) const noexcept;
   // Reduces each hand's force on its handle at p, in W, to the force that the joints can exert.
-  // Then reduces the forward and the lateral components of all forces to those that the person can
-  // exert without falling in these directions.
+  // Afterwards, reduces the forward and the lateral components of all forces to those that the
+  // person can exert without falling forwards or sideways.
   void LimitForces(const std::array<FrameMotion, kHands>& handle,
                    std::array<Vector3, kHands>* forces) const noexcept;
   // Records the wrenches that the hands exert. The wrenches determine the stiffness and fatigue of

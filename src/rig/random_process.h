@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// Ornstein-Uhlenbeck process: white noise that has passed a first-order low-pass filter, with the
-// correlation exp(−|t|/τ).
+// An Ornstein-Uhlenbeck process is white noise that has passed a first-order low-pass filter, and
+// has the correlation exp(−|t|/τ).
 class OrnsteinUhlenbeck {
  public:
   // `time_constant` is in [s], and 0 gives white noise. The process starts in its stationary
@@ -38,7 +38,7 @@ class OrnsteinUhlenbeck {
   double dt_ = 0, keep_ = 0, kick_ = 0;
 };
 
-// An oscillation near a centre frequency, whose amplitude and phase drift. It is an
+// An oscillation near a centre frequency, whose amplitude and phase drift. The signal is an
 // Ornstein-Uhlenbeck process in a rotating frame, with the correlation exp(−|t|/τ) cos(2π f t).
 class NarrowBandNoise {
  public:

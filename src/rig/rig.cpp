@@ -32,8 +32,8 @@ struct Rig::Impl {
 
 void Rig::Impl::StepOnce() noexcept {
   // The arms' motion within a step does not depend on the person's reaction in this step, so there
-  // is no algebraic loop. The arms move, the person reacts, and the sensors measure the resulting
-  // wrench.
+  // is no algebraic loop. In each step, the arms move, the person reacts, and the sensors measure
+  // the resulting wrench.
   for (std::size_t i = 0; i < kHands; ++i) {
     if (!arms[i]) continue;
     arms[i]->Move();

@@ -1,5 +1,5 @@
-// The operator's script during a run. It keeps account of the actions that have begun and of those
-// that are active.
+// The operator's script during a run. The script keeps account of the actions that have begun and
+// of the active actions.
 #pragma once
 
 #include <memory>
@@ -18,8 +18,8 @@ class Script {
   void Reset() noexcept;
   // Begins all actions that are due at `run_time` [s] and have not begun yet.
   void Begin(double run_time, Intent* intent) noexcept;
-  // Advances all active actions by dt [s]. `pace` is as in Action::Advance. Actions that move the
-  // object are abandoned when no hand holds the object.
+  // Advances all active actions by dt [s]. `pace` has the same meaning as in Action::Advance.
+  // Actions that move the object are abandoned when no hand holds the object.
   void Advance(double dt, double pace, Intent* intent) noexcept;
   // Returns the index in the scenario's script of the active action that began last, or -1 for
   // none.

@@ -49,7 +49,7 @@ SimulatedArm::SimulatedArm(const Scenario& scenario, int hand, const JointVector
   if (limits != 1 && limits != dof) {
     throw InputError(DeviceArmKey(hand) + ".acceleration_limit",
                      "There are " + std::to_string(limits) + " limits for " + std::to_string(dof) +
-                         " joints. Give one limit for all joints, or one per joint.");
+                         " joints. Give one limit for all joints or one limit for each joint.");
   }
   const VelocityLoopSpec loop = rig_.loop.value_or(spec_.loop);
   const double delay = loop.delay + rig_.computation_delay;

@@ -18,7 +18,8 @@ class SimulatedArm {
   // `dt` is the step [s]. Throws InputError.
   SimulatedArm(const Scenario& scenario, int hand, const JointVector& start, double dt);
 
-  // Takes a new command [rad/s], unless it is not finite or has the wrong number of joints.
+  // Takes a new command [rad/s]. Ignores a command that is not finite or has the wrong number of
+  // joints.
   void Command(const JointVector& v) noexcept;
   // Advances the joints and the handle by one step.
   void Move() noexcept;

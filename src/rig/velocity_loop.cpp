@@ -7,8 +7,8 @@
 namespace predictor {
 namespace {
 
-// Returns the state transition of (q, v, a, u) over h [s] for constant u, exp(F h), by scaling and
-// squaring.
+// Returns the state transition of (q, v, a, u) over h [s] for constant u. The transition is exp(F
+// h), computed by scaling and squaring.
 Eigen::Matrix4d Transition(double omega, double zeta, double h) {
   Eigen::Matrix4d F = Eigen::Matrix4d::Zero();
   F(0, 1) = F(1, 2) = 1;

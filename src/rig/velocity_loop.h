@@ -8,13 +8,14 @@
 namespace predictor {
 
 // v'' + 2 ζ ω v' + ω² v = ω² u(t − delay), integrated exactly for a command that is constant
-// between steps. The delay need not be a whole number of steps: the command may change within a
-// step.
+// between steps. The delay need not be a whole number of steps, because the command may change
+// within a step.
 class VelocityLoop {
  public:
   static constexpr double kMaxDelay = 0.25;  // [s]
 
-  // `delay` is the loop's own delay plus any delay before it [s]. `dt` is in [s] and at least 1 ms.
+  // `delay` is the sum of the loop's own delay and of any delay before the loop [s]. `dt` is in [s]
+  // and at least 1 ms.
   VelocityLoop(const VelocityLoopSpec& spec, double delay, double dt, double velocity_limit,
                double acceleration_limit);
 
@@ -36,7 +37,7 @@ class VelocityLoop {
  private:
   double dt_, velocity_limit_, acceleration_limit_;
   double delay_samples_;
-  // (q, v, a) after a step = A (q, v, a) + older · (command before the change) + newer · (command
+  // After a step, (q, v, a) is A (q, v, a) + older · (command before the change) + newer · (command
   // after the change).
   Matrix3 A_;
   Vector3 older_, newer_;

@@ -26,7 +26,8 @@ class VirtualOperator final : public Operator {
 
  private:
   void BeginRun() noexcept;
-  // Returns the object's pose from the handles that exist, because it is rigidly attached to them.
+  // Returns the object's pose from the handles that exist, because the object is rigidly attached
+  // to them.
   Pose SeenObject(const OperatorInput& input) const noexcept;
   void RunScript(const OperatorInput& input, const Pose& X_WO) noexcept;
   void Anchor(const OperatorInput& input, const Pose& X_WO) noexcept;
@@ -96,7 +97,8 @@ void VirtualOperator::Reset() noexcept {
   if (body_) body_->Reset();
 }
 
-// Every run uses the same random numbers, however many were drawn before it began.
+// Every run uses the same random numbers, even if the operator drew any number of them before the
+// run began.
 void VirtualOperator::BeginRun() noexcept {
   Reset();
   drift_ = fresh_drift_;
@@ -116,8 +118,8 @@ Pose VirtualOperator::SeenObject(const OperatorInput& input) const noexcept {
 
 void VirtualOperator::Anchor(const OperatorInput& input, const Pose& X_WO) noexcept {
   // If no hand holds the object yet, the first hand starts from the object's present pose. A hand
-  // that joins the other hand uses the same reference. In both cases, the force of the hand that
-  // begins to hold starts at zero.
+  // that joins the other hand uses the same reference. In both cases, the force of a hand starts at
+  // zero when the hand begins to hold.
   if (!held_[0] && !held_[1] && intent_.AnyHold()) intent_.X_WO = X_WO;
   for (std::size_t i = 0; i < kHands; ++i) {
     if (intent_.hold[i] && !held_[i]) X_OH_[i] = intent_.X_WO.Inverse() * input.handle[i].X_W;

@@ -1,5 +1,6 @@
-// Frames of the ROS-TCP protocol, version 0.7: u32 length, destination, u32 length, payload, all
-// little-endian. A destination that begins with "__" marks a command whose payload is JSON.
+// Encodes and decodes frames of the ROS-TCP protocol, version 0.7. A frame consists of u32 length,
+// destination, u32 length and payload, all little-endian. A destination that begins with "__" marks
+// a command whose payload is JSON.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +25,11 @@ class FrameReader {
   static constexpr std::uint32_t kLongestPayload = 64 * 1024;
 
   void Feed(std::string_view bytes) { buffer_.append(bytes); }
-  // Returns the next complete frame, or nothing while it is incomplete or once the stream is
-  // unrecoverable.
+  // Returns the next complete frame. Returns nothing while the frame is incomplete or after the
+  // stream has become unrecoverable.
   std::optional<RosFrame> Next();
-  // Returns whether a frame announced an invalid length, so that the rest of the stream cannot be
-  // parsed.
+  // Returns whether a frame had an invalid length, which makes it impossible to parse the rest of
+  // the stream.
   bool broken() const { return broken_; }
 
  private:

@@ -1,5 +1,5 @@
-// The ROS messages that this server sends, as plain structs, and their encoding. Field names match
-// the message definitions (common_msgs of ROS 1 Noetic; ROS 2 Humble).
+// The ROS messages that this server sends, as plain structs, and the encoding of these messages.
+// The field names match the message definitions of common_msgs (ROS 1 Noetic and ROS 2 Humble).
 #pragma once
 
 #include <array>

@@ -63,7 +63,7 @@ std::string RosSession::OnCommand(const RosFrame& frame) {
   if (name == "__remove_publisher" || name == "__remove_ros_service" ||
       name == "__remove_unity_service" || name == "__unity_service")
     return "";
-  // The destination of the next frame is a service's name, which this server ignores.
+  // The destination of the next frame is the name of a service, which this server ignores.
   if (name == "__request") return Say("__error", "This server has no services.");
   if (name == "__response") return "";
   if (name == "__ros_service")
@@ -83,7 +83,8 @@ std::string RosSession::Subscribe(const std::string& topic, const std::string& t
   return Say("__warn", "There is no topic " + topic.substr(0, 100) + ". Request the topic list.");
 }
 
-// The message is a std_msgs/Bool: one byte, which in ROS 2 follows a header of four bytes.
+// The message is a std_msgs/Bool, which is one byte. In ROS 2, a header of four bytes precedes this
+// byte.
 std::string RosSession::OnMessage(const RosFrame& frame) {
   if (frame.destination != RosTopics::kStop) return "";
   const std::size_t header = dialect_ == RosDialect::kRos2 ? 4 : 0;

@@ -25,7 +25,7 @@ class RosSession {
   std::string OnFrame(const RosFrame& frame);
   // Returns the encoded frames of the publications to which this client has subscribed.
   std::string Select(const std::vector<RosPublication>& publications) const;
-  // Returns whether the client has neither subscribed to a topic nor announced or sent a stop.
+  // Returns whether the client has not subscribed to a topic and has not announced or sent a stop.
   bool idle() const { return subscribed_.empty() && !may_stop_; }
 
  private:

@@ -1,4 +1,4 @@
-// Runs the ROS-TCP server as a separate process. If this process dies, the run continues
+// Runs the ROS-TCP server as a separate process. If the ROS-TCP process dies, the run continues
 // unaffected.
 #pragma once
 
@@ -20,14 +20,14 @@ int RosTcpMain();
 
 class RosTcpProcess {
  public:
-  // Shows a message to the user. It is called from a separate thread.
+  // Shows a message to the user. A separate thread calls this function.
   using Notify = std::function<void(const std::string& text)>;
 
   // Starts the server with the same privileges as the viewer's process and waits until it accepts
   // clients. If the server dies, a message reports this and the server restarts on the same port.
-  // `joints` and `object_start` are as for RosTopics. The descriptors of `board` and `mailbox` are
-  // borrowed. Throws InputError with the server's error message, or std::runtime_error if no
-  // process can be started.
+  // `joints` and `object_start` have the same meaning as for RosTopics. The descriptors of `board`
+  // and `mailbox` are borrowed. Throws InputError with the server's error message, or
+  // std::runtime_error if no process can be started.
   RosTcpProcess(const RosTcpOptions& options, const Scenario& scenario,
                 const std::vector<std::string>& joints, const Vector3& object_start,
                 const Shared<RunBoard>& board, const Shared<StopMailbox>& mailbox, Notify notify);

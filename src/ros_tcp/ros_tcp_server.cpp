@@ -43,9 +43,9 @@ constexpr int kWidestNetwork = 8;
 
 std::string Everybody(const std::string& text) {
   return "\"" + text +
-         "\" would admit unknown machines. Clients need no code, and each can stop the run. Give "
-         "the network of the machine that runs Unity, for example 192.168.1.0/24, or that "
-         "machine's address.";
+         "\" would admit unknown machines. Clients need no access code, and each client can stop "
+         "the run. Give the network of the machine that runs Unity, for example 192.168.1.0/24, or "
+         "the address of this machine.";
 }
 
 // Parses "192.0.2.0/24". A text without a slash is a single address.
@@ -62,9 +62,10 @@ Network ParseNetwork(const std::string& text) {
   }
   if (text == "::" || text.starts_with("::/")) throw InputError("--ros-tcp-allow", Everybody(text));
   if (!good || bits > 32)
-    throw InputError("--ros-tcp-allow", "\"" + text +
-                                            "\" is not an IPv4 network. Write it as 192.0.2.0/24 "
-                                            "or as one address.");
+    throw InputError(
+        "--ros-tcp-allow",
+        "\"" + text +
+            "\" is not an IPv4 network. Write the network as 192.0.2.0/24 or as a single address.");
   if (bits < kWidestNetwork || address.s_addr == INADDR_ANY)
     throw InputError("--ros-tcp-allow", Everybody(text));
   const std::uint32_t mask = ~std::uint32_t{0} << (32 - bits);
@@ -151,7 +152,8 @@ void RosTcpServer::Impl::Open() {
   port = ntohs(address.sin_port);
 }
 
-// Returns whether a new client gets a seat. The new client may take the seat of an idle client.
+// Returns whether the server has a seat for a new client. The new client may take the seat of an
+// idle client.
 bool RosTcpServer::Impl::MakeRoom(std::uint32_t address) {
   std::vector<Seat> taken;
   for (const Client& client : clients) taken.push_back({client.address, client.session.idle()});

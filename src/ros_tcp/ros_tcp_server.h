@@ -17,7 +17,8 @@ namespace predictor::ros_tcp {
 
 struct RosTcpOptions {
   std::uint16_t port = 10000;  // 0: any free port
-  // Networks such as 192.0.2.0/24, with a prefix of at least 8 bits. Loopback is always allowed.
+  // The networks from which clients may connect, such as 192.0.2.0/24, with a prefix of at least 8
+  // bits. Loopback is always allowed.
   std::vector<std::string> allow;
   RosDialect dialect = RosDialect::kRos1;
   double rate = 60;  // maximum [Hz]; the connector's queue is unbounded
@@ -29,8 +30,9 @@ struct RosTcpOptions {
 
 class RosTcpServer {
  public:
-  // Opens the port. It is open on all addresses of the machine only if networks are allowed. All
-  // arguments are borrowed. Throws InputError if the port is not available or a network is invalid.
+  // Opens the port. The port is open on all addresses of the machine only if networks are allowed.
+  // All arguments are borrowed. Throws InputError if the port is not available or a network is
+  // invalid.
   RosTcpServer(const RosTcpOptions& options, const RosTopics* topics, const RunBoard* board,
                StopMailbox* mailbox);
   ~RosTcpServer();

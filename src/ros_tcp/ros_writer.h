@@ -44,7 +44,7 @@ class RosWriter {
   std::string Take() { return std::move(bytes_); }
 
  private:
-  // Aligns relative to the first byte after the header.
+  // Aligns a value relative to the first byte after the header.
   void Align(std::size_t size) {
     if (dialect_ == RosDialect::kRos2)
       bytes_.append((size - (bytes_.size() - 4) % size) % size, '\0');

@@ -23,10 +23,10 @@ struct Seating {
   std::size_t victim = 0;  // the client that loses its seat, for kReplace
 };
 
-// Finds a seat for a new client from `address`. `taken` is in order of arrival. The idle client
-// that connected first loses its seat. If an address already has its share of the seats, it gets
-// another seat only from one of its own idle clients. A client that is not idle never loses its
-// seat.
+// Finds a seat for a new client from `address`. `taken` lists the occupied seats in the order in
+// which their clients arrived. If all seats are taken, the idle client that connected first loses
+// its seat. If an address already has its share of the seats, it gets another seat only from one of
+// its own idle clients. A client that is not idle never loses its seat.
 Seating SeatFor(std::uint32_t address, const std::vector<Seat>& taken, const Seats& seats);
 
 }  // namespace predictor::ros_tcp

@@ -66,8 +66,8 @@ std::size_t RosTopics::Index(const std::string& name) const {
   return i;
 }
 
-// Draws an arrow from the handle along the force or the torque's axis, coloured by its share of the
-// threshold.
+// Draws an arrow that starts at the handle and points along the force or the torque's axis. Its
+// colour depends on the ratio of the force or torque to its threshold.
 RosMarker RosTopics::Arrow(const TickRecord& r, std::size_t hand, bool torque) const {
   const HandRecord& h = r.hands[hand];
   const Vector3 value = Part(h.wrench, torque ? 3 : 0);

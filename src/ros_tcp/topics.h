@@ -34,7 +34,8 @@ class RosTopics {
   RosTopics(const Scenario& scenario, std::vector<std::string> joints, const Vector3& object_start);
 
   const std::vector<RosTopic>& list() const { return list_; }
-  // Returns all messages of this record. `sec` and `nanosec` are its time on the system's clock.
+  // Returns all messages of this record. `sec` and `nanosec` are the time of this record on the
+  // system's clock.
   std::vector<RosPublication> Publish(const TickRecord& record, RosDialect dialect,
                                       std::uint32_t sec, std::uint32_t nanosec) const;
 
@@ -52,7 +53,7 @@ class RosTopics {
   std::vector<RosTopic> list_;
 };
 
-// Returns green below half of the threshold, orange up to 80 % of it, and red above.
+// Returns green if `share` of the threshold is below 0.5, orange up to 0.8, and red above 0.8.
 std::array<float, 4> WarningColor(double share);
 
 }  // namespace predictor::ros_tcp

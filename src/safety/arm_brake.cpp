@@ -34,8 +34,8 @@ double ArmBrake::Next(double common, double rate, double behind) noexcept {
     rate_ = rate;
     return factor_ = common;
   }
-  // The rate lies between that of braking as hard as allowed and that of releasing the brake. Both
-  // respect the jerk bound.
+  // The rate lies between the rate of braking as hard as allowed and the rate of releasing the
+  // brake. Both rates respect the jerk bound.
   const double step = brake_.jerk() * dt_;
   const double soft_rate = rate_ < 0 ? std::min(0.0, rate_ + step) : std::max(0.0, rate_ - step);
   const double soft = speed + (rate_ + soft_rate) / 2 * dt_;
@@ -47,7 +47,7 @@ double ArmBrake::Next(double common, double rate, double behind) noexcept {
   const double share = soft > hard ? std::clamp((wanted - hard) / (soft - hard), 0.0, 1.0) : 0.0;
   rate_ = hard_rate + share * (soft_rate - hard_rate);
   factor_ = (hard + share * (soft - hard)) / first_;
-  // Without this, rounding could leave a tiny residual speed.
+  // Without this condition, rounding could leave a tiny residual speed.
   if (factor_ < 1e-9) factor_ = 0;
   return factor_;
 }

@@ -6,9 +6,9 @@
 
 namespace predictor {
 
-// Brakes one arm during a stop along the common profile, or less while the other arm lags behind.
-// The arm never accelerates in order to wait for the other arm, and it stays within the profile's
-// bounds.
+// Brakes one arm during a stop along the common profile. While the other arm lags behind, the arm
+// brakes less than this profile. The arm never accelerates in order to wait for the other arm, and
+// it stays within the profile's bounds.
 class ArmBrake {
  public:
   ArmBrake() = default;

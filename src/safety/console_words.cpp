@@ -24,7 +24,7 @@ bool Asks(const TickRecord& record, RunEvent event) {
   return (record.requests >> static_cast<int>(event) & 1U) != 0;
 }
 
-// Returns "left handle 12.0 N, 0.10 N·m; right ...", for example.
+// Returns a text such as "left handle 12.0 N, 0.10 N·m; right ...".
 std::string Loads(const TickRecord& record) {
   std::string text;
   for (std::size_t i = 0; i < kHands; ++i) {
@@ -36,7 +36,8 @@ std::string Loads(const TickRecord& record) {
   return text;
 }
 
-// Returns the present fault if it is known, otherwise the cause of the stop, after a space.
+// Returns a space and the present fault if it is known, or otherwise a space and the cause of the
+// stop.
 std::string PresentCause(const TickRecord& record, const std::string& trouble) {
   std::string now = trouble;
   for (const StatusRecord& status : {record.read, record.written})
@@ -65,9 +66,10 @@ std::vector<std::string> ConsoleWords::See(const TickRecord& record,
   return std::exchange(lines_, {});
 }
 
-// A fault of an arm after a stop changes neither the state nor the cause of the stop, but it
+// After a stop, a fault of an arm changes neither the state nor the cause of the stop, but it
 // changes what the operator can do. The messages at the beginning of HELD and UNPOWERED report a
-// fault that already exists. In any other state, such a fault causes a stop.
+// fault that already exists. In any state other than HELD and UNPOWERED, such a fault causes a
+// stop.
 void ConsoleWords::AddFaults(const TickRecord& record,
                              const std::function<std::string()>& trouble) {
   if (record.state != RunState::kStopping && record.state != RunState::kHeld &&
@@ -81,7 +83,8 @@ void ConsoleWords::AddFaults(const TickRecord& record,
   }
 }
 
-// A key that is held down repeats its request. One message is shown until the key is released.
+// While the operator holds a key down, the key repeats its request. Only one message is shown until
+// the operator releases the key.
 bool ConsoleWords::Again(RunEvent event, std::uint64_t tick) {
   std::uint64_t& reported = reported_[static_cast<std::size_t>(event)];
   const bool again = reported != 0 && tick - reported < again_;
@@ -107,7 +110,8 @@ void ConsoleWords::AddRefusal(const TickRecord& record,
   lines_.push_back(text);
 }
 
-// The state does not allow the request. While the arms follow a task, the request stops them.
+// Adds the message that the state does not allow the request. While the arms follow a task, such a
+// request stops the arms.
 void ConsoleWords::AddWrongTime(const TickRecord& record) {
   const bool begins = record.state == RunState::kStopping && state_ != RunState::kStopping;
   const bool stops = begins && FollowsTask(state_);
@@ -146,7 +150,7 @@ std::string ConsoleWords::Possible(const TickRecord& record) const {
   return fault ? text + " " + Message("console.arm_fault_free") : text;
 }
 
-// The message states first the danger, then the cause, the advice and the keys.
+// The message states the danger first, and then the cause, the advice and the keys.
 void ConsoleWords::AddState(const TickRecord& record, const std::function<std::string()>& trouble) {
   const MessageValue state{"state", Name(record.state)};
   if (record.state == RunState::kSelfTest || record.state == RunState::kIdle ||

@@ -15,7 +15,7 @@ namespace predictor {
 
 class ConsoleWords {
  public:
-  // A request made by a key, and the states that show that the request was granted.
+  // The request that a key makes, and the states that show that the request was granted.
   struct Request {
     RunEvent event;
     char key;
@@ -28,9 +28,9 @@ class ConsoleWords {
   ConsoleWords(bool enabling_device, double rate)
       : enabling_device_(enabling_device), again_(static_cast<std::uint64_t>(0.6 * rate)) {}
 
-  // Call this once per record, in order. Returns lines to print (usually none). `trouble` returns
-  // the devices' own description of their present fault, or "" if there is none. `trouble` is
-  // called only if the description is printed.
+  // Call this once per record, in order. Returns the lines to print (usually none). `trouble`
+  // returns the devices' own description of their present fault, or "" if there is none. The
+  // function calls `trouble` only if it prints the description.
   std::vector<std::string> See(const TickRecord& record,
                                const std::function<std::string()>& trouble);
 

@@ -9,7 +9,7 @@ namespace predictor {
 double BrakingSpeed(double distance, double acceleration, double reaction, double dt) noexcept {
   if (!(distance > 0)) return 0;
   // Solves v dt + v²/2a = distance. After a tick at the speed v, the remaining distance is at least
-  // v²/2a, and the speed bound for the remaining distance is at least v − a dt. Braking along the
+  // v²/2a, and the speed bound for the remaining distance is at least v − a dt. Braking along this
   // bound therefore never needs more than `acceleration`.
   const double step = acceleration * dt;
   const double v = std::sqrt(step * step + 2 * acceleration * distance) - step;
@@ -18,8 +18,8 @@ double BrakingSpeed(double distance, double acceleration, double reaction, doubl
 
 double ReactionTime(const VelocityLoopSpec& loop) noexcept {
   const double w = 2 * std::numbers::pi * loop.bandwidth, zeta = loop.damping_ratio;
-  // Cumulants of 1/(1 + 2ζ s/w + s²/w²). The second cumulant is negative if the loop overshoots
-  // strongly.
+  // Computes the cumulants of 1/(1 + 2ζ s/w + s²/w²). The second cumulant is negative if the loop
+  // overshoots strongly.
   const double mean = loop.delay + 2 * zeta / w;
   const double variance = std::max(0.0, (4 * zeta * zeta - 2) / (w * w));
   return std::sqrt(mean * mean + variance);
@@ -70,7 +70,8 @@ double Guard::Bound(int arm, int joint, double q, double v, int ticks) const noe
   const double a = bounds.acceleration[joint];
   const double slower = std::min(ticks * a * dt_, std::max(a * dt_, std::abs(last)));
   v = std::clamp(v, last - (last > 0 ? slower : a * dt_), last + (last < 0 ? slower : a * dt_));
-  // If a position is unknown, only the velocity bound applies. The command then brakes in any case.
+  // If a position is unknown, only the velocity bound applies. In this case, the command brakes
+  // because of the velocity bound.
   const double cap = bounds.velocity[joint];
   if (!std::isfinite(q)) return std::clamp(v, -cap, cap);
   const double up = std::min(cap, BrakingSpeed(bounds.upper[joint] - q, a, reaction_, dt_));

@@ -10,7 +10,8 @@ bool IsFinite(const FrameMotion& motion) {
   return predictor::IsFinite(motion.X_W) && motion.V_W.allFinite();
 }
 
-// Among the hands' values of one quantity, keeps the one that exceeds its limit most.
+// Compares the values of one quantity of all hands, and keeps the value that exceeds its limit
+// most.
 class Worst {
  public:
   Worst(StopCause cause, double limit) : Worst(cause, limit, UsualQuantity(cause)) {}
@@ -36,7 +37,7 @@ Status NotFinite(StopCause cause, int hand) {
   return {cause, static_cast<std::int8_t>(hand), 0, 0, Quantity::kNone};
 }
 
-// The age may be infinite.
+// `age` may be infinite.
 Status Silence(std::size_t hand, double age, double longest, Quantity whose) {
   const auto side = static_cast<std::int8_t>(hand);
   if (!std::isfinite(age)) return {StopCause::kStale, side, 0, 0, Quantity::kNone, true};
@@ -108,8 +109,8 @@ Status Monitor::Check(const MonitorInput& input) noexcept {
 }
 
 // Returns the first fault that requires power-off (S1). The most severe fault determines how a stop
-// ends, even if another fault is reported. If no task is being followed, this fault is the reported
-// one.
+// ends, even if another fault is reported. If the arms do not follow a task, this fault is the
+// reported fault.
 Status Monitor::PowerOffFault(const MonitorInput& input, const Status& jump) const noexcept {
   if (jump.power_off) return jump;
   for (const Status* stage : {&input.device, &input.sensing, &input.simulation, &input.haptics})
@@ -142,9 +143,9 @@ void Monitor::FollowSensors(const MonitorInput& input) noexcept {
   }
 }
 
-// A hand that RECOVERY frees may be loaded beyond the usual thresholds. These thresholds must not
-// prevent the motion that frees the hand. Any load above the smallest load since RECOVERY began is
-// caused by the motion.
+// In RECOVERY, the hand that is being freed may be loaded beyond the usual thresholds. The usual
+// thresholds must not prevent the motion that frees the hand. Any load above the smallest load
+// since RECOVERY began is caused by the motion.
 void Monitor::FollowRecovery(const MonitorInput& input) noexcept {
   for (int hand = 0; hand < kHands; ++hand) {
     Load& least = least_[hand];
@@ -156,8 +157,8 @@ void Monitor::FollowRecovery(const MonitorInput& input) noexcept {
   }
 }
 
-// Divides by the time between two different samples, not between ticks, because a repeated sample
-// shows no motion.
+// The function divides by the time between two different samples and not by that between ticks,
+// because a repeated sample shows no motion.
 Status Monitor::FollowJoints(const MonitorInput& input) noexcept {
   Status worst;
   if (!input.sample) return worst;
@@ -239,7 +240,7 @@ Status Monitor::FollowRunaway(const MonitorInput& input) noexcept {
 
 Status Monitor::CheckStages(const MonitorInput& input) const noexcept {
   for (const Status* stage : {&input.device, &input.sensing, &input.simulation, &input.haptics}) {
-    // A relative slack is a tracking fault, which counts only in RUN.
+    // A slack of the relative pose is a tracking fault, which counts only in RUN.
     if (stage->cause == StopCause::kTracking && !input.running) continue;
     if (!stage->ok()) return *stage;
   }
@@ -283,7 +284,7 @@ Status Monitor::CheckWrenches(const MonitorInput& input) const noexcept {
   return force.status().ok() ? torque.status() : force.status();
 }
 
-// Reports the sample that exceeds its age limit most.
+// Reports the sample whose age exceeds its limit most.
 Status Monitor::CheckAge(const MonitorInput& input) const noexcept {
   Status worst;
   for (const int hand : input.present) {
@@ -292,7 +293,7 @@ Status Monitor::CheckAge(const MonitorInput& input) const noexcept {
     const double periods[] = {periods_[hand].arm, periods_[hand].sensor};
     const Quantity whose[] = {Quantity::kArmAge, Quantity::kSensorAge};
     for (std::size_t i = 0; i < 2; ++i) {
-      // Silence is a fault regardless of the age that the scenario allows.
+      // Silence is a fault, whatever age the scenario allows.
       const double limit =
           std::min(std::max(safety_.max_age, kMaxPeriods * periods[i]), SilenceOf(periods[i]));
       if (ages[i] <= limit) continue;

@@ -22,7 +22,7 @@ struct MonitorInput {
   std::array<HandWrench, kHands> wrench;           // absent hands are not checked
   std::array<FrameMotion, kHands> real, virtual_;  // handles H and D
   const WorldState* world = nullptr;
-  // This pointer is null in direct mode and in ticks in which the renderer did not run.
+  // `render` is null in direct mode and in ticks in which the renderer did not run.
   const RenderResult* render = nullptr;
   std::array<JointVector, kHands> lower, upper;  // joint limits of the arms [rad]
   std::array<JointVector, kHands> velocity;      // maximum that may be commanded [rad/s]
@@ -40,7 +40,7 @@ struct SamplePeriods {
 };
 
 // Most checks use only the present tick. The checks for frozen readings, jumps, oscillation,
-// vibration and runaway also use past ticks. The supervisor then latches the fault.
+// vibration and runaway also use past ticks. The supervisor latches the reported fault.
 //
 // Of several faults in one tick, the first of these is reported:
 //   1. faults of the stages, in the order device, sensing, simulation, haptics: each invalidates
@@ -54,34 +54,36 @@ struct SamplePeriods {
 //   7. tracking, coupling, oscillation or vibration, runaway: the emulation no longer behaves as
 //      intended (RUN only);
 //   8. deadline: missed ticks that have had no other effect so far.
-// Some faults mean that an arm or sensor can no longer be trusted to hold: silence, saturation, a
-// jump, or a stage that requests power-off. A stop with such a fault ends without power, even if
-// another fault is reported. If both hands exceed their limits, the hand that exceeds its limit
-// more is reported. NaN is treated as exceeding every threshold. In this case, value and limit in
-// the status are zero.
+// Some faults mean that an arm or sensor is no longer reliable enough to hold the arm: silence,
+// saturation, a jump, or a stage that requests power-off. A stop with such a fault ends without
+// power, even if another fault is reported. If both hands exceed their limits, the hand that
+// exceeds its limit more is reported. A value that is NaN is treated as exceeding every threshold.
+// For NaN, the value and the limit in the status are zero.
 class Monitor {
  public:
   // The run stops if two links are closer than the security distance by more than this margin [m].
-  // Rendering itself keeps the security distance. The margin covers the encoders' resolution (1e-5
-  // rad for each of up to seven joints at up to 1 m: 0.07 mm) and the arms' lag behind the command.
+  // Rendering itself keeps the security distance. The margin covers the arms' lag behind the
+  // command and the encoders' resolution. The resolution of 1e-5 rad for each of up to seven
+  // joints, at up to 1 m, amounts to 0.07 mm.
   static constexpr double kLinkDistanceMargin = 0.001;
-  // The run stops if a joint exceeds its limit by this margin [rad]. The margin is a hundred
-  // encoder quanta, and a twentieth of the distance that rendering keeps.
+  // The run stops if a joint exceeds its limit by this margin [rad]. The margin is a hundred times
+  // the encoders' resolution, and a twentieth of the distance that rendering keeps from the limit.
   static constexpr double kJointMargin = 0.001;
-  // The run stops after this number of consecutive missed deadlines, or if this share of the
-  // deadlines of one second is missed.
+  // The run stops after kMissedDeadlines consecutive missed deadlines. The run also stops if the
+  // share kMissedShare of the deadlines of one second is missed.
   static constexpr int kMissedDeadlines = 3;
   static constexpr double kMissedShare = 0.01;
   // An arm or sensor without a sample for this time is treated as silent and not only as late [s].
   static constexpr double kSilence = 0.020;
-  // A joint has jumped if it moved between two samples by more than this factor times the largest
+  // A joint has jumped if its motion between two samples exceeds this factor times the largest
   // commanded motion, plus this tolerance for the encoder [rad].
   static constexpr double kJumpFactor = 2.5, kJumpSlack = 0.002;
-  // In RECOVERY, a hand's force may reach safety.force, or its smallest force since RECOVERY began
-  // plus this share of safety.force, whichever is higher. The same applies to the torque.
+  // In RECOVERY, the limit of a hand's force is safety.force or the hand's smallest force since
+  // RECOVERY began plus this share of safety.force, whichever is higher. The limit of the torque is
+  // computed in the same way.
   static constexpr double kRecoveryRise = 1.0 / 3;
-  // A sample is stale if its age exceeds this many periods of its device and also safety.max_age.
-  // Losing one sample is acceptable, losing two is not.
+  // A sample is stale if its age exceeds both safety.max_age and this number of periods of its
+  // device. A device may lose one sample, but not two consecutive samples.
   static constexpr double kMaxPeriods = 2.5;
 
   // `dt` is the duration of a tick [s]. `detects_runaway` states whether a sensor may be mounted or
@@ -93,7 +95,7 @@ class Monitor {
   // Returns the first fault of this tick in the order above, or ok if there is none. Does not use
   // the heap or throw.
   Status Check(const MonitorInput& input) noexcept;
-  // Returns whether joints jumped in the last Check, regardless of the fault that it returned.
+  // Returns whether joints jumped in the last Check, regardless of the fault that Check returned.
   bool jumped() const noexcept { return jumped_; }
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept {
@@ -114,7 +116,7 @@ class Monitor {
     void Archive(StateArchive& a) noexcept { a(reading, sequence, same); }
   };
 
-  // Joints of an arm at its last sample.
+  // The joints of an arm at the arm's last sample.
   struct JointPast {
     std::array<double, kMaxArmJoints> q{};
     std::uint64_t sequence = 0;

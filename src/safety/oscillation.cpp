@@ -7,7 +7,8 @@
 namespace predictor {
 
 void OscillationDetector::Section::Step(double x, double* high, double* low) noexcept {
-  // Zavalishin, The Art of VA Filter Design (2018), section 4: trapezoidal integrators, no delay.
+  // The filter uses trapezoidal integrators without a delay (Zavalishin, The Art of VA Filter
+  // Design (2018), section 4).
   const double k = std::numbers::sqrt2;  // 1/Q of Butterworth
   *high = (x - (k + g) * s1 - s2) / (1 + g * (k + g));
   const double band = g * *high + s1;
@@ -61,9 +62,9 @@ double OscillationDetector::UpdateAxis(double force, Axis* axis) const noexcept 
   return found;
 }
 
-// Returns whether y has passed −h. This completes the peak that began when y passed +h. The peak
-// lies in the middle of the time above +h. By symmetry, half of the sums over the time above +h
-// belong to the cycle that ends at the peak.
+// Returns whether y has passed −h. The crossing of −h completes the peak that began when y passed
+// +h. The peak is in the middle of the time for which y is above +h. By symmetry, half of the sums
+// over the time above +h belong to the cycle that ends at the peak.
 bool OscillationDetector::FindPeak(double y, Axis* axis) const noexcept {
   if (y > hysteresis_) {
     if (!axis->above) axis->at_rise = axis->now;
@@ -73,8 +74,8 @@ bool OscillationDetector::FindPeak(double y, Axis* axis) const noexcept {
   }
   if (!axis->above || y >= -hysteresis_) return false;
   axis->above = false;
-  // A half cycle that is longer than that of the slowest oscillation ends the previous oscillation,
-  // so earlier cycles do not count towards an oscillation that begins now.
+  // A half cycle that is longer than that of the slowest oscillation ends the previous oscillation.
+  // Earlier cycles then do not belong to an oscillation that begins later.
   if ((axis->now.samples - axis->at_fall.samples) * dt_ > 0.5 / spec_.low) {
     axis->now = {};
     axis->after_peak = false;

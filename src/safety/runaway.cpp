@@ -14,7 +14,8 @@ void RunawayDetector::Trend::Step(double x, double dt) noexcept {
   slow += (x - slow) * std::min(1.0, dt / kSlow);
 }
 
-// The two low-pass outputs of e^{λt} have the ratio (1 + λ kSlow) / (1 + λ kFast).
+// For the input e^{λt}, the outputs of the two low-pass filters have the ratio (1 + λ kSlow) / (1 +
+// λ kFast).
 bool RunawayDetector::Trend::GrowsFasterThan(double rate) const noexcept {
   return fast > slow * (1 + rate * kSlow) / (1 + rate * kFast);
 }

@@ -6,25 +6,25 @@
 
 namespace predictor {
 
-// A hand resists displacement like a spring: its force along the motion falls as the handle moves
-// with it. If a sensor reports a different direction from that of the push, the handle moves
+// A hand resists displacement like a spring, so its force along the motion falls as the handle
+// moves with it. If a sensor reports a different direction from that of the push, the handle moves
 // against the hand. The hand resists more, so the force grows with the motion that it causes, and
 // both grow as e^{λt} until a threshold stops the run. This detector reports a runaway under two
-// conditions. The force along the motion and the speed must have grown in this way for kGrowing.
-// For kTime of this period, they must have exceeded kForce and the share kSpeed of the handle's
-// cap.
+// conditions. The force along the motion and the speed must have grown as e^{λt} for kGrowing. For
+// kTime of this period, the force must have exceeded kForce, and the speed must have exceeded the
+// share kSpeed of the handle's cap.
 //
-// A person's own motion does not last that long: a sudden push grows faster than kMaxGrowth, and in
-// a large motion the force peaks before the handle reaches that speed. A runaway that grows faster
-// than kMaxGrowth soon reaches the force thresholds, whatever the orientation of the sensor. If the
-// other hand or the virtual cobot prevents a mirrored sensor from causing a runaway, only the push
-// test finds it.
+// A person's own motion does not meet these conditions. A sudden push grows faster than kMaxGrowth,
+// and in a large motion the force peaks before the handle reaches that speed. A runaway that grows
+// faster than kMaxGrowth soon reaches the force thresholds, whatever the orientation of the sensor.
+// If the other hand or the virtual cobot prevents a mirrored sensor from causing a runaway, only
+// the push test finds it.
 class RunawayDetector {
  public:
   static constexpr double kMinGrowth = 3, kMaxGrowth = 10;  // λ [1/s]
   static constexpr double kMinForce = 1.5,
                           kForce = 6;  // thresholds for growing and for counting [N]
-  // The same thresholds as shares of the handle's cap.
+  // The thresholds of the speed for growing and for counting, as shares of the handle's cap.
   static constexpr double kMinSpeed = 0.1, kSpeed = 0.4;
   static constexpr double kAtCap = 0.95;  // share of the cap above which the speed need not grow
   static constexpr double kGrowing = 0.180, kTime = 0.080;  // [s]
@@ -45,7 +45,7 @@ class RunawayDetector {
   void Archive(StateArchive& a) noexcept { a(force_, speed_, growing_, time_); }
 
  private:
-  // Two low-pass filters of one signal. The lead of the faster filter shows how fast the signal
+  // The two low-pass filters of one signal. The lead of the faster filter shows how fast the signal
   // grows.
   struct Trend {
     double fast = 0, slow = 0;

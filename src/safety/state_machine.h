@@ -9,8 +9,8 @@
 
 namespace predictor {
 
-// The events of a run, and who may cause them. The receiver of a request checks that the sender may
-// make it, while the table only contains the next state.
+// The events of a run, and who may cause them. The receiver of a request checks whether the sender
+// may make the request. The table only contains the next state.
 enum class RunEvent : std::uint8_t {
   kStarted,           // program: process up, device answers
   kSelfTestPassed,    // program: sensors tared, samples fresh
@@ -26,20 +26,21 @@ enum class RunEvent : std::uint8_t {
 };
 inline constexpr int kRunEvents = 11;
 
-// Returns "started", "self-test passed", ... as in docs/concepts/states.md.
+// Returns a name such as "started" or "self-test passed", as in docs/concepts/states.md.
 const char* Name(RunEvent event);
 
-// Severity of the present or completed stop. The levels are ordered, and the most severe one wins.
+// The severity of the present or completed stop. The levels are ordered, and the most severe level
+// takes precedence.
 enum class StopLevel : std::uint8_t { kNone, kHold, kPowerOff };
 
-// A state, and for a stop the way in which it must end.
+// A state and, for a stop, the way in which the stop must end.
 struct RunCondition {
   RunState state = RunState::kInit;
   StopLevel level = StopLevel::kNone;
   bool operator==(const RunCondition&) const = default;
 };
 
-// Returns "RUN", "STOPPING", "STOPPING (power off)", ...
+// Returns a name such as "RUN", "STOPPING" or "STOPPING (power off)".
 const char* Name(RunCondition condition);
 
 struct Transition {
@@ -49,7 +50,7 @@ struct Transition {
 };
 
 // The conditions of a run. STOPPING occurs twice, once for each state in which it can end. RECOVERY
-// occurs twice, too, because after a stop it leads back to HELD.
+// also occurs twice, because after a stop it leads back to HELD.
 inline constexpr std::array<RunCondition, kRunStates + 2> kRunConditions = {{
     {RunState::kInit, StopLevel::kNone},
     {RunState::kSelfTest, StopLevel::kNone},
@@ -74,9 +75,9 @@ inline constexpr RunCondition kInit = kRunConditions[0], kSelfTest = kRunConditi
                               kHeld = kRunConditions[10], kUnpowered = kRunConditions[11];
 }  // namespace internal
 
-// The table; Next decides the transitions that it does not contain. Before the self-test has
-// passed, and after the power was off, IDLE can be reached only by the self-test. A stop in INIT or
-// SELFTEST therefore ends without power.
+// This table contains the permitted transitions. Next decides the transitions that the table does
+// not contain. Before the self-test has passed, and after the power was off, IDLE can be reached
+// only by the self-test. A stop in INIT or SELFTEST therefore ends without power.
 inline constexpr std::array kTransitions = {
     Transition{internal::kInit, RunEvent::kStarted, internal::kSelfTest},
     Transition{internal::kInit, RunEvent::kStopRequested, internal::kStoppingPowerOff},
@@ -109,7 +110,8 @@ inline constexpr std::array kTransitions = {
     Transition{internal::kRecovery, RunEvent::kStopRequested, internal::kStopping},
     Transition{internal::kRecovery, RunEvent::kStopAndPowerOff, internal::kStoppingPowerOff},
 
-    // RECOVERY after a stop that leaves a hand loaded, before its cause can be reset.
+    // After a stop that leaves a hand loaded, RECOVERY frees the hand before the cause of the stop
+    // can be reset.
     Transition{internal::kRecoveryHeld, RunEvent::kRecovered, internal::kHeld},
     Transition{internal::kRecoveryHeld, RunEvent::kRecoverRequested, internal::kRecoveryHeld},
     Transition{internal::kRecoveryHeld, RunEvent::kStopRequested, internal::kStopping},
@@ -126,8 +128,9 @@ inline constexpr std::array kTransitions = {
 };
 
 // Returns the next condition. If the table does not contain the event, the program has lost track
-// of the state of the run. While the arms follow a task, such an event stops them and requests
-// power-off. In any other state, such an event changes nothing.
+// of the state of the run. If an event that the table does not contain occurs while the arms follow
+// a task, the event stops them and requests power-off. In any other state, an event that the table
+// does not contain changes nothing.
 constexpr RunCondition Next(RunCondition from, RunEvent event) noexcept {
   for (const Transition& t : kTransitions) {
     if (t.from == from && t.event == event) return t.to;
@@ -138,7 +141,8 @@ constexpr RunCondition Next(RunCondition from, RunEvent event) noexcept {
 class StateMachine {
  public:
   RunState state() const noexcept { return condition_.state; }
-  // Returns the level of the present or completed stop, and otherwise kNone. Only kReset lowers it.
+  // Returns the level of the present or completed stop, or kNone without a stop. Only kReset lowers
+  // it.
   StopLevel level() const noexcept { return condition_.level; }
   // Applies Next. Returns whether state or level changed.
   bool Handle(RunEvent event) noexcept {
@@ -146,7 +150,7 @@ class StateMachine {
     condition_ = Next(before, event);
     return condition_ != before;
   }
-  // Returns whether simulated time advances, which it does in RUN only.
+  // Returns whether simulated time advances. Simulated time advances only in RUN.
   static constexpr bool TimePasses(RunState state) noexcept { return state == RunState::kRun; }
   template <class A>
   void Archive(A& a) noexcept {

@@ -9,14 +9,14 @@
 namespace predictor {
 namespace {
 
-// Gains with which an arm follows the other arm's lead in speed [-] and in distance [1/s]. After
-// division by the arm's own lag, these gains are half of those at which the loop through arm and
-// measurement would oscillate. The maximum gains apply to an arm that is represented by its
+// The gains with which an arm follows the other arm's lead in speed [-] and in distance [1/s].
+// After division by the arm's own lag, these gains are half of the gains at which the loop through
+// arm and measurement would oscillate. The maximum gains apply to an arm that is represented by its
 // commands.
 constexpr double kSpeedLag = 0.045, kDistanceLag = 0.45, kMaxSpeedGain = 6, kMaxDistanceGain = 60;
 // Differences below this share of the initial speed are treated as noise.
 constexpr double kThreshold = 0.05;
-// Below this initial speed, neither arm waits [m/s].
+// If the initial speed is below this value, neither arm waits for the other [m/s].
 constexpr double kMinSpeed = 0.01;
 
 double Product(const Twist& a, const Twist& b) noexcept {
@@ -91,7 +91,7 @@ void StopController::Begin(const Status& cause, double time,
       handle_twists && (*handle_twists)[0].allFinite() && (*handle_twists)[1].allFinite();
   if (twists_known_) twist_ = begun_ = *handle_twists;
   double speed = std::isfinite(handle_speed) ? handle_speed : safety_.handle_speed;
-  // Joints may move while the handles stand still. If the handles stand still, only the joints'
+  // The joints may move while the handles stand still. If the handles stand still, only the joints'
   // bounds matter. The allowance expresses these bounds in proportion to any nonzero speed.
   speed = moving ? std::max(speed, 1e-6) : 0;
   // If one joint were clipped at its velocity bound while the others accelerated, its handle would
@@ -122,12 +122,13 @@ std::array<double, kHands> StopController::Behind(const StopGeometry& geometry,
   }
   for (std::size_t arm = 0; arm < kHands; ++arm) {
     const std::size_t other = 1 - arm;
-    // An arm that is represented by its commands has no lag in this comparison.
+    // In this comparison, an arm that is represented by its commands has no lag.
     const double lag = std::max(MakesUp(arm) ? 0.0 : lags_[arm], 1e-3);
     const double share =
         std::min(kMaxSpeedGain, kSpeedLag / lag) * (speed[other] - speed[arm]) +
         std::min(kMaxDistanceGain, kDistanceLag / lag) * (gone_[other] - gone_[arm]) - kThreshold;
-    // Braking later because the other arm overruns more is not regarded as following.
+    // An arm that brakes later because the other arm overruns more is not regarded as following the
+    // other arm.
     const double max = kMaxFollowing + std::max(0.0, overruns_[other] - overruns_[arm]);
     const double braking =
         (brakes_[arm].RemainingDistance() - profile_left_) / std::max(1e-9, profile_.speed());
@@ -189,9 +190,9 @@ JointVector JointsFor(const Twist& V, const Jacobian& J) noexcept {
 
 }  // namespace
 
-// Twists of the handles due to the last command. The twist of the right handle is split into two
-// parts. The part that moves with the left handle as one rigid body follows that body. The rest of
-// the right twist, which tracking added, keeps its direction.
+// The twists of the handles due to the last command. The twist of the right handle is split into
+// two parts. The part that moves with the left handle as one rigid body follows that body. The rest
+// of the right handle's twist, which tracking added, keeps its direction.
 void StopController::BeginTwists(const StopGeometry& geometry) noexcept {
   for (std::size_t arm = 0; arm < kHands && !twists_known_; ++arm)
     twist_[arm] = begun_[arm] = TwistOf(geometry.J[arm], command_[arm]);
@@ -235,13 +236,13 @@ void StopController::Observe(const std::array<Pose, kHands>& X_WH, bool in_motio
   report_.duration = ++ticks_ * dt_;
   const bool moved = rest_.Update(X_WH, in_motion);
   // After its last command, an arm may be moved back a little. The arm counts as at rest only after
-  // this motion.
+  // this last motion.
   still_ticks_ = moved || !commands_rest() ? 0 : still_ticks_ + 1;
   if (!commands_rest()) return;
   const bool rests = still_ticks_ * dt_ >= kRestTime;
   done_ = rests || ++rest_ticks_ * dt_ >= kPatience;
   timed_out_ = !rests;
-  // The time of rest is the time of the handles' last motion.
+  // The time at which the arms rest is the time of the handles' last motion.
   if (rests) report_.duration = (ticks_ - still_ticks_) * dt_;
 }
 

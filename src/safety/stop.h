@@ -30,21 +30,22 @@ struct StopGeometry {
   std::array<Twist, kHands> V_W = {Twist::Zero(), Twist::Zero()};
 };
 
-// Carries out one stop, from the decision to rest. In each tick, beginning with that of the
-// decision, call Next to get the command, and Observe with the poses of the handles.
+// Carries out one stop, from the decision to rest. Call Next for the command and Observe with the
+// poses of the handles in each tick, beginning with the tick of the decision.
 //
 // The faster arm waits for the slower one. The arm with the smaller overrun begins to brake later,
-// by the difference. If one handle has moved less than the other one, each relative to its speed
-// when the stop began, the arm of this handle brakes less until both have moved equally far again.
-// An arm that follows a position compensates for its lag, so it is represented by its commands.
-// kMaxFollowing bounds the additional distance that an arm may travel for this.
+// by the difference between the overruns. The program compares the distances that the handles have
+// moved, each relative to the handle's speed when the stop began. The arm of the handle with the
+// smaller distance brakes less until both distances are equal again. An arm that follows a position
+// compensates for its lag, so the comparison uses the arm's commands. kMaxFollowing bounds the
+// additional distance that an arm may travel because it follows the other arm.
 class StopController {
  public:
   // `bounds` are joint bounds, which a stop respects as well. If the handles' deceleration would
   // need more than a joint's acceleration, both arms brake more gently and do not separate. `lags`
   // are the times by which the arms lag behind their commands [s]. `overruns` are the distances
   // that the arms travel after their commands reach zero, divided by their speeds before [s]. If
-  // omitted, the overruns are equal to the lags.
+  // the overruns are omitted, they are equal to the lags.
   StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
                  const std::array<double, kHands>& lags = {});
   StopController(const SafetySpec& safety, const std::array<JointBounds, kHands>& bounds, double dt,
@@ -56,27 +57,28 @@ class StopController {
   // decision [s]. `last_command` is the last command that was sent [rad/s]. `handle_speed` [m/s]
   // and `handle_rate` [m/s²] are the speed of the faster handle and its derivative, as for
   // StopProfile::Begin. A speed that is not finite is replaced by the cap. `handle_twists` are the
-  // twists of the handles due to the last command. If omitted, the twists are computed from the
-  // first geometry. Does not use the heap or throw.
+  // twists of the handles due to the last command. If the twists are omitted, they are computed
+  // from the first geometry. Does not use the heap or throw.
   void Begin(const Status& cause, double time, const std::array<JointVector, kHands>& last_command,
              double handle_speed, double handle_rate,
              const std::array<Twist, kHands>* handle_twists = nullptr) noexcept;
-  // Computes the next command: the last command before the stop, scaled, or zero once the profile
-  // is done. `ticks` is the number of ticks since the last command, which is more than 1 after
-  // missed deadlines, since a stop follows elapsed time. Keeps the corrections made for earlier
-  // geometries. Does not use the heap or throw.
+  // Computes the next command. This command is the last command before the stop, scaled by the
+  // profile's factor, or zero once the profile has ended. `ticks` is the number of ticks since the
+  // last command. After missed deadlines, it is more than 1, because a stop follows elapsed time.
+  // The function keeps the corrections that were made for earlier geometries. Does not use the heap
+  // or throw.
   void Next(std::array<JointVector, kHands>* v, int ticks = 1) noexcept;
   // Computes the next command, corrected for the change of the arms' geometry. The twists of the
   // handles are scaled like the twists of two points of one rigid body, so that the handles keep
   // their relative pose. The correction is bounded and small, because it is of second order in the
-  // distance that has been covered.
+  // distance that the arms have covered.
   void Next(const StopGeometry& geometry, std::array<JointVector, kHands>* v,
             int ticks = 1) noexcept;
   // `X_WH` are the poses of the handles in W, which are constant for absent handles. `in_motion`
   // states whether a driver still moves its arm. The handles are at rest once the commands are zero
   // and no handle has moved (RestDetector) for kRestTime. The stop ends when the handles are at
-  // rest, or at the latest kPatience after the commands became zero. An arm that still moves then
-  // does not follow its commands.
+  // rest, or at the latest kPatience after the commands became zero. An arm that still moves at
+  // this time does not follow its commands.
   void Observe(const std::array<Pose, kHands>& X_WH, bool in_motion = false) noexcept;
   void Reset() noexcept;
 
@@ -98,9 +100,10 @@ class StopController {
   // The share of the joints' acceleration that scaling uses. The rest of the acceleration is
   // reserved for the correction.
   static constexpr double kShareOfJoints = 0.75;
-  // The first constant is the largest extra distance that an arm travels compared with stopping
-  // alone. It is divided by the speed at which the stop began [s] (7.5 mm at 0.25 m/s). The second
-  // constant is the time for which an arm follows the other arm after the profile has ended [s].
+  // The first constant limits the extra distance that an arm travels compared with a stop of this
+  // arm alone. This distance is divided by the speed at which the stop began [s] (7.5 mm at 0.25
+  // m/s). The second constant is the time for which an arm follows the other arm after the profile
+  // has ended [s].
   static constexpr double kMaxFollowing = 0.030, kMaxFollowingTime = 0.100;
 
  private:
@@ -109,7 +112,8 @@ class StopController {
   void BeginTwists(const StopGeometry& geometry) noexcept;
   std::array<double, kHands> Behind(const StopGeometry& geometry, int ticks) noexcept;
   std::array<double, kHands> NextFactors(const StopGeometry* geometry, int ticks) noexcept;
-  // Returns whether the arm follows a position. The overrun of such an arm is shorter than its lag.
+  // Returns whether the arm follows a position. The overrun of an arm that follows a position is
+  // shorter than its lag.
   bool MakesUp(std::size_t arm) const noexcept { return overruns_[arm] < lags_[arm]; }
 
   SafetySpec safety_;
@@ -125,14 +129,14 @@ class StopController {
   double profile_left_ = 0;                    // distance that remains [m]
   std::array<JointVector, kHands> command_;    // last sent before the stop [rad/s]
   std::array<JointVector, kHands> corrected_;  // the last command, corrected for the geometry
-  // Twists of the handles due to that command.
+  // The twists of the handles due to the last command.
   std::array<Twist, kHands> begun_ = {Twist::Zero(), Twist::Zero()};
   std::array<Twist, kHands> twist_ = begun_;  // the twists of the last command, split
   bool twists_known_ = false;
   bool twists_split_ = false;  // the right twist is relative to its rigid-body share
 
-  // The values with which an arm waits for the other one. Distances are times at the handle's
-  // initial speed [s].
+  // The quantities from which the program computes how an arm waits for the other arm. A distance
+  // is given as the time in which the handle travels this distance at its initial speed [s].
   std::array<double, kHands> gone_ = {};      // distance of each handle
   std::array<double, kHands> followed_ = {};  // distance of each command beyond the profile's
   double after_ = 0;                          // time since the end of the profile [s]

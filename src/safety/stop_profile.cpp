@@ -12,14 +12,14 @@ void StopProfile::Begin(double speed, double rate) noexcept {
   tick_ = 0;
   speed_ = std::isfinite(speed) ? std::max(0.0, speed) : 0;
   done_ = speed_ == 0;
-  // The amount by which the speed may still increase, and the deceleration from which the speed
+  // The speed may still increase by `gain`. If the deceleration were below `lowest`, the speed
   // would pass through zero.
   const double gain = std::max(0.0, std::min(cap_ - speed_, (kOvershoot - 1) * speed_));
   const double highest = std::min(acceleration_, std::sqrt(2 * jerk_ * gain));
   const double lowest = std::max(-acceleration_, -std::sqrt(2 * jerk_ * speed_));
   rate_ = std::isfinite(rate) ? std::clamp(rate, lowest, highest) : 0;
   // The deceleration increases to the peak with jerk −j, remains constant, and decreases to zero
-  // with jerk +j. Without the constant phase, the two ramps reduce the speed by (2 peak² −
+  // with jerk +j. If there is no constant phase, the two ramps reduce the speed by (2 peak² −
   // rate²)/2j.
   const double peak = std::sqrt(jerk_ * speed_ + rate_ * rate_ / 2);
   peak_ = std::min(acceleration_, peak);
@@ -47,7 +47,7 @@ double StopProfile::RateAt(double t) const noexcept {
 double StopProfile::Next() noexcept {
   if (done_) return 0;
   const double speed = SpeedAt(++tick_ * dt_);
-  // Without this, rounding could leave a residual speed of 1e-20 m/s.
+  // Without this condition, rounding could leave a residual speed of 1e-20 m/s.
   done_ = speed < 1e-12 * speed_ || tick_ * dt_ >= duration();
   return done_ ? 0 : speed / speed_;
 }

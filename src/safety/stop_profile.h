@@ -11,14 +11,14 @@ namespace predictor {
 // relative pose. The faster handle comes to rest in the shortest time that its bounds on
 // acceleration and jerk allow (closed form, sampled in each tick).
 //
-// The jerk bound does not allow an accelerating motion to brake at once. The factor first rises
-// above 1, by rate²/(2·jerk·speed). The factor never exceeds kOvershoot, and the speed never
-// exceeds the cap. A larger rate is cut at once, since the last command of a motion that has barely
-// begun does not show its direction reliably.
+// The jerk bound does not allow an accelerating motion to brake at once. Therefore, the factor
+// first rises above 1, by rate²/(2·jerk·speed). The factor never exceeds kOvershoot, and the speed
+// never exceeds the cap. A larger rate is reduced at once, because the last command of a motion
+// that has barely begun does not show the motion's direction reliably.
 //
 // A factor that is common to all joints scales the handles' twists equally as long as the Jacobians
-// do not change. Over the few centimetres of a stop, the Jacobians do change; StopController
-// corrects this.
+// do not change. During the few centimetres of a stop, the Jacobians do change. StopController
+// corrects the effect of this change.
 class StopProfile {
  public:
   static constexpr double kOvershoot = 1.25;  // largest factor
@@ -32,7 +32,7 @@ class StopProfile {
   // [m/s] is the speed of the faster handle, in which a rotation is multiplied by 0.2 m, and `rate`
   // [m/s²] is its derivative. If the speed is zero or not finite, the profile is at rest at once.
   void Begin(double speed, double rate) noexcept;
-  // Returns the factor for the next tick, in [0, kOvershoot], or 0 once at rest.
+  // Returns the factor for the next tick, in [0, kOvershoot]. At rest, the factor is 0.
   double Next() noexcept;
   // Returns the speed [m/s] and the rate [m/s²] of the curve at a time t [s] after Begin.
   double SpeedAt(double t) const noexcept;

@@ -17,7 +17,7 @@ constexpr std::array<double, 2> kButterworth = {1.847759065022573, 0.76536686473
 }  // namespace
 
 void VibrationDetector::Section::Step(const Vector3& x, Vector3* high, Vector3* low) noexcept {
-  // This is the same filter section as in the detector of growing oscillations (oscillation.cpp).
+  // The section is the same as in the detector of growing oscillations (oscillation.cpp).
   *high = (x - (k + g) * s1 - s2) / (1 + g * (k + g));
   const Vector3 band = g * *high + s1;
   *low = g * band + s2;
@@ -106,7 +106,7 @@ void VibrationDetector::Follow(double share, int lag, Across* across) const noex
 }
 
 double VibrationDetector::Across::Explained() const noexcept {
-  // The normal equations of two variables.
+  // Solves the normal equations of two variables.
   const double area = before * earlier - past * past;
   if (area < kMinAngle * before * earlier) return lag * lag / std::max(before, kMinPower);
   const double power = lag * lag * earlier - 2 * lag * longer * past + longer * longer * before;

@@ -9,7 +9,7 @@
 
 namespace predictor {
 
-// The input of the warnings. The supervisor writes it.
+// The input of the function that determines the warnings. The supervisor writes it.
 struct WarningInput {
   Hands present;
   const DeviceSample* sample = nullptr;
@@ -18,9 +18,9 @@ struct WarningInput {
 };
 
 // Lost packets and refused commands are counted over about one second. Drift is the slope of a
-// straight line that is fitted to the force over kDriftTime at rest. The residual must not exceed
-// the sensor's own noise, because the force of a hand is always noisier than that. A warning
-// remains until its value has fallen to half the limit.
+// straight line that is fitted to the force over kDriftTime at rest. The residual of the fit must
+// not exceed the sensor's own noise, because the force of a hand is always noisier than the sensor.
+// A warning remains until its value has fallen to half the limit.
 class Warnings {
  public:
   // During this initial time [s], nothing is counted, because packets that arrived before the
@@ -38,7 +38,7 @@ class Warnings {
 
   // Does not use the heap or throw.
   void Update(const WarningInput& input) noexcept;
-  // `bits` has one bit per Warning. The values are as in HandRecord.
+  // `bits` contains one bit for each Warning. The values have the same meaning as in HandRecord.
   std::uint8_t bits(std::size_t hand) const noexcept { return bits_[hand]; }
   const std::array<double, kWarningValues>& values(std::size_t hand) const noexcept {
     return values_[hand];
@@ -46,7 +46,8 @@ class Warnings {
   void Archive(StateArchive& a) noexcept { a(arm_, sensor_, lines_, bits_, values_); }
 
  private:
-  // The counts during about the last second. Older counts fade.
+  // The numbers of lost packets and refused commands during about the last second. Older counts
+  // fade.
   struct Link {
     LinkCounts last;
     double known = 0;  // time since the first count [s]
@@ -55,7 +56,7 @@ class Warnings {
     double share() const noexcept { return lost > kMinLosses ? lost / (taken + lost) : 0; }
     void Archive(StateArchive& a) noexcept { a(last, known, taken, lost, refused); }
   };
-  // Sums for fitting a straight line to each axis of a force.
+  // The sums from which a straight line is fitted to each axis of a force.
   struct Line {
     double n = 0, t = 0, tt = 0;
     Vector3 f = Vector3::Zero(), tf = Vector3::Zero(), ff = Vector3::Zero();

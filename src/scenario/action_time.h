@@ -7,7 +7,7 @@
 
 namespace predictor {
 
-// Returns the time that an action takes at an average pace [s], or 0 if it is unknown.
+// Returns the time that an action takes at an average pace [s], or 0 if this time is unknown.
 double ActionTime(const ActionSpec& spec);
 
 // The times of an action in a run, at an average pace [s].
@@ -16,8 +16,9 @@ struct ActionSpan {
 };
 std::vector<ActionSpan> SpansOf(const std::vector<ActionSpec>& script);
 
-// Returns the index in the script of the action in progress at `run_time` [s], or −1 if there is
-// none. This is the last action that has started. A person at the handles follows this action.
+// Returns the index in the script of the action in progress at `run_time` [s], or −1 if no action
+// is in progress. The action in progress is the last action that has started. A person at the
+// handles follows this action.
 int ActionAt(const std::vector<ActionSpan>& script, double run_time) noexcept;
 
 }  // namespace predictor

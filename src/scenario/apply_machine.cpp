@@ -14,7 +14,8 @@
 namespace predictor {
 namespace {
 
-// The numbers in a field table in the table's order, without the numbers in its groups.
+// The numbers in a field table, in the order of the table, without the numbers in the table's
+// groups.
 struct Numbers {
   struct Number {
     std::string key;
@@ -38,18 +39,20 @@ std::vector<Numbers::Number> NumbersOf(Spec spec) {
   return numbers.list;
 }
 
-// Returns the message that a scenario's value `key` is looser than the machine's limit.
+// Returns the message which states that the scenario's value `key` is looser than the machine's
+// limit.
 std::string LooserThan(const Numbers::Number& limit, const std::string& key, double value,
                        bool least, const std::filesystem::path& machine) {
   const std::string unit = limit.unit.empty() ? "" : " " + limit.unit;
   return key + " is " + FormatNumber(value) + unit + ", but this machine requires " +
          FormatNumber(limit.value) + unit + (least ? " at least" : " at most") + " (limits." +
          limit.key + " of " + machine.string() +
-         "). A scenario can tighten the machine's limits but not loosen them. Set " + key + " to " +
-         FormatNumber(limit.value) + ".";
+         "). A scenario can tighten the limits of the machine but not loosen them. Set " + key +
+         " to " + FormatNumber(limit.value) + ".";
 }
 
-// Each limit of a machine has the same name as a value in the scenario's safety or rendering group.
+// Throws InputError if a value of the scenario is looser than the machine's limit. Each limit has
+// the same name as a value in the scenario's safety or rendering group.
 void RefuseLooser(const Machine& machine, const Scenario& s) {
   static const std::set<std::string> kMinima = {"stop_acceleration", "stop_jerk",
                                                 "security_distance", "joint_security"};
@@ -71,7 +74,8 @@ void RefuseLooser(const Machine& machine, const Scenario& s) {
 }
 
 // The lateness of samples and of ticks is measured in ticks, and the watchdog trips only after
-// several late ticks. With longer ticks, a stop would start later than its budget allows.
+// several late ticks. If the ticks were longer, a stop would start later than its time budget
+// allows.
 void RequireRate(const Scenario& s) {
   constexpr double kRate = 1000;  // [Hz]
   if (s.rate != kRate)
@@ -81,7 +85,7 @@ void RequireRate(const Scenario& s) {
                " Hz, because slower ticks would delay a stop. Remove this key.");
 }
 
-// A large weight moves the handles away from their targets, and also moves the elbows, which no one
+// A large weight moves the handles away from their targets. It also moves the elbows, which no one
 // monitors.
 void RequireLittleManipulability(const Scenario& s) {
   constexpr double kMaxManipulability = 0.01;
@@ -106,7 +110,7 @@ void RequireOscillationDetector(const Scenario& s) {
     bool least;
   };
   // A filter band that starts much lower needs more time to settle after a change of the held
-  // force, and detects nothing meanwhile.
+  // force. In this time, the detector finds no oscillation.
   for (const Bound& b :
        {Bound{"low", has.low, all.low, false},
         {"low", has.low, all.low / 2, true},
@@ -120,8 +124,8 @@ void RequireOscillationDetector(const Scenario& s) {
                  ", so that oscillations are detected in time. Remove this key.");
 }
 
-// Stores the machine, so that errors of its arms are reported with their places in its file
-// (located.h).
+// Stores the machine, so that errors of the machine's arms are reported with their places in the
+// machine file (located.h).
 void RememberMachine(const Machine& machine, Scenario* scenario) {
   if (!scenario->tree || !machine.tree) return;
   YamlNode tree = *scenario->tree;
@@ -151,14 +155,14 @@ std::vector<std::string> LeftToDo(const Machine& machine, const Scenario& scenar
 }  // namespace
 
 std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario) {
-  return LeftToDo(machine, scenario, "loop", IsLoopMeasured,
-                  [](const std::string& arm, const MachineArm& of) {
-                    const bool was = of.commissioned && !of.commissioned->loop.empty();
-                    return "The velocity loop of " + arm + " was not measured" +
-                           (was ? " with its present settings" : "") +
-                           ". Therefore there is no lag compensation, the stability margin is "
-                           "smaller, and the stopping distance is based on an assumed lag.";
-                  });
+  return LeftToDo(
+      machine, scenario, "loop", IsLoopMeasured, [](const std::string& arm, const MachineArm& of) {
+        const bool was = of.commissioned && !of.commissioned->loop.empty();
+        return "The velocity loop of " + arm + " was not measured" +
+               (was ? " with its present settings" : "") +
+               ". Without this measurement, there is no lag compensation, the stability margin is "
+               "smaller, and the stopping distance is based on an assumed lag.";
+      });
 }
 
 std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& scenario) {

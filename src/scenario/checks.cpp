@@ -45,7 +45,8 @@ class Checker {
   void Perturbation() const;
 
  private:
-  // Reports a problem if `good` is false. `sentence` follows the path: "<path> is ...".
+  // Reports a problem if `good` is false. The message consists of the path and `sentence`: "<path>
+  // is ...".
   void Unless(bool good, const std::string& path, const std::string& sentence) const {
     if (!good) problems_->Add(PlaceOf(path, root_), path + " " + sentence);
   }
@@ -76,7 +77,8 @@ class Checker {
   Problems* problems_;
 };
 
-// Returns the distance of a point in O from a primitive's body, or 0 if it is inside [m].
+// Returns the distance of a point in O from a primitive's body [m], or 0 if the point is inside the
+// body.
 double DistanceFrom(const PrimitiveSpec& body, const Vector3& p) {
   if (body.shape == Shape::kSphere) return std::max(0.0, p.norm() - body.size.x());
   if (body.shape == Shape::kBox) {
@@ -121,7 +123,7 @@ void Checker::Body(const std::string& model, const std::optional<PrimitiveSpec>&
   Unless(primitive->size.head(used).minCoeff() > 0, path + ".primitive.size",
          "has a zero among the first " + std::to_string(used) + " entries, the dimensions of a " +
              NamesOf(primitive->shape)[static_cast<std::size_t>(primitive->shape)] +
-             ". They must be greater than 0.");
+             ". The dimensions must be greater than 0.");
   if (primitive->inertia) Inertia(*primitive->inertia, path + ".primitive.inertia");
 }
 
@@ -131,7 +133,7 @@ void Checker::Object() const {
   const AttachmentSpec& joint = object.attachment;
   const bool has_axis = joint.joint == JointType::kRevolute || joint.joint == JointType::kPrismatic;
   Unless(!has_axis || joint.axis.norm() > 1e-3, "object.attachment.axis",
-         "is zero. It must have a direction, for example [0, 0, 1].");
+         "is zero. This vector must have a direction, for example [0, 0, 1].");
   if (joint.range) {
     RangeUnits(joint.joint);
     Below((*joint.range)[0], "object.attachment.range.0", (*joint.range)[1],
@@ -145,7 +147,7 @@ void Checker::Fixture(std::size_t i) const {
   const int used = Dimensions(fixture.shape);
   Unless(fixture.size.head(used).minCoeff() > 0, path + ".size",
          "has a zero among the first " + std::to_string(used) + " entries, the dimensions of a " +
-             NameOf(fixture.shape) + ". They must be greater than 0.");
+             NameOf(fixture.shape) + ". The dimensions must be greater than 0.");
   Unless(fixture.stiffness || fixture.damping == 0, path + ".damping",
          "is given without a stiffness. Give " + path +
              ".stiffness in N/m too, or damping_ratio instead of damping.");
@@ -177,7 +179,7 @@ void Checker::Movable(std::size_t i) const {
              "size in m.");
 }
 
-// Weight compensation and people assume that gravity points down in the rig too.
+// Weight compensation and people rely on gravity that points down in the rig too.
 void Checker::Environment() const {
   for (std::size_t i = 0; i < s_.environment.fixtures.size(); ++i) Fixture(i);
   for (std::size_t i = 0; i < s_.environment.objects.size(); ++i) Movable(i);
@@ -194,11 +196,11 @@ void Checker::Environment() const {
              FormatNumber(kMaxShift) + " m. Give metres.");
 }
 
-// DART allocates memory in each step, and each step waits for another process.
+// The engine DART allocates memory in each step, and each step waits for another process.
 void Checker::Simulation() const {
   Unless(s_.simulation.engine == EngineKind::kMujoco || !RulesFor(s_).needs_person,
          "simulation.engine",
-         "is dart, but the arms are real. DART is not fast enough for them: its steps "
+         "is dart, but the arms are real. DART is not fast enough for real arms, because its steps "
          "allocate memory and wait for another process. Set simulation.engine: mujoco.");
   Unless(s_.simulation.engine == EngineKind::kMujoco || s_.environment.objects.empty(),
          "simulation.engine",
@@ -273,7 +275,7 @@ void Checker::Embodied() const {
          "mass, sex} and operator.stance: {ground, facing}.");
   Unless(person.hand.stiffness == HandSpec().stiffness, "operator.hand.stiffness",
          "has no effect, because operator.embodied is true: the stiffness follows from the "
-         "posture. Remove it, or change operator.body.stiffness.");
+         "posture. Remove this key, or change operator.body.stiffness.");
 }
 
 void Checker::Script() const {
@@ -302,8 +304,9 @@ void Checker::Action(std::size_t i) const {
   }
 }
 
-// Entries must be in chronological order. Two entries that move the object must not overlap, nor
-// must two that rotate it. A push, a grip or a release may occur at any time.
+// The entries of a script must be in chronological order. Two entries that move the object must not
+// overlap. Two entries that rotate it must not overlap either. A push, a grip or a release may
+// occur at any time.
 void Checker::ActionOverlap(const std::vector<ActionSpan>& spans, std::size_t i) const {
   const auto& script = s_.operator_.script;
   const std::string path = "operator.script." + std::to_string(i);
@@ -323,7 +326,7 @@ void Checker::ActionOverlap(const std::vector<ActionSpan>& spans, std::size_t i)
     if (exclude && script[i].start < spans[j].end - 1e-9) {
       return Unless(false, path + ".start",
                     start + " ends at " + FormatNumber(spans[j].end) +
-                        " s. Start it later, or shorten the other action.");
+                        " s. Start this action later, or shorten the other action.");
     }
   }
 }
@@ -347,7 +350,7 @@ void Checker::Formulation() const {
     const RepairEntry& entry = RepairTable()[static_cast<std::size_t>(repair)];
     Unless(repairs.Has(repair) || value == 0 || value == standard, path,
            "has no effect, because the selected formulation has no " + std::string(entry.name) +
-               ". Remove it, or change rendering.formulation_except.");
+               ". Remove this key, or change rendering.formulation_except.");
   };
   unused(Repair::kLead, "rendering.lead", s_.rendering.lead.value_or(0), 0);
   const CouplingSpec& given = s_.coupling;
@@ -361,11 +364,11 @@ void Checker::Formulation() const {
   coupling("rotation_damping", &CouplingSpec::rotation_damping);
   coupling("speed_damping", &CouplingSpec::speed_damping);
   Unless(repairs.HasAll() || !RulesFor(s_).needs_repairs, "rendering.formulation",
-         "lacks repairs that protect a person. With real arms it must be repaired, without "
-         "formulation_except.");
+         "lacks repairs that protect a person. With real arms, rendering.formulation must be "
+         "repaired, without formulation_except.");
 }
 
-// A recording contains a controller's torque once per tick.
+// A recording contains a controller's torque only once per tick.
 void Checker::Controller() const {
   const ParameterKind* kind = FindKind(Controllers(), s_.cobot.controller.type);
   if (kind == nullptr || kind->place == ControllerPlace::kProgram) return;
@@ -390,18 +393,18 @@ void Checker::Perturbation() const {
   const PerturbationSpec& p = *s_.perturbation;
   Unless(p.consent, "perturbation.consent",
          "is false. Tell the person that the handles will move by a few millimetres and ask "
-         "whether this is acceptable. Then set it to true, or set perturbation: null.");
+         "whether this is acceptable. Then set this key to true, or set perturbation: null.");
   Unless(
       s_.mode == Mode::kEmulate, "perturbation",
       "displaces the handles of haptic arms, but mode: direct has none. Set perturbation: null.");
   Unless(p.normal.norm() > 1e-3, "perturbation.normal",
-         "is zero. It must have a direction, for example [0, 0, 1].");
+         "is zero. This vector must have a direction, for example [0, 0, 1].");
   Below(p.speed, "perturbation.speed", s_.safety.handle_speed, "safety.handle_speed", "m/s");
   const double force = PerturbationForce(p, s_.operator_.hand);
   Unless(force <= p.force, "perturbation.amplitude",
          "is " + FormatNumber(p.amplitude) + " m. The scenario's hand would resist with up to " +
              FormatNumber(force) + " N, more than perturbation.force, " + FormatNumber(p.force) +
-             " N. Reduce it, or increase perturbation.ramp.");
+             " N. Reduce this force, or increase perturbation.ramp.");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The field tables of a scenario's `environment`; see fields.h.
+// The field tables of a scenario's `environment` (see fields.h).
 #pragma once
 
 #include "scenario/field_rules.h"

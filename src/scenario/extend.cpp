@@ -20,7 +20,7 @@ bool ChangesType(const YamlNode& below, const YamlNode& above) {
   return new_type != nullptr && (old_type == nullptr || old_type->text != new_type->text);
 }
 
-// Joins two trees; values in `above` override those in `below`.
+// Joins two trees. The values in `above` override those in `below`.
 void Join(YamlNode above, YamlNode* below) {
   if (above.kind != Kind::kMap || below->kind != Kind::kMap || ChangesType(*below, above)) {
     *below = std::move(above);
@@ -36,7 +36,8 @@ void Join(YamlNode above, YamlNode* below) {
   below->key_place = above.key_place;
 }
 
-// Removes `extends` from the tree. Returns the file, or an empty path if there was no such key.
+// Removes `extends` from the tree. Returns the file that `extends` names, or an empty path if the
+// key did not exist.
 fs::path TakeExtended(const fs::path& file, YamlNode* root, Place* place) {
   const YamlNode* node = root->Find(kExtendsKey);
   if (node == nullptr) return {};
@@ -46,12 +47,12 @@ fs::path TakeExtended(const fs::path& file, YamlNode* root, Place* place) {
   const fs::path folder = Canonical(file.parent_path().empty() ? "." : file.parent_path());
   const fs::path target = Canonical(folder / node->text);
   if (!IsInside(target, folder))
-    throw InputError(place->Text(), "extends is " + Quote(node->text) + ", which is outside " +
-                                        folder.string() +
-                                        ". Move that scenario into this folder or a subfolder.");
+    throw InputError(place->Text(),
+                     "extends is " + Quote(node->text) + ", which is outside " + folder.string() +
+                         ". Move the extended scenario into this folder or a subfolder.");
   root->items.erase(root->items.begin() + (node - root->items.data()));
-  // The name is relative to the same folder as the name of the extending file, because messages
-  // show both names.
+  // The name of the file is relative to the same folder as the name of the extending file, because
+  // messages show both names.
   return file.parent_path() / fs::path(target).lexically_relative(folder);
 }
 
@@ -66,7 +67,7 @@ void ExtendTree(const fs::path& file, YamlNode* root) {
     const fs::path canonical = Canonical(next);
     if (std::find(files.begin(), files.end(), canonical) != files.end())
       throw InputError(place.Text(), "extends leads back to " + next.string() +
-                                         ". A scenario cannot extend itself.");
+                                         ". A scenario must not extend itself.");
     if (files.size() == kMaxExtends)
       throw InputError(place.Text(), "more than " + std::to_string(kMaxExtends) +
                                          " scenarios extend one another.");

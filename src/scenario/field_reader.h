@@ -84,8 +84,8 @@ class FieldReader {
   bool IsKnown(const std::string& key) const {
     return std::find(known_.begin(), known_.end(), key) != known_.end();
   }
-  // Finds misspelt keys that are similar to a missing key. Such keys are reported only once, as
-  // unknown keys and not also as missing keys.
+  // Finds misspelt keys that are similar to a missing key. These misspelt keys are reported only
+  // once, as unknown keys and not also as missing keys.
   void FindMisspelt() {
     for (const YamlNode& item : at_.node.items)
       if (misspelt_.size() < Problems::kMaxReported && !IsKnown(item.key))
@@ -95,7 +95,7 @@ class FieldReader {
     return std::find(misspelt_.begin(), misspelt_.end(), key) != misspelt_.end();
   }
 
-  // Accepts the parameters of every kind.
+  // Accepts the names of the parameters of every kind.
   void NameAll(ParameterKinds kinds) {
     for (const ParameterKind* kind : kinds)
       for (const YamlNode& item : WriteParameters(kind->parameters().get()).items)

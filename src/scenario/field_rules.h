@@ -1,4 +1,4 @@
-// Rules for the value of a scenario's key: unit, meaning, permitted values.
+// The rules for the value of a scenario's key, which state its unit, meaning and permitted values.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace predictor {
 
-// An interval of numbers. The lower end of the range may be excluded.
+// An interval of numbers. The range may exclude its lower end.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -28,7 +28,7 @@ inline constexpr const char* kAngleOrLength = "rad or m";
 
 inline constexpr double kFullTurn = 6.2832;  // [rad], rounded up
 
-// The functions below make rules. The type of the field determines which members apply.
+// The following functions make rules. The type of the field determines which members apply.
 struct Rule {
   std::string unit = {};  // "" for pure numbers and words
   std::string doc = {};
@@ -55,7 +55,7 @@ inline Rule List(Rule each, std::size_t least, std::size_t most) {
   each.most = most;
   return each;
 }
-// Accepts one number for all entries, or a list.
+// Accepts a single number for all entries, or a list of numbers.
 inline Rule OneOrList(Rule each, std::size_t least, std::size_t most) {
   each = List(std::move(each), least, most);
   each.one_for_all = true;

@@ -22,7 +22,7 @@ std::string WithUnit(const std::string& text, const std::string& unit) {
   return unit.empty() ? text : text + " " + unit;
 }
 
-// Returns the text of an end of a range. The largest 64-bit integer is not a double, so the nearest
+// Returns an end of a range as text. The largest 64-bit integer is not a double, so the nearest
 // double replaces it.
 std::string End(double x) { return x == 0x1p64 ? std::to_string(UINT64_MAX) : FormatNumber(x); }
 
@@ -46,7 +46,8 @@ bool ReadInUnit(const YamlNode& node, const Rule& rule, double* number) {
   return KindOf(node) == ScalarKind::kNumber && ReadNumber(node.text, number);
 }
 
-// Reads a number within the rule's range. Returns false after reporting a problem.
+// Reads a number within the rule's range. If the number is invalid, reports a problem and returns
+// false.
 bool ReadOne(const PathNode& at, const Rule& rule, Problems* problems, double* value) {
   double number = 0;
   const bool is_number = ReadInUnit(at.node, rule, &number);
@@ -183,7 +184,8 @@ void Read(const PathNode& at, const Rule& rule, Problems* problems, std::string*
   }
   if (!rule.choices.empty()) return Complain(at, rule, Allowed(rule), problems);
   Complain(at, rule, "a word", problems,
-           node.kind == Kind::kScalar ? " To use it as a word, write it in quotation marks." : "");
+           node.kind == Kind::kScalar ? " To use this value as a word, write it in quotation marks."
+                                      : "");
 }
 
 void ReadNumbers(const PathNode& at, const Rule& rule, std::size_t count, Problems* problems,

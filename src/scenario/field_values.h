@@ -1,5 +1,5 @@
-// Reads the value of a field from a node, and writes it to a node. Each Read reports invalid values
-// to `problems` and leaves the member unchanged in that case.
+// Reads the value of a field from a node, and writes it to a node. If a value is invalid, each Read
+// reports this to `problems` and leaves the member unchanged.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace predictor {
 
-// A node with its full key path ("cobot.base.xyz").
+// A node together with its full key path ("cobot.base.xyz").
 struct PathNode {
   const YamlNode& node;
   std::string path;
@@ -26,9 +26,10 @@ struct PathNode {
 
 // Returns, for example, "above 0 and at most 500 N".
 std::string Allowed(const Rule& rule);
-// Describes the content of a node in a message: 5, "word", a list of 2, a group, nothing.
+// Describes the content of a node for a message, such as 5, "word", a list of 2, a group, or
+// nothing.
 std::string Describe(const YamlNode& node);
-// Reports "safety.force is -3 N; it must be <must>.<hint>".
+// Reports a text of the form "safety.force is -3 N; it must be <must>.<hint>".
 void Complain(const PathNode& at, const Rule& rule, const std::string& must, Problems* problems,
               const std::string& hint = "");
 

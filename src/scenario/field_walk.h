@@ -1,4 +1,4 @@
-// Kinds of members in a field table. Visitors that walk the table distinguish them.
+// The kinds of members in a field table. Visitors of the table treat these kinds differently.
 #pragma once
 
 #include <optional>
@@ -30,7 +30,7 @@ struct StructListTraits<std::vector<T>, V> : std::true_type {
 template <class T, class V>
 concept IsStructList = StructListTraits<T, V>::value;
 
-// An enumeration, represented by a word in a file.
+// A rule for an enumeration, whose values are words in a file.
 template <class E>
 Rule WordRule(Rule rule) {
   rule.choices = NamesOf(E{});

@@ -1,12 +1,12 @@
-// The field tables of a scenario, one for each struct. These tables are the only place that defines
-// keys, units, meanings and permitted values. Loading, saving, the schema and overrides all use
-// these tables.
+// The field tables of a scenario, one for each struct. The field tables are the only place that
+// defines keys, units, meanings and permitted values. Loading, saving, the schema and overrides all
+// use these tables.
 //
-// A visitor V offers
-//   v(key, member, rule)      for every member,
-//   v.Group(key, doc, walk)   for a group of keys that has no struct of its own; walk(V&), and
+// A visitor V offers three functions:
+//   v(key, member, rule)      visits a member,
+//   v.Group(key, doc, walk)   visits, by walk(V&), a group of keys that has no struct of its own,
 //   v.Own(key, type, parameters, rule, kinds, common)
-//                             for a word that names a kind, the keys that all kinds have
+//                             visits a word that names a kind, the keys that all kinds have
 //                             (common(auto& v)), and that kind's own parameters in the same group.
 #pragma once
 

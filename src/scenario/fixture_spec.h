@@ -18,20 +18,21 @@ inline std::vector<std::string> NamesOf(FixtureShape) {
 
 struct FixtureSpec {
   FixtureShape shape = FixtureShape::kBox;
-  // The dimensions [m]. Box: x y z; cylinder: radius, length, –; capsule: radius, length without
-  // the caps, –; sphere: radius, –, –; plane: x, y as drawn, –. A plane is infinite, and everything
-  // below it is solid.
+  // The dimensions [m]. The dimensions are x, y and z for a box, radius and length for a cylinder,
+  // radius and length without the caps for a capsule, the radius for a sphere, and the drawn x and
+  // y for a plane. A plane is infinite, and everything below it is solid.
   Vector3 size = {0.1, 0.1, 0.1};
-  // Pose in W [m], [rad]. The axis of a cylinder or capsule and the normal of a plane are along z.
+  // The pose of the fixture in W [m], [rad]. The axis of a cylinder or capsule and the normal of a
+  // plane are along z.
   Vector3 xyz = Vector3::Zero();
   Vector3 rpy = Vector3::Zero();
   std::optional<double> friction;  // sliding friction of its contacts; absent: environment.friction
-  // A contact is a spring and a damper that are scaled to the mass that they move. Without damping,
-  // the bodies would oscillate at the frequency 1/(time_constant · damping_ratio) [rad/s].
+  // A contact acts like a spring and a damper that are scaled to the mass that they move. Without
+  // damping, the bodies would oscillate at the frequency 1/(time_constant · damping_ratio) [rad/s].
   double time_constant = 0.0025;  // [s]
   double damping_ratio = 1;       // 1: no bounce
-  // If a stiffness is given, each point of contact is instead a spring and a damper of these
-  // values, whatever mass they move [N/m], [N·s/m].
+  // If a stiffness is given, each point of contact instead acts like a spring and a damper with the
+  // given stiffness and damping [N/m], [N·s/m]. In this case, they are not scaled to the mass.
   std::optional<double> stiffness;
   double damping = 0;
   std::vector<std::string> touches = {"object"};  // that collide with it: object, cobot
@@ -44,7 +45,7 @@ struct FixtureSpec {
   }
 };
 
-// Number of entries of `size` that are dimensions.
+// The number of entries of `size` that are dimensions.
 inline int Dimensions(FixtureShape shape) {
   switch (shape) {
     case FixtureShape::kBox:

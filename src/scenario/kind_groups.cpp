@@ -8,7 +8,7 @@
 namespace predictor {
 namespace {
 
-// Visits the field tables along the keys that a tree has.
+// Visits the field tables that belong to the keys of a tree.
 class KindFinder {
  public:
   KindFinder(YamlNode* group, std::string path, std::vector<KindGroup>* found)

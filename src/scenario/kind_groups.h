@@ -1,5 +1,5 @@
-// Finds the parts of a scenario whose keys depend on their kind, which is named by a word in each
-// part.
+// Finds the parts of a scenario whose keys depend on their kind. A word in each part names its
+// kind.
 #pragma once
 
 #include <vector>

@@ -35,7 +35,7 @@ YamlNode ParseRoot(const std::string& text, const std::string& name) {
 }
 
 // An override that selects another kind removes the parameters of the former kind. A file that
-// extends another one does the same.
+// selects another kind than the file that it extends does the same.
 void ApplyToScenario(const std::string& assignment, YamlNode* root) {
   ApplyOverride(assignment, root);
   for (const KindGroup& group : KindGroups(root))

@@ -45,14 +45,14 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
                    "255 without a port, for example 192.0.2.10.");
   if (!arm.arm.model.starts_with("package://"))
     add(".arm.model", "is " + Quote(arm.arm.model) +
-                          ". Write it as package://PACKAGE/..., because a machine file is used "
-                          "with scenarios in many folders (roots: PREDICTOR_PACKAGE_PATH).");
+                          ". Write the model as package://PACKAGE/..., because a machine file is "
+                          "used with scenarios in many folders (roots: PREDICTOR_PACKAGE_PATH).");
   const Vector3& inertia = arm.arm.payload.inertia;
   if (inertia.maxCoeff() > (inertia.sum() - inertia.maxCoeff()) * (1 + 1e-12))
     add(".arm.payload.inertia",
         "is physically impossible: the largest moment must be at most the sum of the two others. "
         "Measure the handle again.");
-  // Limits for the values that determine when samples are stale and readings are frozen.
+  // The limits for the values that determine when samples are stale and when readings are frozen.
   constexpr double kMinRate = 125;  // [Hz]
   for (const auto& [key, rate] : {std::pair{".arm.sample_rate", arm.arm.sample_rate},
                                   {".arm.sensor.sample_rate", arm.arm.sensor.sample_rate}})
@@ -76,7 +76,8 @@ void CheckArm(const MachineArm& arm, const std::string& path, const YamlNode& ro
         "is " + std::to_string(arm.connection.first_register) + "; it must be 0 or 24.");
 }
 
-// Returns the error in the enabling input as a sentence that follows its key, or "".
+// Returns the error in the enabling input as the end of a sentence that begins with the key, or ""
+// if there is no error.
 std::string EnablingRefusal(const EnablingInput& enabling, const Machine& machine) {
   const std::optional<MachineArm>& arm = machine.arm(enabling.arm == kHandNames[0] ? 0 : 1);
   if (!arm) return " is the " + enabling.arm + " arm, but the machine has no such arm.";
@@ -88,7 +89,8 @@ std::string EnablingRefusal(const EnablingInput& enabling, const Machine& machin
   return "";
 }
 
-// Hashes keys and values but not comments. 0xff, which is not a byte of UTF-8, ends each text.
+// Computes a hash of keys and values without the comments. The byte 0xff ends each text, because it
+// never occurs in UTF-8.
 void AddTree(const YamlNode& node, std::uint64_t* hash) {
   for (const std::string& text : {node.key, node.text}) *hash = Fnv1a(text + '\xff', *hash);
   for (const YamlNode& item : node.items) AddTree(item, hash);

@@ -1,5 +1,6 @@
-// A machine: the real arms and sensors of one laboratory, their connections, their properties, and
-// the absolute limits there. A machine has a separate file because scenarios change more often.
+// A machine consists of the real arms and sensors of one laboratory, their connections, their
+// properties, and the absolute limits that apply there. A machine has a separate file because
+// scenarios change more often.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +17,7 @@ namespace predictor {
 enum class ArmMake { kUr, kFranka };
 enum class SensorMake { kOwn, kNetFt, kOnRobot };  // kOwn: the arm's own sensor or estimator
 
-// The thresholds of the Franka arm's own reflex.
+// The thresholds of the collision reflex that the Franka arm itself has.
 struct CollisionThresholds {
   double force = 60;         // external force at the stiffness frame [N]
   double torque = 20;        // external torque at the stiffness frame [N·m]
@@ -31,7 +32,7 @@ struct ArmConnection {
   std::optional<CollisionThresholds> collision;  // Franka: empty for the robot's own settings
 };
 
-// Connection to a force/torque sensor.
+// The connection to a force/torque sensor.
 struct SensorConnection {
   SensorMake make = SensorMake::kOwn;
   std::string host;
@@ -39,7 +40,7 @@ struct SensorConnection {
   double counts_per_torque = 1e6;  // [1/(N·m)]
 };
 
-// Results of measurements at the arm itself.
+// The results of measurements at the real arm.
 struct Commissioned {
   std::string push_test;  // time at which a person pushed along each axis and every push was read
                           // correctly; "": never
@@ -57,7 +58,7 @@ struct MachineArm {
 };
 
 // Limits that no scenario may loosen on this machine. The limits have the names and units of a
-// scenario's `safety`. Some limits are minima. For these, a smaller value is looser.
+// scenario's `safety`. Some limits are minima. For a minimum, a smaller value is looser.
 struct MachineLimits {
   double force = 30;                   // limit per hand [N]
   double torque = 5;                   // limit per hand [N·m]
@@ -77,15 +78,15 @@ struct MachineLimits {
   double coupling_torque = 15;                // [N·m]
   double max_age = 0.005;                     // [s]
   int frozen_samples = 50;
-  // Limits of a scenario's `rendering`.
+  // The limits for the values in a scenario's `rendering`.
   double relative_kp = 1.0;        // [1/s]
   double relative_ko = 0.9;        // [1/s]
   double security_distance = 0.3;  // minimum distance [m]
   double joint_security = 0.02;    // minimum distance [rad]
 };
 
-// A device that a person must keep pressed while the arms may move. The device's contact is wired
-// to a digital input.
+// A device that a person must keep pressed while the real arms may move. The device's contact is
+// wired to a digital input.
 struct EnablingInput {
   std::string arm;        // left, right: the controller to which it is wired
   int digital_input = 0;  // UR: 0 … 7 standard inputs, 8 … 15 configurable inputs, 16, 17 tool
@@ -107,16 +108,18 @@ struct Machine {
   const std::optional<MachineArm>& arm(int hand) const { return hand == 0 ? left : right; }
 };
 
-// Reads and checks a machine file. Throws the same errors as LoadScenario. Paths of models must
-// begin with package://.
+// Reads and checks a machine file. Throws the same kinds of errors as LoadScenario. Paths of models
+// must begin with package://.
 Machine LoadMachine(const std::filesystem::path& file);
 Machine ParseMachine(const std::string& text, const std::string& name);
 // Returns the whole machine as YAML, including every default.
 std::string SaveMachine(const Machine& machine);
-// Returns the JSON Schema (draft-07) of machine files: keys, units, meanings, ranges, defaults.
+// Returns the JSON Schema (draft-07) of machine files, with keys, units, meanings, ranges and
+// defaults.
 std::string MachineSchema();
 
-// Returns the `error` of a key ("arms.left.arm.elbow"), preceded by its place in the file.
+// Returns `error`, which concerns a key such as "arms.left.arm.elbow", preceded by the key's place
+// in the file.
 InputError Located(const InputError& error, const Machine& machine);
 
 // Returns a hash (FNV-1a, 16 hexadecimal digits) of the entry of an arm except `commissioned`. The
@@ -125,23 +128,25 @@ InputError Located(const InputError& error, const Machine& machine);
 std::string HashOf(const MachineArm& arm);
 // Returns whether the arm has not changed since its push test.
 bool IsPushTested(const MachineArm& arm);
-// Returns a hash of everything on which a measured velocity loop depends: the loop and the arm on
-// which it was measured.
+// Returns a hash of everything on which a measured velocity loop depends. These are the loop and
+// the arm on which the loop was measured.
 std::string HashOfLoop(const MachineArm& arm);
 // Returns whether `arm.loop` was measured on this arm.
 bool IsLoopMeasured(const MachineArm& arm);
 // Returns one line with the remedy for each arm of `scenario` whose velocity loop was not measured.
-// For these arms, ApplyMachine removes the lead, because it would be based on an assumed lag.
+// ApplyMachine removes the lead of the arms whose velocity loop was not measured, because the lead
+// would be based on an assumed lag.
 std::vector<std::string> UnmeasuredLoops(const Machine& machine, const Scenario& scenario);
 // Returns one line with the remedy for each arm of `scenario` without a current push test.
 std::vector<std::string> UntestedPushes(const Machine& machine, const Scenario& scenario);
-// Throws InputError with the first of these lines, if any.
+// Throws InputError with the first line of UntestedPushes, if there is one.
 void RequirePushTests(const Machine& machine, const Scenario& scenario);
 
-// Replaces the scenario's arms by the machine's. A scenario may tighten the machine's limits but
-// never loosen them, and its stop must keep the budget of real arms (90 ms, 13.5 mm from 0.25 m/s).
-// Throws InputError that names the key if the scenario does not fit, or if the machine lacks an arm
-// for a handle. If a velocity loop was not measured, the reference has no lead.
+// Replaces the arms of the scenario by those of the machine. A scenario may tighten the machine's
+// limits but never loosen them. Its stop must take at most 90 ms and 13.5 mm from 0.25 m/s, as all
+// stops of real arms. Throws InputError that names the key if the scenario does not fit, or if the
+// machine lacks an arm for a handle. If the velocity loop of an arm was not measured, the lead is
+// set to zero.
 void ApplyMachine(const Machine& machine, Scenario* scenario);
 
 }  // namespace predictor

@@ -1,5 +1,5 @@
-// Every key of a machine file with its unit, meaning and range. Loading, saving and the schema use
-// this table.
+// The table of every key of a machine file with its unit, meaning and range. Loading, saving and
+// the schema use this table.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace predictor {
 inline std::vector<std::string> NamesOf(ArmMake) { return {"ur", "franka"}; }
 inline std::vector<std::string> NamesOf(SensorMake) { return {"own", "net_ft", "onrobot"}; }
 
-// Largest handle speed that any machine may allow, because hands must be able to follow [m/s].
+// The largest handle speed that any machine may allow, because hands must be able to follow [m/s].
 inline constexpr double kMaxHandleSpeed = 0.5;
 
 template <class V>

@@ -7,9 +7,9 @@
 
 namespace predictor {
 
-// Returns the entries of `events` in which fixture number i appears (obstacle_appears), as bits. If
-// there are none, the fixture is always present. Otherwise the fixture is present only while one of
-// them is active.
+// Returns, as bits, the entries of `events` in which fixture number i appears (obstacle_appears).
+// If no such entry exists, the fixture is always present. If such entries exist, the fixture is
+// present only while one of them is active.
 std::uint16_t EventsOfFixture(const Scenario& scenario, std::size_t i);
 
 }  // namespace predictor

@@ -16,14 +16,14 @@ struct OperatingRules {
   // -- Who may command --
   // The program takes the run from IDLE to RUN without a person.
   bool auto_start = true;
-  // Pages may request align, start, end and reset. Otherwise only a person at the rig may make
-  // these requests.
+  // Pages may request align, start, end and reset. If this rule is false, only a person at the rig
+  // may make these requests.
   bool remote_start = true;
   // While the arms are at rest, a page may select the next scenario.
   bool may_switch_scenario = true;
   // The arms move in ALIGN, RUN and RECOVERY only while a person holds the enabling key or device.
   bool needs_enabling = false;
-  // A person holds the handles, so operator.type must be person.
+  // operator.type must be person, because a person holds the handles.
   bool needs_person = false;
   // ALIGN starts only while no one presses on a handle.
   bool aligns_hands_free = false;
@@ -31,9 +31,10 @@ struct OperatingRules {
   bool rechecks_alignment = false;
   // A reset keeps thresholds that a person has tightened.
   bool keeps_tightened_thresholds = false;
-  // A person may make the virtual cobot stiffer or less damped than the scenario does.
+  // A person may make the virtual cobot stiffer or less damped than the scenario specifies.
   bool may_stiffen = true;
-  // A person who wears a headset must see the moving arms: a silent headset stops the run.
+  // A person who wears a headset must see the moving arms. The run therefore stops if a headset
+  // sends no messages.
   bool watches_headsets = false;
   // An access code for the page admits only one client.
   bool single_use_access_code = false;
@@ -43,7 +44,8 @@ struct OperatingRules {
   bool external_device = false;
   // The arms continue to move while the program is late, so missed deadlines count.
   bool arms_move_between_ticks = false;
-  // An arm that still moves after a stop has timed out must not be held; its power is cut.
+  // If an arm still moves after a stop has timed out, its power is cut, because the arm must not be
+  // held.
   bool cuts_power_of_moving_arms = false;
   // rendering.formulation must include every repair, because a person can be hurt.
   bool needs_repairs = false;
@@ -60,7 +62,7 @@ struct OperatingRules {
   bool sensors_always_have_noise = false;
   // A sensor may be mounted or wired incorrectly, so the run stops if a handle runs away.
   bool detects_runaway = false;
-  // Gravity that acts on the handles [m/s²].
+  // The gravity that acts on the handles [m/s²].
   double handle_gravity = kStandardGravity;
 };
 
@@ -72,8 +74,8 @@ struct ParameterRange {
   double start = 0;  // the scenario's value; 1 for a factor
 };
 
-// Thresholds may only be lowered below the scenario's values. With real arms, stiffness may only be
-// lowered and damping only raised.
+// Thresholds may only be changed to values below those of the scenario. With real arms, stiffness
+// may only be lowered and damping only raised.
 ParameterRange RangeOf(const Scenario& scenario, Parameter parameter);
 
 }  // namespace predictor

@@ -1,6 +1,6 @@
-// Parameters that a kind of part declares beside its own code, in a module that the scenario module
-// does not know. The controllers of the virtual cobot, the hazards, the actions of the operator and
-// the tasks and limits of rendering are such kinds.
+// The parameters of a kind of part. The code of the kind declares these parameters, in a module
+// that the scenario module does not know. Such kinds are the controllers of the virtual cobot, the
+// hazards, the actions of the operator, and the tasks and limits of rendering.
 //
 // A kind declares a struct with a field table, like every part of a scenario (fields.h):
 //   struct DampingParameters { double damping = 5; };
@@ -8,8 +8,9 @@
 //   void Fields(V& v, DampingParameters& p) {
 //     v("damping", p.damping, Number("N·m·s/rad", "of each joint", From(0, 1e3)));
 //   }
-// The scenario holds them as a tree (ControllerSpec::parameters, ActionSpec::parameters). Loading,
-// saving, the schema and overrides find the table by the name of the kind.
+// The scenario holds the parameters of a kind as a tree (ControllerSpec::parameters,
+// ActionSpec::parameters). Loading, saving, the schema and overrides find the table
+// by the name of the kind.
 #pragma once
 
 #include <functional>
@@ -25,7 +26,7 @@
 
 namespace predictor {
 
-// The visitor of a kind's field table. The members of the table may have the types below.
+// The visitor of a kind's field table. The members of the table may have the following types.
 class ParameterVisitor {
  public:
   using Member = std::variant<bool*, int*, double*, std::string*, Vector3*, std::vector<double>*,
@@ -75,7 +76,7 @@ struct ParametersOf final : OwnParameters {
   P value;
 };
 
-// The struct of parameters that NewParameters<P> made.
+// Returns the struct of parameters that NewParameters<P> made.
 template <class P>
 const P& ValueOf(const OwnParameters& parameters) {
   return static_cast<const ParametersOf<P>&>(parameters).value;
@@ -86,12 +87,12 @@ std::unique_ptr<OwnParameters> NewParameters() {
   return std::make_unique<ParametersOf<P>>();
 }
 
-// The parameters of a kind that has none.
+// The parameters of a kind that has no parameters.
 struct NoParameters {};
 template <class V>
 void Fields(V&, NoParameters&) {}
 
-// Where the code of a controller runs.
+// The place in which the code of a controller runs.
 enum class ControllerPlace { kProgram, kLibrary, kProcess };
 
 struct ParameterKind {
@@ -118,22 +119,22 @@ YamlNode WriteParameters(OwnParameters* parameters);
 // Returns `given` with every default, or unchanged if its kind is unknown or a value is invalid.
 YamlNode CompleteParameters(ParameterKinds kinds, const std::string& type, const YamlNode& given);
 
-// A group of keys in a tree that has the own parameters of a kind.
+// A group of keys in a tree that contains the own parameters of a kind.
 struct KindGroup {
   std::string path;  // "cobot.controller"
   std::string key;   // key that names the kind: "type"
   ParameterKinds kinds;
   YamlNode* group;
 };
-// Removes from a group the parameters of other kinds, if a file and not an override contains them.
-// Returns whether there were any such parameters.
+// Removes the parameters of other kinds from a group, but only those that come from a file and not
+// from an override. Returns whether there were any such parameters.
 bool RemoveForeignParameters(const KindGroup& group);
 
 // ---- parts that are all present
 // ------------------------------------------------------------------
 
-// Returns the parameters of one of several parts that each have a group with its name in `all`
-// (RenderingSpec::parts). `path` is the path of these groups.
+// Returns the parameters of one part. `all` contains a group for each part, under the name of the
+// part (RenderingSpec::parts). `path` is the path of the groups of the parts.
 std::unique_ptr<OwnParameters> ParametersOfPart(const ParameterKind& part, const YamlNode& all,
                                                 const std::string& path, Problems* problems);
 void SetPart(const ParameterKind& part, OwnParameters* parameters, YamlNode* all);
@@ -157,7 +158,7 @@ void WalkParts(V& v, ParameterKinds parts, YamlNode* all) {
 // -------------------------------------------------------------------
 
 // Returns the controllers of the virtual cobot, which the simulation declares when the program
-// starts. A program without the simulation has none, and keeps the parameters as given.
+// starts. A program without the simulation has no controllers, and keeps the parameters as given.
 ParameterKinds Controllers() noexcept;
 void DeclareControllers(ParameterKinds kinds) noexcept;
 

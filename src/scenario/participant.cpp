@@ -101,7 +101,7 @@ void CheckParticipant(const ParticipantSpec& participant, const std::string& pat
       "is " + Quote(participant.pseudonym) +
           ", but it must be eight characters (digits 2 to 9, capital letters except I and O), of "
           "which the last one checks the others, and must not describe the person. `predictor "
-          "pseudonym` draws one. If you have one, check it for typing errors.");
+          "pseudonym` draws one. If you already have a pseudonym, check it for typing errors.");
   unless(IsVersion(participant.consent.version), "consent.version",
          "is " + Quote(participant.consent.version) +
              ". Give the version of the text to which the person agreed, in at most 40 ASCII "

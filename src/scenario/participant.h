@@ -1,5 +1,5 @@
-// The person in a study who holds the handles. These data contain no name, but only what a study
-// may store. A recording contains these data as labels.
+// The person in a study who holds the handles. These data contain only what a study may store, and
+// no name. A recording contains these data as labels.
 #pragma once
 
 #include <filesystem>
@@ -25,7 +25,7 @@ struct ParticipantSpec {
   std::string handedness = "unknown";  // unknown | left | right | ambidextrous
 };
 
-// The file that --participant names.
+// The file that the option --participant names.
 struct ParticipantFile : ParticipantSpec {
   std::optional<BodySpec> body;  // absent: as the scenario says
 };
@@ -35,7 +35,7 @@ ParticipantFile LoadParticipant(const std::filesystem::path& file);
 // Returns "operator.body=...", for LoadScenario.
 std::string BodyOverride(const BodySpec& body);
 
-// Reports a pseudonym that IsPseudonym refuses, such as a name, a consent without a version, and a
+// Reports a pseudonym that IsPseudonym refuses (such as a name), a consent without a version, and a
 // day that does not exist. `path` ends with a dot, or is empty.
 void CheckParticipant(const ParticipantSpec& participant, const std::string& path,
                       const YamlNode& root, Problems* problems);
@@ -46,7 +46,8 @@ bool IsParticipantLabel(const std::string& key);
 // Returns the participant from all labels of a recording, or nothing without a pseudonym.
 std::optional<ParticipantSpec> ParticipantIn(const std::map<std::string, std::string>& labels);
 
-// Returns "participant K7QM2XPX, consent study-2 of 2026-11-20, left-handed" and the like.
+// Returns a description of the participant, such as "participant K7QM2XPX, consent study-2 of
+// 2026-11-20, left-handed".
 std::string ParticipantWords(const ParticipantSpec& participant);
 
 }  // namespace predictor

@@ -19,8 +19,8 @@ constexpr std::size_t kMaxNames = 1000;  // maximum number of names in a folder 
                                          // for a suggestion
 constexpr std::size_t kLongestUri = 4096;
 
-// Returns share/predictor beside the folder of the running program, or "" if it does not exist, as
-// in a build.
+// Returns share/predictor beside the folder of the running program, or "" if share/predictor does
+// not exist, as in a build folder.
 fs::path InstalledData() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -82,7 +82,8 @@ std::string ListOf(const std::vector<fs::path>& folders) {
   return names.empty() ? "none" : Join(names);
 }
 
-// `file` must be canonical and allowed. Throws unless it can be read as a model.
+// `file` must be a canonical path in a place from which files may be read. Throws InputError if the
+// file cannot be read as a model.
 void CheckFile(const std::string& uri, const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);

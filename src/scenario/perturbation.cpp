@@ -8,7 +8,7 @@
 namespace predictor {
 namespace {
 
-// Returns the motion from rest to rest that covers `length` in `time`.
+// Returns the motion from rest to rest that covers the distance `length` in the time `time`.
 struct Ramp {
   double length, time;
 

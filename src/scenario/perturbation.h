@@ -1,4 +1,5 @@
-// The displacements that a scenario's `perturbation` describes, and the force that they cause.
+// The displacements that a scenario's `perturbation` describes, and the forces that these
+// displacements cause.
 #pragma once
 
 #include <array>
@@ -13,8 +14,8 @@ namespace predictor {
 // force smaller.
 double PerturbationForce(const PerturbationSpec& perturbation, const HandSpec& hand);
 
-// Returns two unit vectors that span the plane of the displacements. They are parallel to axes of W
-// if the plane is parallel to a coordinate plane of W.
+// Returns two unit vectors that span the plane of the displacements. The vectors are parallel to
+// axes of W if the plane is parallel to a coordinate plane of W.
 std::array<Vector3, 2> PerturbationPlane(const PerturbationSpec& perturbation);
 
 }  // namespace predictor

@@ -15,7 +15,7 @@ static_assert(kPseudonymDigits.size() == 32);
 
 // Returns the check character that makes the weighted sum of all values a multiple of 32, or
 // nothing for invalid characters. The weights are 1, 3, 5, ..., and 1 for the check character
-// itself. Because they are odd, a change of any single value is detected.
+// itself. Because the weights are odd, a change of any single value is detected.
 std::optional<char> CheckCharacter(std::string_view others) {
   std::size_t sum = 0, factor = 1;
   for (const char c : others) {

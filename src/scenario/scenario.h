@@ -41,7 +41,7 @@ enum class Mode { kEmulate, kDirect };
 
 // ---- the virtual cobot -----------------------------------------------------------------------
 
-// Friction of the cobot's joints: one value for all joints, or one per joint.
+// Friction of the cobot's joints, with one value for all joints or one value per joint.
 struct JointFriction {
   std::vector<double> viscous = {1.0};  // [N·m·s/rad]
   std::vector<double> coulomb = {0.0};  // [N·m]
@@ -57,10 +57,10 @@ struct Waypoint {
 
 struct ControllerSpec {
   std::string type = "cartesian_impedance";  // a name in the controller registry
-  // The parameters of this controller (own_parameters.h). Missing ones have their defaults.
+  // The parameters of this controller (own_parameters.h). Missing parameters have their defaults.
   YamlNode parameters;
 
-  // Sets one of them: "stiffness.translation=[5, 5, 500]", with a value in YAML.
+  // Sets one parameter to a value in YAML, as in "stiffness.translation=[5, 5, 500]".
   void Set(const std::string& assignment) { ApplyOverride(assignment, &parameters); }
 };
 
@@ -70,7 +70,7 @@ struct ControlSpec {
   double delay = 0;    // delay from the state that the controller sees to its torque [s]
 };
 
-// Force/torque sensor in the cobot's wrist, for controllers that use one.
+// Force/torque sensor in the cobot's wrist, for controllers that use such a sensor.
 struct WristSensorSpec {
   double noise_force = 0;           // standard deviation [N]
   double noise_torque = 0;          // [N·m]
@@ -78,13 +78,13 @@ struct WristSensorSpec {
   double cutoff_frequency = 150;    // cutoff of the first-order filter [Hz]
 };
 
-// The load in the gripper as the cobot's program states it.
+// The load in the gripper, as assumed by the cobot's program.
 struct PayloadSpec {
   double mass = 1;                           // [kg]
   Vector3 center_of_mass = Vector3::Zero();  // in E [m]
 };
 
-// The cobot's own safety functions, as its vendor ships them. Absent ones are off.
+// The cobot's own safety functions, as its vendor provides them. Absent ones are off.
 struct CobotSafetySpec {
   std::optional<double> force;         // limit of the force estimated at the end-effector [N]
   std::optional<double> speed;         // limit of the end-effector's speed [m/s]
@@ -115,14 +115,14 @@ struct CobotSpec {
 
 // ---- what goes wrong --------------------------------------------------------------------------
 
-// The region in which an event begins. It is a sphere, and its centre is given relative to the
+// The region in which an event begins. The region is a sphere whose centre is given relative to the
 // object's position at the start.
 struct EventPlaceSpec {
   Vector3 center = Vector3::Zero();  // offset in W [m]
   double radius = 0.05;              // [m]
 };
 
-// All conditions that are given must hold at once.
+// The event begins when all given conditions hold at once.
 struct TriggerSpec {
   double after = 0;                     // simulated time from which the event may begin [s]
   double window = 0;                    // added to `after`, a random share of it [s]
@@ -136,10 +136,10 @@ struct EventSpec {
   std::string event = "power_loss";  // a name in the registry of hazards
   TriggerSpec trigger;
   double duration = 0;  // [s]; 0: until the end of the run
-  // The parameters of this hazard (own_parameters.h). Missing ones have their defaults.
+  // The parameters of this hazard (own_parameters.h). Missing parameters have their defaults.
   YamlNode parameters;
 
-  // Sets one of them: "torque=20", with a value in YAML.
+  // Sets one parameter to a value in YAML, as in "torque=20".
   void Set(const std::string& assignment) { ApplyOverride(assignment, &parameters); }
 };
 
@@ -191,8 +191,8 @@ struct EnvironmentSpec {
   std::vector<MovableSpec> objects;  // movable objects; at most kMaxMovables
   double friction = 0.8;             // coefficient of sliding friction in contacts
   // X_RW, pose of the virtual world in the frame of the arms' bases. Roll and pitch are 0, so
-  // gravity points down in both. If `shift` is absent, W is R and the arms' bases may be chosen
-  // freely.
+  // gravity points down in both frames. If `shift` is absent, W is R and the arms' bases may be
+  // chosen freely.
   std::optional<PoseSpec> shift;
 };
 
@@ -203,8 +203,8 @@ enum class VelocityLimits { kOff, kHard };
 // The physics engine of the virtual world.
 struct SimulationSpec {
   EngineKind engine = EngineKind::kMujoco;
-  // How the engine enforces the position limits of the cobot's joints and the attachment. If
-  // absent, it is soft in MuJoCo and hard in DART.
+  // How the engine enforces the position limits of the cobot's joints and the attachment. If the
+  // value is absent, the limits are soft in MuJoCo and hard in DART.
   std::optional<JointLimits> joint_limits;
   VelocityLimits velocity_limits = VelocityLimits::kOff;  // of the cobot's joints
 };
@@ -230,7 +230,7 @@ struct VelocityLoopSpec {
   double delay = 0.004;  // [s]
 };
 
-// The real handle between sensor and hand, as calibrated.
+// The properties of the real handle between sensor and hand, as calibrated.
 struct HandlePayloadSpec {
   double mass = 0.4;                      // [kg]
   Vector3 center_of_mass = {0, 0, 0.05};  // centre of mass in S [m]
@@ -264,8 +264,8 @@ struct ArmSpec {
   double sample_rate = 1000;  // rate at which the device reports its joints [Hz]
   VelocityLoopSpec loop;
   // A real arm that follows positions also corrects position errors: its joints reach the positions
-  // to which the commanded velocities lead. A Franka arm of a machine always does so, whatever this
-  // value is.
+  // to which the commanded velocities lead. A Franka arm of a machine always corrects position
+  // errors, whatever this value is.
   bool follows_position = false;
   HandlePayloadSpec payload;
   SensorSpec sensor;
@@ -276,8 +276,8 @@ struct DeviceSpec {
   std::optional<ArmSpec> left, right;
 };
 
-// The differences between the simulated rig and the program's model of it. Only the rig reads these
-// values.
+// The differences between the simulated rig and the program's model of this rig. Only the rig reads
+// these values.
 struct RigSpec {
   std::optional<VelocityLoopSpec> loop;  // true loop of both arms; if absent, device.arms.*.loop
   double computation_delay = 0;          // delay from reading to command of a tick [s]
@@ -316,10 +316,10 @@ struct HandSpec {
 struct ActionSpec {
   std::string action = "hold";  // a name in the registry of actions
   double start = 0;             // [s]
-  // The parameters of this action (own_parameters.h). Missing ones have their defaults.
+  // The parameters of this action (own_parameters.h). Missing parameters have their defaults.
   YamlNode parameters;
 
-  // Sets one of them: "by=[0, 0, 0.1]", with a value in YAML.
+  // Sets one parameter to a value in YAML, as in "by=[0, 0, 0.1]".
   void Set(const std::string& assignment) { ApplyOverride(assignment, &parameters); }
 };
 
@@ -344,15 +344,15 @@ struct BodySpec {
   std::optional<double> trunk;              // middle of the hip joints to the vertebra C7 [m]
   std::optional<double> thigh;              // hip to knee joint [m]
   std::optional<double> shank;              // knee to ankle joint [m]
-  // Strength as a multiple of the mean for the sex, for elbow flexion, elbow extension, shoulder
-  // flexion and shoulder extension.
+  // Strength in elbow flexion, elbow extension, shoulder flexion and shoulder extension, each as a
+  // multiple of the mean for the sex.
   std::array<double, 4> strength = {1, 1, 1, 1};
   double stiffness = 1;  // stiffness of the arm's joints, as a multiple of the published mean
   double fatigue = 0;    // share of the arm's muscles that is fatigued at the start of a run
 };
 
-// Where the operator stands. The ground under the feet is not the virtual floor: haptic arms stand
-// wherever a laboratory puts them.
+// Where the operator stands. The ground under the feet is not the virtual floor, because the haptic
+// arms may stand anywhere in a laboratory.
 struct StanceSpec {
   Vector3 ground = Vector3::Zero();  // point midway between the feet, in W [m]
   double facing = 0;                 // direction of view, about z of W from its x axis [rad]
@@ -372,7 +372,7 @@ struct OperatorSpec {
 
 // ---- haptic rendering --------------------------------------------------------------------------
 
-// The named parameters are used by several tasks and limits or by other modules.
+// The members of this struct are parameters that several tasks and limits, or other modules, use.
 struct RenderingSpec {
   std::string formulation = "repaired";         // repaired | paper
   std::vector<std::string> formulation_except;  // repairs that deviate from it (formulation.h)
@@ -390,11 +390,12 @@ struct RenderingSpec {
   double joint_influence = 0.3;        // q_i [rad]
   double joint_security = 0.02;        // q_s [rad]
   double joint_gain = 1.0;             // ξ_q [rad/s]
-  // Pairs of links that are kept apart, each with a link of the left arm and one of the right arm.
-  // The name left:LINK or right:LINK refers to a link of a specific arm. If empty: the two elbows.
+  // Pairs of links that are kept apart. Each pair has a link of the left arm and one of the right
+  // arm. The name left:LINK or right:LINK refers to a link of a specific arm. If the list is empty,
+  // the two elbows are kept apart.
   std::vector<std::array<std::string, 2>> link_pairs;
   // The own parameters of tasks and limits. The parameters of each part are in a group with the
-  // name of this part (own_parameters.h). Missing ones have their defaults.
+  // name of this part (own_parameters.h). Missing parameters have their defaults.
   YamlNode parts;
 };
 
@@ -464,8 +465,9 @@ struct Scenario {
                                // folder
   std::shared_ptr<const YamlNode> tree;  // the tree that was read, for the places of errors;
                                          // otherwise null
-  // Of a recorded scenario: what a controller outside the program answered while the run was set up
-  // (simulation/taped_controller.h). In this case, the controller is not used. Otherwise null.
+  // The answers that a controller outside the program gave while a recorded run was set up
+  // (simulation/taped_controller.h). If there are such answers, the controller is not used. For a
+  // scenario that is not from a recording, the pointer is null.
   std::shared_ptr<const std::vector<double>> controller_tape;
 
   std::filesystem::path folder() const {
@@ -479,7 +481,7 @@ struct Scenario {
   bool HasRealArms() const { return mode == Mode::kEmulate && device.type != "simulated"; }
   const HandleSpec& handle(int hand) const { return hand == 0 ? *left_handle : *right_handle; }
   const ArmSpec& arm(int hand) const { return hand == 0 ? *device.left : *device.right; }
-  // Returns the pose of an arm's base in the virtual world.
+  // Returns the pose of an arm's base in the virtual world W.
   Pose X_WB(int hand) const {  // NOLINT(readability-identifier-naming)
     const Pose X_RB = arm(hand).base.X_RB();
     return environment.shift ? environment.shift->ToPose().Inverse() * X_RB : X_RB;
@@ -488,7 +490,7 @@ struct Scenario {
   bool HasFixedArms() const { return device.type != "simulated" || environment.shift.has_value(); }
 };
 
-// Returns element `i` of `values`, or the only value for all.
+// Returns element `i` of `values`, or the only element if `values` has only one.
 inline double OneOrEach(const std::vector<double>& values, int i) {
   return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(i)];
 }

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// `node` must come from Write: its numbers are valid in JSON.
+// `node` must come from Write, because its numbers are then valid in JSON.
 Json ToJson(const YamlNode& node) {
   if (node.kind == YamlNode::Kind::kNull) return nullptr;
   if (node.kind == YamlNode::Kind::kScalar) {
@@ -102,7 +102,7 @@ class Describer {
     Add(key, std::move(schema), false);
   }
 
-  // Writes one alternative per kind, each with only its own parameters.
+  // Writes one alternative per kind. Each alternative contains only the parameters of its kind.
   template <class Walk>
   void Own(const char* key, std::string& type, YamlNode&, const Rule& rule, ParameterKinds kinds,
            Walk common) {
@@ -170,7 +170,7 @@ class Describer {
     return schema;
   }
 
-  // A group is also required if one of its members is.
+  // A group is also required if one of its members is required.
   void Add(const char* key, Json schema, bool required) {
     if (required || schema.contains("required")) required_.push_back(key);
     properties_[key] = std::move(schema);
@@ -218,8 +218,8 @@ Json TakeRequirements(Json* schema) {
     for (Json& choice : (*schema)["anyOf"]) {
       Json inner = TakeRequirements(&choice);
       any |= !inner.empty();
-      // Without this, the keys of an alternative with requirements would be accepted without these
-      // requirements.
+      // Otherwise, the keys of an alternative with requirements would be accepted even if the
+      // requirements are not met.
       if (inner.empty() && choice.contains("properties")) {
         for (const auto& item : choice["properties"].items())
           inner["properties"][item.key()] = Json::object();

@@ -16,10 +16,10 @@ struct Viewpoint {
   bool is_a_guess;  // the scenario does not say where the operator stands, or how tall a body is
 };
 
-// Returns the viewpoint from the scenario's stance and body. Without stance and body, it returns an
-// assumption that is good enough for a camera. The operator is assumed to stand behind the object
-// with the left handle on the left or, if there is one handle, to face the cobot. `object_start` is
-// O in W at the start [m].
+// Returns the viewpoint from the scenario's stance and body. Without stance and body, the function
+// returns an assumption that is good enough for a camera. The operator is assumed to stand behind
+// the object with the left handle on the left. If there is only one handle, the operator is assumed
+// to face the cobot. `object_start` is O in W at the start [m].
 Viewpoint ViewpointOf(const Scenario& scenario, const Vector3& object_start);
 
 }  // namespace predictor

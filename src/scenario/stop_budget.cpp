@@ -8,21 +8,24 @@
 namespace predictor {
 namespace {
 
-// The budget of a stop from a given speed. It also covers handles that accelerate when the stop
-// begins. The second limit applies if a handle may move faster than the first one allows.
+// The budget of a stop from a given speed. The budget also covers handles that accelerate when the
+// stop begins. The second entry applies if a handle may move faster than the speed of the first
+// entry.
 struct StopAllowance {
   double speed, time, way;  // [m/s], [s], [m]
 };
 constexpr StopAllowance kStopAllowances[] = {{0.25, 0.090, 0.0135}, {0.5, 0.140, 0.0398}};
-// A harder stop is a blow to the person at the handle [m/s²], [m/s³].
+// The largest deceleration [m/s²] and jerk [m/s³] of a stop. With larger values, the stop would be
+// a blow to the person at the handle.
 constexpr double kHardestStop = 10, kHardestStopJerk = 1000;
 
 }  // namespace
 
 StopBudget WorstStop(double speed, double acceleration, double jerk) {
-  // The deceleration has three phases: a jerk from the rate at which the speed still grows to the
-  // peak deceleration, the constant peak, and a jerk back. The speed first grows to `speed`, by at
-  // most a quarter (safety/stop.h). Slow handles never reach the full deceleration.
+  // The deceleration has three phases. In the first, a constant jerk leads from the acceleration at
+  // the beginning to the peak deceleration. In the second, the peak deceleration is constant. In
+  // the third, a constant jerk leads back to zero. The speed first grows to `speed`, by at most a
+  // quarter (safety/stop.h). The stop of a slow handle never reaches the full deceleration.
   const double peak = std::min(acceleration, std::sqrt(jerk * speed));
   const double rate = std::min(acceleration, std::sqrt(0.4 * jerk * speed));
   const double begin = speed - rate * rate / (2 * jerk);
@@ -38,7 +41,7 @@ std::string StopRefusal(double acceleration, double jerk, double fastest) {
     if (budget.time > allowed.time * (1 + 1e-9) || budget.way > allowed.way)
       return Formatted(
           "give a stop of %.0f ms and %.1f mm from %.2f m/s, but real arms must stop within %.0f "
-          "ms and %.1f mm. Increase both: 5 m/s² and 250 m/s³ are sufficient.",
+          "ms and %.1f mm. Increase both values: 5 m/s² and 250 m/s³ are sufficient.",
           1e3 * budget.time, 1e3 * budget.way, allowed.speed, 1e3 * allowed.time,
           1e3 * allowed.way);
     if (fastest <= allowed.speed) break;

@@ -69,7 +69,7 @@ void CheckHeader(const std::vector<YamlNode>& cells, const Place& place) {
                                        std::string(kPosition) + " or " + std::string(kPose) + ".");
 }
 
-// Other controllers refuse the key later.
+// Controllers without these parameters refuse the key later.
 bool HasTrajectoryFile(const YamlNode& controller) {
   const YamlNode* type = controller.Find("type");
   const ParameterKind* kind = FindKind(Controllers(), type ? type->text : ControllerSpec().type);
@@ -104,8 +104,8 @@ YamlNode ParseWaypoints(const std::string& text, const std::string& name) {
                                          ". Give one value for each column.");
     if (list.items.size() == kMaxWaypoints)
       throw InputError(place.Text(), "there are more than " + std::to_string(kMaxWaypoints) +
-                                         " waypoints. Leave out rows; the set-point moves "
-                                         "smoothly from each one to the next.");
+                                         " waypoints. Leave out some rows; the set-point moves "
+                                         "smoothly from each row to the next.");
     list.items.push_back(WaypointOf(std::move(cells), place));
   }
   if (list.items.empty())
@@ -124,8 +124,9 @@ void ExpandTrajectoryFile(const std::filesystem::path& folder, YamlNode* root) {
   const std::string key = std::string("cobot.controller.") + kFileKey;
   YamlNode* list = controller->Find(kListKey);
   if (list != nullptr && !list->items.empty())
-    throw InputError(file->place.Text(), key + ": there is also a " + kListKey +
-                                             ". Remove one of them, or set it to \"\" or [].");
+    throw InputError(file->place.Text(),
+                     key + ": there is also a " + kListKey +
+                         ". Remove one of the two keys, or set it to \"\" or [].");
   std::filesystem::path found;
   try {
     found = ResolveModelPath(file->text, folder);

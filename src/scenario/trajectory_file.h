@@ -13,13 +13,13 @@ namespace predictor {
 inline constexpr std::size_t kMaxWaypoints = 1000;
 
 // Returns the list of waypoints in a text with the header time,x,y,z or time,x,y,z,roll,pitch,yaw.
-// Each value has its place in the file `name`, so that messages about it show this place. Throws
-// InputError.
+// Each value keeps its place in the file `name`, so that messages about the value show this place.
+// Throws InputError.
 YamlNode ParseWaypoints(const std::string& text, const std::string& name);
 
-// Replaces cobot.controller.trajectory_file of a scenario's tree by the waypoints in that file,
-// which is found as a model is (ResolveModelPath, from `folder`). Saved scenarios and recordings
-// then contain the waypoints, and do not need the file. Throws InputError.
+// Replaces cobot.controller.trajectory_file in a scenario's tree with the waypoints in that file.
+// ResolveModelPath finds the file, starting from `folder`. Saved scenarios and recordings then
+// contain the waypoints, and do not need the file. Throws InputError.
 void ExpandTrajectoryFile(const std::filesystem::path& folder, YamlNode* root);
 
 }  // namespace predictor

@@ -23,8 +23,8 @@ std::string StartOf(const std::filesystem::path& library) {
          hash + ") passed `predictor trial` with";
 }
 
-// Returns the end of the line about a list of parameters. The separators between the parameters do
-// not matter.
+// Returns the text with which the line about a list of parameters ends. The separators between the
+// parameters do not matter.
 std::string WordsOf(const std::string& parameters) {
   std::istringstream words(parameters);
   std::string text;

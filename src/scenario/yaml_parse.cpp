@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kMaxBrackets = 20000;
 constexpr const char* kNoAliases =
-    "anchors (&) and aliases (*) are not allowed. Write the value out where it is used.";
+    "anchors (&) and aliases (*) are not allowed. Write the value itself at each place where it is "
+    "used.";
 
 using Source = std::shared_ptr<const std::string>;
 
@@ -56,7 +57,8 @@ class TreeBuilder : public YAML::EventHandler {
   }
   void OnMapEnd() override { open_.pop_back(); }
 
-  // Detects a quotation mark that is never closed; the parser treats it as closed at the end.
+  // Detects a quotation that is never closed, because the parser treats it as closed at the end of
+  // the text.
   void CheckLastQuote(const std::string& text) const {
     auto i = static_cast<std::size_t>(last_quoted_.pos);
     if (last_quoted_.is_null() || i >= text.size()) return;
@@ -88,7 +90,7 @@ class TreeBuilder : public YAML::EventHandler {
     throw InputError(At(mark).Text(), sentence);
   }
 
-  // The parser returns "?" for a plain scalar, "!" for a quoted one.
+  // The parser returns "?" for a plain scalar and "!" for a quoted scalar.
   void CheckTag(const YAML::Mark& mark, const std::string& tag) const {
     if (tag.empty() || tag == "?" || tag == "!") return;
     Refuse(mark, "tags are not allowed, but here is " + Quote(tag) + ". Remove it.");
@@ -151,9 +153,9 @@ class TreeBuilder : public YAML::EventHandler {
   YAML::Mark last_quoted_ = YAML::Mark::null_mark();
 };
 
-// Refuses content that must not reach the parser. Brackets are counted everywhere, because the
-// parser reads ahead through open brackets before it reports any event, and needs a quarter of a
-// kilobyte for each of them.
+// Refuses content that must not reach the parser. Brackets are counted everywhere. The parser reads
+// ahead through open brackets before it reports any event, and needs a quarter of a kilobyte for
+// each open bracket.
 void CheckBytes(const std::string& text, const Source& source) {
   if (text.size() > kMaxYamlBytes) {
     throw InputError(*source, "the file has more than " + std::to_string(kMaxYamlBytes) +

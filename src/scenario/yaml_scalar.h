@@ -18,7 +18,8 @@ ScalarKind KindOf(const YamlNode& scalar);
 // false if the text is not a number.
 bool ReadNumber(const std::string& text, double* number);
 
-// Returns the number as YAML that every reader interprets as a floating-point or whole number.
+// Returns the number as YAML that every reader interprets as a number of the same type
+// (floating-point or whole).
 std::string WriteNumber(double number);
 
 // Returns the text as a double-quoted scalar.

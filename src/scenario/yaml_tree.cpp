@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kCommentColumn = 48;
 
-// Takes one step along a path, which is a key of a map or an index of a list. Returns null if it
-// does not exist.
+// Takes one step along a path, which is a key of a map or an index of a list. Returns null if the
+// key or index does not exist.
 const YamlNode* Step(const std::string& step, const YamlNode& node) {
   if (node.kind != YamlNode::Kind::kList) return node.Find(step);
   std::size_t i = 0;
@@ -74,7 +74,8 @@ void AppendComment(const std::string& comment, std::size_t line_start, std::stri
   *out += " # " + comment;
 }
 
-// If `indented`, the indentation of the first line has already been written ("- " of a list).
+// If `indented` is true, the indentation of the first line (the "- " of a list) has already been
+// written.
 void WriteBlock(const YamlNode& node, std::size_t indent, bool indented, std::string* out) {
   for (const YamlNode& item : node.items) {
     const std::size_t line_start = indented ? out->rfind('\n') + 1 : out->size();

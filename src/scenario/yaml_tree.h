@@ -36,25 +36,29 @@ inline constexpr std::size_t kMaxYamlBytes = 1u << 20;
 inline constexpr int kMaxYamlDepth = 32;
 inline constexpr int kMaxYamlNodes = 50000;
 
-// Returns the text of a file, at most one byte more than permitted. `what` is the expected content,
-// such as "a scenario". Throws InputError.
+// Returns the text of a file, but at most one byte more than the permitted length. `what` names the
+// expected content, such as "a scenario". Throws InputError.
 std::string ReadYamlText(const std::filesystem::path& file, const std::string& what);
 
 // Reads one document of at most kMaxYamlBytes. Throws InputError for invalid UTF-8, anchors and
-// aliases, tags, several documents, duplicate keys, keys that are not plain words, and more depth
-// or nodes than the limits above. The error is thrown before a tree beyond these limits is built.
+// aliases, tags, several documents, duplicate keys, keys that are not plain words, and trees that
+// exceed the above limits of depth and nodes. The error is thrown before a tree beyond these limits
+// is built.
 YamlNode ParseYaml(const std::string& text, const std::string& source);
 
-// Returns the value at "path.to.key" (list entries by index from 0), or null if there is none.
+// Returns the value at "path.to.key", or null if there is no such value. In a path, the index of a
+// list entry counts from 0.
 const YamlNode* NodeAt(const std::string& path, const YamlNode& root);
 
 // Returns the place of the value at "path.to.key", or of the innermost existing group around it.
 Place PlaceOf(const std::string& path, const YamlNode& root);
 
-// Applies `path.to.key=value` (list entries by index from 0). The value is YAML. Throws InputError.
+// Applies the override `path.to.key=value`. In the path, the index of a list entry counts from 0.
+// The value is YAML. Throws InputError.
 void ApplyOverride(const std::string& assignment, YamlNode* root);
 
-// Returns the tree as text that ParseYaml can read: blocks of maps, lists of scalars in a line.
+// Returns the tree as text that ParseYaml can read. Maps are written as blocks, and a list of
+// scalars is written in one line.
 std::string WriteYaml(const YamlNode& root);
 
 }  // namespace predictor

@@ -12,12 +12,13 @@ namespace predictor {
 // Estimates the wrench of one hand. The reading is the wrench that the handle exerts on the sensor,
 // F_S_raw = F_hand + weight − d(momentum)/dt + bias. Therefore the hand's wrench is the reading
 // minus bias and weight, plus the rate of change of momentum. The rate of change of momentum passes
-// the same low-pass filter and delay as the sensor's signal, because otherwise it would not cancel
-// the handle's inertia in the reading.
+// the same low-pass filter and delay as the sensor's signal. Otherwise it would not cancel the
+// effect of the handle's inertia on the reading.
 //
-// The measured acceleration is delayed, too (MotionDifferentiator::Lag). The acceleration is
-// therefore delayed further by the sensor's delay minus this lag. If the sensor's delay is shorter
-// than the lag, the reading is delayed by the difference instead, which is at most half a tick.
+// The measured acceleration is delayed, too (MotionDifferentiator::Lag). The estimator therefore
+// delays the acceleration further, by the sensor's delay minus this lag. If the sensor's delay is
+// shorter than the lag, the estimator instead delays the reading by the difference, which is at
+// most half a tick.
 class HandEstimator {
  public:
   // `X_EH` is the pose of the handle in the end-effector frame. `dt` is the duration of a tick [s],
@@ -25,7 +26,7 @@ class HandEstimator {
   // is passed to Update [s]. Throws InputError.
   HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload, const Pose& X_EH,
                 double gravity, double dt, double acceleration_lag);
-  // Uses the acceleration lag that MotionDifferentiator has with this duration of a tick.
+  // Assumes the acceleration lag of MotionDifferentiator with this duration of a tick.
   HandEstimator(const SensorSpec& sensor, const HandlePayloadSpec& payload, const Pose& X_EH,
                 double gravity, double dt);
 
@@ -34,17 +35,17 @@ class HandEstimator {
   void BeginTare() noexcept;
   Status Tare(const ArmSample& sample, const Pose& X_WE) noexcept;
   // Sets the bias to the mean of the readings. Returns kSensor and keeps the previous bias if there
-  // are fewer than kTareSamples readings, or if they vary more than the sensor's noise explains. In
-  // the latter case, a person or an object is touching the handle. The status contains the observed
-  // and the allowed standard deviation of the worst axis.
+  // are fewer than kTareSamples readings, or if they vary more than the sensor's noise explains. If
+  // they vary too much, a person or an object is touching the handle. The status contains the
+  // observed and the allowed standard deviation of the worst axis.
   Status FinishTare() noexcept;
   const Wrench& bias() const { return bias_; }
-  // Returns the standard deviation of the readings that sensor noise and a quiet room explain [N],
-  // [N·m].
+  // Returns the largest standard deviation of the readings that sensor noise and the vibration of a
+  // quiet room explain [N], [N·m].
   static Wrench QuietDeviation(const SensorSpec& sensor) noexcept;
 
-  // Computes the wrench of the hand at H. `end_effector` is E's motion including A_W (measured
-  // acceleration). Returns kSensor and sets `out` to zero if the reading is not finite, is
+  // Computes the wrench of the hand at H. `end_effector` is the motion of E, including the measured
+  // acceleration A_W. Returns kSensor and sets `out` to zero if the reading is not finite, is
   // saturated, or exceeds the sensor's range along any axis. Saturation and an exceeded range also
   // request a stop without power.
   Status Update(const ArmSample& sample, const FrameMotion& end_effector, HandWrench* out) noexcept;

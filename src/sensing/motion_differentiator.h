@@ -7,8 +7,8 @@
 namespace predictor {
 
 // a = difference between the last two different samples of v, divided by the time between them. The
-// acceleration is not filtered here. HandEstimator passes it through the sensor's low-pass filter,
-// which removes the noise, and compensates for its lag.
+// acceleration is not filtered here. HandEstimator passes the acceleration through the sensor's
+// low-pass filter, which removes the noise, and compensates for the lag.
 class MotionDifferentiator {
  public:
   // `dt` is the duration of a tick [s].
@@ -19,8 +19,8 @@ class MotionDifferentiator {
   // time between samples.
   static double Lag(double dt) { return dt / 2; }
 
-  // Call this once per tick. Returns the joint accelerations [rad/s²]. A repeated sample (same
-  // arm_sequence) does not change these accelerations.
+  // Call this once per tick. Returns the joint accelerations [rad/s²]. If a sample is repeated
+  // (with the same arm_sequence), these accelerations do not change.
   const JointVector& Update(const ArmSample& sample) noexcept;
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept { a(v_, a_, sequence_, ticks_, started_); }

@@ -19,7 +19,7 @@ namespace {
 thread_local std::int64_t allocation_calls = 0;
 
 // These pointers refer to the C library's own functions. In this program, the usual names refer to
-// the functions that count.
+// the functions that count allocations.
 void* (*real_malloc)(std::size_t);
 void* (*real_calloc)(std::size_t, std::size_t);
 void* (*real_realloc)(void*, std::size_t);
@@ -101,7 +101,8 @@ void Replace(void** place, void* with) {
 }
 
 int CountIn(dl_phdr_info* library, std::size_t, void* functions) {
-  // The kernel's own library has addresses of another kind and allocates nothing.
+  // The kernel's own library (the vDSO) is skipped, because it has addresses of another kind and
+  // allocates nothing.
   if (std::string_view(library->dlpi_name).starts_with("linux-vdso")) return 0;
   const Tables tables = TablesOf(*library);
   if (!tables.symbols || !tables.names) return 0;

@@ -16,8 +16,9 @@ constexpr double kConverged = 1e-12;
 constexpr int kMaxPasses = 8;  // of Newton's method with contacts and friction
 constexpr double kSettled = 1e-9;
 
-// Returns the x with |x| ≤ radius that minimises ½ xᵀ A x + bᵀ x, for a positive definite A. With a
-// multiplier μ ≥ 0, (A + μ) x = −b. Newton's method on 1/|x| finds μ (Moré & Sorensen 1983).
+// Returns the x with |x| ≤ radius that minimises ½ xᵀ A x + bᵀ x, for a positive definite A. For a
+// multiplier μ ≥ 0, x satisfies (A + μ) x = −b. Newton's method on 1/|x| finds μ (Moré & Sorensen
+// 1983).
 Vector3 MinimumInBall(const Matrix3& A, const Vector3& b, double radius, bool* at_limit) {
   const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(A);
   const Vector3 a = eigen.eigenvalues(), c = eigen.eigenvectors().transpose() * b;
@@ -104,7 +105,8 @@ AttachmentState Attachment::state() const noexcept {
   return slides_ || turns_ ? AttachmentState::kSlips : AttachmentState::kHolds;
 }
 
-// Lower limits apply at once. What slid in the last step is held at most a step's share tighter.
+// Lower limits apply at once. A limit at which the object slid in the last step rises by at most
+// its rate times the step.
 void Attachment::Tighten() noexcept {
   const double dt = engine_.step();
   const bool open = is_open();
@@ -133,8 +135,8 @@ bool Attachment::Hold() noexcept {
     applied = others;
     applied.noalias() += J_.transpose().lazyProduct(wrench_);
   };
-  // The attachment affects contacts and joint friction, and these affect the attachment. Newton's
-  // method solves both together.
+  // The attachment affects contacts and joint friction, which in turn affect the attachment.
+  // Newton's method solves both together.
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     apply();
     if (engine_.has_reactions() && !engine_.ComputeAccelerations(false)) return false;
@@ -163,7 +165,7 @@ void Attachment::Prepare() noexcept {
   factor_.compute(M_);
 }
 
-// Computes G, including the contacts and the friction that are active at present.
+// Computes G, which includes the contacts and the friction that are active at present.
 void Attachment::UpdateMobility() noexcept {
   holding_ = M_;
   engine_.AddReactions(holding_);
@@ -174,8 +176,8 @@ void Attachment::UpdateMobility() noexcept {
   }
 }
 
-// Returns the wrench on E about A. It assumes that contacts and friction react to the change from
-// the present wrench_ as UpdateMobility determined.
+// Returns the wrench on E about A. The function assumes that contacts and friction react to the
+// change from the present wrench_ as UpdateMobility determined.
 Wrench Attachment::Solve() noexcept {
   const double dt = engine_.step();
   DofVector force(engine_.dof());
@@ -203,8 +205,8 @@ Wrench Attachment::Solve() noexcept {
   return holds ? wrench : WithinLimits(b, wrench);
 }
 
-// Minimises ½ λᵀ G λ + bᵀ λ within the limits, starting from a given λ, alternately over force and
-// torque.
+// Minimises ½ λᵀ G λ + bᵀ λ within the limits. It starts from a given λ and changes the force and
+// the torque alternately.
 Wrench Attachment::WithinLimits(const Vector6& b, Wrench wrench) noexcept {
   const double torque = is_fixed_ ? limits_.torque : HUGE_VAL;
   for (int i = 0; i < kMaxTurns; ++i) {

@@ -1,5 +1,5 @@
-// The attachment of an object that is a separate body. It is a grip with limits, which holds, slips
-// or is open, and opens and closes on command.
+// The attachment of an object that is a separate body. The attachment is a grip with limits. It
+// holds, slips or is open, and it opens and closes on command.
 #pragma once
 
 #include "core/archive.h"
@@ -11,12 +11,12 @@
 namespace predictor {
 
 // Holds the object's attachment frame A at a place in the end-effector's frame E. In each step, the
-// wrench λ of the object on E, about A, is the one with which E and the object have the same
-// velocity at A after the step, if its force and its torque are within the grip's limits.
-// Otherwise, the force or the torque is at its limit and opposes the sliding: λ minimises
-// ½ λᵀ G λ + λᵀ V/dt within both limits, where G = J M⁻¹ Jᵀ, and V is the relative velocity that
-// would result without λ (maximum dissipation, Moreau 1977; Stewart & Trinkle 1996). The grip then
-// holds at the new place.
+// attachment determines the wrench λ of the object on E, about A. If its force and its torque can
+// stay within the grip's limits, λ gives E and the object the same velocity at A after the step.
+// Otherwise, the force or the torque is at its limit and opposes the sliding. In this case, λ
+// minimises ½ λᵀ G λ + λᵀ V/dt within both limits (maximum dissipation, Moreau 1977; Stewart &
+// Trinkle 1996), where G = J M⁻¹ Jᵀ and V is the relative velocity that would result without λ.
+// After sliding, the grip holds the object at the new place.
 //
 // If the limits rise while the object slides, the grip tightens at kForceRate and kTorqueRate until
 // the object no longer slides. A grip that held immediately would stop the object within one step.
@@ -27,16 +27,16 @@ class Attachment {
   // The rates at which a grip tightens [N/s], [N·m/s]. About 100 N within 0.1 s is a design choice.
   static constexpr double kForceRate = 1000, kTorqueRate = 100;
 
-  // `engine` has a free object (Holding::kFree) and must outlive this. Throws InputError if its
-  // cobot has too many joints.
+  // `engine` must have a free object (Holding::kFree) and must outlive this attachment. Throws
+  // InputError if the engine's cobot has too many joints.
   Attachment(const AttachmentSpec& spec, Engine* engine);
 
   // Grips the object at its present place.
   void Grip() noexcept;
   // Sets the limits that the grip should reach.
   void SetLimits(const GripLimits& limits) noexcept { wanted_ = limits; }
-  // Opens the grip, or closes it where the object is, if the object is near enough. A closing grip
-  // tightens at kForceRate and kTorqueRate. Uses the state of the last Prepare.
+  // Opens the grip, or closes it at the object's present place if the object is near enough. A
+  // closing grip tightens at kForceRate and kTorqueRate. Uses the state of the last Prepare.
   void Command(const GripperCommands& commands) noexcept;
   AttachmentState state() const noexcept;
   // Whether the last command to grasp found the object too far away.
@@ -46,7 +46,8 @@ class Attachment {
   // Uses the state of the last Prepare. Returns false on an error of the engine. Does not use the
   // heap.
   bool Hold() noexcept;
-  // Moves the place of the grip by the distance that the object has slid. Call it after the step.
+  // Moves the place of the grip by the distance that the object has slid. Call this function after
+  // the step.
   void Follow() noexcept;
 
   // Returns the wrench of the object on the end-effector in the last Hold, about E, in axes of W
@@ -90,7 +91,7 @@ class Attachment {
   bool slides_ = false, turns_ = false;     // in the last Hold
   Wrench load_ = Wrench::Zero();
   Wrench wrench_ = Wrench::Zero();  // λ in the last Hold: on E, about A, in axes of W
-  // The following members are workspace.
+  // The following members are temporary storage for one step.
   Vector3 p_WA_ = Vector3::Zero();
   DofJacobian J_, other_;           // V_WE − V_WO at A, by the velocities
   Vector6 bias_ = Vector6::Zero();  // J̇ v

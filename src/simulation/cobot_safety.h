@@ -1,4 +1,5 @@
-// The safety functions of the virtual cobot, as a vendor provides them: protective stops and caps.
+// The safety functions of the virtual cobot, as a vendor provides them. They are protective stops
+// and caps.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -24,17 +25,19 @@ class CobotSafety {
   // Returns the estimated wrench on E beyond the payload, about E, in axes of W [N], [N·m].
   Wrench external_wrench() const noexcept { return F_E_W_ - load(); }
 
-  // The cobot rests at `input` under its torques. Any force that acts on it is that of its payload.
+  // The cobot is assumed to rest at `input` under its torques. The only external force on the cobot
+  // is assumed to be that of its payload.
   void Reset(const ControllerInput& input) noexcept;
   // Takes the state after a sub-step of dt [s] under input.torque. Starts a protective stop if a
   // limit is exceeded.
   void Watch(const ControllerInput& input, double dt) noexcept;
   // Takes the velocities [rad/s] after a sub-step in which closed brakes held the joints.
   void Skip(const JointVector& v) noexcept { v_before_ = v; }
-  // Sets the share of its payload that it carries from now on: 0 after it put the object down.
-  // Its estimates change at once, as the observer alone would let them change slowly.
+  // Sets the share of its payload that the cobot carries from now on, which is 0 after it put the
+  // object down. The estimates change at once, whereas the observer alone would change them slowly.
   void SetLoad(const ControllerInput& input, double share) noexcept;
-  // Caps the controller's torques. In a protective stop, which lasts until Reset, it replaces them.
+  // Caps the controller's torques. A protective stop lasts until Reset. During the stop, the
+  // function replaces these torques.
   void Limit(const ControllerInput& input, double dt, JointVector* torque) noexcept;
 
   void Archive(StateArchive& a) noexcept;

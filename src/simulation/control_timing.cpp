@@ -16,7 +16,7 @@ int WholeSteps(double time, double step, const char* key, const std::string& val
   if (std::abs(steps - whole) > 1e-6)
     throw InputError::At(key, std::string(key) + " is " + value +
                                   ", but the simulation's step is " + FormatNumber(1e3 * step) +
-                                  " ms. Give a whole number of these steps.");
+                                  " ms. Give a time that is a whole number of these steps.");
   return static_cast<int>(whole);
 }
 

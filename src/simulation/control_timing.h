@@ -32,7 +32,8 @@ class ControlTiming {
   void AddDelay(double time) noexcept;
   // Returns whether the controller computes in this sub-step.
   bool is_due() const noexcept { return count_ % static_cast<std::uint32_t>(period_) == 0; }
-  // Call this once per sub-step with the torque last computed. Returns the torque that acts.
+  // Call this function once per sub-step with the torque that was computed last. Returns the torque
+  // that acts.
   const JointVector& Apply(const JointVector& torque) noexcept;
 
   void Archive(StateArchive& a) noexcept {

@@ -140,8 +140,8 @@ bool ControlledScene::ComputeTorque(double t, JointVector* torque) noexcept {
   return Acting().outcome() != ControllerOutcome::kFailed;
 }
 
-// Returns the share of the payload that the cobot's program says is in the gripper. It knows
-// nothing of an object that slips or breaks loose.
+// Returns the share of the payload that the cobot's program says is in the gripper. The cobot's
+// program does not know whether an object slips or breaks loose.
 double ControlledScene::PayloadShare() const noexcept {
   const GripperCommands& gripper = disturbance_.gripper;
   if (!gripper.was_opened()) return 1;
@@ -159,7 +159,7 @@ void ControlledScene::AddPayload(JointVector* torque) const noexcept {
   torque->noalias() += J.transpose().lazyProduct(weight);
 }
 
-// Adds what the controller compensates although it does not exist: a load at E, and friction.
+// Adds the load at E and the friction that the controller compensates although they do not exist.
 void ControlledScene::AddModelErrors(JointVector* torque) const noexcept {
   const Disturbance& d = disturbance_;
   if (d.payload != 0) {
@@ -256,8 +256,9 @@ void ControlledScene::RemoveFixtures() noexcept {
   if (loose_) loose_->engine->RemoveFixtures(absent_);
 }
 
-// Removes and adds fixtures as the events require. A fixture that would overlap the object or the
-// cobot is added later, when it no longer does, because the contact would push them away violently.
+// Removes and adds fixtures as the events require. A fixture that overlaps the object or the cobot
+// is added only when the overlap has ended, because the contact would otherwise push the bodies
+// apart violently.
 void ControlledScene::PlaceObstacles() noexcept {
   const std::uint64_t before = absent_;
   const std::uint64_t wanted = obstacles_ & ~disturbance_.obstacles;
@@ -380,9 +381,8 @@ void ControlledScene::CheckGripper(const EventSequence& events, std::size_t i) c
                              ", but only a fixed or a spherical attachment can close again. Change "
                              "object.attachment.joint, or remove the event.");
   if (!events.releases_object())
-    throw InputError::At(path + ".event",
-                         is + ", but the gripper is closed from the start. Add an event "
-                              "release_object before.");
+    throw InputError::At(path + ".event", is + ", but the gripper is closed from the start. Add an "
+                                               "event release_object before this event.");
 }
 
 // Returns the part that an event needs and this cobot lacks, or "" if it lacks nothing.

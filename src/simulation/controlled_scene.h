@@ -1,4 +1,5 @@
-// The scene and the controller of its cobot, which is everything that acts in it except the hands.
+// The scene and the controller of its cobot. Together they are everything that acts in the virtual
+// world, except the hands.
 #pragma once
 
 #include <memory>
@@ -22,23 +23,24 @@ namespace predictor {
 // and a heavy box would make a simulation with 1 ms steps unstable.
 class ControlledScene {
  public:
-  // `events` are those that will disturb it. Throws InputError, for example for an event that would
-  // have no effect on this cobot.
+  // `events` are the events that will disturb the scene. Throws InputError, for example for an
+  // event that would have no effect on this cobot.
   ControlledScene(const Scenario& scenario, const EventSequence& events);
 
-  // Returns the scene at present. It is the one in which the cobot carries the object or, from the
-  // first event of the attachment on, the one with a free object.
+  // Returns the scene at present. At first, the cobot carries the object in this scene. From the
+  // first event of the attachment on, it is the scene with a free object.
   Engine& engine() const { return is_loose_ ? *loose_->engine : *carried_; }
   Engine& start_engine() const { return *carried_; }
-  // Returns the scene with a free object, or null unless an event lets it slip or break loose.
+  // Returns the scene with a free object. If no event lets the object slip or break loose, returns
+  // null.
   Engine* loose_engine() const noexcept { return loose_ ? loose_->engine.get() : nullptr; }
   const RobotModel& robot() const { return *robot_; }
   const JointVector& posture() const { return posture_; }
   const JointVector& effort_limit() const { return effort_limit_; }  // [N·m]
 
-  // Updates what follows from positions and velocities in `engine`, which is in a state of the
-  // present scene, and in the model of the cobot. The functions below use it. Returns false on an
-  // error of the engine.
+  // Updates the quantities in `engine` and in the cobot's model that follow from positions and
+  // velocities. `engine` must be in a state of the present scene. The functions below use these
+  // quantities. Returns false on an error of the engine.
   bool Update(Engine* engine) noexcept;
 
   // Writes the controller's torques at time t [s], limited by the joints' effort limits [N·m], to
@@ -47,10 +49,10 @@ class ControlledScene {
   bool ApplyController(double t, Engine* engine) noexcept;
 
   // The controller's life has these stages. StartController is called once, at the equilibrium at
-  // time 0, and ResetController at every return to it. In each sub-step, StepController applies the
-  // torques that act (as ApplyController does, with period and delay). SenseWrist reads the wrist
-  // sensor after the engine's forces are known and before Update. AdvanceController advances the
-  // controller's memory after Update.
+  // time 0. ResetController is called at every return to this equilibrium. In each sub-step,
+  // StepController applies the torques that act (as ApplyController does, with period and delay).
+  // SenseWrist reads the wrist sensor after the engine's forces are known and before Update. After
+  // Update, AdvanceController advances the controller's memory.
   void StartController() noexcept;
   void ResetController() noexcept;
   bool StepController(double t) noexcept;
@@ -63,15 +65,15 @@ class ControlledScene {
   std::span<double> memory() { return controller_->memory(); }
   const ControlTiming& timing() const { return timing_; }
   void Advance(double t, double dt) noexcept { controller_->Advance(Input(t), dt); }
-  // Returns the wrench of the load on the end-effector, about E, in axes of W, after the engine's
-  // forces are known.
+  // Returns the wrench of the load on the end-effector, about E, in axes of W. Call it after the
+  // engine's forces are known.
   Wrench WristWrench(const Engine& engine) const noexcept;
 
-  // Tunes the controller in the state of the last Update. `t` is its time [s].
+  // Tunes the controller in the state of the last Update. `t` is the time of this state [s].
   void Tune(const ControllerTuning& tuning, double t) noexcept;
   // Sets what hazards do from now on, in the state of the last Update.
   void Disturb(const Disturbance& disturbance, double t) noexcept;
-  // As above, before a state is restored in which they already acted.
+  // As above, but for use before a state is restored in which the hazards already acted.
   void Resume(const Disturbance& disturbance) noexcept;
   CobotStop cobot_stop() const noexcept { return safety_.stop(); }
   AttachmentState attachment() const noexcept {
@@ -82,21 +84,22 @@ class ControlledScene {
   bool must_loosen() const noexcept {
     return !is_loose_ && (disturbance_.grip != GripLimits() || disturbance_.gripper.was_opened());
   }
-  // The fixtures that are not there at present: bit = number of the fixture.
+  // The fixtures that are absent at present. The number of a fixture is the number of its bit.
   std::uint64_t absent() const noexcept { return absent_; }
-  // Frees the object: from now on, the scene is the loose one, with the same poses, velocities and
-  // torques.
+  // Frees the object. From now on, the scene is the one with the free object, with the same poses,
+  // velocities and torques.
   void Loosen() noexcept;
-  // Call this before a state of that scene is restored.
+  // Call this function before a state of the scene with the free object is restored.
   void SetLoose(bool loose) noexcept { is_loose_ = loose && loose_; }
   // For a free object, these functions are called in each sub-step. HoldObject adds the
   // attachment's forces after all others are applied, and returns false on an error of the engine.
-  // FollowObject is called after Update. LandingOf returns the wrench about its centre of mass that
-  // ends a fall.
+  // FollowObject is called after Update. LandingOf returns the wrench that ends a fall, about the
+  // object's centre of mass.
   bool HoldObject() noexcept;
   void FollowObject() noexcept;
   Wrench LandingOf(const FrameMotion& object) const noexcept;
-  // Returns how the last step of the controller that acts went, and the status of a refused step.
+  // Returns the outcome of the last step of the controller that acts, and the status if the step
+  // was refused.
   ControllerOutcome outcome() const noexcept {
     return disturbance_.frozen ? ControllerOutcome::kComputed : Acting().outcome();
   }

@@ -12,7 +12,8 @@ namespace {
 constexpr const ParameterKind* kControllerKinds[] = {PREDICTOR_CONTROLLERS(PREDICTOR_ENTRY)};
 #undef PREDICTOR_ENTRY
 
-// This runs when the program starts, so that every scenario is read with their parameters.
+// The controllers are declared when the program starts, so that every scenario is read with their
+// parameters.
 [[maybe_unused]] const bool kDeclared = (DeclareControllers(kControllerKinds), true);
 
 }  // namespace

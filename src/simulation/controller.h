@@ -1,4 +1,4 @@
-// Controllers of the virtual cobot. docs/developer/add-a-controller.md explains how to add one.
+// Controllers of the virtual cobot. To add a controller, see docs/developer/add-a-controller.md.
 #pragma once
 
 #include <filesystem>
@@ -38,12 +38,12 @@ class Controller {
  public:
   virtual ~Controller() = default;
   // Computes joint torques [N·m] before the effort limits are applied. The torques depend only on
-  // the input, the memory and the last Tune. Earlier calls must have no effect, since start, reset
-  // and linearisation call this function at other states. Does not use the heap or a lock, and does
-  // not throw.
+  // the input, the memory and the last Tune. Earlier calls must not influence the torques, since
+  // start, reset and linearisation call this function at other states. Does not use the heap or a
+  // lock, and does not throw.
   virtual void Compute(const ControllerInput& input, JointVector* torque) noexcept = 0;
-  // Returns the memory: everything that Advance changes, as numbers of any unit that vary smoothly.
-  // Its size is constant. Saved states and the linearisation contain it.
+  // Returns the memory, which is everything that Advance changes, as smoothly varying numbers of
+  // any unit. Its size is constant. Saved states and the linearisation contain the memory.
   virtual std::span<double> memory() noexcept { return {}; }
   // Sets the memory for a cobot that has rested at `input` for a long time.
   virtual void Start(const ControllerInput&) noexcept {}
@@ -57,7 +57,8 @@ class Controller {
   }
   // Returns whether the input contains the wrist sensor's reading.
   virtual bool uses_wrist_sensor() const noexcept { return false; }
-  // Returns the energy stored in the controller's springs [J], or 0 if it has none.
+  // Returns the energy stored in the controller's springs [J], or 0 if the controller has no
+  // springs.
   virtual double StoredEnergy(const ControllerInput& input) const noexcept = 0;
   // Changes stiffness and damping. If `keeps_force`, the set-point shifts so that the springs'
   // force at `input` does not change. Does nothing for a controller without springs and dampers.
@@ -74,17 +75,18 @@ class Controller {
   virtual bool has_set_point() const noexcept { return false; }
   // Undoes Tune and ShiftSetPoint.
   virtual void ResetTuning() noexcept {}
-  // Returns the outcome of the last Compute, and the status of a refused step.
+  // Returns the outcome of the last Compute, and the status if the step was refused.
   virtual ControllerOutcome outcome() const noexcept { return ControllerOutcome::kComputed; }
   virtual Status failure() const noexcept {
     return {StopCause::kPhysics, -1, std::numeric_limits<double>::quiet_NaN(), 0, Quantity::kNone};
   }
-  // In real time, a controller outside the program has a deadline. Otherwise the program waits for
-  // the controller.
+  // In real time, a controller outside the program has a deadline. In virtual time, the program
+  // waits for the controller.
   virtual void SetRealTime(bool) noexcept {}
-  // If the scenario requests it, gives the controller's process a real-time priority (SCHED_FIFO)
-  // below that of the loop, or removes this priority. Returns what the system granted as text to
-  // follow "Real-time scheduling: ...; ", or "" if there is nothing to say. Not for the tick.
+  // Gives the controller's process a real-time priority (SCHED_FIFO) below that of the loop if the
+  // scenario requests it, or removes this priority. Returns a text that states what the system
+  // granted, to be printed after "Real-time scheduling: ...; ". Returns "" if there is nothing to
+  // report. Not for the tick.
   virtual std::string PrioritiseProcess(bool) { return ""; }
   // Returns null unless the controller is outside the program.
   virtual TapedController* taped() noexcept { return nullptr; }
@@ -92,7 +94,8 @@ class Controller {
   virtual void Archive(StateArchive&) noexcept {}
 };
 
-// The data from which a controller is made: its part of the scenario, the robot, and the start.
+// The data from which a controller is made. They are its part of the scenario, the robot, and the
+// state at the start.
 struct ControllerContext {
   const ControllerSpec& spec;
   const RobotModel& model;
@@ -111,8 +114,8 @@ struct ControllerKind : ParameterKind {
   std::unique_ptr<Controller> (*make)(const ControllerContext&, const OwnParameters&);
 };
 
-// Returns the kind of a controller C whose constructor takes the context and its parameters P.
-// `name` is its cobot.controller.type.
+// Returns the registry's kind for the controller class C, whose constructor takes the context and
+// the parameters P. `name` is its cobot.controller.type.
 template <class C, class P>
 constexpr ControllerKind ControllerKindOf(const char* name, const char* doc,
                                           ControllerPlace place = ControllerPlace::kProgram) {
@@ -124,13 +127,14 @@ constexpr ControllerKind ControllerKindOf(const char* name, const char* doc,
           }};
 }
 
-// Returns the `values` of the parameter `key`, one per joint. A single value is for all joints.
+// Returns the `values` of the parameter `key`, one per joint. A single value applies to all joints.
 // Throws InputError if the number of values is neither 1 nor the number of joints.
 JointVector PerJoint(const ControllerContext& context, const std::string& key,
                      const std::vector<double>& values);
 
 // Makes the controller that context.spec.type names, from the list in controllers/controllers.h.
-// Throws InputError if the name is unknown or if its part of the scenario does not fit the robot.
+// Throws InputError if the name is unknown or if the controller's part of the scenario does not fit
+// the robot.
 std::unique_ptr<Controller> MakeController(const ControllerContext& context);
 std::vector<std::string> ControllerNames();
 

@@ -15,7 +15,7 @@ class ControllerProcess {
  public:
   // Starts the program in `folder`, with the shared memory as descriptor 3. Throws InputError.
   ControllerProcess(const std::vector<std::string>& command, const std::filesystem::path& folder);
-  // Requests that the program end, and ends it if it does not do so by itself.
+  // Asks the program to end, and ends it by force if it keeps running.
   ~ControllerProcess();
   ControllerProcess(const ControllerProcess&) = delete;
   ControllerProcess& operator=(const ControllerProcess&) = delete;
@@ -32,12 +32,12 @@ class ControllerProcess {
   // `deadline` [s] has passed.
   bool AskAndWatch(int kind, double deadline) noexcept;
 
-  // Returns true while an answer to an earlier request may still arrive. In this case, the memory
-  // `shared` belongs to the program.
+  // Returns true while an answer to an earlier request may still arrive. While this is possible,
+  // the emulator must not write to the memory `shared`.
   bool IsBusy() const noexcept;
   // As SharedProcess::SetPriority.
   int SetPriority(int priority) noexcept { return process_.SetPriority(priority); }
-  // Returns, for example, "exit code 1", or "" while the program runs.
+  // Returns how the program ended (for example, "exit code 1"), or "" while the program runs.
   std::string HowItEnded() noexcept { return process_.HowItEnded(); }
 
  private:

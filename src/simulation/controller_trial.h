@@ -1,5 +1,5 @@
-// Tries a controller on recorded states to find out whether it allocates memory, and how long it
-// takes.
+// Tries a controller on recorded states to find out whether it allocates memory, and how long its
+// steps take.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,8 @@ struct TrialFigures {
 
 class ControllerTrial {
  public:
-  // Makes the scenario's controller. From now on, it counts the allocations of this process. Throws
-  // InputError.
+  // Makes the scenario's controller. From the construction on, the trial counts the allocations of
+  // this process. Throws InputError.
   explicit ControllerTrial(const Scenario& scenario);
   ~ControllerTrial();
 

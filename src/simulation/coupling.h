@@ -1,5 +1,4 @@
-// Computes the wrench that keeps the virtual object from running away from the arms that display
-// it.
+// Computes the wrench that keeps the virtual object close to the arms that display it.
 #pragma once
 
 #include "core/messages.h"
@@ -25,13 +24,14 @@ HandleMobility MobilityAt(double mass, const Matrix3& inertia, const Vector3& le
 //   there, and a damper on the relative motion grows to its full value at twice the deadband.
 // * If D is faster than the handles' speed cap, which the arms cannot follow, a damper acts on the
 //   excess speed.
-// Translation and rotation are treated alike. Each damper is limited so that d·dt·mobility ≤ 0.3.
-// Even the two dampers of both handles together (1.2) then leave an explicit step of a light object
-// stable (limit: 2).
+// Translation and rotation are treated in the same way. Each damper is limited so that
+// d·dt·mobility ≤ 0.3. Even the two dampers of both handles together (1.2) then leave an explicit
+// step of a light object stable (limit: 2).
 class Coupling {
  public:
   Coupling() = default;
-  // The speed caps are in [m/s] and [rad/s], `dt` is the integration step, `mobility` is at D.
+  // The speed caps are in [m/s] and [rad/s]. `dt` is the integration step, and `mobility` is the
+  // mobility at D.
   Coupling(const CouplingSpec& spec, double speed_cap, double rotation_speed_cap,
            const HandleMobility& mobility, double dt);
 
@@ -40,8 +40,7 @@ class Coupling {
   Wrench Compute(const FrameMotion& D, const FrameMotion& H) const noexcept;
 
  private:
-  // The parameters of translation or of rotation, in units with m for translation and with rad for
-  // rotation.
+  // The parameters of translation, in units with m, or of rotation, in units with rad.
   struct Part {
     double deadband = 0, stiffness = 0, damping = 0;  // [m], [N/m], [N·s/m]
     double speed_cap = 0, speed_damping = 0;          // [m/s], [N·s/m]

@@ -1,4 +1,4 @@
-// What the events that act at present do to the virtual cobot.
+// The effects of the events that act on the virtual cobot at present.
 #pragma once
 
 #include <cmath>
@@ -19,12 +19,13 @@ struct GripLimits {
   bool operator==(const GripLimits&) const = default;
 };
 
-// The last commands of the cobot's program to its gripper. Times say how long ago a command was
-// given [s]; infinite: never.
+// The last commands of the cobot's program to its gripper. Each time is the time since a command
+// was given [s], or infinite if it was never given.
 struct GripperCommands {
   double released = HUGE_VAL, grasped = HUGE_VAL;
-  // Of the last command to grasp: how far the object may be from the place where the gripper held
-  // it at the start [m], [rad], and how long the cobot takes to compensate its payload [s].
+  // These values belong to the last command to grasp. The first two are the largest permitted
+  // distance of the object from the place where the gripper held it at the start [m], [rad]. The
+  // third is the time that the cobot takes to compensate its payload [s].
   double distance = 0, angle = 0, load_time = 0;
 
   bool was_opened() const noexcept { return released < HUGE_VAL; }

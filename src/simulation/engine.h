@@ -1,4 +1,5 @@
-// The interface of a physics engine for the rest of this module: a scene in one state.
+// The interface through which the rest of this module uses a physics engine. An engine is a scene
+// in one state.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,20 +19,21 @@
 
 namespace predictor {
 
-// How the object is part of the scene: as a body that the attachment's joint connects to the
-// end-effector, or as a free body.
+// The way in which the object is part of the scene. Either the attachment's joint connects it to
+// the end-effector, or it is a free body.
 enum class Holding { kJoint, kFree };
 
 enum class SceneBody { kEndEffector, kObject };  // their frames are E and O
 
-// The Coulomb friction of a joint of the cobot, and how little it creeps (1: not at all).
+// The Coulomb friction of a joint of the cobot, and a measure of how little this friction creeps (1
+// means no creep).
 struct DofFriction {
   double torque, impedance;  // [N·m] or [N], [1]
 };
 inline constexpr double kBrakeImpedance = 0.9999;  // of a closed brake
 
-// A point where a body touches another one. The body is the object or the cobot if one of them
-// touches; otherwise, it is a movable object.
+// A point at which a body touches another body. If the object or the cobot takes part in the
+// contact, it is the body. Otherwise, the body is a movable object.
 struct Contact {
   Vector3 p_W = Vector3::Zero();       // [m]
   Vector3 normal_W = Vector3::Zero();  // unit vector, out of the other one
@@ -46,16 +48,17 @@ struct Contact {
 };
 
 // The positions and velocities are those of the cobot's joints and of the attachment's joint or the
-// free object, in the engine's order (Layout). Those of the movable objects are separate, so that
-// equilibrium, linearisation and attachment see the cobot and its object only. A rotation may have
-// more positions than velocities. A change of the positions is a vector as long as the velocities
-// (tangent space).
+// free object, in the engine's order (Layout). The positions and velocities of the movable objects
+// are separate, so that equilibrium, linearisation and attachment deal only with the cobot and its
+// object. A rotation may have more position coordinates than velocity coordinates. A change of the
+// positions is a vector as long as the velocities (tangent space).
 //
-// A step has two stages. Prepare computes what follows from positions and velocities. Then forces
-// are set, and Advance computes the accelerations and integrates. Some functions use the state of
-// the last Prepare, and say so.
+// A step has two stages. In the first stage, Prepare computes the quantities that follow from
+// positions and velocities. The caller then sets forces. In the second stage, Advance computes the
+// accelerations and integrates. Some functions use the state of the last Prepare, as their comments
+// state.
 //
-// Functions that are noexcept use neither heap nor lock.
+// Functions that are noexcept use neither the heap nor locks.
 class Engine {
  public:
   using Values = Eigen::Map<Eigen::VectorXd>;
@@ -94,34 +97,36 @@ class Engine {
   // Sets the wrench on the object, about its centre of mass, in axes of W [N, N·m].
   virtual void SetObjectWrench(const Wrench& wrench) noexcept = 0;
   virtual ConstValues accelerations() const noexcept = 0;  // of the last step
-  // Clears the start of the iterative contact solver, on which the last digits of the results
-  // depend.
+  // Clears the initial values of the iterative contact solver, on which the last digits of the
+  // results depend.
   virtual void ForgetSolution() noexcept = 0;
 
-  // The following functions archive all of the above as numbers. A restored state continues bit for
-  // bit.
+  // The following functions archive all of the above data as numbers. The steps after a restored
+  // state are identical, bit for bit, to those of the original run.
   virtual std::size_t state_size() const noexcept = 0;
   virtual void Save(std::span<double> to) const noexcept = 0;
   virtual void Restore(std::span<const double> from) noexcept = 0;  // to be followed by Prepare
-  // With Holding::kFree, gives the object this pose and twist (not the acceleration).
+  // With Holding::kFree, sets the object's pose and twist to the given ones, but not its
+  // acceleration.
   virtual void MoveObject(const FrameMotion& O) noexcept = 0;
-  // Of all movable objects (environment.objects): positions and velocities in the engine's order,
-  // motions, and the potential energy of their weights, which is 0 at z = 0 [J].
+  // The following data concern all movable objects (environment.objects). They are the positions
+  // and velocities in the engine's order, the motions, and the potential energy of the weights,
+  // which is 0 at z = 0 [J].
   virtual Values movable_positions() noexcept { return {nullptr, 0}; }
   virtual Values movable_velocities() noexcept { return {nullptr, 0}; }
   virtual Movables movables() const noexcept { return {}; }
   virtual double MovablePotential() const noexcept { return 0; }
-  // Puts everything at rest at the model's zero, and the movable objects where they start. It also
-  // repairs the state after an error.
+  // Puts everything at rest at the model's zero, and the movable objects in the places where they
+  // start. This function also repairs the state after an error.
   virtual void Clear() noexcept = 0;
 
   // ---- a step ----------------------------------------------------------------------------------
 
   // These functions return false on an error of the engine, or if there are more contacts than it
-  // can handle. The state is then unusable until Clear or Restore.
+  // can handle. After an error, the state is unusable until Clear or Restore.
   virtual bool Prepare() noexcept = 0;
   virtual bool Advance() noexcept = 0;  // by layout().step
-  // Computes only the accelerations at the present forces, and the load's wrench if `load`.
+  // Computes only the accelerations at the present forces, and the load's wrench if `load` is true.
   virtual bool ComputeAccelerations(bool load) noexcept = 0;
 
   // ---- kinematics and forces, at the last Prepare ----------------------------------------------
@@ -130,34 +135,36 @@ class Engine {
   virtual FrameMotion MotionOf(SceneBody body) const noexcept = 0;  // A_W is zero
   virtual Vector3 object_com() const noexcept = 0;                  // in W [m]
   virtual double KineticEnergy() noexcept = 0;  // with that of movable objects [J]
-  // For the point p_W of a body, writes its velocity and then the body's angular velocity, per
-  // velocity of the joints.
+  // Writes the Jacobian of the point p_W of a body: the rows of the point's velocity, and then
+  // those of the body's angular velocity.
   virtual void Jacobian(SceneBody body, const Vector3& p_W, Jacobian6 J) noexcept = 0;
   virtual void JacobianRate(SceneBody body, const Vector3& p_W, Jacobian6 J) noexcept = 0;
   virtual void MassMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept = 0;
   virtual void TimesMass(const double* a, double* force) const noexcept = 0;  // M a
-  // Writes the matrix of a step: the change of the velocities is its inverse times step · forces.
-  // It is the mass matrix plus whatever the integrator treats implicitly.
+  // Writes the matrix of a step. The change of the velocities in a step is the inverse of this
+  // matrix times step · forces. It is the mass matrix plus the terms that the integrator treats
+  // implicitly.
   virtual void StepMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept = 0;
   // Writes all forces of the last ComputeAccelerations except those that StepMatrix contains [N·m,
   // N].
   virtual void Forces(Eigen::Ref<Eigen::VectorXd> forces) noexcept = 0;
   // Returns whether contacts, limits or friction react to applied forces. AddReactions adds the
-  // contribution of the active ones to the StepMatrix.
+  // contribution of the active contacts, limits and friction to the StepMatrix.
   virtual bool has_reactions() const noexcept = 0;
   virtual void AddReactions(Eigen::Ref<Eigen::MatrixXd> M) const noexcept = 0;
   // Sets positions ⊕ scale · change.
   virtual void Displace(const double* change, double scale) noexcept = 0;
 
-  // With Holding::kJoint and a wrist sensor, after ComputeAccelerations(true) or Advance, returns
-  // the wrench of the load on the end-effector, about the attachment, in axes of W. Sets the
-  // attachment's place.
+  // Returns the wrench of the load on the end-effector, about the attachment, in axes of W. This
+  // function requires Holding::kJoint, a wrist sensor, and a preceding ComputeAccelerations(true)
+  // or Advance. Sets the attachment's place.
   virtual Wrench LoadWrench(Vector3* p_WA) const noexcept = 0;
 
-  // Returns the contacts of the last Prepare. Their forces are those of the last accelerations.
+  // Returns the contacts of the last Prepare. The forces of these contacts belong to the
+  // accelerations that were computed last.
   virtual int contact_count() const noexcept = 0;
   virtual Contact contact(int i) const noexcept = 0;
-  // Returns whether ComputeAccelerations includes contacts, so that an object may rest on a body at
+  // Returns whether ComputeAccelerations includes contacts. If so, an object may rest on a body at
   // the start.
   virtual bool has_contacts_at_rest() const noexcept { return true; }
 
@@ -167,19 +174,20 @@ class Engine {
   virtual DofFriction JointFriction(int j) const noexcept = 0;
   virtual void SetJointFriction(int j, const DofFriction& friction) noexcept = 0;
 
-  // Removes these fixtures, and returns all others to their places: bit = number of the fixture. To
-  // be followed by Prepare.
+  // Removes the given fixtures, and returns all other fixtures to their places. The number of a
+  // fixture is the number of its bit. Prepare must follow this call.
   virtual void RemoveFixtures(std::uint64_t which) noexcept = 0;
 
-  // Direct mode: mass of a hand [kg], which moves with its handle and has no weight. SetHandMass
-  // returns whether the mass changed; if so, Prepare must follow. Other modes: 0.
+  // In direct mode, the mass of a hand [kg]. The hand moves with its handle and has no weight.
+  // SetHandMass returns whether the mass changed; if so, Prepare must follow. Other modes: 0.
   virtual double HandMass(int hand) const noexcept = 0;
   virtual bool SetHandMass(int hand, double mass) noexcept = 0;
   // Archives the sums of masses, including the rounding errors from changes of the hands' masses.
   virtual void ArchiveMasses(StateArchive& a) noexcept = 0;
 
-  // Options for searches outside the tick: whether the joints have Coulomb friction, how precisely
-  // contacts are solved (relative), and whether the movable objects touch anything.
+  // Options for searches outside the tick. They determine whether the joints have Coulomb friction,
+  // the relative accuracy with which contacts are solved, and whether the movable objects touch
+  // anything.
   struct Options {
     bool coulomb_friction = true;
     double tolerance = 0;
@@ -189,16 +197,18 @@ class Engine {
   virtual void SetOptions(const Options& options) noexcept = 0;
 
   virtual std::string SceneText() const = 0;  // for inspection, in the language of MuJoCo
-  // Returns a sentence that states why the engine no longer computes, or "" if it does.
+  // Returns a sentence that states why the engine no longer computes, or "" if the engine still
+  // computes.
   virtual std::string Failure() const { return ""; }
 
  protected:
   Layout layout_;
 };
 
-// Composes the scene of a scenario for its simulation.engine: cobot, object, handles, floor and
-// table. The object collides with floor and table. `wrist_sensor` states whether LoadWrench will be
-// used. Throws InputError, also if the scene needs something that this engine lacks.
+// Composes the scene of a scenario (cobot, object, handles, floor and table) for the engine that
+// simulation.engine selects. The object collides with floor and table. `wrist_sensor` states
+// whether LoadWrench will be used. Throws InputError if the scene is invalid, or if it needs a
+// property that this engine lacks.
 std::unique_ptr<Engine> MakeEngine(const Scenario& scenario, const RobotModel& cobot,
                                    bool wrist_sensor, Holding holding);
 

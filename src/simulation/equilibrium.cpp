@@ -20,13 +20,14 @@ constexpr int kIterations = 1000;
 constexpr double kMaxStep = 0.1;      // maximum change of a coordinate in an iteration [rad, m]
 constexpr double kPseudoTime = 0.01;  // first step of the flow, squared [s²]
 constexpr double kDifference = 1e-6;  // step of finite differences [rad, m]
-// The step while a body rests on a fixture. It is smaller than the 0.5 µm by which the body sinks
-// in.
+// The step while a body rests on a fixture. The step is smaller than the 0.5 µm by which the body
+// sinks in.
 constexpr double kContactDifference = 1e-8;
-// The largest depth to which an iteration may enter a fixture [m]. Deeper inside, the contact's
-// force is so large that the search would jump in and out.
+// The largest depth to which a body may enter a fixture in an iteration [m]. At a greater depth,
+// the contact's force is so large that the search would jump in and out of the fixture.
 constexpr double kMaxDepth = 1e-5;
-// An iteration enters a fixture with a stiffness at most this many times deeper than the last one.
+// In each iteration, a body may enter a fixture with a stiffness at most this many times deeper
+// than in the last iteration.
 constexpr double kDeeper = 2;
 constexpr int kHalvings = 30;            // of an iteration that enters a fixture deeper
 constexpr double kDeepestStart = 0.001;  // in a fixture [m]
@@ -40,13 +41,14 @@ class EquilibriumSearch {
  public:
   explicit EquilibriumSearch(ControlledScene* scene)
       : scene_(*scene), engine_(scene->engine()), options_(engine_.options()) {
-    // The movable objects stay where they start, and do not support the object.
+    // The movable objects stay in the places where they start, and do not support the object.
     engine_.SetOptions(
         {.coulomb_friction = false, .tolerance = kContactTolerance, .movables_touch = false});
   }
   ~EquilibriumSearch() { engine_.SetOptions(options_); }
 
-  // Returns the largest remaining acceleration; the search succeeded if it is below kTolerance.
+  // Returns the largest remaining acceleration. The search succeeded if this acceleration is below
+  // kTolerance.
   double Run() {
     VectorXd r = Force();
     double tau = kPseudoTime;
@@ -59,8 +61,8 @@ class EquilibriumSearch {
       const double softest = modes.eigenvalues.real().minCoeff(&worst);
       if (before < kTolerance && softest > kUnstable) return before;
       if (before < kTolerance) {
-        // The equilibrium is unstable (an object is balanced above its joint), so the object is
-        // pushed away from it.
+        // The equilibrium is unstable (for example, an object is balanced above its joint), so the
+        // object is pushed away from the equilibrium.
         const VectorXd away = modes.eigenvectors.col(worst).real();
         Move(kNudge * away / away.lpNorm<Eigen::Infinity>());
         tau = kPseudoTime;
@@ -117,8 +119,9 @@ class EquilibriumSearch {
     }
   }
 
-  // Returns the depth to which the object or the cobot has entered a fixture that has a stiffness
-  // (`yields`), or one that has none [m]. The depth is 0 if the search does not include contacts.
+  // Returns the depth to which the object or the cobot has entered a fixture [m]. `yields` selects
+  // the fixtures with a stiffness or those without one. The depth is 0 if the search does not
+  // include contacts.
   double Depth(bool yields) {
     if (!engine_.has_contacts_at_rest()) return 0;
     engine_.Prepare();
@@ -161,7 +164,7 @@ class EquilibriumSearch {
   Engine::Options options_;
 };
 
-// The reason why the cobot cannot hold the object in the posture where the search ended, and the
+// The reason why the cobot cannot hold the object in the posture in which the search ended, and the
 // scenario's key for the cause. The text is "" if nothing prevents the cobot from holding the
 // object.
 struct Obstacle {
@@ -198,7 +201,7 @@ std::string Millimetres(double metres) {
   return FormatNumber(std::round(metres * 1e4) / 10) + " mm";
 }
 
-// Throws InputError for a movable object that overlaps its surroundings or another one.
+// Throws InputError for a movable object that overlaps its surroundings or another movable object.
 void RefuseOverlap(const Contact& contact) {
   const std::string key = KeyOfMovable(contact.body);
   const std::string other = contact.movable >= 0 ? KeyOfMovable(contact.movable)
@@ -207,11 +210,11 @@ void RefuseOverlap(const Contact& contact) {
                                 : "the floor or the table";
   throw InputError::At(key + ".xyz", key + ".xyz: at the start, this object is " +
                                          Millimetres(contact.depth) + " inside " + other +
-                                         ". Move it at least this far away.");
+                                         ". Move it away by at least this distance.");
 }
 
-// The search does not include the movable objects. If one of them touched the object or the cobot,
-// the run would not begin at rest.
+// The search does not include the movable objects. If a movable object touched the object or the
+// cobot, the run would not begin at rest.
 void RefuseTouch(Engine* engine) {
   if (engine->movables().count == 0) return;
   engine->Prepare();
@@ -228,8 +231,8 @@ void RefuseTouch(Engine* engine) {
   }
 }
 
-// Without this check, the search would push the bodies apart, and the run would start elsewhere
-// than the scenario describes.
+// Without this check, the search would push the bodies apart, and the run would not start as the
+// scenario describes.
 void CheckStart(Engine* engine) {
   engine->Prepare();
   for (int i = 0; i < engine->contact_count(); ++i) {
@@ -253,8 +256,8 @@ void RefuseContact(Engine* engine) {
   if (engine->has_contacts_at_rest() || !engine->Prepare() || engine->contact_count() == 0) return;
   throw InputError::At("simulation.engine",
                        "simulation.engine is dart, but the object touches the floor, the table or "
-                       "a fixture at the start. Lift it with cobot.posture, or set "
-                       "simulation.engine: mujoco.");
+                       "a fixture at the start. Lift the object by a change of cobot.posture, or "
+                       "set simulation.engine: mujoco.");
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ std::uint64_t BitOfFixture(const Scenario& scenario, std::size_t event) {
   }
   throw InputError::At(
       path, path + ": no fixture has the name " + Quote(name) + ". " +
-                (names.empty() ? "Give the fixture that appears a name in environment.fixtures."
+                (names.empty() ? "In environment.fixtures, give a name to the fixture that appears."
                                : Suggestion(name, names)));
 }
 
@@ -58,8 +58,8 @@ EventSequence::EventSequence(const Scenario& scenario) {
     auto parameters = ReadParameters(*kind, {spec.parameters, path}, &problems);
     problems.ThrowIfAny();
     const auto place = std::find(std::begin(kHazardKinds), std::end(kHazardKinds), kind);
-    // Each event has its own random stream, so that further events do not change the times of
-    // others.
+    // Each event has its own random stream, so that an additional event does not change the times
+    // of the other events.
     events_.push_back({kind, std::move(parameters), spec.trigger, spec.duration,
                        RandomStream(scenario.seed, "event " + std::to_string(i)),
                        static_cast<std::uint8_t>(place - std::begin(kHazardKinds) + 1),
@@ -137,7 +137,7 @@ Disturbance EventSequence::Update(const WorldState& world, const WorldInput& inp
       event.begin = time_;
       latest_ = event.number;
     }
-    // Rounding must not add a tick.
+    // Rounding errors must not add a tick.
     if (event.begun && event.duration > 0 && time_ - event.begin > event.duration - 1e-9)
       event.ended = true;
   }

@@ -23,13 +23,14 @@ class EventSequence {
   double longest_delay() const;     // sum of all that events add [s]
   bool loosens_attachment() const;  // an event lets the object slip, break loose or be put down
   bool releases_object() const;     // an event opens the gripper
-  // What all events together let appear: bit = number of the fixture.
+  // The fixtures that appear through all events together. The number of a fixture is the number of
+  // its bit.
   std::uint64_t obstacles() const;
-  // What event i lets appear.
+  // The fixtures that appear through event i, as bits in the same way.
   std::uint64_t obstacles(std::size_t i) const { return events_[i].obstacles; }
 
-  // Returns to a state in which no event has begun. Draws new times, because the person knows those
-  // of the last run.
+  // Returns to the state in which no event has begun. Draws new times for the events, because the
+  // person knows the times of the last run.
   void Reset() noexcept;
   // Begins and ends events according to the state of the world. Returns their effects.
   Disturbance Update(const WorldState& world, const WorldInput& input) noexcept;
@@ -37,8 +38,8 @@ class EventSequence {
   Disturbance disturbance() const noexcept;
 
   std::uint16_t active() const noexcept;  // bit: number of the event
-  // Returns 1 + the number of the hazard (in the order of hazards.h) that began last, or 0 for
-  // none.
+  // Returns 1 + the number of the hazard that began last (in the order of hazards.h), or 0 if none
+  // has begun.
   std::uint8_t latest() const noexcept { return latest_; }
 
   void Archive(StateArchive& a) noexcept;

@@ -42,8 +42,8 @@ const PredictorControllerInput& InterfaceInput::Fill(const ControllerInput& inpu
   if (input.torque) Copy(*input.torque, to_.torque);
   Copy(input.F_E_W, to_.F_E_W);
   FillPose(input.X_WO, to_.X_WO);
-  // The other values follow from the state of the joints, which is often the same as in the last
-  // call.
+  // The other values follow from the state of the joints, which is often the same in two successive
+  // calls.
   if (is_filled_ && Holds(*input.q, to_.q) && Holds(*input.v, to_.v)) return to_;
   is_filled_ = true;
   const RobotData& data = *input.data;
@@ -67,9 +67,10 @@ std::vector<InterfaceParameter> InterfaceParameters(const std::string& text) {
   for (std::string word; words >> word;) {
     const std::size_t equals = word.find('=');
     if (equals == 0 || equals == std::string::npos)
-      throw InputError::At("cobot.controller.parameters",
-                           "cobot.controller.parameters contains " + Quote(word) +
-                               ". Write key=value, with a space before the next one.");
+      throw InputError::At(
+          "cobot.controller.parameters",
+          "cobot.controller.parameters contains " + Quote(word) +
+              ". Write each parameter as key=value, with a space between two parameters.");
     parameters.push_back({word.substr(0, equals), word.substr(equals + 1)});
   }
   return parameters;

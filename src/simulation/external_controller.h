@@ -1,5 +1,5 @@
-// The part that all controllers outside the program have in common. They are plug-ins and separate
-// processes.
+// The part that all controllers outside the program have in common. These controllers are plug-ins
+// and separate processes.
 #pragma once
 
 #include <predictor/controller.h>
@@ -39,12 +39,13 @@ struct InterfaceParameter {
 // Throws InputError if a word is not "key=value".
 std::vector<InterfaceParameter> InterfaceParameters(const std::string& text);
 
-// Returns whether a saved state can contain this number. No controller needs larger numbers.
+// Returns whether a saved state can contain this number. Larger numbers are refused, because no
+// controller needs them.
 inline bool IsUsable(double x) noexcept { return std::abs(x) < 1e12; }
 
 void FillPose(const Pose& X, double* to) noexcept;
 
-// A controller whose torques are not trusted: they may be late, absent or not finite.
+// A controller whose torques must be checked, because they may be late, absent or not finite.
 class ExternalController : public Controller {
  public:
   explicit ExternalController(const ControllerContext& context);
@@ -54,8 +55,8 @@ class ExternalController : public Controller {
   Status failure() const noexcept final { return failure_; }
 
  protected:
-  // Requests the torques. The answer states whether torques arrived, and otherwise for how long
-  // none have arrived [s].
+  // Requests the torques. The answer states whether torques arrived and, if not, for how long none
+  // have arrived [s].
   struct Answer {
     bool came = true;
     double silence = 0;

@@ -10,8 +10,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kPositionStep = 1e-6;  // [rad, m]
-// The step is in [rad/s, m/s]. The result is exact, because the forces are quadratic in the
-// velocities.
+// The step of the velocities is in [rad/s, m/s]. The result is exact, because the forces are
+// quadratic in the velocities.
 constexpr double kVelocityStep = 1e-4;
 constexpr double kWrenchStep = 1e-2;  // [N, N·m]
 constexpr double kMemoryStep = 1e-6;  // of a controller
@@ -68,7 +68,7 @@ class Linearisation {
   // Returns the number of states of the wrist sensor's filter and the controller's memory together.
   int inner() const { return sensed_ + static_cast<int>(memory_.size()); }
 
-  // Returns the slopes of the rates and, below them, of the controller's torques.
+  // Returns the derivatives of the rates and, in the rows below, those of the controller's torques.
   MatrixXd SlopesByState() {
     MatrixXd slopes(n_ + inner() + dof(), 2 * n_ + inner());
     const VectorXd zero = VectorXd::Zero(n_), same = VectorXd::Zero(inner());
@@ -83,7 +83,7 @@ class Linearisation {
     return slopes;
   }
 
-  // Returns the slopes of the rates.
+  // Returns the derivatives of the rates.
   MatrixXd SlopesByTorque() {
     MatrixXd slopes(n_ + inner(), dof());
     const VectorXd zero = VectorXd::Zero(n_), same = VectorXd::Zero(inner());
@@ -109,7 +109,7 @@ class Linearisation {
   }
 
   // Delays the controller's torques by two first-order all-pass sections per joint (as the loop's
-  // other delays, haptics/stability.cpp). With z' = c (input − z), a section's output is 2 z −
+  // other delays, haptics/stability.cpp). If z' = c (input − z), the output of a section is 2 z −
   // input. The torques that act differ from the computed ones by 2 z_2 − 2 z_1.
   void AddDelay(const MatrixXd& torque, LinearModel* model) {
     const Eigen::Index states = model->A.rows(), joints = dof();
@@ -165,8 +165,8 @@ class Linearisation {
   }
 
   // Returns the cutoff of the wrist sensor [rad/s], which accounts for the lag of sampling. On
-  // average, a reading is half a sub-step old. The memory is advanced explicitly, which delays it
-  // by half a period.
+  // average, a reading is half a sub-step old. The integration of the memory is explicit, which
+  // delays the memory by half a period.
   double WristRate() {
     const double lag = 0.5 * (engine_.step() + scene_.timing().period_time());
     return 1 / (1 / scene_.wrist().cutoff() + lag);

@@ -12,7 +12,7 @@
 namespace predictor {
 namespace {
 
-// The variable is initialised with a constant, so that a signal handler can read it at any time.
+// This variable is initialised with a constant, so that a signal handler can read it at any time.
 constinit thread_local PluginCalls* running = nullptr;
 
 std::atomic<PluginCalls*> given_up{nullptr};
@@ -92,8 +92,8 @@ PluginCall::PluginCall(PluginCalls* calls, const char* function, Kind kind) noex
   running = calls_;
 }
 
-// The order of the two accesses (both sequentially consistent) ensures that either this thread sees
-// that its call was given up, or GiveUp sees that the call has returned.
+// Both accesses are sequentially consistent. Their order ensures that either this thread sees that
+// its call was given up, or GiveUp sees that the call has returned.
 PluginCall::~PluginCall() {
   running = nullptr;
   calls_->count_.store(calls_->count_.load(std::memory_order_relaxed) + 1);

@@ -1,7 +1,7 @@
-// Keeps track of the calls into controllers' libraries. A library runs as part of the program: a
-// crash in it ends the program, and a call that does not return stops the control loop. Another
-// thread or a signal handler must then report this problem. From this file, they learn which
-// library was running.
+// Keeps track of the calls into controllers' libraries. A library runs as part of the program. If
+// the library crashes, the program ends; if a call into the library does not return, the control
+// loop stops. Another thread or a signal handler must then report this problem. The functions in
+// this file state which library was running.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@
 
 namespace predictor {
 
-// The calls of one controller, which come from one thread at a time.
+// The calls into the library of one controller. Only one thread at a time makes these calls.
 class PluginCalls {
  public:
   // `library` is its file.
@@ -37,19 +37,19 @@ class PluginCalls {
   int looks_ = 0;                               // how often it then saw the same call
 };
 
-// While this object exists, the library runs. The functions have the names of the functions in
+// The library runs as long as this object exists. The functions have the names of the functions in
 // predictor/controller.h.
 class PluginCall {
  public:
   enum class Kind { kInLoop, kPreparation };
-  // `function` must be a literal. Does not use the heap, a lock or a system call.
+  // `function` must be a literal. This class does not use the heap, locks or system calls.
   PluginCall(PluginCalls* calls, const char* function, Kind kind = Kind::kInLoop) noexcept;
-  // Never ends after GiveUpPlugin has given up this call.
+  // If GiveUpPlugin has given up this call, the destructor never returns.
   ~PluginCall();
   PluginCall(const PluginCall&) = delete;
   PluginCall& operator=(const PluginCall&) = delete;
 
-  // Describes the library that this thread runs at present: its file and its function. Both are
+  // Describes the library that this thread runs at present, by its file and its function. Both are
   // null if the thread runs no library. A signal handler may call this.
   struct Place {
     const char* library = nullptr;
@@ -68,10 +68,11 @@ struct LongPluginCall {
   int looks = 0;          // number of consecutive looks that saw it
 };
 
-// Looks at all controllers and returns the call that has been running for the most looks, or
-// nothing if none was running at the last look too. One thread calls this at a fixed interval.
-// The duration of a call is measured in looks and not by the clock, so that it does not grow while
-// the whole program is stopped or delayed.
+// Looks at all controllers, and considers the calls that were already running at the last look.
+// Returns the call that has been running for the largest number of looks, or nothing if there is no
+// such call. One thread calls this function at a fixed interval. The duration of a call is counted
+// in looks instead of seconds, so that it does not grow while the whole program is stopped or
+// delayed.
 std::optional<LongPluginCall> LookAtPluginCalls();
 
 // Gives up the call that LookAtPluginCalls returned last. If this call returns after all, its
@@ -79,8 +80,8 @@ std::optional<LongPluginCall> LookAtPluginCalls();
 // program. Returns false and changes nothing if the call has already returned.
 bool GiveUpPluginCall();
 
-// `start` is called when the next library is about to be loaded, and only then: it starts the
-// thread that looks at the calls. A program that never loads a library does not need the thread.
+// `start` is called only when the next library is about to be loaded. It starts the thread that
+// looks at the calls. A program that never loads a library does not need the thread.
 void OnNextPlugin(std::function<void()> start);
 
 }  // namespace predictor

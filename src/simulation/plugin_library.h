@@ -12,8 +12,8 @@ namespace predictor {
 
 class PluginLibrary {
  public:
-  // Loads the library of `calls`. Loading runs code of the library. Throws InputError that states
-  // why the library does not fit. `calls` is borrowed.
+  // Loads the library that `calls` names. The loading already runs code of the library. Throws
+  // InputError, which states why the library cannot be used. `calls` is borrowed.
   explicit PluginLibrary(const std::filesystem::path& file, PluginCalls* calls);
 
   const PredictorController& functions() const { return *functions_; }

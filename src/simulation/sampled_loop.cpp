@@ -18,9 +18,9 @@ using Eigen::VectorXd;
 
 constexpr double kMinShare = 1e-4, kShareFactor = 0.8;  // of the search for a stable share
 
-// The state at the start of a period consists of the states of Linearise, the torque last computed,
-// and the torques of the preceding sub-steps, the latest first. There are as many of these
-// sub-steps as the delay has.
+// The state at the start of a period consists of the states of Linearise, the torque that was
+// computed last, and the torques of the preceding sub-steps, beginning with the latest. The number
+// of these preceding sub-steps is the length of the delay in sub-steps.
 class Periods {
  public:
   Periods(ControlledScene* scene, Engine* engine, double t)
@@ -36,7 +36,7 @@ class Periods {
     engine->MassMatrix(M);
     engine->StepMatrix(step_matrix);
     inertia_ = M.diagonal();
-    // Removes three things that the continuous model contains: the controller, the rate of its
+    // Removes three parts of the continuous model, which are the controller, the rate of its
     // sensor, and the implicit integration of joint damping by the engine.
     without_ = slopes_.rates - slopes_.by_torque * slopes_.torque;
     const Eigen::LLT<MatrixXd> factor(step_matrix);
@@ -45,8 +45,8 @@ class Periods {
     by_torque_.topRows(n_) = factor.solve(M * by_torque_.topRows(n_));
   }
 
-  // Returns the matrix of a period of the controller, with these shares of its dependence on
-  // positions and on velocities.
+  // Returns the matrix of a period of the controller. The arguments scale the dependence of the
+  // controller on positions and on velocities.
   MatrixXd Matrix(double of_stiffness, double of_damping) const {
     MatrixXd torque = slopes_.torque;
     torque.leftCols(n_) *= of_stiffness;
@@ -76,7 +76,7 @@ class Periods {
     return T;
   }
 
-  // A sub-step of the engine is semi-implicit: v' = v + h a, q' = q + h v'.
+  // A sub-step of the engine is semi-implicit, with v' = v + h a and q' = q + h v'.
   MatrixXd Stepping(Index size) const {
     const Index acting = states_ + timing_.delay() * joints_;  // torque of `delay` sub-steps ago
     MatrixXd rates = MatrixXd::Zero(without_.rows(), size);
@@ -110,7 +110,8 @@ class Periods {
   MatrixXd without_, by_torque_;  // rates without the controller, and by the joints' torques
 };
 
-// Writes growth, frequency and velocities of the mode that grows fastest. Returns its growth.
+// Writes the growth, the frequency and the velocities of the mode that grows fastest. Returns its
+// growth.
 double FastestGrowth(const Periods& periods, const MatrixXd& matrix, double* frequency = nullptr,
                      VectorXd* velocities = nullptr) {
   const Eigen::EigenSolver<MatrixXd> solver(matrix, velocities != nullptr);

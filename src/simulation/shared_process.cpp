@@ -33,7 +33,8 @@ int NewMemory(const std::string& key, std::size_t size) {
   const int made = memfd_create("predictor", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   const int descriptor = made < 0 ? -1 : fcntl(made, F_DUPFD_CLOEXEC, kSafeDescriptor);
   if (made >= 0) close(made);
-  // Its size is sealed: if the program could shorten it, the control loop would crash.
+  // The size of the memory is sealed, because the control loop would crash if the program shortened
+  // the memory.
   if (descriptor >= 0 && ftruncate(descriptor, static_cast<off_t>(size)) == 0 &&
       fcntl(descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) == 0)
     return descriptor;
@@ -42,7 +43,7 @@ int NewMemory(const std::string& key, std::size_t size) {
   Refuse(key, std::string(": no shared memory: ") + std::strerror(error) + ".");
 }
 
-// Returns the number of the error, or 0 if there is none.
+// Returns the number of the error, or 0 if there is no error.
 int Spawn(const std::vector<std::string>& command, const std::filesystem::path& folder, int memory,
           pid_t* pid) {
   std::vector<std::string> words = command;
@@ -61,7 +62,7 @@ int Spawn(const std::vector<std::string>& command, const std::filesystem::path& 
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
-  // Ctrl-C at the terminal is meant for the run, which then ends the program itself.
+  // Ctrl-C at the terminal must reach only the emulator, which then ends the program itself.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
   const int error =
       posix_spawnp(pid, arguments[0], &actions, &attributes, arguments.data(), environ);

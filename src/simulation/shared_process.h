@@ -1,4 +1,4 @@
-// Runs a separate process that shares memory with the run.
+// Runs a separate process that shares memory with the emulator.
 #pragma once
 
 #include <sys/types.h>
@@ -12,8 +12,8 @@ namespace predictor {
 
 class SharedProcess {
  public:
-  // Makes `size` bytes of memory, all zero. Error messages name the scenario's `key`. Throws
-  // InputError.
+  // Makes `size` bytes of memory and sets them to zero. Error messages name the scenario's `key`.
+  // Throws InputError.
   SharedProcess(std::string key, std::size_t size);
   // Ends the process.
   ~SharedProcess();
@@ -27,15 +27,17 @@ class SharedProcess {
 
   void* memory() const noexcept { return memory_; }
 
-  // Gives the process, but not the processes that it starts, a real-time priority (SCHED_FIFO), or
-  // an ordinary one if `priority` is 0. Returns the error's number, 0 for none.
+  // Gives the process, but not the processes that it starts, a real-time priority (SCHED_FIFO). If
+  // `priority` is 0, gives it an ordinary priority. Returns the number of the error, or 0 if there
+  // is no error.
   int SetPriority(int priority) noexcept;
 
   bool HasEnded() noexcept;
   bool was_seen_to_end() const noexcept { return ended_; }
-  // Waits until the program ends by itself, for at most this time [s], and then ends it.
+  // Waits for at most this time [s] until the program ends by itself. If it is still running then,
+  // ends it.
   void End(double patience) noexcept;
-  // "exit code 1", or "" while it runs.
+  // Returns how the process ended (for example, "exit code 1"), or "" while it runs.
   std::string HowItEnded() noexcept;
 
  private:

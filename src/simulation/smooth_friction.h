@@ -1,4 +1,4 @@
-// Computes the friction of a joint, which is a smooth function of the velocity near standstill.
+// Computes the friction of a joint, which near standstill is a smooth function of the velocity.
 #pragma once
 
 #include <cmath>

@@ -20,8 +20,8 @@ TapedController::TapedController(std::vector<double> tape, int dof) : tape_(std:
       tape_[2] != dof)
     throw InputError::At("cobot.controller",
                          "cobot.controller is a program that the recording does not contain, and "
-                         "its recorded answers are missing or do not fit. Use the recording as it "
-                         "was written, with the version of PREDICTOR that wrote it.");
+                         "its recorded answers are missing or do not fit. Use the unchanged "
+                         "recording, with the version of PREDICTOR that wrote it.");
   memory_.resize(static_cast<std::size_t>(tape_[1]));
   answer_.torque.setZero(dof);
 }

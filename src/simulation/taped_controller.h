@@ -1,4 +1,4 @@
-// Stores the answers of a controller outside the program for a replay without it.
+// Stores the answers of a controller outside the program, for a replay without this controller.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,11 @@
 
 namespace predictor {
 
-// A controller outside the program with its tape, or the tape alone.
+// A controller outside the program together with its tape, or the tape alone.
 //
 // While a scene is set up (the search for the start, the linearisation), every answer goes to the
-// tape in order. A replay makes the same calls. In a tick, the record itself contains the answer.
+// tape in order. A replay makes the same calls. During a run, the record of a tick contains the
+// controller's answer.
 class TapedController final : public Controller {
  public:
   explicit TapedController(std::unique_ptr<Controller> controller, int dof);
@@ -23,9 +24,9 @@ class TapedController final : public Controller {
   TapedController* taped() noexcept override { return this; }
   void SetUp(bool begins) noexcept { sets_up_ = begins; }
   std::span<const double> tape() const noexcept { return tape_; }
-  // Sets the answer of the tick that follows. This function is for replays only.
+  // Sets the answer of the next tick. This function is for replays only.
   void Play(const ControllerAnswer& answer) noexcept { answer_ = answer; }
-  // Returns the answer of this tick, or null in a run and while the scene is set up.
+  // Returns the answer of this tick. The result is null in a run and while the scene is set up.
   const ControllerAnswer* played() const noexcept {
     return controller_ || sets_up_ ? nullptr : &answer_;
   }
@@ -44,13 +45,13 @@ class TapedController final : public Controller {
   double StoredEnergy(const ControllerInput& input) const noexcept override;
 
  private:
-  // Appends the answer to the tape, or in a replay takes it from the tape.
+  // Appends the answer to the tape or, in a replay, takes it from the tape.
   void Tape(std::span<double> answer) const noexcept;
 
   std::unique_ptr<Controller> controller_;  // null in a replay
   bool sets_up_ = true;
-  // The tape contains whether the controller uses the wrist sensor, the size of its memory, the
-  // number of joints, and the answers.
+  // The tape contains whether the controller uses the wrist sensor. It also contains the size of
+  // the controller's memory, the number of joints, and the answers.
   mutable std::vector<double> tape_;
   mutable std::size_t next_ = 3;
   std::vector<double> memory_;  // of a replay

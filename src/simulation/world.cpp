@@ -17,7 +17,7 @@ namespace {
 // Beyond these values, the simulation has diverged, because no arm or load moves that fast.
 constexpr double kMaxVelocity = 100;      // of a joint [rad/s, m/s]
 constexpr double kMaxAcceleration = 1e6;  // of a joint [rad/s², m/s²]
-// A small ball turns faster than any joint when it rolls.
+// A rolling small ball may turn faster than any joint.
 constexpr double kMaxMovableVelocity = 1000;  // [rad/s, m/s]
 constexpr double kFloorHeight = 1e-3;  // contacts below it are with the floor, not a table [m]
 
@@ -85,7 +85,7 @@ struct World::Impl {
     }
   }
 
-  // Prepares the state to which Reset returns: at rest, without applied forces.
+  // Prepares the state to which Reset returns, which is at rest and without applied forces.
   void PrepareStart() {
     engine().joint_forces().setZero();
     engine().SetObjectWrench(Wrench::Zero());
@@ -125,7 +125,8 @@ struct World::Impl {
     controlled.Update(&engine());
   }
 
-  // Archives the engine's state, and the hands' masses with which direct mode changes its scene.
+  // Archives the engine's state and the masses of the hands, which change the engine's scene in
+  // direct mode.
   void Archive(StateArchive& a) noexcept {
     bool is_loose = controlled.is_loose();
     Engine* loose = controlled.loose_engine();
@@ -152,8 +153,8 @@ struct World::Impl {
     Restore(Saved());
   }
 
-  // Frees the object, with its motion and the masses of the hands on it. A step that fails returns
-  // to this time.
+  // Frees the object, which keeps its motion and the masses of the hands. If a step fails, the
+  // world returns to this time.
   void Loosen() noexcept {
     for (int hand = 0; hand < kHands; ++hand) {
       controlled.loose_engine()->SetHandMass(hand, engine().HandMass(hand));
@@ -213,7 +214,7 @@ struct World::Impl {
     return Status::Ok();
   }
 
-  // Returns what the largest velocity measures.
+  // Returns the kind of quantity that the largest velocity describes.
   Quantity FastestQuantity() const noexcept {
     const Engine::Values v = engine().velocities();
     Eigen::Index i = 0;
@@ -226,8 +227,8 @@ struct World::Impl {
     return translates ? Quantity::kSpeed : Quantity::kAngularSpeed;
   }
 
-  // Applies the wrenches of the hands and of the coupling, all at the handles D, as one wrench on
-  // the object's body.
+  // Applies the wrenches of the hands and of the coupling as one wrench on the object's body. All
+  // these wrenches act at the handles D.
   void ApplyWrenches(const WorldInput& input) noexcept {
     const Vector3 com = engine().object_com();
     Wrench sum = controlled.is_loose() ? controlled.LandingOf(object) : Wrench::Zero();
@@ -241,8 +242,8 @@ struct World::Impl {
     engine().SetObjectWrench(sum);
   }
 
-  // Updates poses and twists. Computes accelerations from the difference to the previous twists,
-  // times `rate` [1/s].
+  // Updates poses and twists. Computes the accelerations as the changes of the twists since the
+  // previous ones, times `rate` [1/s].
   void UpdateMotion(double rate) noexcept {
     const FrameMotion O = engine().MotionOf(SceneBody::kObject);
     const FrameMotion& E = controlled.end_effector();
@@ -272,7 +273,7 @@ struct World::Impl {
     state.controller = controlled.outcome();
   }
 
-  // Uses a copy, because a contact's solution depends on the previous ones.
+  // Uses a copy, because the solution of a contact depends on the previous solutions.
   ObjectSupport Support() const {
     if (!controlled.start_engine().has_contacts_at_rest()) return {};
     const std::unique_ptr<Engine> copy = controlled.start_engine().Copy();

@@ -1,4 +1,4 @@
-// The virtual world: the cobot, the object, the handles, the floor and the table. The physics
+// The virtual world, with the cobot, the object, the handles, the floor and the table. The physics
 // engine behind this class simulates it.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace predictor {
 
-// The upward forces that carry the object at rest, in addition to the cobot [N].
+// The upward forces that carry the object at rest in addition to the cobot's force [N].
 struct ObjectSupport {
   double floor = 0;  // of the virtual floor
   double other = 0;  // of the table and of fixtures
@@ -21,48 +21,52 @@ struct ObjectSupport {
 
 class World {
  public:
-  // Composes the scene and moves it to its static equilibrium without hands. Throws InputError.
+  // Composes the scene and moves the scene to its static equilibrium without hands. Throws
+  // InputError.
   explicit World(const Scenario& scenario);
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
   // Advances by dt [s] (a whole number of 1 ms sub-steps) under the hands' wrenches and the
-  // coupling, both updated in each sub-step. If a step is non-finite or diverges, keeps the
-  // previous state and returns kPhysics. Does not use the heap or a lock, and does not throw.
+  // coupling, which are updated in each sub-step. If the result of a step is not finite or
+  // diverges, keeps the previous state and returns kPhysics. Does not use the heap or a lock, and
+  // does not throw.
   Status Step(const WorldInput& input, double dt) noexcept;
 
-  // Changes the controller's stiffness and damping until Reset, without a jump of its force. Does
-  // not use the heap or a lock, and does not throw.
+  // Changes the controller's stiffness and damping until Reset, without a jump of the controller's
+  // force. Does not use the heap or a lock, and does not throw.
   void Tune(const ControllerTuning& tuning) noexcept;
 
   // The following functions have an effect only for a controller outside the program. SetRealTime
-  // determines whether the controller has a deadline. Play supplies the controller's answer for the
-  // next tick, in a replay without the controller. Tape returns the answers that the controller
-  // gave while this world was set up, or nothing for a controller inside the program.
-  // PrioritiseProcess calls the function of this name of Controller, and must not be called in a
-  // tick.
+  // determines whether the controller has a deadline. In a replay without the controller, Play
+  // supplies the controller's answer for the next tick. Tape returns the answers that the
+  // controller gave while this world was set up, or nothing for a controller inside the program.
+  // PrioritiseProcess calls the function with the same name of Controller, and must not be called
+  // in a tick.
   void SetRealTime(bool real_time) noexcept;
   std::string PrioritiseProcess(bool on);
   void Play(const ControllerAnswer& answer) noexcept;
   std::vector<double> ControllerTape() const;
 
-  // Returns the state after the last Step: poses and twists at state().time, and accelerations
-  // (A_W), torque and coupling of the last sub-step. A_W is the change of the twist over that
-  // sub-step. `energy` is the sum of the kinetic energy, the potential energy of the object and of
-  // the movable objects, and the energy of the controller's springs. This sum excludes the
-  // potential energy of the cobot, because its controllers compensate its weight.
+  // Returns the state after the last Step. The poses and twists are those at state().time. The
+  // accelerations (A_W), the torque and the coupling are those of the last sub-step. A_W is the
+  // change of the twist over that sub-step. `energy` is the sum of the kinetic energy, the
+  // potential energy of the object and of the movable objects, and the energy of the controller's
+  // springs. This sum excludes the potential energy of the cobot, because its controllers
+  // compensate its weight.
   const WorldState& state() const;
 
   // Returns to the initial equilibrium at time 0.
   void Reset() noexcept;
   void Archive(StateArchive& a) noexcept;
 
-  // Returns a linear model about the present posture, at rest. The model includes the controller,
-  // joint friction and contacts. It excludes the coupling, the hands, Coulomb friction and the
-  // movable objects. At the start, no movable object touches the object or the cobot, so their
-  // motion neither affects the handles nor follows from a force on them. x contains the
-  // tangent-space change of the coordinates (nv) and then their rates (nv). Allocates memory.
+  // Returns a linear model about the present posture at rest. The model includes the controller,
+  // joint friction and contacts. The model excludes the coupling, the hands, Coulomb friction and
+  // the movable objects. At the start, no movable object touches the object or the cobot. Therefore
+  // the motion of the movable objects neither affects the handles nor follows from a force on the
+  // handles. The state x contains the tangent-space change of the coordinates (nv) and then their
+  // rates (nv). Allocates memory.
   LinearModel Linearise() const;
 
   // Judges the stability of the loop that the sampled controller and this scene form. Allocates

@@ -27,8 +27,8 @@ constexpr std::array<ServedFile, 3> kFiles = {{
     {"/survey.js", "survey.js", "text/javascript; charset=utf-8"},
 }};
 
-// Returns the reply that rejects a request regardless of its target, or status 200 if it is
-// acceptable.
+// If a request must be rejected regardless of its target, returns the reply that rejects it.
+// Otherwise, returns status 200.
 viewer::HttpReply WhyRefused(const viewer::HttpRequest& request,
                              const std::vector<std::string>& hosts) {
   if (const viewer::HttpReply wrong = viewer::CheckHost(request, hosts); wrong.status != 200)
@@ -101,7 +101,8 @@ class SurveyApp::Client final : public viewer::Session {
     auto grant = app_->admission_.ByToken(text("token"));
     if (!grant) grant = app_->admission_.ByCode(text("code"));
     if (text("type") != "hello" || !grant) {
-      Say({{"type", "refused"}, {"reason", "The address was already used, or it is incomplete."}});
+      Say({{"type", "refused"},
+           {"reason", "The address was already used, or the address is incomplete."}});
       return Close(viewer::CloseCode::kRefused, "Not admitted.");
     }
     admitted_ = true;

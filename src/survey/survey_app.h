@@ -1,6 +1,6 @@
 // Provides the questionnaire as a page. A person who has the code consents, answers, and receives a
-// pseudonym. The application uses the viewer's server and follows its rules.
-// docs/how-to/questionnaire.md describes the texts.
+// pseudonym. The application uses the viewer's server and follows its rules. The texts are
+// described in docs/how-to/questionnaire.md.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,7 @@ class SurveyApp : public viewer::Application {
 
   // Returns the code that admits one browser, which then uses a token to reconnect.
   const std::string& code() const { return admission_.code(); }
-  // Returns the reason for which the survey ended.
+  // Returns the reason why the survey ended.
   SurveyEnd end() const { return end_; }
   // `over` is called once, after the page has shown the end or the page's connection has been
   // closed.

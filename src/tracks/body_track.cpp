@@ -10,8 +10,8 @@
 namespace predictor::tracks {
 namespace {
 
-// Returns the channels of `names`. They are the given channels or, for one NAME, the channels of
-// this name with an axis added.
+// Returns the channels to which `names` refers. If `names` contains a single NAME, the channels are
+// those of this name with an axis added. Otherwise, they are the given channels.
 std::vector<const Series*> ChannelsOf(const SeriesFile& file, const std::vector<std::string>& names,
                                       const std::vector<const char*>& axes) {
   std::vector<const Series*> channels;
@@ -168,7 +168,7 @@ class Mapper {
       }
       Quaternion& q = track->q[i];
       const bool turned = q.coeffs().allFinite();
-      // Without the rotation, the offset from the tracked point is unknown.
+      // Without the rotation of the part, its offset from the tracked point is unknown.
       p = turned                 ? X_WF_ * (p + q * X_TP.p)
           : X_TP.p.norm() < 1e-9 ? X_WF_ * p
                                  : Vector3::Constant(kMissing);
@@ -205,7 +205,7 @@ class Mapper {
   Pose X_WF_;
 };
 
-// The measurements around a time: the index of the later one, and its weight.
+// The two measurements around a time, as the index of the later one and its weight.
 struct Between {
   std::size_t after = 0;
   double weight = 0;
@@ -220,15 +220,16 @@ std::optional<Between> Around(const std::vector<double>& times, double time, dou
   return Between{i, (time - times[i - 1]) / (times[i] - times[i - 1])};
 }
 
-// Returns a value between two measurements. If `at` is exactly at one of them, the other one may be
-// missing.
+// Returns a value between two measurements. If `at` is exactly the time of one measurement, the
+// other one may be missing.
 template <class T>
 T Blend(const std::vector<T>& values, const Between& at) {
   if (at.weight == 1) return values[at.after];
   return (1 - at.weight) * values[at.after - 1] + at.weight * values[at.after];
 }
 
-// Returns no value if at most one value lies within `width` around the time.
+// Returns the mean of the values within `width` around the time, or no value if there are fewer
+// than two.
 template <class T>
 std::optional<T> MeanWithin(const std::vector<double>& times, const std::vector<T>& values,
                             double time, double width) {

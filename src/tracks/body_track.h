@@ -19,11 +19,12 @@ struct PartTrack {
   std::vector<Quaternion> q;  // R_WT; empty: not measured; NaN: missing
 
   // Interpolates linearly between two measurements that are at most `gap` [s] apart. Returns no
-  // value outside of these measurements.
+  // value for times outside the range of the measurements.
   std::optional<Vector3> PositionAt(double time, double gap = kMaxGap) const;
   std::optional<Quaternion> RotationAt(double time, double gap = kMaxGap) const;
 
-  // A part that is missing for longer than this is not interpolated (design choice) [s].
+  // If a part is missing for longer than this time, its pose is not interpolated (design choice)
+  // [s].
   static constexpr double kMaxGap = 0.05;
 };
 
@@ -37,7 +38,7 @@ struct HandTrack {
 
   // Returns F_D_W about the handle's origin, or no value at times at which the pose or the wrench
   // is missing. If there are several values within `width` [s] around the time, their mean is used.
-  // Otherwise the value is interpolated linearly.
+  // If there are not several values, the value is interpolated linearly.
   std::optional<Wrench> WrenchAt(double time, double width = 0) const;
   bool HoldsAt(double time) const;
 };
@@ -48,8 +49,8 @@ struct SignalTrack {
   std::vector<double> times, values;
 
   // Returns the mean of the values within `width` [s] around the time, if there are several.
-  // Otherwise the function interpolates linearly between neighbours that are at most twice the
-  // median interval apart. NaN means that the value is missing.
+  // If not, the function interpolates linearly between neighbours that are at most twice the median
+  // interval apart. NaN means that the value is missing.
   double At(double time, double width) const;
 };
 
@@ -72,7 +73,7 @@ struct BodyTrack {
 };
 
 // Applies a mapping. Throws InputError if a channel is missing, a position has no unit, a rotation
-// is not a unit quaternion, or a part was never seen.
+// is not a unit quaternion, or a part was never measured.
 BodyTrack ApplyMap(const TrackMap& map, const SeriesFile& file);
 
 // Loads a mapping (.yaml) with its file, or a table with named columns (MapOfColumns). Throws

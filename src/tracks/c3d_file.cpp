@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kBlock = 512;
 constexpr int kIntel = 84;
 
-// One parameter, with either its numbers or its texts. The first entry of `dims` belongs to the
-// fastest index.
+// A parameter with its numbers or its texts. The first entry of `dims` belongs to the fastest
+// index.
 struct Parameter {
   std::vector<double> numbers;
   std::vector<std::string> texts;
@@ -64,7 +64,7 @@ class C3dReader {
     const int processor = static_cast<int>(Byte(start + 3));
     if (processor != kIntel)
       Fail("The file has the byte order of another kind of computer (" + std::to_string(processor) +
-           "). Save it again on a PC (Intel).");
+           "). Save the file again on a PC (Intel).");
     std::map<int, std::string> groups;
     std::map<std::pair<int, std::string>, Parameter> found;
     for (std::size_t at = start + 4;;) {
@@ -116,7 +116,7 @@ class C3dReader {
                ? kMissing
                : found->second.numbers[i];
   }
-  // The format stores whole numbers up to 65535 in signed numbers.
+  // The format stores whole numbers up to 65535 in signed 16-bit numbers.
   std::size_t Unsigned(const std::string& name, std::size_t i = 0) const {
     const double x = Number(name, i);
     return x >= 0 ? static_cast<std::size_t>(x) : x < 0 ? static_cast<std::size_t>(x + 65536) : 0;
@@ -154,7 +154,7 @@ class C3dReader {
     if (analogs > 0) {
       per_frame_ = static_cast<std::size_t>(std::lround(Number("ANALOG:RATE") / rate_));
       if (per_frame_ == 0 || per_frame_ * analogs != Get<std::uint16_t>(4))
-        Fail("The number of analog values per frame is contradictory.");
+        Fail("The header and the parameters disagree about the number of analog values per frame.");
       analogs_ = analogs;
     }
     const std::size_t frame = number_bytes_ * (4 * points_ + per_frame_ * analogs_);
@@ -205,7 +205,7 @@ class C3dReader {
     std::size_t at = data_;
     for (std::size_t f = 0; f < frames_; ++f) {
       for (std::size_t k = 0; k < points_; ++k, at += 4 * number_bytes_) {
-        // A negative residual marks a point that was not seen.
+        // A negative residual marks a point that the cameras did not see.
         const bool seen = Value(at + 3 * number_bytes_) >= 0;
         for (std::size_t i = 0; i < 3; ++i) {
           const double x = scale * Value(at + i * number_bytes_);

@@ -21,7 +21,7 @@ constexpr double kMinDeviation = 0.01;  // smallest standard deviation of a usab
 constexpr std::size_t kBlocks = 8, kMinBlocks = 3;
 constexpr double kMaxWork = 2e8;  // products in the search over all offsets
 
-// The speeds on a grid of times.
+// The speeds of the hand on a grid of times.
 struct Speeds {
   double start = 0, step = 0;  // [s]
   std::vector<double> values;  // [m/s]; NaN: not known
@@ -37,7 +37,7 @@ Vector3 Interpolated(const Path& path, double time) {
   return (1 - w) * path.p[i - 1] + w * path.p[i];
 }
 
-// The differences are symmetric about each time, so they cause no delay.
+// The difference quotients are symmetric about each time, so they cause no delay.
 Speeds SpeedsOf(const Path& path) {
   Speeds speeds{path.times.front(), 1 / kRate, {}};
   const auto n = static_cast<std::size_t>((path.times.back() - path.times.front()) * kRate) + 1;
@@ -72,8 +72,8 @@ Speeds Coarser(const Speeds& fine, std::size_t n) {
 }
 
 // Compares the part of `a` from `begin` to `end` with `b` shifted by `lag` steps, so that value i
-// of `a` meets value i - lag of `b`. Returns no value if fewer than `least` values coincide, or if
-// one of the parts is at rest.
+// of `a` meets value i - lag of `b`. Returns no value if fewer than `least` pairs of values meet,
+// or if one of the parts is at rest.
 std::optional<double> Correlation(const Speeds& a, const Speeds& b, std::ptrdiff_t lag,
                                   std::size_t begin, std::size_t end, double least) {
   double n = 0, sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
@@ -99,7 +99,7 @@ struct Fit {
   double lag = 0, correlation = -1;  // lag in steps
 };
 
-// Returns the best lag between `low` and `high`, refined by a parabola.
+// Returns the best lag between `low` and `high`, refined by interpolation with a parabola.
 std::optional<Fit> BestLag(const Speeds& a, const Speeds& b, std::ptrdiff_t low,
                            std::ptrdiff_t high, std::size_t begin, std::size_t end, double least) {
   std::optional<std::ptrdiff_t> best;
@@ -120,7 +120,7 @@ std::optional<Fit> BestLag(const Speeds& a, const Speeds& b, std::ptrdiff_t low,
   return fit;
 }
 
-// Returns the offset of the grids' starts plus the lag.
+// Returns the offset between the starts of the two grids plus the lag.
 double OffsetOf(const Speeds& a, const Speeds& b, double lag) {
   return a.start - b.start + lag * a.step;
 }

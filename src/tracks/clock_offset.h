@@ -26,10 +26,10 @@ struct ClockOffset {
 // record give its uncertainty (a jackknife over blocks, because errors of neighbouring samples are
 // not independent).
 //
-// Throws InputError, which begins with `what`, if the records overlap too little, the hand moves
-// too little, or the best correlation is below kMinCorrelation. Also throws InputError if another
-// offset fits nearly as well (kMaxSecond of the best, as for a periodic motion), or if the offset
-// changes within the record (because a clock jumps or drifts).
+// Throws InputError if the records overlap too little, the hand moves too little, or the best
+// correlation is below kMinCorrelation. The message begins with `what`. Also throws InputError if
+// the correlation of another offset is at least kMaxSecond times the best one (as for a periodic
+// motion), or if the offset changes within the record (because a clock jumps or drifts).
 ClockOffset EstimateOffset(const Path& reference, const Path& track, const std::string& what);
 
 // These values are design choices.

@@ -64,7 +64,7 @@ class CsvReader {
       return ReadHeader(line);
     const std::string names = file_.comments.empty() ? "" : file_.comments.back();
     if (names.empty() || CellsOf(names, separator_).size() != cells.size())
-      Fail("The first line has only numbers. Put a line before it that names the columns.");
+      Fail("The first line has only numbers. Insert a line before it that names the columns.");
     file_.comments.pop_back();
     ReadHeader(names);
     ReadRow(line);
@@ -75,9 +75,9 @@ class CsvReader {
     for (const std::string_view cell : CellsOf(line, separator_))
       file_.series.push_back(HeadOf(cell));
     if (file_.series.size() < 2 || file_.series.size() > kMaxColumns)
-      Fail(
-          "The first line has " + std::to_string(file_.series.size()) +
-          " columns. Give a table whose first line names its columns: time and at least one more.");
+      Fail("The first line has " + std::to_string(file_.series.size()) +
+           " columns. Give a table whose first line names its columns, which must be time and at "
+           "least one other column.");
     words_.assign(file_.series.size(), false);
     if (time_.rate > 0) return;
     const auto is_time = [this](const Series& s) {
@@ -105,8 +105,8 @@ class CsvReader {
     const double now = TimeOf(cells);
     if (!times_.empty() && now < times_.back())
       Fail(
-          Formatted("The clock goes back from %.6g to %.6g s. Cut the file there, or export it "
-                    "again.",
+          Formatted("The clock goes back from %.6g to %.6g s. Cut the file at this place, or "
+                    "export it again.",
                     times_.back(), now));
     if (!times_.empty() && now == times_.back()) {
       ++repeated_;

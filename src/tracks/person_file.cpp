@@ -77,16 +77,17 @@ void CheckImport(const ImportMap& map, const YamlNode& root, Problems* problems)
   check(map.channels.left_hand, "left_hand");
   check(map.channels.right_hand, "right_hand");
   if (!map.channels.emg.empty())
-    problems->Add(PlaceOf("emg", root),
-                  "emg has more values per second than the table that an import makes. Remove it "
-                  "here, and give it to predictor evaluate in a mapping with --track.");
+    problems->Add(
+        PlaceOf("emg", root),
+        "emg has more values per second than the table that an import makes. Remove it from this "
+        "mapping, and give it to predictor evaluate in another mapping with --track.");
   Require(map.channels.left_hand || map.channels.right_hand, "left_hand or right_hand",
           "give the pose of the handle and the force of at least one hand.", root.place, problems);
 }
 
 // ---- writing ----------------------------------------------------------------------------------
 
-// The columns of the table, and their cells at one time.
+// The columns of the table, and the cells of these columns at one time.
 class Table {
  public:
   Table(const BodyTrack& track, double start) : track_(track), start_(start) {}
@@ -175,17 +176,18 @@ struct Span {
 };
 
 // Returns the period in which the poses and forces of all hands are measured. Throws InputError if
-// there is none.
+// there is no such period.
 Span CommonSpan(const BodyTrack& track) {
   Span span;
   const auto meet = [&](const std::vector<double>& times, const std::string& what) {
     constexpr double kShortest = 0.1;  // [s]
     if (std::max(span.begin, times.front()) + kShortest > std::min(span.end, times.back()))
-      throw InputError(track.source,
-                       Formatted("%s is measured from %.3f to %.3f s, and the others from %.3f to "
-                                 "%.3f s. At no time are all of them measured; their clocks may "
-                                 "differ.",
-                                 what.c_str(), times.front(), times.back(), span.begin, span.end));
+      throw InputError(
+          track.source,
+          Formatted(
+              "%s is measured from %.3f to %.3f s, and the others from %.3f to "
+              "%.3f s. They are never all measured at the same time. Perhaps their clocks differ.",
+              what.c_str(), times.front(), times.back(), span.begin, span.end));
     span = {std::max(span.begin, times.front()), std::min(span.end, times.back())};
   };
   for (std::size_t h = 0; h < kHands; ++h) {
@@ -232,7 +234,7 @@ std::string ImportPerson(const ImportMap& map, const SeriesFile& file) {
   const auto rows = static_cast<std::size_t>((span.end - span.begin) * kPersonRate) + 1;
   constexpr std::size_t kMaxRows = 10'000'000;
   if (rows > kMaxRows)
-    throw InputError(file.name, "The file is longer than a day. Import a part of it.");
+    throw InputError(file.name, "The file is longer than a day. Import only a part of the file.");
   Table table(track, span.begin);
   std::string text = table.Head();
   for (std::size_t k = 0; k < rows; ++k) text += table.Row(k);

@@ -1,7 +1,7 @@
-// Imports recordings of a person from another system. They contain the motions and forces of the
-// hands, and all other data that are needed to judge the person. Such a recording is a table with
-// named columns (MapOfColumns) at 100 Hz. Comments with a few keys in YAML precede the table. This
-// format differs from a recording of the emulator, because it has no ticks.
+// Imports recordings of a person from another system. The recordings contain the motions and forces
+// of the hands, and all other data that are needed to judge the person. Such a recording is a table
+// with named columns (MapOfColumns) at 100 Hz. Comments with a few keys in YAML precede the table.
+// This format differs from a recording of the emulator, because it has no ticks.
 #pragma once
 
 #include <filesystem>
@@ -36,7 +36,8 @@ struct PersonFile {
 
 inline constexpr double kPersonRate = 100;  // rows [Hz]
 
-// A mapping for `predictor import`: a TrackMap without the name of the file, and the header's keys.
+// A mapping for `predictor import`. It is a TrackMap without the name of the file, together with
+// the header's keys.
 struct ImportMap {
   TrackMap channels;
   PersonHeader person;
@@ -46,14 +47,14 @@ struct ImportMap {
 ImportMap ParseImportMap(const std::string& text, const std::string& name);
 
 // Returns the text of a recording of a person. Throws InputError if a hand, its rotation or its
-// force is missing, or if there is no period in which all of them are measured. The message names
-// the missing part. Forces are means over 10 ms. If a pose or force is missing for more than
-// PartTrack::kMaxGap, the hand is treated as not holding its handle, and the header states for how
-// long.
+// force is missing, or if there is no period in which all these quantities are measured. The
+// message names the missing part. Forces are means over 10 ms. If a pose or force is missing for
+// more than PartTrack::kMaxGap, the hand is treated as not holding its handle. The header states
+// the total time for which this is the case.
 std::string ImportPerson(const ImportMap& map, const SeriesFile& file);
 
 bool IsPersonFile(const std::filesystem::path& file);
-// `overrides` are "key=value" of the header. Throws InputError.
+// `overrides` are texts "key=value" with keys of the header. Throws InputError.
 PersonFile ReadPersonFile(const std::filesystem::path& file,
                           const std::vector<std::string>& overrides = {});
 

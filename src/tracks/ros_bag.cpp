@@ -18,7 +18,7 @@ using mcap::Parser;
 
 constexpr std::uint64_t kMaxChunk = std::uint64_t{1} << 28U;  // uncompressed [bytes]
 
-// The topics, by the numbers that they have in the storage file.
+// The topics, each with its number in the storage file.
 class Topics {
  public:
   Topics(std::string file, MessageTime clock) : file_(std::move(file)), clock_(clock) {}
@@ -77,7 +77,7 @@ class McapBag {
  private:
   [[noreturn]] void Fail(const std::string& sentence) const { throw InputError(file_, sentence); }
 
-  // The file may end with its final magic or be cut off. All complete records are read.
+  // The file may end with its final magic or be cut off. The reader uses all complete records.
   void ReadRecords(std::string_view rest, bool in_chunk) {
     for (Parser parser{rest}; parser.rest.size() >= mcap::kHead;) {
       const auto op = static_cast<Op>(parser.Number<std::uint8_t>());
@@ -117,7 +117,8 @@ class McapBag {
     const std::uint32_t crc = p.U32();
     const std::string_view compression = p.String();
     const std::string_view records = p.Take(p.U64());
-    if (!p.ok || size > kMaxChunk) Fail("A chunk is damaged. Record again, or repair the file.");
+    if (!p.ok || size > kMaxChunk)
+      Fail("A chunk is damaged. Record the bag again, or repair the file.");
     std::string unpacked;
     std::string_view plain = records;
     if (compression == mcap::kZstd) {

@@ -10,7 +10,8 @@
 #include "core/text.h"
 
 namespace predictor::tracks {
-// Reads untrusted CDR. After the header of four bytes, each number is aligned to its size.
+// Reads untrusted CDR. After the header of four bytes, each number is aligned according to its
+// size.
 class Cdr {
  public:
   explicit Cdr(std::string_view bytes) {
@@ -42,7 +43,7 @@ class Cdr {
     at_ += n;
     return text;
   }
-  // Returns the number of entries that follow, each of at least `bytes`.
+  // Returns the number of entries that follow. Each entry has at least `bytes` bytes.
   std::size_t Count(std::size_t bytes) {
     const std::size_t n = Number<std::uint32_t>();
     if (!ok_ || n > (rest_.size() - at_) / bytes) ok_ = false;
@@ -76,8 +77,8 @@ const std::vector<Field> kWrench = {{"force.x", "N"},    {"force.y", "N"},    {"
                                     {"torque.x", "N m"}, {"torque.y", "N m"}, {"torque.z", "N m"}};
 const std::vector<Field> kNumber = {{"data", ""}};
 
-// Reads messages that begin with a sequence of float64. `prefix` is the name of the group that
-// follows a header.
+// Reads messages that begin with a sequence of float64 numbers. `prefix` is the name of the group
+// that follows a header.
 struct Layout {
   bool stamped;
   std::string prefix;
@@ -207,7 +208,7 @@ void RosTopic::Finish(const std::string& file, std::vector<Series>* series) {
   for (std::size_t i = 1; i < times_.size(); ++i)
     if (times_[i] < times_[i - 1])
       throw InputError(file,
-                       Formatted("The stamps of %s go back from %.3f to %.3f s. Use the times "
+                       Formatted("The time stamps of %s go back from %.3f to %.3f s. Use the times "
                                  "at which the messages were received (time: received).",
                                  Printable(topic_).c_str(), times_[i - 1], times_[i]));
   if (times_.size() < 2) return;

@@ -21,24 +21,25 @@ enum class MessageTime {
 class Cdr;  // reader of serialised messages
 
 // Collects the messages of one topic as channels TOPIC.FIELD, for example
-// /left/wrench.wrench.force.x. The supported types are Wrench, Pose, Point, Vector3 and Quaternion
-// of geometry_msgs with and without Stamped, PoseWithCovarianceStamped, TransformStamped, TFMessage
-// (as TOPIC[CHILD FRAME].transform, relative to any parent), Odometry (its pose), JointState (as
-// TOPIC.position[JOINT]) and Float64 of std_msgs, in CDR of either byte order. Positions have the
-// unit m, forces N, torques N m (REP 103).
+// /left/wrench.wrench.force.x. The messages must be encoded as CDR, in either byte order. The
+// supported types of geometry_msgs are Wrench, Pose, Point, Vector3 and Quaternion, each with and
+// without Stamped, PoseWithCovarianceStamped and TransformStamped. The other supported types are
+// TFMessage (as TOPIC[CHILD FRAME].transform, relative to any parent), Odometry (its pose),
+// JointState (as TOPIC.position[JOINT]) and Float64 of std_msgs. Positions have the unit m, forces
+// N, torques N m (REP 103).
 class RosTopic {
  public:
   RosTopic(std::string topic, const std::string& type);
   static bool IsKnown(const std::string& type);
 
-  // `received` is in [ns]. Throws InputError if the bytes are not such a message.
+  // `received` is in [ns]. Throws InputError if the bytes are not a message of a supported type.
   void Add(std::string_view cdr, std::int64_t received, MessageTime clock);
-  // Moves the channels to `series`. Throws InputError if the times go back. Messages that repeat
-  // the time of their predecessor are omitted.
+  // Moves the channels to `series`. Throws InputError if a time is earlier than the one before it.
+  // A message with the same time as its predecessor is omitted.
   void Finish(const std::string& file, std::vector<Series>* series);
 
  private:
-  // From here on, `cdr` contains one message, or one transform of a TFMessage.
+  // In the following functions, `cdr` contains one message, or one transform of a TFMessage.
   void AddOne(Cdr* cdr, std::int64_t received, MessageTime clock);
   void AddTransforms(Cdr* cdr, std::int64_t received, MessageTime clock);
   void Put(const std::string& field, const char* unit, double value);

@@ -57,7 +57,7 @@ std::string ReadBytes(const std::filesystem::path& file) {
   if (size > kMaxFileBytes)
     throw InputError(file.string(), "The file has more than " +
                                         std::to_string(kMaxFileBytes >> 20U) +
-                                        " MiB. Export a shorter part of it.");
+                                        " MiB. Export a shorter part of the measurement.");
   return ReadWholeFile(file, size);
 }
 

@@ -42,12 +42,12 @@ struct TimeColumn {
 // Larger files are refused [bytes].
 inline constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 29U;
 
-// Each function throws InputError with the file and, in a text, the line, if the file is empty,
-// damaged, of another format or too large, or if its clock goes back.
+// Each function throws InputError if the file is empty, damaged, of another format or too large, or
+// if its times go back. The message names the file and, for a text file, the line.
 //
 // Reads a table with a header. Cells are separated by commas, semicolons or tabs. A cell of the
 // header is "name" or "name [unit]". Missing numbers are empty or NaN. Columns of words are
-// omitted, and so are rows that repeat the time of the row before.
+// omitted. Rows with the same time as the previous row are also omitted.
 SeriesFile ReadCsv(const std::filesystem::path& file, const TimeColumn& time = {});
 // Reads markers in the text format of OpenSim, as channels NAME.x, NAME.y and NAME.z.
 SeriesFile ReadTrc(const std::filesystem::path& file);
@@ -55,15 +55,17 @@ SeriesFile ReadTrc(const std::filesystem::path& file);
 // without processing. Points become channels NAME.x, NAME.y and NAME.z, and analog channels have
 // their label. Time 0 is the first frame. Only the byte order of PCs is supported.
 SeriesFile ReadC3d(const std::filesystem::path& file);
-// Chooses the reader by the name's ending: .csv, .tsv or .txt for a table, .trc, .c3d, .mcap, or
-// .db3 (see ReadRosBag).
+// Chooses the reader by the ending of the file's name. The endings are .csv, .tsv or .txt for a
+// table, and .trc, .c3d, .mcap and .db3 (see ReadRosBag).
 SeriesFile ReadSeries(const std::filesystem::path& file, const TimeColumn& time = {});
 
-// Returns the contents of a file. Throws InputError if it cannot be read, or is empty or too large.
+// Returns the contents of a file. Throws InputError if the file cannot be read, is empty, or is too
+// large.
 std::string ReadBytes(const std::filesystem::path& file);
 
 // Returns the factor to SI units for a unit's name, such as 0.001 for "mm". If the name is unknown
-// or not of this kind, throws InputError with `what` as the place, which lists the known names.
+// or is not a unit of this kind, throws InputError. The message gives `what` as the place and lists
+// the known names.
 double LengthFactor(const std::string& unit, const std::string& what);
 double TimeFactor(const std::string& unit, const std::string& what);
 double ForceFactor(const std::string& unit, const std::string& what);

@@ -13,7 +13,7 @@ namespace predictor::tracks {
 class TextLines {
  public:
   explicit TextLines(std::string_view text);
-  // Returns false at the end.
+  // Returns false at the end of the text.
   bool Next(std::string_view* line);
   int number() const { return number_; }  // number of the last line, from 1
 
@@ -29,7 +29,7 @@ std::vector<std::string_view> CellsOf(std::string_view line, char separator);
 // number.
 std::optional<double> NumberIn(std::string_view cell);
 
-// Returns "file:line", the place for messages.
+// Returns "file:line", which messages use as the place.
 std::string LineOf(const std::string& file, int line);
 
 }  // namespace predictor::tracks

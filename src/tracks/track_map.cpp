@@ -31,7 +31,8 @@ void CheckPart(const PartMap& part, const std::string& path, const YamlNode& roo
   if (sides && !all_sides) add(" needs markers for all of front, back, left and right, or none.");
   if (sides && !part.rotation.empty()) add(" has a rotation and also markers on its sides.");
   if (!sides && part.rotation.empty() && (part.xyz.norm() > 0 || part.rpy.norm() > 0))
-    add(" has xyz or rpy, which need a measured rotation. Give rotation, or markers on its sides.");
+    add(" has xyz or rpy, which need a measured rotation. Give the rotation, or markers on the "
+        "sides of the part.");
 }
 
 void CheckHand(const HandMap& hand, const std::string& path, const YamlNode& root,
@@ -50,8 +51,8 @@ void CheckEmg(const EmgMap& emg, const std::string& path, const YamlNode& root,
         PlaceOf(path, root),
         path +
             " has no mvc. A voltage depends on the electrode and the skin, so an activation "
-            "follows from it only relative to a maximum voluntary contraction. Record one, and "
-            "give the largest envelope as mvc, in the unit of the channel.");
+            "follows from it only relative to a maximum voluntary contraction. Record such a "
+            "contraction, and give its largest envelope as mvc, in the unit of the channel.");
   if (emg.band_low >= emg.band_high)
     problems->Add(PlaceOf(path, root), path + ".band_low must be below band_high.");
 }

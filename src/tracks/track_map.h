@@ -19,8 +19,8 @@ struct PartMap {
   std::vector<std::string> position;  // three channels, or NAME for NAME.x, NAME.y, NAME.z
   std::vector<std::string> markers;   // or points whose mean is the position; all must be present
   std::vector<std::string> rotation;  // four channels w, x, y, z, or NAME for NAME.w, ...
-  // As an alternative, the source is four sets of markers on the sides of the part. The x axis of T
-  // then points from back to front, and its y axis from right to left.
+  // As an alternative, the source consists of four sets of markers on the sides of the part. The x
+  // axis of T then points from back to front, and its y axis from right to left.
   std::vector<std::string> front, back, left, right;
   Vector3 xyz = Vector3::Zero(), rpy = Vector3::Zero();
 };
@@ -49,8 +49,8 @@ struct EmgMap {
   ArmSide arm = ArmSide::kLeft;
   std::vector<std::string> muscles;
   // Envelope of a maximum voluntary contraction, in the unit of the channel. An activation can be
-  // computed from a voltage only relative to this envelope. The value 0 means that it is not given,
-  // and CheckTrackMap refuses this.
+  // computed from a voltage only relative to this envelope. The value 0 means that the envelope is
+  // not given, which CheckTrackMap refuses.
   double mvc = 0;
   double shape = -2, delay = 0.04;        // as in muscles::EmgProcessing; [s]
   double band_low = 20, band_high = 450;  // [Hz]
@@ -90,7 +90,7 @@ struct TrackMap {
 // left_hand.holds, ..., in W and in the clock of the recording. All other columns are signals.
 TrackMap MapOfColumns(const SeriesFile& file);
 
-// Throws InputError with file:line:column and the text to write instead.
+// Throws InputError, which gives the place (file:line:column) and the text to write instead.
 TrackMap ParseTrackMap(const std::string& text, const std::string& name);
 TrackMap LoadTrackMap(const std::filesystem::path& file);
 // Reports parts that are described incompletely or twice, and electromyograms that cannot be

@@ -98,7 +98,7 @@ class TrcReader {
     if (std::abs(step - expected) > kRounding / rate_)
       Fail(
           Formatted("The clock jumps by %.4g s within %.0f frames at %.4g Hz. Export the file "
-                    "again, or cut it there.",
+                    "again, or cut it at this place.",
                     step, frame - frame_, rate_));
   }
 

@@ -27,8 +27,8 @@ void Fill(void* to, std::size_t bytes) {
     throw std::runtime_error("The system does not provide random numbers.");
 }
 
-// The comparison takes the same time wherever the texts differ, so it reveals at most the lengths
-// of the texts.
+// The comparison takes the same time regardless of where the texts differ, so it reveals at most
+// the lengths of the texts.
 bool Same(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
@@ -144,8 +144,8 @@ std::optional<Admission::Grant> Admission::ByToken(std::string_view token) const
 bool Admission::MayWatch(std::string_view token) const { return PurposeOf(token) == kWatch; }
 
 std::string Admission::IssuePin(Role role, std::uint64_t now_ns) {
-  // A number in the last, incomplete block of 32-bit numbers is drawn again. Otherwise small pins
-  // would be more likely.
+  // A number in the last, incomplete block of 32-bit numbers is drawn again. Without this rule,
+  // small pins would be more likely.
   std::uint32_t random = 0;
   do Fill(&random, sizeof random);
   while (random >= UINT32_MAX / kPins * kPins);

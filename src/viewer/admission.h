@@ -23,12 +23,12 @@ std::optional<Role> RoleNamed(std::string_view name);
 // std::runtime_error.
 std::string RandomText(std::size_t bytes);
 
-// Returns a state that a run keeps for its viewer, so that admitted clients stay admitted if the
-// viewer restarts.
+// Returns a state that the run's process keeps for its viewer, so that admitted clients stay
+// admitted if the viewer restarts.
 inline std::string NewAdmissionSecret() { return RandomText(32); }
 
-// Tokens are valid only in the generation in which they were issued. The run keeps both numbers, so
-// that expired tokens do not become valid again when the viewer's process is replaced.
+// Tokens are valid only in the generation in which they were issued. The run's process keeps both
+// numbers, so that expired tokens do not become valid again when the viewer's process is replaced.
 struct Generations {
   std::uint32_t pages = 0, watchers = 0;
   friend bool operator==(const Generations&, const Generations&) = default;
@@ -40,8 +40,8 @@ class Admission {
   static constexpr int kPinTries = 5;                         // wrong guesses allowed per address
   static constexpr std::size_t kMaxGuessers = 256;            // addresses with wrong guesses
 
-  // `secret` is a NewAdmissionSecret(). `code_once` states whether the code admits only one client,
-  // as with real arms, and changes with each start.
+  // `secret` is a NewAdmissionSecret(). If `code_once` is true, as with real arms, the code admits
+  // only one client and changes with each start.
   Admission(bool code_once, std::string secret, Generations generations = {});
 
   struct Grant {
@@ -49,7 +49,7 @@ class Admission {
     std::string token;
   };
   // These functions exchange the code, a pin or a token for a grant. The functions return no value
-  // if the code, pin or token is wrong, used or expired.
+  // if the code, pin or token is wrong, already used, or expired.
   std::optional<Grant> ByCode(std::string_view code);
   // `address` is the client's numeric address.
   std::optional<Grant> ByPin(std::string_view pin, const std::string& address,
@@ -66,13 +66,13 @@ class Admission {
   // Returns a random number and the role, signed with the secret: 256 bits of HMAC-SHA-256.
   std::string IssueToken(Role role) const;
   // Returns a token for an address that other programs store (Foxglove's). This token only opens
-  // the data stream of such a program. It gives no access to a page or a model, and not even to a
-  // stop. ByToken does not accept it.
+  // the data stream of such a program. The token gives no access to a page or a model, and does not
+  // allow a stop request. ByToken does not accept this token.
   std::string IssueWatchToken() const;
   bool MayWatch(std::string_view token) const;
-  // Ends all generations before the given ones. A new generation of pages invalidates all page
-  // tokens and waiting pins, and replaces a code that several clients may use. A number lower than
-  // the present one has no effect.
+  // Ends all generations that are older than the given ones. A new generation of pages invalidates
+  // all page tokens and waiting pins, and replaces a code that several clients may use. A
+  // generation lower than the present one has no effect.
   void Renew(const Generations& generations);
   const Generations& generations() const { return generations_; }
   // Returns the address that has used its last guess since the previous call, or "" if there was

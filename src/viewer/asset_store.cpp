@@ -45,7 +45,7 @@ std::string ReadFile(const std::filesystem::path& file, std::size_t max_bytes) {
   return ReadWholeFile(file, bytes);
 }
 
-// Decodes an attribute's value as the URDF's printer wrote it.
+// Decodes the value of an attribute in the form in which the URDF's printer wrote it.
 std::string Unescape(std::string_view text) {
   static constexpr std::pair<std::string_view, char> kEntities[] = {
       {"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}};
@@ -109,7 +109,7 @@ void AssetStore::Add(const std::string& path, Asset asset) {
 void AssetStore::AddPage() {
   for (const PageFile& file : PageFiles()) {
     Add(file.path, {std::string(file.bytes), file.type});
-    // If the same page is opened at this address, it also requests the events to come.
+    // The same page also requests the future events if it is opened at this address.
     if (file.path == "/") Add(kExperimenterPath, {std::string(file.bytes), file.type});
   }
 }

@@ -22,23 +22,24 @@ class AssetStore {
 
   explicit AssetStore(std::size_t max_bytes = kMaxBytes) : max_bytes_(max_bytes) {}
 
-  // The address of the page that shows the events to come, for the experimenter.
+  // The address of the page that shows future events to the experimenter.
   static constexpr const char* kExperimenterPath = "/experimenter";
 
   // Adds the page's three files as "/" and kExperimenterPath, "/app.js" and "/app.css", which need
   // no token.
   void AddPage();
 
-  // Reads the URDF of a robot or object with its meshes. Replaces its file names by served names
-  // ("0.dae") and removes comments. Returns the URDF's path, "/models/N/model.urdf", where the same
-  // model always gets the same N. Throws InputError if a mesh cannot be read, or if the assets
-  // would exceed the limit.
+  // Reads the URDF of a robot or object with its meshes. Replaces the file names in the URDF with
+  // served names ("0.dae") and removes comments. Returns the URDF's path, "/models/N/model.urdf",
+  // where the same model always gets the same N. Throws InputError if a mesh cannot be read, or if
+  // the assets would exceed the limit.
   std::string AddModel(const UrdfModel& urdf);
 
   // Throws InputError if the assets would exceed the limit.
   void Add(const std::string& path, Asset asset);
 
-  // Finds only exact matches, and does not decode the path. Returns nullptr for any other path.
+  // Finds only paths that match exactly, and does not decode the path. Returns nullptr for any
+  // other path.
   const Asset* Find(std::string_view path) const;
   std::size_t bytes() const { return bytes_; }
 

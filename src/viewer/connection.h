@@ -31,15 +31,15 @@ class Connection {
   // text is disconnected.
   virtual void SendText(std::string text) = 0;
   // Sends a message that replaces an unsent message of the same slot. A client that does not read
-  // gets no such messages until it reads again, so the waiting messages never cover more than a
-  // third of a second.
+  // gets no such messages until it reads again. The waiting messages therefore never cover more
+  // than a third of a second.
   virtual void SendNewest(std::uint32_t slot, MessageKind kind,
                           std::shared_ptr<const std::string> message) = 0;
-  // Sends the remaining messages, then closes. After this call, the session receives no further
-  // calls.
+  // Sends the remaining messages, and then closes the connection. After this call, the session
+  // receives no further calls.
   virtual void Close(CloseCode code, std::string reason) = 0;
-  // The application calls this function when the client has been admitted. From then on, the client
-  // is not disconnected to make room for others.
+  // The application calls this function when the client has been admitted. From then on, the server
+  // does not disconnect this client to make room for others.
   virtual void Admitted() = 0;
   virtual std::string peer() const = 0;  // numeric address of the peer
 };
@@ -53,7 +53,7 @@ class Session {
   virtual void OnControlFrame() = 0;  // a ping or pong was received
 };
 
-// The head of a request. A field is empty if it is missing in the request.
+// The head of a request. A field is empty if the request does not contain it.
 struct HttpRequest {
   std::string method, target, host, origin, authorization;
   std::vector<std::string> subprotocols;

@@ -27,7 +27,7 @@ std::uint64_t UnixNow() {
                                         .count());
 }
 
-// Returns a 32-bit number, or no value if the JSON value is not one.
+// Returns a 32-bit number, or no value if the JSON value is not a 32-bit number.
 std::optional<std::uint32_t> Id(const Json& value) {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > UINT32_MAX) return {};
   return value.get<std::uint32_t>();

@@ -26,7 +26,8 @@ class Foxglove {
   Foxglove(const Scenario& scenario, const Vector3& object_start, MonotonicClock clock);
   ~Foxglove();
 
-  // Returns the subprotocol to answer with, or "" if none of the offered ones is supported.
+  // Returns the subprotocol with which the server answers, or "" if it supports none of the offered
+  // ones.
   static std::string Choose(const std::vector<std::string>& offered);
 
   std::unique_ptr<Session> Open(Connection* connection);

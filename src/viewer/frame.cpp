@@ -15,7 +15,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "frames are little-endian");
 
-// Values that only the viewer knows and adds to the record, and a warning that the viewer raises.
+// Values that only the viewer knows and adds to the record, together with a warning that the viewer
+// raises.
 struct Additions {
   std::uint64_t sent_ns;
   bool recording;

@@ -1,5 +1,5 @@
-// The binary format in which pages receive the record of a tick. It is packed, little-endian and
-// described by a list of fields.
+// The binary format in which pages receive the record of a tick. This format is packed and
+// little-endian, and a list of fields describes it.
 #pragma once
 
 #include <array>
@@ -34,8 +34,8 @@ struct FrameField {
   std::string comment = {};  // unit, frame and meaning
 };
 
-// Returns the fields that PackFrame writes: those of core/tick_fields.h that have a name for the
-// page, and the viewer's additions.
+// Returns the fields that PackFrame writes. They are the fields of core/tick_fields.h that have a
+// name for the page, and the viewer's additions.
 const std::vector<FrameField>& FrameFields();
 std::size_t FrameBytes();
 
@@ -52,10 +52,11 @@ struct Peaks {
 std::string PackFrame(const TickRecord& record, const Peaks& peaks, std::uint64_t sent_ns,
                       bool recording);
 
-// Returns the text of web/src/quantities.ts: names of states, causes and quantities, and the fields
-// as TypeScript types.
+// Returns the text of web/src/quantities.ts, which contains the names of states, causes and
+// quantities, and the fields as TypeScript types.
 std::string PageQuantities();
-// Returns the text of web/src/person_state.ts: the type of a person's state, and its tables.
+// Returns the text of web/src/person_state.ts, which contains the type of a person's state, and its
+// tables.
 std::string PagePerson();
 
 }  // namespace predictor::viewer

@@ -1,4 +1,4 @@
-// The heads of requests as the application sees them, and the headers of all replies.
+// The heads of requests in the form that the application receives, and the headers of all replies.
 #pragma once
 
 #include <boost/beast/core.hpp>

@@ -159,7 +159,7 @@ void Hub::Client::OnText(std::string_view text) {
 }
 
 void Hub::Client::Admit(const HelloRequest& hello) {
-  // This is no refusal of the client, because its token stays valid.
+  // This disconnection is not a refusal of the client, because the client's token stays valid.
   if (hub_->clients() >= kMaxClients)
     return End(CloseCode::kTryLater, "64 clients are connected already.");
   Admission& admission = *hub_->admission_;
@@ -238,8 +238,8 @@ void Hub::Client::On(const LeaseRequest& request) {
   if (before != id_) hub_->SendLeases();
 }
 
-// Only this request lets a page receive events that have not begun. A subject must not see the
-// events to come.
+// Only this request lets a page receive events that have not begun. A subject must not see future
+// events.
 void Hub::Client::On(const ExperimenterRequest&) {
   if (hub_->events_.empty())
     return Deny("experimenter", "There are no events to come: this run has ended.");
@@ -319,7 +319,7 @@ void Hub::Client::On(const HandRequest& request) {
   Put("hand", input);
 }
 
-// The request is dropped if the run takes no inputs, because nothing depends on it.
+// If the run takes no inputs, the hub drops the request, because nothing depends on it.
 void Hub::Client::On(const LatencyRequest& request) {
   latency_ = request;
   if (!latencies_.Take(hub_->clock_())) return;
@@ -401,8 +401,8 @@ void Hub::Tick() {
   PublishHeadsets();
 }
 
-// Returns why no seat is available, or null. Neither a single client nor all clients that only look
-// can occupy all seats.
+// Returns why no seat is available, or null. A single client cannot occupy all seats, and the
+// clients that only look cannot occupy all seats together.
 const char* Hub::NoSeatFor(const Admission::Grant& grant) const {
   const auto same = [&](const Client* c) { return c->admitted() && c->token() == grant.token; };
   if (static_cast<std::size_t>(std::count_if(sessions_.begin(), sessions_.end(), same)) >=
@@ -466,8 +466,8 @@ void Hub::SendLeases() {
   SendToAll(LeasesText(leases_, clients()));
 }
 
-// This function must be called before any query of the leases. A client that lost a lease through
-// silence is notified, and so are the clients that may now take it.
+// This function must be called before any query of the leases. Notifies a client that lost a lease
+// because it was silent, and the clients that may now take this lease.
 void Hub::ExpireLeases() {
   if (leases_.Expire(clock_())) SendLeases();
 }

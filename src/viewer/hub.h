@@ -1,5 +1,5 @@
-// The connected pages: their admission and leases, their inputs to the run, and the data that they
-// all receive. The hub uses no sockets, and the caller passes the time.
+// Manages the connected pages, which includes their admission and leases, their inputs to the run,
+// and the data that all pages receive. The hub uses no sockets, and the caller passes the time.
 #pragma once
 
 #include <array>
@@ -63,15 +63,15 @@ class Hub {
   // Sends the message `events` to the experimenter's pages if it has changed. Until the first call,
   // no page may be an experimenter's page.
   void PublishEvents(const std::string& text);
-  // Sends the fixtures that are there now to all clients. From now on, the scene contains these
+  // Sends the fixtures that are present now to all clients. From now on, the scene contains these
   // fixtures.
   void PublishFixtures(const Json& fixtures);
   // Ends expired leases and waiting times. Call this at least ten times per second.
   void Tick();
-  // The operator at the console uses this.
+  // The operator at the console uses this function to end a lease.
   void Revoke(LeaseKind kind);
   // Disconnects a client and all clients with the same token. Returns false if there is no such
-  // client. In both cases, begins the new generations (Admission::Renew) and gives the remaining
+  // client. Kick and KickAll begin the new generations (Admission::Renew) and give the remaining
   // clients new tokens.
   bool Kick(std::uint32_t client, const Generations& generations);
   // Disconnects all clients.

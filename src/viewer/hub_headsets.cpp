@@ -5,9 +5,10 @@
 
 namespace predictor::viewer {
 
-// A page that still sends messages may show a frozen picture, so the time of the drawn state
-// counts. With real arms, the end of a session is also reported as silence, for as long as the run
-// needs to detect it. The run then decides whether there is any motion to stop.
+// A page that still sends messages may show a frozen picture, so the time of the drawn state is
+// decisive. With real arms, the end of a session is also reported as silence. This report lasts
+// for the time that the run needs to detect it. The run then decides whether a motion must be
+// stopped.
 void Hub::See(std::uint32_t client, const ImmersiveRequest& request) {
   const std::uint64_t now = clock_();
   auto found = std::find_if(headsets_.begin(), headsets_.end(),

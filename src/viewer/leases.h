@@ -16,7 +16,7 @@ inline constexpr int kLeases = 2;
 const char* Name(LeaseKind kind);  // "control", "operator"
 std::optional<LeaseKind> LeaseNamed(std::string_view name);
 
-// The caller passes the time: monotonic clock [ns].
+// The caller passes the time of the monotonic clock [ns].
 class Leases {
  public:
   // The lease lives for this time after the holder's last heartbeat [ns].
@@ -38,7 +38,7 @@ class Leases {
   void Leave(std::uint32_t client, const std::string& token);
   // Returns true if a lease was transferred to the client that reconnected with `token`.
   bool Return(std::uint32_t client, const std::string& token, std::uint64_t now_ns);
-  // Ends expired leases. Returns whether any lease had expired.
+  // Ends expired leases. Returns whether at least one lease had expired.
   bool Expire(std::uint64_t now_ns);
   // Frees the lease, regardless of its holder. The operator at the console uses this.
   void Revoke(LeaseKind kind) { lease(kind) = {}; }

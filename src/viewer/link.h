@@ -1,5 +1,5 @@
-// A connection to the server. Only server.cpp includes this file: Asio and Beast take half a minute
-// to compile.
+// A connection to the server. Only server.cpp includes this file, because Asio and Beast take half
+// a minute to compile.
 #pragma once
 
 #include <boost/asio/buffer.hpp>
@@ -33,7 +33,7 @@ inline constexpr auto kPongWithin = std::chrono::milliseconds(250);
 inline constexpr auto kClosing = std::chrono::milliseconds(3000);
 // Maximum time for the rest of a refused request.
 inline constexpr auto kLinger = std::chrono::milliseconds(1000);
-// The pause after which a connection requests its turn again.
+// The pause after which a waiting connection asks again whether it may begin.
 inline constexpr auto kHandshakePause = std::chrono::milliseconds(20);
 
 // One connection, which first receives HTTP requests and may then become a WebSocket. The pending
@@ -299,9 +299,9 @@ class Link final : public Connection, public Member, public std::enable_shared_f
     });
   }
 
-  // Pings accompany the states, and a client answers a ping only after it has read everything
-  // before it. Therefore, the amount of data in transit is limited to the amount that is sent
-  // within the time for a pong.
+  // Pings accompany the states, and a client answers a ping only after it has read all earlier
+  // messages. Therefore, the amount of data in transit is limited to the amount that is sent within
+  // the time for a pong.
   bool MaySendNewest() {
     const auto now = Clock::now();
     if (ping_out_) return now - pinged_ < kPongWithin;

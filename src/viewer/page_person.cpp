@@ -41,7 +41,7 @@ class TypeVisitor {
     Add(name, inner.Type(), "", meaning);
   }
 
-  // Returns a record if all members have one type, otherwise an object.
+  // Returns a record type if all members have the same type, otherwise an object type.
   std::string Type() const {
     std::string names, all;
     bool same = true;

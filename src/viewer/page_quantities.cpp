@@ -56,7 +56,8 @@ std::string Words(const char* list, const char* type, int count, Name&& name) {
   return text + "\n";
 }
 
-// Returns the fields whose names begin with `prefix`, as an interface, and their kinds.
+// Returns the fields whose names begin with `prefix` as a TypeScript interface, together with their
+// kinds.
 std::string Fields(const char* name, const char* kinds, const std::string& prefix) {
   std::string types = std::string("export interface ") + name + " {\n";
   std::string table = std::string("export const ") + kinds + " = {\n";

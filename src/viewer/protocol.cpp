@@ -64,7 +64,7 @@ class Reader {
     for (std::size_t i = 0; i < N; ++i) numbers[i] = Number((*value)[i], largest);
     return numbers;
   }
-  // The name must be one that `find` knows.
+  // `find` must know the name.
   template <class Find>
   auto Named(const char* name, Find find) {
     const auto found = find(Text(name));

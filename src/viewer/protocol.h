@@ -1,5 +1,5 @@
-// The text messages between page and server (docs/reference/viewer-protocol.md): parses them into
-// typed, bounded requests, and writes them.
+// Parses the text messages between page and server (docs/reference/viewer-protocol.md) into typed,
+// bounded requests, and writes such messages.
 #pragma once
 
 #include <array>
@@ -74,8 +74,9 @@ using PageRequest =
                  CommandRequest, ParameterRequest, ScenarioRequest, MarkRequest, ReplayRequest,
                  HandRequest, PingRequest, LatencyRequest, ImmersiveRequest>;
 
-// Returns nothing if the text is invalid: no JSON, an unknown type, or a member that is missing,
-// has the wrong type, is not finite, or exceeds its plausible range. Ignores additional members.
+// Returns nothing if the text is not JSON, if the message's type is unknown, or if a member is
+// missing, has the wrong type, is not finite, or exceeds its plausible range. Ignores additional
+// members.
 std::optional<PageRequest> ParsePageRequest(std::string_view text);
 
 // ---- to the page --------------------------------------------------------------------------------
@@ -89,7 +90,7 @@ std::string NoticeText(std::string_view text);
 std::string EndedText(std::string_view text, bool results_follow);
 std::string TokenText(std::string_view token);
 std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset);
-// Returns {"control": 3 | null, ...}, as in `leases` and `welcome`.
+// Returns the holders of the leases as {"control": 3 | null, ...}, as in `leases` and `welcome`.
 Json LeasesJson(const Leases& leases, std::size_t clients);
 std::string LeasesText(const Leases& leases, std::size_t clients);
 // Returns the message `fixtures`. `fixtures` are the fixtures that are present now, as in `scene`.

@@ -34,7 +34,8 @@ const char* Name(Shape shape) {
   }
 }
 
-// Describes a cobot or an arm. Links to be removed are already cut off.
+// Describes a cobot or an arm. The description lists no links to remove, because ReadUrdf has
+// already removed them.
 Json DescribeRobot(const std::string& model, const std::vector<std::string>& remove_links,
                    const Pose& X_WB, const std::string& end_effector,
                    const std::filesystem::path& folder, AssetStore* assets) {
@@ -79,8 +80,8 @@ Json DescribeMovables(const Scenario& scenario, AssetStore* assets) {
   return json;
 }
 
-// Returns whether a parameter changes the cobot's controller, but this controller has nothing to
-// change.
+// Returns whether a parameter concerns the cobot's controller although this controller has nothing
+// that it could change.
 bool HasNoEffect(Parameter parameter, const Scenario& scenario) {
   if (parameter != Parameter::kStiffnessTranslation && parameter != Parameter::kStiffnessRotation &&
       parameter != Parameter::kDampingRatio)
@@ -114,8 +115,8 @@ Json DescribeScript(const Scenario& scenario, double facing) {
   return json;
 }
 
-// Describes where the page's camera and the headset's view begin, and the ground under the
-// operator's feet.
+// Describes the place in which the page's camera and the headset's view begin, and the ground under
+// the operator's feet.
 Json DescribeViewpoint(const Scenario& scenario, const Viewpoint& viewpoint) {
   const auto& stance = scenario.operator_.stance;
   return {{"eye", ToJson(viewpoint.eye)},

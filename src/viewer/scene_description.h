@@ -21,8 +21,8 @@ nlohmann::ordered_json DescribeFixtures(const Scenario& scenario, std::uint16_t 
 nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
                                      AssetStore* assets);
 
-// Describes in a sentence the thresholds that a reset kept tighter than those of the scenario, or
-// returns "" if there are no such thresholds. `record` is a record after the reset.
+// Returns a sentence about the thresholds that a reset kept tighter than those of the scenario, or
+// "" if there are no such thresholds. `record` is a record after the reset.
 std::string KeptThresholds(const Scenario& scenario, const TickRecord& record);
 
 }  // namespace predictor::viewer

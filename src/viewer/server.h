@@ -1,5 +1,6 @@
-// Serves HTTP and WebSocket on one port, with or without TLS. Handles connections, limits and
-// time-outs, but not the content of messages. Hides Boost from its users.
+// Serves HTTP and WebSocket on one port, with or without TLS. The server handles connections,
+// limits and time-outs, but not the content of messages. Hides the Boost library from the users of
+// this file.
 #pragma once
 
 #include <chrono>
@@ -25,8 +26,9 @@ struct ServerOptions {
   // one.
   std::size_t max_guests = 256;
   std::size_t max_guests_per_address = 128;  // the same limit for each address
-  // The maximum number of TLS handshakes that begin per second. Further handshakes wait, at most
-  // for head_time. Handshakes cost the single thread most, and a stop request has to wait for them.
+  // The maximum number of TLS handshakes that begin per second. Further handshakes wait for at most
+  // head_time. Handshakes take most of the single thread's time, and a stop request must wait for
+  // them.
   double handshake_rate = 100;
   double handshake_rate_per_address = 40;
   std::size_t max_waiting_text = 256 * 1024;  // limit for one client [bytes]
@@ -49,8 +51,9 @@ class Server {
 
   // Serves in this thread until Stop.
   void Run();
-  // Accepts no new connections, and stops when the last one has ended or after `patience`.
-  // Connections that are being closed still receive the reason. Call this in the server's thread.
+  // Accepts no new connections, and stops when the last connection has ended, or after the time
+  // `patience`. Connections that are being closed still receive the reason for it. Call this in the
+  // server's thread.
   void Finish(std::chrono::milliseconds patience);
   // Any thread may call Stop and Post. Post runs `what` in the server's thread.
   void Stop();

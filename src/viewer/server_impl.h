@@ -49,7 +49,8 @@ struct Server::Impl {
   void Tick();
   void ReadLine(std::size_t which);
 
-  // Adds a connection that is not admitted yet, in order of arrival.
+  // Adds a connection that is not admitted yet to the end of the list, which is in order of
+  // arrival.
   void Welcome(Member* member) {
     guests.push_back(member);
     ++connections;

@@ -84,7 +84,7 @@ HttpReply CheckHost(const HttpRequest& request, const std::vector<std::string>& 
   const bool own = std::any_of(hosts.begin(), hosts.end(), [&](const std::string& name) {
     return std::equal(name.begin(), name.end(), host->name.begin(), host->name.end(), same);
   });
-  if (!own) return {421, "", "This server does not have that name.\n"};
+  if (!own) return {421, "", "This server does not have the name in the request.\n"};
   return {};
 }
 
@@ -172,7 +172,7 @@ UpgradeReply ViewerApp::UpgradeFoxglove(const HttpRequest& request, std::string_
   // bookmarks, logs and screenshots.
   const std::string token(QueryValue(query, "token"));
   if (!admission_.MayWatch(token))
-    return Refuse({401, "", "A read-only token is needed: ?token=...\n"});
+    return Refuse({401, "", "The address must contain a read-only token: ?token=...\n"});
   const std::string subprotocol = Foxglove::Choose(request.subprotocols);
   if (subprotocol.empty()) return Refuse({400, "", "The subprotocol must be foxglove.sdk.v1.\n"});
   if (foxglove_->clients() >= Foxglove::kMaxClients)
@@ -194,12 +194,12 @@ void ViewerApp::Tick() {
   if (const std::string address = admission_.TakeLockedOut(); !address.empty() && setup_.notify)
     setup_.notify("The address " + address +
                   " entered five wrong pins and can no longer use the existing pins. Other clients "
-                  "still can; `pin` creates a new pin for everyone.");
+                  "can still use it; the command `pin` creates a new pin for all clients.");
   ShowPerson();
   const std::uint64_t written = board_->records.written();
   TickRecord record;
-  // If this process was delayed, the newest record may have been overwritten while it was read. In
-  // this case, the record is read again in the next tick.
+  // If this process was delayed, the newest record may have been overwritten while it was read. If
+  // so, the record is read again in the next tick.
   if (written == shown_ || !board_->records.Get(written - 1, &record)) return;
   const Peaks peaks = SeeRecords(std::exchange(shown_, written), written);
   ReportReset(record);
@@ -212,7 +212,7 @@ void ViewerApp::Tick() {
   foxglove_->Publish(record);
 }
 
-// Another process writes the states, so nothing in them is trusted.
+// Another process writes the states, so the viewer must not assume that they are valid.
 void ViewerApp::ShowPerson() {
   if (!setup_.states) return;
   const std::uint64_t written = setup_.states->states.written();
@@ -222,8 +222,8 @@ void ViewerApp::ShowPerson() {
   hub_->PublishPerson(std::make_shared<const std::string>(PersonJson(state)));
 }
 
-// Returns the peaks of the records from `first` up to, but excluding, `end`, or of the newest ones
-// only if there are too many.
+// Returns the peaks of the records from `first` up to, but excluding, `end`. If there are too many
+// records, only the newest ones are used.
 Peaks ViewerApp::SeeRecords(std::uint64_t first, std::uint64_t end) {
   Peaks peaks;
   TickRecord record;
@@ -237,8 +237,8 @@ Peaks ViewerApp::SeeRecords(std::uint64_t first, std::uint64_t end) {
   return peaks;
 }
 
-// Sends an event to the experimenter's pages at any time, and a fixture that an event lets appear
-// to the others only once the event acts.
+// The experimenter's pages receive an event at any time. The other pages receive a fixture that
+// appears through an event only when the event acts.
 void ViewerApp::ShowEvents(const TickRecord& record) {
   if (plans_) hub_->PublishEvents(plan_.Text());
   const std::uint16_t before = std::exchange(events_, record.events);
@@ -260,7 +260,8 @@ void ViewerApp::ReportReset(const TickRecord& record) {
   if (const std::string kept = KeptThresholds(scenario_, record); !kept.empty()) hub_->Notify(kept);
 }
 
-// Sends a warning when it begins and repeats it while it lasts, for clients that connect later.
+// Sends a warning when its cause begins. Repeats the warning while the cause lasts, for clients
+// that connect later.
 void ViewerApp::ReportWarnings(const TickRecord& record) {
   constexpr double kAgain = 10;  // [s]
   const bool again = record.tick > warned_ + static_cast<std::uint64_t>(kAgain * scenario_.rate);

@@ -1,5 +1,5 @@
-// The application of a run's server. It serves the page and the models by HTTP, and the data for
-// pages and for Foxglove by WebSocket.
+// The application of a run's server. The application serves the page and the models by HTTP, and
+// the data for pages and for Foxglove by WebSocket.
 #pragma once
 
 #include <array>
@@ -29,8 +29,8 @@ struct AppSetup {
   Generations generations;         // generations of the secret's tokens
   std::uint32_t last_client = 0;   // last client number of earlier processes
   Json replay = Json::object();    // for a recording: {"duration": s, "first_tick": n}
-  // Scenarios that a page may choose, [{"name", "title"}, ...], and a message about the last
-  // choice, if any.
+  // The scenarios that a page may choose, as [{"name", "title"}, ...], and a message about the last
+  // choice, if there was one.
   Json scenarios = Json::array();
   std::string notice;
   Json results;        // results of a finished run (ViewerOptions::results); null during a run
@@ -42,12 +42,12 @@ struct AppSetup {
   std::string why_not_judged;  // shown if there are no states; a sentence
 };
 
-// Checks a request's Host header by RFC 9112, section 3.2. The status is 400 if there is not
-// exactly one Host, if it is not a name with or without a port, or if the port is not this
-// server's. The status is 421 if the Host names none of `hosts`, and 200 if it is valid.
+// Checks a request's Host header according to RFC 9112, section 3.2. The status is 400 if there is
+// not exactly one Host, if the Host is not a name with or without a port, or if the port is not
+// that of this server. The status is 421 if the Host names none of `hosts`, and 200 if it is valid.
 HttpReply CheckHost(const HttpRequest& request, const std::vector<std::string>& hosts);
 // Returns whether an Origin belongs to a page that this server delivered under `host`. Browsers
-// always send it with a WebSocket request. A client without an Origin is not a page.
+// always send an Origin with a WebSocket request. A client without an Origin is not a page.
 bool IsOwnOrigin(std::string_view origin, std::string_view host, bool tls);
 
 class ViewerApp : public Application {
@@ -59,7 +59,7 @@ class ViewerApp : public Application {
 
   HttpReply Get(const HttpRequest& request) override;
   UpgradeReply Upgrade(const HttpRequest& request) override;
-  // Shows the newest record, if it is new.
+  // Shows the newest record if it was not shown before.
   void Tick() override;
 
   // Sends the last state of the run and the text to all clients, and disconnects them.

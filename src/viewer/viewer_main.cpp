@@ -21,16 +21,16 @@ namespace predictor::viewer {
 namespace {
 
 constexpr std::size_t kLongestCommand = 4096;  // longest command from the console [bytes]
-// Time to inform the pages that the run has ended.
+// The time within which the viewer informs the pages that the run has ended.
 constexpr std::chrono::milliseconds kFarewell{300};
 
-// Names and addresses of the server, from the run's start message.
+// The names and addresses of the server, from the start message of the run's process.
 struct Site {
   // `machine_names` is the result of MachineNames().
   Site(const Json& start, const std::vector<std::string>& machine_names)
       : tls(start["tls"]), address(start["address"].get<std::string>()), names(machine_names) {
-    // One certificate contains all names of this machine, whichever name is used to reach the
-    // server, so that users need to trust it only once.
+    // A single certificate contains all names of this machine, so that users need to trust it only
+    // once, regardless of the name that they use.
     std::vector<std::string> certified = names;
     if (IsLoopback(address)) names.resize(std::min<std::size_t>(names.size(), 3));
     std::vector<std::string> more = start["names"];
@@ -52,8 +52,8 @@ struct Site {
     for (const std::string& name : more)
       if (std::find(to->begin(), to->end(), name) == to->end()) to->push_back(name);
   }
-  // Returns the host that a person opens: this machine's address as seen from others, if others may
-  // connect.
+  // Returns the host that a person opens. If other machines may connect, this is the address under
+  // which they reach this machine.
   std::string Host(std::uint16_t port) const {
     std::string host = "localhost";
     if (!IsLoopback(address)) {
@@ -140,7 +140,7 @@ std::string Revoke(const std::string& name, ViewerApp* app) {
   return std::string("No one holds the lease ") + Name(*lease) + " now.";
 }
 
-// Executes a command of the console. The answer is meant for a person.
+// Executes a command of the console. The answer is a text for a person.
 std::string Obey(const std::string& text, const Site& site, const std::string& host,
                  ViewerApp* app) {
   const Json line = Json::parse(text, nullptr, false);
@@ -162,7 +162,8 @@ std::string Obey(const std::string& text, const Site& site, const std::string& h
   return "This request is not supported.";
 }
 
-// Returns the files that are read or made before the server starts: models, and the certificate.
+// Returns the files that are read or made before the server starts, which are the models and the
+// certificate.
 Preparation PreparationOf(const Json& start) {
   Preparation may;
   may.listen = true;
@@ -179,7 +180,7 @@ Preparation PreparationOf(const Json& start) {
   return may;
 }
 
-// Returns "" if there is no report. In this case, the page does not offer a report.
+// Returns "" if there is no report. If the result is empty, the page does not offer a report.
 std::string ReadReport(const std::string& file) {
   if (file.empty()) return "";
   std::ifstream in(file, std::ios::binary);

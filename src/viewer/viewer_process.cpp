@@ -1,5 +1,5 @@
-// Implements the run's side of the viewer. It sends messages and the operator's requests to the
-// viewer's process.
+// Implements the part of the viewer that belongs to the run's process. This part sends messages and
+// the operator's requests to the viewer's process.
 #include "viewer/viewer_process.h"
 
 #include <pwd.h>
@@ -34,8 +34,8 @@ void Check(const ViewerOptions& options) {
         "' is not an address. Give a numeric address of this machine, for example 192.0.2.7.");
   if (!IsLoopback(AddressOf(options)) && !options.expose)
     throw InputError("The viewer's address " + options.address +
-                     " can be reached from other machines. Allow this with --expose, or keep the "
-                     "address 127.0.0.1.");
+                     " can be reached from other machines. Allow other machines to connect with "
+                     "--expose, or keep the address 127.0.0.1.");
   if (options.certificate.empty() != options.key.empty())
     throw InputError("A certificate needs its key, and vice versa. Give both or neither.");
 }

@@ -1,5 +1,5 @@
-// The viewer as a separate process alongside the run: neither its actions nor its death can cause
-// motion.
+// The viewer, which is a separate process alongside the run. Neither its actions nor its end can
+// cause motion.
 #pragma once
 
 #include <chrono>
@@ -39,8 +39,8 @@ struct ViewerOptions {
   std::vector<ScenarioTitle> scenarios;       // scenarios that a page may choose
   std::string notice;                         // shown to every client; empty: no notice
   ReplaySpan replay;
-  // The results of a run that has ended, as JSON (the page's `scene.results`). The results are
-  // empty during a run.
+  // The results of a run that has ended, as JSON (the page's `scene.results`). During a run, the
+  // results are empty.
   std::string results;
   std::filesystem::path report;            // report of that run, an HTML page; empty: no report
   Vector3 object_start = Vector3::Zero();  // O in W at the start of the run [m]
@@ -58,7 +58,7 @@ int ViewerMain();
 
 class ViewerProcess {
  public:
-  // Shows a message of one or several lines to the user. The function is called in the viewer's own
+  // Shows a message of one or several lines to the user. The viewer calls this function in its own
   // thread.
   using Notify = std::function<void(const std::string& text)>;
 
@@ -85,13 +85,14 @@ class ViewerProcess {
   // Removes client N permanently. All tokens that exist so far become invalid. With simulated arms,
   // the address also gets a new code. Pages that remain connected get new tokens. The run's process
   // keeps the generation of the tokens, so this function also works while the viewer is restarting.
-  // In this case, all clients are disconnected. If the viewer has not answered a request when the
-  // next one is made at least 2 s later, it is killed and restarted.
+  // If the viewer is restarting, all clients are disconnected. If the viewer has not answered a
+  // request after at least 2 s, the next request kills and restarts it.
   void Kick(std::uint32_t client);
-  // Does the same for each address that was given to Foxglove.
+  // Makes each address that was given to Foxglove invalid in the same way.
   void KickFoxglove();
-  // Informs all pages that the run has ended, and how, in a sentence. `results_follow` states
-  // whether another viewer, with the run's results, is about to replace this one.
+  // Informs all pages that the run has ended, with a sentence that states how it ended.
+  // `results_follow` states whether another viewer, with the run's results, is about to replace
+  // this one.
   void EndRun(const std::string& how, bool results_follow = false);
   void AskFoxglove();  // requests an address with which Foxglove may look
   void AskStatus();    // requests the list of clients, their leases, and their delays

@@ -22,8 +22,8 @@ namespace websocket = beast::websocket;
 using tcp = asio::ip::tcp;
 using Error = beast::error_code;
 
-// The stream is one type with type-erased handlers, so that HTTP and WebSocket are compiled only
-// once.
+// The stream is a single type with type-erased handlers, so that the code for HTTP and WebSocket is
+// compiled only once.
 class Wire {
  public:
   using executor_type = beast::tcp_stream::executor_type;
@@ -69,7 +69,8 @@ class Wire {
  private:
   using Handler = asio::any_completion_handler<void(Error, std::size_t)>;
 
-  // "Some" may be less than all data. Here only the first few buffers are sent.
+  // Functions with "some" in their name may transfer only part of the data. Therefore this function
+  // passes on only the first few buffers.
   template <class Buffer, class Operation, class Buffers, class Token>
   static auto Start(Operation operation, const Buffers& buffers, Token&& token) {
     boost::container::static_vector<Buffer, 8> few;

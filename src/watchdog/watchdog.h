@@ -1,4 +1,4 @@
-// Detects that the loop hangs.
+// Detects whether the control loop hangs.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,13 @@ namespace predictor::watchdog {
 
 class Watchdog {
  public:
-  // The loop is regarded as hanging if no tick occurs for this time while the arms may move [ns].
+  // If no tick occurs for this time [ns] while the arms may move, the control loop is regarded as
+  // hanging.
   static constexpr std::uint64_t kPatience = 10'000'000;
 
-  // Call this at least every millisecond. `ticks` is the number of ticks published so far. `state`
-  // is the state in the latest tick. `now` is the monotonic clock [ns]. Returns true once each time
-  // the loop hangs. The caller must then stop the arms.
+  // Call this function at least every millisecond. `ticks` is the number of ticks published so far.
+  // `state` is the state in the latest tick. `now` is the monotonic clock [ns]. Returns true once
+  // for each time that the loop hangs. The caller must then stop the arms.
   bool Look(std::uint64_t ticks, RunState state, std::uint64_t now) noexcept;
 
  private:

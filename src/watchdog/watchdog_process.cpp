@@ -34,8 +34,8 @@ std::uint64_t Now() {
 
 void Say(const std::string& text) { SendLine(kControlDescriptor, {{"say", text}}, false); }
 
-// The watchdog must run even if the loop no longer yields its core, and must not wait for its
-// memory to be paged in.
+// The watchdog must run even if the control loop no longer yields its core. It must also not wait
+// until its memory is paged in.
 void AskForRealTime() {
   constexpr int kPriority = 85;
   rlimit allowed{};
@@ -52,25 +52,26 @@ void AskForRealTime() {
     break;
   }
   if (sched_getscheduler(0) != SCHED_FIFO)
-    Say("The watchdog has no real-time priority, so any other program could delay it. Allow it "
-        "with `ulimit -r 85` or CAP_SYS_NICE.");
+    Say("The watchdog has no real-time priority, so any other program could delay it. Allow "
+        "real-time priorities with `ulimit -r 85` or CAP_SYS_NICE.");
   if (mlockall(MCL_CURRENT) != 0)
     Say(std::string("The watchdog's memory cannot be locked (") + std::strerror(errno) +
-        "), so it may be late when memory is short. Allow it with `ulimit -l unlimited`.");
+        "), so it may be late when memory is short. Allow locked memory with `ulimit -l "
+        "unlimited`.");
 }
 
-// Returns false if the run has ended, which closes the pipe: the run sends only one line, at the
-// start.
+// Returns false if the run's process has ended, which closes the pipe. This process sends only one
+// line, at the start.
 bool WaitAMillisecond() {
   pollfd run{kControlDescriptor, POLLIN, 0};
   return poll(&run, 1, 1) == 0 || (run.revents & (POLLHUP | POLLERR | POLLIN)) == 0;
 }
 
-// The channels to the arms, and the messages about them.
+// The watchdog's channels to the arms, and the messages about these channels.
 class Channels {
  public:
-  // `again` states whether the arms were watched before. At first, an arm without a channel is an
-  // error (throws DeviceError). Later, the other arms are still watched.
+  // `again` states whether the watchdog has watched the arms before. At first, an arm without a
+  // channel is an error (throws DeviceError). Later, the watchdog still watches the other arms.
   Channels(const Json& hosts, bool again, Network* network) {
     for (const Json& host : hosts) {
       channels_.push_back({host, nullptr});
@@ -122,10 +123,10 @@ class Channels {
   std::vector<Channel> channels_;
 };
 
-// Returns whether this process must restart to open a new channel, because it has given up the
-// right to connect. The process does not restart as long as another arm has a channel and may move.
-// The process also waits before a restart, so that it does not retry continuously if the connection
-// is refused.
+// Returns whether this process must restart to open a new channel. A restart is necessary because
+// the process has given up the right to connect. The process does not restart as long as another
+// arm has a channel and may move. The process also waits before a restart, so that it does not
+// retry continuously if the connection is refused.
 bool MustStartAgain(const Channels& channels, RunState state, std::uint64_t age) {
   constexpr std::uint64_t kPause = 2'000'000'000;  // [ns]
   return channels.AnyLost() && (channels.AllLost() || !MayMove(state)) && age > kPause;
@@ -163,7 +164,7 @@ void Watch(const RunBoard& board, std::atomic<std::uint32_t>* beats, Channels* c
     }
     channels->Tend();
     if (MustStartAgain(*channels, ticks.state(), now - born))
-      throw std::runtime_error("It restarts to open a new channel.");
+      throw std::runtime_error("The watchdog restarts to open a new channel.");
   }
   ticks.Look();
   if (MayMove(ticks.state())) channels->Stop();  // the program died or ended in motion

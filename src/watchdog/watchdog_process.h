@@ -23,16 +23,16 @@ class WatchdogProcess {
   using Notify = std::function<void(const std::string& text)>;
 
   // Starts the watchdog and waits until it has its channels. If the watchdog dies, hangs or is
-  // stopped, a message reports this. The run then tries to restart the watchdog until this
-  // succeeds. `hands` are the hands whose arms move. The watchdog follows the ticks on the board
-  // and the states in them. The watchdog stops the arms if, in a state in which arms may move, the
-  // ticks cease or this process ends. Throws InputError with the watchdog's error message, or
+  // stopped, a message reports this. The run's process then tries to restart the watchdog until the
+  // restart succeeds. `hands` are the hands whose arms move. The watchdog follows the ticks on the
+  // board and the states in them. The watchdog stops the arms if the ticks cease or this process
+  // ends in a state in which arms may move. Throws InputError with the watchdog's error message, or
   // std::runtime_error if no process can be started.
   WatchdogProcess(const Machine& machine, const std::array<bool, kHands>& hands,
                   const Shared<RunBoard>& board, const Notify& notify);
   int pid() const { return process_.pid(); }  // 0 while no process is running
-  // Returns the heartbeat counter. If the watchdog ends, motion must end too, because a hanging
-  // loop would not be detected.
+  // Returns the heartbeat counter. If the watchdog ends, the motion must end too, because nothing
+  // would detect a hanging control loop.
   const std::atomic<std::uint32_t>& beats() const { return (*mailbox_).beats; }
 
   // Describes which arms the watchdog can stop, and which arms stop only by themselves.

@@ -56,11 +56,11 @@ bool Grows(Scenario s, double mass) {
   s.operator_.hand.mass = mass;
   const Growth growth = MeasureGrowth(s, 0);
   // Once a disturbance has decayed, only rounding errors are left, and the measured rate is about
-  // 0. If no rate was measured, a limit acted from the start.
+  // 0. If no rate could be measured, a limit acted from the start of the run.
   return growth.grows && growth.rate.value_or(1) > 0.2;
 }
 
-// The full test covers 24 points, the short test four of them.
+// The full test covers 24 points, and the short test covers four of these points.
 TEST(Admittance, CriticalHandMassIsAsPredictedSoak) {
   int point = 0, compared = 0;
   for (const double stiffness : {60.0, 100.0, 170.0, 280.0, 400.0, 600.0})

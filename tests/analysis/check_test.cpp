@@ -108,7 +108,8 @@ TEST(Check, NamesTheArmThatLeavesItsReach) {
   EXPECT_FALSE(Mentions(report.problems, "The left arm"));
   EXPECT_TRUE(report.reach->arms[1]->lost);
   EXPECT_FALSE(report.reach->arms[0]->lost);
-  // The report must not derive speeds from the last postures before the arm loses its handle.
+  // The report must not derive speeds from the last postures before the handle moves out of the
+  // arm's reach.
   const std::string text = CheckText(report);
   const std::size_t line = text.find("right            CANNOT REACH ITS HANDLE from");
   ASSERT_NE(line, std::string::npos) << text;

@@ -81,8 +81,8 @@ TEST_F(SummaryFile, IsWrittenAfterARun) {
 }
 
 TEST_F(SummaryFile, IsNotLeftEmptyByABadScenario) {
-  // The program can refuse the first value by its key alone, but the second one only after it has
-  // loaded the models.
+  // The program can refuse the first value because of its key alone. It can refuse the second value
+  // only after it has loaded the models.
   for (const char* bad : {"--set seed=-1", "--set cobot.end_effector=nope"}) {
     EXPECT_EQ(Run(bad).code, 2) << bad;
     EXPECT_FALSE(fs::exists(file_)) << bad;

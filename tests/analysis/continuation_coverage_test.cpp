@@ -1,7 +1,7 @@
 // Tests whether the intervals of a continued run contain what simulated people would have done.
 //
-// The numbers of IntentModel were chosen with the seeds 1000 to 1400. The seeds below were fixed
-// earlier and were not used to choose these numbers.
+// The parameters of IntentModel were chosen with the seeds 1000 to 1400. The seeds below were fixed
+// earlier and were not used to choose these parameters.
 #include <gtest/gtest.h>
 
 #include <algorithm>

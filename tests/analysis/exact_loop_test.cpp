@@ -51,8 +51,8 @@ TEST(ExactLoop, HasOnlyItsOwnDelay) {
     const HapticLoop loop(Mass(mass, share * critical), s, kDt, LoopModel::kExact);
     EXPECT_EQ(loop.GrowthRate(hand, 0, 1) > kRounding, share < 1) << share;
   }
-  // The loop model that selects the leads has a delay that is longer by 1.5 ticks. Here, this
-  // raises the critical mass by 2 or 3 %.
+  // The loop model that selects the leads has a delay that is longer by 1.5 ticks. In this test,
+  // the longer delay raises the critical mass by 2 or 3 %.
   const HapticLoop reserved(Mass(mass, 1.01 * critical), s, kDt);
   EXPECT_GT(reserved.GrowthRate(hand, 0, 1), kRounding);
 }

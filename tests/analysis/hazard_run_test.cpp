@@ -1,4 +1,4 @@
-// Tests whether the emulator keeps to its documented limits in runs with hazards. It also tests the
+// Tests whether the emulator keeps to its documented limits in runs with hazards. Also tests the
 // measurements on which this judgement depends.
 #include <gtest/gtest.h>
 

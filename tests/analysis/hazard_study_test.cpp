@@ -1,5 +1,5 @@
-// Tests two parts of the hazard study: the file of finished runs, and the tables that are computed
-// from the runs.
+// Tests two parts of the hazard study. One part is the file of finished runs, and the other part is
+// the tables that are computed from the runs.
 #include "analysis/hazard_study/hazard_study.h"
 
 #include <gtest/gtest.h>
@@ -230,10 +230,11 @@ HazardRun Felt(double force, StopCause cause = StopCause::kNone) {
 }
 
 // Three forces are 10, 20 and 30 N. Two others are only known to be at least 25 and 40 N. The
-// product-limit estimate was calculated by hand: a force exceeds 10 N with the probability 4/5, 20
-// N with 4/5 · 3/4 = 3/5, and 30 N with 3/5 · 1/2 = 3/10. The median is therefore 30 N (the median
-// of the five numbers alone would be 25 N). The estimate does not reach 95 %. The bound is then the
-// quantile of the five numbers, 30 + 0.8 · 10 N.
+// product-limit estimate was calculated by hand. A force exceeds 10 N with the probability 4/5, it
+// exceeds 20 N with the probability 4/5 · 3/4 = 3/5, and it exceeds 30 N with the probability 3/5 ·
+// 1/2 = 3/10. The median is therefore 30 N (the median of the five numbers alone would be 25 N).
+// The estimated distribution does not reach 95 %. The bound is then the quantile of the five
+// numbers, 30 + 0.8 · 10 N.
 HazardCell CensoredCell() {
   HazardCell cell = CellOf("box");
   cell.speed_cap = 0.5;
@@ -330,7 +331,7 @@ TEST(HazardTable, StatesWhetherTheRequirementsHold) {
         "In 2 of these runs, the true force itself had crossed the threshold, at "
         "most 4 ms earlier and by at most 0.50 N",
         "used 40 % of its travel budget",
-        "used 100.0 % of its cap; the measured speed of a handle reached "
+        "used 100.0 % of its cap. The measured speed of a handle reached "
         "100.6 % of the cap."})
     EXPECT_NE(kept.find(words), std::string::npos) << words << "\n" << kept;
 

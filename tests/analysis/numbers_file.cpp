@@ -47,8 +47,8 @@ std::map<std::string, Row> RowsOf(const std::string& experiment) {
   return rows;
 }
 
-// Returns whether the number comes from an unstable loop. Unstable are the paper's loop, and the
-// paper's loop at 100 Hz with some of our changes.
+// Returns whether the number comes from an unstable loop. The unstable loops are the paper's loop,
+// and the paper's loop at 100 Hz with some of our changes.
 bool IsUnstable(const std::string& experiment, const ReproducedNumber& n) {
   const auto starts = [](const std::string& text, const char* with) {
     return text.rfind(with, 0) == 0;

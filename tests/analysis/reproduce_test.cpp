@@ -60,8 +60,8 @@ const ReproducedNumber& Find(const ReproducedExperiment& e, const std::string& q
   return kNone;
 }
 
-// For scenario 1 of the paper, each printed number must appear in its place, next to ours from a
-// run.
+// For scenario 1 of the paper, the page must show each printed number in its place, next to our
+// number from a run.
 TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
   options_.only = "box_9kg";
   const Reproduction r = Reproduce(options_);
@@ -82,8 +82,8 @@ TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
       EXPECT_GT(n.largest, n.mean);
       EXPECT_DOUBLE_EQ(*n.ratio(), n.mean / printed[0]);
     }
-  // A slow loop without lead has a larger tracking error. This shows that both values come from
-  // runs and not from constants.
+  // A slow loop without lead has a larger tracking error. The difference shows that both errors
+  // come from runs and not from constants.
   EXPECT_GT(Find(e, "left handle", kPapers).mean, 3 * Find(e, "left handle", kOurs).mean);
   EXPECT_NE(Find(e, "left handle", kPapers).command.find("--set rate=100"), std::string::npos);
   // Without our coupling, the run stops. The page must show the time of the stop, but no ratio to
@@ -100,11 +100,11 @@ TEST_F(ReproduceTest, HasAllErrorFiguresOfAScenario) {
   EXPECT_GT(Find(e, "left handle, whole run", kOurs).largest,
             Find(e, "left handle", kOurs).largest);
   EXPECT_EQ(Find(e, "left handle, whole run", kOurs).paper->mean, 4.1);
-  // The error of the handles' relative position includes that of its direction as well as that of
-  // its length.
+  // The error of the handles' relative position includes both the error of its direction and the
+  // error of its length.
   EXPECT_GE(Find(e, "right handle seen from the left", kOurs).mean,
             Find(e, "distance between the handles", kOurs).mean);
-  // The paper states no rate, so the results at half and at twice our rate are shown as well.
+  // The paper states no rate, so the page must also show the results at half and at twice our rate.
   for (const char* rate : {"50", "200"}) {
     const ReproducedNumber& n = Find(e, "left handle", std::string("at ") + rate + " Hz");
     EXPECT_NE(n.command.find(std::string("--set rate=") + rate + " "), std::string::npos);

@@ -176,8 +176,8 @@ TEST(MapPlot, HasLabelsWithUnitsAndALegend) {
   }
 }
 
-// The plot must show the points of the map in its own unit, and crosses at the values at which
-// nothing is stable.
+// The plot must show the points of the map in the plot's own unit. It must show crosses at the
+// values at which nothing is stable.
 TEST(MapPlot, ShowsPredictionsAndResults) {
   const StabilityMap map = SomeMap();
   for (const MapPicture& picture : map.pictures) {

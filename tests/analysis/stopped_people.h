@@ -18,9 +18,9 @@
 
 namespace predictor {
 
-// A person whose arm stiffens with its force, which the continuation does not assume. The person's
-// force is the simulated operator's force multiplied by 1 + |F| / F0, so an infinite F0 makes no
-// difference.
+// A person whose arm becomes stiffer as its force increases. The continuation does not assume this
+// behaviour. The person's force is the simulated operator's force multiplied by 1 + |F| / F0, so an
+// infinite F0 makes no difference.
 class StiffeningOperator final : public Operator {
  public:
   StiffeningOperator(std::unique_ptr<Operator> person, double force)
@@ -119,7 +119,8 @@ inline std::unique_ptr<Emulator> EmulatorOf(const StoppedPerson& person, const S
                                                   person.Maker()(scenario)));
 }
 
-// Simulates until a limit stops the run for the first time. Returns no value if none does.
+// Simulates until a limit stops the run for the first time. Returns no value if no limit stops the
+// run.
 inline std::optional<StoppedRun> RunToStop(const StoppedPerson& person) {
   const Scenario& scenario = person.scenario;
   const std::unique_ptr<Emulator> emulator = EmulatorOf(person, scenario);

@@ -337,8 +337,8 @@ TEST_F(VerifyRealArms, TheRunIsTheSameAgainWithoutThem) {
   }
 }
 
-// The recording also contains what the arms reported: faults, stops without power, a released key,
-// late samples, and NaN.
+// The recording also contains the reports of the arms, which are faults, stops without power, a
+// released key, late samples, and NaN.
 TEST_F(VerifyRealArms, SoAreItsStops) {
   const std::vector<std::pair<const char*, std::function<void(Bench&)>>> faults = {
       {"silent", [](Bench& b) { b.wire(0).silent = true; }},

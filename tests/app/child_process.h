@@ -22,8 +22,8 @@ namespace predictor {
 class Child {
  public:
   // A run without --record is started with --no-record. `out` is the file that receives standard
-  // output; if it is empty, a pipe receives it. `errors_to` is the descriptor that receives
-  // standard error; if it is negative, a pipe receives it.
+  // output. If `out` is empty, a pipe receives the output. `errors_to` is the descriptor that
+  // receives standard error. If `errors_to` is negative, a pipe receives the output.
   explicit Child(std::vector<std::string> arguments, const std::string& out = "",
                  int errors_to = -1) {
     std::array<int, 2> output{}, error{};

@@ -62,8 +62,8 @@ TEST(ExitCode, OfARefusedStartGivesReasonPlaceAndRemedy) {
     EXPECT_NE(child.errors().find(text), std::string::npos) << child.errors();
 }
 
-// The name of a scenario from elsewhere may contain control characters. These characters must not
-// reach the terminal.
+// The name of a scenario from elsewhere may contain control characters. Such control characters
+// must not reach the terminal.
 TEST(Terminal, ObeysNoNameOfAScenario) {
   const test::TemporaryFolder folder;
   const std::string file = Scenario("box_9kg"), recording = folder.path() / "e.mcap";
@@ -150,7 +150,7 @@ TEST(ExitCode, OfARunWithDartGivesTheReason) {
              "simulation.engine=dart"});
   EXPECT_EQ(run.Wait(), 2);
   for (const char* words : {"simulation.engine is dart, which runs in virtual time only",
-                            "Set it to mujoco, or use `predictor simulate`"})
+                            "Set simulation.engine to mujoco, or use `predictor simulate`"})
     EXPECT_NE(run.errors().find(words), std::string::npos) << run.errors();
 }
 

@@ -28,8 +28,8 @@ class FailingController : public testing::Test {
     said_ = child.output() + child.errors();
     return code;
   }
-  // Returns the command line of a recorded run. Its process finds the library only if FindPlugins
-  // exists.
+  // Returns the command line of a recorded run. The process of this run finds the library only if
+  // FindPlugins exists.
   std::vector<std::string> Arguments(const std::string& controller, const std::string& command) {
     std::vector<std::string> arguments = {command,      Scenario("box_9kg"),
                                           "--duration", "6",

@@ -106,8 +106,8 @@ TEST(FileSizeLimit, IsAnErrorOfEveryCommand) {
   }
 }
 
-// A full pipe that no process reads. The pipe takes the place of a standard error that accepts no
-// more data, for example because a pager is not scrolled or a terminal is paused.
+// A full pipe that no process reads. The pipe stands for a standard error that accepts no more
+// data, for example because a pager is not scrolled or a terminal is paused.
 class FullPipe {
  public:
   FullPipe() {

@@ -112,8 +112,8 @@ TEST_F(RecordedProgram, CutIsRecovered) {
   EXPECT_EQ(TicksSaid(), kept) << said_;
 }
 
-// Damage before the first tick must not lose any data. If a chunk is damaged, the table must end
-// before this chunk, and a message must report the damage.
+// Damage to a recording before its first tick must not make any tick unreadable. If a later chunk
+// is damaged, the table must end before this chunk, and a message must report the damage.
 TEST_F(RecordedProgram, DamagedIsReadAsFarAsItIsWhole) {
   ASSERT_EQ(Do({"simulate", Scenario("box_9kg"), "--quiet", "--duration", "2", "--record", file_}),
             0);

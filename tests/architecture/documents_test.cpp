@@ -1,5 +1,5 @@
-// Checks that the evidence that documents cite exists: the files in the hazard log and the rows in
-// the record of long runs.
+// Checks that the evidence that documents cite exists. The evidence consists of the files in the
+// hazard log and the rows in the record of long runs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -81,7 +81,7 @@ TEST(LongRuns, ThatDocumentsQuoteAreInTheRecord) {
   const std::regex citation(R"(\[soak: ([\w.]+) (\d+|-)\]\(\.\./soak-record\.csv\))"),
       old(R"((not in|older than) \[the record)");
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kRoot / "docs")) {
-    // These documents mention the command itself, without a result.
+    // The following documents mention the command itself, without a result.
     const std::string name = entry.path().filename();
     if (entry.path().extension() != ".md" || name == "decisions.md" || name == "hazards.md")
       continue;

@@ -38,8 +38,8 @@ TEST(Exposure, AddsTheDamageOfEachLift) {
   EXPECT_GT(result.probability, 0);
 }
 
-// The force of each of the two hands at 0.4 m contains noise of 3 N rms and a tremor of 1 N at 10
-// Hz.
+// Both hands are at 0.4 m. The force of each hand contains noise of 3 N rms and a tremor of 1 N at
+// 10 Hz.
 TEST(Exposure, NoiseAndTremorHardlyChangeTheDamage) {
   const std::vector<double> clean = LiftsWith({40, 40, 40});
   std::vector<double> noisy = clean;

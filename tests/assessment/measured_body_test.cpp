@@ -23,7 +23,7 @@ SampleCollector MadeRun() {
                  [](std::uint64_t tick) { return RecordOf(tick, 1.0, 20); });
 }
 
-// The true eyes and elbows in the nominal posture, in W.
+// The true positions of the eyes and elbows in the nominal posture, in the frame W.
 struct Truth {
   Pose head;
   std::array<Vector3, kHands> elbows;
@@ -43,8 +43,8 @@ Truth TruthOf(const SampleCollector& run) {
   return truth;
 }
 
-// Returns the track of a point that does not move. A clock that is ahead by `shift` gives the times
-// of its samples at 100 Hz.
+// Returns the track of a point that does not move, sampled at 100 Hz. The times of the samples are
+// from a clock that is ahead by `shift` [s].
 tracks::PartTrack Resting(const Vector3& p, double shift = 0) {
   tracks::PartTrack part;
   for (double t = -0.5; t < kDuration + 0.5; t += 0.01) {
@@ -158,7 +158,7 @@ TEST(MeasuredBody, RefusesImpossibleBodies) {
   EXPECT_NE(Refusal({track}).find("unit"), std::string::npos);
   tracks::BodyTrack twice = TrackOf(truth, true, false);
   EXPECT_NE(Refusal({twice, twice}).find("also measured in"), std::string::npos);
-  // These elbows were measured at another place and are too far from the handles.
+  // The elbows in this test were measured at another place and are too far from the handles.
   tracks::BodyTrack far = TrackOf(truth, false, true);
   for (Vector3& p : far.elbows[1]->p) p += Vector3(0.8, 0.8, 0.3);
   EXPECT_NE(Refusal({far}).find("farther than a forearm"), std::string::npos) << Refusal({far});

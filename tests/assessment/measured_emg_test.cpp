@@ -189,7 +189,7 @@ TEST_F(MeasuredEmgTest, MissingValuesAreNotInvented) {
       EXPECT_NEAR(channel.measured[i], SlowlyAt(samples[i].recorded), 0.02);
     }
   EXPECT_TRUE(Warns(a, "gaps that are not used: 1, of up to 0.50 s"));
-  EXPECT_TRUE(Warns(a, "the clock of the recorder jumped"));
+  EXPECT_TRUE(Warns(a, "the recorder's clock jumped"));
 }
 
 TEST_F(MeasuredEmgTest, AContractionAboveTheMaximumIsReported) {

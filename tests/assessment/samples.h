@@ -23,8 +23,8 @@ inline Scenario PersonScenario() {
   return scenario;
 }
 
-// Both hands are 0.45 m in front of the person and `height` [m] above the ground, each with an
-// upward force [N].
+// Both hands are 0.45 m in front of the person and `height` [m] above the ground. Each hand exerts
+// an upward force [N].
 inline TickRecord RecordOf(std::uint64_t tick, double height, double force) {
   TickRecord record{};
   record.tick = tick;

@@ -34,7 +34,7 @@ TEST(MeasureHandle, OfAGuidedArmFindsTheHandleOfTheRig) {
   const auto postures = Postures(bench.q(), 8);
   std::size_t next = 0;
   ScriptedPerson person([&](const std::string& last) -> char {
-    if (last.find("Enter takes the pose") == std::string::npos) return 0;
+    if (last.find("press Enter to take the pose") == std::string::npos) return 0;
     if (next == postures.size()) return 'd';
     if (!leader.Lead(postures[next])) return 0;
     ++next;
@@ -64,7 +64,7 @@ TEST(MeasureHandle, ReportsTheErrorAndContinues) {
   ScriptedPerson person([&](const std::string& last) -> char {
     const double t = 1e-9 * static_cast<double>(bench.time.Now());
     bench.hand.touch[0] = presses == 1 ? 3 * std::sin(10 * t) : 0;
-    if (last.find("Enter takes the pose") == std::string::npos) return 0;
+    if (last.find("press Enter to take the pose") == std::string::npos) return 0;
     if (next == 2 && ends == 0) return ++ends, 'd';
     if (next == 4) return kGiveUp;
     if (presses == 1) presses = 2;

@@ -52,7 +52,7 @@ struct Truth {
 };
 
 // Returns the poses that the recorder computes from a noisy sensor. There are ten seconds between
-// two poses. `last` receives the final bias.
+// consecutive poses. `last` receives the final bias.
 std::vector<RestingPose> Poses(const Truth& truth, const SensorSpec& spec, int count,
                                std::uint64_t seed, Wrench* last = nullptr) {
   RandomStream random(seed, "poses");

@@ -108,8 +108,9 @@ TEST(KinematicsRefusal, OfInvalidNumbersAndOtherJoints) {
   facts = Reported(kUr5, {});
   facts.flange->X_BF.p.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(Refusal(facts, spec), "");
-  EXPECT_NE(Refusal(Reported(kUr5, {}), PandaSpec()).find("It has 6 joints, but arm.model has 7"),
-            std::string::npos);
+  EXPECT_NE(
+      Refusal(Reported(kUr5, {}), PandaSpec()).find("The arm has 6 joints, but arm.model has 7"),
+      std::string::npos);
 }
 
 TEST(KinematicsRefusal, OfAUrGoesByItsToolAndTheToolsOffset) {
@@ -171,7 +172,7 @@ TEST(Station, RefusesADifferentArm) {
     } catch (const DeviceError& error) {
       why = error.what();
     }
-    EXPECT_EQ(why.find("it reports its flange at") == std::string::npos, own) << why;
+    EXPECT_EQ(why.find("the arm reports its flange at") == std::string::npos, own) << why;
   }
 }
 

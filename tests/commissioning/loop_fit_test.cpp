@@ -259,7 +259,8 @@ TEST(FitLoop, RefusesAJointThatGoesHalfTheWay) {
     FitLoop(std::span(&record, 1));
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("0.50 of the commanded distance"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("0.50 times the commanded distance"),
+              std::string::npos)
         << error.what();
   }
 }

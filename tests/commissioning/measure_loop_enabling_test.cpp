@@ -19,7 +19,7 @@ class MeasureLoopWithADevice : public testing::Test {
   MeasureLoopWithADevice() { options_.enabling = {&bench_.station, kInput}; }
   void Press(bool pressed) { bench_.hand.inputs = pressed ? 1U << kInput : 0; }
   bool Moves() const { return bench_.hand.sample().v.cwiseAbs().maxCoeff() > 0.03; }
-  // Calls `act` in each step with the time since the prompt for the first joint [s]; `act` returns
+  // In each step, calls `act` with the time since the prompt for the first joint [s]. `act` returns
   // a key.
   std::string Swing(const std::function<char(double)>& act) {
     double since = -1;
@@ -105,7 +105,7 @@ TEST_F(MeasureLoopWithADevice, AnyOtherKeyStopsUntilItIsReleased) {
 }
 
 // Letters typed while the connection was stalled do not count as a touch of the key. A jammed key
-// does not count as a touch of the key either.
+// also does not count as a touch of the key.
 TEST_F(MeasureLoopWithADevice, BufferedLettersAreNotATouch) {
   Swing([&](double t) -> char {
     Press(t > 0.2);

@@ -159,7 +159,7 @@ TEST(MeasureLoop, BeginsAJointAgainThatWasHeldUp) {
   }
 }
 
-// The watchdog, which would notice a hang of this program, is no longer there.
+// The watchdog, which would notice a hang of this program, no longer runs.
 TEST(MeasureLoop, StopsWithoutItsWatchdog) {
   Bench bench;
   Holder holder(&bench.time);

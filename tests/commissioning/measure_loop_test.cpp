@@ -112,7 +112,8 @@ TEST(MeasureLoop, ReportsThatATouchIsNotEnough) {
   EXPECT_EQ(all.find("device"), std::string::npos) << all;  // this rig has no device
 }
 
-// Returns the message to a person who starts under this condition. The arm must not have moved.
+// Returns the message with which the program refuses to begin under this condition. The arm must
+// not have moved.
 std::string RefusalToBegin(Bench* bench, const std::function<void()>& once_tared) {
   Holder holder(&bench->time);
   holder.holds = true;

@@ -19,7 +19,7 @@
 
 namespace predictor::commissioning {
 
-// In this network, time passes only during Wait, which then calls the steps.
+// In this network, time passes only during Wait, which calls the registered functions.
 class VirtualTime : public Network {
  public:
   std::unique_ptr<Stream> Connect(const Address& peer, double) override {
@@ -62,14 +62,14 @@ class RigHand {
     command_ = v;
     motion_ = motion;
   }
-  // These functions return the last command [rad/s], and the largest rate at which commands have
-  // changed so far [rad/s²].
+  // The following functions return the last command [rad/s], whether the arm is in motion mode, and
+  // the largest rate at which commands have changed so far [rad/s²].
   const JointVector& command() const { return command_; }
   bool motion() const { return motion_; }
   double hardest() const { return hardest_; }
   // Sets the joint velocity of an arm that a person guides [rad/s], or ends the guiding if empty.
   void Lead(const JointVector& v) { lead_ = v; }
-  // These disturbances are added to the measured wrench and joints.
+  // The following disturbances are added to the measured wrench and joint angles.
   Wrench touch = Wrench::Zero();
   std::function<double(int joint, double time)> wobble;
   std::function<void(ArmSample* arm)> spoil;  // corrupts a sample

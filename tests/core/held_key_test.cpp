@@ -64,8 +64,8 @@ TEST_F(HeldKeyTest, IsHeldFromTheSecondLetterUntilItIsSilent) {
                                  KeySign::kContinues, KeySign::kContinues}));
 }
 
-// If no letter arrives for too long, the key counts as released. After that, the key does not count
-// as held after one letter, but after two.
+// If no letter arrives for too long, the key counts as released. After that, the key counts as held
+// only after two letters, not after one.
 TEST_F(HeldKeyTest, MustBeHeldAgainAfterSilence) {
   Hold();
   Letters({0.15});

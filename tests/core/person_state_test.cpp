@@ -70,7 +70,7 @@ TEST(PersonSchema, DescribesEachMember) {
   EXPECT_TRUE(Contains(schema, R"("description":"[m] largest distance)")) << schema;
 }
 
-// A warning whose begin and end have the same threshold would flicker.
+// A warning that began and ended at the same threshold would flicker.
 TEST(PersonWarnings, HaveTwoThresholds) {
   for (const auto& row : kPersonWarningRows) EXPECT_NE(row.on, row.off) << row.name;
 }

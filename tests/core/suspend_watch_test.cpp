@@ -9,8 +9,9 @@ namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
-// Clocks that a thread reads three times in a row. The thread may be delayed: `first` is the time
-// from the first reading to the second, and `second` is the time from the second to the third.
+// Clocks that a thread reads three times in a row. The thread may be delayed between two readings.
+// `first` is the time from the first reading to the second reading, and `second` is the time from
+// the second reading to the third one.
 class Clocks {
  public:
   std::int64_t Look(std::int64_t first, std::int64_t second) {

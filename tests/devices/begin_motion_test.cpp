@@ -1,5 +1,6 @@
-// A controller may take time to begin a motion. Until then, the other arm must not move alone, and
-// the emulation must wait. When the emulation continues, it must not catch up on the lost time.
+// A controller may take time to begin a motion. Until the controller has begun, the other arm must
+// not move alone, and the emulation must wait. When the emulation continues, it must not catch up
+// on the lost time.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // An enabling device is connected to a digital input of a robot's controller. With the real
-// protocol in virtual time, the arms may move only while a person presses it.
+// protocol in virtual time, the arms may move only while a person presses the device.
 #include <gtest/gtest.h>
 
 #include <memory>

@@ -17,10 +17,10 @@ constexpr double kRest = 2e-3;      // speed below which a handle is at rest [m/
 constexpr double kDegrees = 57.29577951;
 constexpr double kBefore = 0.05;  // audited time before a fault [s]
 
-// These limits are literals, so that the judgement does not depend on the prediction. The first
-// limit applies to quick arms. This limit consists of the budget at 0.25 m/s, the 30 ms for which
-// one arm follows the other, and the lag (10 ms, or 120 ms for a Franka's impedance control). The
-// second limit applies to a Franka with a bandwidth of 15 Hz.
+// The limits of a stop are literals, so that the judgement does not depend on the program's own
+// prediction. The first limit applies to quick arms. This limit is the sum of the documented limit
+// at 0.25 m/s, the 30 ms for which one arm follows the other, and the lag (10 ms, or 120 ms for a
+// Franka's impedance control). The second limit applies to a Franka with a bandwidth of 15 Hz.
 constexpr StopBudget kMaxStop{0.240, 0.0134 + 0.25 * 0.040}, kMaxSlowStop{0.260, 0.037};
 constexpr double kMaxDrift = 0.002, kMaxTurn = 0.5 / kDegrees;
 

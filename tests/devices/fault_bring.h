@@ -18,8 +18,8 @@ FaultOutcome BringBoth(Bench& bench, const Fault& first, const Fault& second, co
 // Returns the text that a person at the console sees: the stop, warnings, and faults of devices.
 std::string Messages(const Bench& bench);
 
-// These functions are parts of the judgement that other kinds of faults use as well. JudgeMessage
-// checks that the message describes the fault and names its hand first.
+// The following functions are parts of the judgement that are also used for other kinds of faults.
+// JudgeMessage checks that the message describes the fault and names its hand first.
 void JudgeMessage(const Fault& fault, int hand, FaultOutcome* outcome);
 void Take(const BenchStop& stop, FaultOutcome* outcome);
 // Checks the time and the distance of a stop.

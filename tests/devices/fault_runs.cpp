@@ -95,8 +95,8 @@ void Hash(const std::filesystem::path& file, std::uint64_t* hash) {
   for (const char c : text + '\0') *hash = (*hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
 }
 
-// Hashes the inputs of a rig's runs other than the program: the audit, the scenario, and the robot
-// descriptions.
+// Hashes the inputs of a rig's runs, except the program. The inputs are the audit, the scenario,
+// and the robot descriptions.
 std::uint64_t HashOfInputs(const FaultRig& rig) {
   std::uint64_t hash = 14695981039346656037U;
   const std::filesystem::path source = PREDICTOR_SOURCE_DIR;
@@ -111,8 +111,8 @@ std::uint64_t HashOfInputs(const FaultRig& rig) {
   return hash;
 }
 
-// The results of earlier calls of this program. A beginning is kept only if all its runs are
-// complete, so that all kept results have been audited.
+// The results of earlier calls of this program. The results of a beginning are kept only if all its
+// runs are complete, so that all kept results have been audited.
 class Kept {
  public:
   Kept(const std::string& file, const FaultRig& rig) {

@@ -36,17 +36,17 @@ int OnlyFault();
 bool Concerns(const Fault& fault, const FaultRig& rig);
 
 // Returns whether the second fault can occur after the first in a run of the rig. Only faults with
-// numbers up to 33 form pairs. Two faults form one pair for each order, unless a run begins with
-// one of the faults or cannot continue after it.
+// numbers up to 33 form pairs. Two faults form two pairs, one for each order. If a run begins with
+// one of the faults or cannot continue after it, the faults form at most one pair.
 bool HavePair(const Fault& first, const Fault& second, const FaultRig& rig);
 
 // Returns the time in RUN at which a fault is injected, during the first motions [s].
 double TimeOf(const std::string& fault, std::uint64_t seed);
 
-// Runs faults on all processors: every fault that concerns the rig with the seeds from 1 on, or a
-// share of all pairs distributed over seeds. If `kept` names a file, results of an earlier,
-// interrupted call are reused, provided that the program, the audit, the scenario and the robot
-// descriptions are unchanged.
+// Runs faults on all processors. Runs either every fault that applies to the rig, with the seeds
+// from 1 on, or a share of all pairs of faults, distributed over the seeds. If `kept` names a file,
+// results of an earlier, interrupted call are reused, provided that the program, the audit, the
+// scenario and the robot descriptions are unchanged.
 FaultRuns RunFaults(const FaultRig& rig, long seeds, const std::string& kept);
 FaultRuns RunFaultPairs(const FaultRig& rig, double share, const std::string& kept);
 

@@ -212,9 +212,9 @@ std::vector<Fault> FaultsOfWires() {
       Silent({7, "an arm restarts its numbering", kFranka, kPowerOff, 9,
               ToWire(RestartFrankaNumbering), false}),
       Silent({8, "sensor's datagrams cut", kNetFt, kPowerOff, 9, ToSensor("short")}),
-      // The bench's network counts these datagrams; sockets_test.cpp shows that a socket discards
-      // and counts them. Here the operator must see a warning with the count, and the run must
-      // continue.
+      // The bench's network counts these datagrams. sockets_test.cpp shows that a socket discards
+      // and counts such datagrams. Here the operator must see a warning with the count, and the run
+      // must continue.
       {8, "datagrams from another sender", kNetFt, kWarned, 0,
        ToSensorsWire([](WireFaults* w) { w->spoofed = true; })},
       {8, "a tenth of the sensor's datagrams cut", kNetFt, kWarned, 0,

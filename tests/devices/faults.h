@@ -1,5 +1,5 @@
-// Describes the faults of the fault model: how the bench injects each of them, the expected result,
-// and the time limit.
+// Describes the faults of the fault model. For each fault, the description contains the way in
+// which the bench injects the fault, the expected result, and the time limit.
 #pragma once
 
 #include <array>
@@ -107,7 +107,7 @@ struct Fault {
 };
 const std::vector<Fault>& Faults();
 // Returns the first fault with this number whose name starts with `beginning`. Throws
-// std::logic_error if there is none.
+// std::logic_error if no fault matches.
 Fault* FindFault(std::vector<Fault>* all, int number, const char* beginning);
 
 // One of these texts must appear after a fault that causes a warning or a stop. The texts describe

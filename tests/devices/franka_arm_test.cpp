@@ -181,8 +181,8 @@ TEST_P(FrankaDriver, StopsWithinTheLimits) {
   int ticks = 0;
   for (; rig_.mechanics.command.cwiseAbs().maxCoeff() > 1e-9 && ticks < 1000; ++ticks)
     ASSERT_TRUE(rig_.Tick());
-  // The slowest joint needs v/a + a/j, where a is 95 % of 7.5 rad/s² or 10 rad/s². Transmission
-  // takes two further ticks.
+  // The slowest joint needs the time v/a + a/j, where a is 95 % of 7.5 rad/s² or 10 rad/s².
+  // Transmission takes two further ticks.
   const double a = 0.95 * (GetParam() == 5 ? 7.5 : 10);
   EXPECT_NEAR(1e-3 * ticks, 0.5 / a + 0.002, 0.004);
 }
@@ -384,8 +384,8 @@ TEST_P(FrankaDriver, DropsAndCountsInvalidStates) {
   EXPECT_EQ(rig_.arm->counts().malformed, 2U);
 }
 
-// In one state, a single bit of its number is wrong. The driver must discard that state and use the
-// later ones.
+// In one state message, a single bit of the message's number is wrong. The driver must discard that
+// message and use the later ones.
 TEST_P(FrankaDriver, DropsAStateWhoseNumberJumps) {
   FrankaRig rig(FrankaOfVersion(GetParam()));
   rig.Connect();

@@ -11,7 +11,7 @@
 namespace predictor {
 namespace {
 
-// A client that answers each state with a given command.
+// A client that answers each state of the arm with a given command.
 class Client {
  public:
   explicit Client(std::uint16_t version) : version_(version), rig_(Options(version)) {

@@ -16,7 +16,7 @@ class FrankaFault : public testing::TestWithParam<std::uint16_t> {
  protected:
   FrankaFault() : rig_(FrankaOfVersion(GetParam())) {}
 
-  // Applies a fault in motion and returns the number of ticks until the driver reports it [ms].
+  // Applies a fault in motion and returns the time until the driver reports the fault [ms].
   int TicksUntilReported(const std::string& what) {
     Move();
     EXPECT_TRUE(rig_.fake.Do(what)) << what;
@@ -29,7 +29,7 @@ class FrankaFault : public testing::TestWithParam<std::uint16_t> {
     rig_.v.setConstant(0.2);
     ASSERT_TRUE(rig_.Ticks(100));
   }
-  // Applies a fault at rest, which the driver must report immediately in these words.
+  // Applies a fault at rest. The driver must report the fault immediately with the given words.
   void ExpectMessageAtRest(const std::string& what, const std::string& words) {
     rig_.Connect();
     ASSERT_TRUE(rig_.Ticks(10, false));
@@ -93,7 +93,7 @@ TEST_P(FrankaFault, GuidingByHand) {
 }
 
 // If a person has pressed the stop button or the state of the arm is unknown, the arm must not
-// remain powered. If it reports a fault and holds itself at rest, it may remain powered.
+// remain powered. If the arm reports a fault and holds itself at rest, it may remain powered.
 TEST_P(FrankaFault, EndsWithoutPowerIfTheArmMustNotBeHeld) {
   const std::vector<std::pair<const char*, bool>> ends = {
       {"user stop", true}, {"emergency stop", true},       {"drop link", true}, {"freeze", true},
@@ -389,7 +389,7 @@ TEST(FrankaCollisionThresholds, AreSetIfRequested) {
     rig.Connect(options);
     EXPECT_EQ(rig.fake.collision_force(), 60);
     EXPECT_TRUE(Contains(rig.arm->facts().remarks.at(0), "above 60 N or 20 N·m"));
-    // A listening client changes no settings.
+    // A client that only listens changes no settings.
     FrankaRig heard(FrankaOfVersion(version));
     options = heard.options();
     options.collision = FrankaCollision{};

@@ -16,7 +16,7 @@ struct Field {
   const char* name;
   int count;
 };
-// Up to the modes, the fields have the same order as in research_interface/robot/rbk_types.h.
+// The fields before the modes have the same order as in research_interface/robot/rbk_types.h.
 const std::vector<Field> kSignals = {{"O_T_EE", 16},
                                      {"O_T_EE_d", 16},
                                      {"F_T_EE", 16},
@@ -255,8 +255,8 @@ TEST(FrankaCommand, HoldsVelocitiesAndTheStateItAnswers) {
   }
 }
 
-// These are the bytes of pylibfranka 0.21.3 when it connects to an emulator: u32 command, u32 id,
-// u32 size, u16 version, u16 port. The two bytes of the port are not compared.
+// These bytes were sent by pylibfranka 0.21.3 when it connected to an emulator. They are u32
+// command, u32 id, u32 size, u16 version and u16 port. The two bytes of the port are not compared.
 TEST(FrankaRequest, ToConnectIsThatOfLibfranka) {
   RequestBuffer buffer;
   const auto bytes = EncodeConnect(10, 0, 0x1234, &buffer);

@@ -140,7 +140,7 @@ TEST_P(FrankaRateLimiter, LeavesRoomForCoastingSoak) {
   }
 }
 
-// A velocity ramp within the limits takes v/a + a/j if it reaches the acceleration limit.
+// A velocity ramp that reaches the acceleration limit takes the time v/a + a/j.
 TEST_P(FrankaRateLimiter, ReachesAndLeavesAVelocityInTheTimeThatTheLimitsAllow) {
   for (std::size_t i = 0; i < kJoints; ++i) {
     RateLimiter limiter = Limiter();
@@ -193,7 +193,7 @@ TEST_P(FrankaRateLimiter, IsNotFasterAfterMissedStates) {
   const Joints before = limiter.v();
   for (int tick = 0; tick < 20; ++tick) limiter.Next(asked, q, true);
   for (std::size_t i = 0; i < kJoints; ++i) EXPECT_EQ(limiter.v()[i], before[i]) << i;
-  // The limiter can always stop the joint.
+  // The limiter must always be able to stop the joint.
   asked.fill(0);
   for (int tick = 0; tick < 200; ++tick) limiter.Next(asked, q, true);
   EXPECT_TRUE(limiter.AtRest());

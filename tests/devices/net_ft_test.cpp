@@ -22,7 +22,7 @@ std::vector<int> Numbers(std::span<const std::byte> bytes) {
   return numbers;
 }
 
-// The expected request, which starts an endless stream, is printed in ATI's manual.
+// The expected request, which starts a stream without an end, is from ATI's manual.
 TEST(Rdt, RequestIsAsInTheManual) {
   EXPECT_EQ(Numbers(rdt::Encode({rdt::Command::kStream, 0})),
             (std::vector<int>{0x12, 0x34, 0, 2, 0, 0, 0, 0}));
@@ -168,7 +168,7 @@ TEST_F(NetFtTest, ReportsARestartedCounter) {
 }
 
 // The driver must discard a record whose number the sensor cannot have reached, because it would
-// make all later records look old. If the sensor continues with such numbers, its counter has
+// make all later records look old. If the sensor continues to send such numbers, its counter has
 // restarted.
 TEST_F(NetFtTest, ANumberFarAheadDoesNotMakeOthersOld) {
   for (const std::uint32_t jump : {100U, 1'000'000U, 0x4000'0000U, 0x7fff'ffffU}) {
@@ -200,8 +200,8 @@ TEST_F(NetFtTest, ANumberFarAheadDoesNotMakeOthersOld) {
   }
 }
 
-// The largest jump that still counts as a loss delays the readings by some milliseconds. The driver
-// must continue to use the sensor.
+// After the largest jump that still counts as a loss, the readings are delayed by some
+// milliseconds. The driver must continue to use the sensor.
 TEST_F(NetFtTest, ANumberSomewhatAheadCostsMilliseconds) {
   fake_ = MakeFakeNetFt({});
   network_.Add(kHost, fake_.get(), &mechanics_);

@@ -78,7 +78,7 @@ struct Work {
   void (*change)(Scenario*);
   double busy;  // if the largest force is lower [N], the person does not work
   // By default, an arm is a UR of the e-Series or a Research 3. The left hand uses the arm's own
-  // sensor, the right hand a Net F/T.
+  // sensor, and the right hand uses a Net F/T.
   FakeOptions arm = {};
   std::array<const char*, kHands> sensors = {"", "net_ft"};
   FakeOptions sensor = {};

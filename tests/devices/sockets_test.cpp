@@ -1,5 +1,5 @@
-// Tests what only real sockets do. A driver must not accept a datagram from another sender as the
-// device's.
+// Tests behaviour that only real sockets have. A driver must not accept a datagram from a sender
+// other than the device.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>

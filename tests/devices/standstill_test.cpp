@@ -86,7 +86,8 @@ class Following {
   std::vector<VelocityLoop> loops_;
 };
 
-// The program falls silent at a random time after it started to command this speed.
+// The program stops sending commands at a random time after it has commanded this speed for the
+// first time.
 constexpr double kSpeeds[] = {0.2, 0.8, 2.5};  // the documented speeds and a slow one [rad/s]
 constexpr int kLatest = 500;                   // [ms]
 

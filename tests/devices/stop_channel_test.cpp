@@ -12,8 +12,8 @@ using Link = StopChannel::Link;
 
 class StopChannelTest : public testing::Test {
  protected:
-  // Calls Tend in each of these milliseconds and returns its result, which must not change
-  // meanwhile.
+  // Calls Tend in each of these milliseconds and returns its result, which must be the same in all
+  // of them.
   Link Tend(int milliseconds) {
     Link link = Link::kTalks;
     for (int i = 0; i < milliseconds; ++i) {

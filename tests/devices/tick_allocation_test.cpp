@@ -1,5 +1,5 @@
-// A complete tick with real drivers must never allocate memory: in motion, during faults, during a
-// stop, and at rest.
+// A complete tick with real drivers must not allocate memory in motion, during faults, during a
+// stop, or at rest.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -19,8 +19,8 @@ struct TickFault {
   int missed = 0;  // number of missed ticks before the next one
 };
 
-// Returns two arms of one manufacturer, or one of each ("mixed"). One arm uses its own sensor, the
-// other a separate one.
+// Returns two arms of one manufacturer or, for "mixed", one arm of each manufacturer. One arm uses
+// its own sensor, and the other arm uses a separate sensor.
 HeldSystemOptions Rigging(const std::string& make) {
   const std::string right = make == "mixed" ? "franka" : make, left = make == "mixed" ? "ur" : make;
   const std::map<std::string, std::string> scenarios = {

@@ -1,4 +1,4 @@
-// Tests every reason to refuse a connection, and the message to the person.
+// Tests every reason for which the driver refuses a connection, and the message to the person.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -229,14 +229,15 @@ TEST(UrConnect, WithoutADashboardARemarkSaysThatPowerCannotBeSwitchedOff) {
       UrBench bench;
       bench.Connect({.host = kUrHost, .listen = listen, .dashboard_port = port});
       ASSERT_EQ(bench.arm->facts().remarks.size(), 1U);
-      EXPECT_TRUE(Says(bench.arm->facts().remarks[0], "cannot switch its power off"));
+      EXPECT_TRUE(Says(bench.arm->facts().remarks[0], "cannot switch the robot's power off"));
     }
   UrBench bench;
   bench.Connect({.host = kUrHost, .listen = true});
   EXPECT_TRUE(bench.arm->facts().remarks.empty());
 }
 
-// The port sent no greeting. The driver must not wait for one again and must not use the port.
+// The port sent no greeting. The driver must not wait for a greeting again and must not use the
+// port.
 TEST(UrConnect, AServerWithoutAGreetingIsNotADashboard) {
   constexpr double kGreeting = 2;  // time-out for the greeting [s]
   const auto connect = [](UrBench* bench, std::uint16_t port) {

@@ -1,6 +1,5 @@
-// A network that lies between a driver and another network and cuts the streams into pieces. Read
-// and Write of this network do not allocate memory, so all counted allocations are the driver's
-// own.
+// A network between a driver and another network. It cuts the streams into pieces. Read and Write
+// of this network do not allocate memory, so all counted allocations are the driver's own.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +48,7 @@ class ProxyNetwork final : public Network {
       written = 0;
     }
     void Fetch(std::size_t held_back) {
-      // The bytes that were held back become readable.
+      // Makes the delayed bytes readable.
       const std::size_t before = arrived;
       const int bytes = inner ? inner->Read(std::span(in).subspan(arrived)) : 0;
       if (bytes < 0) open = false;

@@ -81,8 +81,8 @@ TEST(RelativePose, AndHandlesAfterTheReleaseAreAsPrinted) {
   ExpectWithin(run.summary, "tracking.released.relative.angle_rad", {0.0009, 0.0026});
 }
 
-// The arms are slower or faster than the lead assumes. The test therefore does not merely compare
-// the model with itself.
+// The arms are slower or faster than the lead assumes. Because of this difference, the test does
+// not merely compare the model with itself.
 TEST_P(Accuracy, WithArmsOtherThanNominalIsAsPrinted) {
   const Printed& printed = GetParam();
   const std::pair<const char*, double> arms[] = {{"rig.loop.bandwidth=10", printed.slower_arms},
@@ -147,7 +147,7 @@ TEST(RelativePose, IsKeptWhereTrackingSuffers) {
 }
 
 TEST(RelativePose, IsKeptNearASingularity) {
-  // The bases are farther back, so that the arms are nearly stretched out.
+  // The bases of the arms are farther back, so that the arms are nearly stretched out.
   const std::vector<std::string> far = {"duration=12",
                                         "device.arms.left.base.xyz=[-0.13, -0.22, -0.35]",
                                         "device.arms.right.base.xyz=[-0.13, 0.22, -0.35]",

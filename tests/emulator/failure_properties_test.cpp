@@ -23,8 +23,8 @@
 namespace predictor {
 namespace {
 
-// The commands of an emulator in each tick until HELD, and the index of the tick in which the stop
-// began. If `asked` has a value, the test requests a stop in that tick.
+// The commands that an emulator sent in each tick until HELD, and the index of the tick in which
+// the stop began. If `asked` has a value, the test requests a stop in that tick.
 struct Stopped {
   std::vector<Arms> sent;
   std::size_t decision = 0;
@@ -48,7 +48,7 @@ Stopped RunUntilHeld(const std::vector<std::string>& set, std::optional<std::siz
 
 // The controller is too stiff for the simulation. The emulator discards the step that diverges and
 // stops the run. From then on, the commands must equal, bit for bit, those of a run in which the
-// same tick received a stop request. This shows that the rejected step has no effect.
+// same tick received a stop request. The equality shows that the rejected step has no effect.
 TEST(EmulatorProperties, ARejectedPhysicsStepContributesNothing) {
   for (const char* stiffness : {"2e4", "5e4", "1e5"}) {
     const std::vector<std::string> set = {

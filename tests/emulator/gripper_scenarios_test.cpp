@@ -72,7 +72,7 @@ TEST(GripperScenarios, ABoxIsPutDownAndPickedUpAgain) {
   EXPECT_NEAR(lifted.mean(), 0, 4);  // of 88 N
 }
 
-// The person pulls until the gripper opens, and then carries the weight of the tool.
+// The person pulls until the gripper opens. Then the person carries the weight of the tool.
 TEST(GripperScenarios, AToolIsHandedOver) {
   const Scenario scenario = LoadTestScenario("hand_over_tool");
   const double threshold = *scenario.events[0].trigger.force;  // [N]

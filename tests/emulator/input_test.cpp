@@ -66,7 +66,7 @@ TEST(Parameters, MoveInASecondAndTheObjectDoesNotJump) {
     speed = std::max(speed, std::abs(r.object.twist[2]));
   });
   EXPECT_EQ(emulator.record().parameters[0], 0.5);
-  // The same run without the input serves for comparison.
+  // For comparison, the test also performs the same run without the input.
   Emulator alone(LoadTestScenario("box_9kg"));
   double usual = 0;
   Pass(&alone, 5, [] {});
@@ -171,7 +171,7 @@ TEST(Buttons, StopResetAlignAndStartAgain) {
   for (int k = 0; k < 2000 && emulator.state() != RunState::kHeld; ++k) emulator.Tick();
   ASSERT_EQ(emulator.state(), RunState::kHeld);
   EXPECT_EQ(emulator.record().cause, StopCause::kOperator);
-  // Only a reset can end this state.
+  // Only a reset can end the held state.
   emulator.Submit(Of(InputKind::kStart));
   for (int k = 0; k < 100; ++k) emulator.Tick();
   EXPECT_EQ(emulator.state(), RunState::kHeld);

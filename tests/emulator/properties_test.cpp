@@ -212,8 +212,8 @@ class Watched {
 
   // The arms share one stop. Each of its commands is the last command before the stop, multiplied
   // by a factor in [0, kOvershoot]. The factors differ only because the faster arm waits for the
-  // slower one, and only within the promised distance. The change of the arms' geometry has little
-  // effect.
+  // slower one, and only within the documented distance. The change of the arms' geometry has
+  // little effect.
   void LookAtFactors(const Arms& start, const Arms& now, int ticks) {
     std::array<double, kHands> factor;
     for (std::size_t i = 0; i < kHands; ++i) {
@@ -252,8 +252,8 @@ TEST(EmulatorProperties, NothingThatIsAskedForMakesTheCommandStepSoak) {
   ExpectBounded(&watched);
 }
 
-// Ticks are late by up to three again and again, and the arms do not wait. A stop must still end in
-// time.
+// The loop repeatedly misses up to three ticks, and the arms do not wait for it. A stop must still
+// end in time.
 TEST(EmulatorProperties, NorWhatIsAskedForOfRealArmsWhileTicksComeLateSoak) {
   Watched watched = Watched::Real(LoadTestScenario("box_9kg"));
   ExpectBounded(&watched);

@@ -89,8 +89,8 @@ TEST_F(RealArms, RecoveryIsSlowForAnyHand) {
   }
 }
 
-// RECOVERY accepts the load that is present when it begins. An additional load stops it, after
-// which a person may request it again.
+// RECOVERY accepts the load that is present when it begins. An additional load stops RECOVERY.
+// After that, a person may request RECOVERY again.
 TEST_F(RealArms, RecoveryStopsWhenAHandIsLoadedMore) {
   ASSERT_TRUE(ToRun());
   Tick(500);

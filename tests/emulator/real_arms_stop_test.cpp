@@ -129,7 +129,7 @@ TEST_F(RealArms, AnArmThatMovesOnLosesItsPower) {
   EXPECT_NEAR(record().harder.value, HandleSpeed(Eigen::Map<const Twist>(V.data())), 1e-3);
 }
 
-// If the run had ended normally, this fault becomes the cause of the stop.
+// If the run had ended normally before the fault, the fault becomes the cause of the stop.
 TEST_F(RealArms, AnArmThatMovesOnAfterARunsEndIsACause) {
   for (const std::size_t arm : {0, 1}) {
     ASSERT_TRUE(ToRun());
@@ -166,7 +166,7 @@ TEST_F(RealArms, ARequestForPowerOffMakesTheEndOfAStopHarder) {
   EXPECT_EQ(record().harder.cause, StopCause::kOperator);
 }
 
-// The virtual world must be paused from that tick on.
+// The virtual world must be paused from the tick of the request on.
 TEST_F(RealArms, AWrenchInDoubtNeverEntersThePhysics) {
   ASSERT_TRUE(ToRun());
   for (int k = 0; k < 3000 && std::abs(record().object.twist[2]) < 0.01; ++k) Tick();

@@ -190,8 +190,8 @@ TEST_F(RealArms, AfterAFailedSelfTestTheBiasIsNotTakenForAHand) {
   EXPECT_TRUE(Await(RunState::kIdle));
 }
 
-// A foot switch takes the place of the key. tests/devices/enabling_test.cpp covers a device at a
-// robot's input.
+// In this test, a person uses a foot switch instead of the key. tests/devices/enabling_test.cpp
+// covers a device at a robot's input.
 class FootSwitch : public RealArms {
  protected:
   FootSwitch() { device_->foot = Enabling::kReleased; }
@@ -319,8 +319,8 @@ TEST_F(WaitsForAnArm, ToRecover) {
   ExpectNothingMovesBeforeItCan(RunState::kRecovery);
 }
 
-// Taring must cause no visible force while it averages or when it ends. This also applies if the
-// bias has changed while the sensor had no power.
+// Taring must cause no visible force while it averages or when it ends. Taring must cause no
+// visible force even if the bias has changed while the sensor had no power.
 TEST_F(RealArms, TaringIsBumpless) {
   double bias = 40, felt = 0;
   device_->spoil = [&bias](DeviceSample* sample) { sample->arms[0].F_S_raw[1] += bias; };
@@ -361,9 +361,9 @@ TEST(RealTimeArms, CannotBeEnabledRemotely) {
   key.kind = InputKind::kEnable;
   key.value = 1;
   std::atomic<bool> quit{false}, over{false}, moved{false}, refused{false}, stopped{false};
-  // Even if a page claims again and again that the key is held, the rig must refuse a request to
-  // align, because no person at the rig holds the key. (On a busy computer, missed ticks may stop
-  // the run instead.)
+  // Even if a page repeatedly claims that the key is held, the rig must refuse a request to align,
+  // because no person at the rig holds the key. (On a busy computer, missed ticks may stop the run
+  // instead.)
   std::thread ends([&] {
     TickRecord record;
     RingReader<TickRecord, kRecordRing> reader(*ring);

@@ -157,7 +157,7 @@ TEST(RealTime, StopsWhereTheWatchdogIsSilent) {
   EXPECT_GT(run.emulator.run_time(), 0.2);
 }
 
-// Another process can write the mailbox, so the loop must check by itself whether the switch is
+// Another process can write to the mailbox, so the loop itself must check whether the switch is
 // allowed.
 TEST(RealTime, AcceptsAnotherScenarioOnlyInPermittedStates) {
   for (const bool choose : {false, true}) {

@@ -138,8 +138,8 @@ double Torque(const HandRecord& hand) {
   return Vector3(hand.wrench[3], hand.wrench[4], hand.wrench[5]).norm();
 }
 
-// Real arms have the same conditions: free hands, handles at rest, and half a second without the
-// cause. The test requests a reset in each tick, and every request but the last must be refused
+// The same conditions apply to real arms: free hands, handles at rest, and half a second without
+// the cause. The test requests a reset in each tick, and every request but the last must be refused
 // with a reason.
 TEST(Reset, OfASimulatedRigWaitsForItsConditions) {
   for (const bool by_force : {true, false}) {
@@ -304,7 +304,7 @@ TEST(Stop, UntimelyRequestsEndInABoundedStop) {
   }
 }
 
-// These requests to the whole emulator follow docs/concepts/states.md. If several stops are
+// The expected results of these requests are those in docs/concepts/states.md. If several stops are
 // requested, the most severe one must take effect whatever their order, and no request may be lost.
 struct Asked {
   const char* name;

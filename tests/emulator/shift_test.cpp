@@ -33,8 +33,8 @@ void ExpectSame(const Pose& a, const Pose& b, std::uint64_t tick) {
   ASSERT_LT(RotationError(a.q, b.q).norm(), 1e-9) << "tick " << tick;
 }
 
-// The handle does not determine all motion of seven joints. This free motion accumulates, so the
-// joints of two runs may differ more than the handles.
+// The pose of the handle does not determine the motion of all seven joints. This free motion
+// accumulates, so the joints of two runs may differ more than the handles.
 constexpr double kSameJoint = 1e-7;  // [rad]
 
 // One arm's base is tilted, so that gravity does not act along the z axis of the base. The readings
@@ -72,7 +72,7 @@ TEST(Shift, OfTheSceneAloneMovesItForTheArms) {
   for (std::size_t j = 0; j < a[50].hands[0].arm_dof; ++j)
     most = std::max(most, std::abs(a[50].hands[0].q[j] - b[50].hands[0].q[j]));
   EXPECT_GT(most, 0.02);
-  // In W, both arms hold the same handles.
+  // In the frame W, the arms hold the handles at the same poses.
   for (std::size_t h = 0; h < kHands; ++h)
     EXPECT_LT(
         (FromRecord(a[50].hands[h].real.pose).p - FromRecord(b[50].hands[h].real.pose).p).norm(),

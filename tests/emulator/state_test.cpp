@@ -35,8 +35,8 @@ std::vector<std::byte> Save(Emulator* emulator) {
   return bytes;
 }
 
-// Submits the inputs that a page sends: parameters that change back and forth, a moving hand, and
-// latencies.
+// Submits the inputs that a page sends. The inputs are parameters that change back and forth, a
+// moving hand, and latencies.
 void PutIn(int k, Emulator* emulator) {
   RunInput input;
   if (k % 700 == 350) {

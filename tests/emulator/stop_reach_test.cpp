@@ -31,8 +31,8 @@ void Follows(ArmSpec* arm) {
   arm->follows_position = true;
 }
 
-// Other tests use kFollowing in formulas, so this test checks its value. kFollowing is the longest
-// time for which one arm continues because of the other [s].
+// kFollowing is the longest time for which one arm continues because of the other [s]. Other tests
+// use kFollowing in formulas, so this test checks its value.
 TEST(StopOfArms, HasNoMoreOfFollowingThanWasPromised) { EXPECT_EQ(kFollowing, 0.030); }
 
 // If the lag is insignificant, the stop consists of the commanded profile and the time for which
@@ -76,8 +76,8 @@ TEST(StopOfArms, IsOfTheSlowerArmAndTheOneThatWaits) {
   EXPECT_GT(mixed.time, OfBoth(Follows).time);
 }
 
-// If joints move at 2 rad/s and may decelerate at three quarters of 4 rad/s², they take two thirds
-// of a second to stop, and so do the handles.
+// Joints that move at 2 rad/s and may decelerate at three quarters of 4 rad/s² take two thirds of a
+// second to stop. The handles take the same time.
 TEST(StopOfArms, IsLongerWhereJointsTurnAsFastAsTheyMay) {
   Scenario s = LoadTestScenario("box_9kg");
   s.safety.handle_speed = 0.25;

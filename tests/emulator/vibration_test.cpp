@@ -31,7 +31,7 @@ struct Outcome {
   bool by_another() const { return stopped() && !vibrated; }
 };
 
-// The loop runs only if its predicted margin is at least `margin`.
+// The test runs the loop only if the predicted margin of the loop is at least `margin`.
 Outcome RunLoop(const std::string& scenario_name, const Settings& set, double margin = 0) {
   const Scenario scenario = LoadTestScenario(scenario_name, set);
   Emulator emulator(scenario);
@@ -109,7 +109,7 @@ struct Combination {
 // The full test runs every combination.
 std::size_t Step(std::size_t sample) { return InFull() ? 1 : sample; }
 
-// Prints the number of runs for the record of long runs.
+// Prints the number of runs, which the record of long runs contains.
 void PrintCount(long runs) {
   if (InFull()) std::printf("soak: count=%ld\n", runs);
 }
@@ -243,7 +243,7 @@ TEST(VibrationRun, NoScenarioIsStoppedSoak) {
   }
   for (const auto& [where, count] : left_out)
     std::printf("%s: %ld runs omitted because of their margin\n", where.c_str(), count);
-  // Of all loops, only this one has a margin that is too low.
+  // Only this loop has a margin that is too low.
   const long without = InFull() ? 100 : 1;
   EXPECT_EQ(left_out, (std::map<std::string, long>{{"bar_circle at 250 Hz", without}}));
   EXPECT_EQ(runs + without, 9 * seeds * (InFull() ? 6 : 1));

@@ -89,7 +89,7 @@ TEST(Wiring, ReportsWhichLinkCannotBeRemoved) {
                PlaceIn(root, "panda_link0") + "cobot.remove_links.0: \"panda_link0\" is the root");
 }
 
-// Only the search for an equilibrium finds these errors.
+// The program finds these errors only when it searches for an equilibrium.
 TEST(Wiring, ReportsWhyTheCobotCannotHoldTheObject) {
   const std::string heavy = Replace(Box(), "box_9kg.urdf", "box_18kg.urdf");
   ExpectBegins(ErrorOf(heavy), PlaceIn(heavy, "model: package") +

@@ -64,7 +64,7 @@ TEST(ContactLimitFile, RefusesWhatItCannotUse) {
   EXPECT_THROW(ReadContactLimits("/nowhere/limits.csv"), InputError);
 }
 
-// The file that is shipped states that the user must confirm it.
+// The shipped file states that the user must confirm its values.
 TEST(ContactLimitFile, ShippedTemplateIsComplete) {
   const ContactLimits limits =
       ReadContactLimits(std::string(PREDICTOR_SOURCE_DIR) + "/assets/contact_limits_template.csv");

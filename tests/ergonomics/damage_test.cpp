@@ -92,7 +92,7 @@ TEST(Hand, HasTheProbabilitiesOfThePublishedExamples) {
   EXPECT_NEAR(kHandRisk.Probability(500 * HandDamage(6)), 0.41, 0.005);
 }
 
-// These are Bani Hani's published test cases.
+// The test cases were published by Bani Hani.
 TEST(Shoulder, HasTheDamageOfThePublishedExamples) {
   constexpr double kPoundForce = 4.4482216, kInch = 0.0254;
   const double one_hand = 2880 * ShoulderDamage(ShoulderMoment(2 * kPoundForce, 16 * kInch));
@@ -103,7 +103,7 @@ TEST(Shoulder, HasTheDamageOfThePublishedExamples) {
   const double two_hands = 4800 * ShoulderDamage(ShoulderMoment(5 * kPoundForce, 18 * kInch));
   EXPECT_NEAR(two_hands, 0.03331, 0.03 * 0.03331);
   EXPECT_NEAR(kShoulderRisk.Probability(two_hands), 0.376, 0.003);
-  // These are published pairs of damage and probability.
+  // The pairs of damage and probability were published.
   EXPECT_NEAR(kShoulderRisk.Probability(0.03331), 0.376, 0.0005);
   EXPECT_NEAR(kShoulderRisk.Probability(0.04097), 0.396, 0.0005);
   EXPECT_NEAR(kShoulderRisk.Probability(0.19214), 0.550, 0.0005);

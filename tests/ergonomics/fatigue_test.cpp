@@ -87,8 +87,8 @@ TEST(ThreeCompartments, DoNotDependOnTheStep) {
   EXPECT_NEAR(large.fatigued, small.fatigued, 1e-5);
 }
 
-// The coefficients were validated in this way: the model agrees with measured endurance within a
-// factor of two. At loads above 70 % of the strength, the model's endurance falls to 0, but the
+// The model agrees with measured endurance within a factor of two, which validates its
+// coefficients. At loads above 70 % of the strength, the model's endurance falls to 0, but the
 // measured endurance does not.
 TEST(ThreeCompartments, AgreeWithMeasuredEnduranceWithinAFactorOfTwo) {
   for (const FatigueJoint joint : kAllJoints)

@@ -88,7 +88,7 @@ TEST(Niosh, Example1LoadingPunchPressStock) {
 
 // Section 2.4.5 of the manual is quoted from memory and was not verified. The limits are 20, 20 and
 // 15 lb for a single lift, the loads 30, 20 and 10 lb, and the frequencies 1, 2 and 4 lifts per
-// minute. These values give CLI = 1.60 + 0.07 + 0.20.
+// minute. The composite lifting index is therefore CLI = 1.60 + 0.07 + 0.20.
 TEST(Niosh, CompositeIndexOfThreeTasks) {
   const auto task = [](double limit, double load, double frequency) {
     LiftTask t;
@@ -176,7 +176,8 @@ TEST(Niosh, AssistedLiftIsLabelledAsAdapted) {
 }
 
 // Each equation multiplies a reference load by factors. Under the reference condition, these
-// factors are 1 within the four printed digits. A wrong digit in any constant fails this test. With
+// factors are 1 within the four printed digits. A wrong digit in any constant makes this test fail.
+// With
 // 0.6687 instead of 0.6887, the men's sustained push would be 9 % too large.
 TEST(LmMmh, EachEquationReturnsItsReferenceLoad) {
   constexpr double kOnceInEightHours = 1.0 / 480, kPrinted = 1e-3;

@@ -18,10 +18,10 @@ std::vector<int> NumbersIn(const std::string& text) {
   return numbers;
 }
 
-// Two public programs (in Korean and in Spanish) contain this same table. Its rows correspond to
-// the score of the upper arm, and its columns to the scores of the lower arm and the wrist. The two
-// digits of a pair are for the two scores of the wrist's twist. For upper arm 5, lower arm 2, wrist
-// 3 and twist 2, two other programs have 6 instead of 7, but an older worksheet also has 7.
+// Two public programs (one in Korean, one in Spanish) contain the same table. Its rows correspond
+// to the score of the upper arm, and its columns to the scores of the lower arm and the wrist. The
+// two digits of a pair are for the two scores of the wrist's twist. For upper arm 5, lower arm 2,
+// wrist 3 and twist 2, two other programs have 6 instead of 7, but an older worksheet also has 7.
 constexpr const char* kPrintedRulaA =
     "12 22 23 33  22 22 33 33  23 33 33 44\n"
     "23 33 34 44  33 33 34 44  34 44 44 55\n"
@@ -29,7 +29,7 @@ constexpr const char* kPrintedRulaA =
     "44 44 45 55  44 44 45 55  44 45 55 66\n"
     "55 55 56 67  56 66 67 77  66 67 77 78\n"
     "77 77 78 89  88 88 89 99  99 99 99 99\n";
-// Three public programs contain this same table. Its rows correspond to the score of the neck, and
+// Three public programs contain the same table. Its rows correspond to the score of the neck, and
 // its columns to the scores of the trunk and the legs.
 constexpr const char* kPrintedRulaB =
     "1 3 2 3 3 4 5 5 6 6 7 7\n"

@@ -93,7 +93,7 @@ TEST(CyclePhase, CountsACycleThatEndsALittleShort) {
 }
 
 TEST(CutCycle, TakesASignalByThePhaseNotByTheTime) {
-  // The second cycle is twice as fast as the first. The signal depends only on the phase.
+  // The second cycle is twice as fast as the first cycle. The signal depends only on the phase.
   const auto turns = [](double t) { return t < 4 ? t / 4 : 1 + (t - 4) / 2; };
   const auto phase = Sampled(601, turns);
   const auto signal = Sampled(601, [&](double t) { return std::sin(kTurn * turns(t)); });
@@ -192,8 +192,8 @@ TEST(Coherence, IsOneOfAFilteredAndSmallOfUnrelatedSignals) {
 }
 
 TEST(Repeats, AreComparedByTheirMeanSquares) {
-  // For these constant series, the squared distances were computed by hand: 4 within a, 0 within b,
-  // and 9 and 1 between the sets.
+  // For these constant series, the squared distances were computed by hand. They are 4 within a, 0
+  // within b, and 9 and 1 between the sets.
   const std::vector<std::vector<double>> a = {{0, 0}, {2, 2}}, b = {{3, 3}, {3, 3}};
   const RepeatComparison c = CompareRepeats(a, b);
   EXPECT_DOUBLE_EQ(c.within, std::sqrt((4 + 0) / 2.0));
@@ -365,7 +365,7 @@ TEST(FidelityCollector, AveragesStepsAndFillsGaps) {
   EXPECT_NEAR(x[52] - x[49], 3 * (x[53] - x[49]) / 4, 1e-12);
 }
 
-// The times come from a file, so the memory must not grow with them.
+// The times come from a file, so large times must not increase the memory use.
 TEST(FidelityCollector, RefusesTimesThatCannotBe) {
   std::vector<TickRecord> records = Records({.period = 2, .cycles = 1, .start = 0});
   for (const double time : {HUGE_VAL, 1e300, 1e7}) {
@@ -424,8 +424,8 @@ TEST(Fidelity, IsAlignedByThePhaseOfTheCycle) {
   EXPECT_GT(Channel(CompareFidelity(a, b, false), "position x").rmse, 0.05);
 }
 
-// The paper found that the real cobot has more resistance. The comparison quantifies this
-// difference.
+// The paper found that the real cobot resists motion more than the emulated one. The comparison
+// quantifies this difference.
 TEST(Fidelity, NamesTheViscosityThatIsMissing) {
   const std::vector<FidelitySignals> real = {SignalsOf(Task{.viscosity = 29, .noise = 0.05})},
                                      emulated = {SignalsOf(
@@ -482,7 +482,8 @@ TEST(Fidelity, IsDescribedInWords) {
   EXPECT_EQ(text.find("Warning"), std::string::npos) << text;
 }
 
-// If the runs are aligned by time, each gives a single value, so its standard error is unknown.
+// If the runs are aligned by time, each run gives a single value, so the standard error of this
+// value is unknown.
 TEST(Fidelity, WarnsWhereErrorsAreNotKnown) {
   const std::vector<FidelitySignals> a = {SignalsOf(Task{.noise = 0.1})},
                                      b = {SignalsOf(Task{.viscosity = 30, .noise = 0.1})};

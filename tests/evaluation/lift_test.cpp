@@ -1,4 +1,4 @@
-// The summary must say so if the script lifts the object but the object does not rise.
+// If the script lifts the object but the object does not rise, the summary must report this.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -113,7 +113,7 @@ Json Form() {
           {"age", 23},        {"sex", "female"}, {"comment", "Größe <b>"},  {"pseudonym", nullptr}};
 }
 
-// Returns the key and the message of the error with which the form is refused.
+// Returns the key and the message of the error with which the program refuses the form.
 std::pair<std::string, std::string> Refused(const Json& form) {
   try {
     ParseSurveyForm(form.dump());
@@ -339,7 +339,7 @@ TEST(SurveyReport, CountsPeopleAndAnswers) {
 
 TEST(SurveyReport, ComparesPairsByTheSignedRanks) {
   std::vector<StoredAnswer> answers;
-  // S1 has eight differences of +1, and so does S2, except that one of them is −1. All other
+  // S1 has eight differences of +1. S2 has seven differences of +1 and one of −1. All other
   // differences are zero.
   for (int i = 0; i < 8; ++i) {
     const std::string person = "P" + std::to_string(i);

@@ -36,8 +36,8 @@ int CountDistinguished(double size, int trials, std::size_t count) {
 
 TEST(SameKind, OneInTwentyOfEqualKindsIsDistinguished) {
   // The number of distinguished cases has a binomial distribution with 400 trials at 5 %, so it is
-  // 20 ± 4.4. The limits are three and a half standard deviations from the mean, which is exceeded
-  // about once in two thousand cases.
+  // 20 ± 4.4. The limits are three and a half standard deviations from the mean. A correct test
+  // exceeds them about once in two thousand cases.
   const int distinguished = CountDistinguished(1, 400, 17);
   EXPECT_GE(distinguished, 5);
   EXPECT_LE(distinguished, 35);
@@ -47,7 +47,7 @@ TEST(SameKind, UnequalKindsAreDistinguished) {
   // The sizes of the two kinds differ by 1.5 standard deviations. Student's test would detect the
   // difference in 98 of 100 cases.
   EXPECT_GE(CountDistinguished(1.3, 100, 17), 90);
-  // Kinds with the same mean but different variances must be distinguished as well.
+  // The test must also distinguish kinds with the same mean but different variances.
   std::mt19937_64 random(3);
   Repeats narrow(17, {0.0}), wide = narrow;
   for (std::size_t k = 0; k < 17; ++k) {
@@ -58,8 +58,8 @@ TEST(SameKind, UnequalKindsAreDistinguished) {
 }
 
 // The test goes through all 20 ways to divide six numbers into two sets. For series of one sample,
-// |x − y| is their rms difference. The sets are the lowest three and the highest three. Only the
-// swapped division puts the sets as far apart.
+// |x − y| is their rms difference. The sets are the lowest three and the highest three. Among the
+// other divisions, only the one with the two sets swapped gives the same distance between the sets.
 TEST(SameKind, PIsThatOfGoingThroughAllWays) {
   const Repeats low = {{1}, {2}, {3}}, high = {{11}, {12}, {13}};
   const SameKindTest test = TestSameKind(low, high);

@@ -126,7 +126,7 @@ TEST(HodgesLehmannEstimate, AgreesWithPublishedExamples) {
   EXPECT_NEAR(maize.confidence, 0.95208740234375, 1e-12);
 }
 
-// These are differences of answers with ties and zeros.
+// The data are differences of answers, with ties and zeros.
 const std::vector<double> kLikert = {1, 0, -1, 2, 1, 1, 0, 1, -1, 2, 0, 1, 1, 3, -2, 1, 0};
 
 TEST(SignedRank, TreatsTiesAndZerosByTheNamedRule) {

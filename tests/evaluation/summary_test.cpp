@@ -145,8 +145,8 @@ TEST(Summary, ComputesMeansDeviationsAndTheReleasedPartApart) {
 }
 
 // A rotation of the left handle about its own origin keeps the distance between the handles. In the
-// left handle's frame, it moves the right handle by the chord of the arc. A common translation
-// changes neither value.
+// left handle's frame, this rotation moves the right handle by the chord of the arc. A common
+// translation of both handles changes neither value.
 TEST(Summary, SeparatesTheRelativePoseFromTheDistance) {
   constexpr double kAngle = 0.1, kDistance = 0.2, kShift = 0.03;
   TickRecord turned = Running(0.001, kShift, 0);
@@ -234,8 +234,8 @@ TEST(Summary, ReportsWhatMadeTheEndOfAStopHarder) {
             std::string::npos);
 }
 
-// The summary must contain the reason even if it occurs in the tick of the decision and no record
-// follows.
+// The summary must contain the reason even if the reason occurs in the tick of the decision and no
+// record follows.
 TEST(Summary, ReportsWhatMadeAStopHarderInItsOwnTick) {
   SummaryBuilder builder(Named("name", 1));
   TickRecord stop = Running(0.001, 0, 1);
@@ -333,7 +333,7 @@ TEST(Summary, HasNoFiguresIfRunWasNotReached) {
   EXPECT_EQ(json["stop"]["cause"], "device");
 }
 
-// Here, rest has the same definition as in a stop. A handle is not at rest while it rotates or
+// The definition of rest is the same as in a stop. A handle is not at rest while it rotates or
 // while its driver moves it.
 TEST(Summary, RestsWhereTheStopRests) {
   const auto duration = [](const auto& at) {
@@ -416,7 +416,8 @@ TEST(Summary, DoesNotCountEncoderNoiseAsDistance) {
   EXPECT_LE(log.stops().front().distance, 2e-5);
 }
 
-// Returns the summary of a run with this many ticks in each state of the grip, in their order.
+// Returns the summary of a run that has the given numbers of ticks in the states of the grip, one
+// after the other.
 Summary WithGrip(const std::vector<std::pair<AttachmentState, int>>& states) {
   SummaryBuilder builder(Named("name", 1));
   for (const auto& [state, ticks] : states) {

@@ -125,7 +125,7 @@ TEST_F(EvaluatorProcessTest, ReportsWhatIsMissingOrImpossible) {
   EXPECT_THROW(Start(scenario), InputError);
 }
 
-// A process with this descriptor must be able to read the states but not to forge them.
+// A process with this descriptor must be able to read the states but not to change them.
 TEST(EvaluationBoard, CanBeGivenAwayReadOnly) {
   const Shared<EvaluationBoard> states;
   const int descriptor = states.read_only_descriptor();

@@ -29,8 +29,8 @@ namespace fs = std::filesystem;
 constexpr int kGazeboSteps = 5000;             // of 1 ms
 constexpr double kMaxGazeboDifference = 1e-9;  // [m]
 
-// Returns the path of the program built from tests/export/gazebo, which is in the folder of the
-// tests.
+// Returns the path of the program that is built from tests/export/gazebo. The program is in the
+// folder of the tests.
 fs::path Mover() { return fs::path(PREDICTOR_BINARY).parent_path() / "predictor-ign-mover"; }
 
 std::string OutputOf(const std::string& command) {
@@ -44,8 +44,8 @@ std::string OutputOf(const std::string& command) {
   return output;
 }
 
-// Applies the same control law as that program. The law consists of springs and dampers in the
-// joints, and a force on the object's centre.
+// Applies the same control law as the program in tests/export/gazebo. The law consists of springs
+// and dampers in the joints, and a force on the object's centre.
 std::vector<Vector3> MoveInDart(const Scenario& scenario) {
   const auto robot = RobotModel::Load({scenario.cobot.model, scenario.folder(),
                                        scenario.cobot.remove_links, scenario.cobot.base.ToPose()});

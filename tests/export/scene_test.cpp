@@ -66,7 +66,7 @@ Quaternion Turn(const Vector3& turns) {
                     Eigen::AngleAxisd(turns.z(), Vector3::UnitZ()));
 }
 
-// The exported scene is one tree, without the movable objects.
+// The exported scene is a single tree, which does not contain the movable objects.
 Scenario Exported(Scenario scenario) {
   scenario.environment.objects.clear();
   return scenario;
@@ -428,7 +428,7 @@ TEST_P(ExportedScene, NamesFilesOfThePackageOnlyAndAllOfThem) {
   EXPECT_EQ(there, named);  // the shipped models have no textures
 }
 
-// The format permits these omissions, but URDF-Importer fails on them.
+// The format permits these omissions, but URDF-Importer cannot load a file that has them.
 TEST_P(ExportedScene, HasWhatUrdfImporterNeeds) {
   tinyxml2::XMLDocument doc;
   ASSERT_EQ(doc.LoadFile((to / kSceneUrdf).c_str()), tinyxml2::XML_SUCCESS);
@@ -445,7 +445,7 @@ TEST_P(ExportedScene, HasWhatUrdfImporterNeeds) {
     }
   }
   const std::set<std::string> still = {"world", "floor", "table"};
-  // URDF-Importer gives 1 kg to a link without inertial.
+  // URDF-Importer gives a mass of 1 kg to a link that has no inertial element.
   for (auto* link = scene->FirstChildElement("link"); link != nullptr;
        link = link->NextSiblingElement("link")) {
     EXPECT_EQ(link->FirstChildElement("inertial") == nullptr,

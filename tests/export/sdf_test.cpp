@@ -1,5 +1,5 @@
-// Tests the scene as SDF. The tests compare the poses of its links with our kinematics, and run
-// Gazebo's checker.
+// Tests the scene as SDF. The tests compare the poses of the links with our kinematics, and they
+// run Gazebo's checker.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <tinyxml2.h>

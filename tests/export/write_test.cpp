@@ -27,7 +27,7 @@ std::string Refusal(const ScenePackage& package, const fs::path& folder, bool fo
   }
 }
 
-// Returns the files in the folder, without the list of written files.
+// Returns the files in the folder, except the list of written files.
 Contents Shown(const fs::path& folder) {
   Contents files = Files(folder);
   files.erase(".predictor-scene");

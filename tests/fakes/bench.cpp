@@ -145,8 +145,8 @@ void Bench::Forget(double time) {
   const auto old = [&](std::uint64_t then) {
     return static_cast<double>(now() - then) > 1e9 * time;
   };
-  // Keeps the stage in which the kept time begins, and the commands that the arms had not yet
-  // followed when that stage began.
+  // Keeps the stage that contains the start of the kept period, and the commands that the arms had
+  // not yet followed when that stage began.
   while (stages_.size() > 1 && old(stages_[1].time)) stages_.erase(stages_.begin());
   const std::uint64_t begin = stages_.empty() ? now() : stages_[0].time;
   std::erase_if(sent_,

@@ -33,7 +33,7 @@ struct BenchOptions {
   std::function<void(std::array<JointVector, kHands>*)> start;
 };
 
-// Bytes that were written to an arm's controller. They are a part of a stream or a datagram.
+// Bytes that were written to an arm's controller. The bytes are a part of a stream or a datagram.
 struct Sent {
   std::uint64_t time;  // [ns]
   int hand;
@@ -79,10 +79,11 @@ class Bench {
   void Watch(std::function<void(const TickRecord&)> look) { look_ = std::move(look); }
   // Sets whether the person holds the key from now on.
   void Hold(bool key) { holds_ = key; }
-  // Performs ticks until the run is in this state. Returns false if that takes longer than
-  // `patience` [s].
+  // Performs ticks until the run is in this state. Returns false if the run does not reach this
+  // state within `patience` [s].
   bool Await(RunState state, double patience);
-  // Performs ALIGN, ARMED and RUN as a person requests them. Returns false if RUN is not reached.
+  // Goes through ALIGN and ARMED to RUN, as a person requests these states. Returns false if the
+  // run does not reach RUN.
   bool Start();
   // Waits at most `patience` [s] until the arms rest after a stop. `fault` is the tick of the
   // fault.
@@ -95,7 +96,8 @@ class Bench {
   WireFaults& wire(int hand) { return *faulty_->Of(HostOf(hand)); }
   WireFaults& sensor_wire(int hand) { return *faulty_->Of(SensorHostOf(hand)); }
   FarRig& rig() { return *rig_; }
-  // Returns the network as another process sees it, without the faults of the bench's wires.
+  // Returns the network that another process uses. The faults of the bench's wires do not affect
+  // this network.
   Network& network() { return *memory_; }
   std::uint64_t now() const { return memory_->Now(); }  // [ns]
   // From now on, records the bytes that are written to the arms and the stages of the run.

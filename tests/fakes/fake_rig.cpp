@@ -3,8 +3,8 @@
 //
 //   fake_rig SCENARIO left=ur:127.0.0.2 right=franka:127.0.0.3 left=net_ft:127.0.0.4
 //
-// The program runs in real time with steps of a millisecond. It executes each line on standard
-// input and answers with one or more lines. kHelp lists the commands.
+// The program runs in real time with steps of a millisecond. The program executes each line on
+// standard input and answers with one or more lines. kHelp lists the commands.
 #include <poll.h>
 #include <sched.h>
 #include <sys/mman.h>

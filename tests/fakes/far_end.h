@@ -1,6 +1,7 @@
-// The device side of the wire for tests: fakes that use a real protocol, byte by byte, in steps of
-// a millisecond. The fakes depend on no socket and no clock. The same code therefore runs in memory
-// and virtual time (memory_network.h), and over sockets in a separate process (fake_rig.cpp).
+// The device side of the wire for tests. It consists of fakes that use a real protocol, byte by
+// byte, in steps of a millisecond. The fakes depend on no socket and no clock. The same code
+// therefore runs in memory and virtual time (memory_network.h), and over sockets in a separate
+// process (fake_rig.cpp).
 #pragma once
 
 #include <cstddef>
@@ -22,14 +23,15 @@ class Wire {
   virtual ~Wire() = default;
   virtual void Send(int link, std::span<const std::byte> bytes) = 0;
   virtual void Close(int link) = 0;
-  // Sends UDP from the fake's port to a port of the client, which is the last computer that has
-  // sent data.
+  // Sends UDP from the fake's port to a port of the client. The client is the last computer that
+  // has sent data.
   virtual void SendDatagram(std::uint16_t from, std::uint16_t to,
                             std::span<const std::byte> bytes) = 0;
 };
 
-// Connects a fake with an arm of a rig and its sensor. The caller that steps the rig must fill in
-// the sample before it calls the fake's Step, and must then pass the resulting command to the arm.
+// Connects a fake with an arm of a rig and its sensor. The caller steps the rig. Before the caller
+// calls the fake's Step, it must fill in the sample. After that, it must pass the resulting command
+// to the arm.
 struct Mechanics {
   ArmSample sample;     // current joints and sensor reading
   JointVector command;  // joint velocities that the controller commands [rad/s]
@@ -49,8 +51,8 @@ class FakeDevice {
                                 std::span<const std::byte> /*bytes*/) {}
   // Lets one millisecond pass.
   virtual void Step(Mechanics* mechanics) = 0;
-  // Causes an event outside the protocol ("protective stop", "emergency stop", ...), given as words
-  // with parameters. Returns false if the event is unknown.
+  // Causes an event outside the protocol ("protective stop", "emergency stop", ...). Words with
+  // parameters describe the event. Returns false if the event is unknown.
   virtual bool Do(const std::string& /*what*/) { return false; }
   // Returns the events that a test may read, one per line, such as lost commands or refused words.
   const std::vector<std::string>& log() const { return log_; }

@@ -26,12 +26,13 @@ class FarRig {
   // this object exists.
   Mechanics* Hang(int hand);
 
-  // Lets one millisecond pass. The arms follow the commands in the places, which then receive new
-  // samples.
+  // Lets one millisecond pass. The arms follow the commands in the places. The places then receive
+  // new samples.
   void Step();
 
   // From now on, adds errors to the readings of a controller and a sensor. One error is added to
-  // the joints [rad] (none if empty), and the other is a wrench about S [N], [N·m].
+  // the joint angles [rad]; if it is empty, the angles have no error. The other error is a wrench
+  // about S [N], [N·m].
   void Disturb(int hand, const JointVector& q, const Wrench& F_S);
   // From now on, adds a drift to the wrench [N/s], [N·m/s].
   void Drift(int hand, const Wrench& rate);

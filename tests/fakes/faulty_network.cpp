@@ -107,7 +107,7 @@ class FaultyDatagrams final : public Datagrams {
       if (faults_->corrupt) faults_->corrupt(&one);
       const double late = faults_->delay + faults_->jitter * random_->Uniform();
       Due due{clock_->Now() + Nanoseconds(late), std::move(one)};
-      // This datagram waits, so that the next one overtakes it.
+      // This datagram is delayed, so that the next one overtakes it.
       if (overtaken_.empty() && random_->Uniform() < faults_->reorder) {
         overtaken_ = std::move(due.bytes);
         continue;

@@ -16,8 +16,8 @@ class HeldNetwork final : public Network {
  public:
   explicit HeldNetwork(Network* inner) : inner_(inner) {}
 
-  // From now on, only Exchange transfers data. It makes received data readable and sends written
-  // data.
+  // From now on, only Exchange transfers data. Exchange makes received data readable and sends
+  // written data.
   void Hold() { holding_ = true; }
   void Exchange() {
     for (Held* held : held_) held->Exchange();

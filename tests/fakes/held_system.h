@@ -34,7 +34,7 @@ class HeldSystem {
     Between(missed);
     emulator_->Tick(memory_.Now(), missed);
   }
-  // Performs ALIGN, ARMED and RUN. Returns false if RUN is not reached.
+  // Goes through ALIGN and ARMED to RUN. Returns false if RUN is not reached.
   bool Start();
 
   Emulator& emulator() { return *emulator_; }

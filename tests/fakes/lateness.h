@@ -1,6 +1,6 @@
 // Measures, in the process of the fakes, how late this computer runs its threads. On each
 // processor, a thread with the highest priority wakes every half millisecond. One more thread has
-// ordinary priority. The delays of the fakes' own loop are measured as well. If none of these
+// ordinary priority. The process also measures the delays of the fakes' own loop. If none of these
 // threads is late, the program itself is the cause of its silence.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace predictor {
 std::uint64_t MonotonicNow();
 void WaitUntil(std::uint64_t due);
 
-// The longest of several delays, and their sum [ms].
+// The longest delay in a set of delays, and the sum of these delays [ms].
 struct Delay {
   double longest = 0, sum = 0;
 };

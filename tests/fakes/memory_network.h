@@ -18,7 +18,7 @@ class MemoryNetwork final : public Network {
   ~MemoryNetwork() override;
 
   // Makes `device` answer at `host`. The device must outlive the network. `mechanics` belongs to
-  // its arm.
+  // the device's arm.
   void Add(const std::string& host, FakeDevice* device, Mechanics* mechanics);
   // Sets a function that moves the arms. The network calls this function every millisecond of
   // virtual time, after the steps of the fakes.

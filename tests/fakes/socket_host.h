@@ -21,7 +21,7 @@ class SocketHost final : public Wire {
   SocketHost(const SocketHost&) = delete;
   SocketHost& operator=(const SocketHost&) = delete;
 
-  // Passes received data to the device without waiting. Returns whether there was any data.
+  // Passes received data to the device without waiting. Returns whether any data was received.
   bool Receive();
 
   void Send(int link, std::span<const std::byte> bytes) override;

@@ -1,4 +1,4 @@
-// Parses any datagram as a state of a Franka arm, in each version.
+// Parses any datagram as a state of a Franka arm, in each version of the interface.
 #include "devices/franka/fci.h"
 
 #include "fuzz/target.h"

@@ -1,5 +1,5 @@
-// Reads any file as a mesh in the format that the first byte selects, determines its size, and puts
-// the files that it refers to into a package.
+// Reads any file as a mesh in the format that the first byte selects. Determines the size of the
+// mesh and puts the files to which the mesh refers into a package.
 #include <unistd.h>
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// Reads any file as a recording. The reader must accept it or throw InputError, and its memory must
-// stay bounded.
+// Reads any file as a recording. The reader must accept the file or throw InputError, and the
+// memory use of the reader must stay bounded.
 #include <unistd.h>
 
 #include <fstream>

@@ -1,5 +1,5 @@
-// Parses any text as a scenario, as a machine file and as waypoints. The parsers must accept it or
-// throw InputError.
+// Parses any text as a scenario, as a machine file and as waypoints. The parsers must accept the
+// text or throw InputError.
 #include "core/error.h"
 #include "fuzz/target.h"
 #include "scenario/machine.h"

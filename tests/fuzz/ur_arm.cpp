@@ -1,5 +1,5 @@
-// Passes arbitrary bytes to the driver as the data of a UR controller, from the first answer on:
-// RTDE, the dashboard, and the script port.
+// Passes arbitrary bytes to the driver as the data of a UR controller, from the first answer on.
+// The data are those of RTDE, the dashboard, and the script port.
 #include "devices/ur/ur_arm.h"
 
 #include "fuzz/arm_session.h"

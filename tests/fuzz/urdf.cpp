@@ -1,4 +1,4 @@
-// Parses any text as a URDF. The parser must accept it or throw InputError.
+// Parses any text as a URDF. The parser must accept the text or throw InputError.
 #include "models/urdf.h"
 
 #include "core/error.h"

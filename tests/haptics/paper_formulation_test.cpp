@@ -25,14 +25,14 @@ Scenario PaperOf(Scenario scenario) {
   return scenario;
 }
 
-// Computes η_a ε_b − η_b ε_a − S(ε_b) ε_a of (9), where b is the desired orientation.
+// Computes η_a ε_b − η_b ε_a − S(ε_b) ε_a of equation (9), where b is the desired orientation.
 Vector3 OrientationError(const Quaternion& b, const Quaternion& a) {
   const Vector3 cross = Skew(b.vec()) * a.vec();
   return a.w() * b.vec() - b.w() * a.vec() - cross;
 }
 
-// Computes the speed at which a joint may approach a limit at this distance by (14) and (15)
-// [rad/s].
+// Computes the speed at which a joint at this distance from a limit may approach the limit, by
+// equations (14) and (15) [rad/s].
 double JointDamper(double distance, double fastest) {
   constexpr double kXi = 1, kInfluence = 0.3, kSecurity = 0.02;
   if (distance > kInfluence) return fastest;
@@ -143,7 +143,8 @@ TEST_F(PaperFormulation, EqualsTheEquations) {
     pushed_apart = pushed_apart || paper.h[0] < 0;
     far = far || paper.h[0] > 1e29;
   }
-  // In some states, the elbows are nearer than d_s, and in others beyond d_i.
+  // In some states, the distance between the elbows is less than d_s, and in other states, it is
+  // more than d_i.
   EXPECT_TRUE(pushed_apart);
   EXPECT_TRUE(far);
 }
@@ -168,7 +169,7 @@ TEST_F(PaperFormulation, HasNoSolutionInSomeStates) {
   EXPECT_LT(failed, states);
 }
 
-// The paper's formulation with all repairs must be our formulation.
+// The paper's formulation with all repairs must be the same problem as our formulation.
 TEST_F(PaperFormulation, WithAllRepairsIsOurs) {
   Scenario repaired = two_.scenario_;
   repaired.rendering.formulation = "paper";

@@ -86,8 +86,8 @@ TEST_F(RecoveryTest, FindsViolations) {
 }
 
 // A joint within its security distance counts as beyond its limit, and links within
-// rendering.security_distance count as too near. Rendering moves no joint into this zone and could
-// not move a joint out of it, so RECOVERY must do so. The message names the joint and its allowed
+// rendering.security_distance count as too near. Rendering moves no joint into this zone and cannot
+// move a joint out of the zone, so RECOVERY must do so. The message names the joint and its allowed
 // range.
 TEST_F(RecoveryTest, AJointNearerToItsLimitThanRenderingKeepsIsBeyond) {
   const double security = two_.scenario_.rendering.joint_security;

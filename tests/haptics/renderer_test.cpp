@@ -82,7 +82,7 @@ TEST(Renderer, RelativePoseDoesNotYieldToTrackingSoak) {
 }
 
 // Weights and rows are two forms of the same problem. If the slacks of the relative pose are equal,
-// the rows belong to that task.
+// the rows belong to the task of keeping the relative pose.
 TEST(Renderer, HasTheSameSolutionByWeightsAndByRows) {
   TwoArms two;
   RandomStream random(6, "forms");
@@ -154,7 +154,7 @@ TEST(Renderer, PublishesTheSlackOfEachLimit) {
 }
 
 // Whatever the gain is, handles with a wrong relative pose must not approach each other faster than
-// a handle's caps allow.
+// a handle's speed limits allow.
 TEST(RelativePose, DemandsNoMoreThanTheCaps) {
   RandomStream random(11, "caps");
   double fastest = 0, quickest = 0;
@@ -309,8 +309,8 @@ TEST(LinkPairs, AreOfWhicheverArmTheyName) {
   EXPECT_NE(refusal().find("panda_lonk4"), std::string::npos) << refusal();
 }
 
-// If both links belong to the same arm, the damper slows their approach, and its row is the rate of
-// their distance.
+// If both links belong to the same arm, the damper slows their approach. The damper's row in the
+// problem is the rate of change of the links' distance.
 TEST(LinkDistance, OfOneArmIsTheRateOfItsOwnDistance) {
   Scenario s;
   s.device.left = Panda(0.25);

@@ -1,4 +1,5 @@
-// Two arms in random states: anywhere, at or beyond limits, stretched, and near each other.
+// Two arms in random states, including states at or beyond limits, stretched arms, and arms near
+// each other.
 #pragma once
 
 #include <array>
@@ -45,7 +46,8 @@ class TwoArms {
   }
 
   // Draws joint positions at random. One in four of the joints is at a limit, beyond a limit, or
-  // straight (singular). Command and target are random too, and the target is sometimes far away.
+  // straight (singular). The command and the target are also random, and the target is sometimes
+  // far away.
   void Draw(RandomStream* random) {
     for (int i = 0; i < kHands; ++i) {
       q_[i].resize(7);

@@ -1,6 +1,6 @@
-// Repeats attempts of tests that need real time. A run that lateness stopped may be repeated only
-// if the process that runs the fakes also detected at that time that the computer was late.
-// If the computer was not late, the program was, and the test fails.
+// Repeats attempts of tests that need real time. If lateness stopped a run, the test may repeat the
+// run only if the process that runs the fakes detected at the same time that the computer was late.
+// If the computer was not late, the program itself was late, and the test fails.
 #pragma once
 
 #include <array>
@@ -54,8 +54,8 @@ class Attempts {
   static constexpr int kMax = 12;
 
   bool Next() { return count_++ < kMax; }
-  // Waits at most half a minute until a second has passed without a delay that would stop the arms.
-  // Tests that need many seconds without such a delay call this first.
+  // Waits until a second has passed without a delay that would stop the arms, but at most half a
+  // minute. Tests that need many seconds without such a delay call this first.
   static void AwaitCalm(FakeRig* rig) {
     for (int i = 0; i < 300; ++i) {
       const std::uint64_t now = Terminal::Now();
@@ -87,7 +87,7 @@ class Attempts {
     return true;
   }
   // Ends a run that has stopped, and judges its cause. Returns true if the computer's lateness
-  // spoiled the run. If not, the function fails the test and returns false.
+  // spoiled the run. Otherwise, the function makes the test fail and returns false.
   bool EndedByComputer(Terminal* terminal, FakeRig* rig) {
     terminal->Let();
     terminal->Kill(SIGINT);
@@ -98,7 +98,7 @@ class Attempts {
   }
 
   void Note(const std::string& words) { words_ += "\n  " + words; }
-  // Returns why each attempt ended. A test prints this when it has no attempts left.
+  // Returns why each attempt ended. A test prints these reasons when it has no attempts left.
   std::string Words() const {
     return std::to_string(kMax) + " attempts, each spoiled by this computer:" + words_;
   }

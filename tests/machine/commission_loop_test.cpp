@@ -146,13 +146,13 @@ TEST_F(LoopAtTheTerminal, WhereTheProgramHangsTheWatchdogStopsTheArm) {
   FAIL() << attempts.Words();
 }
 
-// The program needs each state of this arm. If a session slept for a millisecond in each cycle, it
-// would receive and answer fewer states than the arm sends.
+// The program needs every state message of this arm. If a session slept for a millisecond in each
+// cycle, it would receive and answer fewer states than the arm sends.
 class FrankaLoopAtTheTerminal : public LoopAtTheTerminal {
  protected:
   FrankaLoopAtTheTerminal() : LoopAtTheTerminal({"franka", "franka"}, "box_9kg") {}
 
-  // Measures the first joint. Returns nullopt if this computer was too busy.
+  // Measures the first joint. Returns no value if this computer was too busy.
   std::optional<commissioning::LoopRecord> SwingOne(Terminal* terminal) const {
     constexpr int kMaxTries = 8;
     Begin(terminal);
@@ -194,7 +194,7 @@ TEST_F(FrankaLoopAtTheTerminal, ItsStatesAreSeenAndAnsweredAsItSendsThem) {
     EXPECT_GE(static_cast<double>(gaps.ticks) + late, 0.99 * static_cast<double>(record->u.size()))
         << seen;
     if (gaps.lost_share() <= kMaxLostShare) return;
-    // Each delay of the computer may also lose one or two adjacent states.
+    // Each delay of the computer may also cause the loss of one or two adjacent states.
     const double lost = 1e3 * gaps.lost_share() * static_cast<double>(record->u.size()) *
                         commissioning::LoopRecord::kStep,
                  late_for = rig_->Late(began, Terminal::Now()).processor_sum;

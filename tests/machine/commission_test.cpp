@@ -116,7 +116,7 @@ TEST_F(Commissioning, TheHandleIsFoundInPosesToWhichAPersonGuides) {
   EXPECT_EQ(result["written"], true);
   EXPECT_EQ(result["found"]["poses"], 8);
   EXPECT_NEAR(result["found"]["mass_kg"]["value"].get<double>(), found.mass, 1e-9);
-  // After this change, the push tests must be repeated.
+  // After this change, a person must repeat the push tests.
   EXPECT_FALSE(IsPushTested(*folder_.machine().left));
   EXPECT_TRUE(IsPushTested(*folder_.machine().right));
 }

@@ -45,8 +45,8 @@ class IdleFault : public testing::TestWithParam<FaultAtRest> {
   MachineFolder folder_;
 };
 
-// The faults may arrive in one tick or in two, in either order. The arms must end without power,
-// and the program must report all faults.
+// The faults may arrive in one tick or in two, in either order. At the end, the arms must have no
+// power, and the program must have reported all faults.
 TEST_P(IdleFault, EndsWithoutPowerAndIsReported) {
   Attempts attempts;
   while (attempts.Next()) {
@@ -63,7 +63,7 @@ TEST_P(IdleFault, EndsWithoutPowerAndIsReported) {
         EXPECT_EQ(rig.Ask(what), "ok") << what;
     }
     const bool unpowered = terminal.Says("Now UNPOWERED", 10);
-    // The console prints the lines one after the other, so the test waits for the last one.
+    // The console prints the lines one after the other, so the test waits for the last line.
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     terminal.Kill(SIGINT);
     const int code = terminal.Wait();
@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
                     true}),
     [](const testing::TestParamInfo<FaultAtRest>& fault) { return std::string(fault.param.name); });
 
-// The program reports the minor fault long before the major one occurs. After the major one, the
+// The program reports the minor fault long before the major one occurs. After the major fault, the
 // arms must no longer hold their position.
 TEST(IdleFaults, AnEmergencyStopWhileTheArmsAreHeldRemovesThePower) {
   const MachineFolder folder({"ur", "ur"});

@@ -1,5 +1,5 @@
-// The tests must distinguish lateness of the computer, which is no fault, from lateness of the
-// program.
+// The tests must distinguish lateness of the computer, which is not a fault of the program, from
+// lateness of the program.
 #include <sys/socket.h>
 
 #include "machine/attempts.h"

@@ -97,8 +97,8 @@ class OnMachine : public testing::TestWithParam<Rigging> {
   // If a hand's path deviates by the allowed distance, its force changes by this distance times the
   // hand's stiffness. The largest reading also contains some sensor noise.
   static void ExpectSameForces(const nlohmann::json& real, const nlohmann::json& simulated) {
-    // These are the largest stiffness of the scenarios' hands [N/m] and the largest noise of their
-    // sensors [N].
+    // The two constants are the largest stiffness of the scenarios' hands [N/m] and the largest
+    // noise of their sensors [N].
     constexpr double kStiffest = 250, kNoise = 0.05;
     for (const char* hand : {"left", "right"}) {
       const double ours = real["wrench"][hand]["force_n"]["max"],
@@ -154,8 +154,8 @@ class OnMachine : public testing::TestWithParam<Rigging> {
 // If the computer stalls for some milliseconds, the arms stop, as on a real rig. If the process of
 // the fakes detected the stall, the run is repeated.
 //
-// The task is the same as with the simulated device. The object must take the same path, the hands
-// must press equally hard, and the arms must follow as accurately as docs/concepts/accuracy.md
+// The task is the same as with the simulated device. The object must take the same path, and the
+// hands must press equally hard. The arms must follow as accurately as docs/concepts/accuracy.md
 // states.
 TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
   const double duration = static_cast<double>(Count(6, 30));
@@ -198,9 +198,9 @@ TEST_P(OnMachine, DoesTheScenariosTaskSoak) {
 }
 
 // Whenever the program dies, the arms must come to rest by themselves within the time that the
-// documents state for the slower make. They must brake no harder than the documents state for the
-// quicker make. The program dies during one cycle of a motion from side to side. The moments are
-// spread evenly over the cycle, so half of them fall into its faster half.
+// documents state for the slower make. The arms must brake no harder than the documents state for
+// the quicker make. The program dies during one cycle of a motion from side to side. The moments
+// are spread evenly over the cycle, so half of them fall into its faster half.
 TEST_P(OnMachine, OutlivesAKilledProgramSoak) {
   constexpr double kGolden = 0.6180339887498949;
   scenario_ = folder_.Brisk(GetParam().scenario);
@@ -333,8 +333,8 @@ TEST_F(PushTests, AreRequiredAgainAfterEveryChangeOfTheArm) {
   }
 }
 
-// The payload in the arm's controller contradicts the file. The program must check this over the
-// wire before anything moves.
+// The payload in the arm's controller contradicts the file. The program must detect this
+// contradiction over the wire before anything moves.
 TEST_F(PushTests, ThePayloadInTheRobotsSettingsIsCompared) {
   folder_.NotePushTests();
   for (const bool fits : {false, true}) {
@@ -351,8 +351,8 @@ TEST_F(PushTests, ThePayloadInTheRobotsSettingsIsCompared) {
   }
 }
 
-// The controller belongs to a different arm than the file's model. The program must check this over
-// the wire before anything moves.
+// The controller belongs to a different arm than the file's model. The program must detect this
+// difference over the wire before anything moves.
 TEST_F(PushTests, TheConnectedArmMustBeThatOfTheModel) {
   folder_.NotePushTests();
   const FakeRig rig(FileOf("dual_ur5"),
@@ -411,8 +411,9 @@ class RigsConsole : public testing::Test {
   MachineFolder folder_;
 };
 
-// These keys must stop the arms although some of them pause a terminal's output (Ctrl-S, Ctrl-Q),
-// suspend a program (Ctrl-Z), quote a key (Ctrl-V), or produce no character (Ctrl-Space).
+// The following keys must stop the arms. Normally, some of these keys pause a terminal's output
+// (Ctrl-S, Ctrl-Q), suspend a program (Ctrl-Z), quote a key (Ctrl-V), or produce no character
+// (Ctrl-Space).
 TEST_F(RigsConsole, StopsByAnyOtherKey) {
   for (const char key : {'x', '\x13', '\x11', '\x1a', '\x16', '\0'})
     InIdle([key](Terminal* terminal, bool* expected) {
@@ -421,7 +422,8 @@ TEST_F(RigsConsole, StopsByAnyOtherKey) {
     });
 }
 
-// While a person types a command, letters belong to it. Any other key must stop the run as usual.
+// While a person types a command, letters are part of the command. Any other key must stop the run
+// as usual.
 TEST_F(RigsConsole, StopsEvenWhileACommandIsTyped) {
   for (const std::string key : {"\x1b", "\t", "\x13", "\x1a"})
     InIdle([key](Terminal* terminal, bool* expected) {
@@ -440,7 +442,7 @@ TEST_F(RigsConsole, LettersThatComeAtOnceHoldNothing) {
       terminal->Type(letters);
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    *expected = terminal->Says("its presses arrived late and all at once", 5) &&
+    *expected = terminal->Says("the presses of this key arrived late and all at once", 5) &&
                 terminal->Screen().find("Now ALIGN") == std::string::npos;
     terminal->Hold('a');  // none of these letters may remain
     *expected = terminal->Says("Now ALIGN", 5) && *expected;

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 // Lets a library fail in a run with real arms. The watchdog must bring the arms to rest, and the
 // program must end by itself with the exit code `code` and print `words`. The recording must be
-// complete, or `repair` must recover all but its last second.
+// complete, or `repair` must recover everything except its last second.
 void ExpectStoppedArms(const std::string& fault, int code, const std::string& words, bool whole) {
   test::FindPlugins();
   const test::TemporaryFolder own;

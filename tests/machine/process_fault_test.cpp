@@ -14,7 +14,8 @@ std::vector<std::string> Arguments(const std::string& scenario, const MachineFol
 }
 
 // If the loop hangs (fault 31), the watchdog process must brake the arms to which it has a channel.
-// When the loop continues, it must detect that these arms have stopped, and stop too.
+// When the loop continues, it must detect that these arms have stopped, and it must then begin a
+// stop itself.
 TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
   const MachineFolder folder({"ur", "franka"});
   folder.NotePushTests();
@@ -24,7 +25,7 @@ TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
     FakeRig rig(scenario, {"left=ur:" + HostOf(kLeft), "right=franka:" + HostOf(kRight)});
     Attempts::AwaitCalm(&rig);
     Terminal terminal(Arguments(scenario, folder));
-    // The loop hangs when the first move is fastest.
+    // The loop hangs at the fastest moment of the first move.
     if (!terminal.Start(&rig) || terminal.Says("Now STOPPING", kBriskBegin + kBriskMove / 2)) {
       ASSERT_TRUE(attempts.EndedByComputer(&terminal, &rig));
       continue;
@@ -61,7 +62,8 @@ TEST(ProcessFault, ALoopThatHangsIsStoppedByTheWatchdogSoak) {
   FAIL() << attempts.Words();
 }
 
-// The end of a run is not a hang. The loop itself must bring the arms to rest and report it.
+// The end of a run is not a hang. The loop itself must bring the arms to rest and report the end of
+// the run.
 TEST(ProcessFault, CtrlCInARunIsNotAHang) {
   const MachineFolder folder({"ur", "ur"});
   folder.NotePushTests();
@@ -153,7 +155,7 @@ TEST(ProcessFault, AWatchdogThatIsStoppedEndsMotionSoak) {
   FAIL() << attempts.Words();
 }
 
-// A console that fails with an exception must have the same effect as an operator who left.
+// If the console fails with an exception, the effect must be the same as if the operator had left.
 TEST(ProcessFault, AConsoleThatReceivesNoMoreKeysStopsTheRun) {
   const MachineFolder folder({"ur", "ur"});
   folder.NotePushTests();

@@ -48,8 +48,8 @@ struct RigMotion {
 
 // The longest delays that the process of the fakes measured [ms]. `processor` is the longest delay
 // of the highest-priority threads on each processor, and `processor_sum` is the sum of these
-// delays. `rig` is the delay of the fakes' loop. `ordinary` is that of a thread with the ordinary
-// priority of the program's console. `silence` is the program's longest silence.
+// delays. `rig` is the delay of the fakes' loop. `ordinary` is the longest delay of a thread with
+// the ordinary priority of the program's console. `silence` is the program's longest silence.
 struct RigLateness {
   double processor = 0, processor_sum = 0, rig = 0, silence = 0, ordinary = 0;
 };
@@ -126,9 +126,9 @@ class FakeRig {
   int to_ = -1, from_ = -1;
 };
 
-// The time to rest and the deceleration that the documents state for the worse of two makes. Both
-// values apply if the program dies while the fastest joint moves at `speed` [rad/s]. A thousandth
-// is added to the deceleration for rounding.
+// The time to rest and the deceleration that the documents state for the worse of two makes. The
+// time and the deceleration apply if the program dies while the fastest joint moves at `speed`
+// [rad/s]. A thousandth is added to the deceleration for rounding.
 struct Advertised {
   // The program's driver allows this deceleration of a Franka's joints [rad/s²].
   static constexpr double kLetThrough = 0.95 * 10;
@@ -183,7 +183,7 @@ class Terminal {
   void Type(const std::string& text) const {
     EXPECT_EQ(write(terminal_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
-  // Returns whether the text appears within `patience` [s] after the text that was awaited before.
+  // Returns whether the text appears within `patience` [s] and after the text of the previous wait.
   bool Says(const std::string& text, double patience = 30) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
     for (bool over = false; !over && std::chrono::steady_clock::now() < end;) {
@@ -197,7 +197,8 @@ class Terminal {
     }
     return false;
   }
-  // Returns the rest of the line that starts with `begin` once it appears, or "" if it does not.
+  // Waits for a line that starts with `begin`. Returns the rest of this line, or "" if the line
+  // does not appear.
   std::string Line(const std::string& begin, double patience = 30) {
     if (!Says(begin, patience)) return "";
     const std::size_t at = read_;
@@ -237,8 +238,8 @@ class Terminal {
   }
   // Returns whether the arms become ready before any stop.
   bool IsIdle() { return Comes("Now IDLE"); }
-  // Goes through ALIGN and ARMED to RUN, and then notifies the person whom the fakes simulate.
-  // Returns false if the run stops.
+  // Goes through ALIGN and ARMED to RUN. Then notifies the person whom the fakes simulate. Returns
+  // false if the run stops.
   bool Start(FakeRig* rig) {
     if (!IsIdle()) return false;
     Hold('a');
@@ -266,7 +267,7 @@ class Terminal {
     return contains("Now STOPPING") || contains("Now UNPOWERED") ||
            std::ranges::any_of(kLateSigns, contains);
   }
-  // A terminal repeats a key after half a second, then every 33 ms.
+  // A terminal repeats a key after half a second, and then every 33 ms.
   void Live() {
     char last = 0;
     auto next = std::chrono::steady_clock::now();

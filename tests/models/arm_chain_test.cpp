@@ -1,4 +1,5 @@
-// Tests the chains of real robots' arms, without their grippers, wheels, heads and further arms.
+// Tests the chains of the arms of real robots. The chains do not include grippers, wheels, heads
+// and further arms.
 #include "models/arm_chain.h"
 
 #include <gtest/gtest.h>
@@ -67,7 +68,7 @@ std::string Joint(const std::string& name, const std::string& parent,
   return "<joint name='" + name + "' type='revolute'><parent link='" + parent + "'/><child link='" +
          name + "'/><limit lower='-1' upper='1' velocity='1' effort='1'/>" + more + "</joint>";
 }
-// Returns a chain of joints a0, a1, ..., each the parent of the next.
+// Returns a chain of joints a0, a1, .... Each joint is the parent of the next one.
 std::string Chain(int joints) {
   std::string text = Link("base");
   for (int j = 0; j < joints; ++j)

@@ -31,8 +31,8 @@ class MeshSize : public testing::Test {
                  std::string(80, ' ') + Binary({triangles}) + std::string(50 * triangles, '\0'));
   }
 
-  // Returns the error on reading an object whose link contains these elements, or "" if there is
-  // none.
+  // Reads an object whose link contains these elements. Returns the error message, or "" if there
+  // is no error.
   std::string ErrorOf(const std::string& shapes) const {
     const fs::path file =
         Write("object.urdf",

@@ -127,7 +127,7 @@ TEST_P(AgainstMujoco, PosesAndJacobiansOfAllLinks) {
   }
 }
 
-// No frame of this object lies in its centre or is parallel to another one.
+// No frame of this object lies in the object's centre or is parallel to another frame.
 constexpr const char* kLopsidedUrdf = R"(<robot name="lopsided">
   <link name="a"><inertial><origin xyz="0.1 -0.2 0.05" rpy="0.3 0.2 0.1"/><mass value="2"/>
     <inertia ixx="0.05" iyy="0.04" izz="0.03" ixy="0.004" ixz="-0.002" iyz="0.001"/></inertial>
@@ -166,8 +166,8 @@ TEST_P(ObjectsAgainstMujoco, MassCentreAndInertia) {
   EXPECT_LT((object.inertia + shift - about_O).norm(), 1e-12);
 }
 
-// MuJoCo does not tolerate rounding errors in a rod without inertia about its axis, in a plate
-// whose inertia is rounded up, or in a point mass.
+// MuJoCo does not tolerate rounding errors in the inertias of three bodies: a rod without inertia
+// about its axis, a plate whose inertia is rounded up, and a point mass.
 TEST(MujocoUrdf, LoadsRoundedInertia) {
   const UrdfModel urdf = ParseUrdf(R"(<robot name="r"><link name="base"/>
     <link name="plate"><inertial><mass value="1"/>

@@ -14,8 +14,9 @@
 
 namespace predictor::test {
 
-// This tree has features that the arms lack: continuous, revolute and prismatic joints about
-// slanted axes, a branch, fixed links with and without mass, and inertias with products.
+// This tree has features that the arms lack. The features are continuous, revolute and prismatic
+// joints along slanted axes, a branch, fixed links with and without mass, and inertias with
+// products.
 inline constexpr const char* kTreeUrdf = R"(<robot name="tree">
   <link name="base"><inertial><origin xyz="0.1 0 0.2"/><mass value="3"/>
     <inertia ixx="0.1" iyy="0.12" izz="0.09" ixy="0.01" ixz="-0.02" iyz="0.005"/></inertial></link>
@@ -111,7 +112,8 @@ class RobotTest : public testing::TestWithParam<RobotCase> {
         model(RobotModel::Build(urdf, SlantedBase())),
         data(*model),
         n(model->dof()),
-        // This frame differs from the link's origin, so that lever arms matter.
+        // This frame differs from the link's origin, so that errors in lever arms affect the
+        // results.
         frame(model->Frame(GetParam().end_effector,
                            PoseFromXyzRpy({0.1, -0.05, 0.2}, {0.3, 1, -2}))) {
     Shake();

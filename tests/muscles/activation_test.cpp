@@ -88,7 +88,8 @@ TEST(Activation, MeasuredActivationsPull) {
   problem.trust[5] = 2;
   const ActivationResult result = Activate(problem);
   EXPECT_NEAR(result.activation[5], 2 * 0.6 / 3, 1e-12);
-  // If an opposing muscle's activation was measured, the torque must still be the required one.
+  // Even if the activation of an opposing muscle was measured, the muscles must produce the
+  // required torque.
   ActivationProblem pair = TwoMuscles(9);
   pair.torque(3, 1) = -10;
   pair.measured[1] = 0.5;
@@ -110,7 +111,7 @@ ActivationProblem RandomProblem(const ArmModel& arm, RandomStream* random) {
   return problem;
 }
 
-// Evaluates stationarity, complementarity and balance, without code of the solver.
+// Evaluates stationarity, complementarity and balance independently of the solver's code.
 double KktViolation(const ActivationProblem& p, const ActivationResult& r) {
   double worst = (p.torque * r.activation + r.reserve - p.target).cwiseAbs().maxCoeff();
   worst = std::max(

@@ -32,7 +32,7 @@ TEST(ArmModel, TableIsComplete) {
   EXPECT_EQ(groups.size(), static_cast<std::size_t>(kMuscleGroups));
 }
 
-// R = -∂l/∂q is compared with central differences of the length.
+// Compares R = -∂l/∂q with central differences of the length.
 TEST(ArmModel, MomentArmsAreTheSlopesOfTheLengths) {
   constexpr double kStep = 1e-6;
   RandomStream random(1, "moment arms");
@@ -115,7 +115,7 @@ TEST(ArmModel, TheLongestFibresOfTheWorkingRangeAreSet) {
   }
 }
 
-// A muscle must act at the joints that it is named after.
+// Each muscle must act at the joints in its name.
 TEST(ArmModel, MusclesPullTheRightWay) {
   const ArmModel arm({}, 1);
   const MomentArms R = arm.LinesAt(WorkPosture()).moment_arm;

@@ -19,7 +19,8 @@ inline int IndexOf(const std::string& key) {
   throw std::out_of_range(key);
 }
 
-// Draws a posture within the middle `share` of the joints' ranges, up to 90° of shoulder flexion.
+// Draws a random posture within the middle `share` of the joints' ranges, with a shoulder flexion
+// of at most 90°.
 inline ArmVector RandomArm(const ArmModel& arm, RandomStream* random, double share = 0.8) {
   ArmVector q;
   for (int i = 0; i < person::kArmJoints; ++i) {
@@ -31,7 +32,7 @@ inline ArmVector RandomArm(const ArmModel& arm, RandomStream* random, double sha
   return q;
 }
 
-// The shoulder is a little forward and outward, and the elbow at a right angle.
+// The upper arm points a little forward and outward, and the elbow is at a right angle.
 inline ArmVector WorkPosture() {
   ArmVector q = ArmVector::Zero();
   q[0] = Radians(30);

@@ -1,4 +1,4 @@
-// Solves problems of activations with a general solver of quadratic programs.
+// Solves activation problems with a general solver for quadratic programs.
 #pragma once
 
 #include <limits>
@@ -28,8 +28,8 @@ inline Qp ProgramOf(const ActivationProblem& p) {
 
 class GeneralSolver {
  public:
-  // Returns the least cost of a problem with power 2 and without measured activations, or NaN if it
-  // is not found.
+  // Returns the minimum cost of a problem with power 2 and without measured activations, or NaN if
+  // the solver does not find it.
   double CostOf(const ActivationProblem& problem) {
     const Qp qp = ProgramOf(problem);
     QpSolution solution;

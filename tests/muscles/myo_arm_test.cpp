@@ -18,7 +18,8 @@
 namespace predictor::muscles::myo {
 namespace {
 
-// These points are given in MyoArm's axes: x forward, y up, z to the right [m].
+// The points are given in MyoArm's axes [m]. In these axes, x points forward, y points up and z
+// points to the right.
 const Vector3 kPivot(-0.02, 0.05, -0.1);           // of the shoulder blade
 const Vector3 kShoulder(0.01, 0, 0.02);            // in the zero posture
 constexpr double kSlope = 0.35, kCurvature = 0.1;  // of blade angle versus elevation
@@ -32,7 +33,7 @@ constexpr const char* kNames[] = {
 constexpr int kStrands = static_cast<int>(std::size(kNames));
 constexpr int kOnUpperArm = 15;  // number of strands that end at the upper arm
 
-// These two functions return the ends of strand `i`. The origin of an even strand is on the
+// The following two functions return the ends of strand `i`. The origin of an even strand is on the
 // shoulder blade and that of an odd strand on the torso, both in the torso's axes.
 Vector3 OriginOf(int i) {
   return kShoulder + Vector3(0.03 * std::sin(i), 0.02 + 0.004 * (i % 5), -0.02 * std::cos(2 * i));

@@ -1,5 +1,6 @@
-// Compares the built-in arm with published measurements. Bounds are wider than the published
-// scatter where the model deviates from it. docs/concepts/muscles.md lists these deviations.
+// Compares the built-in arm with published measurements. If the model deviates from the published
+// values, the bounds are wider than the published scatter. docs/concepts/muscles.md lists these
+// deviations.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,8 +19,8 @@ double ArmAt(const ArmModel& arm, const char* key, person::ArmJoint joint, doubl
 }
 
 // The moment arms [mm] about the elbow are polynomials of the angle a [rad]. The polynomials are
-// from Lemay & Crago 1996. They were verified in the reproduction by the Institute of Biomechanics,
-// Bulgarian Academy of Sciences.
+// from Lemay & Crago 1996. We verified the polynomials against the reproduction by the Institute of
+// Biomechanics, Bulgarian Academy of Sciences.
 struct ElbowArm {
   const char* key;
   double c[6];       // [cm]
@@ -73,7 +74,8 @@ TEST(Published, MomentArmsOfTheRotatorCuff) {
   }
 }
 
-// The moment arms of a straight wrist [mm] are constant terms in the source of the elbow's.
+// The moment arms of a straight wrist [mm] are constant terms. They are from the same source as the
+// moment arms of the elbow.
 TEST(Published, MomentArmsOfTheWrist) {
   const ArmModel arm({}, 1);
   const struct {
@@ -85,8 +87,8 @@ TEST(Published, MomentArmsOfTheWrist) {
     EXPECT_NEAR(ArmAt(arm, one.key, kWristFlexion, 0), one.flexion, 2.5) << one.key;
 }
 
-// Returns the largest torque [N·m] in one direction while the other joints have none and no reserve
-// exceeds 0.5 N·m.
+// Returns the largest torque [N·m] in one direction for which the other joints have no torque and
+// no reserve exceeds 0.5 N·m.
 double Strongest(const ArmModel& arm, const ArmVector& q, person::ArmJoint joint, int sign) {
   double low = 0, high = 400;
   for (int n = 0; n < 40; ++n) {
@@ -108,7 +110,7 @@ struct Moment {
 // The mean strength of men in the work posture is from Chaffin & Andersson for elbow and shoulder
 // (quoted from memory), and from Delp et al. 1996 for the wrist (verified: flexion 12.2 ± 3.7,
 // extension 7.1 ± 2.1, radial 11.0 ± 2.0, ulnar 9.5 ± 2.2). The model's moments must lie between
-// the columns `low` and `high`, which describe how far it is known to deviate.
+// the columns `low` and `high`, which contain the known deviations of the model.
 TEST(Published, StrongestMoments) {
   const ArmModel arm({}, 1);
   constexpr Moment kMoments[] = {{"elbow flexion", kElbowFlexion, 1, 77.7, 70, 100},

@@ -10,14 +10,15 @@
 namespace predictor::muscles {
 namespace {
 
-// Returns the torque of springs with the rates k that have the forces F at posture q0.
+// Returns the torque of springs. The springs have the rates k, and their forces at posture q0 are
+// F.
 ArmVector SpringTorque(const ArmModel& arm, const ArmVector& q, const MuscleVector& force,
                        const MuscleVector& k, const MuscleVector& length0) {
   const MuscleLines lines = arm.LinesAt(q);
   return lines.moment_arm * (force + k.cwiseProduct(lines.length - length0));
 }
 
-// K = -∂τ/∂q of muscles as springs is compared with differences of their torque.
+// Compares K = -∂τ/∂q of muscles that act as springs with differences of the springs' torque.
 TEST(Stiffness, OfTheJointsIsTheSlopeOfTheTorque) {
   constexpr double kStep = 1e-5;
   const ArmModel arm({}, 0);

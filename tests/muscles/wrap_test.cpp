@@ -13,7 +13,7 @@ double LengthOf(const Vector3& from, const Vector3& to, const Contact& contact) 
   return (contact.begin - from).norm() + contact.length + (to - contact.end).norm();
 }
 
-// The line consists of two tangents of length √(d² - r²) and the arc between them.
+// The line consists of two tangents of length √(d² - r²) and the arc between the tangents.
 TEST(Wrap, AroundABallIsTwoTangentsAndAnArc) {
   const Vector3 center(0.1, -0.2, 0.3), from = center + Vector3(-0.05, 0, 0.01);
   const Vector3 to = center + Vector3(0.05, 0, 0.01);
@@ -58,7 +58,7 @@ TEST(Wrap, ALineOnTheSideOfTheCylinderStays) {
   EXPECT_GT(LengthOf(from, to, *contact), (to - from).norm());
 }
 
-// The length must not jump where the line begins to touch.
+// The length must not jump where the line begins to touch the cylinder.
 TEST(Wrap, BeginsAndEndsWithoutAJump) {
   for (const double offset : {0.0199999, 0.0200001}) {
     const Vector3 from(0.05, offset, 0), to(-0.05, offset, 0);

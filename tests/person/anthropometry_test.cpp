@@ -37,9 +37,10 @@ TEST(Anthropometry, StandsAsTallAsThePerson) {
   }
 }
 
-// De Leva also gives values for the whole trunk. For men, it has 0.4346 of the body's mass, its
-// centre of mass is at 0.5138 of its length of 603.3 mm from C7, and its radii of gyration are
-// 0.328, 0.306 and 0.169. For women, the corresponding values are 0.4257, 0.4964, 614.8 mm, 0.307,
+// De Leva also gives values for the whole trunk. For men, the trunk has 0.4346 of the body's mass
+// and a length of 603.3 mm. Its centre of mass is at 0.5138 of this length from C7, and its radii
+// of gyration are 0.328, 0.306 and 0.169. For women, the corresponding values are 0.4257, 0.4964,
+// 614.8 mm, 0.307,
 // 0.292 and 0.147.
 TEST(Anthropometry, PartsOfTheTrunkMakeTheWholeTrunk) {
   struct Whole {
@@ -100,7 +101,7 @@ TEST(Anthropometry, RefusesSizesThatNoAdultHas) {
             "height|height is 5 m, but for an adult it is 1.2 to 2.4 m. Give it in m.");
   EXPECT_EQ(Refusal(feather),
             "mass|mass is 31 kg at a height of 1.75 m, which is a body-mass index of 10.1 kg/m². "
-            "Check both; 12 to 70 kg/m² is possible.");
+            "Check both values. Indices from 12 to 70 kg/m² are possible.");
   EXPECT_EQ(Refusal(stone),
             "mass|mass is 400 kg, but for an adult it is 30 to 250 kg. Give it in kg.");
   EXPECT_EQ(

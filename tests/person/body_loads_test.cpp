@@ -106,10 +106,10 @@ TEST_F(Loads, GroundCarriesTheWholeBodyUnderItsCentre) {
 
 // Wilke et al. 1999 measured the pressure in a lumbar disc of a person (72 kg, 1.74 m) who lifted
 // or held 20 kg. The pressure was 2.3 MPa during a lift with a round back, 1.7 MPa during a lift
-// with bent knees, and 1.1 MPa when the load was held close to the body. The angles of the postures
-// are ours. The ratios between these three loads agree with the model within 25 %. Their ratios to
-// the load of relaxed standing (0.5 MPa) do not agree, because the model neglects co-contraction
-// (docs/concepts/person.md).
+// with bent knees, and 1.1 MPa when the load was held close to the body. We chose the angles of the
+// postures. The ratios between these three loads agree with the model within 25 %. The ratios of
+// these three loads to the load of relaxed standing (0.5 MPa) do not agree, because the model
+// neglects co-contraction (docs/concepts/person.md).
 TEST(LowerBack, LoadsHaveTheRatiosOfMeasuredPressures) {
   BodySpec spec;
   spec.height = 1.74;
@@ -128,7 +128,8 @@ TEST(LowerBack, LoadsHaveTheRatiosOfMeasuredPressures) {
     for (HandSample& hand : sample.hands) hand.F_D_W.z() = 10 * kG;
     return BodyDynamics(model, stance).Evaluate(motion, sample).l5s1.compression;
   };
-  // The trunk is at 70° and 45° with hanging arms, and upright with level forearms.
+  // In the first two postures, the trunk is inclined by 70° and 45°, and the arms hang. In the
+  // third posture, the trunk is upright and the forearms are level.
   const double round_back = compression(0.50, 0.72, 1.22, 0);
   const double bent_knees = compression(0.30, 0.50, 0.80, 0);
   const double close = compression(0, 0, 0, 1.57);

@@ -110,7 +110,7 @@ TEST_P(AgainstMujoco, SameTorques) {
   EXPECT_GT(largest, 1000);
 }
 
-// Inverse kinematics must keep the limits that MuJoCo reads.
+// The inverse kinematics must stay within the joint limits that MuJoCo reads.
 TEST_P(AgainstMujoco, SameLimits) {
   for (int i = 0; i < kBodyJoints; ++i) {
     EXPECT_EQ(mj->jnt_range[2 * i], model.joint(i).lower);

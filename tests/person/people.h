@@ -19,7 +19,7 @@ inline BodySpec Woman() {
   return spec;
 }
 
-// Returns an arbitrary place and direction in W.
+// Returns an arbitrary position and direction in the frame W.
 inline Stance SomeStance() { return StanceAt({0.4, -1.2, -0.7}, {-1, 0.5, 0}, 0.3); }
 
 // Each hand grips a bar along its handle's x axis, and its wrist is on the side of the z axis.
@@ -29,7 +29,7 @@ inline std::array<Grip, kHands> Grips(bool turns) {
   return {grip, grip};
 }
 
-// Draws a posture uniformly from the middle `share` of the joints' ranges.
+// Draws a random posture with a uniform distribution over the middle `share` of the joints' ranges.
 inline BodyVector RandomPosture(const BodyModel& model, RandomStream* random, double share = 1) {
   const BodyVector lower = model.lower(), upper = model.upper();
   BodyVector q;

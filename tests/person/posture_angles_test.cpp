@@ -1,4 +1,4 @@
-// Tests the angles of postures whose angles follow from their description.
+// Tests the computed angles with postures whose angles follow from their descriptions.
 #include "person/posture_angles.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ TEST(PostureAngles, OfTheArmsHaveTheSignsOfTheWorksheets) {
   }
 }
 
-// Checks by their positions that fingers, thumb and palm move as documented.
+// Uses the positions of the fingers, the thumb and the palm to check that they move as documented.
 TEST(PostureAngles, OfTheHandMoveItAsTheirNamesSay) {
   for (int hand = 0; hand < kHands; ++hand) {
     const double side = hand == 0 ? 1 : -1;
@@ -89,7 +89,7 @@ TEST(PostureAngles, OfTheTrunkCountFromTheVertical) {
   q[kTorsoFlexion] = 0.4;
   EXPECT_NEAR(Angles(q).trunk_flexion, 0.7, 1e-12);
   EXPECT_NEAR(Angles(q).trunk_side_bend, 0, 1e-12);
-  // The upper arms hang along the torso, so they have its inclination.
+  // The upper arms hang along the torso, so they have the inclination of the torso.
   EXPECT_NEAR(Angles(q).arms[0].upper_arm_elevation, 0.7, 1e-12);
   EXPECT_NEAR(Angles(q).arms[0].upper_arm_flexion, 0, 1e-12);
   q.setZero();

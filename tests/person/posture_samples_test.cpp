@@ -14,7 +14,7 @@
 namespace predictor::person {
 namespace {
 
-// The true value and the interval of one quantity of one person.
+// The true value and the interval of one quantity for one person.
 struct Judged {
   double truth, median, low, high;
 };
@@ -32,8 +32,8 @@ std::vector<double> Normals(RandomStream* random, int count) {
   return z;
 }
 
-// Draws a person as the samples are drawn. The interval must contain the value of such a person
-// with the probability 59/65.
+// Draws a person from the same distribution as the samples. The interval must contain the value of
+// such a person with the probability 59/65.
 VirtualPerson Inside(const BodySpec& spec, RandomStream* random) {
   const PostureSpread spread;
   return {VariedBody(spec, Normals(random, kBodyVariations), spread.length, spread.segment_mass),
@@ -41,9 +41,9 @@ VirtualPerson Inside(const BodySpec& spec, RandomStream* random) {
           kBackMuscleArm + spread.back_muscle_arm * random->Normal()};
 }
 
-// Draws a person with another posture law: no preference for an elbow's swivel, other preferred
-// angles of the joints, and a lean from the hips rather than the spine. Every length is 5 % too
-// long or too short.
+// Draws a person with another posture law. This law has no preference for an elbow's swivel and
+// prefers other joint angles. The person leans from the hips rather than from the spine. Every
+// length is 5 % too long or too short.
 VirtualPerson Outside(const BodySpec& spec, RandomStream* random) {
   std::vector<double> signs;
   for (int i = 0; i < kBodyVariations; ++i) signs.push_back(random->Uniform() < 0.5 ? -1 : 1);
@@ -68,8 +68,8 @@ VirtualPerson Outside(const BodySpec& spec, RandomStream* random) {
   return person;
 }
 
-// Places two handles with a load in front of the person, upright bars (thumbs up) or level ones
-// (palms down).
+// Places two handles with a load in front of the person. The handles are upright bars (thumbs up)
+// or level bars (palms down).
 BodySample SomeHandles(const Stance& stance, RandomStream* random) {
   const double height = 0.8 + 0.5 * random->Uniform(), ahead = 0.35 + 0.2 * random->Uniform(),
                apart = 0.3 + 0.2 * random->Uniform();
@@ -109,7 +109,7 @@ void Add(const std::string& group, T truth, Range<T> range, ForEach for_each, Ta
   });
 }
 
-// States which parts of the body are measured besides the hands.
+// The parts of the body that are measured in addition to the hands.
 struct Measured {
   const char* name;
   bool head, elbows;
@@ -212,11 +212,12 @@ void Print(const Table& table) {
 }
 
 // An interval from 64 samples contains a further sample with a probability that depends on the
-// draw. This probability has the distribution Beta(59, 6), which is 91 % ± 3.6 %. The test judges
-// all people with the same draw. Because there are only 200 people, the measured coverage varies by
-// a further ± 2 %. If a value's coverage is below 74 % (four standard deviations √(3.6² + 2²) %
-// below 91 %), the sampler has a defect. The target for the coverage of all values together is 84
-// to 96 % for people inside the prior, and at least 84 % for people outside.
+// draw. This probability has the distribution Beta(59, 6), which is 91 % ± 3.6 %. The test uses the
+// same 64 samples of the prior for all people. Because there are only 200 people, the measured
+// coverage varies by a further ± 2 %. If the coverage for a value is below 74 %, the sampler has a
+// defect. This limit is four standard deviations of √(3.6² + 2²) % below 91 %. The target for the
+// coverage of all values together is 84 to 96 % for people inside the prior, and at least 84 % for
+// people outside.
 TEST(PostureSampler, CoversVirtualPeopleSoak) {
   const int people = static_cast<int>(Count(15, 200));
   for (const Measured& measured : kMeasured) {
@@ -273,7 +274,8 @@ TEST(PostureSampler, DrawsTheSamePersonsEachTime) {
   EXPECT_LT(first.loads.median.torque[elbow], first.loads.high.torque[elbow]);
 }
 
-// If there is no spread, the person must be the nominal one. A measured length must not vary.
+// If the prior has no spread, the drawn person must be the nominal one. A measured length must not
+// vary.
 TEST(PostureSampler, VariesOnlyWhatIsNotMeasured) {
   const std::vector<double> z(kPriorVariations, 1.0);
   const PosturePrior same = VariedPrior(DefaultPrior(), z, PostureSpread{0, 0, 0, 0, 0, 0, 0});

@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kPostures = 200;
 
-// Each pair of handles is placed where a random posture, drawn from the middle share of the joints'
-// ranges, has its hands.
+// Each pair of handles is placed at the hands of a random posture, which is drawn from the middle
+// share of the joints' ranges.
 TEST(PostureSolver, ReproducesThePositionsOfTheHands) {
   RandomStream random(1, "round trip");
   const BodyModel model{Man()};
@@ -48,8 +48,8 @@ TEST(PostureSolver, ReproducesThePositionsOfTheHands) {
   }
 }
 
-// Returns both handles where a person who stands in front of them can reach them. `phase` moves
-// them along a circle.
+// Returns both handles at places that a person in front of them can reach. `phase` moves the
+// handles along a circle.
 BodySample BeforeThePerson(const Stance& stance, double phase) {
   BodySample sample;
   for (int hand = 0; hand < kHands; ++hand) {
@@ -70,13 +70,13 @@ TEST(PostureSolver, SaysWhatIsMissingToAHandleOutOfReach) {
   for (HandSample& hand : sample.hands) hand.X_WD.p += 2 * ahead;
   const Posture posture = solver.Solve(sample);
   EXPECT_FALSE(posture.reached);
-  // Hips, trunk and arms reach 0.3 m, 0.6 m and 0.65 m at most.
+  // The maximum reach is 0.3 m for the hips, 0.6 m for the trunk and 0.65 m for the arms.
   EXPECT_GT(posture.position_error[0], 2.4 - 0.3 - 0.6 - 0.65);
   const BodySample hands = SampleAt(model, SomeStance(), posture.q);
   for (std::size_t k = 0; k < kHands; ++k)
     EXPECT_NEAR((hands.hands[k].X_WD.p - sample.hands[k].X_WD.p).norm(), posture.position_error[k],
                 1e-12);
-  // No nearby posture may bring its hands nearer to the handles.
+  // In no nearby posture may the hands be nearer to the handles.
   RandomStream random(2, "nearby");
   const auto distance = [&](const BodyVector& q) {
     const BodySample at = SampleAt(model, SomeStance(), q);
@@ -105,7 +105,8 @@ TEST(PostureSolver, DependsOnSampleAndStartAlone) {
 
 // Along a path, the solver must find the same posture whether it starts at the previous posture or
 // at the comfortable one. The posture must move as smoothly as the handles. The bounds are the
-// second differences of a circle times 10 rad/m, and twice that where a joint reaches a limit.
+// second differences of a circle times 10 rad/m. Where a joint reaches a limit, the bounds are
+// twice as large.
 TEST(PostureSolver, FollowsASmoothPathSmoothly) {
   const BodyModel model{Man()};
   const PostureSolver solver(model, SomeStance(), Grips(true));

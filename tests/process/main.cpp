@@ -1,4 +1,4 @@
-// The test program also serves as the processes that are supervised.
+// The test program also runs as the processes that are supervised.
 #include <gtest/gtest.h>
 
 #include <cstring>

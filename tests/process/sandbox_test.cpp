@@ -1,4 +1,5 @@
-// Tests, from inside a process, which rights it keeps after it has entered the sandbox.
+// Tests which rights a process keeps after it has entered the sandbox. The tests run inside this
+// process.
 #include "process/sandbox.h"
 
 #include <arpa/inet.h>
@@ -139,7 +140,7 @@ std::string NotRefused(const std::vector<Call>& calls) {
   return passed;
 }
 
-// Returns calls that query something. Only the second stage of the sandbox refuses them.
+// Returns the system calls that only query data. Only the second stage of the sandbox refuses them.
 std::vector<Call> Looking() {
   static struct stat status {};
   static char buffer[4096];
@@ -161,7 +162,7 @@ TEST_F(SandboxTest, RefusesAllThatIsNotNeeded) {
   EXPECT_EQ(Inside([&] { return NotRefused(Dangerous(file)) + NotRefused(Looking()); }), "");
 }
 
-// While the process prepares, it may read, but it must not do any of the following.
+// While the process prepares itself, it may read, but it must not make any of the following calls.
 TEST_F(SandboxTest, RefusesTheSameWhileItPrepares) {
   const test::TemporaryFolder folder;
   const std::string file = folder.path() / "file";

@@ -1,5 +1,6 @@
 // Compares the solver with the optimality conditions and with another solver. The problems resemble
-// those of rendering: rank-deficient least squares, widely differing weights, boxes, and soft rows.
+// the problems of rendering. They contain rank-deficient least squares, widely differing weights,
+// boxes, and soft rows.
 #include "qp/qp.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +17,9 @@ constexpr int kJoints = 14;
 constexpr int kN = kJoints + 7;  // plus a slack for each row
 constexpr int kM = 7;            // the relative pose, and one inequality
 
-// Minimises ½|J x − v|² + ½ρ|A x − r|² + ½ε|x|² in a box. One additional inequality is soft, with a
-// weight of 1e9. Each row has a slack that is scaled to a weight of 1. J may be singular.
+// Minimises ½|J x − v|² + ½ρ|A x − r|² + ½ε|x|² for x within a box. One additional inequality is
+// soft, with a weight of 1e9. Each row has a slack that is scaled to a weight of 1. J may be
+// singular.
 Qp RandomQp(RandomStream* random, double relative_weight, double epsilon, double box) {
   bool singular = false;
   Qp qp(kN, kM);
@@ -108,7 +110,7 @@ TEST(QpSolver, AgreesWithAnotherSolver) {
     const Qp qp = RandomQp(&random, 100, 1e-2, 0.3);
     solver.Solve(qp, &solution);
     ASSERT_TRUE(solution.solved);
-    // The other solver's form is CE x + ce0 = 0, CI x + ci0 ≥ 0.
+    // The constraints of the other solver have the form CE x + ce0 = 0, CI x + ci0 ≥ 0.
     const Eigen::MatrixXd CE = qp.A().topRows(6);
     const Eigen::VectorXd ce0 = -qp.b().head(6);
     Eigen::MatrixXd CI = Eigen::MatrixXd::Zero(2 * kJoints + 1, kN);

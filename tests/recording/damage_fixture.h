@@ -47,7 +47,7 @@ inline bool SameEvent(const RecordingEvent& a, const RecordingEvent& b) {
          a.lost == b.lost;
 }
 
-// Reads the ticks up to the first error, and everything else if there is no error. Returns nullopt
+// Reads the ticks up to the first error, and everything else if there is no error. Returns no value
 // if the file cannot be opened.
 inline std::optional<Content> ReadAll(const std::string& path, bool* failed) {
   Content content;
@@ -77,7 +77,7 @@ inline std::optional<Content> ReadAll(const std::string& path, bool* failed) {
   return content;
 }
 
-// This number of ticks fills three chunks with a snapshot and an event in them.
+// This number of ticks fills three chunks, which also contain a snapshot and an event.
 inline constexpr std::uint64_t kDamagedTicks = 15;
 inline TickRecord Tick(std::uint64_t tick) { return SampleTick(tick); }
 
@@ -110,8 +110,8 @@ class Damage : public ::testing::Test {
     index_ = summary;
   }
 
-  // The ticks must be the first ticks of the original, and all other content must come from it as
-  // well.
+  // The ticks must be the first ticks of the original, and all other content must also come from
+  // the original.
   void ExpectPrefix(const Content& content, const std::string& what) const {
     EXPECT_TRUE(SameHeader(content.header, original_.header)) << what;
     ASSERT_LE(content.ticks.size(), original_.ticks.size()) << what;
@@ -119,7 +119,7 @@ class Damage : public ::testing::Test {
       ASSERT_TRUE(Same(content.ticks[k], original_.ticks[k])) << what << ", tick " << k;
     ExpectOthers(content, what);
   }
-  // Does the same checks, except that ticks may be missing if events report them.
+  // Makes the same checks, except that ticks may be missing if events report the loss.
   void ExpectPart(const Content& content, const std::string& what) const {
     EXPECT_TRUE(SameHeader(content.header, original_.header)) << what;
     std::uint64_t last = 0, reported = 0, missing = 0;
@@ -171,7 +171,7 @@ class Damage : public ::testing::Test {
     return false;
   }
 
-  // Recovers the content of `path_`. Returns the number of recovered ticks, or nullopt if no file
+  // Recovers the content of `path_`. Returns the number of recovered ticks, or no value if no file
   // was written.
   std::optional<std::size_t> RecoverAndCheck(const std::string& what) {
     const std::string out = folder_.File("out.mcap");

@@ -1,5 +1,5 @@
-// Tests truncated or damaged recordings. The reader must report an error or return the original
-// data, but never anything else.
+// Tests truncated or damaged recordings. The reader must either report an error or return the
+// original data.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,8 +32,8 @@ TEST_F(Damage, AnIntactFileNeedsNoRepair) {
   EXPECT_EQ(ReadFile(path_), bytes_);
 }
 
-// A file that is cut anywhere must be readable to its last complete chunk, and recovery must yield
-// at least these chunks.
+// A truncated file must be readable to its last complete chunk, wherever the file was cut. Recovery
+// must yield at least these chunks.
 TEST_F(Damage, CutAtEachByteSoak) {
   const auto step = static_cast<std::size_t>(Count(13, 1));
   std::size_t most = 0, opened = 0;
@@ -63,8 +63,8 @@ TEST_F(Damage, EachByteFlippedSoak) {
   std::size_t errors = 0, whole = 0;
   std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
   for (std::size_t at = 0; at < bytes_.size(); at += step) {
-    // Damages one byte at a time. In eight of nine bytes, one bit is flipped, and its position
-    // changes from byte to byte. In every ninth byte, all bits are flipped.
+    // Damages one byte at a time. In eight of nine bytes, one bit is flipped, and the position of
+    // this bit changes from byte to byte. In every ninth byte, all bits are flipped.
     const unsigned mask = at % 9 == 8 ? 0xFFU : 1U << (at % 9);
     const auto put = [&](char byte) {
       file.seekp(static_cast<std::streamoff>(at));
@@ -101,13 +101,13 @@ TEST_F(Damage, EachByteFlippedSoak) {
 }
 
 // All content before the first tick is stored twice, piece by piece. A piece is lost only if both
-// copies are damaged, and the reader must report this.
+// copies are damaged, and the reader must report the loss.
 TEST_F(Damage, InBothPlaces) {
   const std::size_t copy = bytes_.find("predictor.copy") - 4;
   const std::size_t run = bytes_.find("predictor.run") - mcap::kHead - 4;
   const std::size_t run_again = bytes_.find("predictor.run", copy) - mcap::kHead - 4;
   const std::map<std::string, std::string> places = {
-      // The list contains, for each piece, a text that occurs in it.
+      // For each piece, the list contains a text that occurs in the piece.
       {"predictor.labels", "P07"},    {"predictor.models", "abc123"},
       {"scenario.yaml", "name: Box"}, {"machine.yaml", "device: here"},
       {"robot.urdf", "<robot/>"},     {"topics", "predictor_msgs/msg/Qp"}};
@@ -150,8 +150,8 @@ TEST_F(Damage, OfARegionAtTheStart) {
   }
 }
 
-// A piece that is too large to be stored twice exists only once. If it is damaged, the reader must
-// report this.
+// A piece that is too large to be stored twice exists only once. If such a piece is damaged, the
+// reader must report the damage.
 TEST_F(Damage, OfALargeFile) {
   RecordingHeader header = SampleHeader();
   header.attachments.push_back({"big.stl", "model/stl", std::string(1U << 20U, 'm')});

@@ -1,5 +1,5 @@
-// Tests forged recordings. The reader must never use more memory than a recording needs, and must
-// not read a byte too often.
+// Tests forged recordings. For any file, the reader must not use more memory than a recording
+// needs, and it must not read any byte too often.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -122,8 +122,8 @@ std::uint64_t BytesRead() {
   return bytes;
 }
 
-// Each header seems to contain all following data. Even then, the number of times that each byte is
-// read must be bounded.
+// Each header seems to contain all following data. Even with such headers, the reader must read
+// each byte only a bounded number of times.
 TEST_F(Damage, AFileFullOfHeadsIsNotReadAgainForEach) {
   const std::size_t first = bytes_.find("zstd") - 4 - mcap::kHead - 28;
   std::string hostile = bytes_.substr(0, first);
@@ -145,7 +145,7 @@ TEST_F(Damage, AFileFullOfHeadsIsNotReadAgainForEach) {
   EXPECT_GT(report.gave_up_at, first);
   EXPECT_NE(report.Text().find("only resembles chunks"), std::string::npos);
 
-  // After fewer such headers, the reader must still find intact chunks.
+  // If a file contains fewer such headers, the reader must still find the intact chunks after them.
   WriteFile(path_,
             bytes_.substr(0, first) + hostile.substr(first, 20 * head) + bytes_.substr(first));
   const auto recovered = RecoverAndCheck("behind heads");
@@ -178,8 +178,8 @@ TEST_F(Damage, BombsDoNotFillTheMemory) {
   ExpectBounded(path_);
 }
 
-// A fuzzing seed must be readable up to its ticks. If its tick layout were outdated, the reader
-// would refuse it before it decodes a tick, and the decoder would not be tested.
+// A fuzzing seed must be readable up to its ticks. If the seed's tick layout were outdated, the
+// reader would refuse the seed before it decodes a tick, and the decoder would not be tested.
 TEST(FuzzSeeds, HaveTicks) {
   std::uint64_t read = 0, mended = 0;
   const Folder folder;

@@ -140,7 +140,7 @@ TEST_F(Forget, RefusesATypingErrorAndAMissingFolder) {
   EXPECT_THROW(FindPerson(folder_.path(), "K7QM2XPY"), InputError);
   EXPECT_THROW(FindPerson(folder_.path(), ""), InputError);
   EXPECT_THROW(FindPerson(Path("missing"), kPerson), InputError);
-  // The folder itself has the name of the person.
+  // The name of the folder itself contains the person's pseudonym.
   Write(std::string(kPerson) + "/a.txt", "");
   EXPECT_THROW(FindPerson(Path(kPerson), kPerson), InputError);
 }

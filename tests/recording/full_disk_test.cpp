@@ -1,5 +1,5 @@
-// Tests a recording in virtual time on a disk that becomes full: the message and the readable
-// content.
+// Tests a recording in virtual time on a disk that becomes full. The tests check the message and
+// the readable content.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mount.h>

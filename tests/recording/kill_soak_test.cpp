@@ -80,7 +80,8 @@ TEST(RecordingSoak, KilledAtRandomMoments) {
     }
     ASSERT_GE(published, report.ticks);
     max_lost = std::max(max_lost, published - report.ticks);
-    // The unit is a millisecond of the child's own clock, which stops when the machine stalls.
+    // The unit of time is a millisecond of the child's own clock, which stops when the machine
+    // stalls.
     EXPECT_LE(published - report.ticks, 1000u) << "kill " << k << " at tick " << published;
   }
   RecordProperty("max_lost_ms", static_cast<int>(max_lost));

@@ -1,4 +1,4 @@
-// The poses of movable objects are recorded, and only in scenarios that have some.
+// The poses of movable objects are recorded only in scenarios that have movable objects.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -73,7 +73,8 @@ TEST(MovablePoses, AreReadBack) {
   EXPECT_EQ(read.movable_count, 0);
 }
 
-// A count beyond the list would be used as an index.
+// If the reader accepted a count larger than the list, it would use the count as an index beyond
+// the list.
 TEST(MovablePoses, ACountBeyondTheListIsRefused) {
   TickRecord record = TickWithTwo();
   std::vector<std::byte> bytes(recording::kLongestTickMessage);

@@ -1,4 +1,4 @@
-// Restores the files from which a run was made in another folder.
+// Restores the files from which a run was made, in another folder.
 #include "recording/provenance.h"
 
 #include <gtest/gtest.h>

@@ -138,8 +138,7 @@ class Live : public ::testing::Test {
   std::vector<std::string> messages_;
 };
 
-// An exception in the recorder's own threads must end the recording with a message, and nothing
-// else.
+// An exception in the recorder's own threads must end only the recording, with a message.
 class Thrower : public Disk {
  public:
   ssize_t Write(int fd, const void* bytes, std::size_t n, std::uint64_t at) override {
@@ -175,7 +174,7 @@ TEST_F(Live, EndsWithASentenceWhenAThreadOfItsThrows) {
   }
 }
 
-// If the callback that receives the message throws as well, the recording must still end.
+// Even if the callback that receives the message also throws, the recording must end.
 TEST_F(Live, EndsEvenIfTheMessageCannotBeDelivered) {
   RecorderOptions options;
   options.notify = [](const std::string&) { throw std::runtime_error("no listener"); };
@@ -213,8 +212,8 @@ TEST_F(Live, RecordsEveryTickMarksAndSnapshots) {
   EXPECT_TRUE(messages().empty());
 }
 
-// The overrun is intentional: the disk accepts no data until the queue of chunks and the ring are
-// full.
+// The test causes the overrun intentionally. The disk accepts no data until the queue of chunks and
+// the ring are full.
 TEST_F(Live, ReportsLostTicksAndRequestsASnapshotAfterThem) {
   RecorderOptions options = Options();
   options.max_queued = 1;
@@ -248,7 +247,7 @@ TEST_F(Live, ReportsLostTicksAndRequestsASnapshotAfterThem) {
   reader.Check();
 }
 
-// One event must report all gaps within a second of the records' clock.
+// A single event must report all gaps that lie within one second of the records' clock.
 TEST_F(Live, ManyGapsAreReportedTogether) {
   RecorderOptions options = Options();
   options.max_queued = 1;
@@ -288,9 +287,9 @@ TEST_F(Live, ManyGapsAreReportedTogether) {
   EXPECT_NE(reader.gaps().back().text.find(" places"), std::string::npos);
 }
 
-// After a power failure at any moment, all but the last five seconds must be preserved, because
-// everything older has been synchronised. Each prefix of the file that could be on the disk must be
-// readable.
+// After a power failure at any moment, the recording must be preserved except for its last five
+// seconds, because all older data has been synchronised. Each prefix of the file that could be on
+// the disk must be readable.
 TEST_F(Live, IsMadeToLastEveryFewSecondsSoak) {
   disk_.sync_time = milliseconds(300);
   const std::uint64_t start = Now();
@@ -427,7 +426,7 @@ TEST_F(Live, LittleSpaceIsReportedAndThenEndsIt) {
   EXPECT_EQ(reader.count(), recorder.status().ticks);
 }
 
-// In virtual time, the same rules apply.
+// The same rules apply in virtual time.
 TEST_F(Live, AWriterWarnsSynchronisesAndEndsAsTheRecorderDoes) {
   disk_.free_bytes = 5'000'000'000;
   DiskRules rules = Options();

@@ -271,7 +271,8 @@ TEST(Recording, OverwritesNothingAndReportsTheError) {
             std::string::npos);
 }
 
-// Changed constants or comments must not make old recordings unreadable, but changed fields must.
+// Changed constants or comments must not make old recordings unreadable. Changed fields must make
+// them unreadable.
 TEST(Schema, LayoutIsWhatTheBytesAreMadeOf) {
   using recording::Layout;
   EXPECT_EQ(Layout("# all\nuint8 A=1\nuint8 a  # [s]\n\nfloat64 b\n"), "uint8 a\nfloat64 b\n");

@@ -95,8 +95,8 @@ TEST(Report, ReportsAStopAsTheEmulatorMeasuredIt) {
   const auto plot = std::find_if(report.plots.begin(), report.plots.end(),
                                  [](const Plot& p) { return p.id == "stop-1"; });
   ASSERT_NE(plot, report.plots.end());
-  // The plot must contain the ten seconds before the decision, or all of the run if it was shorter,
-  // and must cross the threshold at 0.
+  // The plot must contain the ten seconds before the decision, or the whole run if it was shorter.
+  // The curve must cross the threshold at 0.
   const PlotSeries& force = plot->panels[0].series[static_cast<std::size_t>(stop.hand)];
   EXPECT_NEAR(
       force.x->front(),
@@ -193,8 +193,8 @@ TEST(Report, ThePowerOffOfADecisionsOwnTickIsOfThatStop) {
   EXPECT_GE(noted, 1);
 }
 
-// If there are more stops than are kept, the report must contain the power-off of a later stop but
-// assign it to none of the kept stops.
+// If a run has more stops than the report keeps, the report must contain the power-off of a later
+// stop. It must not assign this power-off to any of the kept stops.
 TEST(Report, ThePowerOffOfAnUnlistedStopBelongsToNoStop) {
   const RunData data = WithMore([&](const auto& add, TickRecord* record) {
     for (std::size_t k = 0; k < StopLog::kMaxStops + 5; ++k) {
@@ -226,14 +226,14 @@ TEST(Report, StatesThatArmsDidNotRest) {
     EXPECT_EQ(notes, restless ? 0u : 1u);
     return Occurrences(report.html, what);
   };
-  // The text appears once for the run and once for its stop.
+  // The text appears once for the run and once for the run's stop.
   EXPECT_EQ(reported(true, "The arms did not come to rest."), 2u);
   EXPECT_EQ(reported(true, "The arms came to rest"), 0u);
   EXPECT_EQ(reported(false, "The arms did not come to rest."), 0u);
   EXPECT_EQ(reported(false, "The arms came to rest"), 2u);
 }
 
-// Returns seconds of RUN in which the hands exert force(t) along x.
+// Returns records of RUN in which the hands exert force(t) along x.
 RunData OfForce(double seconds, const std::function<double(double)>& force) {
   RunCollector collector(TestInfo(Scenario(), "force"));
   TickRecord record{};
@@ -266,8 +266,8 @@ TEST(Report, ASmallPartOfALargeForceIsGivenInNewtons) {
 
 // The largest index in the text must equal the largest one in the plot.
 TEST(Report, TextAndPlotShowTheSameIndex) {
-  // The hand is at rest with a little noise of 5 Hz. After that, the force of the hand is slow and
-  // strong.
+  // At first, the hand is at rest, and its force contains a little noise of 5 Hz. After that, the
+  // force of the hand is slow and strong.
   const RunData run = OfForce(20, [](double t) {
     const double slow = t < 10 ? 0 : 20 * std::sin(1.5 * std::numbers::pi * t);
     return slow + 0.2 * std::sin(10 * std::numbers::pi * t);
@@ -306,7 +306,8 @@ TEST(Report, ComparesRuns) {
   Keep(MakeReport({Collect("bar_circle", 37).data}, "test"), "bar_circle");
 }
 
-// Each metric must appear in the report although the report has no code for single metrics.
+// Each metric must appear in the report, although the report has no code that is specific to a
+// metric.
 TEST(Report, ShowsAndComparesEveryMetric) {
   const CollectedRun run = Collect("box_9kg", 8);
   const std::string one = MakeReport({run.data}, "test").html;

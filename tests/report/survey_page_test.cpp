@@ -51,7 +51,7 @@ TEST(SurveyPage, PlotHasACrossForEachAnswer) {
   EXPECT_EQ(plot.panels[0].y.names.front(), "Strongly disagree (−2)");
 }
 
-// No two crosses may coincide, and each must lie within the width of its statement.
+// No two crosses may coincide, and each cross must lie within the width of its statement.
 TEST(SurveyPage, CrossesOfManyAnswersStandBesideEachOther) {
   LikertSeries series{"Emulated", {}};
   series.counts[3] = {5, 17, 30, 60, 2};

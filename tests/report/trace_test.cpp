@@ -75,7 +75,7 @@ TEST(Trace, OfALongRunKeepsEveryTickWhereItMattersAndNoMore) {
   EXPECT_EQ(trace.DetailTimes(0)->size(), trace.DetailValues(0)->size());
 }
 
-// There is one tick per second and none in between. The memory must depend on the number of
+// The run has one tick per second and no ticks in between. The memory must depend on the number of
 // seconds, not on the number of ticks.
 TEST(Trace, OfTicksFarApartIsRefusedBeforeItFillsTheMemory) {
   Trace trace(1, 0.001, 60);

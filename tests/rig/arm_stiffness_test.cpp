@@ -33,8 +33,8 @@ struct TurnedArm {
   }
 };
 
-// Returns the force that holds the hand at q. The torques of the muscles are those that balance F0
-// at q = 0, minus K q.
+// Returns the force that holds the hand at q. The torques of the muscles are the torques that
+// balance F0 at q = 0, minus K q.
 Vector3 HoldingForce(const TurnedArm& arm, const Matrix3& K, const Vector3& F0, const Vector3& q) {
   const Vector3 torque = -arm.Jacobian(Vector3::Zero()).transpose() * F0 - K * q;
   return -arm.Jacobian(q).transpose().inverse() * torque;
@@ -71,7 +71,7 @@ TEST(ArmStiffness, IsTheDerivativeOfTheForceThatHoldsTheHand) {
 }
 
 // Mussa-Ivaldi, Hogan & Bizzi 1985 found that the relaxed hand is stiffest roughly towards the
-// shoulder, and less stiff the farther away it is.
+// shoulder. The farther the hand is from the shoulder, the less stiff it is.
 TEST(ArmStiffness, HasTheShapeThatIsMeasuredInPeople) {
   double softest_before = kMaxHandStiffness;
   for (const double elbow : {1.9, 1.5, 1.1}) {

@@ -163,8 +163,8 @@ TEST(ForceSensor, FlagsAndClipsWhatIsBeyondItsRange) {
 }
 
 // Simulates a force that rises by `rate` [N/s]. In the first sample above the threshold, the force
-// exceeds it by the fraction `beyond` of its rise per sample. Returns the number of samples from
-// this one to the first reading that exceeds the threshold.
+// exceeds the threshold by the fraction `beyond` of the rise per sample. Returns the number of
+// samples from this sample to the first reading that exceeds the threshold.
 int SamplesUntilSeen(const SensorSpec& spec, double rate, double beyond, std::uint64_t seed) {
   constexpr double kThreshold = 30;  // [N]
   constexpr int kBefore = 50;        // samples
@@ -193,8 +193,8 @@ TEST(ForceSensor, ARisingForceIsSeenWithinThreeMilliseconds) {
       EXPECT_EQ(SamplesUntilSeen(exact, rate, beyond, 1), expected) << rate << " " << beyond;
       EXPECT_LE(expected, 3);
     }
-  // Noise and resolution can hide less than 0.3 N. The force in this test rises by 0.3 N in 1 ms,
-  // which is the remaining one of the three milliseconds.
+  // Noise and resolution can hide less than 0.3 N. The force in this test rises by 0.3 N in 1 ms.
+  // This millisecond is the last of the three milliseconds that the test allows.
   for (std::uint64_t seed = 1; seed <= 1000; ++seed)
     EXPECT_LE(SamplesUntilSeen(spec, 300, 0.01, seed), 3) << seed;
 }

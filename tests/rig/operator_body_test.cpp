@@ -72,8 +72,9 @@ TEST(ArmAbility, BalanceEndsWhereTheTippingMomentDoes) {
   EXPECT_NEAR(x, -0.06, 1e-12);
 }
 
-// Lifting moves this person's centre of pressure beyond the toes, so the hand cannot pull.
-// Sideways, the force reaches W (half_width) / h plus what the lifted weight allows.
+// When this person lifts, the centre of pressure moves beyond the toes, so the hand cannot pull.
+// Sideways, the force reaches W (half_width) / h plus the additional force that the lifted weight
+// allows.
 TEST(ArmAbility, APersonOnTheToesCanStillPushSideways) {
   const Standing person = {700, 0.19, 0, -0.06, 0.2, 0.15};
   const double h = 0.8, lift = 40;
@@ -115,7 +116,8 @@ TEST(OperatorBody, ForcesStayWithinStrengthAndBalance) {
   EXPECT_LT(limited, 400);
 }
 
-// Nothing changes for the person if handles and forces turn with the person about the vertical.
+// If the handles and the forces turn with the person about the vertical, the results for the person
+// do not change.
 TEST(OperatorBody, LimitsTurnWithThePerson) {
   constexpr double kTurn = 2;  // [rad]
   Scenario scenario = Embodied();
@@ -204,7 +206,8 @@ TEST(OperatorBody, ReachesWithTheTrunkBeforeTheArmsAreStraight) {
   EXPECT_LT((near.body.Reachable(0, inside) - inside).norm(), 1e-12);
 }
 
-// Returns the reference of the operator's script, followed by a mirrored person.
+// Returns a scenario whose operator lifts the object and moves it sideways. `side` is 1 or, for the
+// mirrored motion, −1.
 Scenario Lifting(double side) {
   Scenario scenario = Embodied();
   ActionSpec move = MakeActionSpec("move", 0.6, {"duration=1"});

@@ -35,8 +35,8 @@ TEST(OrnsteinUhlenbeck, IsStationaryWithUnitDeviationAndExponentialCorrelation) 
     OrnsteinUhlenbeck process(time_constant, RandomStream(7, "ou"));
     std::vector<double> x(1000000);
     for (double& value : x) value = process.Step(dt);
-    // About n dt / (2 τ) samples are independent, 5000 and 50000. The tolerance is four standard
-    // errors.
+    // About n dt / (2 τ) samples are independent. This number is 5000 for the smaller dt and 50000
+    // for the larger one. The tolerance is four standard errors.
     const double independent = static_cast<double>(x.size()) * dt / (2 * time_constant);
     EXPECT_NEAR(Of(x).mean, 0, 4 / std::sqrt(independent));
     EXPECT_NEAR(Of(x).deviation, 1, 4 / std::sqrt(2 * independent));

@@ -68,7 +68,7 @@ TEST(Rig, SensorAtRestReadsWeightAndBias) {
   DeviceSample sample;
   rig.Read(&sample);
   const ArmSpec& arm = *scenario.device.left;
-  // S follows from H, which the rig provides: X_WS = X_WH X_HE X_ES.
+  // The rig provides H. S is computed from H by X_WS = X_WH X_HE X_ES.
   const Pose X_WS =
       rig.true_handles()[0].X_W * arm.handle.ToPose().Inverse() * arm.sensor.pose.ToPose();
   const Vector3 weight = X_WS.q.conjugate() * Vector3(0, 0, -arm.payload.mass * 9.81);

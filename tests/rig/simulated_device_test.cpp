@@ -36,7 +36,8 @@ TEST(SimulatedDevice, FollowsASineWithTheLagOfItsLoop) {
     if (k >= 1000)
       phasor += 2.0 / 2000 * sample.arms[1].v[2] * std::exp(std::complex<double>(0, -w * t));
   }
-  // The loop is of second order with a pure delay, plus half a tick because the command is held.
+  // The loop is of second order with a pure delay. Half a tick is added to the delay because the
+  // command is held.
   const VelocityLoopSpec& loop = scenario.device.right->loop;
   const double ratio = 1.0 / loop.bandwidth;
   const double lag =

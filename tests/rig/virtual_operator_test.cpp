@@ -10,7 +10,8 @@
 namespace predictor {
 namespace {
 
-// Returns the offset from the handle to the position at which a spring-only hand aims.
+// Returns the offset from the handle to the target position of a hand that consists only of a
+// spring.
 Vector3 Pull(const Person& person, const Scenario& scenario, int hand = 0) {
   return person.Force(hand).cwiseQuotient(scenario.operator_.hand.stiffness);
 }
@@ -73,7 +74,8 @@ TEST(VirtualOperator, DampsAgainstTheVelocityOfTheReference) {
   for (int k = 1; k <= 2000; ++k) {
     person.Step();
     springs.Step();
-    // Finite differences of the spring's pull give the velocity of the reference half a step early.
+    // The finite differences of the spring's force give the velocity of the reference half a step
+    // too early.
     const Vector3 v = (Pull(springs, scenario) - before) / 0.001;
     before = Pull(springs, scenario);
     const Vector3 damping = (2 * hand.damping_ratio * (hand.mass * hand.stiffness).cwiseSqrt());
@@ -282,9 +284,9 @@ TEST(VirtualOperator, PaceDriftsButTheWayIsTheSame) {
   EXPECT_NEAR(std::sqrt(square - mean * mean), deviation, 0.25 * deviation);
 }
 
-// A person holds a 9 kg box with both hands and lifts it by 0.1 m, while a cobot (4.3 kg in this
-// direction) holds it with a spring of 500 N/m. The result contains the largest force of a hand,
-// and the time when it first exceeds 30 N [s].
+// A person holds a 9 kg box with both hands and lifts it by 0.1 m. Meanwhile, a cobot holds the box
+// with a spring of 500 N/m; the cobot's effective mass in this direction is 4.3 kg. The result
+// contains the largest force of a hand, and the time when it first exceeds 30 N [s].
 struct Lift {
   double peak = 0, above_limit = -1;
 };

@@ -22,9 +22,9 @@ constexpr auto kChange = milliseconds(2000);   // between changes of the subscri
 // The longest gap between messages is so large that the speed of the machine does not matter.
 constexpr auto kLongestGap = milliseconds(10'000);
 
-// Imitates the Connector's two threads and its Update(). Everything uses one connection, and the
-// greeting comes first. An empty frame follows at the start and after each second of silence. In
-// ROS 2 mode, each destination and each JSON text ends with a NUL.
+// Imitates the Connector's two threads and its Update(). The client uses a single connection for
+// all messages, and the greeting comes first. An empty frame follows at the start and after each
+// second of silence. In ROS 2 mode, each destination and each JSON text ends with a NUL.
 class Connector {
  public:
   Connector(std::uint16_t port, RosDialect dialect) : socket_(port), dialect_(dialect) {
@@ -72,7 +72,7 @@ class Connector {
 
 class ConnectorTest : public RosTcp {
  protected:
-  // Sends the next request of a scene whose user edits it while it plays.
+  // Sends the next request of a scene that its user edits while the scene plays.
   void Change(Connector* unity) {
     const auto& list = topics_->list();
     const RosTopic& topic = list[changes_ % list.size()];

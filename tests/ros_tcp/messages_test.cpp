@@ -1,5 +1,5 @@
-// Compares the bytes of messages with those that ROS itself writes, and checks the stream's
-// framing.
+// Compares the bytes of messages with the bytes that ROS itself writes. Also checks how messages
+// are framed in the stream.
 #include <gtest/gtest.h>
 
 #include <map>

@@ -79,7 +79,7 @@ TEST_F(RosTcpProcessTest, HasNoRights) {
     EXPECT_EQ(StatusOf(pid, "Seccomp"), "2");
   }
 #endif
-  // As far as a test can see, the process has only its own descriptors, and the records are
+  // The test checks that the process has only its own descriptors and that the records are
   // read-only.
   std::ifstream maps("/proc/" + std::to_string(pid) + "/maps");
   int shared = 0;

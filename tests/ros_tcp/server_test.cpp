@@ -118,7 +118,7 @@ TEST_P(RosTcp, ServesSeveralAndOutlivesThoseThatDoNotReadSoak) {
   }
 }
 
-// A stop must be received wherever it is among the frames.
+// The server must receive a stop request at any position among the frames.
 TEST_P(RosTcp, AStopRightAfterAServiceCallIsTaken) {
   Unity unity(server_->port());
   unity.Receive();
@@ -146,8 +146,8 @@ TEST_P(RosTcp, ASilentClientMakesRoom) {
   EXPECT_EQ(late.Receive().destination, "__handshake");
 }
 
-// Clients that only keep the connection alive must give way to a newcomer. Clients that use the
-// connection stay.
+// Clients that only keep the connection alive must give way to a newcomer. Clients that use their
+// connection stay connected.
 TEST_P(RosTcp, AnIdleClientGivesWayToANewOne) {
   Unity used(server_->port());
   used.Receive();
@@ -162,7 +162,7 @@ TEST_P(RosTcp, AnIdleClientGivesWayToANewOne) {
   }
   for (int k = 0; k < 4; ++k) EXPECT_EQ(idle[k]->Receive().destination, "") << k;
   for (int k = 0; k < 20; ++k) EXPECT_EQ(used.Receive().destination, "/predictor/state");
-  // Two more clients use their seats, so that no seat is free.
+  // Two more clients take seats and use them, so that no seat is free.
   for (int k = 4; k < 6; ++k) {
     idle[k]->Send("__publish", {{"topic", "/predictor/stop"}, {"message_name", "std_msgs/Bool"}});
     idle[k]->Send("__topic_list", Json::object());
@@ -266,7 +266,8 @@ TEST(RosTcpOptions, OfNonsenseAreRefused) {
   Shared<StopMailbox> mailbox;
   for (const char* network : {"", "everywhere", "192.0.2.0/33", "192.0.2/24", "192.0.2.0/x"})
     EXPECT_THROW(RosTcpServer({0, {network}}, &topics, &*board, &*mailbox), InputError) << network;
-  // These networks are wider than any private network. The message must suggest a valid setting.
+  // These networks contain more addresses than any private network. The message must suggest a
+  // valid setting.
   for (const char* network :
        {"0.0.0.0/0", "0.0.0.0/1", "128.0.0.0/1", "10.0.0.0/7", "0.0.0.0", "::/0", "::"}) {
     try {

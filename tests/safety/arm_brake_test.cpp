@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kAcceleration = 5, kJerk = 250;
 
-// Returns the speeds [m/s] of an arm's share of a stop. In each tick, the test requests a speed
-// that is higher by `behind`.
+// Returns the speeds [m/s] of an arm's share of a stop. In each tick, the requested speed is higher
+// by `behind`.
 template <class Behind>
 std::vector<double> Speeds(double speed, double rate, double hold, const Behind& behind) {
   StopProfile profile(kAcceleration, kJerk, kDt, 1);
@@ -84,7 +84,7 @@ std::array<JointBounds, kHands> BoundsOfSix() {
   return bounds;
 }
 
-// Returns joints that coincide with the handles' coordinates.
+// Returns joints whose positions are the handles' coordinates.
 StopGeometry Straight() {
   StopGeometry geometry;
   for (std::size_t i = 0; i < kHands; ++i) {
@@ -127,10 +127,10 @@ TEST(StopController, FollowsAnArmThatDoesNotStopForAWhileOnly) {
   }
 }
 
-// Stops two arms and returns how far apart they are at rest [m]. The first arm coasts, because it
-// follows its commands with a lag. The second arm reaches the position to which its commands lead,
-// but with a lag of `lag` [s] and a delay of `late` [ms]. `hindered` is an additional delay of the
-// first arm that it does not report [ms].
+// Stops two arms and returns the distance between them at rest [m]. The first arm coasts, because
+// it follows its commands with a lag. The second arm reaches the position to which its commands
+// lead, but with a lag of `lag` [s] and a delay of `late` [ms]. `hindered` is an additional delay
+// of the first arm that it does not report [ms].
 double ApartAtRest(const std::array<double, kHands>& coasting, std::size_t late, double lag = 0.006,
                    std::size_t hindered = 0) {
   constexpr double kSpeed = 0.2, kGain = 15;

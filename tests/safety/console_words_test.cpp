@@ -17,8 +17,8 @@ class ConsoleTalk : public testing::Test {
  protected:
   ConsoleTalk() { record_.cause_hand = -1; }
 
-  // Processes the next record, with a state and the requests of its tick. Returns the printed
-  // lines.
+  // Processes the next record, which contains a state and the requests of the record's tick.
+  // Returns the printed lines.
   std::string Tick(RunState state, std::initializer_list<RunEvent> asked = {}) {
     ++record_.tick;
     record_.state = state;
@@ -41,7 +41,7 @@ class ConsoleTalk : public testing::Test {
     record_.cause = cause;
     record_.cause_hand = static_cast<std::int8_t>(hand);
   }
-  // Expects the parts in this order.
+  // Expects that the text contains the parts in this order.
   static void ExpectInOrder(const std::string& text, std::initializer_list<std::string> parts) {
     std::size_t at = 0;
     for (const std::string& part : parts) {
@@ -155,8 +155,8 @@ TEST_F(ConsoleTalk, OffersOnlyUsefulActionsForAFaultyArm) {
   EXPECT_EQ(text.find("z resets"), std::string::npos) << text;
 }
 
-// For example, an arm that holds its position traps a hand and then stops itself. Neither the state
-// nor the cause of the stop changes.
+// For example, an arm that holds its position may trap a hand and then stop itself. Neither the
+// state nor the cause of the stop changes.
 TEST_F(ConsoleTalk, ReportsAnArmsFaultAfterAStopOnce) {
   for (const RunState state : {RunState::kStopping, RunState::kHeld, RunState::kUnpowered}) {
     words_ = ConsoleWords{false, 1000};

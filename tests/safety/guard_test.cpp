@@ -303,7 +303,7 @@ TEST(Guard, NormalCommandsPassUnaltered) {
   }
 }
 
-// Two joints brake, and one of them needs longer than the other.
+// Two joints brake, and one joint needs more time than the other joint.
 TEST(Guard, OneBadNumberBrakesBothArmsByOneFactor) {
   for (const double bad : {kNan, kInf, -kInf}) {
     for (const std::size_t slow : {0U, 1U}) {
@@ -333,9 +333,9 @@ TEST(Guard, OneBadNumberBrakesBothArmsByOneFactor) {
   }
 }
 
-// Both arms move by the same fraction of the way from the last command to the slowed command, as
-// far as the joints' accelerations allow. Any quantity that is linear in the command then stays
-// between its values at both ends.
+// The commands of both arms change by the same fraction of the way from the last command to the
+// slowed command, as far as the joints' accelerations allow. Any quantity that is linear in the
+// command then stays between its values for the last command and for the slowed one.
 TEST(Guard, SlowsBothArmsByTheSameFraction) {
   RandomStream random(7, "slow");
   int whole = 0, part = 0;
@@ -368,8 +368,8 @@ TEST(Guard, SlowsBothArmsByTheSameFraction) {
   EXPECT_GT(part, 100);
 }
 
-// If the posture of the arms made the last command too fast, the way begins at the last command
-// scaled by one factor. The factor must not cause joint accelerations beyond the limits.
+// If the last command has become too fast because of the arms' posture, the way begins at the last
+// command scaled by one factor. The factor must not cause joint accelerations beyond the limits.
 TEST(Guard, SlowsFromALastCommandThatBecameTooFast) {
   RandomStream random(8, "became too fast");
   int kept = 0, yielded = 0;
@@ -442,8 +442,8 @@ TEST(Guard, BrakingSpeedIsTheLargestThatStops) {
       };
       const double v = BrakingSpeed(distance, a, 0, dt);
       EXPECT_LE(travelled(v), distance * (1 + 1e-9));
-      // A speed that is higher by half a tick's deceleration would be too fast, because v dt +
-      // v²/2a overestimates the distance by less than that.
+      // A speed that is higher by half a tick's deceleration would be too fast, because the error
+      // of the overestimate v dt + v²/2a is smaller than this difference.
       EXPECT_GT(travelled(v + a * dt / 2 + 1e-9), distance);
     }
   }

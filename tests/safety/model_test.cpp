@@ -33,7 +33,8 @@ int IndexOf(RunCondition c) {
   return -1;
 }
 
-// Returns a name in the form of the model: "self-test passed" becomes SELF_TEST_PASSED.
+// Returns a name in the form that the model uses. For example, "self-test passed" becomes
+// SELF_TEST_PASSED.
 std::string ModelName(std::string name) {
   for (char& c : name) {
     const auto byte = static_cast<unsigned char>(c);

@@ -117,8 +117,8 @@ TEST_F(MonitorTest, VibrationOfAnEarlierRunIsForgotten) {
   };
   const int alarm = ticks_to_alarm();
   ASSERT_GT(alarm, 40);
-  // The run ends just before the alarm. The next run must tolerate the vibration for as long as the
-  // first run.
+  // The run ends just before the alarm. In the next run, the detector must tolerate the vibration
+  // for as long as in the first run.
   monitor_.Reset();
   for (int k = 0; k < alarm - 5; ++k) {
     input_.wrench[0].F_H_W[2] = 10 + 2.5 * std::sin(2 * std::numbers::pi * 24 * 0.001 * k);

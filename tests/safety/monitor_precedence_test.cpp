@@ -95,7 +95,8 @@ TEST_F(MonitorTest, AfterAFaultThatAllowsHoldingTheMostSevereDecides) {
   EXPECT_TRUE(status.power_off);
 }
 
-// If no further stop can begin, a fault that forbids holding the arm must be reported first.
+// If no further stop can begin, the monitor must report a fault that forbids holding the arm before
+// all other faults.
 TEST_F(MonitorTest, AtRestTheReasonForPowerOffIsReported) {
   input_.running = false;
   input_.wrench[0].F_H_W[0] = 100;
@@ -132,8 +133,8 @@ TEST_F(MonitorTest, AtRestTheReasonForPowerOffIsReported) {
   }
 }
 
-// A fault that forbids holding the arm must remove the power, whichever stage reports it and
-// whatever other faults there are.
+// If a fault forbids holding the arm, it must remove the power, regardless of the stage that
+// reports the fault and of any other faults.
 TEST_F(MonitorTest, WhatAStageMustNotHoldIsNotHeld) {
   for (Status MonitorInput::*stage : {&MonitorInput::device, &MonitorInput::sensing,
                                       &MonitorInput::simulation, &MonitorInput::haptics}) {

@@ -253,7 +253,8 @@ TEST_F(MonitorTest, MissedDeadlines) {
   ExpectStatus(Check(), StopCause::kDeadline, -1, 3, 2);
 }
 
-// The loop misses single deadlines repeatedly. More than ten are missed within about a second.
+// The loop misses single deadlines repeatedly. The loop misses more than ten deadlines within about
+// a second.
 TEST_F(MonitorTest, DeadlinesThatAreMissedNowAndThen) {
   for (const int period : {50, 200}) {
     Status status = CheckAfterReset();
@@ -266,7 +267,7 @@ TEST_F(MonitorTest, DeadlinesThatAreMissedNowAndThen) {
   }
 }
 
-// An arm that reports its joints every 8 ms changes more from sample to sample.
+// If an arm reports its joints every 8 ms, the joint angles change more from sample to sample.
 TEST_F(MonitorTest, JointsThatJump) {
   for (JointVector& v : input_.velocity) v = JointVector::Constant(7, 2);
   for (const int period : {1, 8}) {

@@ -34,8 +34,8 @@ class Disturbance {
   double tremor_, wander_ = 0, phase_ = 0;
 };
 
-// Returns the first alarm for force(t), t in [0, duration), along `axis`. If there is a seed, a
-// disturbance is added.
+// Returns the first alarm for force(t), t in [0, duration), along `axis`. If a seed is given, the
+// function adds a disturbance.
 template <class Force>
 Alarm FirstAlarm(const Force& force, double duration, std::uint64_t seed = 0, int axis = 0,
                  double tremor = 0.1) {
@@ -67,9 +67,9 @@ struct GrowingSine {
 
 constexpr double kFrequencies[] = {0.5, 0.73, 0.92, 1.4, 2.5, 4.0, 6.5, 8.0};
 
-// The cycle that reaches 2 N ends at most one period later. At slow growth, it is the third growing
-// cycle. The amplitude in its middle differs from the amplitude at its end by less than one cycle's
-// growth.
+// The cycle in which the amplitude reaches 2 N ends at most one period later. If the amplitude
+// grows slowly, this cycle is the third growing one. The amplitude in the middle of this cycle
+// differs from the amplitude at its end by less than one cycle's growth.
 TEST(Oscillation, GrowingSineIsFoundInTheCycleThatReachesTheAmplitude) {
   for (const double frequency : kFrequencies) {
     for (const double growth : {1.05, 1.1, 1.2}) {
@@ -175,9 +175,9 @@ TEST(Oscillation, OutsideTheBandNothingGrows) {
   }
 }
 
-// After three growing cycles, the force ends on a rise. The alarm must come when the cycles are
-// complete or not at all. The alarm must not come seconds later, when a small force happens to
-// change its sign.
+// After three growing cycles, the force ends on a rise. The alarm must either come when the cycles
+// are complete or not come at all. The alarm must not come seconds later, when a small force
+// happens to change its sign.
 TEST(Oscillation, ThatEndedIsNotReportedLater) {
   OscillationSpec spec;
   OscillationDetector detector(spec, 0.001);
@@ -186,8 +186,8 @@ TEST(Oscillation, ThatEndedIsNotReportedLater) {
     for (double t = from; t < to; t += 0.001)
       if (detector.Update({0, 0, force(t)}) > 0 && reported < 0) reported = t;
   };
-  // The force grows until it rises in the last cycle. It then decays to zero without changing its
-  // sign.
+  // The force grows until it rises in the last cycle. The force then decays to zero without
+  // changing its sign.
   feed(0, 6.2, [](double t) { return 0.6 * t * std::sin(2 * M_PI * 0.5 * t) * (t < 5.9); });
   feed(6.2, 20, [](double) { return 0.0; });
   feed(20, 21, [](double t) { return -1.0 * (t - 20); });
@@ -225,8 +225,8 @@ TEST(Oscillation, CyclesOfUnequalPeriodsNeverCount) {
   }
 }
 
-// A part of the task's slow motion remains under an oscillation. This remaining part must not make
-// the oscillation seem to grow.
+// The filtered signal consists of an oscillation and a remaining part of the task's slow motion.
+// This remaining part must not make the oscillation seem to grow.
 TEST(Oscillation, ConstantOscillationOnASlowMotionNeverCounts) {
   for (const double frequency : {1.5, 2.0, 3.0, 5.0}) {
     for (const double slow : {0.1, 0.15, 0.2}) {
@@ -248,8 +248,8 @@ TEST(Oscillation, QuietHandNeverCountsSoak) {
   }
 }
 
-// A step makes the band-pass filter ring most. The hand releases the handle within 40 ms and grips
-// it again within 0.3 s.
+// A step of the force makes the band-pass filter ring more than any other signal. The hand releases
+// the handle within 40 ms and grips it again within 0.3 s.
 TEST(Oscillation, StepsReleaseAndRegripNeverCountSoak) {
   for (long seed = 1; seed <= Count(40, 4000); ++seed) {
     RandomStream random(static_cast<std::uint64_t>(seed), "release");
@@ -266,8 +266,8 @@ TEST(Oscillation, StepsReleaseAndRegripNeverCountSoak) {
   }
 }
 
-// Simulates the forces of a task. They consist of minimum-jerk legs to random levels within ±20 N,
-// with and without pauses.
+// Simulates the forces of a task. The forces consist of minimum-jerk legs to random levels within
+// ±20 N, with and without pauses.
 struct Legs {
   Legs(std::uint64_t seed, double leg, double dwell) {
     RandomStream random(seed, "legs");
@@ -309,7 +309,7 @@ TEST(Oscillation, CirclesNeverCount) {
 }
 
 // The loaded cobot responds to each leg with an additional decaying oscillation. With the damping
-// that tasks have, there must be no alarm. With an unstable mode, there must be one.
+// that tasks have, there must be no alarm. With an unstable mode, there must be an alarm.
 TEST(Oscillation, DampedModeDrivenByLegsNeverCountsAndAnUnstableOneDoesSoak) {
   for (const double frequency : {0.74, 0.92, 1.5}) {
     for (const double damping : {0.4, 0.2, 0.1, -0.02}) {

@@ -30,7 +30,7 @@ struct JointInput {
   double q, v;
 };
 
-// What the guard receives in one tick: the values of all joints. `missing` is an arm that provides
+// The values of all joints that the guard receives in one tick. `missing` is an arm that provides
 // too few numbers or none. `passed` is the number of ticks since the last command, which exceeds
 // one after missed deadlines.
 struct Tick {
@@ -121,8 +121,8 @@ TEST(GuardProperties, WhateverIsMeasuredAndAskedWhatIsSentIsBoundedSoak) {
   }));
 }
 
-// The sent value is the allowed value nearest to the commanded one. The guard therefore alters
-// nothing without need, and a value that passed once passes again.
+// The sent value is the allowed value nearest to the commanded one. The guard therefore alters only
+// values that are not allowed, and a value that it has sent passes unchanged a second time.
 TEST(GuardProperties, AltersNoMoreThanItMustSoak) {
   EXPECT_TRUE(rc::check([] {
     const auto bounds = SomeBounds();
@@ -159,9 +159,10 @@ struct Motion {
   double speed = 0, rate = 0;  // speed and rate of the faster handle [m/s], [m/s²]
 };
 
-// Returns the motion after one tick with `jerk` (−1, 0 or 1 times the limit). If this jerk would
-// leave the bounds, it is replaced by one that keeps to them. The speed then remains under the cap
-// after the acceleration has faded, and does not cross zero.
+// Returns the motion after one tick with `jerk` (−1, 0 or 1 times the limit). If the motion would
+// leave the bounds with this jerk, the jerk is replaced by one with which the motion stays within
+// them. The speed then remains under the cap after the acceleration has faded, and does not cross
+// zero.
 Motion Next(const Motion& from, int jerk, const Limits& limits) {
   const double step = limits.jerk * kDt;
   const auto moved = [&](double rate) { return Motion{from.speed + rate * kDt, rate}; };
@@ -189,8 +190,8 @@ Motion SomeMotion(const Limits& limits) {
   return motion;
 }
 
-// Of all motions under the cap, the one at full acceleration that is about to reach the cap has the
-// longest stop.
+// Among all motions under the cap, a motion at full acceleration that is about to reach the cap has
+// the longest stop.
 double LongestTime(const Limits& l) { return l.cap / l.acceleration + 2 * l.acceleration / l.jerk; }
 double LongestWay(const Limits& l) {
   const double a = l.acceleration, j = l.jerk;
@@ -209,8 +210,8 @@ Limits SomeLimits() {
   return {a, j, a * a / j + *test::Between(0.01, 1)};
 }
 
-// Returns joint bounds that limit a handle's deceleration to `allowed` [m/s²] if a joint moves at
-// one rad/s for each m/s.
+// Returns joint bounds that limit a handle's deceleration to `allowed` [m/s²] if each joint moves
+// at one rad/s for each m/s of the handle.
 std::array<JointBounds, kHands> BoundsThatAllow(double allowed) {
   std::array<JointBounds, kHands> bounds;
   for (JointBounds& b : bounds) {
@@ -236,8 +237,8 @@ int Most(const Passed& passed) {
   return passed.empty() ? 1 : *std::max_element(passed.begin(), passed.end());
 }
 
-// Stops `motion`. At the commands listed in `again`, it requests another stop with a different
-// motion.
+// Stops `motion`. At the commands in the list `again`, the test requests another stop with a
+// different motion.
 Stop RunStop(const Motion& motion, const Limits& limits, double allowed, const Passed& passed,
              const std::vector<int>& again) {
   SafetySpec safety;
@@ -256,7 +257,7 @@ Stop RunStop(const Motion& motion, const Limits& limits, double allowed, const P
       stop.Begin({StopCause::kOperator}, 2, last, limits.cap, limits.acceleration);
     stop.Next(&v, At(passed, command));
     RC_ASSERT(v[0].allFinite() && v[1].allFinite());
-    // Both arms have the same phase.
+    // Both arms are in the same phase of the stop.
     RC_ASSERT(std::abs(v[1][0] + 0.3 * v[0][0]) <= 1e-12 * limits.cap);
     result.time += At(passed, command) * kDt;
     result.way += v[0][0] * At(passed, command + 1) * kDt;  // held until the next command
@@ -265,9 +266,8 @@ Stop RunStop(const Motion& motion, const Limits& limits, double allowed, const P
   return result;
 }
 
-// A sent velocity applies for a whole tick, so a handle that still accelerates travels further by
-// this amount. If a velocity is held for several ticks, it is the velocity of the first of these
-// ticks.
+// A sent velocity applies for a whole tick, so a handle that still accelerates travels this much
+// further. If a velocity is held for several ticks, it is the velocity of the first of these ticks.
 double Held(const Stop& stop, const Motion& motion, const Passed& passed) {
   const double late = (Most(passed) - 1) * stop.fastest * kDt;
   return Most(passed) * std::max(0.0, stop.fastest - motion.speed) * kDt + late;
@@ -285,7 +285,8 @@ TEST(StopProperties, FromEveryMotionThatMayBeTheBudgetIsKeptSoak) {
   }));
 }
 
-// If the joints cannot brake as hard, the budget is computed with the deceleration that they allow.
+// If the joints cannot brake as hard as the profile requires, the budget is computed with the
+// deceleration that the joints allow.
 TEST(StopProperties, WeakerJointsHaveTheBudgetOfWhatTheyAllowSoak) {
   EXPECT_TRUE(rc::check([] {
     const Limits limits = SomeLimits();

@@ -14,8 +14,8 @@ namespace {
 constexpr double kCap = 0.25;
 constexpr double kThreshold = 30;  // force threshold that stops every run that reaches it [N]
 
-// A mass held by a hand that aims at another position. The sensor has a sign: 1 if it is correct,
-// −1 if it is mirrored.
+// A mass held by a hand that aims at another position. The sign is 1 if the sensor is mounted
+// correctly, and −1 if the sensor is mirrored.
 class Hand {
  public:
   Hand(double stiffness, double mass, double spring, std::uint64_t seed)
@@ -78,7 +78,8 @@ TEST(Runaway, OfAMirroredSensorIsSeenSoonAfterTheHandleIsFast) {
   EXPECT_GE(seen, 25);
 }
 
-// During a carry, the person pushes as suddenly as people can, up to the threshold and the cap.
+// While carrying the object, the person pushes as suddenly as people can, up to the force threshold
+// and the speed cap.
 TEST(Runaway, IsNotASuddenPush) {
   for (const double push : {8.0, 14.0, 20.0})
     for (const double rise : {0.04, 0.06, 0.08, 0.10, 0.12})
@@ -95,7 +96,7 @@ TEST(Runaway, IsNotASuddenPush) {
         }
 }
 
-// The person carries and lifts against a spring as briskly as the cap allows.
+// The person carries and lifts the object against a spring as briskly as the cap allows.
 TEST(Runaway, IsNotAPersonsMotion) {
   for (const double distance : {0.05, 0.1, 0.13, 0.16, 0.25})
     for (const double duration : {0.5, 0.8, 1.0, 1.25, 2.0, 4.0})

@@ -44,8 +44,8 @@ TEST(SampleAge, MayBeTwoAndAHalfPeriodsForASlowOne) {
 TEST(SampleAge, OfArmAndSensorHaveLimitsOfTheirOwn) {
   EXPECT_EQ(Judge(0.001, 0.0199, {0.008, 0.001}).cause, StopCause::kStale);
   EXPECT_TRUE(Judge(0.001, 0.0199, {0.001, 0.008}).ok());
-  // The monitor must report the sample that exceeds its limit by more. Here, the sensor's sample
-  // exceeds its limit by 10 ms, and the arm's sample by 5 ms.
+  // If two samples are too old, the monitor must report the sample that exceeds its limit by more.
+  // Here, the sensor's sample exceeds its limit by 10 ms, and the arm's sample by 5 ms.
   EXPECT_DOUBLE_EQ(Judge(0.025, 0.015, {0.008, 0.001}).limit, 0.005);
 }
 

@@ -14,7 +14,7 @@
 namespace predictor {
 namespace {
 
-// An independent copy of the state table. It has one row per condition in the order of
+// An independent copy of the state table. The copy has one row per condition in the order of
 // kRunConditions, and one word per event in the order of RunEvent. "." means no change.
 constexpr const char* kExpected = R"(
 INIT      SELFTEST .    .     .     .    OFF      OFF       .         .        .        .
@@ -138,8 +138,8 @@ TEST(StateMachineInvariants, OnlyFourStatesMove) {
     EXPECT_EQ(MayMove(c.state), moves) << Name(c);
     EXPECT_EQ(StateMachine::TimePasses(c.state), c.state == RunState::kRun);
   }
-  // The arms must come to rest before a state without motion, unless the event itself ends a motion
-  // at rest.
+  // The arms must come to rest before the machine enters a state without motion, unless the event
+  // itself ends a motion at rest.
   for (const RunCondition from : kRunConditions) {
     for (int e = 0; e < kRunEvents; ++e) {
       const RunCondition to = Next(from, Event(e));
@@ -208,8 +208,8 @@ TEST(StateMachineInvariants, NothingIsEnabledBeforeTheSelfTest) {
 
 using Edge = std::tuple<std::string, std::string, std::string>;  // from, event, to
 
-// Returns the table that the page should contain: every transition that changes the condition, with
-// the default rule as "any other".
+// Returns the table that the page should contain. The table lists every transition that changes the
+// condition, and it calls the default rule "any other".
 std::set<Edge> EdgesOfCode() {
   std::set<Edge> edges;
   for (const Transition& t : kTransitions) {

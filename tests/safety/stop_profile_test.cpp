@@ -54,7 +54,8 @@ TEST(StopProfile, WorstCaseIsTheBudget) {
     EXPECT_NEAR(time, budget.time, 1e-9);
     EXPECT_NEAR(distance, budget.distance, 5e-5);
     EXPECT_NEAR(0.003 * budget.cap, budget.detection_travel, 6e-5);
-    // Each sent value is held for a tick, so the handle must travel no further than the curve.
+    // Each sent value is held for a tick, so the test checks that the handle travels no further
+    // than the continuous curve.
     StopProfile profile(5, 250, kDt, budget.cap);
     const std::vector<double> worst = Speeds(profile, budget.cap - 0.05, 5);
     EXPECT_NEAR(static_cast<double>(worst.size() - 1) * kDt, budget.time, kDt * 1.001);
@@ -70,7 +71,7 @@ TEST(StopProfile, EveryStopKeepsItsBoundsSoak) {
     const double dt = Between(&random, 0.0005, 0.004);
     const double cap = Between(&random, 0.05, 1);
     const double speed = cap * std::pow(random.Uniform(), 3);
-    // The test draws an acceleration that the motion can have. The acceleration is within the
+    // The test draws a random acceleration that the motion can have. The acceleration is within the
     // bounds, and the speed stays under the cap while the acceleration fades.
     const double gain = std::min(cap - speed, 0.25 * speed);
     const double highest = std::min(a, std::sqrt(2 * j * gain));
@@ -148,8 +149,8 @@ TEST(StopProfile, ARateBeyondWhatMayBeIsCut) {
       EXPECT_EQ(v.back(), 0);
       const double highest = rate > 0 ? std::max(speed, std::min(0.25, 1.25 * speed)) : speed;
       EXPECT_LE(*std::max_element(v.begin(), v.end()), highest * (1 + 1e-12));
-      // The cut itself is one step of the acceleration. After this step, the jerk must be bounded
-      // again.
+      // The cut itself changes the acceleration in one step. After this step, the jerk must be
+      // bounded again.
       for (std::size_t k = 1; k < v.size(); ++k) {
         const double before = k >= 2 ? v[k - 1] - v[k - 2] : v[k] - v[k - 1];
         ASSERT_LE(std::abs(v[k] - v[k - 1]), 5 * kDt * (1 + 1e-9));

@@ -168,8 +168,8 @@ PlanarStop RunPlanarStop(double speed, double lag) {
   return result;
 }
 
-// The common factor preserves the relative pose to first order. Over a stop's distance d, the arms'
-// curvatures move the handles apart by about d²/2 (1/r + 1/r').
+// The common factor preserves the relative pose to first order. Over a stopping distance d, the
+// curvatures of the arms' paths move the handles apart by about d²/2 (1/r + 1/r').
 TEST(StopController, HandlesKeepTheirRelativePosition) {
   for (const double speed : {0.05, 0.1, 0.25}) {
     const PlanarStop stop = RunPlanarStop(speed, 0.02);
@@ -186,7 +186,7 @@ TEST(StopController, ReportsCauseTimeAndDuration) {
   EXPECT_EQ(stop.report.status.limit, 30);
   EXPECT_EQ(stop.report.time, 1.25);
   // From a constant speed of 0.25 m/s, the commands take 70 ms and 8.75 mm. The lag adds a distance
-  // of v·20 ms. It also adds the time until less than 50 µm of this distance is left.
+  // of v·20 ms. The lag also adds the time until less than 50 µm of this distance is left.
   EXPECT_NEAR(stop.travelled, 0.00875 + 0.25 * 0.02, 0.0004);
   EXPECT_GE(stop.report.duration, 0.070);
   EXPECT_LE(stop.report.duration, 0.070 + 6 * 0.02);
@@ -274,7 +274,7 @@ TEST(StopController, DoesNotWaitForEver) {
   EXPECT_NEAR(ticks * kDt, StopController::kPatience, 2 * kDt);
 }
 
-// The waiting time must start at the end of the commands, however long these take.
+// The waiting time must start at the end of the commands, regardless of how long the commands take.
 TEST(StopController, IsNotDoneWhileItsCommandsBrake) {
   StopController stop(SafetySpec{}, {Bounds(1, 0.5), JointBounds{}}, kDt);
   Arms v = {JointVector::Constant(1, 0.8), JointVector()};

@@ -81,8 +81,8 @@ TEST(Vibration, GrowingOneIsFoundBeforeFiveNewton) {
   }
 }
 
-// The second criterion must detect a vibration that no longer grows, in any direction, even if the
-// direction rotates.
+// The second criterion must detect a vibration that no longer grows. The vibration may have any
+// direction, and the direction may rotate.
 TEST(Vibration, ConstantOneIsFoundWithinASecond) {
   for (const double frequency : kVibrationFrequencies) {
     const auto on_diagonal = [&](double t) {
@@ -98,8 +98,8 @@ TEST(Vibration, ConstantOneIsFoundWithinASecond) {
   }
 }
 
-// The vibration of the loop doubles within three half cycles. The shortest scale must respond soon
-// enough.
+// The vibration of the loop doubles within three half cycles. The shortest time scale of the
+// detector must respond soon enough.
 TEST(Vibration, OneThatDoublesWithinThirtyMillisecondsIsFoundBeforeSixNewton) {
   for (const double frequency : {20.0, 25.0, 30.0, 35.0, 40.0}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -116,7 +116,7 @@ TEST(Vibration, OneThatDoublesWithinThirtyMillisecondsIsFoundBeforeSixNewton) {
   }
 }
 
-// A UR of 125 Hz in a loop of 1 kHz holds each sample for 8 ms.
+// In a loop of 1 kHz, each sample of a UR with 125 Hz remains unchanged for 8 ms.
 TEST(Vibration, OfASensorThatHoldsItsSamplesIsFound) {
   for (const double frequency : {15.0, 20.0, 25.0, 30.0, 35.0, 40.0}) {
     const auto held = [](double t) { return std::floor(t / 0.008 + 1e-9) * 0.008; };
@@ -186,8 +186,8 @@ TEST(Vibration, NearlyAllBeatsAndModulationsAreFound) {
   EXPECT_EQ(found_beats, beats);
 }
 
-// The amplitude alone must not decide. Broadband noise of 3 N rms on each axis is not a vibration,
-// although it exceeds the amplitude threshold of every scale.
+// The amplitude alone must not cause an alarm. Broadband noise of 3 N rms on each axis is not a
+// vibration, although it exceeds the amplitude threshold of every scale.
 TEST(Vibration, BroadbandNoiseOfAnyLevelNeverCountsSoak) {
   for (long seed = 1; seed <= Count(10, 500); ++seed) {
     for (const double dt : {0.001, 0.002, 0.004}) {
@@ -201,8 +201,8 @@ TEST(Vibration, BroadbandNoiseOfAnyLevelNeverCountsSoak) {
 }
 
 // A loop near its stability margin responds to noise with a damped mode of 0.6 N rms above 10 Hz.
-// Three times the usual sensor noise causes this amplitude at a damping ratio of 0.1. The mode
-// decays within 60 ms (25 Hz).
+// Three times the usual sensor noise causes this amplitude at a damping ratio of 0.1. The mode has
+// a frequency of 25 Hz and decays within 60 ms.
 TEST(Vibration, DampedModeDrivenByNoiseNeverCountsSoak) {
   for (long seed = 1; seed <= Count(10, 500); ++seed) {
     for (const double frequency : {15.0, 20.0, 25.0, 35.0}) {
@@ -242,8 +242,8 @@ TEST(Vibration, PushesReleasesAndStepsNeverCount) {
 }
 
 // A hazard of the cobot makes the force step within 10 ms, and the loop rings with at most the
-// height of the step. The ringing decays by the factor e within 30 to 80 ms. None of these
-// frequencies and times was used to choose the thresholds.
+// height of the step. The ringing decays by the factor e within 30 to 80 ms. We did not use these
+// frequencies and times to choose the thresholds.
 TEST(Vibration, RingingAfterAJoltNeverCounts) {
   for (const double frequency : {15.0, 20.0, 25.0, 30.0, 36.0}) {
     for (const double decay : {0.03, 0.05, 0.08}) {

@@ -46,8 +46,8 @@ TEST_F(ApplyMachineTest, AFrankasPositionIntegratesItsVelocities) {
   EXPECT_TRUE(scenario.arm(1).follows_position);
 }
 
-// The test changes each limit separately. A tighter value must be accepted, a looser one must be
-// refused and named.
+// The test changes each limit separately. The program must accept a tighter value. It must refuse a
+// looser value and name it.
 TEST_F(ApplyMachineTest, AScenarioMayOnlyTightenLimits) {
   const std::string machine = With(kMachine, "limits: {force: 25, handle_speed: 0.2}",
                                    "limits: {force: 25, torque: 4, handle_speed: 0.2, "
@@ -159,7 +159,7 @@ TEST_F(ApplyMachineTest, AStopKeepsItsBudget) {
   EXPECT_NE(blow.find("safety.stop_acceleration and safety.stop_jerk"), std::string::npos) << blow;
 }
 
-// Without a measured loop, there must be no lag compensation, whatever the scenario requests.
+// Without a measured loop, the program must not compensate the lag, whatever the scenario requests.
 TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
   Machine machine = ParseMachine(kMachine, "lab.yaml");
   const auto lead = [&](const char* set) {
@@ -185,13 +185,13 @@ TEST_F(ApplyMachineTest, AGuessedLoopGivesNoLead) {
   EXPECT_EQ(lead("rendering.lead=auto"), -1);
   EXPECT_EQ(lead("rendering.lead=0.05"), 0.05);
   EXPECT_TRUE(reported().empty());
-  // The machine file is read back as it was written, and it contains no push tests.
+  // The program reads the machine file as it was written, without push tests.
   machine = ParseMachine(SaveMachine(machine), "lab.yaml");
   EXPECT_EQ(lead("rendering.lead=auto"), -1);
   EXPECT_FALSE(IsPushTested(*machine.left));
   EXPECT_THROW(RequirePushTests(machine, Load()), InputError);
-  // Another payload must not invalidate the measured loop, but other loop parameters or another arm
-  // at this place must.
+  // Another payload must not invalidate the measured loop. Other loop parameters, or another arm at
+  // this place, must invalidate it.
   machine.left->arm.payload.mass += 1;
   EXPECT_EQ(lead("rendering.lead=auto"), -1);
   machine.left->arm.loop.bandwidth += 1;

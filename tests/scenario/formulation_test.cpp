@@ -17,7 +17,8 @@ TEST(Formulation, IsRepairedUnlessStated) {
   EXPECT_EQ(paper.coupling.stiffness, 0);
 }
 
-// Each name must add exactly its repair to the paper's formulation and remove it from ours.
+// Each name must add exactly its repair to the paper's formulation. It must remove exactly this
+// repair from our formulation.
 TEST(Formulation, ExceptChangesOneRepair) {
   for (const RepairEntry& entry : RepairTable()) {
     const std::string except = std::string("rendering.formulation_except=[") + entry.name + "]";
@@ -45,8 +46,8 @@ TEST(Formulation, RefusesUnknownNamesAndValuesWithoutEffect) {
   EXPECT_EQ(error({paper, "rendering.lead=0", "coupling.damping=0"}), "");
 }
 
-// A recording contains the scenario with lead and coupling of zero, and it must be possible to load
-// it again.
+// A recording contains the scenario with a lead and a coupling of zero. The program must be able to
+// load this scenario again.
 TEST(Formulation, SurvivesSavingAndLoading) {
   const Scenario paper = Fixture({"rendering.formulation=paper"});
   const Scenario again = ParseScenario(SaveScenario(paper), "saved.yaml", kData);

@@ -85,7 +85,7 @@ TEST(Machine, AMisspeltGroupIsReportedOnce) {
             "lab.yaml:5:5: \"conection\" is not a key of arms.left. Did you mean connection?");
   EXPECT_EQ(MachineRefusal(With(kMachine, "arms:", "arm:")),
             "lab.yaml:3:1: \"arm\" is not a key. Did you mean arms?");
-  // If a word resembles no key, the message must not suggest one.
+  // If a word resembles no key, the message must not suggest a key.
   EXPECT_NE(
       MachineRefusal(With(kMachine, "connection:", "wire:")).find("connection.make is missing"),
       std::string::npos);
@@ -201,7 +201,7 @@ TEST(Machine, RequiresTheLimits) {
           "arms.left.arm.payload.inertia");
 }
 
-// Compares the closed form with the stop as it is sent, for all accelerations that the handle can
+// Compares the closed form with the commands of a stop, for all accelerations that the handle can
 // have.
 TEST(Machine, TheWorstStopIsTheLongestOfAll) {
   for (const double jerk : {120.0, 250.0, 800.0})

@@ -1,4 +1,4 @@
-// Each controller and action has its own parameters. The program must refuse the parameters of
+// Each controller and each action has its own parameters. The program must refuse the parameters of
 // another controller or action.
 #include "scenario/own_parameters.h"
 
@@ -78,7 +78,7 @@ TEST(OwnParameters, MayBeAnglesInDegrees) {
   EXPECT_EQ(std::stod(waypoint.Find("rpy")->items[2].text), std::numbers::pi);
 }
 
-// The value is set as in a file that extends another one.
+// The test sets the value in the same way as a file that extends another one.
 TEST(OwnParameters, OfTheFormerTypeAreDroppedByAnOverride) {
   const std::string type = "cobot.controller.type=joint_impedance";
   EXPECT_EQ(ParameterOf(Fixture({type, "cobot.controller.joint_stiffness=200"}), "joint_stiffness"),

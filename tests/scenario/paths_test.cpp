@@ -91,7 +91,7 @@ TEST_F(Paths, WithoutAssetsTheFolderItselfIsTheLimit) {
   EXPECT_EQ(Resolve("mine.urdf"), Scenarios() / "mine.urdf");
 }
 
-// A folder named assets further up, for example in a home folder, must grant no access.
+// A folder named assets in a higher folder, for example in a home folder, must grant no access.
 TEST_F(Paths, OnlyTheAssetsBesideTheScenariosFolderAreRead) {
   fs::create_directories(root_ / "assets");
   for (const char* file : {"assets/far.urdf", "private.urdf", "project/near.urdf"})
@@ -109,8 +109,8 @@ TEST_F(Paths, AssetsThatAreASymlinkOpenNothing) {
   EXPECT_SAYS(ErrorOf("../assets/secret.urdf"), "outside the readable folders");
 }
 
-// A model may refer to files anywhere in the area that its scenario may read, wherever the model
-// itself lies.
+// A model may refer to any file in the area that its scenario may read, wherever the model itself
+// is stored.
 TEST_F(Paths, MeshesMayBeWhereverTheScenarioMayRead) {
   const fs::path urdf = root_ / "project/assets/arm/urdf";
   fs::create_directories(urdf);
@@ -150,7 +150,8 @@ TEST_F(Paths, MissingFilesAreNamedWithASimilarName) {
   EXPECT_SAYS(ErrorOf("../assets/bax.urdf"), "Did you mean box.urdf?");
   EXPECT_SAYS(ErrorOf("package://arn/arm.urdf"), "Did you mean arm?");
   EXPECT_SAYS(ErrorOf("package://arn/arm.urdf"), "PREDICTOR_PACKAGE_PATH");
-  // The ending that all packages share does not make their names similar.
+  // All packages have names with the same ending, but this ending must not make their names
+  // similar.
   EXPECT_SAYS(ErrorOf("package://pandas_description/a.urdf"), "Did you mean panda_description?");
   EXPECT_EQ(ErrorOf("package://my_description/a.urdf").find("Did you mean"), std::string::npos);
   EXPECT_SAYS(ErrorOf("package://arm/amr.urdf"), "Did you mean arm.urdf?");

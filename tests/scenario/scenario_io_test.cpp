@@ -62,7 +62,7 @@ TEST(Scenario, OverridesComeBeforeTheChecks) {
   EXPECT_FALSE(Fixture({"environment.table=null"}).environment.table);
   EXPECT_EQ(Fixture({"rig.loop.bandwidth=25"}).rig.loop->bandwidth, 25);
   EXPECT_EQ(Fixture({"seed=1", "seed=18446744073709551615"}).seed, UINT64_MAX);
-  // These two values are valid only together.
+  // The following two values are valid only together.
   EXPECT_NE(ErrorOfOverride("safety.oscillation.low=20"), "");
   EXPECT_EQ(ErrorOf(FixtureText(), {"safety.oscillation.low=20", "safety.oscillation.high=40"}),
             "");
@@ -289,7 +289,7 @@ TEST(SaveScenario, RandomScenariosComeBackExactly) {
 
 // ---- tables -------------------------------------------------------------------------------------
 
-// Records the offsets of the members that a table visits in their struct.
+// Records the offsets, within their struct, of the members that a table visits.
 class Coverage {
  public:
   struct Member {

@@ -43,7 +43,7 @@ Json ToJson(const YamlNode& node) {
   return number;
 }
 
-// Returns a tree that contains everything that a scenario can hold once, so that every leaf has an
+// Returns a tree that contains each possible part of a scenario once, so that every leaf has an
 // instance.
 YamlNode FullTree() {
   return ScenarioTree(Fixture(
@@ -70,7 +70,7 @@ TEST(Schema, AcceptsWhatIsLoadedAndSaved) {
   EXPECT_TRUE(LoaderAccepts(FullTree()));
 }
 
-// Each scenario must refer to this file in its second line, which editors use.
+// The second line of each scenario must refer to this file, because editors use this line.
 TEST(Schema, EqualsTheFileInTheScenariosFolder) {
   std::ifstream file(PREDICTOR_SOURCE_DIR "/scenarios/scenario.schema.json");
   std::ostringstream text;
@@ -122,8 +122,8 @@ void ForEach(YamlNode* node, const std::string& path,
   }
 }
 
-// These values are valid in some places and invalid in others: ends of ranges and values beyond
-// them, other types, other lengths, and words of every choice.
+// These values are valid in some places and invalid in others. They include the ends of ranges and
+// values beyond these ends, other types, other lengths, and the words of every choice.
 constexpr const char* kOthers =
     "0;-1;1;2;1e-9;-1e-9;0.3;0.5;3;3.2;3.3;7;10;11;20;21;30;64;100;101;1000;1001;10001;100001;"
     "86400;"
@@ -135,9 +135,9 @@ constexpr const char* kOthers =
     "3 deg;-3 deg;deg;3 degrees;\"3 deg\";1e-1 deg;[1 deg, 2 deg, -3 deg];[3deg, 1, 2];"
     "{xyz: [0, 0, 0]};{xyz: [0, 0]};{unknown: 1}";
 
-// Replaces each value of a full scenario with each of many others. Schema and loader must accept
-// the same values. Neither the schema nor ReadFields detects values that only contradict another
-// value.
+// Replaces each value of a full scenario with each of many other values. Schema and loader must
+// accept the same values. Neither the schema nor ReadFields detects a value that is invalid only
+// because it contradicts another value.
 TEST(Schema, JudgesEveryValueAsTheLoaderDoes) {
   std::vector<std::string> others;
   std::istringstream lines(kOthers);

@@ -63,7 +63,7 @@ TEST(Quote, EscapesAndCuts) {
   EXPECT_EQ(Quote("a b"), "\"a b\"");
   EXPECT_EQ(Quote(std::string("\x1b[2J\0", 5)), "\"\\x1b[2J\\x00\"");
   EXPECT_EQ(Quote(std::string(61, 'a')), "\"" + std::string(60, 'a') + "...\"");
-  // "é" has two bytes, between which the text is cut.
+  // "é" has two bytes, and the text is cut between these bytes.
   std::string accents = "a";
   for (int i = 0; i < 40; ++i) accents += "é";
   EXPECT_EQ(Quote(accents).substr(58), "é...\"");
@@ -82,8 +82,8 @@ TEST(Printable, ShowsWhatATerminalWouldObey) {
   EXPECT_EQ(Printable(""), "");
 }
 
-// These bytes are not valid UTF-8: isolated, truncated, overlong, surrogates, and beyond the last
-// character.
+// These bytes are not valid UTF-8. They are isolated, truncated, overlong, surrogates, or beyond
+// the last character.
 TEST(Printable, ShowsInvalidUtf8ByteByByte) {
   EXPECT_EQ(Printable("\x9b"
                       "2J"),
@@ -97,8 +97,8 @@ TEST(Printable, ShowsInvalidUtf8ByteByByte) {
   EXPECT_EQ(Printable("\xff\xc3\xa9"), "\\xffé");
 }
 
-// For any input, the output must contain no byte that controls a terminal, and a second pass must
-// change nothing.
+// For any input, the output must not contain bytes that control a terminal. A second pass must not
+// change the output.
 TEST(Printable, LeavesNoControlInRandomBytes) {
   RandomStream random(1, "printable");
   for (int k = 0; k < 20'000; ++k) {

@@ -17,7 +17,7 @@ class TrajectoryFile : public testing::Test {
                                          "cobot.controller.trajectory_file=path.csv"});
     return LoadScenario(folder_ / "box.yaml", overrides);
   }
-  // Returns the error without the folder's path.
+  // Returns the error message without the path of the folder.
   std::string Error(const std::string& csv, const std::vector<std::string>& overrides = {}) const {
     try {
       Load(csv, overrides);

@@ -30,7 +30,7 @@ arms:
 limits: {force: 25, handle_speed: 0.2}
 )";
 
-// Returns `text` with `by` in place of the first `what`.
+// Returns `text` with its first `what` replaced by `by`.
 inline std::string With(std::string text, const std::string& what, const std::string& by) {
   const auto at = text.find(what);
   EXPECT_NE(at, std::string::npos) << what;

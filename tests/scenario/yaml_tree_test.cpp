@@ -116,7 +116,7 @@ TEST(YamlScalar, NumbersAreWrittenForOldReadersToo) {
   EXPECT_EQ(back, -1e-5);
 }
 
-// Any bytes must give either a tree or an InputError.
+// For any bytes, the parser must either return a tree or throw InputError.
 TEST(YamlTree, SurvivesMutatedText) {
   const std::string text = FixtureText();
   RandomStream random(7, "mutations");

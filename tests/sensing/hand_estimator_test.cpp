@@ -18,7 +18,7 @@
 namespace predictor {
 namespace {
 
-// An arm of the rig, with the emulator's steps that estimate the hand's wrench.
+// An arm of the rig, and the steps of the emulator that estimate the hand's wrench.
 class Bench {
  public:
   // `assumed` is the sensor and the handle that the estimator assumes, or nullptr for the true

@@ -1,5 +1,6 @@
-// Tests events of the attachment: the object breaks loose, or slips in its grip. Expected values
-// are closed forms of the motion, or come from the scene in which the cobot carries the object.
+// Tests two events of the attachment: the object breaks loose, or it slips in the grip. Expected
+// values are closed forms of the motion, or come from the scene in which the cobot carries the
+// object.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,8 +60,8 @@ TEST(BreaksLoose, TheObjectFallsFreely) {
   EXPECT_NE(world.state().events, 0);
 }
 
-// In the step after its release, a rotating and swinging object must have its momentum plus the
-// impulse of its weight. The cobot must accelerate as its own model demands.
+// In the step after its release, a rotating and swinging object must have its momentum before the
+// release plus the impulse of its weight. The cobot must accelerate as its own model demands.
 TEST(BreaksLoose, KeepsTheMomentumOfObjectAndCobot) {
   for (const bool fixed : {false, true}) {
     Scenario s = fixed ? RigidBox() : BoxScene(kMass);
@@ -161,7 +162,8 @@ TEST(BreaksLoose, BelowTheFloorTheFallEndsOneMetreFurtherDown) {
 
 // ---- the object slips -------------------------------------------------------------------------
 
-// With closed brakes, the flange stays in place, and the grip carries its limit of the weight.
+// With closed brakes, the flange stays in place, and the grip carries a part of the weight that is
+// equal to the grip's limit.
 TEST(Slips, TheObjectSlidesWithTheForceBeyondTheLimit) {
   constexpr double kLimit = 15;  // [N]
   const double a = kGravity - kLimit / kMass;
@@ -203,9 +205,10 @@ TEST(Slips, TheObjectTurnsWithTheTorqueBeyondTheLimit) {
   EXPECT_LT((world.state().object.X_W.p - start.p).norm(), 1e-3);
 }
 
-// Below its limits, the grip must hold the object in place. With the same inputs, the motion must
-// be that of the rigid attachment, apart from the error of the engine's steps. This error depends
-// on the coordinates, which differ, and it shifts each motion by at most about half a step.
+// Below the limits of the grip, the grip must hold the object in place. With the same inputs, the
+// motion must be the same as with the rigid attachment, apart from the error of the engine's steps.
+// The error depends on the coordinates, which are different in the two scenes. It shifts each
+// motion by at most about half a step.
 TEST(Slips, BelowTheLimitNothingMoves) {
   for (const char* controller : {"", "admittance"}) {
     for (const JointType joint : {JointType::kFixed, JointType::kSpherical}) {
@@ -300,7 +303,8 @@ TEST(Slips, TheGripTightensWithoutAJolt) {
   for (int n = 1; n * kTick < rest - 0.001; ++n) {
     ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
     const double t = n * kTick;
-    // During a step, the grip's force may already have its value of the end of the step.
+    // During a step, the grip's force may already have the value that belongs to the end of the
+    // step.
     EXPECT_NEAR(-world.state().object.V_W.z(), v0 + a * t - rate * t * t / 2, rate * kTick * t)
         << n;
   }
@@ -308,8 +312,8 @@ TEST(Slips, TheGripTightensWithoutAJolt) {
   EXPECT_LT(std::abs(world.state().object.V_W.z()), 2e-3);  // the brakes creep
 }
 
-// A grip without any force or torque is open. When it closes, it must grip the object where the
-// object is at that time.
+// A grip without any force or torque is open. When the grip closes, it must grip the object where
+// the object is at that time.
 TEST(Slips, AnOpenGripClosesWhereTheObjectIs) {
   Scenario s = WithEvent(RigidBox(), Slips(0.1, 0, 0, 1));
   s.events[0].duration = 0.1;
@@ -363,9 +367,9 @@ TEST(Slips, TheGripDissipates) {
 
 // ---- saved state, heap, bad input -------------------------------------------------------------
 
-// In direct mode, the hands' masses are part of the scene. With them, the object breaks loose, is
-// saved and loaded in both scenes, and starts again after a reset. All of this must be repeatable
-// bit for bit.
+// In direct mode, the hands' masses are part of the scene. With these masses, the object breaks
+// loose. The state is saved and loaded in both scenes, and the run starts again after a reset. All
+// of this must be repeatable bit for bit.
 TEST(AttachmentEvents, ContinueBitForBitWithTheMassesOfHands) {
   Scenario s = RigidBox();
   s.mode = Mode::kDirect;
@@ -397,8 +401,8 @@ TEST(AttachmentEvents, TakeNothingFromTheHeap) {
   ExpectNoHeap(s, {1, 2, 3}, 800);
 }
 
-// A light object spins between stiff couplings after its release. Its motion must neither diverge
-// nor become NaN.
+// A light object spins between stiff couplings after its release. The object's motion must neither
+// diverge nor become NaN.
 TEST(AttachmentEvents, KeepALightObjectInTheCouplingFinite) {
   for (const bool slips : {false, true}) {
     Scenario s = RigidBox();
@@ -444,7 +448,7 @@ TEST(AttachmentEvents, ThatAreImpossibleAreRefused) {
             std::string::npos);
 }
 
-// A revolute or prismatic attachment opens as well.
+// A revolute or prismatic attachment must open in the same way.
 TEST(BreaksLoose, FromEveryJoint) {
   for (const JointType joint : {JointType::kRevolute, JointType::kPrismatic}) {
     Scenario s = BoxScene(kMass);

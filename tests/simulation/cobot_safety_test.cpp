@@ -20,7 +20,8 @@ Scenario SafeCobot(double mass = 2) {
   return s;
 }
 
-// Runs until the cobot stops itself. Returns the time, or −1 if it does not stop.
+// Runs until the cobot stops itself. Returns the time of the stop, or −1 if the cobot does not stop
+// itself.
 double TimeOfStop(World* world, const WorldInput& input, double longest) {
   for (int k = 0; k < std::lround(longest / kTick); ++k) {
     EXPECT_TRUE(world->Step(input, kTick).ok());
@@ -43,7 +44,7 @@ double TimeOfStopUnderRamp(const Scenario& s, const Vector3& force, CobotStop* s
 
 CobotStop StopOf(const World& world) { return static_cast<CobotStop>(world.state().cobot_stop); }
 
-// Whatever the payload is, the estimate must settle at the force that acts.
+// For any payload, the estimate must settle at the force that acts.
 TEST(CobotSafety, EstimatesTheForceOnTheEndEffector) {
   Scenario s = SafeCobot();
   s.cobot.safety.force = 12;

@@ -1,4 +1,5 @@
-// Compares contact in both engines with closed forms, and both with docs/contact.csv.
+// Compares contact in both engines with closed forms. Also compares the measured values and the
+// closed forms with docs/contact.csv.
 #include <cstdio>
 #include <fstream>
 #include <functional>
@@ -107,8 +108,9 @@ Case PegAgainstAWall(double force) {
       }};
 }
 
-// A stop must take at least 50 steps of 1 ms. In each step, the body moves at the speed of the
-// step's end, so its path is too short by half a step at the initial speed.
+// A stop must take at least 50 steps of 1 ms. In each step, the body moves at the speed that
+// belongs to the end of the step. The path is therefore too short by half a step at the initial
+// speed.
 Case SlidingStop(double friction, double speed) {
   return {"block that slides at " + Number(speed) + " m/s, friction " + Number(friction),
           "path until it stops [m]", [=](EngineKind kind) -> Result {
@@ -120,8 +122,8 @@ Case SlidingStop(double friction, double speed) {
           }};
 }
 
-// Measures, to a thousandth, the force at the height of the centre of mass above which the box
-// tips.
+// Measures the largest force at the height of the centre of mass at which the box does not tip. The
+// relative error is at most a thousandth.
 Case TippingBox() {
   return {"box of 0.1 m × 0.3 m, pushed at half its height", "force that tips it [N]",
           [](EngineKind kind) -> Result {

@@ -82,8 +82,8 @@ TEST(Bounce, ACriticallyDampedContactDoesNotBounce) {
   EXPECT_LT(highest, 0.2 * 0.02);  // the limit of Restitution is exp(−2), so 1.8 % of the height
 }
 
-// The depth must not exceed the one in the documentation: the distance that the body moves in a
-// step, plus 5 %.
+// The depth must not exceed the value in the documentation, which is 1.05 times the distance that
+// the body moves in a step.
 TEST(Bounce, AnImpactEntersAFixtureByLittleMoreThanItsSpeedTimesAStep) {
   constexpr int kPhases = 10;  // of the impact within a step
   FreeBody body(Shape::kBox, {0.2, 0.2, 0.1}, {Fixture(FixtureShape::kPlane, {1, 1, 0}, kOrigin)},
@@ -149,9 +149,9 @@ TEST(Yielding, ABodySwingsAsItsSpringAndDamperSay) {
   }
 }
 
-// The ball moves under its weight, which a fixture without a stiffness would compensate during the
-// impact. The heights differ by less than the distance of a step, so that the impacts begin at
-// different phases of a step.
+// The ball moves under its weight. A fixture without a stiffness would compensate this weight
+// during the impact. The heights differ by less than the distance of a step, so that the impacts
+// begin at different phases of a step.
 TEST(Yielding, AFallingBallRisesAsItsSpringAndDamperSay) {
   constexpr double kRadius = 0.2, kFrequency = 50;  // [m], of the contact [rad/s]
   for (const double zeta : {0.05, 0.1, 0.2}) {

@@ -211,7 +211,7 @@ TEST_P(ControllerMemory, ReturnsToTheStartOnReset) {
 }
 
 // After a small push, the state must equal the state of the linear model, which includes all states
-// of sensor, controller and delay.
+// of the sensor, the controller and the delay.
 void ExpectLinearMotion(const Scenario& s, double tolerance) {
   World world(s);
   const LinearModel model = world.Linearise();
@@ -253,7 +253,8 @@ TEST(Linearisation, DescribesPeriodAndDelay) {
   ExpectLinearMotion(s, 0.05);
 }
 
-// The delay matters, because it changes the slowest decay of an oscillation.
+// The test can detect errors in the delay, because the delay changes the slowest decay of an
+// oscillation.
 TEST(Linearisation, ContainsTheDelay) {
   const auto slowest = [](double delay) {
     Scenario s = AdmittanceScene({"inner_frequency=5"});

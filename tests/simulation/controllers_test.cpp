@@ -71,7 +71,7 @@ TEST(Controllers, AreFoundByName) {
   }
 }
 
-// Returns the error of a controller that cannot be created, or "".
+// Returns the error message if the controller cannot be created, or "".
 std::string ErrorOf(const std::string& type, const std::string& parameter) {
   Scenario s = PandaScene();
   s.cobot.controller = {type, {}};
@@ -92,8 +92,8 @@ TEST(Controllers, RefuseListsOfTheWrongLength) {
 
 TEST(Controllers, RefuseWaypointsThatDoNotIncreaseInTime) {
   EXPECT_EQ(ErrorOf("cartesian_impedance", "trajectory=[{time: 2}, {time: 1}]"),
-            "cobot.controller.trajectory.1.time is 1 s, which does not come after 2 s. Let the "
-            "times increase, the first above 0.");
+            "cobot.controller.trajectory.1.time is 1 s, which does not come after 2 s. Give "
+            "increasing times, of which the first is greater than 0.");
   EXPECT_NE(ErrorOf("cartesian_impedance", "trajectory=[{time: 0}]"), "");
 }
 
@@ -148,8 +148,8 @@ TEST(CartesianImpedance, StiffnessIsThatAskedForPerAxis) {
   }
 }
 
-// Compares damping by double diagonalisation with a generalised eigenproblem that another method
-// solves.
+// Compares the damping by double diagonalisation with the solution of a generalised eigenproblem by
+// another method.
 TEST(CartesianImpedance, DampingIsDoublyDiagonal) {
   Scenario s = Impedance();
   s.cobot.controller.Set("posture_stiffness=0");
@@ -161,7 +161,7 @@ TEST(CartesianImpedance, DampingIsDoublyDiagonal) {
     const MatrixXd Lambda = CartesianInertia(robot);
     const MatrixXd J = JacobianOf(robot);
     const SymmetricModes modes = SymmetricModesOf(K.asDiagonal(), Lambda);
-    // With Wᵀ Λ W = 1 for the modes W, D = Λ W (2 ζ √K0) Wᵀ Λ.
+    // If the modes W are scaled so that Wᵀ Λ W = 1, then D = Λ W (2 ζ √K0) Wᵀ Λ.
     const MatrixXd& W = modes.eigenvectors;
     const VectorXd d = 2 * 0.7 * modes.eigenvalues.cwiseSqrt();
     const MatrixXd D = Lambda * W * d.asDiagonal() * W.transpose() * Lambda;
@@ -170,8 +170,8 @@ TEST(CartesianImpedance, DampingIsDoublyDiagonal) {
   }
 }
 
-// A mode that moves along one axis only must have that axis's damping ratio. All modes lie between
-// the smallest and the largest ratio.
+// A mode that moves along a single axis must have the damping ratio of this axis. All modes lie
+// between the smallest and the largest ratio.
 TEST(CartesianImpedance, RatioPerAxisReachesTheModesOfThatAxis) {
   Scenario s = Impedance();
   s.cobot.controller.Set("posture_stiffness=0");

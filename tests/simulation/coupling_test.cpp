@@ -79,8 +79,8 @@ TEST(Coupling, BrakesOnlyTheSpeedAboveTheCap) {
   EXPECT_LT((F.tail<3>() - Vector3(0, -600 * 0.04 * (2.0 - kRotationCap), 0)).norm(), 1e-9);
 }
 
-// Both dampers act at once, at their limit for a very light object. One explicit step must reduce
-// the relative speed without reversing it.
+// Both dampers act at the same time, at their limit for a very light object. One explicit step must
+// reduce the relative speed without reversing it.
 TEST(Coupling, StaysStableForALightObject) {
   const double mass = 0.01;
   const HandleMobility light = {1 / mass, 1 / 1e-5};

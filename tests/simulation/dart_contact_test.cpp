@@ -1,5 +1,5 @@
-// Tests contact in the engine DART: contact with fixtures, the scenarios that DART refuses, and the
-// differences to MuJoCo.
+// Tests contact in the engine DART. The tests cover contact with fixtures, the scenarios that DART
+// refuses, and the differences from MuJoCo.
 #include <array>
 #include <string>
 #include <vector>
@@ -40,7 +40,7 @@ std::vector<Support> Supports() {
           {"cylinder", Fixture(FixtureShape::kCylinder, {0.3, 0.2, 0}, below(0.1))}};
 }
 
-// Each shape must rest on each flat top and sink in by less than 1 µm.
+// Each shape must rest on each flat top and must sink into it by less than 1 µm.
 TEST_F(DartContact, EveryShapeRestsOnEveryFlatTop) {
   const std::array<std::pair<Shape, Vector3>, 3> shapes = {{{Shape::kBox, {0.2, 0.2, 0.2}},
                                                             {Shape::kCylinder, {0.1, 0.2, 0}},
@@ -63,7 +63,7 @@ TEST_F(DartContact, EveryShapeRestsOnEveryFlatTop) {
 }
 
 // The cylinder has a moment of inertia of m r²/2, so it rolls at two thirds of the speed at which
-// it slid. Earlier points of contact must not hold the cylinder back.
+// it slid. Points of contact from earlier steps must not hold the cylinder back.
 TEST_F(DartContact, ACylinderThatSlidesBeginsToRoll) {
   FreeBody body = InDart(Shape::kCylinder, {0.05, 0.2, 0}, {TableTop(0.5)});
   body.Place(
@@ -183,8 +183,8 @@ TEST_F(DartContact, AWallStopsTheBoxThatIsPushedIntoIt) {
   EXPECT_NEAR(world.state().object.X_W.p.x() - start, kWallGap, 2e-3);
 }
 
-// The points of contact are not part of the saved state, so the engine must not use any from
-// earlier steps.
+// The points of contact are not part of the saved state, so the engine must not use points of
+// contact from earlier steps.
 TEST_F(DartContact, ContinuesARestoredStateBitForBit) {
   const Scenario s = BeforeAWall();
   const WorldInput input = Push(s, {15, 4, -3});
@@ -231,7 +231,7 @@ TEST_F(DartContact, RefusesByNameWhatARigidContactCannotDo) {
             "from touches, or set simulation.engine: mujoco.");
   EXPECT_EQ(refusal([](FixtureSpec* f) { f->xyz.x() -= kWallGap + 0.0005; }),
             "simulation.engine | simulation.engine is dart, but the object touches the floor, the "
-            "table or a fixture at the start. Lift it with cobot.posture, or set "
+            "table or a fixture at the start. Lift the object by a change of cobot.posture, or set "
             "simulation.engine: mujoco.");
 }
 

@@ -24,7 +24,7 @@ constexpr double kDuration = 5;  // [s]
 constexpr double kMaxDifference =
     1e-8;  // [m], as the engines' rounding errors grow in a closed loop
 
-// Removes what the two engines treat differently: joint limits and Coulomb friction.
+// Removes joint limits and Coulomb friction, because the two engines treat them differently.
 Scenario Comparable(Scenario s) {
   s.cobot.joint_friction.coulomb = {0};
   s.simulation.joint_limits = JointLimits::kNone;
@@ -87,7 +87,7 @@ void ExpectAlike(const Scenario& scenario) {
   std::printf("%.2g m, %.2g rad, over %.2f m\n", moved.difference, moved.angle, moved.distance);
 }
 
-// The fixture of tests with DART, which a build without DART skips.
+// The fixture of tests with DART. A build without DART skips these tests.
 class Dart : public testing::Test {
  protected:
   void SetUp() override {
@@ -124,7 +124,7 @@ TEST_F(Dart, MovesHandsWithMassAsInMujoco) {
   ExpectAlike(s);
 }
 
-// Tests the shipped scenarios without their events. Three scenarios cannot be compared:
+// Tests the shipped scenarios without their events. The test cannot compare three scenarios.
 // `underdamped` is unstable on purpose, and `hybrid_force_position` and `load_sharing` begin in
 // contact with the table.
 class DartScenario : public Dart, public testing::WithParamInterface<const char*> {};
@@ -196,7 +196,7 @@ TEST_F(Dart, ReportsAStateThatIsNotFinite) {
   EXPECT_NEAR(world.state().time, kTick, 1e-12);
 }
 
-// Returns the processes that this process started.
+// Returns the child processes of this process.
 std::vector<pid_t> Children() {
   std::vector<pid_t> children;
   std::ifstream list("/proc/self/task/" + std::to_string(getpid()) + "/children");
@@ -282,9 +282,9 @@ TEST(Mujoco, HasSoftLimitsOrNone) {
   EXPECT_GT(Slide(s, JointLimits::kNone), 0.1);
 }
 
-// Returns the largest speed of the first joint [rad/s], which a torque turns for 0.3 s. The other
-// joints stay below their limits. (If several joints are at their limits, DART lets some exceed
-// them.)
+// Returns the largest speed of the first joint [rad/s] while a torque turns the joint for 0.3 s.
+// The other joints stay below their limits. (If several joints are at their limits, DART lets some
+// exceed them.)
 double FastestTurn(VelocityLimits limits) {
   Scenario s = BoxScene(9);
   s.environment.gravity = 0;

@@ -12,7 +12,7 @@ Pose SetPoint(const Scenario& s) {
   return robot.data.FramePose(*robot.model, robot.end_effector);
 }
 
-// The vertical spring alone carries the load, so the load sags to m g / K below the set-point.
+// Only the vertical spring carries the load, so the load sags to m g / K below the set-point.
 TEST(Equilibrium, SagsByWeightOverStiffness) {
   for (const double mass : {9.0, 18.0}) {
     const Scenario s = BoxScene(mass);
@@ -49,7 +49,8 @@ TEST(Equilibrium, HangsWithItsCentreOfMassBelowTheJoint) {
   EXPECT_LT((joint - world.state().end_effector.X_W.p).norm(), 1e-9);
 }
 
-// A box balanced above the joint would topple, so this must not be a valid start.
+// A box balanced above the joint would topple, so the program must not accept this equilibrium as a
+// start.
 TEST(Equilibrium, DoesNotBalance) {
   Scenario s = BoxScene(9);
   s.object.attachment.on_object.xyz = {0, 0, -0.1};

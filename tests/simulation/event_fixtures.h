@@ -36,8 +36,8 @@ inline void RunWith(World* world, const WorldInput& input, double time) {
     ASSERT_TRUE(world->Step(input, kTick).ok()) << world->state().time;
 }
 
-// Checks that `ticks` steps with this force on each handle and a reset allocate no memory on the
-// heap.
+// Checks that `ticks` steps with this force on each handle, and a reset, do not allocate memory on
+// the heap.
 inline void ExpectNoHeap(const Scenario& scenario, const Vector3& force, int ticks) {
   PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD();
   World world(scenario);

@@ -151,8 +151,8 @@ TEST(Hazards, SetPointJumpMovesTheCobotByTheJump) {
   EXPECT_NEAR(turned.z(), 0.1, 2e-3);
 }
 
-// The spring already carries the weight of 2 kg. If its stiffness becomes three times as large, the
-// cobot must rise by two thirds of the deflection.
+// The spring already carries the weight of 2 kg. If the spring's stiffness becomes three times as
+// large, the cobot must rise by two thirds of the deflection.
 TEST(Hazards, StiffnessStepChangesTheForceAtOnce) {
   Scenario s = RigidBox();
   s.events = {Event("stiffness_step", 0, {"translation_factor=3", "rotation_factor=1"})};
@@ -207,7 +207,7 @@ TEST(Hazards, FrozenControllerKeepsItsTorque) {
 }
 
 // The torque that acts must be the one computed 20 sub-steps earlier. The state hardly changes
-// meanwhile.
+// during these sub-steps.
 TEST(Hazards, AddedDelayDelaysTheTorque) {
   Scenario s = RigidBox();
   s.events = {Event("set_point_jump", 0.1, {"xyz=[0, 0, 0.01]"}),

@@ -1,5 +1,5 @@
-// Tests fixtures in the world. The carried object must rest and slide on them, and must not pass
-// through them.
+// Tests fixtures in the world. The carried object must rest and slide on fixtures, and must not
+// pass through them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -176,7 +176,7 @@ TEST(Fixtures, OfEveryShapeTakeNothingFromTheHeap) {
                           : shape == FixtureShape::kSphere  ? 0.04
                                                             : 0.02;
     fixture.xyz = bottom + Vector3(0.05 * (touching - 2), 0.08 * (touching % 2), -0.02 - height);
-    // A plane would also touch the foot of the cobot, so it may touch only the object.
+    // A plane would also touch the foot of the cobot, so only the object may touch a plane.
     if (shape != FixtureShape::kPlane) fixture.touches = {"object", "cobot"};
     s.environment.fixtures.push_back(fixture);
     ++touching;

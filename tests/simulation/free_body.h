@@ -37,7 +37,7 @@ inline FixtureSpec TableTop(double friction) {
   return table;
 }
 
-// The cobot is there, but does not touch the body.
+// The scene contains the cobot, which does not touch the body.
 class FreeBody {
  public:
   FreeBody(Shape shape, const Vector3& size, const std::vector<FixtureSpec>& fixtures,
@@ -115,7 +115,8 @@ class FreeBody {
 
 inline constexpr double kSlope = 20 * M_PI / 180;  // [rad]; its tangent is 0.364
 
-// Returns a slope through kOrigin that falls along x. It is a plane or the upper face of a box.
+// Returns a slope through kOrigin that falls along x. The slope is a plane or the upper face of a
+// box.
 inline FixtureSpec Slope(FixtureShape shape, double friction) {
   const Pose X = PoseFromXyzRpy(kOrigin, {0, kSlope, 0});
   const bool plane = shape == FixtureShape::kPlane;
@@ -141,8 +142,8 @@ inline double Restitution(double zeta) {
 }
 
 // Returns the height above the contact to which a ball rises again after it has arrived at the
-// speed v [m]. The spring and damper are those of Restitution. The weight acts as well, and the
-// motion is integrated in small steps. `omega` is the undamped frequency [rad/s].
+// speed v [m]. The spring and damper are those of Restitution. The weight of the ball also acts,
+// and the motion is integrated in small steps. `omega` is the undamped frequency [rad/s].
 inline double HeightOfBounce(double omega, double zeta, double v) {
   constexpr double kSmallStep = 1e-6;  // [s]
   double z = 0, speed = -v;

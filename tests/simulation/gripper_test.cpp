@@ -68,7 +68,7 @@ TEST(Payload, TheCobotThatKnowsItsLoadDoesNotSag) {
   EXPECT_NEAR(World(s).state().end_effector.X_W.p.z(), level - 0.5 * kWeight / 500, 3e-4);
 }
 
-// The cobot compensates a load only while it holds it.
+// The cobot compensates a load only while it holds the load.
 TEST(Gripper, TheObjectFallsAndTheCobotStaysWhereItIs) {
   Scenario s = KnownLoad();
   s.events = {Release(0.1)};
@@ -141,8 +141,8 @@ TEST(Gripper, ClosesWhereTheObjectIs) {
   EXPECT_LT(slid, 1e-5);
 }
 
-// The cobot must carry the same mass as before. Its springs must be relaxed again, and a push must
-// move it like a cobot that never released the object.
+// The cobot must carry the same mass as before. The cobot's springs must be relaxed again, and a
+// push must move the cobot like one that never released the object.
 TEST(Gripper, HoldsTheSameMassAgain) {
   const Scenario without = KnownLoad();
   Scenario s = without;
@@ -222,9 +222,9 @@ TEST(Gripper, TakesNothingFromTheHeap) {
   ExpectNoHeap(s, {0.2, 0, 0}, 300);
 }
 
-// The cobot knows that it put its load down, so its own safety functions do not take the missing
-// weight for a force. If the object breaks loose, the safety functions do take the missing weight
-// for a force.
+// The cobot knows that it put its load down, so its own safety functions must not interpret the
+// missing weight as a force. If the object breaks loose, the safety functions must interpret the
+// missing weight as a force.
 TEST(Gripper, ItsSafetyFunctionsKnowWhatItHolds) {
   for (const bool on_purpose : {true, false}) {
     Scenario s = OnATable();
@@ -250,7 +250,7 @@ TEST(Gripper, ImpossibleCommandsAreRefused) {
   s.events = {Grasp(1)};
   EXPECT_EQ(Error(s),
             "events.0.event is grasp_object, but the gripper is closed from the start. Add an "
-            "event release_object before.");
+            "event release_object before this event.");
   s.events = {Release(1), Grasp(2)};
   s.object.attachment.joint = JointType::kRevolute;
   EXPECT_EQ(Error(s),

@@ -35,7 +35,7 @@ void Guide(World* world, double duration, const HandForce& force) {
 
 // ---- variable impedance ------------------------------------------------------------------------
 
-// A constant force must move the end-effector at the speed v with d(v) v = F.
+// A constant force must move the end-effector at the speed v for which d(v) v = F.
 TEST(VariableImpedance, ReachesTheSpeedAtWhichDampingBalancesTheForce) {
   for (const double force : {5.0, 10.0, 15.0}) {
     World world(FlangeScene("variable_impedance", {"damping_translation=120", "damping_minimum=40",
@@ -87,8 +87,8 @@ TEST(VariableImpedance, RefusesBoundsInTheWrongOrder) {
 
 // ---- minimum jerk ------------------------------------------------------------------------------
 
-// Position and velocity of a movement that lasts T seconds, at time t, as fractions of its
-// distance.
+// Position and velocity at time t of a movement that lasts T seconds, as fractions of the
+// movement's distance.
 struct JerkPoint {
   double x, v;
 };
@@ -98,9 +98,9 @@ JerkPoint MinimumJerkAt(double t, double T) {
           (30 * std::pow(s, 2) - 60 * std::pow(s, 3) + 30 * std::pow(s, 4)) / T};
 }
 
-// During an exact minimum-jerk movement, the estimate must equal it within 2 % from a quarter of
-// the movement on, and within 0.5 % from its middle on. The controller notices the movement late,
-// and the movement may begin at any time.
+// During an exact minimum-jerk movement, the estimate must agree with the movement within 2 % after
+// a quarter of the movement. After half of the movement, it must agree within 0.5 %. The controller
+// notices the movement late, and the movement may begin at any time.
 TEST(MinimumJerkEstimate, EqualsAnExactMovement) {
   for (const double T : {0.7, 1.5, 4.0})
     for (const Vector3& distance : {Vector3(0.1, 0, 0), Vector3(-0.2, 0.3, 0.1)}) {
@@ -124,9 +124,9 @@ TEST(MinimumJerkEstimate, EqualsAnExactMovement) {
 }
 
 // A hand leads the box along a minimum-jerk movement. The hand's force is the part of the necessary
-// force that the assistance does not provide, plus a spring against deviations. The controller
-// fades the assistance in from s = 0.1 to 0.3. Returns the hand's mean force [N] while the cobot
-// assists fully.
+// force that the assistance does not provide, plus the force of a spring that acts against
+// deviations. The controller fades the assistance in from s = 0.1 to 0.3. Returns the hand's mean
+// force [N] while the cobot assists fully.
 double MeanForceOfHand(double assistance, double T, double distance) {
   World world(FlangeScene("minimum_jerk_intention", {"damping_translation=60", "load_mass=2",
                                                      "assistance=" + std::to_string(assistance)}));
@@ -151,9 +151,9 @@ double MeanForceOfHand(double assistance, double T, double distance) {
 }
 
 // Without assistance, the hand moves the virtual mass, the box and the damper. With full
-// assistance, the hand's force nearly vanishes. A larger part remains in faster movements (a
-// quarter for 1 s), because the position loop yields a little to the hand and the estimate uses the
-// real motion.
+// assistance, the hand's force must be almost zero. In faster movements, a larger part of the force
+// remains (a quarter if the movement takes 1 s), because the position loop yields a little to the
+// hand and the estimate uses the real motion.
 TEST(MinimumJerkIntention, RelievesTheHand) {
   for (const double T : {1.5, 2.5}) {
     const double distance = 0.2;
@@ -260,7 +260,7 @@ TEST(LoadSharing, TakesItsPartOfTheInertialForce) {
   }
 }
 
-// Friction in the joints takes part of the force, and the integral must replace it.
+// Friction in the joints takes a part of the force, and the integral must replace this part.
 TEST(HybridForcePosition, HoldsTheSetForceExactlyInSpiteOfFriction) {
   const auto carried = [](double force, double integral_gain) {
     Scenario s =

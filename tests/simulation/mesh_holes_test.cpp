@@ -17,8 +17,9 @@ void AddQuadrilateral(const std::array<int, 4>& corner, CollisionMesh* mesh) {
   for (const int i : {0, 1, 2, 0, 2, 3}) mesh->faces.push_back(corner[static_cast<std::size_t>(i)]);
 }
 
-// Adds a square frame around an axis parallel to z. The frame has four rings of four corners each:
-// an outer and an inner ring below, and the same above. `x` is the position of the frame's centre.
+// Adds a square frame around an axis parallel to z. The frame has four rings of four corners each.
+// One outer and one inner ring are below, and one outer and one inner ring are above. `x` is the
+// position of the frame's centre.
 void AddFrame(float x, CollisionMesh* mesh) {
   const int first = static_cast<int>(mesh->vertices.size() / 3);
   for (const float z : {0.0F, 0.1F})

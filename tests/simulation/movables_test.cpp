@@ -135,7 +135,7 @@ TEST(Movables, ABlockSlidesToAStop) {
   EXPECT_NEAR(bench.motion(0).X_W.p.x() - (kPlace.x() - 0.5), path, 0.02 * path);
 }
 
-// Of two frictions, the lower one applies.
+// If two bodies have different friction coefficients, the lower one applies to their contact.
 TEST(Movables, ASlipperyBlockSlidesFarther) {
   constexpr double kSpeed = 1;
   for (const auto& [of_table, of_block] : {std::pair{0.6, 0.3}, std::pair{0.3, 0.6}}) {
@@ -149,8 +149,8 @@ TEST(Movables, ASlipperyBlockSlidesFarther) {
   }
 }
 
-// Two cubes collide in free space. Their total momentum must be conserved, and the contact may only
-// remove energy.
+// Two cubes collide in free space. The total momentum of the cubes must be conserved, and the
+// contact must not add energy.
 TEST(Movables, AnImpactConservesMomentum) {
   constexpr double kFast = 0.8, kSlow = -0.3, kHeavy = 3, kLight = 1;
   Bench bench({Cube("a", kHeavy, {-0.2, 0, 0}), Cube("b", kLight, {0.2, 0, 0})}, {}, 0);

@@ -1,5 +1,5 @@
-// Tests movable objects in the world of a cobot. The carried object must push them. The carried
-// object's start and the linear model must not depend on the movable objects.
+// Tests movable objects in the world of a cobot. The carried object must push the movable objects.
+// The carried object's start and the linear model must not depend on the movable objects.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,7 +68,7 @@ TEST(MovableObject, SlidesWhenTheHandsExceedItsFriction) {
   }
 }
 
-// The equilibrium and the linear model must be those of the cobot and its object alone.
+// The equilibrium and the linear model must be the same as for the cobot and its object alone.
 TEST(MovableObject, DoesNotChangeTheStart) {
   const Scenario s = WithABrick(0.002);
   World with(s), without(WithoutObjects(s));
@@ -120,8 +120,8 @@ TEST(MovableObject, TheTickDoesNotUseTheHeap) {
   ExpectNoHeap(s, {14, 2, 0}, 600);
 }
 
-// An object that a gripper holds with limited force must push a brick as an object on a joint does.
-// The brick's inertia also loads the grip.
+// An object that a gripper holds with limited force must push a brick in the same way as an object
+// on a joint. The brick's inertia also loads the grip.
 TEST(MovableObject, AGripPushesItAsAJointDoes) {
   Scenario s = WithABrick(0.002);
   s.environment.fixtures[0].friction = 0;  // sliding bodies hop, and each hop differs
@@ -187,7 +187,7 @@ TEST(MovableObject, ThatStartsInsideAnotherBodyIsAnError) {
   s.environment.objects[0].xyz.z() -= 0.002;
   EXPECT_EQ(ErrorOfStart(s),
             "environment.objects.0.xyz: at the start, this object is 2 mm inside "
-            "environment.fixtures.0. Move it at least this far away.");
+            "environment.fixtures.0. Move it away by at least this distance.");
   s = WithABrick();
   s.environment.fixtures.clear();
   s.environment.floor = true;
@@ -198,7 +198,7 @@ TEST(MovableObject, ThatStartsInsideAnotherBodyIsAnError) {
   s.environment.objects[0].xyz.y() += 0.297;
   EXPECT_EQ(ErrorOfStart(s),
             "environment.objects.1.xyz: at the start, this object is 3 mm inside "
-            "environment.objects.0. Move it at least this far away.");
+            "environment.objects.0. Move it away by at least this distance.");
 }
 
 TEST(MovableObject, ThatTouchesTheCarriedObjectAtTheStartIsAnError) {

@@ -53,7 +53,7 @@ TEST(Obstacle, IsGoneWhenItsEventEnds) {
   EXPECT_GT(MovedBy(WithWall(0, 1), 1.5), 2 * kWallGap);
 }
 
-// The event begins while the box is where the wall would be, but no sudden force may act.
+// The event begins while the box is at the place of the wall. Even then, no sudden force may act.
 TEST(Obstacle, WaitsUntilItsPlaceIsFree) {
   constexpr double kBegin = 0.5;  // [s]
   const Scenario s = WithWall(kBegin);
@@ -67,7 +67,7 @@ TEST(Obstacle, WaitsUntilItsPlaceIsFree) {
   EXPECT_GT(world.state().object.X_W.p.x() - start, kWallGap + 0.02);
   EXPECT_EQ((world.state().q - other.state().q).norm(), 0);
   EXPECT_EQ(world.state().events, 1u);
-  // The box is pulled back. The wall then appears, and the box must not pass it again.
+  // The hands pull the box back. The wall then appears, and the box must not pass it again.
   RunWith(&world, Push(s, {-15, 0, 0}), 1.3);
   ASSERT_LT(world.state().object.X_W.p.x() - start, kWallGap - 0.02);
   RunWith(&world, push, 2);
@@ -112,8 +112,8 @@ TEST(Obstacle, ThatDoesNotExistIsAnError) {
             "events.0.fixture: no fixture has the name \"gate\". " + Suggestion("gate", {"wall"}));
   s.environment.fixtures.clear();
   EXPECT_EQ(StartErrorOf(s),
-            "events.0.fixture: no fixture has the name \"gate\". Give the fixture that appears a "
-            "name in environment.fixtures.");
+            "events.0.fixture: no fixture has the name \"gate\". In environment.fixtures, give a "
+            "name to the fixture that appears.");
 }
 
 TEST(Obstacle, MayBeginInsideTheObject) {

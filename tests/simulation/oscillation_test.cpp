@@ -1,5 +1,5 @@
-// Compares the requested modes of the cobot with the linearised and the simulated ones, without and
-// with a load.
+// Compares the requested modes of the cobot with the modes of the linear model and of the
+// simulation, without and with a load.
 #include <gtest/gtest.h>
 
 #include <complex>
@@ -37,7 +37,7 @@ Vibration VerticalMode(const LinearModel& model) {
   const Modes modes = ModesOf(model.A);
   const Eigen::MatrixXd re = modes.eigenvectors.real(), im = modes.eigenvectors.imag();
   const Eigen::VectorXcd left = (model.C.row(2) + model.C.row(8)) * modes.eigenvectors;
-  // The following lines solve V right = B in real numbers.
+  // The following lines solve the complex equation V right = B in real numbers.
   const Eigen::Index n = re.rows();
   MatrixXd V(2 * n, 2 * n);
   V << re, -im, im, re;
@@ -89,8 +89,8 @@ TEST(Oscillation, LoadedFrequencyIsThatOfTheDesign) {
     Scenario s = BoxScene(c.mass);
     s.cobot.joint_friction.viscous = {0};
     s.cobot.controller.Set("damping_ratio=0.02");
-    // In this posture, the arm is less folded, as it is after sagging, and Λ_zz is 5 to 6 kg. At 18
-    // kg and the default posture, Λ_zz is 8.4 kg, and the mode is at 0.70 Hz.
+    // In this posture, the arm is less folded, as it is after sagging, and Λ_zz is 5 to 6 kg. With
+    // 18 kg in the default posture, Λ_zz is 8.4 kg, and the frequency of the mode is 0.70 Hz.
     if (c.mass == 18) s.cobot.posture = {0, -0.4, 0, -1.6, 0, 1.2, 0.785};
     const Vibration linear = VerticalMode(World(s).Linearise());
     EXPECT_GT(linear.frequency, c.low);
@@ -156,8 +156,8 @@ TEST(Oscillation, JointImpedanceShowsItsRatio) {
   for (const Vibration& mode : modes) EXPECT_NEAR(mode.ratio, 0.4, 1e-3);
 }
 
-// Compares the matrices B and C of the linear model with the world itself. In both, a force acts
-// for one tick, and the resulting twists must agree.
+// Compares the matrices B and C of the linear model with the world itself. A force acts for one
+// tick in the model and in the world, and the resulting twists must agree.
 TEST(Linearise, PredictsTheFirstTick) {
   Scenario s = BoxScene(9);
   const LinearModel model = World(s).Linearise();

@@ -41,7 +41,7 @@ TEST(PluginCalls, CountTheLooksThatSawTheSameCall) {
   EXPECT_FALSE(LookAtPluginCalls());
 }
 
-// A loop that calls the library again and again does not hang, even if each check finds it inside
+// A loop that calls the library repeatedly does not hang, even if each check finds the loop inside
 // the library.
 TEST(PluginCalls, CallsThatReturnAreNotLong) {
   PluginCalls calls("mine.so");

@@ -43,7 +43,8 @@ TEST(PluginExamples, DoNotChatterAtALightWrist) {
   }
 }
 
-// This test shows that the previous one can fail: a damper that ignores the inertia chatters.
+// With a damper that ignores the inertia, the joint chatters. This test thus shows that the
+// previous test can fail.
 TEST(PluginExamples, WouldChatterWithADamperThatIgnoresTheInertia) {
   const Scenario s =
       LightWrist(test::Plugin("joint_impedance", "joint_stiffness=200 damping_rate=3000"));

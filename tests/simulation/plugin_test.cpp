@@ -86,8 +86,8 @@ Quaternion ObjectInE(const World& world) {
   return world.state().end_effector.X_W.q.conjugate() * world.state().object.X_W.q;
 }
 
-// These controllers answer with the pose that they receive. This pose must be the one before the
-// step, even if the object rotates in a spherical attachment.
+// The controllers in this test answer with the pose that they receive. This pose must be the pose
+// before the step, even if the object rotates in a spherical attachment.
 TEST(Plugin, SeesThePoseOfTheObject) {
   for (const ControllerSpec& controller :
        {Plugin("at_time", "fault=object at=0.05"), Faulty("object")}) {
@@ -295,7 +295,7 @@ TEST(Plugin, TorquesThatAreNotFiniteAreRefused) {
   }
 }
 
-// If the process could shorten the memory, the control loop would end with a bus error.
+// If the process could shorten the shared memory, the control loop would end with a bus error.
 TEST(Plugin, AProcessCannotShortenTheSharedMemory) {
   World world(BallScene(Faulty("shorten")));
   const double limit = world.effort_limit()[0];
@@ -313,8 +313,9 @@ TEST(Plugin, AProcessThatCrashesIsNoticed) {
   EXPECT_EQ(world.state().controller, ControllerOutcome::kFailed);
 }
 
-// In real time, the program has a deadline. Gravity compensation and damping must act until it
-// answers again, and after 0.1 s the step must be refused.
+// In real time, the controller's process has a deadline for its answer. Gravity compensation and
+// damping must act until the process answers again. After 0.1 s without an answer, the world must
+// refuse the step.
 TEST(Plugin, AProcessThatMissesItsDeadlineIsReplacedAndThenStopped) {
   for (const bool hangs : {false, true}) {
     Scenario s = BallScene(Faulty(hangs ? "hang" : "late"));
@@ -342,7 +343,7 @@ TEST(Plugin, AProcessThatMissesItsDeadlineIsReplacedAndThenStopped) {
 // ---- priority
 // --------------------------------------------------------------------------------------------
 
-// Returns whether the system allows this process a real-time priority.
+// Returns whether the system permits this process to use this real-time priority.
 bool MayUse(int priority) {
   sched_param parameter{};
   parameter.sched_priority = priority;

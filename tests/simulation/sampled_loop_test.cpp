@@ -1,4 +1,4 @@
-// The judgement of the sampled loop must agree with the simulation.
+// The stability that the program predicts for the sampled loop must agree with the simulation.
 #include "simulation/sampled_loop.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,8 @@ TEST(SampledLoop, OfATooStrongDamperGrowsAsInTheSimulation) {
   EXPECT_NEAR(SimulatedGrowth(s), loop.growth, 0.1 * loop.growth);
 }
 
-// The damping of this controller is proportional to its ratio, so that the remedy can be tested.
+// The damping of this controller is proportional to its damping ratio, so that the suggested remedy
+// can be tested.
 TEST(SampledLoop, NamesTheDampingWithWhichItIsStable) {
   const auto with = [](double ratio) {
     return World(SpringScene(
@@ -76,7 +77,7 @@ TEST(SampledLoop, NamesTheJointWhoseSpringIsTooStiff) {
   EXPECT_GT(loop.stable_stiffness, 0);
 }
 
-// Period and delay of the controller are part of the loop.
+// The period and the delay of the controller are part of the loop.
 TEST(SampledLoop, WithADelayGrowsAsInTheSimulation) {
   Scenario s = SpringScene({"joint_stiffness=600", "joint_damping_ratio=0.1"});
   EXPECT_TRUE(World(s).JudgeController().is_stable());

@@ -48,7 +48,8 @@ inline Scenario BoxScene(double mass) {
   return s;
 }
 
-// A box of 2 kg is fixed to the flange, with one handle in the flange and another controller.
+// A box of 2 kg is fixed to the flange. One handle is in the flange, and the scene uses another
+// controller.
 inline Scenario FlangeScene(const std::string& type, const std::vector<std::string>& parameters) {
   Scenario s = BoxScene(2);
   s.object.attachment.joint = JointType::kFixed;

@@ -84,8 +84,8 @@ TEST_F(SlidingCobot, SwingsAsMassAndSpring) {
   EXPECT_LT(nearest, 1e-4) << poles;
 }
 
-// On a horizontal rail, the force of a hand along it is the external force in the joint. The force
-// grows slowly, so that carriage and load hardly accelerate.
+// On a horizontal rail, the force of a hand along the rail is the external force in the joint. The
+// force grows slowly, so that carriage and load hardly accelerate.
 TEST_F(SlidingCobot, StopsItselfAtAnExternalForce) {
   const auto stop_under = [&](double force, const std::string& limit) {
     const Scenario s = On("0 1 0", {limit, "cobot.joint_friction.viscous=4"});

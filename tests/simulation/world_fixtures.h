@@ -36,7 +36,8 @@ inline void Simulate(World* world, const WorldInput& input, double duration,
   }
 }
 
-// Returns the key and the message with which the world refuses a scenario, or "".
+// Returns the key and the message with which the world refuses a scenario, or "" if it accepts the
+// scenario.
 inline std::string RefusalOf(const Scenario& s) {
   try {
     World world(s);

@@ -34,8 +34,9 @@ bool Same(const WorldState& a, const WorldState& b) {
          a.energy == b.energy && a.coupling[0] == b.coupling[0];
 }
 
-// The test assembles the inertia of cobot and box from the robot's mass matrix. The coordinates are
-// the joint rates and the box's angular velocity (axes of W), so v_com = J_v q̇ + ω × r.
+// The test computes the inertia of the cobot and the box from the robot's mass matrix. The
+// coordinates are the joint rates and the box's angular velocity (axes of W), so v_com = J_v q̇ + ω
+// × r.
 TEST(World, ForceOfAHandAcceleratesTheComposedInertia) {
   Scenario s = BoxScene(9);
   s.cobot.joint_friction.viscous = {0};
@@ -224,7 +225,8 @@ TEST(World, TableHoldsTheBoxThatFallsOnIt) {
   EXPECT_LT(world.state().object.V_W.norm(), 1e-3);
 }
 
-// With all its weight on the table, the box must slide if the hands pull harder than μ m g = 71 N.
+// The table carries the full weight of the box. The box must slide if the hands pull harder than μ
+// m g = 71 N.
 TEST(World, TableHoldsByFriction) {
   Scenario s = BoxScene(9);
   s.cobot.controller.Set("stiffness.translation=[5, 5, 0]");

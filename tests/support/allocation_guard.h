@@ -13,8 +13,10 @@ namespace predictor::test {
 //   arm.Tick();
 //   EXPECT_EQ(guard.count(), 0);
 //
-// A sanitizer has its own allocator, so there kIsActive is false and count() stays 0. Begin such a
-// test with PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD(), so that the test reports this.
+// A sanitizer has its own allocator. In a build with a sanitizer, kIsActive is therefore false, and
+// count() stays 0. A test that uses the guard must begin with
+// PREDICTOR_SKIP_WITHOUT_ALLOCATION_GUARD(), so that a build without the guard reports the test as
+// skipped.
 class AllocationGuard {
  public:
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

@@ -11,8 +11,8 @@ namespace predictor {
 
 constexpr double kBriskBegin = 1, kBriskMove = 2, kBriskWay = 0.25;  // [s], [s], [m]
 // Each move has minimum jerk: at the fraction u of its time, its speed is 30 u²(1 − u)² times the
-// mean speed. The maximum is 15/8 of the mean. For half of the time, the speed exceeds 9/16 of the
-// maximum, which it reaches after a quarter of the time.
+// mean speed. The maximum speed is 15/8 of the mean speed. For half of the time, the speed exceeds
+// 9/16 of the maximum. It reaches this value after a quarter of the time.
 constexpr double kBriskSpeed = 15.0 / 8 * kBriskWay / kBriskMove;  // [m/s]
 constexpr double kBriskMedian = 9.0 / 16 * kBriskSpeed;            // [m/s]
 

@@ -49,7 +49,7 @@ long BootJump() {
   return Jump(text);
 }
 
-// The thread that runs out of memory, and the time at which it does [s].
+// The thread that runs out of memory, and the time at which it runs out of memory [s].
 struct Starved {
   Starved() noexcept {
     const char* const text = std::getenv("FAULTY_MEMORY");
@@ -58,7 +58,7 @@ struct Starved {
     at = Seconds() + after;
     armed = true;
   }
-  // Does not use the functions that this library replaces.
+  // This function does not use the functions that this library replaces.
   static long Seconds() noexcept {
     timespec now{};
     syscall(SYS_clock_gettime, CLOCK_MONOTONIC, &now);

@@ -18,7 +18,7 @@ inline ControllerSpec Plugin(const std::string& name, const std::string& paramet
   return spec;
 }
 
-// Returns a program whose arguments are in YAML: "[python3, -c, ...]".
+// Returns a program and its arguments in YAML, such as "[python3, -c, ...]".
 inline ControllerSpec ProcessOf(const std::string& command, const std::string& parameters = "") {
   ControllerSpec spec{"process", {}};
   spec.Set("command=" + command);

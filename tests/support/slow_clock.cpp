@@ -1,7 +1,8 @@
-// Slows time for programs that are started with LD_PRELOAD: their clocks run at 1/kSlower of the
-// real speed, and their waits take kSlower times as long. A control loop at 1 kHz then runs at
-// 100 Hz, so a shared computer that stalls for some milliseconds delays it by less than a period.
-// Tests with programs that exchange data in real time thus depend much less on the computer.
+// Slows time for programs that are started with LD_PRELOAD. The clocks of such a program run at
+// 1/kSlower of the real speed, and the waits of the program take kSlower times as long. A control
+// loop at 1 kHz then runs at 100 Hz. If a shared computer stalls for some milliseconds, the delay
+// of the loop is therefore less than a period. If a test runs programs that exchange data in real
+// time, its result therefore depends much less on the computer.
 //
 // The mapping from the real to the slow clocks has no state. All processes therefore agree on the
 // time, as they do without this library. PREDICTOR_REAL_TIME=required leaves time as it is.
@@ -54,7 +55,8 @@ int Slower(int milliseconds) {
   return slow > INT_MAX ? INT_MAX : static_cast<int>(slow);
 }
 
-// Returns whether a clock shows the passing time and not the processor time used.
+// Returns whether a clock shows the passing time and not the processor time that a process has
+// used.
 bool Passes(clockid_t clock) {
   return clock == CLOCK_MONOTONIC || clock == CLOCK_MONOTONIC_RAW ||
          clock == CLOCK_MONOTONIC_COARSE || clock == CLOCK_BOOTTIME || clock == CLOCK_REALTIME ||
@@ -144,7 +146,7 @@ int poll(pollfd* ready, nfds_t count, int timeout) {
   return real(ready, count, Slower(timeout));
 }
 
-// A C library with checks calls this instead of poll.
+// A C library with run-time checks calls this function instead of poll.
 int __poll_chk(pollfd* ready, nfds_t count, int timeout, std::size_t size) {
   if (size / sizeof *ready < count) std::abort();
   return poll(ready, count, timeout);

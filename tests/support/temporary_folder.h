@@ -13,7 +13,7 @@ namespace predictor::test {
 // The destructor deletes the folder and its contents.
 class TemporaryFolder {
  public:
-  // Creates the folder in `where`.
+  // Creates the temporary folder in the folder `where`.
   explicit TemporaryFolder(
       const std::filesystem::path& where = std::filesystem::temp_directory_path()) {
     std::string name = (where / "predictor-XXXXXX").string();

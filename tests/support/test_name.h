@@ -6,8 +6,8 @@
 
 namespace predictor::test {
 
-// Returns `text` with an underscore in place of each run of characters that GoogleTest does not
-// allow in names.
+// Returns `text` with each group of characters that GoogleTest does not allow in names replaced by
+// an underscore.
 inline std::string TestName(const std::string& text) {
   std::string name;
   for (const char c : text) {

@@ -32,8 +32,8 @@ TEST_F(Mapping, PutsTheMeanOfMarkersIntoTheWorld) {
 }
 
 TEST_F(Mapping, FollowsMarkersOnTheSidesOfAHead) {
-  // The head looks along the y axis of the file's frame. The eyes are 0.1 m in front of its markers
-  // and 0.05 m below them.
+  // The head looks along the y axis of the file's frame. The eyes are 0.1 m in front of the markers
+  // of the head and 0.05 m below them.
   std::string table = "time";
   for (const char* name : {"F", "B", "L", "R"})
     for (const char* axis : {".x", ".y", ".z"}) table += std::string(",") + name + axis + " [m]";
@@ -79,7 +79,8 @@ TEST_F(Mapping, TurnsAndShiftsAWrench) {
   const HandTrack& hand = *track.hands[0];
   const Wrench F = *hand.WrenchAt(0.01);
   EXPECT_TRUE(F.head<3>().isApprox(Vector3(0, -10, 0), 1e-12)) << F;
-  // The sensor's -1 and (-0.1, 0, 0) × (0, -10, 0) = (0, 0, 1) add up to zero.
+  // The sensor's moment of -1 and the moment (-0.1, 0, 0) × (0, -10, 0) = (0, 0, 1) of the force
+  // add up to zero.
   EXPECT_NEAR(F[5], 0, 1e-12);
   EXPECT_FALSE(hand.HoldsAt(0.001));
   EXPECT_TRUE(hand.HoldsAt(0.015));

@@ -17,8 +17,8 @@ struct Recorded {
 
 using Motion = std::function<Vector3(double)>;
 
-// Samples `motion` at `rate` [Hz] from `begin` to `end` [s] of the motion's own time. The clock is
-// ahead by `shift`, the frame is rotated and moved, and the samples have noise [m].
+// Samples `motion` at `rate` [Hz] from `begin` to `end` [s]; these are times of the motion itself.
+// The clock is ahead by `shift`, the frame is rotated and moved, and the samples have noise [m].
 Recorded Record(const Motion& motion, double begin, double end, double rate, double shift,
                 double noise, std::uint64_t seed) {
   RandomStream random(seed, "noise");

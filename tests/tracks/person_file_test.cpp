@@ -35,7 +35,7 @@ const char* const kMap =
     "right_hand: {position: [px, py, pz], rotation: [qw, qx, qy, qz], force: [fx, fy, fz], "
     "on: hand}\n";
 
-// Returns a robot's log at 500 Hz. The sensor measures what acts on the hand.
+// Returns a robot's log at 500 Hz. The sensor measures the force on the hand.
 std::string Log(const std::function<std::string(int)>& force) {
   std::string text = "t,px,py,pz,qw,qx,qy,qz,fx,fy,fz,note\n";
   for (int i = 0; i <= 500; ++i)

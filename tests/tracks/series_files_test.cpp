@@ -105,7 +105,7 @@ TEST_F(Trc, SeesAClockThatJumps) {
   ExpectWords(error(head + "1\t0\t1\t2\t3\t4\t5\t6\n2\t3.01\t1\t2\t3\t4\t5\t6\n"),
               {"bad.trc:8", "jumps by 3.01 s"});
   ExpectWords(error(head + "1\t0\t1\t2\t3\t4\t5\t6\n1\t0\t1\t2\t3\t4\t5\t6\n"), {"goes back"});
-  // Frames that were left out must not count as a jump.
+  // Frames that are missing must not count as a jump.
   EXPECT_EQ(error(head + "1\t0\t1\t2\t3\t4\t5\t6\n301\t3.0\t1\t2\t3\t4\t5\t6\n"), "no error");
   ExpectWords(error("time,x\n0,1\n"), {"not a TRC"});
   ExpectWords(error(head.substr(0, 60)), {"bad.trc"});
@@ -116,7 +116,8 @@ TEST_F(Trc, SeesAClockThatJumps) {
 
 // ---- C3D --------------------------------------------------------------------------------------
 
-// Returns a parameter or group as it is stored. `link` is the offset to the next one.
+// Returns a parameter or group as it is stored. `link` is the offset to the next parameter or
+// group.
 std::string Entry(int id, const std::string& name, const std::string& content) {
   std::string entry;
   entry += static_cast<char>(name.size());
@@ -201,8 +202,8 @@ TEST_F(C3d, OfEveryShorterLengthIsRefused) {
   }
 }
 
-// No damaged byte may crash the reader or make it allocate much memory. The reader must return
-// numbers or state why it cannot read the file.
+// A damaged byte must not crash the reader or cause it to allocate much memory. The reader must
+// return numbers or state why it cannot read the file.
 TEST_F(C3d, WithADamagedByteIsReadOrRefused) {
   const std::string whole = MadeC3d(false);
   int refused = 0;
@@ -220,7 +221,8 @@ TEST_F(C3d, OfAnotherKindIsRefusedWithTheRemedy) {
   ExpectWords(ErrorOf([&] { ReadC3d(Write("a.c3d", std::string(2000, 'x'))); }), {"not a C3D"});
   std::string vax = MadeC3d(true);
   vax[512 + 3] = 85;
-  ExpectWords(ErrorOf([&] { ReadC3d(Write("a.c3d", vax)); }), {"byte order", "Save it again"});
+  ExpectWords(ErrorOf([&] { ReadC3d(Write("a.c3d", vax)); }),
+              {"byte order", "Save the file again"});
   ExpectWords(ErrorOf([&] { ReadSeries(Write("a.xlsx", "x")); }), {".csv"});
 }
 

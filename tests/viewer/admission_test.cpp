@@ -94,8 +94,8 @@ TEST(Admission, WrongAttemptsCountAgainstEveryValidPin) {
   EXPECT_FALSE(admission.ByPin(control, kHere, kSecond));
 }
 
-// The viewer may die and restart. Clients that were admitted must stay admitted, but no others may
-// be.
+// The viewer may die and restart. Clients that were admitted must stay admitted, but other clients
+// must not be admitted.
 TEST(Admission, SurvivesARestartWithItsSecret) {
   const std::string secret = NewAdmissionSecret();
   const Admission before(false, secret);
@@ -135,7 +135,7 @@ TEST(Admission, ANewGenerationEndsTokensPinsAndTheSharedCode) {
   EXPECT_TRUE(before.ByToken(page));
 }
 
-// Revoked tokens are not stored in a list, so no list can become full.
+// The program does not store revoked tokens in a list, so no list can become full.
 TEST(Admission, AnyNumberOfGenerationsEnds) {
   const std::string secret = NewAdmissionSecret();
   Admission admission(false, secret);
@@ -178,7 +178,8 @@ TEST(Admission, SecretsDiffer) {
         std::string::npos);
 }
 
-// PINs must be uniform: each digit at each position has a frequency close to a tenth.
+// PINs must have a uniform distribution, so the frequency of each digit at each position must be
+// close to a tenth.
 TEST(Admission, PinsAreUniform) {
   Admission admission(false, NewAdmissionSecret());
   const int count = 20000;
@@ -234,7 +235,7 @@ TEST(Admission, CountsAllOfThisMachinesLoopbackAddressesAsOne) {
   EXPECT_NE(SourceOf("192.0.2.7"), SourceOf("192.0.2.8"));
 }
 
-// One machine may use all addresses of its network of 64 bits (RFC 4862).
+// One machine may use all addresses that share its 64-bit prefix (RFC 4862).
 TEST(Admission, CountsAnIpv6NetworkAsOneSource) {
   EXPECT_EQ(SourceOf("2001:db8::1"), "2001:db8::/64");
   EXPECT_EQ(SourceOf("2001:db8:0:0:1::"), "2001:db8::/64");

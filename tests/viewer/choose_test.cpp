@@ -1,5 +1,5 @@
-// A user chooses another scenario in a page. `predictor run` must continue with it and keep the
-// command-line options that still apply.
+// A user chooses another scenario on a page. `predictor run` must continue with this scenario and
+// keep the command-line options that still apply.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -70,8 +70,8 @@ class ChooseTest : public testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
-  // Waits until the server shows the wanted scene to a page that reconnects. Returns the scene, or
-  // null and no page after a minute.
+  // Waits until the server shows the expected scene to a page that reconnects. Returns the scene,
+  // or null and no page after a minute.
   static nlohmann::json Back(std::uint16_t port, const std::string& token,
                              std::unique_ptr<WebSocket>* page,
                              const std::function<bool(const nlohmann::json& scene)>& wanted) {
@@ -97,9 +97,9 @@ class ChooseTest : public testing::Test {
     }
     return false;
   }
-  // Takes the control and chooses a scenario until the server closes the connection because of it.
-  // The server may still hold the control for a page that has just left, so the page requests it
-  // every second.
+  // Takes control and chooses a scenario, until the server closes the connection because of the new
+  // scenario. The server may still reserve control for a page that has just left, so the page
+  // requests control every second.
   static bool Choose(WebSocket* page, const std::string& name) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point end = Clock::now() + std::chrono::minutes(1);
@@ -143,7 +143,8 @@ TEST_F(ChooseTest, KeepsSeedAndDurationAndReportsDroppedOptions) {
     EXPECT_TRUE(Choose(page.get(), "single_arm"));
   }
   EXPECT_NE(After("runs without --set name=Other"), "") << Errors();
-  // The port must stay the same. A scenario that is chosen after a run must start automatically.
+  // The port of the server must stay the same. A scenario that is chosen after a run must start
+  // automatically.
   std::unique_ptr<WebSocket> page;
   const nlohmann::json scene =
       Back(port, token, &page, [](const nlohmann::json& s) { return !s.contains("results"); });

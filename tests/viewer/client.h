@@ -73,14 +73,14 @@ class WebSocket {
   bool SendText(const std::string& text) { return SendFrame(1, text); }
   bool SendFrame(int opcode, const std::string& payload, bool final = true);
   bool SendRaw(const std::string& bytes) { return socket_.Send(bytes); }
-  // Returns the next message other than a ping, or nullopt at the end.
+  // Returns the next message other than a ping, or no value at the end of the connection.
   std::optional<Message> Next();
-  // Returns the next text message whose "type" is `type`. Skips all other messages.
+  // Returns the next text message that has the "type" `type`. Skips all other messages.
   std::optional<std::string> NextText(const std::string& type);
   // Returns the code of the close frame at the end, or 0 if the connection ends without one.
   int CloseCode();
-  // Sends a hello with `code` and waits for the welcome. Returns the welcome, or "" if there is
-  // none.
+  // Sends a hello with `code` and waits for the welcome. Returns the welcome, or "" if no welcome
+  // arrives.
   std::string Hello(const std::string& code);
   Socket& socket() { return socket_; }
 

@@ -13,7 +13,7 @@ namespace {
 
 using testing_client::WebSocket;
 
-// The numbers occur nowhere else in the scene or in its models.
+// The numbers of this fixture occur nowhere else in the scene or in its models.
 const std::vector<std::string> kFixture = {
     "environment.fixtures=[{name: wall, shape: box, size: [0.4321, 0.1, 0.2], xyz: [2, 0, 0]}]"};
 const std::vector<std::string> kEvents = {
@@ -33,8 +33,8 @@ class EventsOnThePage : public testing::Test {
     return setup;
   }
 
-  // Publishes the next tick and waits until the page has its state. Collects everything else that
-  // the page receives before it.
+  // Publishes the next tick and waits until the page has its state. Also collects everything else
+  // that the page receives before this state.
   void Tick(WebSocket* page, double run_time, std::uint16_t events) {
     TickRecord record = {};
     record.tick = ++tick_;
@@ -65,8 +65,8 @@ class EventsOnThePage : public testing::Test {
   std::string received_;
 };
 
-// Returns whether the bytes contain anything about an event: its name, its trigger, its duration,
-// or the fixture that it lets appear.
+// Returns whether the bytes contain information about an event, such as its name, its trigger, its
+// duration, or the fixture that it lets appear.
 bool MentionsAnEvent(const std::string& bytes) {
   for (const char* what : {"power_loss", "obstacle_appears", "3.217", "1.739", "12.39", "0.4321",
                            "\"wall\"", "trigger", "\"events\":["})
@@ -87,7 +87,7 @@ TEST_F(EventsOnThePage, NoByteForASubjectMentionsAnEventBeforeItBegins) {
     Tick(&page, 4, kPowerLoss);
     ASSERT_NE(received_.find("\"welcome\""), std::string::npos);
     EXPECT_FALSE(MentionsAnEvent(received_)) << received_;
-    // Now the wall is there, so it must be drawn.
+    // The wall has now appeared, so the page must draw it.
     Tick(&page, 5, kWallAppears);
     EXPECT_NE(received_.find("0.4321"), std::string::npos);
     Tick(&page, 0, 0);  // after a reset, the event is to come again
@@ -157,7 +157,7 @@ TEST(Scene, IsTheSameWithAndWithoutEventsBeforeTheyBegin) {
             DescribeFixtures(LoadScenario(file, kFixture), 0));
 }
 
-// A plan that begins in the middle of a run does not know the events that are already over.
+// A plan that begins in the middle of a run does not contain the events that are already over.
 TEST(EventPlan, SaysWhetherItIsComplete) {
   const Scenario scenario =
       LoadScenario(std::filesystem::path(PREDICTOR_SOURCE_DIR) / "scenarios/box_9kg.yaml", kEvents);

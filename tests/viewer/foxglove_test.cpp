@@ -169,7 +169,7 @@ TEST(Foxglove, IsNotifiedThatTheRunHasEnded) {
   EXPECT_EQ(client.CloseCode(), 1001);
 }
 
-// Checks that a message conforms to its own schema, as far as types and names are concerned.
+// Checks that the types and names in a message conform to the message's own schema.
 void ExpectFits(const Json& schema, const Json& value, const std::string& path) {
   if (schema.contains("oneOf")) {
     const auto& choices = schema["oneOf"];

@@ -28,7 +28,7 @@ const std::map<std::string, std::pair<std::size_t, double (*)(const std::string&
         {"f32", {4, Read<float>}},         {"f64", {8, Read<double>}},
 };
 
-// Decodes the bytes with nothing but the table, as the page does.
+// Decodes the bytes only with the table, as the page does.
 std::map<std::string, std::vector<double>> Decode(const std::string& bytes) {
   std::map<std::string, std::vector<double>> values;
   for (const FrameField& field : FrameFields()) {
@@ -66,7 +66,7 @@ TEST(Frame, ThePagesTypeOfAPersonIsThatOfTheTable) {
       << "Regenerate it: build/release/bin/page_quantities person > web/src/person_state.ts";
 }
 
-// The fields must have the names and sizes given in docs/reference/viewer-protocol.md.
+// The fields must have the names and sizes in docs/reference/viewer-protocol.md.
 TEST(Frame, HasTheFieldsOfTheProtocol) {
   const std::vector<std::tuple<std::string, std::string, std::uint32_t>> run = {
       {"tick", "u64", 1},

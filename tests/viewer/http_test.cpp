@@ -195,7 +195,8 @@ TEST(Http, AHeadThatDoesNotEndIsCutOff) {
     sockets.emplace_back(server.port());
     sockets.back().Send("GET / HTTP/1.1\r\nX-");
   }
-  // An occasional byte must not extend the time limit. The connection ends even while bytes arrive.
+  // A client that occasionally sends a byte must not extend its time limit. The server must end the
+  // connection even while bytes arrive.
   int cut_off = 0;
   for (int k = 0; k < 200 && cut_off < 20; ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -206,8 +207,8 @@ TEST(Http, AHeadThatDoesNotEndIsCutOff) {
   EXPECT_EQ(Get(server.port(), "/").status, 200);
 }
 
-// There are more slow clients than the server has room for. The server must still serve the newest
-// request.
+// The number of slow clients is larger than the number of connections that the server accepts. The
+// server must still serve the newest request.
 TEST(Http, SlowClientsDoNotKeepOthersOut) {
   TestServer server;  // with long time-outs, so that no client times out
   std::vector<Socket> sockets;

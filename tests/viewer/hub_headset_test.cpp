@@ -51,12 +51,12 @@ TEST_F(HubTest, AHeadsetIsAsOldAsThePictureThatItShows) {
   hub_->Tick();
   EXPECT_EQ(mailbox_.immersive_frame_ns.load(), drawn);
   page->Say({{"type", "immersive"}, {"active", true}, {"drawn", now_ + kSecond}});
-  // A picture cannot be newer than the present.
+  // The time of a picture must not be later than the current time.
   EXPECT_EQ(mailbox_.immersive_frame_ns.load(), now_);
 }
 
 // When the session ends, the wearer no longer sees the scene, as after a lost connection. If
-// nothing moves, the run may ignore this.
+// nothing moves, the run may ignore the end of the session.
 TEST_F(HubTest, WithRealArmsTheEndOfASessionIsSilence) {
   HubSetup setup = TestSetup();
   setup.rules = RulesOfRealArms();

@@ -41,8 +41,9 @@ TEST_F(HubTest, ALeaseEndsThreeSecondsAfterTheLastHeartbeat) {
   EXPECT_TRUE(Inputs().empty());
 }
 
-// A message arrives after a lease has ended and before the next tick. Whatever the message is, the
-// hub must notify all pages that the lease is free, and any page may take the lease.
+// In this test, a message arrives after a lease has ended and before the next tick. Whatever the
+// message is, the hub must notify all pages that the lease is free, and any page may take the
+// lease.
 TEST_F(HubTest, AnEndedLeaseIsReportedWhicheverClientSendsFirst) {
   const Json heartbeat = {{"type", "heartbeat"}};
   const Json other_lease = {{"type", "lease"}, {"what", "operator"}, {"take", true}};
@@ -91,7 +92,7 @@ TEST_F(HubTest, TheConsoleMayFreeALease) {
   EXPECT_TRUE(Inputs().empty());
 }
 
-// If a connection drops silently, the server may notice it much later than the page does.
+// If a connection drops silently, the server may notice the loss much later than the page.
 TEST_F(HubTest, AClientThatReconnectsBeforeTheServerNoticesKeepsItsLease) {
   auto page = Controller();
   const Json token = page->connection.Last("welcome")["token"];

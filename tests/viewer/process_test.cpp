@@ -193,7 +193,7 @@ TEST_F(ProcessTest, AnswersTheConsole) {
   EXPECT_TRUE(Reports("Foxglove: ws://localhost:" + std::to_string(viewer_->port()) + "/?token="));
 }
 
-// The disconnection is permanent, and the next process must enforce it as well.
+// The disconnection is permanent, so the next process must also enforce it.
 TEST_F(ProcessTest, RemovesAClient) {
   Start();
   WebSocket page(viewer_->port());
@@ -216,7 +216,8 @@ TEST_F(ProcessTest, RemovesAClient) {
   EXPECT_FALSE(Admits(token));
 }
 
-// The request comes while there is no process, or while the process can no longer answer.
+// The request to remove a client arrives while the viewer's process does not exist or can no longer
+// answer.
 TEST_F(ProcessTest, RemovesAClientWhileItRestarts) {
   Start();
   WebSocket page(viewer_->port());
@@ -247,7 +248,7 @@ TEST_F(ProcessTest, RemovesAClientAfterItsDeath) {
   EXPECT_GT(nlohmann::json::parse(other.Hello(Code()))["client"].get<std::uint32_t>(), 1u);
 }
 
-// If a viewer hangs, it must be ended after the second request at the latest.
+// If a viewer hangs, the program must end it after the second request at the latest.
 TEST_F(ProcessTest, AViewerThatDoesNotAnswerIsReplaced) {
   Start();
   WebSocket page(viewer_->port());

@@ -99,7 +99,8 @@ TEST(Protocol, UnderstandsNothingElse) {
   EXPECT_FALSE(ParsePageRequest(std::string(1024, '[')));
 }
 
-// A page's numbers cannot represent every time exactly. Such a time is sent as a string of digits.
+// The floating-point numbers of a page cannot represent every time exactly. Such a time is sent as
+// a string of digits.
 TEST(Protocol, ReadsTimesAsNumbersAndAsDigits) {
   const auto drawn = [](const std::string& value) {
     const auto request =
@@ -113,7 +114,7 @@ TEST(Protocol, ReadsTimesAsNumbersAndAsDigits) {
   EXPECT_EQ(drawn("0"), 0u);
 }
 
-// Any input must result in no request or in a request within bounds.
+// Any input must result either in no request or in a request whose values are within bounds.
 TEST(Protocol, SoakSurvivesAnyBytes) {
   std::mt19937 random(1);
   const std::string seeds[] = {

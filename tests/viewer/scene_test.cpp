@@ -50,13 +50,13 @@ TEST(Scene, HasTheMembersOfTheProtocol) {
   EXPECT_EQ(scene["parameters"].size(), 5u);
   EXPECT_EQ(scene["script"][1]["text"], "Lift the object by 10 cm.");
   EXPECT_EQ(scene["script"][1]["action"], "move");
-  // The scene has the object and three copies of the same robot.
+  // The scene contains the object and three copies of the same robot.
   EXPECT_EQ(scene["arms"]["left"]["urdf"], scene["cobot"]["urdf"]);
   EXPECT_NE(scene["object"]["urdf"], scene["cobot"]["urdf"]);
 }
 
 // The name becomes the title of the page. In the title, characters that change the direction of
-// text would show another name.
+// text would make the name look like another one.
 TEST(Scene, HasAPrintableName) {
   Scenario scenario = Load("box_9kg.yaml");
   scenario.name = "Box \u202egk 9\x1b[2J";
@@ -202,7 +202,8 @@ TEST(Assets, AModelIsServedWithItsMeshesAndNoPathOfThisMachine) {
   // The served model must still describe the same robot.
   const UrdfModel again = ParseUrdf(
       [&] {
-        // The parser checks that meshes exist. Any existing mesh is sufficient.
+        // The parser checks that the meshes exist, so the test inserts an existing mesh for each of
+        // them.
         std::string text = served->bytes;
         const std::string any = urdf.links[0].visuals.at(0).mesh.string();
         for (int i = 0; i < 64; ++i)

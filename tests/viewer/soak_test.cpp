@@ -1,6 +1,6 @@
-// Measures the viewer's cost to the run. The test measures each tick of `predictor run` at its full
-// rate through the shared memory, first alone, and then with the maximum number of clients and with
-// further connections that are not permitted.
+// Measures how much the viewer slows the run. The test measures each tick of `predictor run` at its
+// full rate through the shared memory. It measures the run first without clients, and then with the
+// maximum number of clients and with further connections that are not permitted.
 #include "support/soak.h"
 
 #include <fcntl.h>
@@ -70,7 +70,8 @@ class Program {
 
   std::uint16_t port() const { return port_; }
   const std::string& code() const { return code_; }
-  // Returns the records as other processes of the run read them, or null if there are none.
+  // Returns the records in the form in which other processes of the run read them, or null if the
+  // records do not exist.
   std::unique_ptr<Shared<RunBoard>> Board() const {
     for (const auto& entry :
          std::filesystem::directory_iterator("/proc/" + std::to_string(pid_) + "/fd")) {
@@ -172,8 +173,8 @@ class Viewer {
   std::thread thread_;
 };
 
-// Connects repeatedly and then disconnects, sends invalid data, guesses codes, sends slowly, or
-// announces huge messages.
+// Clients that connect repeatedly. After each connection, a client disconnects, sends invalid data,
+// guesses codes, sends slowly, or announces huge messages.
 class Attackers {
  public:
   explicit Attackers(std::uint16_t port) : port_(port), thread_([this] { Attack(); }) {}
@@ -265,7 +266,7 @@ TEST(ViewerLoadRatio, ComparesLikeWithLike) {
 }
 
 // The clients represent other machines, so they should compete with the run for the processors as
-// little as possible. The program has already started and keeps its priority.
+// little as possible. The program has already started, so it keeps its priority.
 void BeNice() { setpriority(PRIO_PROCESS, 0, 15); }
 
 class ViewerLoad : public testing::Test {
@@ -374,7 +375,8 @@ TEST_F(ViewerLoad, TenThousandConnectionAttemptsSoak) {
   EXPECT_GT(board().records.written(), written);
 }
 
-// Delays [ms] from the start of a tick until the server sends it, and until a client receives it.
+// Two delays [ms] from the start of a tick: until the server sends the tick, and until a client
+// receives it.
 struct Delays {
   std::vector<double> sent, received;
   std::size_t bytes = 0;
@@ -404,7 +406,7 @@ Delays Receive(WebSocket* page, std::chrono::seconds window) {
   return delays;
 }
 
-// Returns the growth of the values from first to last, estimated by the median of all slopes (Theil
+// Returns the growth from the first to the last value, estimated by the median of all slopes (Theil
 // and Sen). A single disturbed window then has no effect.
 double Growth(const std::vector<double>& values) {
   std::vector<double> slopes;
@@ -415,7 +417,7 @@ double Growth(const std::vector<double>& values) {
 }
 
 // Computes Mann and Kendall's test for an upward trend in the normal approximation. Among series
-// without a trend, one in a hundred exceeds kTrend.
+// without a trend, the result of one in a hundred exceeds kTrend.
 constexpr double kTrend = 2.33;
 double Trend(const std::vector<double>& values) {
   double s = 0;

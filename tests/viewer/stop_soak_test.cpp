@@ -1,6 +1,6 @@
 // Measures how long a stop request takes from a page to the run's mailbox while the server is as
-// busy as possible. 64 viewers read, and clients that were not admitted perform handshakes, guess
-// codes and announce huge messages as fast as the server permits.
+// busy as possible. 64 viewers read. In addition, clients that were not admitted perform
+// handshakes, guess codes and announce huge messages as fast as the server permits.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -55,13 +55,12 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
     if (GetParam()) return ConnectTls(server_->port(), source);
     return Socket(server_->port(), 0, source);
   }
-  // Returns null if the page is not admitted.
+  // Returns null if the server does not admit the page.
   std::unique_ptr<WebSocket> Page() const {
     std::optional<Socket> socket = Connect("127.0.0.1");
     if (!socket) return nullptr;
     auto page = std::make_unique<WebSocket>(std::move(*socket), server_->port());
-    // A single token does not admit so many pages, and the role that may only look does not admit
-    // them either.
+    // Neither a single token nor the read-only role admits this many pages.
     const std::string token = server_->Token(Role::kOperator);
     page->SendText("{\"type\":\"hello\",\"token\":\"" + token + "\"}");
     return page->NextText("welcome") ? std::move(page) : nullptr;
@@ -78,7 +77,8 @@ class StopUnderLoad : public testing::TestWithParam<bool> {
   }
   void AddAttacker(const char* source) {
     threads_.emplace_back([this, source] {
-      // Another machine would do this work, so it must not take time from the server.
+      // In reality, another machine would do this work, so the work must not take processor time
+      // from the server.
       setpriority(PRIO_PROCESS, 0, 19);
       for (long k = 0; !done_; ++k, ++attempts_) Attack(k, source);
     });

@@ -1,4 +1,4 @@
-// A complete server with the first scenario on a free port, in a thread of the test.
+// A complete server that shows the first scenario on a free port and runs in a thread of the test.
 #pragma once
 
 #include <future>
@@ -39,7 +39,7 @@ class TestServer {
   RunMailbox& mailbox() { return mailbox_; }
   const std::string& code() { return app_.admission().code(); }
 
-  // Publishes a record as a run would.
+  // Publishes a record in the same way as a run.
   void Publish(std::uint64_t tick) {
     TickRecord record = {};
     record.tick = tick;

@@ -41,7 +41,7 @@ class TlsTransport : public Transport {
   bool connected_ = false;
 };
 
-// Returns nullopt if the server completes no handshake within ten seconds.
+// Returns no value if the server does not complete the handshake within ten seconds.
 inline std::optional<Socket> ConnectTls(std::uint16_t port, const char* source = nullptr) {
   Socket socket(port, 0, source);
   auto transport = std::make_shared<TlsTransport>(socket.descriptor());

@@ -37,8 +37,8 @@ class TlsTest : public testing::Test {
     server_ = std::make_unique<TestServer>(setup);
   }
 
-  // Trusts only this certificate and requests `name`. Sends `request`, and sends `then` after the
-  // beginning of the answer. Returns the answer, or "" if the handshake fails.
+  // Trusts only this certificate and requests `name`. Sends `request`. After the beginning of the
+  // answer has arrived, sends `then`. Returns the answer, or "" if the handshake fails.
   std::string Ask(const std::string& name, const std::string& request, int newest = 0,
                   std::string then = "") {
     const ContextPtr context(SSL_CTX_new(TLS_client_method()));
@@ -100,7 +100,8 @@ TEST_F(TlsTest, RefusesOldVersions) {
   EXPECT_EQ(Ask("localhost", "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n", TLS1_1_VERSION), "");
 }
 
-// Handshakes are expensive. A client that requests many must wait, but no other client may have to.
+// Handshakes are expensive. A client that requests many handshakes must wait, but other clients
+// must not have to wait.
 TEST_F(TlsTest, HandshakesOfOneAddressDoNotKeepOthersOut) {
   TestServer::Setup setup;
   setup.app.tls = true;

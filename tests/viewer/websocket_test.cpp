@@ -297,9 +297,9 @@ TEST(WebSocketServer, AFloodOfPingsIsCutOff) {
 
 // ---- slow readers -------------------------------------------------------------------------------
 
-// A client that does not read must not delay any other client. When it reads again, it receives the
-// data that was already under way, which is less than half a second of states. After that it
-// receives the newest state.
+// A client that does not read must not delay any other client. When this client reads again, it
+// first receives the data that was already in transit, which is less than half a second of states.
+// After that it receives the newest state.
 TEST(WebSocketServer, AClientThatDoesNotReadFindsTheNewestStateLater) {
   TestServer server;
   WebSocket sleeper(server.port()), other(server.port());
@@ -338,7 +338,8 @@ TEST(WebSocketServer, AClientThatNeverReadsIsCutOffInTheEnd) {
   EXPECT_TRUE(Becomes([&] { return server.Clients() == 0; }));
 }
 
-// A client sends but does not read. The number of waiting answers must be bounded.
+// In this test, a client sends but does not read. The number of answers that wait for this client
+// must be bounded.
 TEST(WebSocketServer, AClientThatSendsAndNeverReadsIsDisconnected) {
   TestServer::Setup setup;
   setup.server.max_waiting_text = 2000;

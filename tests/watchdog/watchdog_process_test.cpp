@@ -23,8 +23,8 @@ namespace {
 
 using test::Becomes;
 
-// A UR's port for programs. The port sends something ten times a second, as controllers do, and
-// stores the data that it receives.
+// A UR's port for programs. The port sends data ten times a second, as controllers do, and stores
+// the data that it receives.
 class ProgramPort {
  public:
   // The port has an address that no other test uses.
@@ -150,8 +150,8 @@ TEST_F(WatchdogProcessTest, StopsTheArmsWhereTheRunEndsInMotion) {
   EXPECT_TRUE(Becomes([&] { return port_.heard().find("stopj") != std::string::npos; }));
 }
 
-// The program is killed during a motion. The program's end of the channel closes, but its watchdog
-// continues to run and must stop the arms.
+// The program is killed during a motion. The program's end of the channel closes. The program's
+// watchdog continues to run and must stop the arms.
 TEST(WatchdogOfAKilledProgram, StopsTheArms) {
   ProgramPort port;
   const pid_t program = fork();

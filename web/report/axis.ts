@@ -28,7 +28,7 @@ export function linearTicks({low, high}: Range, count: number): Ticks {
   return {at, text: at.map((value) => fixed(value, decimals))};
 }
 
-// Returns powers of ten, with 2 and 5 times these powers in between if there is room.
+// Returns powers of ten. If there is room, it also returns 2 and 5 times these powers.
 export function logTicks({low, high}: Range, count: number): Ticks {
   const decades = Math.log10(high / low);
   const factors = 3 * decades <= count ? [1, 2, 5] : [1];
@@ -44,7 +44,7 @@ export function logTicks({low, high}: Range, count: number): Ticks {
       text.push(fixed(value, Math.max(0, -p)));
     }
   }
-  // If the view shows less than a decade, the ticks are round numbers in between.
+  // If the view shows less than a decade, the ticks are round numbers within this decade.
   return at.length >= 2 ? {at, text} : linearTicks({low, high}, count);
 }
 
@@ -53,7 +53,7 @@ export function ticksOf(axis: Axis, range: Range, count: number): Ticks {
   return axis.log ? logTicks(range, count) : linearTicks(range, count);
 }
 
-// `limits` are values that are included if they are near enough to the data.
+// `limits` are values that the axis includes if they are near enough to the data.
 export function yRange(axis: Axis, data: Range, limits: number[]): Range {
   let {low, high} = data;
   if (!(low <= high)) [low, high] = axis.log ? [1, 10] : [0, 1];

@@ -65,7 +65,8 @@ export class Chart {
     this.redraw();
   }
 
-  // Shows the cursor of another plot of the group. null means that the cursor has left it.
+  // Shows the cursor of another plot of the group. The value null means that the cursor has left
+  // that plot.
   setCursor(x: number | null) {
     if (!this.visible || !this.chart || !this.layout) return;
     const px = x === null ? NaN : Number(this.chart.convertToPixel({xAxisIndex: 0}, x));

@@ -1,4 +1,5 @@
-// Reads the plots as the program describes them (src/report/plot.h), with their data.
+// Reads the plots with their data, in the form in which the program describes them
+// (src/report/plot.h).
 
 export interface Axis {
   title: string;
@@ -62,8 +63,8 @@ function bytesOf(base64: string): Uint8Array {
   return bytes;
 }
 
-// Decodes the format of src/report/page.h. This function multiplies instead of shifting, since a
-// value may need more than 32 bits.
+// Decodes numbers in the format that src/report/page.h describes. This function multiplies instead
+// of shifting, since a value may need more than 32 bits.
 function decode(bytes: Uint8Array, step: number, to: Float64Array | Float32Array) {
   let value = 0;
   let at = 0;
@@ -124,7 +125,7 @@ function partsOf(x: Float64Array): [number, number][] {
   if (x.length < 2) return parts;
   let step = Infinity;
   for (let i = 1; i < Math.min(x.length, 100); ++i) step = Math.min(step, x[i] - x[i - 1]);
-  // A gap gets its own point, half a step before the next part.
+  // A gap is represented by its own point, half a step before the next part.
   let start = 0;
   for (let i = 1; i < x.length; ++i) {
     if (x[i] - x[i - 1] < 3 * Math.max(step, 1e-4)) continue;
@@ -135,7 +136,8 @@ function partsOf(x: Float64Array): [number, number][] {
   return parts;
 }
 
-// Returns the coarse line, with all samples where they are available.
+// Returns the coarse line. In the parts for which all samples are available, it contains all
+// samples.
 function merge(coarse: Points, detail: Points): Points {
   const parts = partsOf(detail.x);
   const pieces: [Points, number, number][] = [];
@@ -160,8 +162,8 @@ function merge(coarse: Points, detail: Points): Points {
 
 // Keeps the lowest and the highest point in each interval of length `width` along x, in their
 // original order, and preserves any gap in the interval. The bins are ranges of x, not numbers of
-// points. With a fixed number of points, sparse points would be thinned in lines that also contain
-// a section with every tick.
+// points. If the bins had a fixed number of points, a line with a section that contains every tick
+// would lose points in its sparse sections.
 export function thin({x, y}: Points, width: number): Points {
   const places: number[] = [];
   for (let start = 0, end = 0; start < x.length; start = end) {
@@ -208,7 +210,7 @@ export interface Range {
   high: number;
 }
 
-// A line with all its points, which provides the part that a view shows.
+// A line with all its points, from which a view obtains the part that it shows.
 export class Series {
   private readonly levels: Points[];  // each in bins four times as wide as in the previous level
 
@@ -222,8 +224,8 @@ export class Series {
     }
   }
 
-  // Returns the points between two values of x, plus one on either side. For a line, it returns
-  // only the lowest and the highest point of each of `bins` parts.
+  // Returns the points between two values of x, plus one point on either side. For a line, the
+  // function returns only the lowest and the highest point of each of `bins` parts.
   view({low, high}: Range, bins: number): Points {
     if (this.spec.kind !== 'line') return this.points;
     let part = this.points;

@@ -13,7 +13,8 @@ const kHeight = 170;  // of a panel of height 1
 const kRow = 18;      // of text
 const kGap = 12;
 const kKey = 30;      // of a line sample in the legend
-// The quotation marks are single, because ECharts does not escape double ones in a saved SVG.
+// The quotation marks are single, because ECharts does not escape double quotation marks in a saved
+// SVG.
 const kFont = "system-ui, 'Segoe UI', Helvetica, Arial, sans-serif";
 const kKeys = {
   solid: 'path://M0 0L22 0L22 3L0 3Z', dashed: 'path://M0 0L9 0L9 3L0 3ZM13 0L22 0L22 3L13 3Z',
@@ -108,7 +109,8 @@ function dataRange(view: View, panel: number): Range {
   return {low, high};
 }
 
-// Puts the legend entries in rows. The first row is next to the title if all entries fit there.
+// Distributes the legend entries to rows. The first row is next to the title if all entries fit
+// there.
 function legendRows(panel: number, series: Series[], title: string, room: number): Entry[][] {
   const entries = series.filter(({spec}) => spec.label !== '').map((one) => ({
     name: seriesName(panel, one), series: one, width: Math.min(kKey + widthOf(one.spec.label) + 12, room)}));
@@ -150,7 +152,8 @@ function placeNotes(view: View, {low, high}: Range): Note[] {
   });
 }
 
-// Makes a metre equally long in x and y by widening one of the two ranges. Returns the height.
+// Widens the range of x or y, so that a metre has the same length in both directions. Returns the
+// height.
 function fitEqual(x: Range, y: Range, width: number): number {
   const [dx, dy] = [x.high - x.low, y.high - y.low];
   const height = Math.min(Math.max(dy / dx * width, 120), 0.62 * width);
@@ -284,8 +287,8 @@ function seriesOption(layout: Layout, i: number, series: Series, color: Colors):
   }
 }
 
-// Returns the position of a limit's label: above its line, or below it if another line lies close
-// above.
+// Returns the position of a limit's label. The label is above the limit's line, or below this line
+// if another line is close above.
 function limitSide(value: number, index: number, {spec, y, grid}: Panel): string {
   const room = 2.2 * kRow / grid.height * (y.high - y.low);
   const above = spec.limits.some((other, k) => k !== index &&

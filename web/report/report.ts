@@ -41,7 +41,8 @@ const watcher = new IntersectionObserver((entries) => {
 }, {rootMargin: kMargin});
 document.querySelectorAll<HTMLElement>('figure.plot').forEach((figure) => watcher.observe(figure));
 
-// The style is dark or light as in the system, until the person chooses one of them.
+// The style is dark or light according to the system's setting, until the person chooses one of
+// them.
 const button = document.getElementById('theme') as HTMLButtonElement;
 const dark = matchMedia('(prefers-color-scheme: dark)');
 const redraw = () => charts.forEach((chart) => chart.redraw());

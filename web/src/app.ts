@@ -67,8 +67,8 @@ export class App {
       phase: (phase, reason) => this.phaseChanged(phase, reason),
       welcome: (welcome) => this.welcomed(welcome),
       state: (state, receivedMs) => this.received(state, receivedMs),
-      // The message is handled immediately and not with the next frame, because the browser rarely
-      // draws a page in the background.
+      // The page handles the message immediately and does not wait for the next frame, because the
+      // browser rarely draws a page in the background.
       leases: () => this.invite(),
       denied: (_what, reason) => this.overlay.notify(reason),
       notice: (text) => this.overlay.warn(text),
@@ -112,7 +112,7 @@ export class App {
     this.immersive = new Immersive(
         this.stage, this.hands, this.connection, () => this.mayGrip, () => this.stop(),
         () => this.trouble, () => this.setMirror(!this.stage.mirror.group.visible));
-    // A person with a headset must not see the events to come.
+    // A person with a headset must not see future events.
     void Immersive.supported().then(
         (yes) => (this.overlay.vrButton.hidden = !yes || this.connection.isExperimenter));
     this.theme = new ThemeSwitch((theme) => {
@@ -141,7 +141,7 @@ export class App {
     }
   }
 
-  // Returns the present problem between this page and the run, if there is one.
+  // Returns the present problem between this page and the run, if there is such a problem.
   get trouble(): Trouble | null {
     if (this.connection.phase === 'ended') return kTroubles.ended;
     if (this.connection.phase === 'results') return kTroubles.results;
@@ -281,7 +281,7 @@ export class App {
     this.score.add(state, this.spec, this.stage.guidance.error(state.object.p));
   }
 
-  // After a jump back, this clears drawings of times that have not occurred yet.
+  // After a jump back, clears what was drawn for times after the new position.
   private forget() {
     this.plots.clear();
     this.stage.guidance.clear();
@@ -290,8 +290,8 @@ export class App {
   }
 
   private welcomed(welcome: Welcome) {
-    // If the scenario is a different one, the page is reloaded, because its parts belong to the
-    // previous one. It keeps the token.
+    // If the scenario has changed, the page is reloaded, because its parts belong to the previous
+    // scenario. It keeps the token.
     if (this.welcome && scenarioOf(this.welcome.scene) !== scenarioOf(welcome.scene)) {
       return location.reload();
     }
@@ -329,8 +329,8 @@ export class App {
       this.player.reset();
       this.person.reset();
     }
-    // The page is updated immediately and not with the next frame, because it must never show a
-    // stop button that has no effect.
+    // The page is updated immediately and does not wait for the next frame, because it must never
+    // show a stop button that has no effect.
     this.showTrouble();
   }
 
@@ -359,8 +359,8 @@ export class App {
     }
   }
 
-  // Space and Esc stop the run regardless of the focus. Enter presses buttons. No other keys are
-  // bound.
+  // Space and Esc stop the run regardless of the focus. Enter presses buttons. No other keys have a
+  // function.
   private key(event: KeyboardEvent) {
     if (event.key === ' ' || event.key === 'Escape') {
       event.preventDefault();
@@ -380,7 +380,8 @@ export class App {
     if (view && !typing && !event.ctrlKey && !event.altKey && !event.metaKey) this.setView(view);
   }
 
-  // Browsers press a focused button when Space is released. This handler prevents that.
+  // When Space is released, browsers press the button that has the focus. This handler prevents
+  // that.
   private keyUp(event: KeyboardEvent) {
     if (event.key === ' ') event.preventDefault();
   }

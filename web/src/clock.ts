@@ -1,5 +1,5 @@
-// Estimates the server's clock from pings. Of the latest pings, it uses the quickest one, which was
-// delayed least.
+// Estimates the server's clock from pings. The estimate uses the quickest of the latest pings,
+// because it was delayed least.
 
 interface Sample {
   roundTripMs: number;
@@ -15,8 +15,8 @@ export class ServerClock {
     this.samples = [];
   }
 
-  // Adds a pong that was sent and received at times of performance.now() [ms] and answered at
-  // serverNs.
+  // Adds a pong. The page sent the ping and received the pong at times of performance.now() [ms],
+  // and the server answered at serverNs.
   add(sentMs: number, receivedMs: number, serverNs: number) {
     const offsetMs = serverNs / 1e6 - (sentMs + receivedMs) / 2;
     this.samples.push({roundTripMs: receivedMs - sentMs, offsetMs});

@@ -57,14 +57,15 @@ export class Connection {
   private resultsSinceMs = 0;
   private pings = 0;
 
-  // `isExperimenter` states whether the page requests the events to come.
+  // `isExperimenter` states whether the page requests future events.
   constructor(private readonly events: ConnectionEvents, readonly isExperimenter = false) {
     window.setInterval(() => this.everySecond(), 1000);
     window.setInterval(() => this.quickPing(), 120);
   }
 
-  // Starts with the URL's code, or otherwise with this tab's token. If there is neither, it
-  // requests the digits. An admitted page stays admitted, whatever address is opened in this tab.
+  // Connects with the code in the URL, or otherwise with this tab's token. If there is neither a
+  // code nor a token, the page asks for the six digits. An admitted page stays admitted, regardless
+  // of the address that is opened in this tab.
   start(code: string | null) {
     if (this.phase === 'open') return;
     const token = sessionStorage.getItem(kTokenKey);
@@ -82,7 +83,8 @@ export class Connection {
     this.connect({pin});
   }
 
-  // Returns false if there is no connection. Messages are never stored for later.
+  // Returns false if there is no connection. Messages that cannot be sent are never stored for
+  // later.
   send(message: PageMessage): boolean {
     if (this.phase !== 'open' || this.socket?.readyState !== WebSocket.OPEN) return false;
     this.socket.send(JSON.stringify(message));
@@ -178,7 +180,7 @@ export class Connection {
     this.pings = 0;
     this.events.welcome(welcome);
     this.enter('open', '');
-    // A run that has ended, or a recording, has no events to come.
+    // If the run has ended, or if this is a recording, there are no future events.
     const {results, replay} = welcome.scene;
     if (this.isExperimenter && !results && !replay) this.send({type: 'experimenter'});
     this.quickPing();
@@ -213,7 +215,7 @@ export class Connection {
     this.retryTimer = window.setTimeout(() => this.connect(credential), waitMs);
   }
 
-  // Waits for the server that replaces the one that announced the end of the run.
+  // Waits for the new server, which replaces the server that announced the end of the run.
   private awaitResults(credential: Credential) {
     const nowMs = performance.now();
     if (this.phase !== 'results') {

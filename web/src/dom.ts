@@ -3,8 +3,8 @@
 type Child = Node | string | null;
 type Attributes = Record<string, string | number | boolean | ((event: Event) => void)>;
 
-// An attribute whose name starts with "on" is a listener. true sets an empty attribute, and false
-// omits it.
+// An attribute whose name starts with "on" is a listener. The value true sets an empty attribute,
+// and the value false omits the attribute.
 export function h<K extends keyof HTMLElementTagNameMap>(
     tag: K, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
@@ -21,7 +21,7 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-// Sets the text only if it changes, so that a screen reader does not repeat it.
+// Sets the text only if it changes, so that a screen reader does not read the same text again.
 export function setText(element: HTMLElement, text: string) {
   if (element.textContent !== text) element.textContent = text;
 }

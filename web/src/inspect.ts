@@ -1,5 +1,5 @@
-// Gives tests and developers read-only access through `window.predictor`. Nothing here changes the
-// page.
+// Gives tests and developers read-only access through `window.predictor`. The functions of this
+// module do not change the page.
 import {Vector3} from 'three';
 import {App} from './app';
 import {kSteps, Step} from './latency';
@@ -29,13 +29,13 @@ export function inspection(app: App) {
     // Returns the bounding box in W of the visuals of a link of the cobot, of 'object', or of
     // 'movable:NAME' [m].
     meshBox: (name: string) => stage.meshBox(name),
-    // Bounding boxes in W of the fixtures that are there [m].
+    // Bounding boxes in W of the fixtures that are present [m].
     fixtureBoxes: () => stage.fixtureBoxes,
     placeholders: () => stage.placeholders,
     arrowColour: (side: Side, of: 'force' | 'torque' = 'force') => stage.arrows[side][of].level,
     arrowVisible: (side: Side, of: 'force' | 'torque' = 'force') =>
       stage.arrows[side].group.visible && stage.arrows[side][of].group.visible,
-    // The person: the newest state as received, the points of the body as drawn, and its colours.
+    // The newest state of the person as received, and the points and colours of the body as drawn.
     person: () => app.person.latest,
     personCount: () => app.person.count,
     body: () => ({

@@ -1,6 +1,6 @@
-// The keyboard acts as a hand while the scene has the focus. L and R take or release a handle, and
-// B takes or releases both. Arrow keys move the held handles relative to the camera. Page Up and
-// Page Down lift and lower them, and comma and dot rotate them.
+// The keyboard acts as a hand while the scene has the focus. L and R take or release one handle,
+// and B takes or releases both handles. Arrow keys move the held handles relative to the camera.
+// Page Up and Page Down lift and lower the held handles, and comma and dot rotate them.
 import {Quaternion, Vector3} from 'three';
 import {Hands} from './hands';
 import {kSides, Pose, Side, State} from './protocol';

@@ -1,5 +1,5 @@
-// Measures the delays of a sample from the sensor to the end of drawing, step by step. A page
-// cannot know when the screen shows the picture.
+// Measures the delay of each step that a sample passes from the sensor to the end of drawing. A
+// page cannot know when the screen shows the picture.
 import {ServerClock} from './clock';
 import {kStages, State} from './protocol';
 

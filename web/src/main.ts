@@ -1,5 +1,5 @@
-// The main module of the page. It connects to the server, shows the states in the scene, the panel
-// and the plots, and handles the person's input.
+// The main module of the page. This module connects to the server, shows the states in the scene,
+// the panel and the plots, and handles the person's input.
 import './app.css';
 import {App} from './app';
 import {takeCodeFromAddress} from './connection';

@@ -1,4 +1,4 @@
-// The mouse, a pen or a finger acts as a hand: it presses on a handle and drags it.
+// The mouse, a pen or a finger acts as a hand that takes a handle and drags it.
 import {Plane, Quaternion, Raycaster, Vector2, Vector3} from 'three';
 import {Hands} from './hands';
 import {kSides, Pose, Side, State} from './protocol';
@@ -94,7 +94,8 @@ export class MouseHand {
     if (this.grip?.pointer === event.pointerId) this.letGo();
   }
 
-  // The wheel rotates the held handles about the vertical, or both hands about their midpoint.
+  // The wheel rotates a held handle about the vertical. If both handles are held, the wheel rotates
+  // them about their midpoint.
   private wheel(event: WheelEvent) {
     if (!this.grip) return;
     event.preventDefault();
@@ -126,8 +127,8 @@ export class MouseHand {
     this.stage.camera.controls.enabled = true;
   }
 
-  // Starts to measure the pointer's motion here, in the plane of the screen or, with Shift,
-  // vertically.
+  // Starts to measure the pointer's motion from the present position, in the plane of the screen
+  // or, with Shift, vertically.
   private anchor(event: PointerEvent, main: Side, sides: Side[]) {
     const at = vector(this.hands.targets[main]!.p);
     const normal = this.stage.camera.camera.getWorldDirection(new Vector3());

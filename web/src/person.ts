@@ -1,5 +1,5 @@
-// Shows the states of the person over time. The body moves smoothly between the states, and
-// everything else comes from the newest state.
+// Shows the states of the person over time. The body moves smoothly between the states. All other
+// data come from the newest state.
 import {kSides, PersonState, Side, Vec3} from './protocol';
 
 export type BodyPoints = {[K in keyof PersonState['points']]: Vec3};
@@ -44,8 +44,8 @@ export class PersonPlayer {
     return this.latest?.status === 'judged' && nowMs - this.receivedMs > kSilentMs;
   }
 
-  // Returns the body at page time `nowMs`, about one message ago, or null if it is not known. While
-  // no simulated time passes, the body does not move.
+  // Returns the body at the page's time `nowMs`, with a delay of about one message, or null if the
+  // body is not known. While no simulated time passes, the body does not move.
   sample(nowMs: number): BodyPoints | null {
     const n = this.entries.length;
     if (n === 0) return null;
@@ -80,8 +80,8 @@ export interface MirrorPlace {
   scale: number;
 }
 
-// Returns the body of a person, who stands at `ground` and faces `forward`, as seen in a mirror.
-// The figure faces the person, with its left side on the person's left.
+// Returns the mirror image of the body of a person who stands at `ground` and faces `forward`. The
+// figure faces the person, with its left side on the person's left.
 export function mirrored(points: BodyPoints, ground: Vec3, forward: Vec3, {at, toward, scale}: MirrorPlace): BodyPoints {
   return Object.fromEntries(Object.entries(points).map(([name, p]) => {
     const [x, y, up] = p.map((v, i) => scale * (v - ground[i]));
@@ -98,5 +98,6 @@ export const kWhyNot: Record<Exclude<PersonState['status'], 'judged'>, string> =
   below_ground: 'The handles are below the ground: correct operator.stance.ground.',
 };
 
-// Lists damage and fatigue of both sides' shoulders and elbows, by the names of the state's parts.
+// Lists the damage and fatigue of the shoulders and elbows of both sides, under the names of the
+// parts in the state.
 export const kArmParts = kSides.flatMap((side: Side) => [`${side}_shoulder`, `${side}_elbow`] as const);

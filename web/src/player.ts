@@ -1,6 +1,6 @@
-// Plays the timestamped states with a delay of about one state. The player interpolates between the
-// two states around the present time. There is no queue: the buffer contains the latest few states,
-// and the newest one takes precedence.
+// Plays the states according to their time stamps, with a delay of about one state. The player
+// interpolates between the two states around the present time. There is no queue. The buffer
+// contains only the latest few states, and the newest state takes precedence.
 import {Pose, Quat, Side, stampMs, State, Vec3} from './protocol';
 
 const kKept = 8;
@@ -48,8 +48,8 @@ export class StatePlayer {
     if (this.lags.length > kLagSamples) this.lags.shift();
   }
 
-  // Returns the interpolated state at page time `nowMs`, or null before the first state. Calls
-  // `shown` for each state whose time has come.
+  // Returns the interpolated state at the page's time `nowMs`, or null before the first state.
+  // Calls `shown` for each state whose time has come.
   sample(nowMs: number, shown: (s: Shown) => void): State | null {
     if (this.entries.length === 0) return null;
     const playMs = nowMs - median(this.lags) - this.intervalMs();
@@ -79,8 +79,8 @@ function median(values: number[]): number {
   return sorted[sorted.length >> 1];
 }
 
-// Interpolates between states `a` and `b`. Only the numbers of moving things are interpolated. All
-// other values are those of `a`.
+// Interpolates between states `a` and `b`. Only the numbers that describe motion are interpolated.
+// All other values are those of `a`.
 export function interpolate(a: State, b: State, t: number): State {
   const hand = (side: Side) => ({
     ...a.hands[side],

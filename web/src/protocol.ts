@@ -32,15 +32,15 @@ export interface ArmSpec extends RobotSpec {
   handle: Pose;
 }
 
-// The colour is red, green, blue, from 0 to 1.
+// The colour consists of red, green and blue, each from 0 to 1.
 export type ObjectSpec =
     {urdf: string} | {shape: 'box' | 'cylinder' | 'sphere'; size: number[]; color?: Vec3};
 // A movable object. The states contain the pose of this body.
 export type MovableSpec = ObjectSpec & {name: string};
 
-// The dimensions [m]. Box: x, y, z; cylinder and capsule: radius, length along z (of a capsule
-// without its caps); sphere: radius; plane: x, y, with its normal along z. The colour is red,
-// green, blue, from 0 to 1.
+// The dimensions [m]. The sizes are x, y, z of a box, the radius and the length along z of a
+// cylinder or capsule (without the caps), the radius of a sphere, or x, y of a plane whose normal
+// is along z. The colour consists of red, green and blue, each from 0 to 1.
 export interface FixtureSpec {
   shape: 'box' | 'cylinder' | 'capsule' | 'sphere' | 'plane';
   size: Vec3;
@@ -70,9 +70,9 @@ export interface SceneSpec {
   simulated: boolean;
   operator: 'virtual' | 'browser' | 'person';
   rate: number;
-  // The operator in W: the eyes at the start, the direction of view (horizontal), and the ground
-  // between the feet, which are `feet` [m] apart. If the ground is missing, the other values are
-  // assumptions.
+  // The operator in W. The values are the eyes at the start, the horizontal direction of view, and
+  // the ground between the feet. The distance between the feet is `feet` [m]. If the ground is
+  // missing, the other values are assumptions.
   viewpoint: {eye: Vec3; forward: Vec3; guess: boolean; ground: Vec3 | null; feet: number};
   cobot: RobotSpec;
   object: ObjectSpec;
@@ -100,7 +100,7 @@ export interface SceneSpec {
   results?: Results;                                // present after the end of the run
 }
 
-// A figure of a run, as one number or one number per hand.
+// A result of a run, given as one number or as one number per hand.
 export interface Figure {
   name: string;
   value?: string;
@@ -315,13 +315,14 @@ export class StateDecoder {
   }
 }
 
-// Identifies the scenario. Titles may be equal, but files of one folder have different names.
+// Identifies the scenario. Two scenarios may have the same title, but files in one folder have
+// different names.
 export function scenarioOf(spec: SceneSpec): string {
   return spec.file ?? spec.name;
 }
 
-// Returns the time stamp of a state on the server's clock [ms]: the start of its tick or, in
-// virtual time, the time of sending.
+// Returns the time stamp of a state on the server's clock [ms]. This is the start of the state's
+// tick or, in virtual time, the time of sending.
 export function stampMs(state: State): number {
   return (state.wallNs > 0 ? state.wallNs : state.sentNs) / 1e6;
 }

@@ -25,7 +25,8 @@ export class PathScore {
     this.done = null;
   }
 
-  // Call this for each state with its distance from the path [m], which is NaN if there is no path.
+  // Call this function for each state with the object's distance from the path [m], which is NaN if
+  // there is no path.
   add(state: State, spec: SceneSpec, error: number) {
     if (!Number.isFinite(error)) return;
     if (!follows(state, spec)) {
@@ -47,7 +48,7 @@ export class PathScore {
     this.largest = Math.max(this.largest, error);
   }
 
-  // Returns the score of the last attempt, once it has ended.
+  // Returns the score of the last attempt after this attempt has ended.
   get result(): Score | null {
     return this.done;
   }

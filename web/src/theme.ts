@@ -1,4 +1,5 @@
-// The style is dark or light as the system prefers, until the person chooses one of them.
+// The style is dark or light according to the system's setting, until the person chooses one of
+// them.
 
 export type Theme = 'dark' | 'light';
 const kKey = 'predictor.theme';

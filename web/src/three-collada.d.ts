@@ -1,4 +1,4 @@
-// Declares the types that the page uses of two parts of three.js's ColladaLoader. No types are
+// Declares the types of two parts of three.js's ColladaLoader that the page uses. No types are
 // published.
 declare module 'three/examples/jsm/loaders/collada/ColladaParser.js' {
   export interface Geometry {

@@ -1,4 +1,4 @@
-// Monitors whether the run still sends states and whether it followed a stop request. A page that
+// Monitors whether the run still sends states and whether it obeyed a stop request. A page that
 // shows an old state must not suggest that its stop button works.
 import {kSides, RunState, State} from './protocol';
 
@@ -17,14 +17,14 @@ export class RunWatch {
   private tick = NaN;
   private state: RunState = 'INIT';
 
-  // The first state after a new connection must arrive within the same time.
+  // After a new connection, the first state must arrive within the same time.
   reset() {
     this.silentMs = 0;
     this.askedMs = NaN;
     this.tick = NaN;
   }
 
-  // A state has arrived. A repeated tick does not count.
+  // A state has arrived. A repeated tick is not regarded as a new state.
   heard(tick: number, state: RunState) {
     if (tick === this.tick) return;
     this.tick = tick;
@@ -33,12 +33,12 @@ export class RunWatch {
     if (isStopped(state)) this.askedMs = NaN;
   }
 
-  // Called when the page has sent a stop request.
+  // This function is called when the page has sent a stop request.
   asked() {
     if (!isStopped(this.state) && Number.isNaN(this.askedMs)) this.askedMs = 0;
   }
 
-  // Call this often, with the page's clock [ms].
+  // Call this function often, with the time of the page's clock [ms].
   pass(nowMs: number) {
     const stepMs = Math.min(Math.max(nowMs - this.lastMs, 0), kLongestStepMs);
     this.lastMs = nowMs;
@@ -58,13 +58,13 @@ export class RunWatch {
   }
 }
 
-// Detects the events that must alert a person in a headset: a stop, a power-off at the end of a
-// stop, an arm's fault, an arm that keeps its power, and the loss of the run.
+// Detects the events of which a person in a headset must be alerted. They are a stop, a power-off
+// at the end of a stop, the fault of an arm, an arm that keeps its power, and the loss of the run.
 export class AlarmBell {
   private known: string[] = [];
 
-  // Call this often. `state` is the newest state, or null before the first. Returns whether one of
-  // these events has occurred since the last call.
+  // Call this often. `state` is the newest state, or null before the first state. Returns whether
+  // one of these events has occurred since the last call.
   rings(state: State | null, trouble: boolean): boolean {
     const now = state ? [] : this.known.filter((it) => it !== 'trouble');
     if (trouble) now.push('trouble');

@@ -40,7 +40,7 @@ function trouble(name: 'closed' | 'silent' | 'ignored', mayStop: boolean): Troub
   };
 }
 
-// When the run has ended, there is no problem, but nothing to stop either.
+// When the run has ended, there is no problem, but there is also nothing to stop.
 function atEnd(name: 'results' | 'ended'): Trouble {
   return {
     title: message(`link.${name}.title`), meaning: message(`link.${name}.meaning`),
@@ -67,7 +67,8 @@ function onSimulatedArms(words: Trouble): Trouble {
   return {...words, emergency: message('link.simulated.emergency')};
 }
 
-// Returns the words for a lost connection, a silent run or a stop that was not obeyed.
+// Returns the words for a lost connection, for a run that sends no states, or for a stop request
+// without effect.
 export function lossWords(name: keyof typeof kSimulatedTroubles, simulated: boolean): Trouble {
   return (simulated ? kSimulatedTroubles : kTroubles)[name];
 }
@@ -79,8 +80,8 @@ export interface StopWords {
 
 type StopId = MessageId extends infer Id ? Id extends `stop.${infer Name}.advice` ? Name : never : never;
 
-// Returns the name of the stop in the catalogue. The measured quantity may be more specific than
-// the cause.
+// Returns the name of the stop in the catalogue. The measured quantity may describe the stop more
+// precisely than the cause does.
 function stopId({cause, quantity}: Reason): StopId | null {
   if (cause === 'none') return null;
   if (cause === 'stale' && quantity === 'arm_age') return 'arm_stale';
@@ -96,7 +97,8 @@ function stopId({cause, quantity}: Reason): StopId | null {
   return cause;
 }
 
-// Returns whether an arm reports a fault. Such an arm does not move until the program is restarted.
+// Returns whether an arm reports a fault. An arm with a fault does not move until the program is
+// restarted.
 function armAtFault(state: State): boolean {
   return kSides.some((side) => state.hands[side].present && state.hands[side].armFault);
 }
@@ -107,14 +109,14 @@ function needsANewStart(state: State): boolean {
     cause === 'device' || (cause === 'stale' && quantity === 'count'));
 }
 
-// Formats a value with this number of decimals. It never writes a minus sign before zero.
+// Formats a value with this number of decimals. The result never has a minus sign before zero.
 export function fixed(value: number, decimals: number): string {
   const text = value.toFixed(decimals);
   return /^-[0.]*$/.test(text) ? text.slice(1) : text;
 }
 
 // Formats a value in readable units, such as millimetres and degrees. `more` is the number of
-// additional digits.
+// digits in addition to the usual ones.
 export function readable(value: number, quantity: Quantity, more = 0): string {
   const degrees = (value * 180) / Math.PI;
   const d = 1 + more;
@@ -161,7 +163,7 @@ export function sideWords(side: Side): string {
   return side === 'left' ? 'Left hand' : 'Right hand';
 }
 
-// Describes the fault: its kind, its place and its amount.
+// Describes the fault by its kind, its place and its amount.
 function sentence(why: Reason): string {
   const id = stopId(why);
   const text = id ? message(`stop.${id}.cause`) : '';
@@ -175,7 +177,8 @@ function advice(why: Reason): string {
   return id ? message(`stop.${id}.advice`) : '';
 }
 
-// Returns null unless a stop occurred. If the run is `over`, there is nothing to reset.
+// Returns null unless a stop occurred. If `over` is true, the run has ended and there is nothing to
+// reset.
 export function stopWords(state: State, simulated: boolean, over = false): StopWords | null {
   if (state.stop.cause === 'none') return null;
   // A reset is not enough if the power is off or the program must be restarted.
@@ -190,7 +193,8 @@ export function stopWords(state: State, simulated: boolean, over = false): StopW
   return {cause: sentence(state.stop) + because, advice: [...steps, next].join(' ')};
 }
 
-// Returns the console's text about arms that should be without power but are not, or '' without any.
+// Returns the console's text about arms that should be without power but are not, or '' if there
+// are no such arms.
 function powerWords(state: State): string {
   const kept = kSides.filter((side) => state.hands[side].present && state.hands[side].keepsPower);
   if (kept.length === 0) return '';
@@ -200,13 +204,14 @@ function powerWords(state: State): string {
 
 const kFreeForce = 5;  // a handle with a larger force is not free [N]
 
-// Returns the remaining danger after a stop, if there is one. Only the worst danger is returned. An
-// emergency stop is worse than all others.
+// Returns the remaining danger after a stop, if there is one. The function returns only the worst
+// danger. The danger after an emergency stop is regarded as the worst.
 export function dangerWords(state: State, simulated: boolean): string {
   return powerWords(state) || loadedWords(state, simulated);
 }
 
-// Returns the text about hands that real arms still press on after a stop, or '' if there are none.
+// Returns the text about hands on which real arms still press after a stop, or '' if there are no
+// such hands.
 function loadedWords(state: State, simulated: boolean): string {
   if (simulated || (state.state !== 'HELD' && state.state !== 'UNPOWERED')) return '';
   const loaded = kSides.flatMap((side) => {
@@ -238,8 +243,8 @@ export const kParameterWords = {
 // The level that shows how close a wrench is to its threshold.
 export type Level = 'green' | 'orange' | 'red';
 
-// Returns green below 50 % of the threshold, orange up to 80 %, and red above, so that red appears
-// before the stop.
+// Returns green below 50 % of the threshold, orange up to 80 %, and red above 80 %, so that red
+// appears before the stop.
 export function level(value: number, threshold: number): Level {
   const ratio = value / threshold;
   return ratio < 0.5 ? 'green' : ratio <= 0.8 ? 'orange' : 'red';
@@ -254,8 +259,8 @@ export function gripWords(state: State): string {
   return words === undefined ? '' : `The gripper ${words}.`;
 }
 
-// Describes the effect of the event that began last while an event acts, and whether the virtual
-// cobot has stopped itself.
+// While an event acts, describes the effect of the event that began last. Also describes whether
+// the virtual cobot has stopped itself.
 export function hazardWords(state: State, spec: SceneSpec): string {
   const meaning = state.events === 0 ? undefined : spec.hazards?.[state.latestEvent - 1];
   const words = meaning === undefined ? [] : [`Event: ${meaning}.`];

@@ -12,7 +12,8 @@ constexpr std::array<double, 3> kBehind = {0.35, 0.45, 0.55};
 constexpr std::array<double, 3> kOutside = {-0.05, 0.1, 0.25};
 constexpr std::array<double, 4> kBelow = {0.2, 0.3, 0.4, 0.5};
 
-// A placement of both arms, with the bases at the same position relative to their handles.
+// A placement of both arms in which the base of each arm has the same position relative to its
+// handle.
 struct Placed {
   Vector3 offset = Vector3::Zero();  // position of the left base relative to its handle; mirrored
                                      // for the right arm [m]
@@ -98,7 +99,8 @@ class Search {
     return true;
   }
 
-  // Tries one step in both directions of each coordinate. Returns whether the result improved.
+  // Tries one step in both directions of each coordinate. Returns whether one of the steps improved
+  // the result.
   bool Sweep(double step) {
     bool better = false;
     for (int axis = 0; axis < 3; ++axis)

@@ -12,10 +12,10 @@ using OnProgress = std::function<void(double)>;
 
 using TaskPathList = std::vector<std::vector<IntendedSample>>;
 
-// Returns the comfort of an arm or a link pair on its path. The comfort is the smallest of the
-// results, after each result was divided by a comfortable value (kComfortable... below). A value of
-// at least 1 is comfortable. A negative value means that the path leaves the reach; the later the
-// path leaves the reach, the closer the value is to 0.
+// Returns the comfort of an arm or a link pair on its path. Each result is divided by a comfortable
+// value (kComfortable... below), and the comfort is the smallest of these ratios. A value of at
+// least 1 is comfortable. A negative value means that the path leaves the reach. The later the path
+// leaves the reach, the closer the value is to 0.
 double Comfort(const ArmReach& reach, const RenderingSpec& rendering);
 double Comfort(const PairReach& pair, const RenderingSpec& rendering);
 double Comfort(const Reach& reach, const RenderingSpec& rendering);  // the smallest of all
@@ -31,10 +31,11 @@ struct BaseProposal {
   double comfort = 0;                                                    // comfort of `reach`
 };
 
-// Returns the bases whose comfort over the paths is greatest; their orientation is the current one.
-// The right arm's base mirrors the left one's. The search starts with the best placement among the
-// current one and a grid behind, beside and below the handles. The search then moves the bases
-// along x, y and z in steps of 0.1, 0.05 and 0.025 m. The result is repeatable and rounded to 5 mm.
+// Returns the bases with the greatest comfort over the paths. The orientation of the bases stays
+// the same. The right arm's base mirrors the left arm's base. The search starts with the best
+// placement among the current one and a grid behind, beside and below the handles. The search then
+// moves the bases along x, y and z in steps of 0.1, 0.05 and 0.025 m. The result is repeatable and
+// rounded to 5 mm.
 BaseProposal SearchBases(const Scenario& scenario, const DeviceReach& device,
                          const TaskPathList& paths, const OnProgress& progress);
 

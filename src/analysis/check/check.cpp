@@ -22,8 +22,8 @@ constexpr double kSlow =
     4;  // [Hz]; slower oscillations are caused by the virtual cobot, faster ones by the arms
 constexpr double kNearTorqueLimit = 0.8;  // share that causes a warning
 
-// Returns the pose that the object would have without its weight, with the attachment at its zero
-// position.
+// Returns the pose that the object would have if the object had no weight and the attachment were
+// at its zero position.
 Pose UnsaggedObject(const Scenario& s, const RobotModel& cobot) {
   JointVector q = JointVector::Zero(cobot.dof());
   for (std::size_t j = 0; j < s.cobot.posture.size(); ++j)
@@ -105,11 +105,11 @@ class Judge {
     const char* unit = m.torque_is_force ? "N" : "N·m";
     // If a joint exceeded its torque limit, the virtual world would have no equilibrium.
     if (m.torque_share < kNearTorqueLimit) return;
-    Warn(
-        Formatted("Holding the object at rest needs %.1f %s at the cobot's joint %s, whose limit "
-                  "is %.1f %s. Little torque is left for motion. Use a lighter object, start in a "
-                  "posture closer to the base, or raise cobot.effort_limit.",
-                  m.torque, unit, m.torque_joint.c_str(), m.torque_limit, unit));
+    Warn(Formatted(
+        "Holding the object at rest requires %.1f %s at the cobot's joint %s, but the limit of "
+        "this joint is %.1f %s. Little torque is left for motion. Use a lighter object, start in a "
+        "posture closer to the base, or raise cobot.effort_limit.",
+        m.torque, unit, m.torque_joint.c_str(), m.torque_limit, unit));
   }
 
   void Controller() {
@@ -216,8 +216,8 @@ class Judge {
     const StabilityReport& r = *report_->stability;
     if (Suffices(r.margin)) return;
     const bool other_lead = !r.chosen && (Suffices(r.without_lead) || Suffices(r.full_lead));
-    const char* lead = r.withheld   ? "First measure the arms' velocity loops (see the warnings); "
-                                      "until then there is no lag compensation. "
+    const char* lead = r.withheld   ? "First measure the arms' velocity loops (see the warnings), "
+                                      "because lag compensation requires this measurement. "
                        : other_lead ? "Change rendering.lead, or set it to auto. "
                                     : "";
     const std::string change =
@@ -233,19 +233,21 @@ class Judge {
         r.margin.gain, 1e3 * r.lead, kMinMargin, r.margin.frequency, lead, change.c_str()));
   }
 
-  // The loop may be unstable without contact, too; Stability reports this.
+  // The loop may be unstable even without contact. The function Stability reports such a loop.
   void Contact(const ContactReport& r) {
     if (r.stable || report_->stability->margin.gain < 1) return;
     const std::string key = "environment.fixtures." + std::to_string(r.fixtures[0]);
     const std::string limit =
         r.yields && r.limit.reached
             ? Formatted(
-                  " With its damping, the total stiffness of all points of contact can be at most "
-                  "%.3g N/m; with a larger stiffness, the loop would oscillate at %.1f Hz.",
+                  " With the damping of this fixture, the total stiffness of all points of contact "
+                  "can be at most %.3g N/m; with a larger stiffness, the loop would oscillate at "
+                  "%.1f Hz.",
                   r.limit.stiffness, r.limit.frequency)
             : "";
     Warn(key + ": the haptic loop oscillates while the object touches this fixture." + limit +
-         " Reduce its stiffness, increase its damping, use lighter hands, or faster arms.");
+         " Reduce the stiffness of the fixture, increase its damping, use lighter hands, or use "
+         "faster arms.");
   }
 
   const Scenario& s_;

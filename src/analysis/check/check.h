@@ -79,8 +79,8 @@ struct CheckReport {
   std::optional<StabilityReport> stability;  // empty without a device
   std::vector<ContactReport> contacts;       // with fixtures that touch the object; the same
   // `stop` is a stop from `handle_speed` [m/s] as the arms perform it (StopOfArms). `longest_stop`
-  // is the same stop with a joint at its speed limit (MinStopAcceleration). Both are empty without
-  // a device.
+  // is the same stop with a joint at its speed limit (MinStopAcceleration). Both stops are empty
+  // without a device.
   std::optional<StopBudget> stop, longest_stop;
   double handle_speed = 0;
   std::vector<std::string> problems;  // sentences, each with its remedy; if there are any, the
@@ -110,12 +110,14 @@ inline bool Suffices(const StabilityMargin& margin) {
 }
 
 // Returns a hand with another mass [kg] and stiffness [N/m] but the same damping ratio. `stiffness`
-// is its largest component. The other components and the rotational stiffness change in proportion.
+// is the largest component of the hand's stiffness. The other components of the stiffness and the
+// rotational stiffness change in proportion.
 HandSpec Varied(HandSpec hand, double mass, double stiffness);
 
 // Computes the stability margins of the loop. `world` is at rest, and no hand holds a handle. The
-// table covers a range of hands. Each is the scenario's hand with another mass, and with its
-// stiffness scaled so that the largest component has a given value (same damping ratio).
+// table covers a range of hands. Each of these hands is the scenario's hand with another mass and
+// another stiffness but the same damping ratio. The largest component of the stiffness has a given
+// value.
 StabilityReport CheckStability(const Scenario& scenario, const LinearModel& world,
                                const std::vector<double>& masses,
                                const std::vector<double>& stiffnesses, const OnProgress& progress);

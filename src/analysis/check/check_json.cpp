@@ -281,7 +281,7 @@ std::string CheckSchema() {
   CheckReport example = Example();
   Json schema = SchemaOf(example);
   Json& properties = schema["properties"];
-  // Some members have two forms, so this example contains their second form.
+  // Some members have two forms. This example contains the second form of these members.
   example.models.torque_is_force = true;
   example.shift_proposal.emplace().reach = *example.reach;
   example.proposal.reset();

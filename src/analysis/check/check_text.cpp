@@ -33,8 +33,8 @@ void AddModels(const CheckReport& report, std::string* text) {
 
 void AddArm(const CheckReport& report, const Reach& reach, std::size_t h, std::string* text) {
   const ArmReach& r = *reach.arms[h];
-  // An arm that is about to lose its handle is stretched or at a joint limit. The figures of such
-  // an arm would say nothing about the task.
+  // Just before an arm loses its handle, the arm is stretched or at a joint limit. The figures of
+  // such an arm are not meaningful for the task.
   if (r.lost) {
     AppendLine(text,
                "  %-5s            CANNOT REACH ITS HANDLE from %.2f s on (%.0f %% of the path)",
@@ -91,7 +91,8 @@ void AddProposal(const CheckReport& report, const BaseProposal& p, std::string* 
   AppendLine(text, "%s", "");
   if (!IsWorthIt(report, p.comfort)) {
     AppendLine(text,
-               "Bases: no better positions were found nearby (comfort %.2f; 1 is comfortable).",
+               "Bases: no better positions were found nearby (the comfort is %.2f; a value of 1 is "
+               "comfortable).",
                report.comfort);
     return;
   }
@@ -114,7 +115,8 @@ void AddProposal(const CheckReport& report, const ShiftProposal& p, std::string*
   AppendLine(text, "%s", "");
   if (!IsWorthIt(report, p.comfort)) {
     AppendLine(text,
-               "Scene: no better place for these arms was found (comfort %.2f; 1 is comfortable).",
+               "Scene: no better place for these arms was found (the comfort is %.2f; a value of 1 "
+               "is comfortable).",
                report.comfort);
     return;
   }

@@ -16,8 +16,8 @@ constexpr double kAtRest = 0.05;      // frequency that counts as rest [Hz]
 constexpr double kSameNormal = 0.99;  // cosine of the angle between normals that count as equal
 constexpr double kPoints = 4;         // where a flat face touches another
 
-// Returns the surface that the point is farthest outside of: a side of a box, or the cap or mantle
-// of a cylinder.
+// Returns the outward normal of the surface from which the point lies farthest outside. This
+// surface is a side of a box, or the cap or mantle of a cylinder.
 Vector3 FacingSide(const FixtureSpec& fixture, const Vector3& p) {
   if (fixture.shape == FixtureShape::kBox) {
     Eigen::Index axis = 0;

@@ -22,9 +22,9 @@ struct WallLimit {
   bool reached = true;   // false: none up to kStiffestWall makes it oscillate
 };
 
-// Returns the limit for a hand and a lead [s] to 5 %. `wall` specifies the place, direction and
-// damping of the wall; the function varies its stiffness from soft to stiff. Walls that are much
-// stiffer than the limit may be stable again.
+// Returns the limit for a hand and a lead [s], with an accuracy of 5 %. `wall` specifies the place,
+// direction and damping of the wall. The function varies the stiffness of the wall from soft to
+// stiff. The loop may be stable again with walls that are much stiffer than the limit.
 WallLimit StiffestStableWall(const LinearModel& world, const Scenario& scenario,
                              const HandSpec& hand, double lead, const Wall& wall,
                              LoopModel model = LoopModel::kWithReserve);
@@ -35,18 +35,19 @@ struct FeltAt {
   FeltImpedance felt;
 };
 
-// A wall that stands for one point of contact with fixtures of the same kind that lie on the same
-// side of the object.
+// A wall that represents one point of contact. The wall stands for all fixtures of the same kind
+// that lie on the same side of the object.
 struct FixtureWall {
   std::vector<std::size_t> fixtures;  // their numbers
   Wall wall;
   bool yields = false;  // they have a stiffness
-  // Returns the wall with the fixtures' own damping if the fixtures yield, and otherwise without
-  // damping, because the law of a contact that does not yield applies only with its own stiffness.
+  // Returns the wall for a search over stiffnesses. The wall has the fixtures' own damping if the
+  // fixtures yield, and no damping otherwise. The damping of a contact that does not yield is valid
+  // only together with the contact's own stiffness.
   Wall Varying() const;
 };
 
-// The prediction for contact with such fixtures.
+// The prediction for contact with the fixtures that a wall represents.
 struct ContactReport : FixtureWall {
   bool stable = true;  // touched at one point and, if they yield, at four
   WallLimit limit;     // with the wall Varying(), for the scenario's hand
@@ -74,7 +75,7 @@ std::vector<ContactReport> CheckContacts(const Scenario& scenario, const LinearM
 // Returns the damping part of an impedance [N/m] at a frequency [Hz], in N·s/m.
 double DampingOf(const std::complex<double>& impedance, double frequency);
 
-// Returns the unit normal of a fixture's side that faces the point p_W, out of the fixture, in W.
+// Returns the outward unit normal, in W, of the fixture's side that faces the point p_W.
 Vector3 NormalToward(const FixtureSpec& fixture, const Vector3& p_W);
 
 }  // namespace predictor

@@ -8,7 +8,7 @@
 namespace predictor {
 namespace {
 
-// Returns what to change so that the sampled loop is stable.
+// Returns sentences that state what to change so that the sampled loop is stable.
 std::string Reduction(const SampledLoop& loop) {
   if (loop.stable_damping > 0)
     return Formatted(

@@ -55,7 +55,8 @@ ArmFollower::Track ArmFollower::Follow(const std::vector<IntendedSample>& path,
   Track track;
   track.links.reserve(path.size());
   RobotData data(*model_);
-  // The model's base is fixed, so the goals are shifted in the opposite direction instead.
+  // The base of the model is fixed. Instead of the base, the goals are shifted in the opposite
+  // direction.
   const auto goal = [&](std::size_t k) {
     Pose X = path[k].X_WO * X_OD_;
     X.p -= shift;
@@ -71,7 +72,8 @@ ArmFollower::Track ArmFollower::Follow(const std::vector<IntendedSample>& path,
     if (!reached && !track.reach.lost) track.reach.lost = path[k].time;
     if (track.reach.lost && give_up) break;
     if (!track.reach.lost) ++good;
-    // A posture that misses its goal, and the motion to it, provide no information.
+    // A posture that misses its goal provides no information, and neither does the motion to this
+    // posture.
     if (!rests && !track.reach.lost) {
       if (k > 0) JudgeSpeed(before, q, path[k].time - path[k - 1].time, path[k].time, &track.reach);
       Judge(q, path[k].time, &data, &track.reach);
@@ -106,7 +108,7 @@ void ArmFollower::JudgeSpeed(const JointVector& from, const JointVector& to, dou
     const double approach =
         ApproachSpeed(distance - rendering_.joint_security, gain, limits_.acceleration[j]);
     const double allowed = std::min(limits_.velocity[j], approach);
-    // Tiny motions away from a limit that is already violated do not count as speed.
+    // If a limit is already violated, tiny motions away from this limit do not count as speed.
     if (std::fabs(v) > 1e-6)
       reach->joint_speed.Raise(allowed > kBlocked ? std::fabs(v) / allowed : kInfinite, time, j);
   }

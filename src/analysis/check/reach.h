@@ -47,7 +47,7 @@ struct PairReach {
   Extreme distance = Extreme::Smallest();  // [m]
 };
 
-// The motion of a handle itself.
+// The largest speeds of a handle on the path.
 struct HandleReach {
   Extreme speed;           // [m/s]
   Extreme rotation_speed;  // [rad/s]
@@ -77,7 +77,7 @@ class ArmFollower {
 
   // Follows the object's path sample by sample with damped least squares. The base is moved by
   // `shift` [m]. As in rendering, the joints move as little as possible. The first posture is found
-  // as in the emulator. With `give_up`, the function returns as soon as the handle is lost.
+  // as in the emulator. If `give_up` is true, the function returns as soon as the handle is lost.
   Track Follow(const std::vector<IntendedSample>& path, const Vector3& shift, bool give_up) const;
 
  private:
@@ -105,13 +105,14 @@ class DeviceReach {
     return arms_[static_cast<std::size_t>(hand)];
   }
 
-  // Returns the worst values over all paths, with the bases moved by `shift` [m]. With `give_up`, a
-  // path ends as soon as a handle is lost.
+  // Returns the worst values over all paths, with the bases moved by `shift` [m]. If `give_up` is
+  // true, a path ends as soon as a handle is lost.
   Reach Over(const std::vector<std::vector<IntendedSample>>& paths,
              const std::array<Vector3, kHands>& shift = {Vector3::Zero(), Vector3::Zero()},
              bool give_up = false) const;
-  // Sets the distances of the link pairs to the smaller of their present values and the distances
-  // between two tracks along the same path. The first pair is the first of `pairs`.
+  // Lowers the distances of the link pairs to the smallest distances that the links of two tracks
+  // have along the same path. The distances of the first pair of links belong to the first element
+  // of `pairs`.
   void Distances(const ArmFollower::Track& left, const ArmFollower::Track& right,
                  const std::vector<IntendedSample>& path, std::vector<PairReach>* pairs) const;
   std::vector<PairReach> NoDistances() const;

@@ -41,12 +41,12 @@ StartReport DescribeStart(const Scenario& s, const RobotModel& cobot, const Worl
 std::vector<std::string> StartWarnings(const StartReport& start) {
   std::vector<std::string> warnings;
   const auto inside = [&](const LinkGap& gap, const char* why) {
-    warnings.push_back(
-        Formatted("At the start, the object overlaps the cobot's link %s by %s%s. No contact acts "
-                  "between them, so the run would be possible only in the simulation. Choose "
-                  "another cobot.posture, or place the object further away from the link with "
-                  "object.attachment.on_end_effector.",
-                  gap.link.c_str(), Millimetres(-gap.distance).c_str(), why));
+    warnings.push_back(Formatted(
+        "At the start, the object overlaps the cobot's link %s by %s%s. No contact acts between "
+        "the object and this link, so the run would be possible only in the simulation. Choose "
+        "another cobot.posture, or place the object further away from the link with "
+        "object.attachment.on_end_effector.",
+        gap.link.c_str(), Millimetres(-gap.distance).c_str(), why));
   };
   if (Overlaps(start.gaps.links)) inside(start.gaps.links, "");
   if (!start.is_outside && Overlaps(start.gaps.hand))

@@ -1,4 +1,4 @@
-// Examines the position of cobot and object at the start of a run, at rest.
+// Examines where the cobot and the object are at the start of a run, when both are at rest.
 #pragma once
 
 #include <string>
@@ -27,7 +27,7 @@ struct StartReport {
 // `cobot` is the cobot of the scenario, and `world` is in its initial state.
 StartReport DescribeStart(const Scenario& scenario, const RobotModel& cobot, const World& world);
 
-// Returns sentences about an object that is inside the cobot or that the floor carries.
+// Returns sentences that warn of an object that overlaps the cobot or that rests on the floor.
 std::vector<std::string> StartWarnings(const StartReport& start);
 
 // Appends the lines of the report for the user.

@@ -99,7 +99,7 @@ Plot ImpedancePlot(const ContactRun& run, std::size_t k) {
   plot.title = "Requested and rendered impedance: " + Title(run.scenario, r);
   plot.caption =
       "Ratio of force to displacement of the handles, predicted for contact at one point: the "
-      "ratio that the virtual world requests, and the ratio that the arms render.";
+      "requested ratio, which the virtual world has, and the ratio that the arms render.";
   plot.x = {.label = "Frequency", .unit = "Hz", .log = true};
   plot.x.low = frequency.front();
   plot.x.high = frequency.back();

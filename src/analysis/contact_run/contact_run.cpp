@@ -10,8 +10,8 @@
 namespace predictor {
 namespace {
 
-// The object as a free body among the fixtures. The object's motion comes from the records, so any
-// engine finds the same contacts.
+// Returns an engine in which the object is a free body among the fixtures. The object's motion
+// comes from the records, so any engine finds the same contacts.
 std::unique_ptr<Engine> FreeObject(Scenario scenario) {
   scenario.simulation.engine = EngineKind::kMujoco;
   return MakeEngine(scenario, *LoadCobotModel(scenario), false, Holding::kFree);
@@ -69,8 +69,8 @@ void ContactCollector::AddPoint(const Contact& contact, const FrameMotion& O,
       std::max(0.0, *fixture.stiffness * contact.depth - fixture.damping * contact.normal_W.dot(v));
 }
 
-// Returns the fixtures that are present. As in the simulation, a fixture that an event lets appear
-// is added only when it does not overlap the object.
+// Returns the fixtures that are present. As in the simulation, a fixture that appears because of an
+// event is added only when this fixture does not overlap the object.
 std::uint64_t ContactCollector::Present(const TickRecord& record,
                                         const std::vector<Touch>& touches) {
   const std::uint64_t all = events_.obstacles();

@@ -1,5 +1,5 @@
-// Contact with fixtures in a recorded run and in the prediction of `check`, and the report's
-// chapter about this contact.
+// Describes contact with fixtures in a recorded run and in the prediction of `check`, and writes
+// the report's chapter about this contact.
 #pragma once
 
 #include <cmath>
@@ -18,12 +18,12 @@
 
 namespace predictor {
 
-// Contact of the object with one fixture, from the recorded motion of the object.
+// Contact of the object with one fixture, computed from the recorded motion of the object.
 struct ContactFacts {
   double time = 0;   // in contact [s]
   double depth = 0;  // deepest penetration [m]
   // Largest total force of all points of contact [N], computed from the fixture's stiffness and
-  // damping and from depth and speed. Only for a fixture that yields.
+  // damping and from depth and speed. The force is computed only for a fixture that yields.
   double force = 0;
   double pressing = 0;  // largest force with which the hands together pressed on the fixture while
                         // the object touched it, by the force sensors [N]
@@ -32,10 +32,10 @@ struct ContactFacts {
 // Returns whether a fixture of the scenario can touch the object.
 bool HasContact(const Scenario& scenario);
 
-// Collects these facts while records arrive.
+// Collects the ContactFacts of a run while records arrive.
 class ContactCollector {
  public:
-  // `scenario` includes its model files. Throws InputError.
+  // `scenario` contains the model files. Throws InputError.
   explicit ContactCollector(const Scenario& scenario);
   // Adds the next record.
   void Add(const TickRecord& record);

@@ -51,7 +51,7 @@ nlohmann::json ParseArm(const std::string& file) {
   }
 }
 
-// Returns the indices of the parameters that the file names.
+// Returns the indices of the parameters whose names occur in the file.
 std::vector<int> ParametersIn(const nlohmann::json& json) {
   std::vector<int> found;
   for (const auto& entry : json.at("parameters")) {

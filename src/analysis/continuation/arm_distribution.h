@@ -39,9 +39,10 @@ class ArmDistribution {
   // centred on `hand`. The standard deviations of the logarithms are 0.35 (stiffness, common to all
   // axes), 0.2 (in addition for each axis), 0.35 (damping ratio), 0.3 (mass) and 0.2 (reflex
   // delay). The standard deviation of the reflex gain is 0.15. These standard deviations are design
-  // choices. With the default hand, they put 95 % of the people within the ranges that Mussa-Ivaldi
-  // et al. 1985, Tsuji et al. 1995, Dolan et al. 1993 and Pruszynski & Scott 2012 report. The
-  // ranges are quoted from the project's reference and were not checked again.
+  // choices. With the default hand, these standard deviations put 95 % of the people within the
+  // ranges that Mussa-Ivaldi et al. 1985, Tsuji et al. 1995, Dolan et al. 1993 and Pruszynski &
+  // Scott 2012 report. The ranges are quoted from the project's reference and were not checked
+  // again.
   static ArmDistribution Prior(const HandSpec& hand);
   // Makes the distribution from the mean and the covariance of the parameters themselves, in their
   // units. Throws InputError if a mean is not positive or the matrix is not a covariance.

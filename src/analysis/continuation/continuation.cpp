@@ -97,7 +97,7 @@ std::array<JointVector, kHands> JointsIn(const TickRecord& record) {
   return q;
 }
 
-// An emulator without the limits, for use by one thread.
+// An emulator without the limits, which a single thread uses.
 class Continuer {
  public:
   Continuer(const StoppedRun& run, const OperatorMaker& recorded) : run_(run) {
@@ -214,8 +214,8 @@ Interval90 Continuation::IntervalOf(double ContinuedRun::*value) const {
   for (const ContinuedRun& run : runs)
     if (std::isfinite(run.*value)) values.push_back({run.*value, run.ending == Ending::kFault});
   // With these two probabilities, a further draw lies in the interval with a probability of 90 %,
-  // whatever the number n of draws is. The ranks of the order statistics are p (n + 1), but
-  // Quantile counts them as 1 + p' (n - 1).
+  // for any number n of draws. The ranks of the order statistics are p (n + 1), but Quantile counts
+  // them as 1 + p' (n - 1).
   const auto n = static_cast<double>(values.size());
   const auto probability = [n](double p) {
     return n < 2 ? p : std::clamp((p * (n + 1) - 1) / (n - 1), 0.0, 1.0);

@@ -28,10 +28,10 @@ enum class Ending {
   kFault,         // the emulator stopped for another reason: what follows is not known
 };
 inline constexpr int kEndings = 5;
-// Returns "settles", "stays_above", "diverges", "cobot_stops" or "fault".
+// Returns the name of an ending: "settles", "stays_above", "diverges", "cobot_stops" or "fault".
 const char* Name(Ending ending);
 
-// One continued run, from the stop onwards. Forces are readings of the sensors, because the stop is
+// One continued run, beginning at the stop. Forces are readings of the sensors, because the stop is
 // decided from the same readings.
 struct ContinuedRun {
   double peak_force = 0, peak_torque = 0;  // largest of a hand [N], [N·m]
@@ -68,7 +68,7 @@ struct Continuation {
   std::vector<double> past_times,
       past_force;                  // before the stop: time relative to the stop, largest force
   std::vector<ContinuedRun> runs;  // one per draw, in order
-  // If the operator was simulated, the run as this operator would have continued it.
+  // The run as the recorded operator would have continued it, if this operator was simulated.
   std::optional<ContinuedRun> reference;
   std::string no_joint_use;  // why no posture could be judged; empty: it could
 
@@ -92,12 +92,12 @@ struct ContinueOptions {
   OperatorMaker recorded_operator = [](const Scenario& scenario) {
     return MakeOperator(scenario, HandInertia::kInWrench);
   };
-  // Only the caller's thread calls this.
+  // Only the caller's thread calls this function.
   std::function<void(double share)> progress = [](double) {};
 };
 
 // Continues the run in virtual time without the limits of force, torque, coupling, tracking and
-// handle speed. All other faults still stop it. Throws InputError.
+// handle speed. All other faults still stop the run. Throws InputError.
 Continuation Continue(const StoppedRun& run, const ArmDistribution& arms,
                       const ContinueOptions& options);
 

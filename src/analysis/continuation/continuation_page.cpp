@@ -81,7 +81,7 @@ Plot PeakPlot(const Continuation& c) {
   Plot plot;
   plot.id = "peak";
   plot.title = "Largest force of a hand without the stop";
-  plot.caption = "Number of possible operators for each 5 N.";
+  plot.caption = "Number of possible operators in each interval of 5 N.";
   plot.x = {.label = "Largest force", .unit = "N"};
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const ContinuedRun& run : c.runs) {
@@ -134,7 +134,7 @@ std::string ContinuationPage(const Continuation& c, const std::string& recording
   page.Section("summary", "Summary");
   page.Paragraph(Formatted(
       "The emulator stopped this run after %.3f s. Cause: '%s', %s. The run itself shows only that "
-      "the largest force was at least %.1f N. %zu possible operators continued it for %.2g s.",
+      "the largest force was at least %.1f N. %zu possible operators continued the run for %.2g s.",
       c.time, Name(c.cause.cause),
       SeenAndAllowed(c.cause.value, c.cause.limit, c.cause.quantity).c_str(), c.peak_before,
       c.runs.size(), c.horizon));

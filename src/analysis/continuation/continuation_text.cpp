@@ -44,7 +44,7 @@ std::string EndingWords(const Continuation& c) {
 std::vector<std::string> ContinuationAssumptions(const Continuation& c) {
   std::vector<std::string> lines = {
       "All values are modelled. The limits of force, torque, coupling, tracking and handle speed "
-      "are switched off; the arms' own limits and all other faults remain active.",
+      "are switched off. The arms' own limits and all other faults remain active.",
       "The operator's intention is not known. The intention is estimated from the measured force "
       "and motion before the stop. The assumed change of the intention after the stop is a design "
       "choice with a stated spread.",
@@ -52,9 +52,9 @@ std::vector<std::string> ContinuationAssumptions(const Continuation& c) {
       "The arm's impedance: " + c.arm_source + "."};
   if (c.CountOf(Ending::kFault) > 0)
     lines.push_back(
-        "The values of runs that end with another fault are lower bounds. The quantiles take this "
-        "into account (Kaplan-Meier); \"at least\" marks quantiles of which only a bound is "
-        "known.");
+        "The values of runs that end with another fault are lower bounds. The quantiles take these "
+        "lower bounds into account (Kaplan-Meier). The words \"at least\" mark quantiles of which "
+        "only a bound is known.");
   lines.push_back(c.no_joint_use.empty()
                       ? "\"Joint torque over strength\" is the torque of elbows and shoulders at "
                         "the largest force, for the nominal posture at rest, divided by the mean "

@@ -67,7 +67,7 @@ void EstimatedHand::Prepare(const HandRecord& first, double dt, const OperatorDr
 }
 
 // Returns the wrench with which the arm resists a motion, without its inertia. `force` is the force
-// of the hand; the arm becomes stiffer with it.
+// of the hand. The arm becomes stiffer with a larger force.
 Vector6 EstimatedHand::Resist(const Pose& X_W, const Twist& V_W, double force) noexcept {
   const double stiffer = 1 + draw_.stiffening * force / kStiffeningForce;
   const Vector6 stretch = PoseError(X_W, origin_);
@@ -79,8 +79,8 @@ Vector6 EstimatedHand::Resist(const Pose& X_W, const Twist& V_W, double force) n
   return resistance;
 }
 
-// Also fills the delay lines with the past. Between two records, the handle counts as being at
-// rest.
+// The function also fills the delay lines with the values of the past. Between two records, the
+// handle counts as being at rest.
 std::vector<Vector6> EstimatedHand::DriveBefore(std::span<const TickRecord> past, std::size_t hand,
                                                 double record_step) {
   const auto steps = static_cast<int>(std::max(1L, std::lround(record_step / dt_)));

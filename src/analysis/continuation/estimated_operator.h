@@ -1,5 +1,5 @@
-// An operator of whom only the recorded motion and forces are known. This model continues a run
-// after a stop.
+// An operator of whom only the recorded motion and forces are known. This model of the operator is
+// used to continue a run after a stop.
 #pragma once
 
 #include <array>
@@ -14,11 +14,12 @@
 
 namespace predictor {
 
-// The assumptions about the operator after the stop, apart from the arm (design choices). It is
-// unknown how long an intention keeps changing. Each draw assumes that the intention continues to
+// The assumptions about the operator after the stop, apart from the arm (design choices). The
+// duration of a change of intention is unknown. Each draw assumes that the intention continues to
 // change at its present rate until the change is about as large as the hand's present force.
 struct IntentModel {
-  // The time before the stop from which the present rate is taken, log-uniform in this range [s].
+  // The present rate is taken over a time before the stop. The distribution of this time is
+  // log-uniform in this range [s].
   double shortest_trend = 0.04, longest_trend = 0.2;
   // The change after the stop as a multiple of the present force: its median, and the standard
   // deviation of its logarithm. The rate decays with a time constant of at most `longest_change`
@@ -28,18 +29,18 @@ struct IntentModel {
   // in this range [s]. The drive then returns to its mean over the first kBaselineTime of the past,
   // with a time constant of `end_time` [s].
   double chance_of_end = 0.5, earliest_end = 0.15, latest_end = 1.5, end_time = 0.08;
-  // New intentions are modelled by an intended position that moves at a random speed, with this rms
-  // along each axis [m/s], correlated over `wander_time` [s].
+  // New intentions are modelled by an intended position that moves at a random speed. The speed has
+  // this rms along each axis [m/s] and is correlated over `wander_time` [s].
   double wander = 0.08, wander_time = 0.5;
-  // The noise of force and torque: the rms of the noise vectors relative to the present magnitude
-  // of force and torque, correlated over `noise_time` [s]. The noise represents everything that the
-  // model omits.
+  // The rms of the noise vectors of force and torque, relative to the present magnitudes of force
+  // and torque. The noise is correlated over `noise_time` [s]. The noise represents everything that
+  // the model omits.
   double noise = 0.1, noise_time = 0.3;
   // The arm stiffens with its force: K (1 + c |F| / kStiffeningForce), with c uniform from 0 to
   // this value.
   double max_stiffening = 1;
   // The visual correction is drawn from a uniform distribution up to this multiple of the
-  // scenario's stiffness. Its delay is drawn with this spread.
+  // scenario's stiffness. The delay of the visual correction is drawn with this spread.
   double max_sight = 1.5, sight_delay_spread = 0.15;
 };
 inline constexpr double kStiffeningForce = 30;  // [N]
@@ -56,22 +57,22 @@ struct OperatorDraw {
   double sight_delay = 0;           // [s]
   RandomStream noise{0, ""};
 };
-// Returns the draw with this number. For every run, the same number gives the same operator (common
-// random numbers), so that two runs are compared for the same operators.
+// Returns the draw with the given number. For every run, the same number gives the same operator
+// (common random numbers), so that two runs are compared for the same operators.
 OperatorDraw DrawOperator(const ArmDistribution& arms, const HandSpec& hand,
                           const IntentModel& intent, std::uint64_t seed, int number);
 
 // F = u − z − g z(t − δ) − Kv x(t − δv) − M a, where z integrates K (1 + c |F| / 30 N) dx and
 // contains the damping D √(1 + c |F| / 30 N) v, and x is the displacement of the handle. The drive
-// u = K xr + D vr + its reflex and feed-forward is the operator's intention, expressed as a force.
-// Before the stop, u follows from the measured force and motion. After the stop, the trend of u
-// over the last `trend_time` continues and decays with a time constant (IntentModel). Then u is
-// constant, apart from noise. The stiffness grows with the force as in Perreault, Kirsch & Crago
-// 2002 (quoted from memory).
+// u is the operator's intention, expressed as a force: the sum of K xr, D vr, the reflex to the
+// intended motion, and the feed-forward. Before the stop, u follows from the measured force and
+// motion. After the stop, the trend of u over the last `trend_time` continues and decays with a
+// time constant (IntentModel). Afterwards, u is constant apart from noise. The stiffness grows with
+// the force as in Perreault, Kirsch & Crago 2002 (quoted from memory).
 class EstimatedHand {
  public:
   // `past` contains consecutive records up to the tick in which the stop was decided. `record_step`
-  // is their interval [s]. `dt` is the step of the operator [s].
+  // is the interval between two records [s]. `dt` is the step of the operator [s].
   void Begin(std::span<const TickRecord> past, std::size_t hand, double record_step, double dt,
              const IntentModel& intent, const OperatorDraw& draw);
   // Advances by dt and returns the wrench F_H_W on the handle.

@@ -10,7 +10,7 @@
 namespace predictor {
 namespace {
 
-// The solver starts at the posture of the stop.
+// Computes the load on the joints at `peak`. The posture solver starts at the posture of the stop.
 double JointUse(const assessment::PersonSetup& setup, const TickRecord& stop,
                 const TickRecord& peak) {
   std::array<assessment::PersonSample, 2> samples = {assessment::SampleOf({&stop, 1}),

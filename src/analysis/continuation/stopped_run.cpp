@@ -54,8 +54,8 @@ void Recompute(RecordingReader* reader, std::uint64_t stop, Emulator* emulator,
     if (const auto difference = FirstDifference(record, emulator->record()))
       throw InputError(Formatted(
           "The recomputed run differs from the recording at tick %llu (%s), so the state at the "
-          "stop is not known. Use the version of the program that made the recording; `predictor "
-          "verify` compares the whole run.",
+          "stop is not known. Use the version of the program that made the recording. To compare "
+          "the whole run, use `predictor verify`.",
           static_cast<unsigned long long>(next), difference->field.c_str()));
     if (++done % kReport == 0) progress(next);
   }
@@ -105,7 +105,7 @@ void CheckContinuable(const Scenario& scenario) {
   if (scenario.controller_tape && !scenario.controller_tape->empty())
     throw InputError(
         "The cobot's controller was outside the program (a plugin or a process). A recording does "
-        "not contain its state, so the run cannot be continued.");
+        "not contain the state of such a controller, so the run cannot be continued.");
 }
 
 StoppedRun FindStop(RecordingReader* reader, const Scenario& scenario,

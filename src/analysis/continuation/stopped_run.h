@@ -31,8 +31,8 @@ inline constexpr double kPastTime = 0.5;  // [s]
 class StopFinder {
  public:
   explicit StopFinder(double rate);
-  // Adds the next record, in order. Returns true if the stop was decided in the tick of this
-  // record. Later records are ignored.
+  // Adds the next record. The records must be added in order. Returns true if the stop was decided
+  // in the tick of this record. Later records are ignored.
   bool Add(const TickRecord& record);
   bool found() const { return found_; }
   // Returns the first other cause that stopped the run, or kNone if no other cause stopped it.
@@ -51,10 +51,10 @@ class StopFinder {
 };
 
 // Finds the stop in a recording, and computes the run up to the stop again from the last saved
-// state (or from the start). `scenario` comes from RestoreScenario. `progress` is called with the
-// number of ticks so far. Throws InputError if there is no stop by a limit, if ticks before the
-// stop are lost, if the computed run differs from the recorded run, or if the run cannot be
-// continued.
+// state (or from the start). `scenario` comes from RestoreScenario. The function `progress`
+// receives the number of ticks that have been computed so far. Throws InputError if there is no
+// stop by a limit, if ticks before the stop are lost, if the computed run differs from the recorded
+// run, or if the run cannot be continued.
 StoppedRun FindStop(RecordingReader* reader, const Scenario& scenario,
                     const std::function<void(std::uint64_t)>& progress);
 

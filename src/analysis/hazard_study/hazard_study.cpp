@@ -24,7 +24,8 @@ namespace {
 
 // The hazard begins at a random time in this window, so that an operator cannot anticipate it.
 constexpr double kAfter = 2, kWindow = 2;  // [s]
-// The cobot's own limits in the study are a design choice: wide enough for every undisturbed run.
+// The cobot's own limits in the study are a design choice. They are wide enough for every
+// undisturbed run.
 const std::vector<std::string> kCobotSafety = {"cobot.safety.force=100", "cobot.safety.speed=0.75",
                                                "cobot.safety.joint_torque=60"};
 
@@ -67,7 +68,7 @@ ClearCrossing CrossingOf(const Scenario& scenario) {
 void SetLoad(Scenario* scenario) {
   const ObjectModel object = LoadObject(scenario->object, scenario->folder());
   const AttachmentSpec& at = scenario->object.attachment;
-  // A ball joint transmits the weight at the joint itself.
+  // A ball joint transmits the object's weight to the cobot at the joint itself.
   const Pose X_EO = at.on_end_effector.ToPose() * at.on_object.ToPose().Inverse();
   const Vector3 com =
       at.joint == JointType::kSpherical ? at.on_end_effector.xyz : X_EO * object.com;
@@ -76,7 +77,8 @@ void SetLoad(Scenario* scenario) {
       Formatted("object_center_of_mass=[%.9g, %.9g, %.9g]", com.x(), com.y(), com.z()));
 }
 
-// Sets a grip that is too weak for the object, even while the person carries part of the weight.
+// Sets a gripping force that is too small to hold the object, even while the person carries part of
+// the weight.
 void SetGrip(Scenario* scenario) {
   const ObjectModel object = LoadObject(scenario->object, scenario->folder());
   scenario->events.front().Set(
@@ -91,8 +93,8 @@ Piece PieceOf(const std::filesystem::path& file, const StudyChoice& controller,
   piece.cell.hazard = hazard.name;
   try {
     piece.scenario = StudiedScenario(file, controller, hazard, duration);
-    // The first run is a sample of the program's behaviour, so that runs of a program with
-    // different behaviour are not reused.
+    // The first run serves as a sample of the program's behaviour, so that the study does not reuse
+    // runs of a program with different behaviour.
     piece.first = RunWithHazard(piece.scenario, 1);
     piece.key = HashOf(SaveScenario(piece.scenario) + TextOf(piece.first));
   } catch (const InputError& error) {

@@ -22,7 +22,7 @@ struct StudyChoice {
 std::vector<StudyChoice> StudiedControllers();
 std::vector<StudyChoice> StudiedHazards();
 
-// One run, with one seed.
+// One run of the study, which has its own seed.
 struct HazardRun {
   std::uint64_t seed = 0;
   double begin = -1;             // run time at which the hazard began [s]; −1: it did not begin
@@ -35,7 +35,7 @@ struct HazardRun {
                           // [s]
   double excess = -1;     // of the true force over its threshold at that stop [N]
   // Time from the moment at which the true force clearly exceeds its threshold (ClearCrossing) to
-  // that stop [s]; −1 if the force did not clearly exceed it.
+  // the stop [s]; −1 if the force did not clearly exceed the threshold.
   double clear_detection = -1;
   // The largest commanded speed of a handle, as a share of its cap (CommandedSpeeds).
   double commanded = 0;
@@ -85,7 +85,7 @@ std::string HazardStudyCsv(const HazardStudy& study);
 std::string HazardStudyJson(const HazardStudy& study);
 // Returns a table of controllers and hazards for each scenario, in Markdown.
 std::string HazardStudyTables(const HazardStudy& study);
-// States whether the requirements hold over all runs: time of detection, travel and speed.
+// States whether all runs meet the requirements on the time of detection, the travel and the speed.
 std::string HazardStudyWords(const HazardStudy& study);
 
 }  // namespace predictor

@@ -1,5 +1,6 @@
-// Measures from the records of a run whether the emulator met its requirements: how soon it stopped
-// after a hand's force exceeded the threshold, and whether a commanded speed exceeded its cap.
+// Measures from the records of a run whether the emulator met its requirements. The measures are
+// the time from the moment at which a hand's force exceeded the threshold to the stop, and the
+// commanded speeds as shares of their caps.
 #pragma once
 
 #include <array>
@@ -12,12 +13,13 @@
 namespace predictor {
 
 // Returns the smallest change of a force that a sensor distinguishes from its own noise [N]. This
-// is three standard deviations of a reading's noise and rounding; one reading in 370 deviates more.
+// change is three standard deviations of a reading's noise and rounding. One reading in 370
+// deviates by more.
 double ResolvedForce(const SensorSpec& sensor);
 
 // Finds the time at which the true force of each hand clearly exceeds `threshold` [N], that is, by
-// more than `resolved` [N]. No monitor can see a smaller excess in time, because it is hidden in
-// the noise.
+// more than `resolved` [N]. No monitor can detect a smaller excess in time, because the noise hides
+// such an excess.
 class ClearCrossing {
  public:
   ClearCrossing(double threshold, const std::array<double, kHands>& resolved)
@@ -27,7 +29,7 @@ class ClearCrossing {
   // Adds the next record, in order.
   void Add(const TickRecord& record);
   // Returns how long the force of `hand` has clearly exceeded the threshold at the last record [s];
-  // −1 if it does not.
+  // −1 if the force does not exceed the threshold.
   double duration(int hand) const;
 
  private:
@@ -37,9 +39,9 @@ class ClearCrossing {
 };
 
 // Computes the handle speeds that were commanded in RUN, as shares of their caps. The speed is
-// computed at the posture in which the arm obeys the command. This is the measured posture,
-// advanced with the previous command by the lag of the arm's velocity loop. The cap applies to this
-// speed.
+// computed at the posture in which the arm obeys the command. This posture is the measured posture,
+// advanced with the previous command by the lag of the arm's velocity loop. The cap on the handle's
+// speed applies to the speed that is computed in this way.
 class CommandedSpeeds {
  public:
   // Throws InputError if an arm's model cannot be loaded.

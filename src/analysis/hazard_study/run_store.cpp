@@ -44,8 +44,8 @@ std::string Short(double x) { return Formatted("%.6g", x); }
 
 std::string KeyOf(const std::string& key, const std::string& seed) { return key + "/" + seed; }
 
-// Reads the cells that TextOf wrote, which are the last cells of the row. A comma in a name before
-// these cells would add a cell.
+// Reads the last cells of the row, which TextOf wrote. If a name before these cells contains a
+// comma, the row has an additional cell.
 bool ReadRun(const std::vector<std::string>& cells, HazardRun* run) {
   if (cells.size() < kColumns) return false;
   const std::span at = std::span(cells).last(kOfRun);

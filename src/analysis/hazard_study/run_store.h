@@ -11,8 +11,8 @@
 
 namespace predictor {
 
-// The key of its cell and its seed identify a run. Unreadable lines (such as the last line of a
-// killed study) are skipped. Any thread may call Add.
+// A run is identified by its seed and by the key of its cell. Unreadable lines (such as the last
+// line of a killed study) are skipped. Any thread may call Add.
 class HazardRunStore {
  public:
   // Reads the file. Throws InputError if the file cannot be written.

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kInTime = 0.003 + 1e-9;  // the times are rounded [s]
 
-// Returns the values of the runs in which the hazard began. Values below `least` are missing.
+// Returns the values of the runs in which the hazard began. Values below `least` count as missing
+// and are omitted.
 std::vector<double> ValuesOf(const HazardCell& cell, double HazardRun::*value, double least = 0) {
   std::vector<double> values;
   for (const HazardRun& run : cell.runs)
@@ -23,7 +24,7 @@ std::vector<double> ValuesOf(const HazardCell& cell, double HazardRun::*value, d
   return values;
 }
 
-// Returns the largest forces after the hazard began. The emulator's stop also ends the force, so
+// Returns the largest forces after the hazard began. A stop by the emulator also ends the force, so
 // the largest force of a stopped run is a lower bound. If only the cobot stopped itself, the force
 // is not a lower bound, because the person would have experienced this stop too.
 std::vector<CensoredValue> ForcesOf(const HazardCell& cell) {
@@ -42,7 +43,7 @@ std::map<std::string, int> CountBy(const HazardCell& cell, E HazardRun::*cause) 
   return counts;
 }
 
-// Returns "force 80 %, oscillation 20 %", for example.
+// Returns the shares of the causes as text, for example "force 80 %, oscillation 20 %".
 std::string Shares(const std::map<std::string, int>& counts, std::size_t runs) {
   std::vector<std::string> parts;
   for (const auto& [name, count] : counts)
@@ -51,8 +52,8 @@ std::string Shares(const std::map<std::string, int>& counts, std::size_t runs) {
   return Join(parts, ", ");
 }
 
-// Describes the cause of the stop, its delay and the force: "force 80 % after 0.42 s; at least 30.2
-// N (10.1 N before)".
+// Describes the cause of the stop, the delay of the stop and the force, for example "force 80 %
+// after 0.42 s; at least 30.2 N (10.1 N before)".
 std::string CellWords(const HazardCell& cell) {
   if (cell.impossible.find("would have no effect") != std::string::npos) return "no effect";
   if (!cell.impossible.empty()) return "impossible";
@@ -202,13 +203,13 @@ std::string HazardStudyWords(const HazardStudy& study) {
              in_time, by_force, 1e3 * clear);
   AppendLine(&text,
              "In %zu of these runs, the true force itself had crossed the threshold, at most %.0f "
-             "ms earlier and by at most %.2f N; the largest measured force was %.2f N.",
+             "ms earlier and by at most %.2f N. The largest measured force was %.2f N.",
              crossed, 1e3 * detection, excess, force);
   AppendLine(&text, "The stop with the longest travel used %.0f %% of its travel budget.",
              100 * travel);
-  // An arm obeys a command later and not exactly, and the measured speed contains noise.
+  // An arm executes a command with a delay and an error, and the measured speed contains noise.
   AppendLine(&text,
-             "The fastest command used %.1f %% of its cap; the measured speed of a handle reached "
+             "The fastest command used %.1f %% of its cap. The measured speed of a handle reached "
              "%.1f %% of the cap.",
              100 * commanded, 100 * speed);
   return text;

@@ -40,7 +40,7 @@ double RobustScale(const Eigen::VectorXd& r) {
   return std::max(kMinScale, 1.4826 * Median(std::move(sizes)));
 }
 
-// Returns the sum over windows of a(k) a(k + lag), for the pairs that exist.
+// Returns the sum of a(k) a(k + lag) over all windows k for which both factors exist.
 double LaggedProduct(const std::vector<long>& window, const Eigen::VectorXd& r, long lag,
                      double* pairs) {
   double sum = 0;
@@ -336,7 +336,7 @@ std::vector<int> BaseParameters(const FitProblem& problem, const Fit& fit,
   const double longest = length.maxCoeff();
   for (double& l : length) l = l > 1e-9 * longest ? 1 / l : 0;
   const Eigen::MatrixXd gram = length.asDiagonal() * normal.H(all, all) * length.asDiagonal();
-  // This pivoted Cholesky factorisation always continues with the column that is furthest from the
+  // Each step of this pivoted Cholesky factorisation chooses the column that is furthest from the
   // span of the previous columns.
   Eigen::MatrixXd rest = gram;
   std::vector<int> chosen;

@@ -7,7 +7,7 @@
 
 namespace predictor {
 
-// The equations of one joint. The columns belong to the parameters `index` of the whole problem.
+// The equations of one joint. Column i belongs to parameter index[i] of the whole problem.
 struct FitRows {
   std::vector<long> window;  // window of each row
   Eigen::VectorXd y;
@@ -25,8 +25,8 @@ struct FitProblem {
 // number its windows arbitrarily.
 void CloseGaps(FitProblem* problem);
 
-// The free parameters and their prior, which has mean 0 and a precision (1/variance), or 0 for no
-// prior. All other parameters are 0.
+// The free parameters and their prior, which has the mean 0 and the given precision (1/variance). A
+// precision of 0 means that there is no prior. All other parameters are 0.
 struct FitModel {
   std::vector<int> free;      // parameters, ascending
   Eigen::VectorXd precision;  // of all parameters
@@ -43,7 +43,7 @@ struct Fit {
   std::vector<Eigen::VectorXd> weight;    // Huber's weights, divided by scale² excess
 };
 
-// Computes Huber's M-estimate, iteratively reweighted. The covariance of `wanted` is a sandwich
+// Computes Huber's M-estimate by iterative reweighting. The covariance of `wanted` is a sandwich
 // estimate: the long-run covariance of the scores (Newey & West 1987, with the lag of Andrews 1991
 // for an AR(1) process) between two inverse curvatures, times N/(N − p) for the p estimated
 // parameters. The contribution of the prior is added.

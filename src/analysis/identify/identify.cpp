@@ -45,8 +45,9 @@ Body BodyOf(const InertialParameters& p) {
   return body;
 }
 
-// Returns columns for the mass (density), for x, y and z of the centre of mass, and for the
-// elements of the inertia. Each column is the change for one standard deviation.
+// Returns one column for the mass (density), three columns for x, y and z of the centre of mass,
+// and further columns for the elements of the inertia. Each column is the change that corresponds
+// to one standard deviation.
 InertialPrior PriorOf(const Body& body, double mass_share, double com, double inertia_share) {
   InertialPrior prior;
   prior.nominal = InertialParametersOf(body.mass, body.com, body.inertia);
@@ -89,8 +90,8 @@ constexpr int kBody = 10;      // number of inertial parameters of a body
 constexpr const char* kHowToExcite =
     "Record a run in which the controller moves all joints, as in scenarios/excite_cobot.yaml.";
 
-// The parameters are ordered as follows: viscous and Coulomb friction of each joint, then z of each
-// link, and then z of the load.
+// The parameters are ordered as follows: viscous and Coulomb friction of each joint, then the
+// normalised parameters z of each link, and then those of the load.
 struct Layout {
   int joints;
   int links() const { return kFrictionColumns * joints; }
@@ -199,7 +200,7 @@ std::string RefusalOf(const JointIdentification& joint) {
   return "";
 }
 
-// Computes mass and centre of gravity from the load's z.
+// Computes the mass and the centre of gravity of the load from its normalised parameters z.
 LoadIdentification LoadOf(const ObjectModel& nominal, const InertialPrior& prior, const Fit& fit,
                           int z_at, int covariance_at) {
   LoadIdentification load;
@@ -251,7 +252,7 @@ ModelScore ScoreOf(const CrossValidation& c, const CrossValidation& regularised)
   return score;
 }
 
-// Chooses the regularised model, unless another one predicts significantly better.
+// Chooses the regularised model, unless another model predicts significantly better.
 InertiaModel Choose(const std::array<ModelScore, kInertiaModels>& scores) {
   auto best = InertiaModel::kRegularised;
   double least = 0;
@@ -336,7 +337,8 @@ struct Identifier::Impl {
     return result;
   }
 
-  // Uses z of the links; the variance of z is 1 if the prior is correct.
+  // Computes the strain from the links' normalised parameters z, which have a variance of 1 if the
+  // prior is correct.
   static void Strain(const Eigen::VectorXd& z, Identification* result) {
     const double k = std::max(1, result->base_parameters);
     result->strain = std::sqrt(z.squaredNorm() / k);
@@ -357,7 +359,7 @@ struct Identifier::Impl {
     if (result->model == InertiaModel::kBase || result->strained) {
       result->load.refusal =
           "The links differ more from their model than assumed, so the load cannot be "
-          "distinguished from them. Give a better model of the cobot, or the true "
+          "distinguished from the links. Give a better model of the cobot, or the true "
           "--mass-uncertainty and --com-uncertainty.";
     }
   }

@@ -7,8 +7,8 @@
 // τ is the commanded torque (a sensor on the link side would not measure the friction). b and c are
 // viscous and Coulomb friction, Y is the joint-torque regressor, π the links' inertial parameters,
 // A the attachment of the load, and P the projection on the wrenches that the attachment transmits.
-// All unknowns enter the equations linearly, so robust least squares can estimate them.
-// docs/how-to/identify-friction.md describes method and accuracy.
+// All unknowns enter the equations linearly, so robust least squares can estimate the unknowns.
+// The method and its accuracy are described in docs/how-to/identify-friction.md.
 #pragma once
 
 #include <array>
@@ -75,14 +75,15 @@ struct Identification {
   InertiaModel model = InertiaModel::kRegularised;  // selected by the scores
   std::array<ModelScore, kInertiaModels> scores;
   int base_parameters = 0;  // number of parameters of links and load that the motion separates
-  // The distance of the links from their model in standard deviations of the prior (rms over the
-  // base parameters), and whether this distance is larger than chance can explain.
+  // The distance of the links from their model, in standard deviations of the prior (rms over the
+  // base parameters). The second value states whether this distance is larger than chance can
+  // explain.
   double strain = 0;
   bool strained = false;
   double condition = 0;  // condition number of the base regressor with friction, for unit columns
   double duration = 0;   // duration of the data used [s]
-  // The number of ticks that were skipped because they contain a number that is not finite. The
-  // recording is then damaged.
+  // The number of ticks that were skipped because they contain a number that is not finite. A
+  // recording with such ticks is damaged.
   std::uint64_t not_finite = 0;
   bool complete() const;  // no joint was refused
 };
@@ -97,8 +98,8 @@ class Identifier {
   // Adds ticks in order. Ticks that are not in RUN or are next to a gap are skipped.
   void Add(const TickRecord& record);
 
-  // Throws InputError if the data cover less than ten seconds, or come from a cobot with a
-  // different number of joints.
+  // Throws InputError if the data cover less than ten seconds, or if the data come from a cobot
+  // with a different number of joints.
   Identification Finish() const;
 
   struct Impl;

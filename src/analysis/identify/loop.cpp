@@ -103,7 +103,7 @@ Series SeriesOf(const std::vector<FidelitySignals>& runs, std::size_t channel, s
   return series;
 }
 
-// Tests for each channel whether real and emulated runs can be distinguished.
+// Tests for each channel whether the real runs can be distinguished from the emulated runs.
 std::vector<SameKindTest> TestSameKinds(const std::vector<FidelitySignals>& a,
                                         const std::vector<FidelitySignals>& b) {
   std::size_t cycles = SIZE_MAX, length = SIZE_MAX;

@@ -39,7 +39,8 @@ struct AxisAgreement {
   // The real runs compared with the emulated runs; whole runs are aligned by the phase of the
   // cycle.
   SameKindTest same_before, same_after;
-  // Returns whether the runs suffice to distinguish real from emulated runs, and do not differ.
+  // Returns whether there are enough runs to detect a difference between real and emulated runs,
+  // and the test found none.
   bool indistinguishable_before() const {
     return same_before.can_distinguish() && !same_before.distinguished();
   }
@@ -57,10 +58,10 @@ struct IdentifyLoopResult {
   std::uint64_t first_seed = 0;
 };
 
-// Excites the real cobot and identifies its friction. Before and after the identification, compares
-// `seeds` real runs of `task` with the same number of emulated runs. The emulated runs use
-// different random draws for the operator. Both scenarios describe the same nominal cobot. Throws
-// InputError, or std::runtime_error if a run was stopped.
+// Excites the real cobot and identifies the friction of its joints. Before and after the
+// identification, compares `seeds` real runs of `task` with the same number of emulated runs. The
+// emulated runs use different random draws for the operator. Both scenarios describe the same
+// nominal cobot. Throws InputError, or std::runtime_error if a run was stopped.
 IdentifyLoopResult IdentifyLoop(const Scenario& excitation, const Scenario& task,
                                 const IdentifyLoopOptions& options);
 

@@ -25,8 +25,8 @@ struct JointRows {
 };
 
 inline constexpr int kFrictionColumns = 2;
-// A joint slower than the first speed may be at rest due to friction; a joint faster than the
-// second speed certainly turns [rad/s].
+// A joint that is slower than the first speed may be at rest due to friction. A joint that is
+// faster than the second speed certainly turns [rad/s].
 inline constexpr double kStill = 0.002;
 inline constexpr double kTurning = 0.02;
 
@@ -49,7 +49,7 @@ class RowBuilder {
   int recorded_joints() const { return recorded_joints_; }  // joints of the last tick; 0: none yet
 
  private:
-  // The values of one tick, all at the same time.
+  // The values of one tick, which all belong to the same time.
   struct Sample {
     std::uint64_t tick = 0;
     bool ran = false;

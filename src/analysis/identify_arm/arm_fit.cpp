@@ -53,7 +53,7 @@ Eigen::MatrixXd Beside(const PlaneSignal& s) {
   return m;
 }
 
-// Equations of one set of responses at a given time grid.
+// The equations for one set of responses on a given time grid.
 class Equations {
  public:
   Equations(const ArmResponses& r, const ArmFitOptions& options)
@@ -122,7 +122,7 @@ class Equations {
   Eigen::MatrixXd force_;
 };
 
-// Levenberg-Marquardt with errors whitened by the inverse of `root`.
+// Fits by the Levenberg-Marquardt method, with errors whitened by the inverse of `root`.
 class LevenbergMarquardt {
  public:
   LevenbergMarquardt(const Equations& equations, const Eigen::MatrixXd& root,
@@ -224,7 +224,7 @@ class LevenbergMarquardt {
 };
 
 // Returns the mean responses to displacements along u and v, by regression on the directions with a
-// constant. Each displacement has a weight.
+// constant. The function uses a weight for each displacement.
 ArmResponses MeanResponses(const ArmResponses& r, const Eigen::VectorXd& weight) {
   const Eigen::RowVector2d mean = (weight.transpose() * r.direction) / weight.sum();
   const Eigen::MatrixX2d centred = r.direction.rowwise() - mean;
@@ -259,12 +259,13 @@ Eigen::MatrixXd NoiseRoot(const Equations& all, const PlaneVector& p) {
 }
 
 // The equations are weighted by the inverse of a noise covariance of `times` dimensions. This
-// covariance is estimated from the 2 N response curves of N displacements. Let there be n curves, p
-// times and q parameters per curve. The variance of the estimate is (n − 1)/(n − 1 − (p − q)) times
-// the variance with the true covariance. The variance that is computed with the estimated
-// covariance is too small by the factor (n − (p − q))/n (Rao 1967, "Least squares theory using an
-// estimated dispersion matrix"; Williams 1967). The result is the product of both corrections. The
-// parameters belong to four mean curves.
+// covariance is estimated from the 2 N response curves of N displacements. In the following
+// formulas, n is the number of curves, p is the number of times, and q is the number of parameters
+// per curve. The variance of the estimate is (n − 1)/(n − 1 − (p − q)) times the variance with the
+// true covariance. The variance that is computed with the estimated covariance is too small by the
+// factor (n − (p − q))/n (Rao 1967, "Least squares theory using an estimated dispersion matrix";
+// Williams 1967). The result is the product of both corrections. The parameters belong to four mean
+// curves.
 double NoiseIsEstimated(int count, int times) {
   const double n = 2.0 * count, surplus = times - kPlaneParameters / 4.0;
   return n / (n - surplus) * (n - 1) / (n - 1 - surplus);

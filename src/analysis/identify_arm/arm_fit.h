@@ -5,16 +5,16 @@
 //
 //   F = −M a − D v − K x − g (D v(t − τ) + K x(t − τ)) + voluntary force and noise
 //
-// M, D, K are symmetric; g and τ are gain and delay of the reflex. The hand's own noise moves the
-// handle, so that motion and noise are correlated and ordinary least squares is biased. The
-// commanded directions are independent of the noise. The directions are the instruments: force and
-// motion are regressed on the directions at each time after the onset, and the model is fitted to
-// these mean responses. This method is two-stage least squares (Theil 1953) with the direction at
-// each time as instrument. A displacement's own noise is part of the mean responses, which leaves a
-// bias in the order of 1/N for N displacements. The bias is removed as in the jackknife estimator
-// (Angrist, Imbens & Krueger 1999), which predicts each displacement from the others. With
-// leverages of 2/N, this correction subtracts 4/N² times the squared errors of the single
-// displacements.
+// The matrices M, D and K are symmetric; g is the gain and τ the delay of the reflex. The hand's
+// own noise moves the handle, so that motion and noise are correlated and ordinary least squares is
+// biased. The commanded directions are independent of the noise. The directions therefore serve as
+// instruments: at each time after the onset, force and motion are regressed on the directions. The
+// model is fitted to the resulting mean responses. This method is two-stage least squares (Theil
+// 1953) with the direction at each time as instrument. The mean responses contain the noise of each
+// displacement, which leaves a bias in the order of 1/N for N displacements. The bias is removed as
+// in the jackknife estimator (Angrist, Imbens & Krueger 1999), which predicts each displacement
+// from the others. With leverages of 2/N, this correction subtracts 4/N² times the squared errors
+// of the single displacements.
 #pragma once
 
 #include <Eigen/Core>
@@ -67,8 +67,8 @@ struct ArmFit {
 // Throws InputError if the directions do not span the plane or there are too few displacements.
 ArmFit FitArm(const ArmResponses& responses, const ArmFitOptions& options = {});
 
-// For comparison, does the same by ordinary least squares on all data. This result is biased by
-// noise that moves the handle. No covariance.
+// For comparison, fits the same model to all data by ordinary least squares. Noise that moves the
+// handle biases this result. The function computes no covariance.
 PlaneVector FitArmWithoutInstruments(const ArmResponses& responses,
                                      const ArmFitOptions& options = {});
 

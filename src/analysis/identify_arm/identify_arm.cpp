@@ -67,13 +67,15 @@ void ArmIdentifier::Begin(const Scenario& scenario, double dt) {
     throw InputError("The recording has a tick of " + FormatNumber(1e3 * dt) +
                      " ms, which is too long to see the arm's inertia. Record at 500 Hz or more.");
   if (!s.recordings.empty() && std::abs(dt - s.dt) > 1e-9)
-    throw InputError("The recordings differ in their rates. Identify each recording by itself.");
+    throw InputError(
+        "The recordings differ in their rates. Identify the arm from each recording separately.");
   if (scenario.perturbation) {
     const auto plane = PerturbationPlane(*scenario.perturbation);
     if (s.perturbed &&
         ((plane[0] - s.plane[0]).norm() > 1e-9 || (plane[1] - s.plane[1]).norm() > 1e-9))
       throw InputError(
-          "The recordings differ in perturbation.normal. Identify each plane by itself.");
+          "The recordings differ in perturbation.normal. Identify the arm in each plane "
+          "separately.");
     s.plane = plane;
     s.perturbed = true;
   }
@@ -104,7 +106,8 @@ std::string ArmIdentifier::Impl::WhyRefused(const ArmOfHand& arm) const {
     why += " " + std::to_string(arm.spoiled) +
            " were taken back because of a force above perturbation.force, or had a gap.";
   return why +
-         " Record a longer run, or several, in which the hands hold the object and hardly move it. "
+         " Record a longer run, or several runs, in which the hands hold the object and hardly "
+         "move it. "
          "A displacement begins only if each hand exerts at least 0.5 N, the object is slower than "
          "perturbation.speed, and the expected force is below perturbation.force.";
 }

@@ -35,7 +35,7 @@ class ArmIdentifier {
   explicit ArmIdentifier(ArmFitOptions options = {});
   ~ArmIdentifier();
 
-  // Begins a further recording of the same person, with the scenario from which it was made.
+  // Begins a further recording of the same person. `scenario` is the scenario of this recording.
   // Throws InputError if the displacements in this recording lie in another plane than those in the
   // first recording.
   void Begin(const Scenario& scenario, double dt);
@@ -47,14 +47,14 @@ class ArmIdentifier {
   std::unique_ptr<Impl> impl_;
 };
 
-// True if the 90 % interval is wider than ±25 % of the value.
+// Returns whether the 90 % interval is wider than ±25 % of the value.
 bool IsWide(const ArmFit& fit, int parameter);
 
 std::string ArmText(const ArmIdentification& identification, const std::string& source);
 std::string ArmJson(const ArmIdentification& identification, const std::string& source);  // SI
-// Returns mean and covariance of a hand's parameters for `predictor continue --arm`: stiffness
-// along those axes of W that lie in the plane, damping ratio, mass, reflex gain and delay. The hand
-// must have been identified.
+// Returns the mean and the covariance of a hand's parameters for `predictor continue --arm`:
+// stiffness along those axes of W that lie in the plane, damping ratio, mass, reflex gain and
+// delay. The hand must have been identified.
 std::string ArmFile(const ArmIdentification& identification, int hand, const std::string& source);
 
 }  // namespace predictor

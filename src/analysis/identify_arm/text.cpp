@@ -20,7 +20,7 @@ constexpr std::array<PlaneRow, 3> kRows = {
     PlaneRow{"damping", "N·s/m", "damping_ns_m", plane::kDamping},
     PlaneRow{"stiffness", "N/m", "stiffness_n_m", plane::kStiffness}};
 
-// "x", "-y" or "[0.71, 0.71, 0]".
+// Returns an axis as text: "x", "-y" or "[0.71, 0.71, 0]".
 std::string AxisName(const Vector3& axis) {
   for (int i = 0; i < 3; ++i)
     if (std::abs(std::abs(axis[i]) - 1) < 1e-9)
@@ -33,7 +33,8 @@ std::string Cell(const ArmFit& fit, int k, double factor = 1) {
                    IsWide(fit, k) ? "wide" : "    ");
 }
 
-// If the reflex may not exist, its delay has no meaning.
+// Returns whether the arm certainly has a reflex. Otherwise, the delay of the reflex has no
+// meaning.
 bool HasReflex(const ArmFit& fit) { return fit.value[plane::kGain] > fit.half_width(plane::kGain); }
 
 void AddHand(const ArmIdentification& all, std::size_t hand, std::string* text) {

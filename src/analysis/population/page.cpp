@@ -112,7 +112,7 @@ Plot PeoplePlot(const PopulationStudy& study, std::size_t quantity) {
   return plot;
 }
 
-// Shows the differences from the first design, person by person.
+// Shows how each person's values differ from the values of the same person in the first design.
 Plot DifferencePlot(const PopulationStudy& study, std::size_t quantity) {
   const StudyQuantity& kind = StudyQuantities()[quantity];
   const double factor = kind.unit.factor;
@@ -121,7 +121,7 @@ Plot DifferencePlot(const PopulationStudy& study, std::size_t quantity) {
   plot.title = std::string(kind.label) + ": difference for the same person";
   plot.caption = "Each dot is one person's value minus the same person's value in '" +
                  study.designs.front().name +
-                 "'. Diamonds: Hodges-Lehmann estimate with its 95 % interval.";
+                 "'. The diamonds show the Hodges-Lehmann estimate with its 95 % interval.";
   Points people, shifts;
   std::vector<std::string> names;
   for (const PairedDifference& d : study.differences) {
@@ -192,9 +192,9 @@ Plot HeightPlot(const PopulationStudy& study, std::size_t quantity) {
   return plot;
 }
 
-// Each bar shows the share of "this score or more". The bars are drawn on top of one another,
-// beginning with the lowest score, so that the visible part of each colour is the share of that
-// score alone.
+// Each bar shows the share of time with this score or a higher score. The bars overlap, and bars of
+// higher scores cover bars of lower scores. The visible part of each colour is therefore the share
+// of its score alone.
 Plot RulaPlot(const PopulationStudy& study) {
   Plot plot;
   plot.id = "rula-shares";
@@ -263,10 +263,10 @@ std::string PopulationPage(const PopulationStudy& study, const std::string& prog
       study.people.size(), study.designs.size()));
   page.Html(SummaryTable(study));
   page.Paragraph(
-      "The table shows each person's 95th percentile over time (5th percentile for balance): the "
-      "median over the people and, in brackets, the range of 90 % of them. The column \"Beyond\" "
-      "contains the people who exceed the limit. "
-      "People whose run the emulator stopped are left out.");
+      "For each person's 95th percentile over time (5th percentile for balance), the table shows "
+      "the median over the people and, in brackets, the range of 90 % of the people. The column "
+      "\"Beyond\" shows the share of the people who exceed the limit. People whose run the "
+      "emulator stopped are left out.");
   const bool has_heights = std::ranges::any_of(study.designs, [&](const PopulationDesign& design) {
     return ByHeight(study, design.scenario).size() > 1;
   });

@@ -2,8 +2,8 @@
 // posture is unknown.
 //
 // person::PostureSampler draws 64 people who could have given the same measurements, and its
-// spread expresses ignorance about one person. The spread in this population is the spread between
-// people whose bodies are known.
+// spread expresses ignorance about one person. The spread in this population therefore shows how
+// people with known bodies differ from one another.
 #pragma once
 
 #include <cstdint>
@@ -22,9 +22,9 @@ struct SampledPerson {
   HandSpec hand;  // with the sampled members, see WritePerson
 };
 
-// The first `count` people of a population; a person does not depend on `count`. People with odd
-// numbers are women, and people with even numbers are men. Marks: R, recalled from the literature;
-// D, our choice.
+// The first `count` people of a population. The properties of a person do not depend on `count`.
+// People with odd numbers are women, and people with even numbers are men. Marks: R, recalled from
+// the literature; D, our choice.
 // - height: women 1.62 ± 0.065 m, men 1.75 ± 0.07 m (R), within 3 standard deviations;
 // - mass: body-mass index lognormal, median 25 kg/m², 15 % (D), 17 to 40 kg/m²;
 // - strength: ergonomics::SampleStrength, 30 % and correlated by 0.7 between directions (R);

@@ -105,8 +105,8 @@ struct PopulationOptions {
 
 // Executes the runs that the folder's runs.jsonl does not contain yet: first all designs for one
 // person, and then all designs for the next person. An interrupted study therefore contains fewer
-// people but all designs. Each finished run is appended to runs.jsonl. Writes persons.csv,
-// designs.csv, differences.csv and population.html. Throws InputError.
+// people but all designs. Each finished run is appended to runs.jsonl. Writes the files
+// persons.csv, designs.csv, differences.csv and population.html. Throws InputError.
 PopulationStudy MakePopulationStudy(const PopulationOptions& options);
 
 // Computes summaries and differences from the runs.

@@ -11,15 +11,15 @@
 
 namespace predictor::population {
 
-// The file has one line of JSON per run. The key of the design and the number of the person
-// identify a run. Unreadable lines (such as the last line of a killed study) are skipped. Any
+// The file has one line of JSON per run. A run is identified by the key of its design and the
+// number of its person. Unreadable lines (such as the last line of a killed study) are skipped. Any
 // thread may call Add.
 class PopulationRunStore {
  public:
-  // Reads the file. Throws InputError if it cannot be written.
+  // Reads the file. Throws InputError if the file cannot be written.
   explicit PopulationRunStore(const std::filesystem::path& file);
 
-  // Loads the run. Returns false if it is not stored.
+  // Loads the run. Returns false if the run is not stored.
   bool Find(const std::string& key, PopulationRun* run) const;
   // Throws InputError if the file cannot be written.
   void Add(const std::string& key, const PopulationRun& run);

@@ -1,4 +1,5 @@
-// Makes the JSON Schema of a population study from an example of it and the meaning of each key.
+// Makes the JSON Schema of a population study from an example of a study and the meaning of each
+// key.
 #include <nlohmann/json.hpp>
 
 #include "analysis/population/population.h"

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kTwoSided95 = 1.959963984540054;  // quantile of the normal distribution
 
-// Returns whether a value can be compared. A run that was stopped is too short for a comparison.
+// Returns whether a run has a value that can be compared with the values of other runs. A run that
+// was stopped is too short for a comparison.
 bool IsWhole(const PopulationRun& run, std::size_t quantity) {
   return run.cause == StopCause::kNone && quantity < run.values.size() &&
          std::isfinite(run.values[quantity]);

@@ -211,15 +211,15 @@ std::string PopulationText(const PopulationStudy& study) {
       study.people.size(), study.designs.size(), study.kept);
   text +=
       "Each person's value is the 95th percentile over time (5th percentile for balance) for the "
-      "nominal posture; for RULA and REBA, it is the score that is exceeded for 5 % of the time.\n";
+      "nominal posture. For RULA and REBA, the value is the score that is exceeded for 5 % of the "
+      "time.\n";
   for (std::size_t i = 0; i < study.designs.size(); ++i) text += DesignText(study, i);
   text += DifferenceText(study, 0);
   text +=
       "\nThe shift is the Hodges-Lehmann estimate of the difference for the same person, with its "
-      "95 % interval. The value p comes from Wilcoxon's signed-rank test and is adjusted by Holm's "
-      "method for all differences of the study. Shares have 95 % intervals. People whose run the "
-      "emulator stopped are not "
-      "compared.\n";
+      "95 % interval. The value p comes from Wilcoxon's signed-rank test. Holm's method adjusts p "
+      "for the number of differences in the study. Shares have 95 % intervals. People whose run "
+      "the emulator stopped are not compared.\n";
   return text;
 }
 

@@ -11,10 +11,11 @@
 namespace predictor {
 namespace {
 
-// The repairs are added one by one in this order. The remaining repairs are then added together.
+// The study adds these repairs one by one in this order, and then adds the remaining repairs
+// together.
 constexpr Repair kInTurn[] = {Repair::kPredictedJacobian, Repair::kRelativeTarget, Repair::kLead,
                               Repair::kSoftRows, Repair::kCoupling};
-// This loop has the rate and the computing time of the paper's loop, without our formulation.
+// With these overrides, the loop has the rate and the computing time of the paper's loop.
 const std::vector<std::string> kPaperLoop = {"rate=" + std::to_string(kAssumedPaperRate),
                                              "rig.computation_delay=0.01"};
 constexpr const char* kWithoutMonitor = "safety.oscillation.enabled=false";
@@ -82,7 +83,7 @@ std::vector<Step> RemovedFromOurs() {
   return steps;
 }
 
-// The runs of a step in a task, without our oscillation monitor unless stated otherwise.
+// The runs of one step in one task. These runs have no oscillation monitor unless stated otherwise.
 struct StepRuns {
   ReproducedRun run;
   std::optional<ReproducedRun> monitored;  // if the monitor stopped it
@@ -106,8 +107,8 @@ StepRuns RunStep(const Task& task, const Step& step, ReproduceRuns* runs) {
   ReproducedRun monitored = runs->RunToEitherEnd(setting);
   const std::optional<StopSummary> stop = StopOf(monitored);
   if (!stop || stop->cause != StopCause::kOscillation) {
-    // The monitor can only stop a run. It did not stop this run, so the run without the monitor is
-    // the same.
+    // The monitor can only stop a run. Because the monitor did not stop this run, the run without
+    // the monitor would be the same.
     result.run = std::move(monitored);
     return result;
   }

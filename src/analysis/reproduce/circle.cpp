@@ -85,7 +85,7 @@ void AddNumbers(const IdentifyLoopResult& loop, std::vector<ReproducedNumber>* n
   }
 }
 
-// Returns one run of each kind: the first one in the table.
+// Returns the first run of each kind in the table.
 Runs Examples(const IdentifyLoopResult& loop, const Scenario& task, ReproduceRuns* runs,
               std::vector<ReproducedRun>* kept) {
   const std::filesystem::path folder = runs->options().folder / "real_cobot";
@@ -163,12 +163,12 @@ ReproducedExperiment ReproduceCircle(ReproduceRuns* runs) {
         "Forces of both hands by axis over four cycles (Fig. 12)",
         "The curves show one run of each kind over time. Like different people, the runs differ in "
         "pace, so the curves drift apart. The table therefore compares the runs by the phase of "
-        "the cycle. The axes are those of the world: the circle lies in the plane of x and y, and "
-        "z points up.");
+        "the cycle. The axes are the axes of the world frame. The circle lies in the plane of x "
+        "and y, and z points up.");
   std::vector<Plot> paths = PathPlots(curves);
   e.Add(std::move(paths.front()), "fig12-path",
         "The path of the bar from above, and the circle to follow",
-        "The curves have a point every 50 ms. Both axes have the same scale.");
+        "The curves have a point every 50 ms. The two axes of the plot have the same scale.");
   return e;
 }
 

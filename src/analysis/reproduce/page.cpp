@@ -42,14 +42,15 @@ std::string CommandList(const ReproducedExperiment& experiment) {
   return text;
 }
 
-// Converts "box_9kg" to "9 kg: ". Returns "" for experiments whose rows are unambiguous.
+// Converts the name of a scenario to a label, for example "box_9kg" to "9 kg: ". Returns "" for
+// experiments whose rows are unambiguous.
 std::string ShortName(const std::string& experiment) {
   if (experiment == "box_9kg") return "9 kg: ";
   if (experiment == "box_18kg") return "18 kg: ";
   return "";
 }
 
-// Shows those results of all experiments without people that the paper also prints.
+// Shows, for all experiments without people, the results that the paper also prints.
 std::string Overview(const Reproduction& reproduction) {
   std::vector<ReproducedNumber> numbers;
   for (const ReproducedExperiment& e : reproduction.experiments)
@@ -93,10 +94,10 @@ std::string ReproductionPage(const Reproduction& reproduction) {
   page.Section("data", "Data");
   page.Paragraph(
       "The curves show the minimum and maximum of each interval of 50 ms. Within eight seconds "
-      "around stops and worst errors, they show every tick. The files numbers.json and numbers.csv "
-      "next to this page "
-      "contain all numbers with more digits; the folder figures/ contains the images as PNG. Runs "
-      "in virtual time are reproducible bit for bit with the same build; computing times are not.");
+      "around stops and worst errors, the curves show every tick. The files numbers.json and "
+      "numbers.csv next to this page contain all numbers with more digits. The folder figures/ "
+      "contains the images as PNG. Runs in virtual time are reproducible bit for bit with the same "
+      "build, but computing times are not.");
   return page.Finish();
 }
 

@@ -85,7 +85,8 @@ ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs) {
     ReproducedNumber n = NumberOf(run, quantity, us, 1e-3, "ms");
     n.paper = kPaperDelay;
     Add(n, "section 4.2.2", &e.numbers);
-    // Other programs on the computer affect the mean and the deviation, but hardly the median.
+    // Other programs on the computer affect the mean and the standard deviation, but hardly affect
+    // the median.
     n.quantity += ", median";
     n.mean = 1e-3 * run.data.summary
                         .Get<Quantiles>(std::string("timing_us.") +

@@ -25,7 +25,7 @@ class Raster {
   // the colour is not shaded. A triangle that is not completely in front of the camera is omitted.
   void Triangle(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& color,
                 bool lit = true);
-  // Everything drawn after this call is in front of everything drawn before.
+  // Anything that is drawn after this call covers everything that was drawn before.
   void ForgetDepth();
 
   std::string Png() const;
@@ -48,7 +48,7 @@ class Raster {
   std::vector<std::uint8_t> rgb_;
 };
 
-// Encodes pixels as PNG: 8-bit RGB, rows from the top.
+// Encodes pixels as a PNG image in 8-bit RGB, with the rows from top to bottom.
 std::string EncodePng(int width, int height, const std::vector<std::uint8_t>& rgb);
 
 }  // namespace predictor

@@ -34,7 +34,7 @@ constexpr ExperimentEntry kExperiments[] = {
     {"questionnaire", "Questionnaire (Table 1, Fig. 11)", ReproduceQuestionnaire, 1, 0.01},
 };
 
-// The folder is checked in advance, because a failure after the runs would waste minutes.
+// The program checks the folder in advance, because a failure after the runs would waste minutes.
 void MakeWritable(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -46,7 +46,7 @@ void MakeWritable(const std::filesystem::path& folder) {
   std::filesystem::remove(probe, error);
 }
 
-// Returns "AMD EPYC 7713 64-Core Processor", for example.
+// Returns the name of the processor, for example "AMD EPYC 7713 64-Core Processor".
 std::string ProcessorModel() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {

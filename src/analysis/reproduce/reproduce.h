@@ -13,7 +13,7 @@
 
 namespace predictor {
 
-// A number as the paper prints it: mean ± standard deviation, in the unit of its row.
+// A number as the paper prints it: a mean ± a standard deviation, in the unit of the table's row.
 struct PrintedValue {
   double mean = 0, deviation = 0;
   int decimals = 1;  // digits after the decimal point
@@ -90,7 +90,8 @@ struct Reproduction {
 // std::runtime_error if a run did not end as its experiment requires.
 Reproduction Reproduce(const ReproduceOptions& options);
 
-// Writes index.html, figures as SVG and PNG, numbers.json and numbers.csv. Throws InputError.
+// Writes the files index.html, numbers.json and numbers.csv, and the figures as SVG and PNG. Throws
+// InputError.
 void WriteReproduction(const Reproduction& reproduction, const std::filesystem::path& folder);
 
 // Returns the numbers as text for the terminal.

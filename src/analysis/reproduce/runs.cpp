@@ -16,8 +16,8 @@
 namespace predictor {
 namespace {
 
-// Duration of the intervals around stops and worst errors in which every tick of a run is kept [s].
-// The size of a page with all ticks would be tens of megabytes.
+// Duration of the intervals around stops and worst errors [s]. Every tick in these intervals is
+// kept. The size of a page with all ticks would be tens of megabytes.
 constexpr double kDetail = 8;
 
 // Finds the intervals in which no hand holds a handle, from a release to the end of the next grip.
@@ -199,8 +199,8 @@ void Add(ReproducedNumber number, const char* place, std::vector<ReproducedNumbe
 
 // ---- words -------------------------------------------------------------------------------------
 
-// Returns the number of digits after the decimal point that shows two digits of the deviation or of
-// the mean, whichever is smaller.
+// Returns the number of decimal places at which the smaller of the deviation and the mean shows two
+// digits.
 static int DecimalsOf(double mean, double deviation) {
   double least = std::abs(mean);
   if (std::isfinite(deviation) && deviation > 0) least = std::min(least, deviation);
@@ -221,7 +221,7 @@ std::string Printed(const PrintedValue& value) {
 
 namespace {
 
-// A row: its name in the first column, and the numbers for each condition.
+// A row of a table, with its name in the first column and a number for each condition.
 struct PivotRow {
   std::string name, place;
   std::optional<PrintedValue> paper;

@@ -45,8 +45,8 @@ class ReproduceRuns {
   // Performs a run. Throws std::runtime_error unless the run ends as `expected`.
   ReproducedRun Run(const ReproducedSetting& setting, RunEnd expected = RunEnd::kFinished);
   ReproducedRun Run(const ReproducedSetting& setting, const Scenario& scenario, RunEnd expected);
-  // Runs a setting to the end of the script or to a safety stop. For such settings, the end is
-  // itself a result.
+  // Runs a setting to the end of the script or to a safety stop. Use this function for settings in
+  // which the end of the run is itself a result.
   ReproducedRun RunToEitherEnd(const ReproducedSetting& setting);
   // Reports the part of the experiment's progress that Run does not report.
   void ReportProgress(double share) const;
@@ -59,16 +59,16 @@ class ReproduceRuns {
   int runs_, done_ = 0;
 };
 
-// Returns `predictor simulate scenarios/NAME.yaml --set ...`.
+// Returns the command that repeats a run: `predictor simulate scenarios/NAME.yaml --set ...`.
 std::string SimulateCommandOf(const ReproducedSetting& setting);
 
-// These conditions resemble the paper's loop: 10 ms of computing time and no lead. The oscillation
-// monitor, which the paper does not have, is off. The paper gives no rate, so we assume that each
-// computation starts when the previous one ends [Hz].
+// These conditions resemble the paper's loop, with a computing time of 10 ms and no lead. The
+// oscillation monitor, which the paper does not have, is off. The paper gives no rate, so we assume
+// that each computation starts when the previous one ends [Hz].
 inline constexpr int kAssumedPaperRate = 100;
 std::vector<std::string> PaperConditions(int rate = kAssumedPaperRate);
-// Returns these conditions without the coupling of real and virtual handles, because the paper has
-// no such coupling.
+// Returns the overrides of PaperConditions without the coupling of real and virtual handles,
+// because the paper has no such coupling.
 std::vector<std::string> PaperConditionsWithoutCoupling();
 
 // The names of the conditions in tables and in the numbers file.
@@ -91,8 +91,8 @@ ReproducedExperiment ReproduceArms(ReproduceRuns* runs);
 ReproducedExperiment ReproduceResponsiveness(ReproduceRuns* runs);
 ReproducedExperiment ReproduceQuestionnaire(ReproduceRuns* runs);
 
-// Draws pictures of the scene at the kept times, as PNG. `prefix` is the beginning of the pictures'
-// IDs.
+// Draws pictures of the scene at the kept times and encodes the pictures as PNG. `prefix` is the
+// beginning of the pictures' IDs.
 std::vector<ReproducedImage> ReproduceSnapshots(const ReproducedRun& run,
                                                 const std::string& prefix);
 
@@ -101,8 +101,8 @@ std::vector<ReproducedImage> ReproduceSnapshots(const ReproducedRun& run,
 // Returns a number that is labelled with the run's name. `scale` is the factor from SI to `unit`.
 ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity,
                           const Statistics& values, double scale, const char* unit);
-// Returns the statistics of a metric by their path in the summary. `quantity` is "" for the row's
-// label.
+// Returns the statistics of a metric, which are found by their path in the summary. `quantity` is
+// "" for the row's label.
 ReproducedNumber NumberOfMetric(const ReproducedRun& run, const std::string& path,
                                 const std::string& quantity = "");
 ReproducedNumber NumberOf(const ReproducedRun& run, const std::string& quantity, double value,
@@ -112,7 +112,7 @@ void Add(ReproducedNumber number, const char* place, std::vector<ReproducedNumbe
 
 // ---- words -------------------------------------------------------------------------------------
 
-// Returns "4.1 ± 3.8", for example, with digits that suit the deviation.
+// Returns a text such as "4.1 ± 3.8", in which the number of digits suits the deviation.
 std::string PlusMinus(double mean, double deviation);
 // Returns the number as printed in the paper.
 std::string Printed(const PrintedValue& value);

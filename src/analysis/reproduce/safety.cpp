@@ -20,11 +20,10 @@ constexpr StopExperiment kStopExperiments[] = {
      "immediately.",
      StopCause::kForce},
     {"underdamped", "Underdamped",
-     "According to the paper, if vertical motion is underdamped, the system tends to oscillate, "
-     "the force easily exceeds the threshold, and the system stops. Our oscillation monitor, which "
-     "the paper "
-     "does not have, stops the run before the force threshold does. A second run without the "
-     "monitor stops at the threshold, as in the paper.",
+     "According to the paper, a system with underdamped vertical motion tends to oscillate. The "
+     "force then easily exceeds the threshold, and the system stops. Our oscillation monitor, "
+     "which the paper does not have, stops the run before the force threshold does. A second run "
+     "without the monitor stops at the threshold, as in the paper.",
      StopCause::kOscillation},
     {"underdamped", "Underdamped, no monitor", "", StopCause::kForce},
 };

@@ -28,7 +28,7 @@ constexpr double kOrange = 0.5, kRed = 0.8;  // share of the threshold from whic
 
 const Vector3 kCobot(0.33, 0.45, 0.62), kArms(0.90, 0.905, 0.92), kHandle(0.20, 0.42, 0.85);
 
-// Triangles, with three corners each [m].
+// The corners of triangles: three corners for each triangle [m].
 using Corners = std::vector<Vector3>;
 
 void AddQuad(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d, Corners* to) {
@@ -51,8 +51,8 @@ Corners BoxCorners(const Vector3& size) {
   return corners;
 }
 
-// Returns a truncated cone about z, from z0 with radius r0 to z1 with radius r1, including both
-// ends.
+// Returns a truncated cone about the z axis, with radius r0 at z0 and radius r1 at z1. The cone is
+// closed at both ends.
 Corners ConeCorners(double r0, double z0, double r1, double z1) {
   Corners corners;
   for (int i = 0; i < kSlices; ++i) {
@@ -122,7 +122,7 @@ void Draw(const Corners& corners, const Pose& X_WG, const Vector3& color, Raster
     raster->Triangle(X_WG * corners[i], X_WG * corners[i + 1], X_WG * corners[i + 2], color, lit);
 }
 
-// A robot whose links have been read.
+// A robot and the shapes of its links, as read from the files.
 class Figure {
  public:
   Figure(const Scenario& scenario, const std::string& model,

@@ -18,7 +18,7 @@ struct ErrorFigures {
   const char* rotation;
 };
 
-// A run that was ended early by a safety stop has no ratio to the paper's value.
+// If a safety stop ended a run early, its value is not divided by the paper's value.
 void AddErrorsOf(const std::string& phase, const std::string& when, const ErrorFigures& figures,
                  const ReproducedRun& run, std::vector<ReproducedNumber>* numbers) {
   const PaperTracking* paper = run.end == RunEnd::kFinished ? figures.paper : nullptr;
@@ -128,9 +128,9 @@ void AddReleaseTable(const ErrorFigures& figures, const ReproducedRun& papers,
   if (table.empty()) return;
   e->Add("<h4>The release</h4>\n" + NumbersTable(table));
   e->AddParagraph(
-      "This table covers the time from the 18th second until both hands have gripped again. There, "
-      "the paper shows a spike of the absolute errors, while the relative pose remains accurate "
-      "(Figs 7A and B).");
+      "This table covers the time from the 18th second until both hands have gripped again. In "
+      "this period, the paper's curves show a spike of the absolute errors, while the relative "
+      "pose remains accurate (Figs 7A and B).");
   e->Add(table);
 }
 
@@ -214,7 +214,8 @@ ReproducedExperiment ReproduceBox(const BoxExperiment& box, ReproduceRuns* runs)
   e.Add("<h3>Safety (Fig. 8)</h3>\n" + NumbersTable(forces));
   e.Add(ForcePlot({RunCurves(task.ours.data)}), std::string("fig8-") + box.name,
         "Forces and torques of the hands, and the distance of the elbows (Fig. 8)",
-        "Our defaults. The thresholds are those of the paper: 30 N, 5 N·m, 0.7 and 0.3 m. For "
+        "Our defaults. The thresholds are the thresholds of the paper: 30 N, 5 N·m, 0.7 m and 0.3 "
+        "m. For "
         "scenario 1, the paper prints curves but no numbers.");
   e.Add(forces);
   AddSnapshots(task.ours, std::string("snapshot-") + box.name, box.snapshots, box.moments, &e);
@@ -244,8 +245,8 @@ ReproducedExperiment ReproduceBar(ReproduceRuns* runs) {
   const ConditionRuns task = RunConditions("bar_circle", {}, runs);
   AddTracking({nullptr, "Fig. 10", "Fig. 10"}, task, &e);
   e.AddParagraph(
-      "The paper gives no errors for this task. The lead is 0 with our defaults, too, because "
-      "hands of 1.5 kg each on a bar of 2.1 kg leave no stability margin for a larger lead.");
+      "The paper gives no errors for this task. With our defaults, the lead is also 0, because two "
+      "hands of 1.5 kg on a bar of 2.1 kg leave no stability margin for a larger lead.");
   return e;
 }
 

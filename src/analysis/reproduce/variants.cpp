@@ -1,5 +1,5 @@
 // Shows the effect of the scenarios' tuned values and of the arm model by running the same tasks
-// without them.
+// without these values and with other arms.
 #include "analysis/reproduce/runs.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -109,8 +109,9 @@ ReproducedExperiment ReproduceTuning(ReproduceRuns* runs) {
   e.Add("<h3>box_9kg</h3>\n" + NumbersTable(sight));
   e.Add("<h3>box_18kg</h3>\n" + NumbersTable(heavy) + RefusalOfOwnEfforts(runs));
   e.AddParagraph(
-      "The scenario gives each joint of the cobot 200 N·m and raises its base by "
-      "0.4 m, because the object sags by 0.35 m. If the base stood on the floor, the box would "
+      "The scenario gives each joint of the cobot an effort limit of 200 N·m. The scenario also "
+      "raises the cobot's base by 0.4 m, because the object sags by 0.35 m. If the base stood on "
+      "the floor, the box would "
       "start and end on the floor.");
   for (const auto* numbers : {&underdamped, &sight, &heavy}) e.Add(*numbers);
   return e;
@@ -134,8 +135,8 @@ ReproducedExperiment ReproduceArms(ReproduceRuns* runs) {
   e.AddParagraph(
       "The lead assumes the velocity loop in device.arms.*.loop: 15 Hz and 4 ms. "
       "In these runs, the simulated arms (rig.loop) have a different bandwidth or delay. "
-      "Simulated arms provide a sample in each tick regardless of sample_rate, so in the last case "
-      "the whole loop is slower instead.");
+      "Simulated arms provide a sample in each tick regardless of sample_rate. In the last case, "
+      "the whole loop is therefore slower instead.");
   return e;
 }
 

@@ -12,7 +12,7 @@
 namespace predictor {
 
 // A hand's stiffness is given by its largest component [N/m]. The rotational stiffness changes in
-// proportion (Varied).
+// proportion to this component (Varied).
 struct StiffnessRange {
   double softest = 20, stiffest = 10000;  // [N/m]
 };
@@ -31,8 +31,8 @@ struct StableExtent {
 
   bool StableAt(double stiffness) const;
   // `critical` is the lowest stiffness above which the loop becomes unstable. `least` is the lowest
-  // stable stiffness if the loop is unstable with the softest hand. Both functions return null if
-  // there is no such boundary.
+  // stable stiffness if the loop is unstable with the softest hand. The functions critical() and
+  // least() return null if there is no such boundary.
   const Boundary* critical() const;
   const Boundary* least() const;
   bool nothing_stable() const { return !stable_at_softest && boundaries.empty(); }

@@ -27,12 +27,12 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kFaded = 0.02;  // as a share of the initial difference; below it only quantisation
                                  // of the sensors remains
 // Fast modes are examined separately. The filter reveals a fast mode that grows from a sensor's
-// quantisation. Otherwise, a decaying slow mode would hide it until limits stop its growth. Cut-off
-// frequency [Hz]; number of first-order stages.
+// quantisation. Otherwise, a decaying slow mode would hide the fast mode until limits stop its
+// growth. The filter has this cut-off frequency [Hz] and this number of first-order stages.
 constexpr double kFast = 15;
 constexpr int kFastOrder = 4;
-// Fast modes must rise above their minimum by these factors, which are larger than the effect of
-// quantisation.
+// A fast mode counts as growing if it rises above its minimum by these factors. The factors are
+// larger than the effect of quantisation.
 constexpr double kRisen = 5;
 constexpr double kLimitedBin = 0.2;  // largest share of limited ticks in a bin that counts
 constexpr double kNear = 0.95;       // share of a limit that counts as reaching it
@@ -248,7 +248,7 @@ class Twins {
     bin.series.back() += now / decimation_;
   }
 
-  // Returns sign and rate of the growth, from a straight line through the logarithm of the
+  // Returns the sign and the rate of the growth, from a straight line through the logarithm of the
   // difference. The first third of the run is ignored, because it still contains modes that decay
   // quickly.
   Growth Judge(double time) {
@@ -340,7 +340,7 @@ Scenario HoldScenario(const Scenario& scenario, double lead, bool tap) {
   s.rig.start_offset = 0;
   SwitchStopsOff(&s.safety);
   s.operator_.script = {MakeActionSpec("grip", 0, {Formatted("duration=%.17g", kGripTime)})};
-  // The taps of the two hands differ, so the object both rotates and moves.
+  // The taps of the two hands differ, so that the object both rotates and moves.
   if (tap && s.Has(0)) s.operator_.script.push_back(Tap("left", {1, 0.7, 0.9}));
   if (tap && s.Has(1)) s.operator_.script.push_back(Tap("right", {-0.4, 0.6, 0.3}));
   s.duration = 86400;

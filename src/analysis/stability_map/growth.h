@@ -1,9 +1,9 @@
 // Measures in simulation whether a small disturbance of a scenario's haptic loop grows.
 //
-// The scenario is simulated twice with the same noise. In both runs the hands grip and hold, and in
-// one of them they also tap the handles. The effect of the tap is the difference of the two
-// motions. This effect follows the loop's linear dynamics without noise, so it either decays or
-// grows.
+// The scenario is simulated twice with the same noise. In both runs, the hands grip and hold the
+// handles. In one run, the hands also tap the handles. The effect of the tap is the difference of
+// the two motions. This effect follows the loop's linear dynamics without noise, so it either
+// decays or grows.
 #pragma once
 
 #include <array>
@@ -35,7 +35,8 @@ struct Growth {
                                // start
   double frequency = 0;        // of the strongest line in its spectrum [Hz]; 0: unknown
   double time = 0;             // simulated time after the tap [s]
-  // The share of the ticks in which each limit acts, without a tap and after it.
+  // The share of the ticks in which each limit acts, in the run without a tap and after the tap in
+  // the other run.
   std::array<double, kLimitings> limited = {};
   std::string stopped;  // cause of a stop, if any
 };

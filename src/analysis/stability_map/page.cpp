@@ -24,7 +24,8 @@ std::string Verdict(const StabilityMap& map) {
         "Where the prediction's assumptions hold, %d of %d simulated boundaries are within 20 %% "
         "of the predicted ones",
         a.held_agree, a.held);
-    text += Formatted(" (largest deviation: %.2f times the predicted stiffness). ", a.worst_ratio);
+    text += Formatted(" (the largest deviation is %.2f times the predicted stiffness). ",
+                      a.worst_ratio);
   } else {
     text = "No simulated boundary can be compared with the prediction. ";
   }
@@ -35,7 +36,7 @@ std::string Verdict(const StabilityMap& map) {
         a.one_sided);
   if (a.other > 0)
     text += Formatted(
-        "In %d more cases, the assumptions of the prediction do not hold; in %d of these cases, "
+        "In %d more cases, the assumptions of the prediction do not hold. In %d of these cases, "
         "the deviation is nevertheless below 20 %%. ",
         a.other, a.other_agree);
   return text;

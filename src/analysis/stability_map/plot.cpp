@@ -14,7 +14,8 @@ namespace {
 constexpr int kPredictedColor = 0, kFoundColor = 1, kOwnColor = 7;  // indices into kPlotColors
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 
-// The points of a series under construction: a line, a set of markers or, with `base`, an area.
+// The points of a series that is being built. The series is a line, a set of markers or, with
+// `base`, an area.
 struct Curve {
   std::vector<double> x, y, base;
 
@@ -81,8 +82,8 @@ class MapDrawing {
   }
 
   // Draws the area in which the loop is predicted to be unstable, and the band in which a found
-  // boundary agrees with the prediction. Area and band connect neighbouring points if both points
-  // have a boundary. Otherwise, each point covers half of the distance to its neighbour.
+  // boundary agrees with the prediction. The area and the band connect neighbouring points if both
+  // points have a boundary. Otherwise, each point covers half of the distance to its neighbour.
   void Areas() {
     const auto& points = picture_.points;
     for (std::size_t k = 0; k + 1 < points.size(); ++k) {
@@ -169,8 +170,8 @@ class MapDrawing {
     markers("simulated: all stable up to here", PlotSymbol::kTriangle, std::move(everything));
   }
 
-  // Marks the unchanged scenario by one line at its value and another line at the stiffness of its
-  // hand.
+  // Marks the unchanged scenario with two lines: one line at the scenario's value on the axis, and
+  // one line at the stiffness of the scenario's hand.
   void Own() {
     Curve own;
     const double x = text_.per_si * OwnValue(map_.base, picture_.axis);

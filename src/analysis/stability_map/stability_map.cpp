@@ -35,9 +35,9 @@ constexpr double kFingerprintTime = 1;  // [s]
 
 std::string Exactly(double x) { return Formatted("%a ", x); }
 
-// Identifies the behaviour of this program for a scenario by the exact bits of one simulated second
-// with a tap and of the predicted growth. Programs or models whose behaviour differs must not share
-// points.
+// Returns a hash that identifies the behaviour of this program for a scenario. The hash covers the
+// exact bits of one simulated second with a tap, and of the predicted growth. Programs or models
+// whose behaviour differs must not share points.
 std::string FingerprintOf(const MapBase& base) {
   std::string text = kFormat;
   const Scenario hold = HoldScenario(base.scenario, base.lead, true);
@@ -78,7 +78,7 @@ class Work {
       for (WallLine& line : picture.lines)
         for (MapPoint& point : line.points)
           items_.push_back({&point, MapAxis::kHandMass, &picture.at, &line});
-    // Long jobs come first, so that no core is left with a long job at the end.
+    // Long jobs come first, so that no core is still busy with a long job at the end.
     std::stable_sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) {
       return a.point->simulated > b.point->simulated;
     });
@@ -185,7 +185,7 @@ class Work {
   std::atomic<int> done_ = 0, kept_ = 0;
 };
 
-// Returns the simulated values, and predicted values between them.
+// Returns the simulated values, and predicted values between the simulated values.
 std::vector<MapPoint> PointsOf(const MapBase& base, MapAxis axis) {
   std::vector<MapPoint> points;
   for (const double value : MapValues(base, axis)) {
@@ -212,7 +212,7 @@ std::vector<std::string> DeparturesOf(const Scenario& s) {
   if (std::any_of(coulomb.begin(), coulomb.end(), [](double x) { return x > 0; }))
     departures.emplace_back(
         "The cobot's joints have Coulomb friction (cobot.joint_friction.coulomb). This friction "
-        "damps small motions, but the linear loop does not include it.");
+        "damps small motions, but the linear loop does not include this friction.");
   if (s.rig.loop || s.rig.computation_delay > 0)
     departures.emplace_back(
         "The simulated arms differ from the assumed ones (rig.loop, rig.computation_delay). The "
@@ -231,8 +231,8 @@ std::vector<std::string> DeparturesOf(const Scenario& s) {
     const double slowest = std::min(s.arm(i).sample_rate, s.arm(i).sensor.sample_rate);
     if (slowest >= kMinMapRate) continue;
     departures.push_back(
-        Formatted("The sensor sends readings at only %.3g Hz (sample_rate). Prediction and "
-                  "simulation assume newer readings.",
+        Formatted("The sensor sends readings at only %.3g Hz (sample_rate). The prediction and the "
+                  "simulation assume that newer readings are available.",
                   slowest));
     break;
   }
@@ -256,8 +256,8 @@ std::optional<double> UncertaintyOf(const FoundExtent& found, const Boundary& bo
 
 namespace {
 
-// Returns the sample closest to a boundary, on the side where the oscillation grows or on the other
-// side.
+// Returns the sample that is closest to a boundary, either on the side where the oscillation grows
+// or on the other side.
 const Growth* NearestTo(const FoundExtent& found, const Boundary& boundary, bool grows) {
   const GrowthAt* nearest = nullptr;
   const auto far = [&](const GrowthAt& g) {

@@ -1,7 +1,7 @@
 // The stability map of a scenario shows the stiffness up to which the haptic loop does not
-// oscillate. It shows this stiffness for the hands, as a function of masses, delay, bandwidth and
-// lead, and for a wall. The linearised loop predicts these stiffnesses. For the hands, a simulation
-// also finds them.
+// oscillate. The map shows this stiffness for the hands as a function of masses, delay, bandwidth
+// and lead, and also shows this stiffness for a wall. The linearised loop predicts these
+// stiffnesses. For the hands, a simulation also determines these stiffnesses.
 #pragma once
 
 #include <array>
@@ -20,12 +20,12 @@ namespace predictor {
 
 inline constexpr double kAgreement = 0.2;  // relative difference up to which found and predicted
                                            // boundaries agree, if the assumptions hold
-// Largest share of ticks in which a limit may act on the stable side of a boundary. Because the
-// prediction does not model limits, boundaries with a larger share are not compared with it.
+// Largest share of ticks in which a limit may act on the stable side of a boundary. The prediction
+// does not model limits, so a boundary with a larger share is not compared with the prediction.
 inline constexpr double kLimitedShare = 0.01;
 
-// The smallest rate of the loop and of its readings at which the continuous prediction is compared
-// with the simulation [Hz].
+// The smallest rate of the loop and of the sensors' readings at which the continuous prediction is
+// compared with the simulation [Hz].
 inline constexpr double kMinMapRate = 500;
 
 // If the uncertainty of a found boundary exceeds this value, which is half of kAgreement, the
@@ -92,17 +92,18 @@ std::vector<std::string> DeparturesOf(const Scenario& scenario);
 
 // Returns reasons why the prediction may be wrong for a found boundary, as text. If there are no
 // reasons, the prediction must be correct. The reasons are derived only from the simulations near
-// the boundary, never from the difference between prediction and simulation. They are limits that
-// act on the stable side, limits that noise alone reaches on the other side, and a growth rate that
-// depends too weakly on the stiffness.
+// the boundary, never from the difference between prediction and simulation. The possible reasons
+// are limits that act on the stable side, limits that noise alone reaches on the other side, and a
+// growth rate that depends too weakly on the stiffness.
 std::vector<std::string> DeparturesAt(const FoundExtent& found, const Boundary& boundary);
 // Returns the reasons why the prediction may be wrong if no stable stiffness was found.
 std::vector<std::string> DeparturesEverywhere(const FoundExtent& found);
 // Returns the relative uncertainty of a found boundary (two standard errors), derived from the
-// deviations of the nearby growth rates from a straight line, or no value for fewer than three.
+// deviations of the nearby growth rates from a straight line. Returns no value if there are fewer
+// than three growth rates.
 std::optional<double> UncertaintyOf(const FoundExtent& found, const Boundary& boundary);
 
-// A boundary that was predicted or found, or both.
+// A boundary that was predicted, found, or both.
 struct BoundaryPair {
   bool critical = true;  // concerns the stiffest hand; otherwise the softest
   const Boundary* predicted = nullptr;

@@ -1,5 +1,4 @@
-// Stores the finished points of a stability map in a file, so that an interruption does not lose
-// them.
+// Stores the finished points of a stability map in a file, so that they survive an interruption.
 #pragma once
 
 #include <filesystem>

@@ -23,8 +23,8 @@ void ForEachLoop(Scenario* s, F f) {
 
 const VelocityLoopSpec& OwnLoop(const Scenario& s) { return s.arm(s.Has(0) ? 0 : 1).loop; }
 
-// Returns the object as a primitive in the scenario with another mass: the same shape and centre of
-// mass, with the inertia in proportion.
+// Returns the object with another mass, as a primitive in the scenario. The object keeps its shape
+// and its centre of mass, and its inertia changes in proportion to the mass.
 PrimitiveSpec ScaledObject(const Scenario& s, double mass) {
   const ObjectModel object = LoadObject(s.object, s.folder());
   const Matrix3 off = object.inertia - Matrix3(object.inertia.diagonal().asDiagonal());
@@ -43,7 +43,7 @@ PrimitiveSpec ScaledObject(const Scenario& s, double mass) {
   return body;
 }
 
-// Replaces the object and moves the bases of the arms with its handles.
+// Replaces the object and moves the bases of the arms together with the object's handles.
 void ReplaceObject(Scenario* s, double mass) {
   const World before(*s);
   s->object.primitive = ScaledObject(*s, mass);

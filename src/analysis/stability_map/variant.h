@@ -38,8 +38,8 @@ MapBase BaseOf(const Scenario& scenario);
 double OwnValue(const MapBase& base, MapAxis axis);
 bool IsOwn(const MapBase& base, MapAxis axis, double value);
 
-// Returns the values to be mapped along an axis, ascending, in SI units. The scenario's own value
-// is one of them.
+// Returns the values to be mapped along an axis, in ascending order and in SI units. The values
+// include the scenario's own value.
 std::vector<double> MapValues(const MapBase& base, MapAxis axis);
 
 // The scenario with another value of the varied quantity, and the corresponding lead [s]. An object

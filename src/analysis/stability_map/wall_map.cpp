@@ -103,7 +103,8 @@ void SetRange(const WallPicture& picture, PlotAxis* axis) {
   axis->high = std::pow(10, std::ceil(std::log10(std::max(low, high))));
 }
 
-// Names the hands whose points meet a condition: "at 4 ms: 0.375, 6 kg; at 8 ms: 6 kg".
+// Returns a list of the hands whose points meet a condition, for example "at 4 ms: 0.375, 6 kg; at
+// 8 ms: 6 kg".
 std::string HandsThat(bool (StableExtent::*meet)() const, const WallPicture& picture) {
   std::vector<std::string> lines;
   for (const WallLine& line : picture.lines) {
@@ -116,7 +117,7 @@ std::string HandsThat(bool (StableExtent::*meet)() const, const WallPicture& pic
   return Join(lines, "; ");
 }
 
-// Names the hands for which there is no limit to draw.
+// Returns a list of the hands for which there is no limit to draw.
 std::string Caption(const WallPicture& picture) {
   const std::string nothing = HandsThat(&StableExtent::nothing_stable, picture);
   const std::string everything = HandsThat(&StableExtent::everything_stable, picture);

@@ -9,8 +9,9 @@
 
 namespace predictor {
 
-// Returns the pictures without their predictions: one for each wall that the scenario's fixtures
-// form, or one for an assumed wall below the object, without damping.
+// Returns the pictures without their predictions. There is one picture for each wall that the
+// scenario's fixtures form or, without such walls, one picture for an assumed wall without damping
+// below the object.
 std::vector<WallPicture> WallPicturesOf(const MapBase& base);
 
 // Returns the scenario with the delay and lead of a line, and with another mass of the hands [kg].
@@ -19,7 +20,8 @@ Variant WallVariantOf(const MapBase& base, const WallLine& line, double hand_mas
 // Predicts the stiffnesses of a wall, up to kStiffestWall, for which the loop is stable.
 StableExtent PredictWall(const MapBase& base, const Variant& variant, const FixtureWall& at);
 
-// Describes a wall: "fixtures 0 and 2, normal [0, 0, 1], damping 60 N·s/m".
+// Returns a description of a wall, for example "fixtures 0 and 2, normal [0, 0, 1], damping 60
+// N·s/m".
 std::string WallInWords(const WallPicture& picture);
 
 // These functions return the plot of one wall, and the lines about all walls for the terminal.

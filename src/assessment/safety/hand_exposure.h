@@ -1,5 +1,5 @@
-// Measures what the hands felt during a run: forces, rates of force, energy and oscillation. Only
-// the records are used, so the person need not be known.
+// Measures what the hands felt during a run: forces, rates of force, energy and oscillation. The
+// measures use only the records, so the person need not be known.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace predictor::assessment {
 
-// Collects the records of a run. Forces are evaluated in RUN; energies are evaluated while the arms
-// are stopping, too.
+// Collects the records of a run. Forces are evaluated in RUN. Energies are evaluated in RUN and
+// while the arms are stopping.
 class HandExposure {
  public:
   static constexpr double kCutoff = 20;      // cut-off for the low-passed force and its rate [Hz]
@@ -24,8 +24,8 @@ class HandExposure {
   explicit HandExposure(const Scenario& scenario);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // Returns the results so far: first the results of each existing hand, then the results for both
-  // hands together. The meaning of each result states its filter and rate.
+  // Returns the results for the records so far: first the results of each existing hand, and then
+  // the results for both hands together. The meaning of each result states its filter and rate.
   std::vector<Result> results() const;
 
  private:

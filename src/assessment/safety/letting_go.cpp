@@ -105,8 +105,8 @@ UnintendedContact ContactOf(const SceneMotion& motion, const SceneMasses& masses
   contact.robot_mass = ergonomics::EffectiveRobotMass(masses.cobot, masses.object);
   contact.speed = motion.fastest().speed();
   contact.time = motion.fastest().time;
-  // Returns the bound on the controller's force, or the estimated force at which the cobot stops
-  // itself.
+  // The cobot clamps with at most the bound on the controller's force, or with at most the
+  // estimated force at which the cobot stops itself.
   for (const auto& bound : {scenario.cobot.safety.force, scenario.cobot.safety.force_cap})
     if (bound) contact.clamping_force = std::min(contact.clamping_force.value_or(*bound), *bound);
   std::string region;

@@ -46,7 +46,8 @@ class SceneMotion {
   // Returns, for each release by a hand of a simulated operator, the time of the greatest speed
   // before the hands hold again.
   const std::vector<Sample>& releases() const { return releases_; }
-  // Returns the smallest upward force of a hand while it held [N], or infinity if it never held.
+  // Returns the smallest upward force of a hand while the hand held a handle [N], or infinity if
+  // the hand never held a handle.
   double min_lift(int hand) const { return min_lift_[static_cast<std::size_t>(hand)]; }
 
  private:
@@ -57,7 +58,8 @@ class SceneMotion {
   int gripping_ = 0;
 };
 
-// The fall of the object if the cobot lets go of it at its highest position in the run.
+// The fall of the object if the cobot lets go of the object at the object's highest position in the
+// run.
 struct Drop {
   double time = 0;         // run time of the highest place [s]
   double height = 0;       // height of the object's origin above the ground [m]
@@ -70,9 +72,10 @@ struct Drop {
   double weight_of_hand = 0, jump = 0;
 };
 
-// The distance that a person needs from a cobot that does not detect that the hands let go, after
-// ISO 13855 (mark R): S = v_h (T_r + T_s) + v_r T_r + v_r² / 2a. The intrusion distance C and the
-// uncertainties Z are not included, because they belong to a sensor that this scene does not have.
+// The distance that a person needs from a cobot that does not detect that the hands let go,
+// according to ISO 13855 (mark R): S = v_h (T_r + T_s) + v_r T_r + v_r² / 2a. The intrusion
+// distance C and the uncertainties Z are not included, because they belong to a sensor that this
+// scene does not have.
 struct Separation {
   double time = 0;      // run time [s]
   double speed = 0;     // v_r: speed of the faster of object and end-effector [m/s]
@@ -107,8 +110,8 @@ struct UnintendedContact {
 
 Drop DropOf(const SceneMotion& motion, const SceneMasses& masses, const PersonSetup& setup,
             const Scenario& scenario);
-// Returns the separation for the release at which the distance falls short the most. Without a
-// release, returns the separation at the moment of the highest speed.
+// Returns the separation for the release with the largest shortfall of the distance. If there was
+// no release, returns the separation at the moment of the highest speed.
 Separation SeparationOf(const SceneMotion& motion, const PersonSetup& setup);
 UnintendedContact ContactOf(const SceneMotion& motion, const SceneMasses& masses,
                             const ergonomics::ContactLimits& limits, const Scenario& scenario);

@@ -187,7 +187,8 @@ std::string SafetyText(const SafetyAssessment& safety) {
     for (const std::string& note : table.notes) AppendLine(&text, "  %s", note.c_str());
   }
   for (const NotEvaluable& gap : safety.not_evaluable)
-    AppendLine(&text, "Could not be evaluated: %s, because %s.", gap.what.c_str(), gap.why.c_str());
+    AppendLine(&text, "This result could not be evaluated: %s, because %s.", gap.what.c_str(),
+               gap.why.c_str());
   return text;
 }
 

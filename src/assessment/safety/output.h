@@ -13,7 +13,7 @@ std::string SafetyText(const SafetyAssessment& safety);
 nlohmann::ordered_json SafetyJson(const SafetyAssessment& safety);
 nlohmann::ordered_json SafetySchema();  // JSON Schema (draft-07) of SafetyJson
 
-// Content that text and page share.
+// The content that the text and the page have in common.
 struct SafetyTable {
   std::string title;
   std::string origin;                          // "measured", ...

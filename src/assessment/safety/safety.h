@@ -23,7 +23,7 @@ class SafetyCollector {
   const StopWindows& stops() const { return stops_; }
   const SceneMotion& scene() const { return scene_; }
 
-  // The largest values of both hands in RUN: force [N] and torque [N·m], and the speeds of the
+  // The largest values of both hands in RUN: the force [N], the torque [N·m], and the speeds of the
   // virtual handles [m/s], [rad/s].
   struct Largest {
     double force = 0, torque = 0, speed = 0, rotation_speed = 0;
@@ -37,13 +37,14 @@ class SafetyCollector {
   Largest largest_;
 };
 
-// A limit of what the rig renders, and the largest value that the run reached.
+// A limit up to which the rig renders a quantity, and the largest value of this quantity in the
+// run.
 struct RigLimit {
   std::string what;  // "force of a hand"
   Unit unit;
   double limit = 0, reached = 0;  // SI
-  // The true value may have been larger, because the emulator stopped the run or slowed the handles
-  // down.
+  // The value without this limit may be larger, because the emulator stopped the run or slowed the
+  // handles down.
   bool censored() const { return reached >= limit; }
 };
 

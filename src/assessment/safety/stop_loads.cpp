@@ -85,7 +85,7 @@ StopWindow StopWindows::WindowOf(const Cut& cut, const StopSummary& stop) const 
   for (std::size_t i = cut.decided; i < ticks.size(); ++i)
     for (std::size_t h = 0; h < kHands; ++h)
       ticks[i].hands[h].gripping = ticks[cut.decided].hands[h].gripping;
-  // Aligns the samples so that one sample begins at the decision to stop.
+  // Shifts the samples so that one sample begins at the decision to stop.
   std::size_t begin = cut.decided % ticks_a_sample_;
   window.decided = (cut.decided - begin) / ticks_a_sample_;
   for (; begin + ticks_a_sample_ <= ticks.size(); begin += ticks_a_sample_) {

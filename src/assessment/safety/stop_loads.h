@@ -16,9 +16,9 @@
 namespace predictor::assessment {
 
 // A stop, and the samples from kBefore before its decision until kAfter after the arms come to
-// rest. Hands that held a handle when the stop was decided count as still holding it, because a
-// person cannot let go that quickly. The simulated operator does let go at a stop; the force then
-// fades, but the posture remains.
+// rest. A hand that held a handle when the stop was decided counts as still holding the handle,
+// because a person cannot let go that quickly. A simulated operator, in contrast, lets go at a
+// stop. The operator's force then fades, but the posture remains.
 struct StopWindow {
   StopSummary stop;
   std::vector<PersonSample> samples;  // samples at kSampleRate
@@ -36,7 +36,8 @@ class StopWindows {
   explicit StopWindows(const Scenario& scenario);
   // Adds the next record, in order.
   void Add(const TickRecord& record);
-  // Returns all stops so far. The windows of these stops are complete or end with the run.
+  // Returns all stops that have been found so far. The windows of these stops are complete or end
+  // with the run.
   std::vector<StopWindow> windows() const;
 
  private:
@@ -74,7 +75,7 @@ struct StopJudgement {
 
 // Wrenches and motions are measured at 100 Hz (means of 10 ms). The accelerations of the posture
 // are low-passed at 6 Hz, so the inertial load of the person's own arm is underestimated. The
-// inertia of what the hand holds is included in the measured wrench.
+// measured wrench includes the inertial load of the object that the hand holds.
 StopJudgement JudgeStop(const PersonSetup& setup, const StopWindow& window, bool intervals);
 
 }  // namespace predictor::assessment

@@ -1,4 +1,4 @@
-// The tables and sentences that text and page share.
+// Writes the tables and sentences that the text and the page have in common.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -29,7 +29,8 @@ int HandOf(const Result& result) {
   return -1;
 }
 
-// Returns "largest index of the left hand", for example, without the hand.
+// Returns the description of a result without the hand, for example "largest index" for "largest
+// index of the left hand".
 std::string LabelOf(const Result& result, int hand) {
   std::string label = result.group == "Oscillation" ? "oscillation, " + result.label : result.label;
   const std::string end = std::string(" of the ") + HandName(hand) + " hand";
@@ -92,8 +93,8 @@ SafetyTable LettingGoTable(const SafetyAssessment& safety) {
   if (safety.drop) {
     const Drop& drop = *safety.drop;
     table.notes.push_back(Formatted(
-        "The object would fall %.2f m from its highest position (at %.1f s). It would reach the "
-        "ground with a speed of %.1f m/s and an energy of %.0f J, %s.",
+        "The object would fall %.2f m from its highest position (at %.1f s). The object would "
+        "reach the ground with a speed of %.1f m/s and an energy of %.0f J, %s.",
         drop.height, drop.time, drop.speed, drop.energy,
         drop.beside_feet > 0
             ? Formatted("with its origin %.2f m beside the feet", drop.beside_feet).c_str()
@@ -128,17 +129,17 @@ SafetyTable ContactTable(const UnintendedContact& contact) {
     table.rows.push_back(std::move(row));
   }
   table.notes.push_back(Formatted(
-      "This table is for contact of the person with the object or the cobot at the largest speed "
-      "of this run, %.2f m/s (%.1f s), and with an effective mass of %.1f kg. Limits: %s.",
+      "This table applies to contact of the person with the object or the cobot at the largest "
+      "speed of this run, %.2f m/s (at %.1f s), with an effective mass of %.1f kg. Limits: %s.",
       contact.speed, contact.time, contact.robot_mass, contact.edition.c_str()));
   if (contact.clamping_force)
     table.notes.push_back(
-        Formatted("Between object and fixture, a body part can be clamped with %.0f N, the bound "
-                  "that the scenario sets on the cobot's force.",
+        Formatted("A body part between object and fixture can be clamped with %.0f N, which is the "
+                  "scenario's bound on the cobot's force.",
                   *contact.clamping_force));
   table.notes.emplace_back(
       "These limits do not apply to the forces at the handles. The numbers do not prove "
-      "conformity, because a real application must be measured.");
+      "conformity, which requires measurements of the real application.");
   return table;
 }
 

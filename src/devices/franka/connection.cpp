@@ -39,7 +39,7 @@ class Connecting {
         Ask(EncodeConnect(c_.version, c_.next_id++, c_.datagrams->port(), &buffer));
     ConnectResponse response;
     std::memcpy(&response, answer.body.data(), sizeof response);
-    // This is a copy, because the field in the packet is not aligned.
+    // The value is copied, because the field in the packet is not aligned.
     const std::uint16_t version = response.version;
     if (response.status == 0) return std::nullopt;
     if (version == c_.version)

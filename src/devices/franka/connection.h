@@ -1,4 +1,5 @@
-// Opens the connection to a Franka arm. Blocks, and throws errors with a remedy.
+// Opens the connection to a Franka arm. The function blocks, and the errors that it throws state a
+// remedy.
 #pragma once
 
 #include <memory>

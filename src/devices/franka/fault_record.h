@@ -30,7 +30,7 @@ struct FaultAndDetail {
 };
 bool EndsWithoutPower(const FaultAndDetail& what) noexcept;
 
-// The tick writes the record, and the reporting code reads it.
+// The tick writes the record, and the code that reports faults reads it.
 class FaultRecord {
  public:
   bool any() const noexcept { return latch_.any(); }

@@ -54,8 +54,8 @@ constexpr std::array<const char*, kErrors> kErrorNames = {
     "base_acceleration_invalid_reading",
 };
 
-// Upper bounds of possible values. They are far beyond the range of these arms' joints: 5.26 rad/s,
-// 20 rad/s² and two turns.
+// Upper bounds of the values that are possible. The bounds are far beyond the range of these arms'
+// joints, which is 5.26 rad/s, 20 rad/s² and two turns.
 constexpr double kMaxAngle = 7;           // [rad]
 constexpr double kMaxSpeed = 30;          // [rad/s]
 constexpr double kMaxAcceleration = 300;  // [rad/s²]
@@ -91,7 +91,7 @@ Errors TakeErrors(const std::uint8_t (&from)[kErrors]) noexcept {
 }
 
 // The estimated wrench. If there is no estimate, the robot itself reports zero. A wrench that is
-// not finite is passed on, so that the code that uses it detects the error immediately.
+// not finite is passed on, so that the code that uses the wrench detects the error immediately.
 template <class Real>
 void TakeWrench(const Signals<Real>& packet, RobotState* state) noexcept {
   state->F_K_K.setZero();
@@ -111,7 +111,7 @@ void TakeFlange(const Signals<Real>& packet, RobotState* state) noexcept {
     state->X_OF = X_OE * X_FE.Inverse();
 }
 
-// Combines mass and centre of mass of end-effector and load.
+// Combines the masses and the centres of mass of end-effector and load.
 template <class Real>
 void TakePayload(const Signals<Real>& packet, RobotState* state) noexcept {
   state->compensated_mass = 0;
@@ -199,7 +199,7 @@ std::optional<std::uint32_t> Number(Command command, std::uint16_t version) {
 
 MoveStatus MoveStatusOf(std::uint8_t byte, std::uint16_t version) noexcept {
   int status = byte;
-  // Version 5 has no safety functions.
+  // Version 5 of the interface has no safety functions.
   if (version == kPandaVersion && status > static_cast<int>(MoveStatus::kPreempted)) status += 2;
   return static_cast<MoveStatus>(std::min(status, static_cast<int>(MoveStatus::kUnknown)));
 }
@@ -301,7 +301,8 @@ std::span<const std::byte> EncodeConnect(std::uint16_t version, std::uint32_t id
 
 std::span<const std::byte> EncodeMove(std::uint16_t version, std::uint32_t id,
                                       RequestBuffer* buffer) noexcept {
-  // The deviations matter only in Cartesian motions. Their values are the same as in libfranka.
+  // The deviations matter only in Cartesian motions. The values of the deviations are the same as
+  // in libfranka.
   constexpr Deviation kAny{10, 3.12, 2 * std::numbers::pi};
   Research3Move move{};
   move.controller = MoveController::kJointImpedance;
@@ -335,7 +336,7 @@ void AnswerReader::Drop(std::size_t bytes) noexcept {
 }
 
 bool AnswerReader::Next(Answer* answer) noexcept {
-  // An answer may contain a model and is then long.
+  // An answer that contains a model is long.
   constexpr std::size_t kMaxSize = 1U << 24;
   const std::size_t skipped = std::min(skip_, used_);
   Drop(skipped);

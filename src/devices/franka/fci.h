@@ -56,10 +56,11 @@ const char* Words(RobotMode mode);
 // Returns the name that libfranka gives to an error ("joint_velocity_violation"). `index` is the
 // error's index in the list of a state.
 const char* ErrorName(int error);
-// Returns "joint velocity violation, cartesian reflex", for example, or "" without errors.
+// Returns the list of errors, such as "joint velocity violation, cartesian reflex", or "" without
+// errors.
 std::string ErrorWords(const Errors& errors);
 
-// The fields of a robot state that are used.
+// The fields of a robot state that this program uses.
 struct RobotState {
   std::uint64_t message_id = 0;
   Joints q{}, dq{};               // measured [rad], [rad/s]
@@ -75,12 +76,12 @@ struct RobotState {
   Errors errors, reflex_reason;
 };
 
-// Returns false, with `state` unchanged, if no state of this version has this size, if a joint
-// value is not finite or outside the possible range, or if a mode is unknown. A matrix that is not
-// a pose gives a wrench of zero. A wrench that is not finite is passed on.
+// Returns false and leaves `state` unchanged in three cases: no state of this version has this
+// size, a joint value is not finite or is outside the possible range, or a mode is unknown. If a
+// matrix is not a pose, the wrench is zero. A wrench that is not finite is passed on.
 bool Decode(std::uint16_t version, std::span<const std::byte> bytes, RobotState* state) noexcept;
 
-// Returns whether a state of this version may have this size.
+// Returns whether a robot state of this version may have this size.
 bool IsStateSize(std::uint16_t version, std::size_t size) noexcept;
 
 // Encodes a joint velocity command. `buffer` stores the returned bytes.
@@ -109,14 +110,14 @@ struct Answer {
   std::uint8_t status() const { return static_cast<std::uint8_t>(body[0]); }
 };
 
-// Assembles answers from pieces of a stream, split anywhere.
+// Assembles answers from the pieces of a stream, which may be split anywhere.
 class AnswerReader {
  public:
   // Returns the buffer space for the next piece.
   std::span<std::byte> room() noexcept;
   // Reports that `size` bytes were written to the buffer space.
   void Arrived(std::size_t size) noexcept { used_ += size; }
-  // Returns the next complete answer. Unused data at the end of an answer are skipped.
+  // Returns the next complete answer. Unused data at the end of an answer is skipped.
   bool Next(Answer* answer) noexcept;
   // Returns whether a header was invalid. The data after an invalid header cannot be interpreted.
   bool broken() const noexcept { return broken_; }

@@ -17,35 +17,37 @@ namespace {
 using fci::Fault;
 using fci::Joints;
 
-// After this time without commands, the arm abandons a motion; after this time without states, the
-// driver does.
+// The arm abandons a motion after this time without commands, and the driver abandons a motion
+// after this time without states.
 constexpr double kSilence = fci::RateLimiter::kCoasting;  // [s]
 // Longest time in which the arm starts or ends a motion.
 constexpr double kPatience = 1;  // [s]
 // Maximum number of datagrams that are read in one tick.
 constexpr int kMaxDatagrams = 64;
-// Number of states that a new state may be ahead of the last state. This is a quarter of an hour,
-// which is longer than any pause. If a state further ahead were accepted, all later states would
-// count as old.
+// Largest number of states by which a new state may be ahead of the last state. The number
+// corresponds to a quarter of an hour, which is longer than any pause. If a state further ahead
+// were accepted, all later states would count as old.
 constexpr std::int64_t kMaxAhead = 1'000'000;
 // Largest difference between the commanded velocity and the reported velocity that the rounding of
 // floats can cause.
 constexpr double kSameVelocity = 1e-5;  // [rad/s]
-// Within this number of cycles the arm hardly deviates from its command.
+// Within this number of cycles, the arm hardly deviates from its command.
 constexpr std::uint64_t kShortGap = 2;
 
-// A pose far from every model, which is used if the arm does not report the pose of its flange.
+// A pose that is far from the flange pose of every model. It is used if the arm does not report the
+// pose of its flange.
 const Pose kNowhere = {Vector3::Constant(std::numeric_limits<double>::quiet_NaN()), {}};
 
-// Describes the thresholds of the arm's own reflexes. The robot does not report these thresholds,
-// so only those that this program sets are known.
+// Describes the thresholds of the arm's own reflexes. The robot does not report these thresholds.
+// Therefore, only thresholds that this program sets are known.
 std::string CollisionRemark(const std::optional<FrankaCollision>& c) {
   if (!c)
-    return "The collision thresholds set in Desk apply; the arm does not report them. To set them "
-           "here, add connection.collision to the machine file.";
+    return "The collision thresholds that are set in Desk apply. The arm does not report these "
+           "thresholds. To set them here, add connection.collision to the machine file.";
   return Formatted(
-      "The arm's own reflex stops it above %.0f N or %.0f N·m at its stiffness frame, or above an "
-      "external torque of %.0f N·m at a joint (connection.collision, set before the arm moves).",
+      "The arm's own reflex stops the arm above %.0f N or %.0f N·m at its stiffness frame, or "
+      "above an external torque of %.0f N·m at a joint (connection.collision, set before the arm "
+      "moves).",
       c->force[0], c->force[3], c->torque[0]);
 }
 
@@ -189,7 +191,7 @@ void Driver::ReadAnswers() noexcept {
   }
 }
 
-// After connecting, motion requests are the only requests.
+// After connecting, the driver sends only motion requests.
 void Driver::TakeAnswer(const fci::Answer& answer) noexcept {
   if (phase_ == Phase::kIdle || answer.header.id != move_id_) return trouble_.Set(Fault::kNonsense);
   const fci::MoveStatus status = fci::MoveStatusOf(answer.status(), version_);
@@ -239,8 +241,8 @@ bool Driver::TakeState(std::span<const std::byte> bytes) noexcept {
   return true;
 }
 
-// The wrench that the handle exerts on the sensor is the negated wrench of the robot. Near a
-// singular pose the robot has no estimate and reports zero.
+// The wrench that the handle exerts on the sensor is the negative of the wrench that the robot
+// reports. Near a singular pose, the robot has no estimate and reports zero.
 void Driver::TakeWrench() noexcept {
   if (state_.F_K_K.isZero(0)) return;
   const Pose X_SK = X_SF_ * state_.X_FK;
@@ -286,19 +288,20 @@ void Driver::Fill(ArmReading* reading) const noexcept {
   reading->wrench.age = clock_.Age(wrench_id_, now);
 }
 
-// Returns whether the robot reports motion. After a lost command, it would continue that motion.
+// Returns whether the robot reports motion. After a lost command, the robot would continue this
+// motion.
 bool Driver::Moves() const noexcept {
   const auto& v = state_.dq_d;
   return std::any_of(v.begin(), v.end(), [](double x) { return std::abs(x) > kSameVelocity; });
 }
 
-// Returns whether the last command was not zero or the arm reports motion.
+// Returns whether the last command was different from zero, or whether the arm reports motion.
 bool Driver::InMotion() const noexcept {
   return !trouble_.any() && (Moves() || !limiter_.AtRest());
 }
 
 Status Driver::Write(const JointVector& v, bool motion) noexcept {
-  // Without this condition, waiting for the arm to rest would never end.
+  // Without this condition, the program would wait forever until the arm is at rest.
   if (!(v.isZero(0) && InMotion())) rests_since_ = network_->Now();
   if (Since(rests_since_) > kPatience) trouble_.Set(Fault::kNoEnd);
   if (!trouble_.any()) Advance(motion);
@@ -355,7 +358,7 @@ void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
     for (std::size_t i = 0; i < fci::kJoints; ++i) asked[i] = v[static_cast<int>(i)];
   const bool missed = CatchUp(asked);
   asked_ = asked;
-  // Adds the motion of the return path, which may briefly need a higher speed.
+  // Adds the motion of the return path, which may briefly require a higher speed.
   const Joints left = way_back_.Next();
   for (std::size_t i = 0; i < fci::kJoints; ++i) asked[i] += left[i];
   limiter_.Next(asked, state_.q_d, missed && !way_back_.active());
@@ -370,7 +373,7 @@ void Driver::AnswerState(const JointVector& v, bool motion) noexcept {
   ++counts_.commands;
 }
 
-// Returns whether the requested velocity comes to rest before a return path would end.
+// Returns whether the requested velocity reaches zero before a return path would end.
 bool Driver::RestsSoon(const Joints& asked) const noexcept {
   double square = 0, falling = 0;
   for (std::size_t i = 0; i < fci::kJoints; ++i) {
@@ -392,8 +395,8 @@ bool Driver::CatchUp(const Joints& asked) noexcept {
   for (std::size_t i = 0; i < fci::kJoints; ++i)
     differs = differs || std::abs(state_.dq_d[i] - limiter_.v()[i]) > kSameVelocity;
   if (differs) limiter_.Start(state_.dq_d, state_.ddq_d);
-  // The arm needs a return path if it deviated, or if it was not accelerated while more commands
-  // could have been lost.
+  // The arm needs a return path in two cases: it deviated from its command, or it was not
+  // accelerated while more commands could have been lost.
   const bool waited = waits_ && !differs && !gap && !RestsSoon(asked);
   if ((differs && ticks > kShortGap) || waited) {
     Joints v{}, a{};

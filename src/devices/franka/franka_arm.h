@@ -2,17 +2,17 @@
 // kHz. The driver follows the published headers of the interface, and was tested with a fake robot
 // that libfranka also drives. The driver has never run on hardware.
 //
-// The driver commands joint velocities; the arm's own joint impedance controller executes them. The
+// The driver commands joint velocities. The arm's own joint impedance controller executes them. The
 // commands stay within the published limits of velocity, acceleration, jerk and range
 // (rate_limiter.h), because otherwise the arm's reflexes would stop it. The driver never recovers
-// from errors: a person does so in Desk.
+// from errors. A person must clear them in Desk.
 //
 // The wrench is estimated from the joint torques, without a sensor at the flange. The estimate has
-// a bias of some newtons that changes with pose and friction, and is less accurate in motion. Near
-// a singular pose, the arm provides no estimate, so the age of the wrench grows. The wrench
-// excludes the weight of the end-effector and the load configured in Desk, so the handle's weight
-// must be entered either in the scenario or in Desk, not in both. The estimate is good enough for
-// experiments, but not for rendering stiff contacts.
+// a bias of some newtons, which changes with pose and friction. In motion, the estimate is less
+// accurate. Near a singular pose, the arm provides no estimate, so the age of the wrench grows. The
+// wrench excludes the weight of the end-effector and of the load that are configured in Desk. The
+// handle's weight must therefore be entered either in the scenario or in Desk, but not in both. The
+// estimate is good enough for experiments, but not for rendering stiff contacts.
 #pragma once
 
 #include <memory>
@@ -41,7 +41,7 @@ struct FrankaOptions {
   double timeout = 5;   // maximum wait for each answer while connecting [s]
 };
 
-// Counts of irregularities that are not faults.
+// Numbers of irregularities that are not faults.
 struct FrankaCounts {
   std::uint64_t states = 0;         // accepted states
   std::uint64_t missed_states = 0;  // states that never arrived
@@ -51,13 +51,13 @@ struct FrankaCounts {
   std::uint64_t strangers = 0;  // datagrams from other senders, dropped
   std::uint64_t commands = 0;   // commands sent
   // Number of commands that were sent but not received, according to the arm's reports. If the
-  // acceleration is constant, such a loss has no effect.
+  // acceleration is constant, a lost command has no effect.
   std::uint64_t lost_commands = 0;
 };
 
 class FrankaArm : public Arm {
  public:
-  // Only the thread that reads and writes may call this.
+  // Only the thread that reads and writes may call this function.
   virtual FrankaCounts counts() const noexcept = 0;
 };
 

@@ -1,8 +1,9 @@
-// The packets of the Franka Control Interface (FCI), as stored in memory: little-endian, packed.
+// The packets of the Franka Control Interface (FCI). In memory, they are little-endian and packed.
 //
-// TCP, port 1337 of the robot: requests and answers, each with a Header and a body. An answer has
-// the command and ID of its request. UDP: the robot sends its state every millisecond to the port
-// named in Connect, and receives one robot command in answer to each state.
+// Requests and answers use TCP port 1337 of the robot. Each consists of a Header and a body. An
+// answer has the command and ID of its request. States and commands use UDP. The robot sends its
+// state every millisecond to the port named in Connect, and receives one robot command in answer to
+// each state.
 //
 // Version and size together determine the layout of a state:
 //   version  5: Panda, libfranka up to 0.9          2373 bytes, numbers are double
@@ -55,7 +56,7 @@ enum class RobotMode : std::uint8_t {
 
 #pragma pack(push, 1)
 
-// Matrices are stored by columns. Frames: O base, F flange, NE and EE nominal and true
+// Matrices are stored column by column. Frames: O base, F flange, NE and EE nominal and true
 // end-effector, K stiffness frame. Wrenches: force [N], torque [N·m].
 template <class Real>
 struct Signals {

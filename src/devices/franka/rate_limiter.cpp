@@ -21,9 +21,9 @@ constexpr JointLimits kPanda = {{
     {-2.8973, 2.8973, 2.6100, 20.0, 10000, kEverywhere, 0},
 }};
 
-// Two publications state different ranges; these are the narrower ranges. The published velocity
-// limits belong to the wider range (2.75010, ...), and so do the decelerations here, which are
-// published as 2 · deceleration.
+// Two publications state different ranges. The ranges here are the narrower ones. The published
+// velocity limits belong to the wider range (2.75010, ...). The decelerations here, which are
+// published as 2 · deceleration, belong to the wider range too.
 constexpr JointLimits kResearch3 = {{
     {-2.7437, 2.7437, 2.62, 10, 5000, 12.0 / 2, 0.30},
     {-1.7837, 1.7837, 2.62, 10, 5000, 5.17 / 2, 0.20},
@@ -36,27 +36,27 @@ constexpr JointLimits kResearch3 = {{
 
 // Distance kept from the end of a joint's range [rad].
 constexpr double kEnd = 0.001;
-// The share of the acceleration used for braking before the end of a range. The remaining share is
-// for following the request.
+// The share of the acceleration that is used for braking before the end of a range. The remaining
+// share is for following the request.
 constexpr double kBraking = 0.8;
-// Assumed delay before a joint brakes [s], caused by lost commands and by the limited jerk at the
-// start of braking.
+// Assumed delay before a joint brakes [s]. Lost commands and the limited jerk at the start of
+// braking cause this delay.
 constexpr double kLate = RateLimiter::kCoasting + 0.005;
 
-// Returns the largest permitted speed towards the end of the range at distance d, so that the speed
-// is also permitted on the remaining way.
+// Returns the largest speed towards the end of the range that is permitted at the distance d and on
+// the remaining way.
 double Cap(const JointLimit& limit, double d) noexcept {
   const double D = std::min(limit.deceleration, kBraking * limit.acceleration);
-  // Solves v = sqrt(2 D (d − late · v)) − offset.
+  // This speed is the solution of v = sqrt(2 D (d − late · v)) − offset.
   const double b = limit.offset + D * kLate;
   const double root = b * b - limit.offset * limit.offset + 2 * D * std::max(0.0, d - kEnd);
   return std::clamp(std::sqrt(std::max(0.0, root)) - b, 0.0, limit.velocity);
 }
 
-// Returns the largest acceleration from which the velocity reaches its target, at a difference of
-// `way`, without overshoot, if the acceleration then falls by jerk · dt per millisecond. If the
-// acceleration falls to zero in n + r such steps, with r below 1, the velocity still changes by (n
-// + 1)(n / 2 + r) · jerk · dt².
+// Returns the largest acceleration from which the velocity reaches its target without overshoot.
+// The velocity differs from the target by `way`, and the acceleration falls by jerk · dt per
+// millisecond. If the acceleration falls to zero in n + r such steps, with r below 1, the velocity
+// still changes by (n + 1)(n / 2 + r) · jerk · dt².
 double Reaching(const JointLimit& limit, double way) noexcept {
   const double step = limit.jerk * RateLimiter::kDt;
   const double u = way / (step * RateLimiter::kDt);
@@ -128,7 +128,8 @@ void WayBack::Begin(const Joints& v, const Joints& a) noexcept {
   time_ = 0;
 }
 
-// Follows the cubic that starts with v and a and ends with both zero.
+// Follows the cubic polynomial that starts with velocity v and acceleration a and ends with zero
+// velocity and zero acceleration.
 Joints WayBack::Next() noexcept {
   Joints left{};
   time_ += RateLimiter::kDt;

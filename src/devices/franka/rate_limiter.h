@@ -18,29 +18,31 @@ struct JointLimit {
 using JointLimits = std::array<JointLimit, kJoints>;
 
 // Returns the limits published in Franka's "Robot and interface specifications" (frankaemika/docs,
-// control_parameters.rst) and in rate_limiting.h of libfranka 0.9.2 and 0.21.2. The limits of the
-// Research 3 are those for systems before 5.9, which are stricter. A Panda's velocity limits do not
-// depend on the position. Nevertheless, the driver brakes before the ends of these ranges.
+// control_parameters.rst) and in rate_limiting.h of libfranka 0.9.2 and 0.21.2. For the Research 3,
+// these are the limits for system versions before 5.9, which are stricter than the later limits. A
+// Panda's velocity limits do not depend on the position. The driver nevertheless brakes before the
+// ends of these ranges.
 const JointLimits& PublishedLimits(std::uint16_t version);
 
-// Computes velocities for the next millisecond: as close to the request as the limits of velocity,
-// acceleration, jerk and range allow. The velocities are computed from the robot's state over the
-// nominal millisecond. As in the robot, differences are backward: a = (v − v_last) / dt.
+// Computes the velocities for the next millisecond. They are as close to the request as the limits
+// of velocity, acceleration, jerk and range allow. The velocities are computed from the robot's
+// state over the nominal millisecond. As in the robot, derivatives are backward differences: a = (v
+// − v_last) / dt.
 //
 // A robot that misses commands continues at constant acceleration for up to 20 cycles. The limiter
-// therefore always keeps a sufficient distance to the velocity limit, and enough time to reduce the
-// acceleration to zero.
+// therefore always keeps a sufficient distance from the velocity limit, so that there is enough
+// time to reduce the acceleration to zero.
 class RateLimiter {
  public:
   static constexpr double kDt = 0.001;  // robot cycle [s]
   // time for which the robot continues without commands [s]
   static constexpr double kCoasting = 0.020;
 
-  // `fraction` is the share of the limits to use, above 0 and at most 0.99 (sums are rounded).
-  // Throws std::invalid_argument.
+  // `fraction` is the share of the limits that the limiter uses. The share is above 0 and at most
+  // 0.99, because sums are rounded. Throws std::invalid_argument.
   RateLimiter(const JointLimits& limits, double fraction);
 
-  // Starts with a robot that moves at v with acceleration a.
+  // Starts with a robot that moves with velocity v and acceleration a.
   void Start(const Joints& v, const Joints& a) noexcept;
   // Returns the next command. `asked` is in [rad/s]. A value that is not finite counts as zero. `q`
   // is the commanded position [rad]. `missed` states whether states or commands were lost recently.
@@ -56,15 +58,16 @@ class RateLimiter {
   Joints v_{}, a_{};
 };
 
-// Returns a robot that has deviated, because commands or states were lost, to the request. The
-// limits of the joints alone would allow a sudden return, which would jerk the handle.
+// Brings a robot that has deviated because of lost commands or states back to the request. The
+// limits of the joints alone would allow a sudden return, in which the handle would jerk.
 class WayBack {
  public:
   static constexpr double kTime = 0.020;  // duration of the return [s]
 
-  // The difference between robot and request consists of velocity and acceleration.
+  // The difference between robot and request consists of a velocity and an acceleration.
   void Begin(const Joints& v, const Joints& a) noexcept;
-  // Returns the permitted difference in the next millisecond [rad/s], or zero after the return.
+  // Returns the permitted difference from the request in the next millisecond [rad/s], or zero
+  // after the return.
   Joints Next() noexcept;
   bool active() const noexcept { return time_ < kTime; }
 

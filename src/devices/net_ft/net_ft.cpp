@@ -19,23 +19,22 @@ constexpr double kObey = 0.005;    // time in which an OnRobot sensor executes a
 constexpr double kRateTime = 2;    // time over which a rate is measured [s]
 constexpr double kMaxRate = 7000;  // maximum rate of a Net F/T [Hz]
 // The maximum number of datagrams that are read in one tick. A sensor with a rate of 7 kHz sends
-// seven datagrams per tick; many more are a flood.
+// seven datagrams per tick. A much larger number is an error.
 constexpr int kMaxAtOnce = 32;
-// After this long without reading [s], for example while other devices are being connected, old
-// records are buffered. All buffered records are read, and records that did not fit into the buffer
-// do not count as lost.
+// After this time without reading [s], for example while other devices are being connected, the
+// buffer contains old records. In this case, all buffered records are read, and the records that
+// did not fit into the buffer do not count as lost.
 constexpr double kPause = 0.05;
 constexpr int kMaxBuffered = 4096;
-// If this many consecutive records are old or too far ahead, the cause is not reordering, but the
-// sensor has restarted its counter.
+// If this many consecutive records are old or too far ahead, the sensor has restarted its counter.
 constexpr int kRestarted = 16;
-// A record may be ahead of the last record by the number of records that the sensor can have sent
-// since then. This number includes a factor for a rate that differs from the rate in the file, and
-// this additional time [s].
+// A record may be ahead of the last record by at most the number of records that the sensor can
+// have sent since then. This number includes this additional time [s], and a factor because the
+// actual rate may differ from the rate in the file.
 constexpr double kRateRoom = 2, kMaxClockLead = 0.010;
 
-// Returns the interval between records to which an OnRobot sensor is set [ms], or 0 if no interval
-// gives this rate.
+// Returns the interval between records that must be set in an OnRobot sensor for this rate [ms], or
+// 0 if no interval gives this rate.
 std::uint32_t PeriodOf(double rate) {
   const double period = std::round(1e3 / rate);
   return period >= 1 && std::abs(rate * period / 1e3 - 1) < kRateError
@@ -80,7 +79,7 @@ std::string OnRobotWords(std::uint32_t status) {
   return words;
 }
 
-// Returns "status 0x00000010, Tz beyond its range", for example.
+// Returns, for example, "status 0x00000010, Tz beyond its range".
 std::string StatusWords(NetFtMake make, std::uint32_t status) {
   std::string words = Formatted("status 0x%08X", static_cast<unsigned>(status));
   if (make == NetFtMake::kOnRobot) return words + OnRobotWords(status);
@@ -165,7 +164,7 @@ void NetFt::Start() {
                       "in its settings, and that no other client is connected.");
   if (status_ != 0)
     throw DeviceError(options_.address, "reports " + StatusWords(options_.make, status_) +
-                                            ". Clear this error first; see the sensor's manual.");
+                                            ". Clear this error first. See the sensor's manual.");
 }
 
 Status NetFt::Read(WrenchReading* reading) noexcept {
@@ -193,8 +192,8 @@ Status NetFt::Read(WrenchReading* reading) noexcept {
 }
 
 // A record that is further ahead is forged or damaged. If such a record were accepted as the
-// newest, all later records would count as old. The counters of records that were buffered for a
-// long time lag behind by the age of these records.
+// newest, all later records would count as old. If records were buffered for a long time, their
+// counters lag behind by the age of the records.
 bool NetFt::IsNext(std::uint32_t ahead) const noexcept {
   const double since = 1e-9 * static_cast<double>(now_ - taken_time_);
   return ahead <=

@@ -1,8 +1,8 @@
-// Raw Data Transfer: the big-endian datagrams of ATI's Net F/T and Axia, and of OnRobot's HEX and
-// OptoForce boxes. This code does not use the heap.
+// Reads and writes the big-endian datagrams of Raw Data Transfer (RDT), which ATI's Net F/T and
+// Axia and OnRobot's HEX and OptoForce boxes use. This code does not use the heap.
 //
 // Sources: ATI, Net F/T Manual 9610-05-1022 (section 9, "UDP interface using RDT"); OnRobot, HEX/QC
-// compute box manual ("UDP"): the same frame, other commands.
+// compute box manual ("UDP"), which describes the same frame with other commands.
 #pragma once
 
 #include <array>
@@ -42,18 +42,18 @@ struct Record {
 
 std::array<std::byte, kRequestBytes> Encode(const Request& request) noexcept;
 std::array<std::byte, kRecordBytes> Encode(const Record& record) noexcept;
-// Returns no value if the size (or the header) is wrong.
+// Returns no value if the size or the header is wrong.
 std::optional<Request> DecodeRequest(std::span<const std::byte> bytes) noexcept;
 std::optional<Record> DecodeRecord(std::span<const std::byte> bytes) noexcept;
 
-// ATI's status word has a bit for an exceeded range, and a bit that is set with every error
-// (manual, section 17.1, "System Status Code").
+// ATI's status word has a bit for an exceeded range and a bit that every error sets (manual,
+// section 17.1, "System Status Code").
 inline constexpr std::uint32_t kSaturated = 0x00020000;  // force or torque out of range
 inline constexpr std::uint32_t kAnyError = 0x80000000;   // set with every error
 
-// The status of OnRobot and OptoForce sensors is in the lower half of the word. This is the status
-// word of OptoForce's 6-axis sensors. OptoForce's own clients treat every value except 0 as an
-// error.
+// The status of OnRobot and OptoForce sensors is in the lower half of the word. The layout of the
+// status word of OptoForce's 6-axis sensors. OptoForce's own clients treat every value except 0 as
+// an error.
 inline constexpr std::uint32_t kOverload = 0x000003F0;  // Tz Ty Tx Fz Fy Fx, from bit 4 upwards
 // These three bits have the values 1 (not detected), 2 (failure) and 4 (temperature).
 inline constexpr int kSensorErrorShift = 10;

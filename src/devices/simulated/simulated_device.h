@@ -1,4 +1,4 @@
-// The simulated rig as a device in virtual time, one tick per command.
+// Provides the simulated rig as a device in virtual time, which advances by one tick per command.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ class SimulatedDevice final : public Device {
   SimulatedDevice(const Scenario& scenario, const std::array<JointVector, kHands>& start,
                   std::unique_ptr<Operator> person);
 
-  // Returns kDevice with the hand if an arm reports a fault.
+  // Returns kDevice and the hand if an arm reports a fault.
   Status Read(DeviceSample* sample) noexcept override;
   // Accepts the command and advances by one tick, 1/scenario.rate.
   Status Write(const DeviceCommand& command) noexcept override;

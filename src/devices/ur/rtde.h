@@ -1,7 +1,6 @@
-// Packets of Universal Robots' Real-Time Data Exchange, version 2 (TCP 30004, big-endian), as
-// described by its guide: https://www.universal-robots.com, "Real-Time Data Exchange (RTDE) guide".
-// A packet consists of its size including the header (two bytes), its type (one byte) and its
-// payload.
+// Packets of Universal Robots' Real-Time Data Exchange (RTDE), version 2 (TCP 30004, big-endian).
+// Source: https://www.universal-robots.com, "Real-Time Data Exchange (RTDE) guide". A packet
+// consists of its size including the header (two bytes), its type (one byte) and its payload.
 #pragma once
 
 #include <array>
@@ -75,7 +74,7 @@ class PacketWriter {
     writer_.Put(std::as_bytes(std::span(text)));
     return *this;
   }
-  // Returns the complete packet with its size, or no bytes if the content was too large.
+  // Returns the complete packet including its size, or no bytes if the content was too large.
   std::span<const std::byte> Finish() noexcept;
 
  private:
@@ -83,7 +82,7 @@ class PacketWriter {
   BigEndianWriter writer_;
 };
 
-// An exchanged value. `type` is its name in the guide: DOUBLE, VECTOR6D, INT32, ...
+// An exchanged value. `type` is the name of a type in the guide: DOUBLE, VECTOR6D, INT32, ...
 struct Field {
   std::string name;
   std::string_view type;
@@ -96,7 +95,7 @@ std::size_t SizeOf(std::span<const Field> recipe) noexcept;
 // Returns "a,b,c".
 std::string Names(std::span<const Field> recipe);
 
-// Requests of a client. Answers have the same type.
+// Requests of a client. An answer has the same type as its request.
 std::vector<std::byte> AskVersion(std::uint16_t version = kProtocolVersion);
 std::vector<std::byte> AskControllerVersion();
 std::vector<std::byte> AskOutputs(double rate, std::span<const Field> recipe);  // rate [Hz]
@@ -104,15 +103,15 @@ std::vector<std::byte> AskInputs(std::span<const Field> recipe);
 std::vector<std::byte> AskStart();
 std::vector<std::byte> AskPause();
 
-// The payload of an answer to AskOutputs or AskInputs.
+// The payload of the controller's answer to AskOutputs or AskInputs.
 struct RecipeAnswer {
   int id = 0;         // ID with which data packets begin; 0: refused
   std::string types;  // "DOUBLE,VECTOR6D,..."
 };
 bool Decode(std::span<const std::byte> payload, RecipeAnswer* answer);
 
-// Checks the types with which the controller answered a recipe. Returns an error as the rest of a
-// sentence that begins with the controller's address, or "" if there is no error.
+// Checks the types with which the controller answered a recipe. Returns "" if there is no error.
+// Otherwise, returns the rest of a sentence that begins with the controller's address.
 std::string Refusal(std::span<const Field> recipe, const RecipeAnswer& answer);
 
 struct TextMessage {

@@ -17,14 +17,15 @@ class Connection {
   // Throws DeviceError.
   Connection(Network* network, const Address& peer);
 
-  // Sends a request and waits for the payload of the answer of this type. Call this only before the
-  // first tick. Throws DeviceError, which includes the messages that the controller sent meanwhile.
+  // Sends a request, waits for an answer of this type, and returns the payload of the answer. Call
+  // this only before the first tick. Throws DeviceError, whose text includes the messages that the
+  // controller sent meanwhile.
   std::vector<std::byte> Ask(std::span<const std::byte> request, PacketType answer);
 
   bool Send(std::span<const std::byte> packet) noexcept { return stream_->Write(packet); }
 
-  // Passes all received packets to `take`, which returns whether a packet is valid. A malformed
-  // packet ends the connection. Never blocks, even if many bytes arrive.
+  // Passes all received packets to `take`. The function `take` returns whether a packet is valid. A
+  // malformed packet ends the connection. Never blocks, even if many bytes arrive.
   template <class Take>
   State Drain(const Take& take) noexcept {
     for (int reads = 0; state_ == State::kOpen && reads < kMaxReads; ++reads) {

@@ -23,7 +23,7 @@ constexpr int kRestarted =
     3;  // number of packages with an earlier time that shows that the clock was set back
 constexpr double kFresh = 0.02;  // age up to which a package is recent enough for this [s]
 constexpr double kPowerOff = 1;  // time in which a power-off request is executed, with margin [s]
-// A value beyond the range of these arms' sensors is not a measurement.
+// A value beyond the range of these arms' sensors cannot be a measurement.
 constexpr double kMaxForce = 500;   // [N]
 constexpr double kMaxTorque = 100;  // [N·m]
 
@@ -77,7 +77,7 @@ class UrArm final : public Arm {
     const std::uint64_t now = network_->Now();
     const bool moves = motion && MayFollow(v, now);
     if (now < next_ && moves == moves_) return Now();
-    // A tick that begins slightly early counts, too.
+    // A tick that begins slightly early counts too.
     next_ = now + static_cast<std::uint64_t>(1e9 * (period_ - 0.0005));
     moves_ = moves;
     if (moves || !fault_.any()) counter_ = static_cast<std::int32_t>(Unsigned(counter_) + 1U);
@@ -91,8 +91,8 @@ class UrArm final : public Arm {
     if (!wanted || power_ != Power::kWanted) return;
     power_ = Power::kUnwanted;
     unwanted_since_ = network_->Now();
-    // A stream may accept data although its connection is dead, so only the robot's mode shows the
-    // result.
+    // A stream may accept data although its connection is dead. Therefore, only the robot's mode
+    // shows whether the request succeeded.
     if (dashboard_ && !dashboard_->Write(std::as_bytes(std::span(kLine)))) dashboard_lost_ = true;
   }
 
@@ -116,8 +116,8 @@ class UrArm final : public Arm {
   static std::uint32_t Unsigned(std::int32_t x) noexcept { return static_cast<std::uint32_t>(x); }
 
   // While the arm executes commands, its reported joints may be unreliable. The commands of the
-  // following stop then bring this arm to rest together with the other arm, and the arm is not
-  // moved again.
+  // stop that follows bring this arm to rest together with the other arm. The arm is not moved
+  // again.
   bool MayFollow(const JointVector& v, std::uint64_t now) noexcept {
     if (!fault_.any()) stop_by_ = now + static_cast<std::uint64_t>(1e9 * kStop);
     if (!fault_.any()) return true;
@@ -144,7 +144,8 @@ class UrArm final : public Arm {
     } else if (state.timestamp < state_.timestamp) {
       ++behind_;
     } else if (state.timestamp > state_.timestamp) {
-      // A packet with an equal time-stamp is repeated and contains no new information.
+      // A packet with the same time-stamp as the last packet is a repetition and contains no new
+      // information.
       Accept(state);
       if (!listen_) fault_.Set(RunFault(state));
       if (!listen_ && Deaf()) fault_.Set(UrFault::kDeaf);
@@ -173,7 +174,8 @@ class UrArm final : public Arm {
       power_ = Power::kKept;
   }
 
-  // The answers are not needed, but a closed connection must be detected before it is used.
+  // The answers are not needed. They are read because a closed connection must be detected before
+  // it is used.
   void ReadDashboard() noexcept {
     std::array<std::byte, 256> unused;
     int size = dashboard_ && !dashboard_lost_ ? 1 : 0;
@@ -181,16 +183,16 @@ class UrArm final : public Arm {
     if (size == Stream::kClosed) dashboard_lost_ = true;
   }
 
-  // A controller omits packets if its client is too slow. Packets that it omitted while this client
-  // was paused do not count.
+  // A controller omits packets if its client is too slow. Packets that the controller omitted while
+  // this client was paused do not count as lost.
   void CountSkipped(double step) noexcept {
     constexpr double kPause = 1;  // [s]
     const double cycles = step * facts_.rate;
     if (step < kPause && cycles > 1.5) link_.lost += static_cast<std::uint64_t>(cycles - 0.5);
   }
 
-  // Returns whether our program runs, does not brake, and has not received commands that were sent
-  // long ago.
+  // Returns whether our program runs without braking, although it has missed commands for longer
+  // than kDeaf.
   bool Deaf() const noexcept {
     const double behind = period_ * (Unsigned(counter_) - Unsigned(state_.echo));
     return behind > kDeaf && clock_.Age(now_) < kFresh &&
@@ -246,7 +248,7 @@ class UrArm final : public Arm {
   bool moves_ = false;
   std::atomic<UrFault> arm_fault_ = UrFault::kNone;  // current fault
   std::atomic<int> behind_ = 0;  // packages since the newest one, all with an earlier time
-  // Permanent. Trouble may be called by other threads.
+  // Permanent. Other threads may call Trouble.
   FaultLatch<UrFault> fault_;
 };
 

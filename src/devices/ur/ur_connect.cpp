@@ -40,13 +40,13 @@ void Check(const UrOptions& options) {
                       std::to_string(r) + ". Choose 24, or 0 if another client uses that half.");
 }
 
-// Converts a position [m] and a rotation vector [rad].
+// Converts a position [m] and a rotation vector [rad] to a pose.
 Pose PoseOf(const UrVector& x) {
   return {{x[0], x[1], x[2]}, RotationFromVector({x[3], x[4], x[5]})};
 }
 
-// A client of the dashboard server, which controls the robot as a whole. The server answers each
-// line with one line. An arm can move without this server, which PolyScope X does not have.
+// A client of the dashboard server. This server controls the robot as a whole. The server answers
+// each line with one line. An arm can also move without this server. PolyScope X does not have one.
 class Dashboard {
  public:
   explicit Dashboard(Network* network) : network_(network) {}
@@ -182,9 +182,9 @@ class Setup {
     const Address peer{peer_.host, options_.dashboard_port};
     if (peer.port != 0 && dashboard_.Open(peer)) return;
     setup_.facts.remarks.emplace_back(
-        "Its dashboard server (port 29999) does not answer, as on PolyScope X. This program "
-        "therefore cannot switch its power off: after a stop with power-off, this arm holds its "
-        "position with power on. In that case, use the emergency stop of the arm.");
+        "The robot's dashboard server (port 29999) does not answer, as on PolyScope X. This "
+        "program therefore cannot switch the robot's power off. After a stop with power-off, the "
+        "arm holds its position with power on. In that case, use the emergency stop of the arm.");
   }
 
   void Start() {
@@ -194,8 +194,7 @@ class Setup {
       Refuse("accepts the recipes but does not send its state.");
   }
 
-  // Returns true if at least `packages` states have arrived since the last time when this function
-  // returned true.
+  // Returns true if at least `packages` states have arrived since this function last returned true.
   bool Hear(int packages) {
     using State = rtde::Connection::State;
     const State state = setup_.connection->Drain([this](const rtde::Packet& packet) {
@@ -223,7 +222,7 @@ class Setup {
     if (SlowedDown(state))
       setup_.facts.remarks.push_back(
           "Its speed slider is at " + std::to_string(std::lround(100 * state.slider)) +
-          " %. Set the speed slider to 100 %; until then, this program does not move the arm.");
+          " %. Set the speed slider to 100 %. Until then, this program does not move the arm.");
   }
 
   void CheckArm() {
@@ -261,8 +260,8 @@ class Setup {
                                          .first_register = options_.first_register});
     if (!stream->Write(std::as_bytes(std::span(script))))
       throw DeviceError(peer, "does not accept the program.");
-    // The connection stays open until the program runs. If it were closed with unread data, it
-    // would be reset, and data that the controller has not read yet would be lost.
+    // The connection stays open until the program runs. If the connection were closed with unread
+    // data, it would be reset, and data that the controller has not read yet would be lost.
     const bool runs = WaitUntil(network_, kLaunch, [&] {
       std::array<std::byte, 4096> unused;
       while (stream->Read(unused) > 0) {

@@ -24,7 +24,7 @@ struct UrSetup {
 // The parameters and the errors are the same as for ConnectUr.
 UrSetup SetUpUr(const UrOptions& options, Network* network);
 
-// Encodes a packet of UrInputs without using the heap.
+// Encodes the packet that sends UrInputs, without using the heap.
 std::span<const std::byte> UrCommand(rtde::PacketWriter* writer, int recipe, const UrVector& qd,
                                      std::int32_t counter, bool follow) noexcept;
 

@@ -7,8 +7,8 @@
 namespace predictor {
 namespace {
 
-// A counter that arrives just after the start of a cycle is read one cycle later, and the program's
-// decision takes effect with the next set-point. The decision must therefore be made this much
+// A counter that arrives just after the start of a cycle is read one cycle later. The program's
+// decision then takes effect with the next set-point. The program must therefore decide this much
 // earlier than 20 ms.
 constexpr double kWatchdog = 0.018;  // [s]
 constexpr double kPatience = 30;     // longest wait for the first tick [s]

@@ -1,5 +1,5 @@
 // The program that runs on the robot's controller while the driver is connected. This program is
-// the last link of the chain, and stops the arm if all other links have failed.
+// the last stage before the arm, and stops the arm if all other stages have failed.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace predictor {
 
-// The program's state, in the second output register.
+// The state of the program, which the second output register contains.
 enum class UrScriptState : std::int32_t {
   kReady = 1,     // the program runs but has received nothing from the tick; the arm stands still
   kFollows = 2,   // the program receives the counter; the arm stands still or follows
@@ -28,9 +28,9 @@ struct UrScriptOptions {
 //   input_int_register_r+1          1: follow the velocities, 0: stand still
 //   output_int_register_r           the counter that was last seen
 //   output_int_register_r+1         UrScriptState
-// The program waits for the counter to change (for half a minute). From then on, a counter that is
-// constant for SilentCycles makes the program brake and end. The arm moves again only after the
-// program has been sent again.
+// The program waits for the counter to change (for half a minute). From then on, the program brakes
+// and ends if the counter is constant for SilentCycles. The arm moves again only after the program
+// has been sent again.
 std::string UrScript(const UrScriptOptions& options);
 
 // Number of cycles without a new counter after which the program brakes.

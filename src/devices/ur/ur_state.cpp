@@ -9,7 +9,7 @@ namespace predictor {
 namespace {
 
 // Values of robot_mode. The motors have power in the modes from power-on through idle (brakes
-// closed) to running. Higher values mean that the firmware is being updated.
+// closed) to running. Higher values of the mode mean that the firmware is being updated.
 constexpr std::int32_t kPowerOn = 4;
 constexpr std::int32_t kRunning = 7;                 // powered, brakes released
 constexpr std::uint32_t kFreedriveButton = 1U << 2;  // bit of robot_status_bits
@@ -18,13 +18,13 @@ constexpr std::uint32_t kProtectiveStopBit = 1U << 2;
 constexpr std::uint32_t kSafeguardStopBit = 1U << 4;
 constexpr std::uint32_t kEmergencyStopBits = 1U << 5 | 1U << 6 | 1U << 7;
 constexpr std::uint32_t kSafetyFaultBits = 1U << 3 | 1U << 8 | 1U << 9;
-// This bit is set for any of the stops above, but also for other reasons.
+// This bit is set for each of the stops above, but also for other reasons.
 constexpr std::uint32_t kStoppedBySafetyBit = 1U << 10;
 
 constexpr double kWholeSpeed = 0.995;  // setting of the speed slider
 
-// The largest time since the controller's start is 30 years [s]. With a larger value, the age of a
-// packet could not be computed.
+// The largest accepted time since the controller's start [s], which is 30 years. With a larger
+// value, the age of a packet could not be computed.
 constexpr double kMaxTime = 1e9;
 constexpr double kMaxAngle = 100;  // limit of an angle, also for an endless joint [rad]
 constexpr double kMaxSpeed = 20;   // five times the speed of an arm [rad/s]

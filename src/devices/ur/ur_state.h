@@ -15,7 +15,7 @@ namespace predictor {
 inline constexpr int kUrJoints = 6;
 using UrVector = std::array<double, kUrJoints>;
 
-// Values as defined by the RTDE guide.
+// The values are those of the RTDE guide.
 struct UrState {
   double timestamp = 0;  // time since the controller was started [s]
   UrVector q{}, v{};     // [rad], [rad/s]
@@ -30,12 +30,12 @@ struct UrState {
   std::int32_t script = 0;
   double payload = 0;                   // configured at the pendant; zero if unknown [kg]
   std::array<double, 3> payload_cog{};  // centre of mass in the flange [m]
-  // The position [m] and rotation vector [rad] of the tool in the base, and on the flange. The pose
-  // on the flange is zero if it is unknown.
+  // The position [m] and rotation vector [rad] of the tool in the base, and on the flange. If the
+  // pose of the tool on the flange is unknown, it is zero.
   UrVector tool{}, tool_offset{};
 };
 
-// Optional fields that not every controller provides.
+// Fields that not every controller provides.
 struct UrExtras {
   bool wrench = false;       // ft_raw_wrench
   bool payload = false;      // payload, payload_cog
@@ -48,7 +48,7 @@ std::vector<rtde::Field> UrOutputs(int first_register, const UrExtras& extras);
 // (ur_script.h).
 std::vector<rtde::Field> UrInputs(int first_register);
 
-// Decodes the payload of a data packet. Returns false for another size or another recipe.
+// Decodes the payload of a data packet. Returns false if the size or the recipe is different.
 bool Decode(std::span<const std::byte> payload, int recipe, const UrExtras& extras,
             UrState* state) noexcept;
 
@@ -73,7 +73,7 @@ enum class UrFault : std::uint8_t {
 // Describes the fault and the remedy for the user, or returns "" for kNone.
 const char* Sentence(UrFault fault);
 
-// Returns whether the arm must not be left holding, because its state is unknown.
+// Returns whether the arm must not hold its position with power, because its state is unknown.
 constexpr bool EndsWithoutPower(UrFault fault) noexcept {
   return fault == UrFault::kClosed || fault == UrFault::kMalformed || fault == UrFault::kDeaf ||
          fault == UrFault::kEmergencyStop || fault == UrFault::kSafetyFault;
@@ -82,13 +82,14 @@ constexpr bool EndsWithoutPower(UrFault fault) noexcept {
 // Returns the fault that prevents the arm from moving with any program, or kNone if there is no
 // fault.
 UrFault ArmFault(const UrState& state) noexcept;
-// Returns the fault that prevents the arm from moving while our program should run at full speed.
+// Returns the fault that prevents the arm from moving at a time when our program should run at full
+// speed.
 UrFault RunFault(const UrState& state) noexcept;
-// Returns whether the motors have power, with brakes released or not.
+// Returns whether the motors have power, whether or not the brakes are released.
 bool Powered(const UrState& state) noexcept;
 // Returns whether the speed slider is below 100 %.
 bool SlowedDown(const UrState& state) noexcept;
-// Returns whether all numbers are finite and possible for an arm.
+// Returns whether all numbers are finite and within the range that is possible for an arm.
 bool Plausible(const UrState& state) noexcept;
 
 // runtime_state

@@ -14,8 +14,8 @@ namespace predictor {
 template <class T>
 concept Scalar = std::is_arithmetic_v<T>;
 
-// Reads consecutive numbers. Missing numbers are read as zero, and ok() is false from then on. Read
-// a whole packet first, and then check ok() once.
+// Reads consecutive numbers. If the packet ends too early, the missing numbers are read as zero,
+// and ok() is false from then on. Read a whole packet first, and then check ok() once.
 template <std::endian kOrder>
 class ByteReader {
  public:
@@ -56,7 +56,7 @@ class ByteReader {
   bool ok_ = true;
 };
 
-// Writes consecutive numbers to a buffer. ok() is false if the buffer is too small.
+// Writes consecutive numbers to a buffer. If the buffer is too small, ok() is false.
 template <std::endian kOrder>
 class ByteWriter {
  public:

@@ -7,8 +7,8 @@
 namespace predictor {
 
 // The recent packet with the shortest delay determines the offset of the device's clock. A packet
-// with a longer delay is older by the difference. The delay that is common to all packets cannot be
-// observed.
+// with a longer delay is older by the difference between the delays. The delay that is common to
+// all packets cannot be observed.
 class DeviceClock {
  public:
   // Allowed drift between the clocks. This value is far larger than the drift of quartz clocks, and

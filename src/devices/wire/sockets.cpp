@@ -153,7 +153,7 @@ class Sockets final : public Network {
     sockaddr_in own{};
     own.sin_family = AF_INET;
     own.sin_port = htons(port);
-    // Binds only to the interface that leads to the device.
+    // The socket is bound only to the interface that leads to the device.
     own.sin_addr = OwnAddress(address);
     if (bind(socket.get(), Generic(own), sizeof own) != 0)
       throw DeviceError("This computer's UDP port " + std::to_string(port) + ", to which " +

@@ -1,4 +1,4 @@
-// Follows the cobot's grip on the object.
+// Records how the cobot's grip on the object changes.
 #include <array>
 #include <utility>
 

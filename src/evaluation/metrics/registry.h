@@ -1,4 +1,4 @@
-// Lists the metrics of a run, one line each, in the order of the summary.
+// Lists the metrics of a run, one per line, in the order of the summary.
 #pragma once
 
 #include "evaluation/metric.h"

@@ -1,5 +1,5 @@
-// Measures the errors of the real handles relative to the poses that they should follow. These are
-// the poses of the virtual handles plus the displacement that a perturbation commands.
+// Measures the errors of the real handles relative to the poses that they should follow. These
+// poses are the poses of the virtual handles plus the displacement that a perturbation commands.
 #include <cmath>
 
 #include "core/handle_target.h"

@@ -1,6 +1,6 @@
-// Implements (13)–(15): joint positions, velocities and accelerations, as bounds. Position and
-// velocity limits always hold. If the acceleration limit conflicts with these limits in a tick, the
-// acceleration limit is exceeded.
+// Implements (13)–(15) of the paper: bounds for joint positions, velocities and accelerations.
+// Position and velocity limits always hold. If the acceleration limit conflicts with these limits
+// in a tick, the acceleration limit is exceeded.
 #include <algorithm>
 
 #include "haptics/approach_speed.h"
@@ -10,7 +10,7 @@ namespace predictor {
 namespace {
 
 // The share of a joint's velocity limit that rendering uses. The remaining share is reserved for a
-// stop, which slightly accelerates single joints to keep the handles on their path.
+// stop, because a stop slightly accelerates single joints to keep the handles on their path.
 constexpr double kShareOfVelocity = 0.98;
 
 class JointLimit final : public Limit {
@@ -50,7 +50,7 @@ class JointLimit final : public Limit {
           out->Narrow(context.offset[i] + j, lowest, highest);
           continue;
         }
-        // The range around the last command that the acceleration limit permits in one tick,
+        // The range around the last command that the acceleration limit permits in one tick. It is
         // shifted into the range that the position limits allow.
         const double last = context.last[i][j], step = a * context.dt;
         out->Narrow(context.offset[i] + j, std::clamp(last - step, lowest, highest),

@@ -1,4 +1,5 @@
-// Implements (11) and (12): keeps the origins of link pairs apart. One row per pair.
+// Implements (11) and (12) of the paper, which keep the origins of link pairs apart. One row per
+// pair.
 #include <algorithm>
 #include <cmath>
 

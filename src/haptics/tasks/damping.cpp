@@ -44,8 +44,8 @@ class Damping final : public Task {
         const Vector6 column = scale.cwiseProduct(J.col(c));
         JJt.noalias() += column * column.transpose();
       }
-      // 1/tr((J Jᵀ)⁻¹) lies between σ_min²/6 and σ_min². This measure is cheap to compute and
-      // smooth in q.
+      // 1/tr((J Jᵀ)⁻¹) lies between σ_min²/6 and σ_min². This measure requires little computation
+      // and is a smooth function of q.
       const double sigma = 1 / std::sqrt(TraceOfInverse(JJt));
       const double near = std::max(0.0, 1 - sigma / kSingularValue);
       joints->damping.segment(context.offset[i], J.cols()).array() +=

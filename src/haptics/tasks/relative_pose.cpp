@@ -1,8 +1,8 @@
-// The repaired form of (10): the right real handle approaches the pose that has the relative pose
-// of the virtual handles to the left real handle. The requested motion does not exceed the speed
-// caps of a handle.
+// In the repaired form of (10), the right real handle approaches a goal. Relative to the left real
+// handle, this goal has the relative pose of the virtual handles. The requested motion does not
+// exceed the speed caps of a handle.
 //
-// The form of (10) as printed: the vector between the real handles approaches the vector between
+// In the printed form of (10), the vector between the real handles approaches the vector between
 // the virtual handles in W, and the orientations of the handles approach each other.
 #include "haptics/registry.h"
 
@@ -29,7 +29,8 @@ class RelativePose final : public Task {
     if (terms_.empty()) return;
     TaskTerm& term = terms_[0];
     // During alignment, no hand holds a handle, and each arm moves independently. If the relative
-    // pose is far from correct, the arms cannot track both goals at once.
+    // pose is far from correct, the arms cannot reach the relative pose and the virtual handles at
+    // the same time.
     if (!context.Has(0) || !context.Has(1) || context.target.aligning) {
       term.J.resize(6, 0);
       return;
@@ -57,7 +58,8 @@ class RelativePose final : public Task {
   }
 
  private:
-  // Sets the goal of the right handle, and the vector from the left handle to the right handle [m].
+  // Computes the goal of the right handle, and the vector from the left handle to the right handle
+  // [m].
   void SetGoal(const RenderContext& context, Pose* goal, Vector3* lever) const noexcept {
     const auto& D = context.target.handle;
     if (relative_) {

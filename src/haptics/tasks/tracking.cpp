@@ -1,5 +1,6 @@
-// (7)–(9): each real handle follows its virtual one, with velocity feed-forward, a lead that
-// compensates the arms' lag, and one common cap on the speeds of the handles.
+// Implements (7)–(9) of the paper: each real handle follows its virtual handle. The task adds
+// velocity feed-forward, a lead that compensates the arms' lag, and one common cap on the speeds of
+// the handles.
 #include <algorithm>
 
 #include "core/filters.h"
@@ -40,7 +41,8 @@ class Tracking final : public Task {
       if (!target.aligning) v += lead_ * acceleration_[i].value();
       v.head<3>() += kp * (D.X_W.p - context.X_WH[i].p);
       v.tail<3>() += ko * QuaternionError(D.X_W.q, context.X_WH[i].q, nearer_);
-      // The cap uses one factor for both handles, so it does not change their relative motion.
+      // The cap reduces the speeds of both handles by the same factor, so the direction of their
+      // relative motion does not change.
       if (capped_ || target.aligning) scale = std::min(scale, ScaleToCaps(v, target));
     }
     for (TaskTerm& term : terms_) term.rate *= scale;

@@ -1,4 +1,5 @@
-// The actions of the operator's script. To add one, see docs/developer/add-an-action.md.
+// The actions of the operator's script. docs/developer/add-an-action.md explains how to add an
+// action.
 #pragma once
 
 #include <memory>
@@ -16,20 +17,21 @@ namespace predictor {
 class Action {
  public:
   virtual ~Action() = default;
-  // The operator calls this when the action starts, and when the script starts again. This function
-  // and the following ones do not use the heap and do not throw.
+  // The operator calls this function when the action starts, and when the script starts again. This
+  // function and the following ones do not use the heap and do not throw.
   virtual void Begin(Intent* intent) noexcept = 0;
-  // Advances by dt [s]. `pace` is the speed of the operator, 1 on average. Returns false when the
-  // action ends.
+  // Advances by dt [s]. `pace` is the speed of the operator, where 1 is the average. Returns false
+  // when the action ends.
   virtual bool Advance(double dt, double pace, Intent* intent) noexcept = 0;
-  // Returns whether the action moves the object. Such an action ends as soon as no hand holds the
-  // object.
+  // Returns whether the action moves the object. An action that moves the object ends as soon as no
+  // hand holds the object.
   virtual bool NeedsHold() const noexcept { return false; }
   // Saves or loads the progress of the action.
   virtual void Archive(StateArchive& a) noexcept = 0;
 };
 
-// Two actions of the same kind of motion may not overlap in time.
+// The kind of the motion that an action performs. Two actions with the same kind of motion may not
+// overlap in time.
 enum class ActionMotion { kNone, kMoves, kTurns };
 
 // The registry's description of an action.
@@ -43,8 +45,9 @@ struct ActionKind : ParameterKind {
 };
 
 // Returns the kind of an action A whose constructor takes its parameters P. `name` is the word in
-// operator.script: {action: NAME}. A::Sentence(P, facing) is the instruction. A::Time(P) is the
-// time; an action without this function takes P::duration.
+// operator.script: {action: NAME}. A::Sentence(P, facing) returns the action's instruction to the
+// person. A::Time(P) returns the time that the action takes. For an action without this function,
+// this time is P::duration.
 template <class A, class P>
 constexpr ActionKind ActionKindOf(const char* name, const char* doc,
                                   ActionMotion motion = ActionMotion::kNone) {
@@ -66,12 +69,13 @@ constexpr ActionKind ActionKindOf(const char* name, const char* doc,
           }};
 }
 
-// Rules for parameters that several actions share.
+// The rules for parameters that several actions share.
 inline Rule DurationRule(const char* doc = "duration of the action") {
   return Number("s", doc, Above(0, 86400));
 }
 inline Rule HandRule() { return Word("hand or hands that act", {"left", "right", "both"}); }
-// Returns a parameter without which the action does nothing. Throws InputError if it is zero.
+// Returns a parameter that must not be zero, because the action would do nothing without it. Throws
+// InputError if the parameter is zero.
 Vector3 NotZero(const char* key, const Vector3& value);
 // Returns whether the word ("left", "right" or "both") includes this hand.
 bool Concerns(const std::string& which, std::size_t hand);
@@ -85,7 +89,8 @@ const ActionKind* FindAction(const std::string& name) noexcept;
 // and the error in it.
 std::unique_ptr<Action> MakeAction(const ActionSpec& spec, int index);
 
-// Returns the parameters of an entry of this kind. An invalid parameter has its default.
+// Returns the parameters of an entry of this kind. A parameter with an invalid value gets its
+// default value.
 std::unique_ptr<OwnParameters> ParametersIn(const ActionSpec& spec, const ActionKind& kind);
 
 // Returns the instruction to a person at the handles, for example "Grip the handles."

@@ -61,7 +61,7 @@ class Circle final : public Action {
 
  private:
   // Returns the integral of MinimumJerk. While the speed ramps up for x · ramp_, the angle changes
-  // by rate_ · ramp_ times this value.
+  // by rate_ · ramp_ times this integral.
   static double RampAngle(double x) { return x * x * x * x * (2.5 + x * (-3 + x)); }
   double Rate(double t) const {
     return rate_ * MinimumJerk(t / ramp_) * MinimumJerk((duration_ - t) / ramp_);

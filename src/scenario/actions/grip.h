@@ -1,4 +1,4 @@
-// Closing and opening of hands, used by grip, release and put_down.
+// The action that closes and opens hands, which grip, release and put_down use.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace predictor {
 
-// Closes or opens hands within `time` [s], which is also its duration.
+// Closes or opens hands within `time` [s]. The action takes the same time.
 class Grip : public Action {
  public:
   Grip(const std::string& hand, bool hold, double time)

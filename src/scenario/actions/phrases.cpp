@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMinDistance = 5e-4;  // a shorter displacement is not mentioned [m]
 
-// Returns "30 cm to the left" and the like, for each direction with a significant displacement.
+// Returns a text such as "30 cm to the left" for each direction with a significant displacement.
 std::vector<std::string> Horizontal(const Vector3& by, double facing) {
   const double forward = by.x() * std::cos(facing) + by.y() * std::sin(facing);
   const double left = by.y() * std::cos(facing) - by.x() * std::sin(facing);

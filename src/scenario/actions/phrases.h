@@ -1,4 +1,4 @@
-// Parts of the sentences that instruct a person.
+// Makes the parts of the sentences that instruct a person.
 #pragma once
 
 #include <string>

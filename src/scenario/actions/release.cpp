@@ -1,4 +1,5 @@
-// Opens hands. The time for the release is a property of the hand (operator.hand.release_time).
+// Opens hands. The time that the release takes is a property of the hand
+// (operator.hand.release_time).
 #include "scenario/actions/grip.h"
 #include "scenario/actions/phrases.h"
 #include "scenario/actions/registry.h"

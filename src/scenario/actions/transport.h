@@ -1,4 +1,5 @@
-// Displacement and rotation of the object with minimum jerk, used by move, rotate and put_down.
+// The action that moves and rotates the object with minimum jerk, which move, rotate and put_down
+// use.
 #pragma once
 
 #include "core/minimum_jerk.h"

@@ -36,7 +36,7 @@ void AdmittanceLaw::Start(const ControllerInput& input) noexcept {
   Reference() = posture_;
 }
 
-// With V = 0 and a slow return to the posture, τ − g = M (ω² (q_ref − q) − 2 ω q̇).
+// With V = 0 and a slow return to the posture, the law becomes τ − g = M (ω² (q_ref − q) − 2 ω q̇).
 void AdmittanceLaw::TakeOver(const ControllerInput& input) noexcept {
   std::fill(memory_.begin(), memory_.end(), 0.0);
   M_factor_.compute(input.data->M());

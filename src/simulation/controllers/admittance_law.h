@@ -49,7 +49,8 @@ class AdmittanceLaw : public Controller {
   bool uses_wrist_sensor() const noexcept final { return true; }
   std::span<double> memory() noexcept final { return memory_; }
   void Start(const ControllerInput& input) noexcept final;
-  // The reference begins where the torques do not jump. The tare of the start remains valid.
+  // The reference begins at the value at which the torques do not jump. The tare that was taken at
+  // the start remains valid.
   void TakeOver(const ControllerInput& input) noexcept final;
   void Advance(const ControllerInput& input, double dt) noexcept final;
   void Compute(const ControllerInput& input, JointVector* torque) noexcept final;
@@ -57,8 +58,8 @@ class AdmittanceLaw : public Controller {
   void Archive(StateArchive& a) noexcept final { a(tare_); }
 
  protected:
-  // `own` is the number of values of the derived controller in the memory. These values are 0 at
-  // the start.
+  // `own` is the number of values that the derived controller has in the memory. These values are 0
+  // at the start.
   AdmittanceLaw(const ControllerContext& context, const AdmittanceParameters& parameters, int own);
 
   // Returns F + F_a − D_d V, the wrench that accelerates M_d.

@@ -3,11 +3,12 @@
 //   τ = g + Jᵀ (Λ ẍ_d + D ẋ̃ + w_K) + τ_posture,   x̃ = set-point − pose of E
 //
 // Λ = (J M⁻¹ Jᵀ)⁻¹ is the inertia of the cobot alone, so no force has to be measured (Ott 2008). If
-// Λ included the load, D would be too large for the wrist. The Coriolis term stays in the loop: Λ
-// ẍ̃ + (μ + D) ẋ̃ + w_K = F_ext. Cancelling it would make the loop active, since Λ varies (½ Λ̇ − μ
-// is skew). w_K is the gradient of the springs' energy (below), and D is positive semidefinite for
-// any posture, so the loop is passive if the set-point does not move. While the set-point moves, μ
-// ẋ_d (quadratic in speed) acts as a disturbance.
+// Λ included the load, the damping D would be too large for the wrist. The Coriolis term stays in
+// the loop, which is Λ ẍ̃ + (μ + D) ẋ̃ + w_K = F_ext. Cancelling this term would make the loop
+// active, since Λ varies (½ Λ̇ − μ is skew-symmetric). The wrench w_K is the gradient of the
+// springs' energy (below), and D is positive semidefinite for any posture. Therefore the loop is
+// passive if the set-point does not move. While the set-point moves, μ ẋ_d (quadratic in speed)
+// acts as a disturbance.
 #include <Eigen/Cholesky>
 #include <cmath>
 #include <string>
@@ -148,7 +149,7 @@ class CartesianImpedance final : public Controller {
     return wrench;
   }
 
-  // The factors follow from M = L Lᵀ and Λ⁻¹ = J M⁻¹ Jᵀ = (J L⁻ᵀ)(J L⁻ᵀ)ᵀ.
+  // The factors follow from the equations M = L Lᵀ and Λ⁻¹ = J M⁻¹ Jᵀ = (J L⁻ᵀ)(J L⁻ᵀ)ᵀ.
   void UpdateInertia(const JointMatrix& M) {
     M_factor_.compute(M);
     half_ = J_;
@@ -158,7 +159,7 @@ class CartesianImpedance final : public Controller {
     mobility_.compute(mobility);
   }
 
-  // Returns D v. With Λ⁻¹ = G Gᵀ, Λ = L Lᵀ for L = G⁻ᵀ.
+  // Returns D v. If Λ⁻¹ = G Gᵀ, then Λ = L Lᵀ with L = G⁻ᵀ.
   Vector6 DampingWrench(const Twist& v) {
     const Matrix6 G = mobility_.matrixL();
     damping_.Compute(G, K_, ratio_);
@@ -170,8 +171,8 @@ class CartesianImpedance final : public Controller {
   }
 
   // Adds a spring and a damper towards the posture, in the part of the joint space that does not
-  // accelerate E: P = 1 − M⁻¹ Jᵀ Λ J, τ = Pᵀ k (q_0 − q) − c M P q̇, M P = Pᵀ M P. In a
-  // one-dimensional null space, c sets the damping ratio exactly.
+  // accelerate E. The torque is τ = Pᵀ k (q_0 − q) − c M P q̇, where P = 1 − M⁻¹ Jᵀ Λ J and M P =
+  // Pᵀ M P. In a one-dimensional null space, c sets the damping ratio exactly.
   void AddPostureTorque(const ControllerInput& input, const Twist& velocity, JointVector* torque) {
     const auto n = input.q->size();
     const double k = posture_stiffness_;
@@ -202,7 +203,7 @@ class CartesianImpedance final : public Controller {
   Vector6 ratio_;
   Vector6 shift_;  // shift of the set-point by tuning [m], [rad]
   Vector6 jump_;   // by ShiftSetPoint
-  // The following members are workspace.
+  // The following members are temporary storage for one step.
   Jacobian J_, half_, from_joints_;
   Eigen::Matrix<double, Eigen::Dynamic, 6, 0, kMaxJoints, 6> J_Lambda_;
   Eigen::LLT<JointMatrix> M_factor_;

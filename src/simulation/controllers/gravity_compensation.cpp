@@ -1,4 +1,5 @@
-// Hand guiding: the cobot compensates its own weight and follows the hand, τ = g.
+// A controller for hand guiding, with the law τ = g. The cobot compensates its own weight and
+// follows the hand.
 #include "simulation/controllers/controllers.h"
 
 namespace predictor::controllers {

@@ -5,10 +5,10 @@
 //
 //   F = S (F_d + I + k_p (F_d − F_m)) + (1 − S) K (x_0 − x),   İ = k_i (F_d − F_m)
 //
-// F_m is the force of the cobot on the load. The wrist sensor measures it, including the load's
-// weight. I is bounded, so that it does not wind up while the load moves freely. wrench_control.h
-// describes the damping, the orientation and the torques. The memory contains I and the last F_d −
-// F_m.
+// F_m is the force of the cobot on the load. The wrist sensor measures F_m, including the load's
+// weight. I is bounded, so that it does not wind up while the load moves freely. The damping, the
+// orientation and the torques are described in wrench_control.h. The memory contains I and the last
+// F_d − F_m.
 #include <algorithm>
 #include <array>
 #include <string>

@@ -79,7 +79,7 @@ class JointImpedance final : public Controller {
   JointVector K_;        // [N·m/rad], [N/m]
   JointVector ratio_;
   JointVector posture_spec_, K_spec_, ratio_spec_;  // from the scenario
-  // The following members are workspace.
+  // The following members are temporary storage for one step.
   Eigen::LLT<JointMatrix> M_factor_;
   JointMatrix L_inverse_transposed_;
   ModalDamping<JointVector, JointMatrix> damping_;

@@ -6,7 +6,7 @@
 //   F = α m g_up + β m ẍ,   at the object's centre of mass
 //
 // ẍ is the acceleration of the end-effector, from its velocity: ẍ = (ẋ − v_f) / T, v̇_f = ẍ. The
-// hands carry the rest. wrench_control.h describes the torques.
+// hands carry the rest. The file wrench_control.h describes the torques.
 #include <array>
 
 #include "simulation/controllers/controllers.h"
@@ -42,8 +42,8 @@ class LoadSharing final : public WrenchControl {
 
   std::span<double> memory() noexcept override { return velocity_; }
   void Start(const ControllerInput&) noexcept override { velocity_.fill(0); }
-  // The step is implicit, because Compute uses the v_f that results from this step. For a steady
-  // acceleration, ẍ is then exact.
+  // The step is implicit, because Compute uses the v_f that results from this step. If the
+  // acceleration is constant, ẍ is therefore exact.
   void Advance(const ControllerInput& input, double dt) noexcept override {
     const Twist V = input.data->FrameTwist(*input.model, input.end_effector);
     auto v_f = Vector3::Map(velocity_.data());

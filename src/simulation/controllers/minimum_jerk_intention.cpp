@@ -3,16 +3,16 @@
 // Bruyninckx, De Schutter & Van Brussel 2007, "Human-inspired robot assistant for fast
 // point-to-point movements").
 //
-// A person who moves a thing from one place to another does so with minimum jerk.
-// minimum_jerk_estimate.h estimates distance and duration from the pose and twist of the
+// A person moves a thing from one place to another with minimum jerk. The estimate in
+// minimum_jerk_estimate.h yields the distance and the duration from the pose and twist of the
 // end-effector. The cobot then contributes a share α of the force that this movement needs:
 //
 //   M_d V̇ + D_d V = F + α w (D_d V_e + (M_d + m) V̇_e)
 //
 // V_e and V̇_e are the twist and the acceleration of the estimated movement, and m is the mass of
 // the load. With α = 1 and the right m, the movement continues as it began, without a force of the
-// hand. w is less than 1 at both ends of the movement, where the estimate is uncertain. Rotation is
-// plain admittance.
+// hand. The weight w is less than 1 at both ends of the movement, where the estimate is uncertain.
+// Rotation is plain admittance.
 #include <algorithm>
 
 #include "simulation/controllers/admittance_law.h"

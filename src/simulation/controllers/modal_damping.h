@@ -7,10 +7,11 @@
 
 namespace predictor {
 
-// An inertia Λ = L Lᵀ and a diagonal stiffness K are both diagonal in the basis Q = L U: Λ = Q Qᵀ,
-// K = Q K0 Qᵀ with L⁻¹ K L⁻ᵀ = U K0 Uᵀ. D = Q diag(2 ζ √K0) Qᵀ damps each mode separately
-// (Albu-Schäffer, Ott, Frese & Hirzinger 2003, "double diagonalization design"). Vector and Matrix
-// are Eigen types of fixed size or of fixed capacity. Does not use the heap.
+// In the basis Q = L U, both an inertia Λ = L Lᵀ and a diagonal stiffness K are diagonal. They are
+// Λ = Q Qᵀ and K = Q K0 Qᵀ, with L⁻¹ K L⁻ᵀ = U K0 Uᵀ. The damping D = Q diag(2 ζ √K0) Qᵀ acts on
+// each mode separately (Albu-Schäffer, Ott, Frese & Hirzinger 2003, "double diagonalization
+// design"). Vector and Matrix are Eigen types of fixed size or of fixed capacity. Does not use the
+// heap.
 template <class Vector, class Matrix>
 class ModalDamping {
  public:
@@ -21,7 +22,8 @@ class ModalDamping {
   // axis. The damping ratio of a mode is the mean of the axes' ratios, weighted by each axis's
   // share of the energy in the mode's springs.
   void Compute(const Matrix& L_inverse_transposed, const Vector& K, const Vector& ratio) {
-    // In L⁻¹ K L⁻ᵀ = Hᵀ H, column i of H U contains mode i's displacements times √K.
+    // With L⁻¹ K L⁻ᵀ = Hᵀ H, column i of H U contains the displacements of mode i, multiplied by
+    // √K.
     H_.noalias() = K.cwiseSqrt().asDiagonal() * L_inverse_transposed;
     eigen_.compute(H_.transpose().lazyProduct(H_));
     const Matrix& U = eigen_.eigenvectors();

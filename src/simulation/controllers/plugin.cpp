@@ -44,9 +44,9 @@ std::filesystem::path LibraryOf(const ControllerContext& context,
   if (!context.distrusts_libraries || HasPassedTrial(file, parameters.parameters)) return file;
   throw InputError::At("cobot.controller.library",
                        "cobot.controller.library: " + parameters.library +
-                           " would run as part of the control loop. With real arms, it must first "
-                           "pass a trial with the same parameters: run `predictor trial SCENARIO "
-                           "RECORDING`. Or use cobot.controller.type: process.");
+                           " would run as part of the control loop. Before use with real arms, the "
+                           "library must pass a trial with the same parameters: run `predictor "
+                           "trial SCENARIO RECORDING`. Or use cobot.controller.type: process.");
 }
 
 class Plugin final : public ExternalController {
@@ -86,8 +86,8 @@ class Plugin final : public ExternalController {
     return {};
   }
 
-  // A C++ exception must not leave the library. If an exception leaves the library, its next
-  // torques are refused.
+  // A C++ exception must not leave the library. If an exception leaves the library, the program
+  // refuses the library's next torques.
   template <class Call>
   void Guard(const char* function, Call call) const noexcept {
     const PluginCall running(&calls_, function);

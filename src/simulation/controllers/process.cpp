@@ -112,7 +112,8 @@ class Process final : public ExternalController {
   }
 
   // Repeats a start that the program could not answer. Without this start, the program's memory
-  // would be that of the last run. Returns false while the program has not started.
+  // would be that of the last run. Returns false as long as the program has not answered the
+  // request to start.
   bool TryStart(const PredictorControllerInput& input) noexcept {
     if (!must_start_) return true;
     if (!Request(PREDICTOR_START, input)) return false;
@@ -123,8 +124,8 @@ class Process final : public ExternalController {
 
   bool Request(int kind, const PredictorControllerInput& input) noexcept {
     if (process_.IsBusy()) {
-      // The shared memory belongs to the program at present. In virtual time, the program has been
-      // abandoned.
+      // The shared memory belongs to the program at present. In virtual time, the emulator no
+      // longer uses the program.
       return false;
     }
     PredictorControllerMemory& shared = process_.shared();

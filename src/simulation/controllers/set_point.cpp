@@ -17,9 +17,10 @@ SetPointTrajectory::SetPointTrajectory(const std::vector<Waypoint>& waypoints, c
     if (!(waypoint.time > time)) {
       const std::string key =
           "cobot.controller.trajectory." + std::to_string(segments_.size()) + ".time";
-      throw InputError::At(key, key + " is " + FormatNumber(waypoint.time) +
-                                    " s, which does not come after " + FormatNumber(time) +
-                                    " s. Let the times increase, the first above 0.");
+      throw InputError::At(
+          key, key + " is " + FormatNumber(waypoint.time) + " s, which does not come after " +
+                   FormatNumber(time) +
+                   " s. Give increasing times, of which the first is greater than 0.");
     }
     const Pose offset = PoseFromXyzRpy(waypoint.xyz, waypoint.rpy);
     const Pose to = {start.p + offset.p, (offset.q * start.q).normalized()};

@@ -12,13 +12,13 @@ namespace predictor {
 class SetPointTrajectory {
  public:
   // `start` is the set-point before the first waypoint, to which the waypoints are relative.
-  // Without waypoints, the set-point stays there. Throws InputError if the times do not increase
-  // from 0.
+  // Without waypoints, the set-point stays at `start`. Throws InputError if the times do not
+  // increase from 0.
   SetPointTrajectory(const std::vector<Waypoint>& waypoints, const Pose& start);
 
-  // Returns pose, twist and acceleration of the set-point at time t [s], in W. Between waypoints,
-  // position and rotation vector follow 10 s³ − 15 s⁴ + 6 s⁵ (Flash & Hogan 1985). The rotation is
-  // about one axis of W.
+  // Returns the pose, the twist and the acceleration of the set-point at time t [s], in W. Between
+  // waypoints, position and rotation vector follow 10 s³ − 15 s⁴ + 6 s⁵ (Flash & Hogan 1985). The
+  // rotation is about one axis of W.
   FrameMotion At(double t) const noexcept;
 
  private:

@@ -6,8 +6,9 @@
 //
 //   F = −K P (x − x_0) − D P ẋ,   P = 1 − u uᵀ (line along u), u uᵀ (plane normal to u)
 //
-// The zone is a sphere with a damper: F = −D_z s ẋ. s falls smoothly from 1 to 0 across the edge of
-// the sphere. The cobot carries a known load. wrench_control.h describes the torques.
+// The zone is a sphere with a damper, F = −D_z s ẋ. The factor s falls smoothly from 1 to 0 across
+// the edge of the sphere. The cobot carries a known load. The file wrench_control.h describes the
+// torques.
 #include <string>
 
 #include "core/error.h"

@@ -110,7 +110,7 @@ bool DartProcess::Ask(Request kind) noexcept {
 }
 
 std::string DartProcess::Failure() noexcept {
-  if (is_silent_) return "The engine's process no longer answered.";
+  if (is_silent_) return "The engine's process does not answer any more.";
   const std::string how = process_->HowItEnded();
   return how.empty() ? failure_
                      : "The engine's process ended: " + how +

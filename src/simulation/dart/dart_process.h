@@ -1,4 +1,4 @@
-// Implements the run's side of the connection to the program predictor-dart.
+// Implements the emulator's side of the connection to the program predictor-dart.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@ namespace predictor {
 
 class DartProcess {
  public:
-  // Starts the program and sends it the scene. Throws InputError if the program was not built or
-  // cannot read the scene.
+  // Starts the program and sends the scene to the program. Throws InputError if the program was not
+  // built or cannot read the scene.
   explicit DartProcess(const dart_engine::SceneData& scene);
   ~DartProcess();
   DartProcess(const DartProcess&) = delete;
@@ -26,9 +26,10 @@ class DartProcess {
   // ended or no longer answers. Does not use the heap.
   bool Ask(dart_engine::Request kind) noexcept;
 
-  // Returns a sentence that states why the program no longer answers, or "" if it does.
+  // Returns a sentence that states why the program no longer answers, or "" if the program still
+  // answers.
   std::string Failure() noexcept;
-  // Restarts the program if it has ended. If this is impossible, the function does nothing.
+  // Restarts the program if it has ended. If a restart is impossible, the function does nothing.
   void Revive() noexcept;
 
  private:

@@ -1,9 +1,9 @@
-// The memory that the run shares with the program predictor-dart, which simulates a DART world step
-// by step. This memory contains only plain numbers, because the two programs are built with
+// The memory that the emulator shares with the program predictor-dart, which simulates a DART world
+// step by step. This memory contains only plain numbers, because the two programs are built with
 // different libraries.
 //
 // Poses are a position [m] and a unit quaternion (w, x, y, z). Axes and wrenches are given in W
-// unless stated otherwise. The program keeps no state between two requests except the scene.
+// unless stated otherwise. Between two requests, the program keeps the scene but no other state.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,8 @@ struct FramePose {
   double p[3], q[4];
 };
 
-// Mass [kg], centre of mass [m] in a frame, and inertia about it in the frame's axes [kg·m²].
+// Mass [kg], centre of mass [m] in a frame, and inertia about the centre of mass in the frame's
+// axes [kg·m²].
 struct Inertia {
   double mass, com[3], inertia[9];
 };
@@ -50,8 +51,9 @@ enum class ShapeKind : std::int32_t { kBox, kCylinder, kSphere, kCapsule, kPlane
 
 struct CollisionShape {
   ShapeKind kind;
-  // Box: edges; cylinder and capsule: radius, length without caps; sphere: radius [m]. Axis of a
-  // cylinder or capsule, and normal of a plane: z.
+  // The sizes are the edges of a box, the radius and the length without caps of a cylinder or
+  // capsule, or the radius of a sphere [m]. The axis of a cylinder or capsule and the normal of a
+  // plane are z.
   double size[3];
   FramePose at;  // in O, or in W
 };
@@ -104,7 +106,8 @@ enum class Result : std::int32_t {
   kFailed,  // `text` says why
 };
 
-// A ball joint has a quaternion as positions, and its angular velocity in axes of O as velocities.
+// The positions of a ball joint are a quaternion. Its velocities are its angular velocity in axes
+// of O.
 struct StateData {
   double q[kMaxPositions], v[kMaxDof];
   double hand_mass[kHandCount];  // [kg]
@@ -119,7 +122,8 @@ struct ForceData {
 
 // ---- the answer ----------------------------------------------------------------------------
 
-// Rows: linear velocity of the body's origin, then angular velocity, in axes of W.
+// The rows are those of the linear velocity of the body's origin, and then those of the angular
+// velocity, in axes of W.
 struct BodyMotion {
   FramePose pose;
   double twist[6];

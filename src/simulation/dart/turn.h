@@ -1,4 +1,4 @@
-// Waits for the other process, by the number of its last request or answer.
+// Functions that wait for the other process. They use the number of its last request or answer.
 #pragma once
 
 #include <linux/futex.h>
@@ -22,8 +22,8 @@ inline void Publish(std::uint32_t* number, std::uint32_t value) noexcept {
   syscall(SYS_futex, number, FUTEX_WAKE, 1, nullptr, nullptr, 0);
 }
 
-// Waits until the number is no longer `value`, at most a tenth of a second. Returns whether it
-// changed.
+// Waits until the number is no longer `value`, but for at most a tenth of a second. Returns whether
+// it changed.
 inline bool WaitForChange(const std::uint32_t* number, std::uint32_t value) noexcept {
   for (int spin = 0; spin < kSpins; ++spin)
     if (Load(number) != value) return true;

@@ -22,7 +22,7 @@ void Fields(V& v, GraspParameters& p) {
     Number("s", "time within which the cobot begins to compensate cobot.payload", From(0, 60)));
 }
 
-// The most recent command of each kind counts.
+// Only the most recent command of each kind has an effect.
 void Release(const NoParameters&, double elapsed, Disturbance* d) noexcept {
   if (elapsed < d->gripper.released) d->gripper.released = elapsed;
 }

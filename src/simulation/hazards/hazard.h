@@ -1,5 +1,6 @@
-// Deliberate hazards. docs/how-to/hazards.md explains how scenarios use them. To add one, write a
-// struct of parameters, a function that writes a Disturbance, and a line in hazards.h.
+// Deliberate hazards. The page docs/how-to/hazards.md explains how scenarios use them. To add a
+// hazard, write a struct of parameters, a function that writes a Disturbance, and a line in
+// hazards.h.
 #pragma once
 
 #include "scenario/own_parameters.h"
@@ -7,10 +8,11 @@
 
 namespace predictor {
 
-// What a hazard needs: a part of the cobot without which it would have no effect, an attachment
-// that can slip (kSlipping), or that it lasts until the end (kNoEnd). Commands to the gripper have
-// no end either (kRelease), and one to grasp needs another event that releases the object (kGrasp).
-// kFixture: its parameter `fixture` names one of environment.fixtures.
+// The requirement of a hazard. It is a part of the cobot without which the hazard would have no
+// effect, an attachment that can slip (kSlipping), or an effect that lasts until the end of the run
+// (kNoEnd). Commands to the gripper have no end either (kRelease), and a command to grasp needs
+// another event that releases the object (kGrasp). With kFixture, the hazard's parameter `fixture`
+// names one of environment.fixtures.
 enum class HazardNeeds {
   kNothing,
   kWristSensor,
@@ -24,17 +26,18 @@ enum class HazardNeeds {
   kFixture
 };
 
-// The registry's description of a hazard. The sentence states what happens, for a report ("the
-// brakes close").
+// The registry's description of a hazard. The sentence states what happens, for use in a report
+// ("the brakes close").
 struct HazardKind : ParameterKind {
   const char* sentence;
   HazardNeeds needs;
-  // Adds the hazard to the disturbance, `elapsed` [s] after it began. Does not use the heap or
-  // throw.
+  // Adds the effect of the hazard to the disturbance, at the time `elapsed` [s] after the hazard
+  // began. Does not use the heap or throw.
   void (*disturb)(const OwnParameters&, double elapsed, Disturbance*) noexcept;
 };
 
-// Returns the kind of a hazard with parameters P. `name` is that of events: {event: NAME}.
+// Returns the kind of a hazard with parameters P. `name` is the NAME that a scenario uses in
+// events: {event: NAME}.
 template <class P, void (*disturb)(const P&, double, Disturbance*) noexcept>
 constexpr HazardKind HazardKindOf(const char* name, const char* doc, const char* sentence,
                                   HazardNeeds needs = HazardNeeds::kNothing) {

@@ -1,4 +1,5 @@
-// Lists the hazards, one line each. Recordings contain their numbers, so a new hazard goes last.
+// Lists the hazards, one per line. Recordings contain the numbers of the hazards, so a new hazard
+// must be added at the end of the list.
 #pragma once
 
 #include "simulation/hazards/hazard.h"

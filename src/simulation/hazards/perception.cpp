@@ -1,5 +1,5 @@
-// Hazards that affect what the cobot assumes or senses. They concern its payload, its friction and
-// its wrist sensor.
+// Hazards that affect what the cobot assumes or senses. These hazards concern the cobot's payload,
+// friction and wrist sensor.
 #include "simulation/hazards/hazards.h"
 
 namespace predictor::hazards {

@@ -32,8 +32,9 @@ void Append(const void* data, std::size_t size, std::vector<std::byte>* to) {
   to->insert(to->end(), bytes, bytes + size);
 }
 
-// Runs in the child. Compiles a model of only this mesh, as a visual, so that no hull is computed.
-// The engine moves a mesh's vertices to its centre and principal axes, which this function undoes.
+// Runs in the child. Compiles a model that contains only this mesh, as a visual shape, so that no
+// hull is computed. The engine moves a mesh's vertices to its centre and principal axes, which this
+// function undoes.
 std::vector<std::byte> ReadByEngine(const std::filesystem::path& file) {
   const SpecPtr spec(mj_makeSpec());
   spec->compiler.usethread = 0;
@@ -115,11 +116,10 @@ CollisionMesh ReadCollisionMesh(const ModelShape& shape, const std::string& key)
     if (IsFlat(mesh)) throw SandboxedFailure("it is flat, so its hull has no volume");
     return mesh;
   } catch (const SandboxedFailure& failure) {
-    throw InputError::At(key,
-                         key + ": " + shape.place + ": The mesh " + shape.mesh.string() +
-                             " cannot be used: " + failure.what() +
-                             ". Repair it, save it as binary STL or OBJ, or give <collision> a "
-                             "box, cylinder or sphere.");
+    throw InputError::At(key, key + ": " + shape.place + ": The mesh " + shape.mesh.string() +
+                                  " cannot be used: " + failure.what() +
+                                  ". Repair it, save it as binary STL or OBJ, or give <collision> "
+                                  "a box, cylinder or sphere.");
   }
 }
 

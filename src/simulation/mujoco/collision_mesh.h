@@ -14,9 +14,10 @@ struct CollisionMesh {
 };
 
 // Reads the file of a mesh shape (binary STL, OBJ, MSH) with the physics engine's readers. The
-// readers run in a sandboxed child. Its answer must contain finite numbers, at most
-// kMaxCollisionTriangles triangles, valid vertex indices, and a volume. `key`: of the scenario, for
-// errors. Throws InputError with the place in the URDF, the file, and a remedy. Not for the tick.
+// readers run in a sandboxed child. The child's answer must contain finite numbers, at most
+// kMaxCollisionTriangles triangles, valid vertex indices, and a volume. `key` is the key of the
+// scenario that error messages name. Throws InputError with the place in the URDF, the file, and a
+// remedy. Not for the tick.
 CollisionMesh ReadCollisionMesh(const ModelShape& shape, const std::string& key);
 
 }  // namespace predictor

@@ -12,19 +12,20 @@
 namespace predictor {
 namespace {
 
-// The share of the motion into a fixture that the fixture's contact removes. It is equal at every
-// depth, so that a contact is a linear spring and damper.
+// The share of the motion into a fixture that the fixture's contact removes. This share is equal at
+// every depth, so that a contact is a linear spring and damper.
 constexpr double kContactImpedance = 0.99;
-// The time constant with which friction stops a sliding body. With a shorter time constant,
-// MuJoCo's convex contacts make the body hop more. With a longer one, the body stops too late
-// (docs/developer/decisions.md) [s].
+// The time constant with which friction stops a sliding body [s]. With a shorter time constant,
+// MuJoCo's convex contacts make the body hop more. With a longer time constant, the body stops too
+// late (docs/developer/decisions.md).
 constexpr double kFixtureFrictionTime = 0.01;
 // The same share for contacts with a stiffness [N/m]. This share is small, because the engine's
-// contacts also add an inertia, which is this share of the mass that they move.
+// contacts also add an inertia. The added inertia is this share of the mass that the contacts move.
 constexpr double kYieldingImpedance = 0.001;
 constexpr double kYieldingFrictionTime = 0.2;  // instead of kFixtureFrictionTime [s]
-// Largest K dt²/m + 2 B dt/m of a point of contact. A single spring and damper is stable below 4. A
-// body that turns on several points needs a value up to ten times smaller.
+// The largest permitted value of K dt²/m + 2 B dt/m at a point of contact. A single spring and
+// damper is stable if this value is below 4. A body that turns on several points of contact needs a
+// value up to ten times smaller.
 constexpr double kLargestRate = 0.4;
 // The friction of fixtures creeps less than the engine's default friction by this factor.
 constexpr double kFrictionStiffness = 10;
@@ -120,15 +121,16 @@ void CheckRate(const FixtureSpec& fixture, std::size_t i, double inverse_mass, d
           " kg would be unstable in the simulation's steps of 1 ms. With this damping, the "
           "stiffness can be at most " +
           FormatNumber(std::floor(largest / dt)) +
-          " N/m. Reduce them, or remove both for a fixture that does not yield.");
+          " N/m. Reduce the stiffness and the damping, or remove both for a fixture that does not "
+          "yield.");
 }
 
 }  // namespace
 
-// The engine's contact obeys (m + 1/R) a = F − k I/R x − b/R v with R = (1 − I)/I · Â, where I is
-// its impedance, k and b are those of solref divided by I² and I, and Â approximates the inverse of
-// the mass that the contact moves (MuJoCo, "Computation", "Constraint model"). The approximation
-// does not matter, because the same Â is used here.
+// The engine's contact obeys (m + 1/R) a = F − k I/R x − b/R v with R = (1 − I)/I · Â. I is the
+// contact's impedance, k and b are those of solref divided by I² and I, and Â approximates the
+// inverse of the mass that the contact moves (MuJoCo, "Computation", "Constraint model"). The
+// approximation does not matter, because the same Â is used here.
 void SetStiffness(const EnvironmentSpec& environment, const std::vector<int>& fixture_of,
                   mjSpec* spec, mjModel* model) {
   for (mjsElement* e = mjs_firstElement(spec, mjOBJ_PAIR); e; e = mjs_nextElement(spec, e)) {
@@ -154,9 +156,9 @@ void SetStiffness(const EnvironmentSpec& environment, const std::vector<int>& fi
   }
 }
 
-// With the impedance I, the engine's contact adds the inertia m I/(1 − I), as above. A solref of a
-// time constant and a damping ratio ζ gives k = 1/(time ζ)² and b = 2/time (MuJoCo, "Modeling",
-// "Solver parameters").
+// With the impedance I, the engine's contact adds the inertia m I/(1 − I), as explained above. A
+// solref of a time constant and a damping ratio ζ gives k = 1/(time ζ)² and b = 2/time (MuJoCo,
+// "Modeling", "Solver parameters").
 ContactLaw ContactLawOf(const FixtureSpec& fixture, double mass) {
   if (fixture.stiffness)
     return {*fixture.stiffness, fixture.damping,
@@ -186,8 +188,8 @@ void AddSurroundings(mjSpec* spec, const EnvironmentSpec& environment) {
   }
   for (std::size_t i = 0; i < environment.fixtures.size(); ++i)
     AddFixture(world, environment.fixtures[i], i);
-  // Without stiffness and damping, the engine's default remains, so that earlier recordings replay
-  // bit for bit.
+  // Without stiffness and damping, the engine's default values remain, so that the replay of
+  // earlier recordings is identical bit for bit.
   if (!environment.fixtures.empty() || !environment.objects.empty())
     spec->option.impratio = kFrictionStiffness;
 }

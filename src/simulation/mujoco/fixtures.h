@@ -13,7 +13,8 @@ namespace predictor {
 // Adds floor, table and fixtures to the engine's world.
 void AddSurroundings(mjSpec* spec, const EnvironmentSpec& environment);
 
-// Makes fixture number i collide with the named shapes of a body, which may have a friction.
+// Makes fixture number i collide with the named shapes of a body. The body may have its own
+// friction.
 void AddContacts(mjSpec* spec, const EnvironmentSpec& environment, std::size_t i,
                  const std::vector<std::string>& shapes,
                  const std::optional<double>& friction = std::nullopt);
@@ -21,14 +22,15 @@ void AddContacts(mjSpec* spec, const EnvironmentSpec& environment, std::size_t i
 // Makes two shapes collide with the default properties of a fixture.
 void AddContact(mjSpec* spec, const std::string& shape, const std::string& other, double friction);
 
-// Returns the friction of a contact between two bodies: the lower one of those given.
+// Returns the friction of a contact between two bodies, which is the lower of the given values.
 double FrictionBetween(const EnvironmentSpec& environment, const std::optional<double>& a,
                        const std::optional<double>& b);
 
-// Gives the contacts of fixtures with a stiffness this stiffness and damping, in the compiled model
-// and, for its text, in `spec`. The engine's own values are relative to a mass that is known only
-// after the model is compiled. `fixture_of`: number of the fixture of each shape, or −1. Throws
-// InputError if a fixture is too stiff for the simulation's step.
+// For each fixture that has a stiffness, sets the stiffness and damping of its contacts in the
+// compiled model, and in `spec` for the model's text. The engine's own values are relative to a
+// mass that is known only after the model is compiled. `fixture_of` contains the number of the
+// fixture of each shape, or −1. Throws InputError if a fixture is too stiff for the simulation's
+// step.
 void SetStiffness(const EnvironmentSpec& environment, const std::vector<int>& fixture_of,
                   mjSpec* spec, mjModel* model);
 

@@ -47,8 +47,8 @@ void FullVectors::AddWrench(const mjModel* model, mjData* data, const double* wr
   forces += to_.head(own_);
 }
 
-// Reactions that hold act like inertia. Each is a force of −efc_D times the acceleration along its
-// row.
+// Reactions of contacts that hold act like an inertia. Each reaction is a force of −efc_D times the
+// acceleration along its row.
 void FullVectors::AddReactions(const mjModel* model, const mjData* data, Matrix M) const noexcept {
   const Eigen::Index movable = all_ - own_;
   if (!same_) {

@@ -1,5 +1,5 @@
-// The engine's vectors and matrices of all coordinates, of which the interface of an engine shows
-// those of the cobot and its object: the first ones.
+// MuJoCo's vectors and matrices of all coordinates. The interface of an engine shows only the first
+// coordinates, which are those of the cobot and its object.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -11,7 +11,8 @@
 namespace predictor {
 
 // Calls the engine's functions. Without movable objects, both sets of coordinates are the same, and
-// the functions write to the caller's memory. Does not use the heap after its construction.
+// the functions write to the caller's memory. This class does not use the heap after its
+// construction.
 class FullVectors {
  public:
   using Vector = Eigen::Ref<Eigen::VectorXd>;
@@ -25,11 +26,12 @@ class FullVectors {
   void MassMatrix(const mjModel* model, const mjData* data, Matrix M) const noexcept;
   void TimesMass(const mjModel* model, const mjData* data, const double* a,
                  double* force) const noexcept;
-  // Adds the forces of a wrench at p_W on a body. `wrench` has six numbers, `p_W` three.
+  // Adds the forces of a wrench at p_W on a body. `wrench` has six numbers and `p_W` has three.
   void AddWrench(const mjModel* model, mjData* data, const double* wrench, const double* p_W,
                  int body, Vector forces) noexcept;
   // Adds what the active constraints contribute to a matrix M with M · acceleration = force. The
-  // movable objects that they move are eliminated (Schur complement).
+  // coordinates of the movable objects on which these constraints act are eliminated (Schur
+  // complement).
   void AddReactions(const mjModel* model, const mjData* data, Matrix M) const noexcept;
   void Displace(const mjModel* model, mjData* data, const double* change, double scale) noexcept;
 

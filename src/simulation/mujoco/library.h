@@ -27,8 +27,9 @@ void SilenceMujoco();
 std::string FirstLine(mjSpec* spec);
 
 // Calls function(model, data) and returns true, or false if MuJoCo raised an error (for instance,
-// because an arena is too small). By default, such an error would end the process. After an error,
-// `data` is unusable until mj_resetData. Does not use the heap or a lock, and does not throw.
+// because an arena is too small). Without this function, such an error would end the process. After
+// an error, `data` is unusable until mj_resetData. Does not use the heap or a lock, and does not
+// throw.
 bool Guarded(void (*function)(const mjModel*, mjData*), const mjModel* model,
              mjData* data) noexcept;
 

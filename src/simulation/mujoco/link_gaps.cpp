@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kShortBar = 0.001;  // shorter bars are omitted [m]
 
-// A shape of a link or of the object, in the place where the engine puts it.
+// A shape of a link or of the object, in the place that the engine gives it.
 struct PlacedShape {
   int link = -1;  // index in UrdfModel::links; −1: the object
   Pose X_LG;

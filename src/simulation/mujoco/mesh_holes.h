@@ -8,10 +8,10 @@
 
 namespace predictor {
 
-// Returns the number of holes through a mesh (the sum of the genus of its closed parts; Euler's
-// formula V − E + F = 2 − 2 g for each). Parts with an open edge, or with an edge that belongs to
-// more than two triangles, are treated as if they had no hole. A hole that does not go through the
-// mesh is not counted.
+// Returns the number of holes through a mesh. This is the sum of the genus g of its closed parts,
+// which follows from Euler's formula V − E + F = 2 − 2 g for each part. Parts with an open edge, or
+// with an edge that belongs to more than two triangles, are treated as if they had no hole. A hole
+// that does not go through the mesh is not counted.
 int ThroughHoles(const CollisionMesh& mesh);
 
 // Throws InputError if the shape is a mesh with a hole through it. `key`: of the scenario.

@@ -31,7 +31,7 @@ void AddContactsOf(mjSpec* spec, const std::vector<std::string>& shapes,
     for (const std::string& other : others) AddContact(spec, other, shape, friction);
 }
 
-// With the floor, the table and the fixtures.
+// Makes the shapes of a movable object collide with the floor, the table and the fixtures.
 void AddContactsWithSurroundings(mjSpec* spec, const EnvironmentSpec& environment,
                                  const std::vector<std::string>& shapes,
                                  const std::optional<double>& friction) {

@@ -204,13 +204,14 @@ class MujocoEngine final : public Engine {
   int Index(SceneBody body) const noexcept {
     return body == SceneBody::kObject ? scene_->object : scene_->end_effector;
   }
-  // If something does not fit into its memory, the engine omits it with a warning.
+  // If a contact or constraint does not fit into the engine's memory, the engine omits it with a
+  // warning.
   bool IsComplete() const noexcept {
     return data_->warning[mjWARN_CONTACTFULL].number == 0 &&
            data_->warning[mjWARN_CNSTRFULL].number == 0;
   }
 
-  // Of two bodies that touch, a Contact describes the one with the higher rank.
+  // If two bodies touch, a Contact describes the body with the higher rank.
   int Rank(int geom) const noexcept {
     const int body = model_->geom_bodyid[geom];
     return body == 0 ? 0 : scene_->movable_of[static_cast<std::size_t>(body)] >= 0 ? 1 : 2;

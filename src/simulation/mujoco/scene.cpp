@@ -46,7 +46,7 @@ void SetOptions(mjSpec* spec, const EnvironmentSpec& environment) {
   if (!environment.objects.empty()) option.jacobian = mjJAC_DENSE;
 }
 
-// The model of the cobot alone, as the engine loads it.
+// The model of the cobot alone, in the form in which the engine loads it.
 SpecPtr CobotSpecOf(const Scenario& scenario) {
   const auto file = ResolveModelPath(scenario.cobot.model, scenario.folder());
   const std::string text =
@@ -89,7 +89,7 @@ bool HasLimits(const Scenario& scenario) {
   return scenario.simulation.joint_limits != JointLimits::kNone;
 }
 
-// The joints of the cobot then turn and slide without limits.
+// Removes the position limits of the cobot's joints.
 void RemoveLimits(mjSpec* spec, const RobotModel& cobot) {
   for (int j = 0; j < cobot.dof(); ++j) {
     const std::string name = kCobotPrefix + cobot.joint_name(j);
@@ -151,7 +151,8 @@ bool TouchesAny(const EnvironmentSpec& environment, const char* what) {
          std::ranges::any_of(environment.objects, touches);
 }
 
-// Adds the pairs of shapes that can touch. The shapes of the object must have been added before.
+// Adds the pairs of shapes that can touch. The shapes of the object must have been added before
+// this call.
 void AddAllContacts(mjSpec* spec, const Scenario& scenario, const ObjectModel& object,
                     const MovableModels& movables) {
   const EnvironmentSpec& environment = scenario.environment;
@@ -232,7 +233,8 @@ void AddHandle(mjsBody* object, const Scenario& scenario, int hand) {
   mjs_setName(body->element, kHandBodies[h]);
   SetPose(body->pos, body->quat, X_OD);
   body->explicitinertial = 1;
-  // By default, the engine would use the body's position in its parent as the centre of mass.
+  // Without this value, the engine would use the body's position in its parent as the centre of
+  // mass.
   SetPose(body->ipos, body->iquat, Pose::Identity());
   body->gravcomp = 1;
 }
@@ -257,7 +259,7 @@ void FindAddresses(Scene* scene, const Scenario& scenario, const RobotModel& cob
     scene->fixture_of[static_cast<std::size_t>(geom)] = static_cast<int>(i);
     scene->fixture_place.emplace_back(Eigen::Map<const Vector3>(model.geom_pos + 3 * geom));
     scene->fixture_yields.push_back(scenario.environment.fixtures[i].stiffness.has_value());
-    // Without this, RemoveFixtures would have no effect on a fixture at the world's origin.
+    // Without this setting, RemoveFixtures would have no effect on a fixture at the world's origin.
     scene->model->geom_sameframe[geom] = mjSAMEFRAME_NONE;
   }
   for (int j = 0; j < cobot.dof(); ++j) {
@@ -374,7 +376,7 @@ void RemoveFixtures(const Scene& scene, std::uint64_t which) noexcept {
     if (i < 0) continue;
     const bool removed = (which >> i & 1U) != 0;
     Vector3 place = scene.fixture_place[static_cast<std::size_t>(i)];
-    // The fixture moves along its own z axis, so that a plane is also far below everything.
+    // The fixture moves along its own z axis, so that a plane also ends up far below all bodies.
     if (removed) {
       const double* q = model.geom_quat + 4 * g;
       place -= kFarAway * (Quaternion(q[0], q[1], q[2], q[3]) * Vector3::UnitZ());

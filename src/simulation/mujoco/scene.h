@@ -1,5 +1,5 @@
-// Composes cobot, object, handles, surroundings and movable objects into one tree, the scene for
-// MuJoCo.
+// Composes the scene for MuJoCo, which is one tree of cobot, object, handles, surroundings and
+// movable objects.
 #pragma once
 
 #include <array>
@@ -40,33 +40,35 @@ struct Scene {
   std::vector<MovableBody> movables;           // environment.objects
   std::vector<int> movable_of;                 // body: index in environment.objects; −1: another
   std::vector<int> movable_pairs;              // pairs of shapes with which movable objects touch
-  // Numbers of coordinates without the coordinates of the movable objects, which are the last ones.
+  // Numbers of coordinates, excluding those of the movable objects. The coordinates of the movable
+  // objects come last.
   int own_positions = 0, own_dof = 0;
 };
 
-// Composes and compiles the scene. The attachment's joint connects the object's body to the
-// end-effector's, so that only contacts need the constraint solver. The object collides with floor,
-// table and fixtures, and the cobot's links with the fixtures that touch them. The movable objects
-// are free bodies that come after all other bodies. In direct mode, each handle has a body without
-// weight whose mass is set at run time. Throws InputError. `wrist_sensor` states whether a sensor
-// measures the wrench between the end-effector and the object that it carries.
+// Composes and compiles the scene. The attachment's joint connects the object's body to the body of
+// the end-effector, so that only contacts need the constraint solver. The object collides with
+// floor, table and fixtures. The cobot's links collide with the fixtures that touch them. The
+// movable objects are free bodies that come after all other bodies. In direct mode, each handle has
+// a body without weight whose mass is set at run time. Throws InputError. `wrist_sensor` states
+// whether a sensor measures the wrench between the end-effector and the carried object.
 Scene ComposeScene(const Scenario& scenario, const RobotModel& cobot, bool wrist_sensor = false,
                    Holding holding = Holding::kJoint);
 
-// Returns the text of the scene (MJCF). Throws InputError if the engine cannot write it.
+// Returns the text of the scene (MJCF). Throws InputError if the engine cannot write the text.
 std::string SceneText(const Scene& scene);
 
 // Sets the mass [kg] of the body that represents a hand, or does nothing if there is no such body.
-// Returns whether the mass changed. If the mass changed, everything that depends on the state must
-// be computed again.
+// Returns whether the mass changed. If the mass changed, all quantities that depend on the state
+// must be computed again.
 bool SetHandMass(const Scene& scene, int hand, double mass) noexcept;
 
-// Moves these fixtures far away, and all others to their places: bit = number of the fixture.
+// Moves the given fixtures far away, and all other fixtures to their places. The number of a
+// fixture is the number of its bit.
 void RemoveFixtures(const Scene& scene, std::uint64_t which) noexcept;
 
 // Returns the friction of a joint of the cobot in the engine's model.
 DofFriction FrictionOf(const Scene& scene, int joint) noexcept;
-// Sets the friction. With closed brakes, the joint also creeps a hundred times less.
+// Sets the friction. If the brakes are closed, the joint also creeps a hundred times less.
 void SetFriction(const Scene& scene, int joint, const DofFriction& friction) noexcept;
 
 }  // namespace predictor

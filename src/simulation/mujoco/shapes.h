@@ -15,11 +15,12 @@ void SetPose(double* pos, double* quat, const Pose& X);
 // Gives a body this mass, centre of mass and inertia.
 void SetInertia(mjsBody* body, const ObjectModel& model);
 
-// Floor and table collide with the object; the object does not collide with itself.
+// The floor and the table collide with the object. The object does not collide with itself.
 void SetContact(mjsGeom* geom, bool surroundings, double friction);
 
-// Adds a shape to a body. A mesh collides as its convex hull. `name` is the name of the shape and
-// of its mesh, and `key` is the scenario's key, which error messages state. Throws InputError.
+// Adds a shape to a body. For collisions, a mesh is replaced by its convex hull. `name` is the name
+// of the shape and of its mesh, and `key` is the scenario's key, which error messages state. Throws
+// InputError.
 mjsGeom* AddShape(mjSpec* spec, mjsBody* body, const ModelShape& shape, const std::string& name,
                   const std::string& key);
 

@@ -1,6 +1,7 @@
 // predictor-ign-mover FILE.sdf PLUGIN Q...: moves an exported scene in ign-physics for 5 s by the
 // control law below, and prints the object's position after each step. Q... are the start positions
-// of the cobot's joints. gazebo_test.cpp compares the output with our DART world.
+// of the cobot's joints. gazebo_test.cpp compares this program's output with the motion in our DART
+// world.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -20,7 +20,7 @@ constexpr double kMillisecond = 1e-3;
 // The arm brakes on its own with this deceleration [rad/s²].
 constexpr double kBraking = kFrankaStandstill.deceleration;
 
-// The numbers of the commands and of Move's answers, as in
+// The numbers of the commands and of the answers to Move, as in
 // research_interface/robot/service_types.h.
 struct Numbers {
   std::uint32_t set_collision, last_setter, recover, model;
@@ -34,8 +34,8 @@ const Numbers& NumbersOf(std::uint16_t version) {
   return version == fci::kPandaVersion ? kPandaNumbers : kResearch3Numbers;
 }
 
-// Finds an error by its number or by the driver's name for it, which third-party clients verify.
-// The default is the reflex to a hard push.
+// Finds an error by its number or by the driver's name for it. Third-party clients verify these
+// names. The default is the reflex to a hard push.
 int ErrorPlace(const std::string& name) {
   if (name.empty()) return ErrorPlace("cartesian_reflex");
   for (int i = 0; i < fci::kErrors; ++i)

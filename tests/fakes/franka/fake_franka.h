@@ -1,7 +1,7 @@
-// The controller of a Franka arm as its client sees it: Research 3 (interface version 10) or Panda
-// (5). The packets are defined in src/devices/franka/packets.h. The behaviour, limits and errors
-// are defined independently of the driver. Some tests also connect third-party clients to this
-// fake.
+// The controller of a Franka arm, as its client sees it. The arm is a Research 3 (interface version
+// 10) or a Panda (interface version 5). The packets are defined in src/devices/franka/packets.h.
+// The behaviour, limits and errors are defined independently of the driver. Some tests also connect
+// third-party clients to this fake.
 #pragma once
 
 #include <bitset>
@@ -61,8 +61,9 @@ class FakeFranka final : public FakeDevice {
   //   state" (the same one permanently), "swap states" (the next two), "cut state", "spoil state"
   //   (NaN), "leap" (a number far ahead).
   // Commands: "lose commands N".
-  // Motions: "start late N" (N ms after the request, from now on); "no start" and "no end" (it
-  //   does not begin or end them); "forget" (one ends without an answer); "answer BYTE" (an end
+  // Motions: "start late N" (N ms after the request, from now on); "no start" and "no end" (the arm
+  // does not begin or end motions); "forget" (a motion ends without an answer); "answer BYTE" (an
+  // end
   //   without a request); "answer another" (the answer to a different request); "babble" (an
   //   invalid answer).
   bool Do(const std::string& what) override;

@@ -11,7 +11,7 @@ namespace predictor {
 namespace {
 
 // Returns the pose of the end-effector in the flange for Franka's hand. The stiffness frame lies
-// beyond it.
+// beyond the end-effector frame.
 Eigen::Isometry3d FlangeToEndEffector() {
   return Eigen::Translation3d(0, 0, 0.1034) *
          Eigen::AngleAxisd(-std::numbers::pi / 4, Eigen::Vector3d::UnitZ());
@@ -62,7 +62,8 @@ void FakeFranka::FillWrench(const ArmSample& sample, fci::Signals<Real>* signals
   const Eigen::Isometry3d X_FS =
       Eigen::Translation3d(options_.X_FS.p) * Eigen::Quaterniond(options_.X_FS.q);
   const Eigen::Isometry3d X_KS = (X_FE * X_EK).inverse() * X_FS;
-  // Force and torque are the reactions to those on the sensor, about the origin of K.
+  // The force and the torque are the reactions to the force and the torque on the sensor, about the
+  // origin of K.
   const Eigen::Vector3d force = -(X_KS.linear() * sample.F_S_raw.head<3>());
   const Eigen::Vector3d torque =
       -(X_KS.linear() * sample.F_S_raw.tail<3>()) + X_KS.translation().cross(force);

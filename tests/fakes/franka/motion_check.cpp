@@ -124,7 +124,7 @@ std::bitset<41> MotionCheck::Move(const FrankaJoints& v) {
       wrong.set(kVelocityLimits);
     if (std::abs(a[i]) > limit.acceleration + 1e3 * kRounding) wrong.set(kVelocityDiscontinuity);
     if (std::abs(jerk) > limit.jerk + 1e6 * kRounding) wrong.set(kAccelerationDiscontinuity);
-    // A joint that starts beyond a limit may return.
+    // A joint that starts beyond a limit may move back into its range.
     if ((q[i] > limit.upper && v[i] > 0) || (q[i] < limit.lower && v[i] < 0))
       wrong.set(kPositionLimits);
   }

@@ -40,8 +40,8 @@ class MotionCheck {
   explicit MotionCheck(const FrankaLimits& limits) : limits_(limits) {}
 
   void Begin(const FrankaJoints& q);
-  // Processes a command. Returns its errors, by their index in a state's list. The motion advances
-  // only if there is no error.
+  // Processes a command. Returns the errors of the motion, by their index in a state's list. The
+  // motion advances only if there is no error.
   std::bitset<41> Take(const FrankaJoints& v);
   // Processes a millisecond without a command, in which the acceleration stays constant.
   std::bitset<41> Miss();

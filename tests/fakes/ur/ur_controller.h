@@ -55,8 +55,8 @@ struct UrController {
   bool freedrive = false;
   double slider = 1;         // of the speed slider
   std::uint64_t inputs = 0;  // digital inputs, one bit each
-  // The mass [kg] and centre of gravity [m] of the payload, as set at the pendant. If empty, the
-  // controller does not report it.
+  // The mass [kg] and centre of gravity [m] of the payload, as set at the pendant. If this value is
+  // empty, the controller does not report it.
   std::optional<double> payload;
   std::array<double, 3> payload_cog{};
   UrVector q{}, v{}, wrench{};  // measured values

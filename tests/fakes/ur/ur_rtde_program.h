@@ -1,7 +1,7 @@
 // The control program of ur_rtde (SDU Robotics, https://gitlab.com/sdurobotics/ur_rtde). The
-// program needs more URScript than this fake supports. The fake therefore recognises it by its name
-// and its register offset, and implements its protocol natively: integer register 0 contains a
-// command, and output register 0 contains the answer (ready, done).
+// program needs more URScript than this fake supports. The fake therefore recognises the program by
+// its name and its register offset, and implements the program's protocol natively. Integer
+// register 0 contains a command, and output register 0 contains the answer (ready, done).
 #pragma once
 
 #include <memory>

@@ -71,7 +71,8 @@ class Compiler {
       throw Error(i.line, "'" + i.name + "' has the wrong number of arguments");
   }
 
-  // Parses a definition after `def` or `thread`. A jump skips the definition's code at its place.
+  // Parses a definition after `def` or `thread`. A jump instruction before the definition's code
+  // skips this code.
   std::string Definition(bool thread) {
     const int over = Emit(Op::kJump);
     const std::string name = Name();
@@ -221,8 +222,8 @@ class Compiler {
       Binary(0);
     }
   }
-  // Parses a comparison, a sum or a product. `level` counts from the lowest precedence to the
-  // highest.
+  // Parses an expression that is a comparison, a sum or a product. `level` counts from the lowest
+  // precedence to the highest.
   void Binary(std::size_t level) {
     static const std::vector<std::vector<std::string>> kLevels = {
         {"==", "!=", "<=", ">=", "<", ">"}, {"+", "-"}, {"*", "/", "%"}};

@@ -14,7 +14,7 @@ struct Value;
 using List = std::vector<Value>;
 
 // All numbers are floating-point numbers, which represent every integer of a register exactly. The
-// handle of a thread is a number as well.
+// handle of a thread is also a number.
 struct Value : std::variant<double, bool, std::string, List> {
   using variant::variant;
 };

@@ -6,7 +6,7 @@
 namespace predictor::urscript {
 namespace {
 
-// A thread that executes so many instructions without a wait would exceed a controller's cycle.
+// A thread that executes this many instructions without a wait would exceed a controller's cycle.
 constexpr int kMaxInstructions = 20000;
 
 template <class T>
@@ -264,7 +264,7 @@ long Machine::Cycles(double time) const {
   return std::max(1L, std::lround(std::ceil(time / controller_->cycle - 1e-9)));
 }
 
-// It is an error if two threads move the arm at the same time.
+// If two threads move the arm at the same time, the URScript program ends with an error.
 void Machine::Move(Thread* thread, const Instruction& i, Wait wait) {
   for (const Thread& other : threads_)
     if (other.moving && other.wait != Wait::kForever)

@@ -1,5 +1,5 @@
-// Lists the scenario's events for the experimenter: the events to come with their triggers, and the
-// events that have begun. Only the page at /experimenter receives these events.
+// Lists the scenario's events for the experimenter. The list contains the future events with their
+// triggers, and the events that have begun. Only the page at /experimenter receives these events.
 import {h} from '../dom';
 import {EventPlan, PlannedEvent} from '../protocol';
 

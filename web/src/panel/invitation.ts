@@ -27,7 +27,7 @@ export class Invitation {
     this.gauges = h('div', {class: 'gauges'}, ...[...this.bySide.values()].map(({element}) => element));
   }
 
-  // Returns whether the hands are free and this page is the only one that could take them.
+  // Returns whether the hands are free and no other page could take them.
   offered(spec: SceneSpec | null): boolean {
     const {phase, role, leases} = this.connection;
     return phase === 'open' && spec?.operator === 'browser' && !spec.replay && !spec.results &&

@@ -104,7 +104,7 @@ export class Overlay {
     this.buildProgress(spec);
   }
 
-  // Called when the person has switched the mirror on or off in the headset.
+  // This function is called when the person has switched the mirror on or off in the headset.
   showMirror(on: boolean) {
     setAttribute(this.mirrorButton, 'aria-pressed', String(on));
   }
@@ -144,7 +144,7 @@ export class Overlay {
     }));
   }
 
-  // `calm` states whether there is no problem.
+  // `calm` is true if there is no problem.
   showBanner(text: string, calm: boolean) {
     setText(this.banner, text);
     this.banner.classList.toggle('calm', calm);

@@ -31,7 +31,8 @@ export class PairingPage {
             'console for digits. They are valid for two minutes.')));
   }
 
-  // `lost` states whether the page was connected to real arms, and could stop them, until now.
+  // `lost` states whether the page was connected to real arms until now, so that it could stop
+  // them.
   show(reason: string, lost: boolean) {
     this.element.hidden = false;
     this.emergency.hidden = !lost;

@@ -83,7 +83,7 @@ export class Panel {
           this.buildLedger()));
   }
 
-  // Marks the present time in the recording, if there is one.
+  // Marks the present time if the page shows a recording.
   mark() {
     if (!this.markButton.disabled) this.connection.send({type: 'mark'});
   }
@@ -210,7 +210,7 @@ export class Panel {
     setText(this.advice, trouble && over ? '' : danger || (stop?.advice ?? ''));
   }
 
-  // Shows the choice for the next run: the same scenario again, or another.
+  // Shows the choice for the next run, which uses the same scenario or another one.
   private showChoice(state: State | null, spec: SceneSpec | null, trouble: Trouble | null) {
     const {hasControl, role, leases} = this.connection;
     const atRest = !trouble && !!spec?.simulated && !spec.replay &&
@@ -280,8 +280,8 @@ export class Panel {
     this.choose(this.picker.value);
   }
 
-  // The server ends the run of this scenario and restarts with the chosen one. If the scenario
-  // differs, the page is then reloaded.
+  // The server ends the run of this scenario and restarts with the chosen one. If the scenario is a
+  // different one, the page is then reloaded.
   choose(scenario: string) {
     this.againButton.disabled = true;
     if (!this.connection.hasControl) this.connection.send({type: 'lease', what: 'control', take: true});

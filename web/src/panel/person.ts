@@ -13,8 +13,8 @@ const kRoom = [1100, 700];  // window in which the card is open at first [px]
 const kLateStart = 0.5;  // if damage is counted from later than this, the card says from when [s]
 const kEveryMs = 100;  // time between updates; warnings appear at once
 
-// The properties of a gauge: its words, the factor from SI units, the number of decimals, and the
-// ends of its bar in SI units.
+// The properties of a gauge, which are its words, the factor from SI units, the number of decimals,
+// and the ends of its bar in SI units.
 interface GaugeLook {
   words: string;
   unit: string;
@@ -178,8 +178,8 @@ export class PersonCard {
     this.show(null, false, Infinity);
   }
 
-  // `person` is the newest state, or null if there is none yet. `silent` states whether no state
-  // has arrived for too long.
+  // `person` is the newest state of the person, or null if no state has arrived yet. `silent`
+  // states whether no state has arrived for too long.
   show(person: PersonState | null, silent: boolean, nowMs: number, over = false) {
     const judged = this.spec?.person?.judged ?? false;
     const why = !judged ? `Not judged: ${this.spec?.person?.why ?? 'the body or its place is not known.'}` :

@@ -43,7 +43,7 @@ function limit(name: string, from: number, value: Series['value']): Series {
   return {label: 'limit', name: `${name}_limit`, color: hex(kMeaning.red), limit: from, value};
 }
 
-// The plots form groups, of which one plot is visible at a time.
+// The plots form groups. In each group, one plot is visible at a time.
 export const kPlots: PlotSpec[][] = [
   [
     {
@@ -98,7 +98,7 @@ export class Plot {
   private readonly values: HTMLElement[];
   private shown: [number, number] = [0, 0];  // times [s]
 
-  // `title` is the element of the title before the values.
+  // `title` is the element that shows the title in front of the values.
   constructor(readonly spec: PlotSpec, title: HTMLElement,
               onZoom: (min: number, max: number) => void,
               private readonly onCursor: (time: number | null) => void) {
@@ -136,7 +136,7 @@ export class Plot {
     this.showValues();
   }
 
-  // Shows the values at the cursor if there is one, and otherwise the newest values.
+  // Shows the values at the cursor. If there is no cursor, shows the newest values.
   private showValues() {
     const at = this.plot.cursor.idx;
     this.columns.forEach((column, i) => {
@@ -170,7 +170,8 @@ export class Plot {
       legend: {show: false},
       cursor: {
         drag: {x: true, y: false, setScale: false}, points: {show: false}, y: false,
-        // All plots show the same time. The plot in which the person zooms reports the new range.
+        // All plots show the same time. If the person zooms in a plot, this plot reports the new
+        // range.
         sync: {
           key: kSync.key, setSeries: false, scales: ['x', null],
           filters: {pub: (type) => type === 'mousemove' || type === 'mouseleave'},
@@ -219,7 +220,7 @@ export class Plot {
     return Math.max(end * 1.12, this.spec.least);
   }
 
-  // Returns round times before the newest one.
+  // Returns round numbers for the times before the newest time.
   private ticks(u: uPlot, min: number, max: number): number[] {
     const last = u.data[0].at(-1) ?? max;
     const step = kTickSteps.find((s) => (max - min) / s <= 5) ?? kTickSteps.at(-1)!;

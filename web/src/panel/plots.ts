@@ -54,7 +54,8 @@ export class Plots {
     this.append(state, spec, time);
   }
 
-  // Call this after a reconnection or a restart, since times may start again at zero.
+  // Call this function after a reconnection or a restart, because the times may start again at
+  // zero.
   clear() {
     this.waiting.length = 0;
     for (const plot of this.plots) plot.trim(this.times.length);
@@ -90,7 +91,7 @@ export class Plots {
     for (const plot of this.plots) plot.repaint();
   }
 
-  // Returns the visible times [s], relative to the newest one.
+  // Returns the visible range of time [s], relative to the newest time.
   shownRange(): [number, number] {
     const [min, max] = this.range();
     const last = this.times.at(-1) ?? 0;
@@ -144,7 +145,8 @@ export class Plots {
     if (blob) save('plots.png', blob);
   }
 
-  // Builds a group of plots of which one is visible. A button for each plot shows it.
+  // Builds a group of plots. One plot of the group is visible at a time. Each plot has a button
+  // that shows the plot.
   private buildGroup(specs: PlotSpec[]): HTMLElement {
     const plots: Plot[] = [];
     const show = (seen: number) => plots.forEach(({element}, i) => (element.hidden = i !== seen));

@@ -1,5 +1,4 @@
-// Shows the results of a run: the way in which it ended, its figures and curves, and the next steps
-// that are available.
+// Shows how a run ended, its results as numbers and curves, and the next steps that are available.
 import uPlot from 'uplot';
 import {h, setAttribute, setText} from '../dom';
 import {Curve, Figure, kSides, Results, SceneSpec, Side} from '../protocol';
@@ -68,7 +67,7 @@ export class ResultsCard {
 
   // `stopped` and `cause` state whether and why the run was stopped. `may` states whether this page
   // may choose the next scenario. `alive` states whether the program is still running and can start
-  // it.
+  // this scenario.
   update(title: string, stopped: boolean, cause: string, may: boolean, alive: boolean) {
     if (!this.spec?.results) return;
     setText(this.title, title);
@@ -144,7 +143,7 @@ function options(curve: Curve, sides: Side[]): uPlot.Options {
     ticks: {show: false}, font: '11px system-ui, sans-serif',
   };
   const largest = Math.max(...sides.flatMap((side) => curve[side]!), 0);
-  // The limit is drawn if the values come close to it.
+  // The plot shows the limit if the values come close to it.
   const top = 1.1 * (largest > 0.3 * curve.limit ? Math.max(largest, curve.limit) : largest || 1);
   return {
     width: 300, height: 150, legend: {show: false},

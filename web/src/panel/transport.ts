@@ -77,8 +77,8 @@ export class Transport {
     this.connection.send({type: 'replay', play: this.playing ? Number(this.speed.value) : 0});
   }
 
-  // A person who opens the page wants to play the recording, so the page requests control. The
-  // first page that requests control gets it.
+  // The page requests control when it opens, because the person wants to play the recording. The
+  // first page that requests control receives control.
   private takeControl() {
     const {phase, role, leases} = this.connection;
     if (this.asked || phase !== 'open') return;
@@ -88,7 +88,7 @@ export class Transport {
     }
   }
 
-  // Derives from the received positions whether the recording is playing. Another page may have
+  // Determines from the received positions whether the recording is playing. Another page may have
   // started the playback, or the recording may have ended.
   private follow(place: number, nowMs: number) {
     const moved = place !== this.place;

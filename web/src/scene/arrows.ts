@@ -19,15 +19,15 @@ const kHoldMs = 500;  // minimum time for which a colour is shown, so that short
 const kLevels: readonly Level[] = ['green', 'orange', 'red'];
 
 class Colored {
-  // The arrows are drawn over everything, because a hand's force must be visible even if the object
-  // hides the handle.
+  // The arrows are drawn over all other parts of the scene, because a hand's force must be visible
+  // even if the object hides the handle.
   readonly material = new MeshStandardMaterial(
       {roughness: 0.4, emissiveIntensity: 0.35, depthTest: false, transparent: true});
   level: Level = 'green';
   private held: Level = 'green';
   private heldUntilMs = -Infinity;
 
-  // Reports a value that was reached, which may have been between two frames.
+  // Reports a value that was reached, possibly between two frames.
   reached(value: number, threshold: number, nowMs: number) {
     const now = level(value, threshold);
     if (nowMs < this.heldUntilMs && kLevels.indexOf(now) < kLevels.indexOf(this.held)) return;

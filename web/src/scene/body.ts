@@ -1,4 +1,4 @@
-// Shows the body of the person: limbs between the joints, coloured by their load.
+// Shows the body of the person as limbs between the joints, whose colours show their load.
 import {
   BufferGeometry, Color, CylinderGeometry, Group, Matrix4, Mesh, MeshLambertMaterial, SphereGeometry, Vector3,
 } from 'three';
@@ -62,7 +62,8 @@ class LimbMesh {
   }
 }
 
-// Sets the axes: z is along `along`, with its length, and x is near `beside`. `size` scales them.
+// Sets the axes. The z axis is along `along` and has its length, and the x axis is near `beside`.
+// `size` scales them.
 function span(matrix: Matrix4, at: Vector3, along: Vector3, beside: Vector3, size: number[]) {
   const y = along.clone().cross(beside);
   if (y.lengthSq() < 1e-12) y.set(0, 1, 0);
@@ -85,7 +86,7 @@ export class Body {
   private readonly nose: Mesh;
   private readonly neck: Mesh;
 
-  // `scale` is the size of a small figure, whose radii are smaller as well.
+  // `scale` is the scale of a small figure, which also applies to its radii.
   constructor(private readonly scale = 1) {
     const sphere = new SphereGeometry(1, 20, 14);
     this.limbs = kLimbs.map((limb) => new LimbMesh(limb, sphere));
@@ -115,7 +116,7 @@ export class Body {
     this.placeHead(at('neck'), at('head'), at('eyes'), left);
   }
 
-  // `parts` are the parts in the state of the person, or null if nothing is judged.
+  // `parts` are the parts in the state of the person, or null if the person is not judged.
   paint(parts: PersonState['parts'] | null) {
     const color = (part: PartName) => loadColor(parts?.[part].load ?? null);
     this.trunkMaterial.color.copy(new Color(color('lower_back')));
@@ -127,8 +128,8 @@ export class Body {
     }
   }
 
-  // The person's own view contains only limbs. The eyes are within the head, and the trunk would
-  // fill the view.
+  // The person's own view contains only limbs. The head and the trunk are left out, because the
+  // eyes are within the head and the trunk would fill the view.
   showTrunk(on: boolean) {
     for (const part of [this.head, this.nose, this.neck, this.chest, this.belly, this.hips]) part.visible = on;
   }

@@ -1,5 +1,5 @@
-// Controls the camera of the page: presets and free orbit. In this file, the axes of the world are
-// those of three.js, with Y up.
+// Controls the camera of the page, which has preset views and can orbit freely. In this file, the
+// axes of the world are those of three.js, with Y up.
 import {Object3D, PerspectiveCamera, Vector3} from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {Pose, SceneSpec, Vec3} from '../protocol';
@@ -80,7 +80,7 @@ export class CameraRig {
     this.camera.updateProjectionMatrix();
   }
 
-  // Without this, the inertia of the last manual turn would continue after the move.
+  // Without this call, the inertia of the last manual turn would continue after the move.
   private stopInertia() {
     this.controls.enableDamping = false;
     this.controls.update();
@@ -136,7 +136,7 @@ export class CameraRig {
     }
   }
 
-  // The page's world has a fixed pose while no one uses a headset.
+  // While no one uses a headset, the page's world has a fixed pose.
   private toThree(p: Vec3): Vector3 {
     return new Vector3(p[0], p[2], -p[1]);
   }

@@ -1,6 +1,6 @@
-// Reads Collada files quickly. Long lists of numbers make up nearly the whole of such a file, and
-// the browser's XML parser would spend most of its time on these lists. Therefore this module
-// extracts the lists and returns them as typed arrays.
+// Reads Collada files quickly. Nearly all of such a file consists of long lists of numbers, on
+// which the browser's XML parser would spend most of its time. Therefore this module extracts the
+// lists and returns them as typed arrays.
 import {Object3D, Texture} from 'three';
 import {ColladaComposer} from 'three/examples/jsm/loaders/collada/ColladaComposer.js';
 import {ColladaParser, Geometry} from 'three/examples/jsm/loaders/collada/ColladaParser.js';
@@ -14,8 +14,8 @@ export interface ColladaModel {
   textured: boolean;  // refers to textures, which are not shown
 }
 
-// Reads the model in the file's own axes, whichever axis it declares as up, as URDF requires.
-// Throws an Error if the file cannot be parsed.
+// Reads the model in the file's own axes, as URDF requires, and ignores which axis the file
+// declares as up. Throws an Error if the file cannot be parsed.
 export function parseCollada(text: string): ColladaModel {
   const lists: Float64Array[] = [];
   const parsed = /<COLLADA\b/.test(text) ? new ColladaParser().parse(takeOut(text, lists)) : null;

@@ -15,7 +15,7 @@ const kFarOff = 0.03;      // distance from the path at which the trail's colour
 const kMarks = 120;
 const kMarkEvery = 1;      // run time between two marks [s]
 
-// The latest positions, oldest first.
+// The latest positions of the object, from the oldest to the newest.
 class Places {
   readonly geometry = new BufferGeometry();
   count = 0;
@@ -101,8 +101,8 @@ export class Guidance {
     if (this.active) this.nearest.position.set(...this.closest(p));
   }
 
-  // This is called for each state, even if the state is not drawn, so that the trail has the same
-  // resolution on a slow computer.
+  // This function is called for each state, even if the state is not drawn, so that the trail has
+  // the same resolution on a slow computer.
   track(p: Vec3, runTime: number) {
     if (this.last && distance(this.last, p) > kJump) this.clear();
     if (this.last && distance(this.last, p) < kTrailStep) return;
@@ -140,8 +140,8 @@ export class Guidance {
     this.nearest.material.color.set(color);
   }
 
-  // On the path, the trail has the colour of small hand forces. With growing distance, the colour
-  // changes towards red. Without a path, it is constant.
+  // On the path, the trail has the colour of small hand forces. As the distance grows, the colour
+  // changes towards red. Without a path, the colour is constant.
   private colorAt(p: Vec3): Color {
     if (!this.active) return this.color.set(this.theme === 'dark' ? '#ffd166' : '#c46b00');
     const off = Math.min(this.error(p) / kFarOff, 1);

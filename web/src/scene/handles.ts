@@ -60,7 +60,7 @@ export class Handle {
     this.material.emissiveIntensity = hand.gripping ? 0.55 : 0.12;
   }
 
-  // If something hides the handle, a faint copy of it shines through.
+  // If another object hides the handle, a faint copy of the handle shines through.
   private hints(meshes: Mesh[]): Mesh[] {
     const material = new MeshStandardMaterial({
       color: kMeaning[this.side], emissive: kMeaning[this.side], emissiveIntensity: 0.4,
@@ -77,13 +77,14 @@ export class Handle {
     this.isHeld = on;
   }
 
-  // Sets whether the pointer is over the handle and may take it.
+  // Determines whether the handle is shown as one over which the pointer is and which the pointer
+  // may take.
   setHovered(on: boolean) {
     this.isHovered = on;
   }
 
-  // Shows a second ring around the handle. The ring pulses while it invites the visitor. It is
-  // bright while the pointer is over the handle and while the handle is held.
+  // Shows a second ring around the handle. The ring pulses while it invites the visitor. The ring
+  // is bright while the pointer is over the handle and while the handle is held.
   invite(on: boolean, nowMs: number) {
     this.halo.visible = on || this.isHovered || this.isHeld;
     const still = this.isHovered || this.isHeld || matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -92,13 +93,13 @@ export class Handle {
     this.halo.material.emissiveIntensity = still ? 1.2 : 0.5 + 0.7 * beat;
   }
 
-  // The radius with which the ring is drawn [m].
+  // The radius of the ring as drawn [m].
   get ringRadius(): number {
     return kRingRadius * this.rings.scale.x;
   }
 
-  // `pixelsPerMetre` is the scale at the handle. If this scale is infinite, the handle has its true
-  // size.
+  // `pixelsPerMetre` is the scale of the picture at the handle. If this scale is infinite, the
+  // handle has its true size.
   setScreenScale(pixelsPerMetre: number) {
     const scale = kMinRingRadius / (kRingRadius * pixelsPerMetre);
     this.rings.scale.setScalar(Math.min(Math.max(scale, 1), kMaxScale));

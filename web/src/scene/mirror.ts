@@ -22,7 +22,8 @@ export class Mirror {
         new Mesh(plane, new MeshBasicMaterial(
             {color: 0x24405f, transparent: true, opacity: 0.45, depthWrite: false, side: DoubleSide, fog: false})),
         new LineSegments(new EdgesGeometry(plane), new LineBasicMaterial({color: 0x7cc0ff, fog: false})));
-    // This rotation turns the plane's axes (y up, facing z) to those of W.
+    // This rotation turns the plane's axes, in which y is up and the plane faces z, to the axes of
+    // W.
     this.glass.rotation.set(Math.PI / 2, 0, 0, 'ZXY');
     this.group.add(this.glass, this.body.group);
     this.group.visible = false;

@@ -1,4 +1,4 @@
-// Loads robots and objects from the server's URDF files. Each request needs the token.
+// Loads robots and objects from the server's URDF files. Each request must contain the token.
 import {
   BufferGeometry, BoxGeometry, Color, CylinderGeometry, EdgesGeometry, Group, LineBasicMaterial,
   LineSegments, LoadingManager, Material, Mesh, MeshPhongMaterial, MeshStandardMaterial, Object3D,
@@ -40,15 +40,15 @@ function finish(root: Object3D) {
   });
 }
 
-// Reports a part that failed or is not shown, while the rest is still shown. This callback is
-// called once per model.
+// Reports a part that could not be loaded or is not shown. The other parts are still shown. This
+// callback is called once per model.
 export type Complaint = (words: string) => void;
 
 export const kPlaceholder = 'placeholder';
 const kPlaceholderSize = 0.06;  // size of the box that represents a mesh that cannot be shown [m]
 
-// Loads a mesh file in any format that robots commonly use. Throws an Error if the format is
-// different, or if the file is missing or cannot be parsed.
+// Loads a mesh file in any format that robots commonly use. Throws an Error if the file has another
+// format, is missing, or cannot be parsed.
 async function loadMesh(url: string, token: string, material: Material,
                         complain: Complaint): Promise<Object3D> {
   const kind = url.slice(url.lastIndexOf('.') + 1).toLowerCase();
@@ -86,8 +86,7 @@ function withMaterial(root: Object3D, material: Material): Object3D {
   return root;
 }
 
-// A wire box that replaces a mesh that cannot be shown. The wire box shows that a part is missing,
-// and where.
+// A wire box that replaces a mesh that cannot be shown. The wire box shows where a part is missing.
 function placeholder(): Object3D {
   const box = new BoxGeometry(kPlaceholderSize, kPlaceholderSize, kPlaceholderSize);
   const mesh = new LineSegments(new EdgesGeometry(box), new LineBasicMaterial({color: 0xff9f1c}));
@@ -95,7 +94,7 @@ function placeholder(): Object3D {
   return mesh;
 }
 
-// Removes these links and everything attached to them.
+// Removes these links and all parts that are attached to them.
 function removeLinks(xml: Document, names: string[]) {
   const joints = () => [...xml.querySelectorAll('robot > joint')];
   const pending = [...names];
@@ -174,7 +173,7 @@ function shapeGeometry(spec: {shape: string; size: number[]}): BufferGeometry {
   return new CylinderGeometry(x, x, y, 48).rotateX(Math.PI / 2);  // along Z, as in URDF
 }
 
-// Loads the carried object or a movable one.
+// Loads the carried object or a movable object.
 export async function loadObject(spec: ObjectSpec, token: string,
                                  complain: Complaint): Promise<Object3D> {
   if ('urdf' in spec) return loadUrdf(spec.urdf, [], token, complain);

@@ -8,8 +8,8 @@ export class Movables {
   readonly group = new Group();
   private places = new Map<string, Group>();
 
-  // Replaces all objects. The models of the objects appear as they are loaded. `complain` reports
-  // in words which parts of a model are not shown.
+  // Replaces all objects. The model of each object appears as soon as it is loaded. `complain`
+  // receives a sentence about parts of a model that are not shown.
   async build(specs: MovableSpec[], token: string, complain: (name: string) => Complaint) {
     this.group.clear();
     this.places = new Map(specs.map(({name}) => [name, new Group()]));

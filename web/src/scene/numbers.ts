@@ -1,7 +1,7 @@
 // Reads long lists of decimal numbers in mesh files quickly.
 
-// Parses decimal numbers between white space. Numbers of up to 15 digits are exact, because both
-// the digits as an integer and the power of ten that divides them are exact. JavaScript itself
+// Parses decimal numbers between white space. Numbers of up to 15 digits are exact, because the
+// digits are read as an exact integer and divided by an exact power of ten. JavaScript itself
 // parses numbers that are longer or have an exponent.
 export function parseNumbers(text: string): Float64Array {
   const end = text.length;

@@ -29,7 +29,7 @@ function gridLines(minor: boolean): BufferGeometry {
   return geometry;
 }
 
-// A cylinder or capsule is along z, and a plane has its normal along z.
+// The axis of a cylinder or capsule and the normal of a plane are along z.
 function fixtureForm({shape, size: [a, b, c]}: FixtureSpec): BufferGeometry {
   switch (shape) {
     case 'box': return new BoxGeometry(a, b, c);
@@ -111,7 +111,7 @@ export class Room {
     this.group.add(this.table);
   }
 
-  // Shows these fixtures and no others.
+  // Shows only these fixtures.
   setFixtures(fixtures: FixtureSpec[]) {
     this.fixtures.clear();
     for (const fixture of fixtures) this.fixtures.add(fixtureMesh(fixture));
@@ -153,7 +153,7 @@ export class Room {
     });
   }
 
-  // Makes the floor translucent if there is something below it.
+  // Makes the floor translucent if a part of the scene is below it.
   setTranslucent(translucent: boolean) {
     for (const material of [this.floor.material, this.plateMaterial]) {
       material.transparent = translucent;

@@ -26,7 +26,7 @@ const kLongestCompileMs = 4000;
 const kOverArrows = 30;  // order of drawing
 const kShadowEvery = 6;  // frames, on a slow computer
 
-// Without a graphics card, the processor draws the scene and should draw less.
+// Without a graphics card, the processor draws the scene, so the page should draw less.
 function drawnBySoftware(): boolean {
   const gl = document.createElement('canvas').getContext('webgl2');
   const info = gl?.getExtension('WEBGL_debug_renderer_info');
@@ -65,7 +65,8 @@ class Rubber {
   }
 }
 
-// Returns the part of a scene description that is drawn. Results and notices do not affect it.
+// Returns the part of a scene description that is drawn. Results and notices do not affect this
+// part.
 function drawnOf(spec: SceneSpec): string {
   return JSON.stringify({...spec, results: undefined, notice: undefined});
 }
@@ -88,8 +89,8 @@ export function presentThresholds(spec: SceneSpec, state: State): Thresholds {
 export class Stage {
   readonly renderer: WebGLRenderer;
   readonly scene = new Scene();
-  // Outside a headset, this is the identity. Inside, it is the pose of W in the headset's space
-  // (registration).
+  // Outside a headset, this pose is the identity. In a headset, it is the pose of W in the
+  // headset's space, which the registration determines.
   readonly root = new Group();
   readonly world = new Group();
   readonly camera: CameraRig;
@@ -151,7 +152,7 @@ export class Stage {
     this.resize();
   }
 
-  // Rebuilds the scene. The models appear as they are loaded, and the shaders are compiled at the
+  // Rebuilds the scene. Each model appears as soon as it is loaded. The shaders are compiled at the
   // same time.
   build(spec: SceneSpec, token: string) {
     this.token = token;
@@ -214,8 +215,8 @@ export class Stage {
     return arms.length > 0 && arms.every((arm) => arm.loaded);
   }
 
-  // When a state arrives, its warnings are shown immediately and do not wait until its own time has
-  // come.
+  // When a state arrives, its warnings are shown immediately, even though the state itself is shown
+  // later.
   warn(state: State) {
     if (!this.spec) return;
     const thresholds = presentThresholds(this.spec, state);
@@ -259,7 +260,7 @@ export class Stage {
   }
 
   // `points` are the body of the person, or null if it is not known. The wearer of a headset sees
-  // it only in the mirror. The operator's view is the view from the head of this body.
+  // this body only in the mirror. The operator's view begins at the head of this body.
   applyPerson(points: BodyPoints | null, parts: PersonState['parts'] | null) {
     const {body, mirror} = this;
     body.group.visible = points !== null && this.bodyWanted && !this.renderer.xr.isPresenting;
@@ -287,16 +288,17 @@ export class Stage {
     this.saveTime(nowMs);
   }
 
-  // Returns the present picture as a PNG, or null in a headset or if the browser cannot make it.
+  // Returns the present picture as a PNG. In a headset, or if the browser cannot make the PNG,
+  // returns null.
   picture(): Promise<Blob | null> {
     if (this.renderer.xr.isPresenting) return Promise.resolve(null);
     this.renderer.render(this.scene, this.camera.camera);  // the browser discards the content of the canvas
     return new Promise((resolve) => this.renderer.domElement.toBlob(resolve));
   }
 
-  // Returns the pose in W of a link of the cobot, from the scene graph, or null if it does not
-  // exist. Other names are 'object' for the object, 'movable:NAME' for a movable object, 'left:LINK'
-  // for a link of an arm, and 'left:handle' for a virtual handle.
+  // Returns the pose of a link of the cobot in W from the scene graph, or null if the link does not
+  // exist. Other names are 'object' for the object, 'movable:NAME' for a movable object,
+  // 'left:LINK' for a link of an arm, and 'left:handle' for a virtual handle.
   linkPose(name: string): Pose | null {
     const node = this.node(name);
     return node ? poseIn(node, this.world) : null;
@@ -306,8 +308,8 @@ export class Stage {
     return this.room.fixtureBoxes;
   }
 
-  // Bounding box in W of only the visuals of a link of the cobot, of 'object', or of 'movable:NAME'
-  // [m].
+  // Bounding box in W of a link of the cobot, of 'object', or of 'movable:NAME', which includes
+  // only visual shapes [m].
   meshBox(name: string): {min: Vec3; max: Vec3} | null {
     const link = name === 'object' ? this.object : this.node(name);
     if (!link) return null;
@@ -371,7 +373,7 @@ export class Stage {
     }
   }
 
-  // Reports each kind of problem of a model only once.
+  // Reports each kind of problem with a model only once.
   private oncePer(model: string): Complaint {
     const reported = new Set<string>();
     return (words) => {
@@ -384,8 +386,8 @@ export class Stage {
     return (error) => complain(error.message);
   }
 
-  // Compiles the shaders of the first visible objects in the background while models are loading; the models
-  // need no other shaders.
+  // Compiles the shaders of the first visible objects in the background while models are loading.
+  // The models need no other shaders.
   private compile() {
     const done = () => (this.compiled = true);
     const seen = [this.room.group, this.guidance.group, this.handles.left.group,
@@ -432,8 +434,8 @@ export class Stage {
     this.camera.resize(clientWidth, clientHeight);
   }
 
-  // On a computer without a graphics card, first the number of pixels is reduced, then the
-  // frequency of shadows.
+  // On a computer without a graphics card, the page first reduces the number of pixels, and then
+  // the frequency at which shadows are updated.
   private saveTime(nowMs: number) {
     const frameMs = nowMs - this.lastFrameMs;
     this.lastFrameMs = nowMs;

@@ -1,5 +1,5 @@
-// Merges equal corners of triangles, which mesh files store separately. A headset or a computer without a
-// graphics card then has to transform only a third of the vertices or less.
+// Merges equal corners of triangles, which mesh files store separately. A headset or a computer
+// without a graphics card then has to transform at most a third of the vertices.
 import {BufferAttribute, BufferGeometry} from 'three';
 
 const kFine = 1e5;    // steps per metre: 0.01 mm
@@ -32,8 +32,8 @@ export function weld(geometry: BufferGeometry): BufferGeometry {
   return welded;
 }
 
-// For rows of six numbers, returns the index of the distinct row of each, and the first occurrence
-// of each distinct row.
+// Returns, for each row of six numbers, the index of the distinct row that equals it, and the first
+// occurrence of each distinct row.
 function unique(keys: Int32Array, rows: number): {index: Uint32Array; firsts: number[]} {
   const size = 1 << Math.ceil(Math.log2(rows * 2 + 1));
   const table = new Int32Array(size).fill(-1);  // open addressing; contains distinct rows

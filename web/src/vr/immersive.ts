@@ -1,5 +1,5 @@
 // Shows the scene in a headset (WebXR) at true scale, with the person's hands on the handles and
-// the run's state on a board. Only the person moves the view.
+// the run's state on a board. Only the person's own motion moves the view.
 import {Matrix4, Mesh, PerspectiveCamera, Raycaster, Vector3} from 'three';
 import {Connection} from '../connection';
 import {Hands} from '../hands';
@@ -60,14 +60,15 @@ export class Immersive {
     return (await navigator.xr?.isSessionSupported('immersive-vr').catch(() => false)) ?? false;
   }
 
-  // This function must be called in a user action. Throws an Error if the headset refuses.
+  // This function must be called while the browser handles a user action. Throws an Error if the
+  // headset refuses.
   async enter(spec: SceneSpec, state: State): Promise<void> {
     this.tone.unlock();
     const session = await navigator.xr!.requestSession('immersive-vr', {
       requiredFeatures: ['local-floor'], optionalFeatures: ['hand-tracking'],
     });
-    // From now on, the wearer sees only this session, so the run monitors the time until the first
-    // frame.
+    // From this moment on, the wearer sees only this session, so the run monitors the time until
+    // the first frame.
     this.connection.send({type: 'immersive', active: true});
     session.addEventListener('end', () => this.left());
     this.inputs.listen(session);
@@ -83,8 +84,9 @@ export class Immersive {
             this.registrar.registration ?? standAt(eye, forward, ground?.[2] ?? 0));
   }
 
-  // Call this once per frame while the headset shows the scene, before it is drawn. The stop button
-  // and the message about a lost run need neither the headset's pose nor a state.
+  // While the headset shows the scene, call this function once per frame, before the frame is
+  // drawn. The stop button and the message about a lost run work without the headset's pose and
+  // without a state.
   update(frame: XRFrame, spec: SceneSpec | null, state: State | null, nowMs: number) {
     this.counters.frames++;
     if (this.inputs.stopPressed(frame.session)) this.stop();
@@ -110,7 +112,7 @@ export class Immersive {
     this.report(head, nowMs);
   }
 
-  // Shows the headset's view on the page. Call this after the headset's frame was drawn.
+  // Shows the headset's view on the page. Call this function after the headset's frame was drawn.
   drawMirror() {
     const {renderer, scene, camera} = this.stage;
     if (this.counters.frames % kMirrorEvery !== 0 || !ownFramebuffer(renderer.xr.getBaseLayer())) {
@@ -139,7 +141,8 @@ export class Immersive {
     clearFrom(this.stage.root);
   }
 
-  // Places the board at arm's length next to the object, below the eyes and facing them.
+  // Places the board at arm's length next to the object, so that it is below the eyes and faces
+  // them.
   private placeBoard(spec: SceneSpec, object: Vec3, head: Vector3) {
     const {forward} = spec.viewpoint;
     const left = new Vector3(-forward[1], forward[0], 0);
@@ -223,7 +226,7 @@ export class Immersive {
     return positions;
   }
 
-  // Until the world is registered to real points, the person may raise or lower it.
+  // Until the world is registered to real points, the person may raise or lower the world.
   private adjustHeight(inputs: Input[], nowMs: number) {
     const dt = Math.min((nowMs - this.lastMs) / 1000, 0.1);
     this.lastMs = nowMs;
@@ -273,8 +276,8 @@ export class Immersive {
     // Sends the head's pose only to servers that forward it to the other pages.
     const forwarded = this.connection.features.includes('headset');
     const pose: Partial<Pose> = forwarded ? poseOf(this.inWorld(head)) : {};
-    // Reports the time of the drawn state, not the time of sending, because a frozen picture is not
-    // a sign of life.
+    // Reports the time of the drawn state and not the time of sending, because a page with a frozen
+    // picture may still send messages.
     const drawn = this.drawnNs > 0 ? {drawn: this.drawnNs} : {};
     if (this.connection.send({type: 'immersive', active: true, ...drawn, ...pose})) {
       this.counters.reports++;
@@ -292,7 +295,7 @@ export class Immersive {
   }
 }
 
-// Returns force or torque of a hand, whichever is nearer to its threshold.
+// Returns the force or the torque of a hand, whichever is nearer to its threshold.
 function handLevel(side: Side, spec: SceneSpec, state: State): HandLevel {
   const thresholds = presentThresholds(spec, state);
   const {wrench} = state.hands[side];

@@ -1,5 +1,5 @@
-// A common interface to the headset's controllers and tracked hands. It provides their poses, their
-// touching points, and whether they are closed.
+// A common interface to the headset's controllers and tracked hands. This interface provides the
+// poses and touching points of controllers and hands, and states whether they are closed.
 import {
   BufferGeometry, CapsuleGeometry, Group, InstancedMesh, Line, LineBasicMaterial, Matrix4, Mesh,
   MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,

@@ -1,5 +1,5 @@
-// Lays out the sentences on the headset's board. The sentences stay above the hands' bars, however
-// long the sentences are.
+// Lays out the sentences on the headset's board. The sentences stay above the bars of the hands,
+// regardless of the length of the sentences.
 
 export interface BoardText {
   title: string;
@@ -12,7 +12,7 @@ export interface BoardText {
 
 export const kBarsFrom = 490;  // distance from the top of the board [px]
 
-// Lengths are in pixels of the board. y is the distance from the top to the baseline.
+// Lengths are in pixels of the board. The distance from the top to the baseline is y.
 export interface Line {
   text: string;
   y: number;
@@ -26,7 +26,7 @@ const kSmallest = 0.5;  // smaller letters cannot be read
 export const kTones = {calm: '#9aa7b8', ready: '#2fbf71', running: '#2fbf71', warning: '#ff9f1c',
                        stopped: '#f23645'};
 
-// Returns the y of the lowest point of the last line.
+// Returns the y coordinate of the lowest point of the last line.
 export function endOf(lines: Line[]): number {
   const {y, size} = lines[lines.length - 1];
   return y + 0.25 * size;
@@ -35,7 +35,8 @@ export function endOf(lines: Line[]): number {
 export function layOut(text: BoardText): Line[] {
   let scale = 1;
   let lines = scaled(text, scale);
-  // The letters become smaller, but no text is cut off, because the person may need that text most.
+  // If a text is long, its letters become smaller. No text is cut off, because the person may need
+  // exactly the missing part.
   while (endOf(lines) > kBarsFrom && scale > kSmallest) {
     scale *= kSmaller;
     lines = scaled(text, scale);

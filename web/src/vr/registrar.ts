@@ -1,6 +1,6 @@
 // Performs the registration with the person in the headset, who touches known points or places the
-// controllers on the handles. After the registration, this class monitors whether it is still
-// valid.
+// controllers on the handles. After the registration, this class monitors whether the registration
+// is still valid.
 import {kSides, SceneSpec, scenarioOf, Side, State, Vec3} from '../protocol';
 import {distance, matrix, vector} from '../scene/frames';
 import {fit, load, PointPair, Registration, store, toWorld} from './registration';
@@ -29,7 +29,8 @@ export interface Place {
 }
 export type Controllers = Partial<Record<Side, Place>>;
 
-// A controller or hand that moves with a handle, because it lies on the handle or holds it.
+// A controller or hand that moves with a handle, because the controller lies on the handle or the
+// hand holds it.
 interface Attached {
   handle: Side;
   offset: Vec3;        // position of the controller in the handle's frame [m]
@@ -61,8 +62,8 @@ export class Registrar {
     this.cancel('');
   }
 
-  // Called when the person has touched something at `tip` in W. Near a handle, the touch shows
-  // whether the registration of an earlier session is still valid.
+  // This function is called when the person has touched a point at `tip` in W. Near a handle, the
+  // touch shows whether the registration of an earlier session is still valid.
   check(tip: Vec3, state: State) {
     if (!this.unchecked) return;
     const off = Math.min(...kSides.filter((side) => state.hands[side].present)
@@ -86,7 +87,7 @@ export class Registrar {
     return this.attached.size > 0;
   }
 
-  // Begins or cancels touching points.
+  // Begins or cancels the registration in which the person touches points.
   toggleTouching(spec: SceneSpec, state: State) {
     if (this.touching) return this.cancel('Registration cancelled.');
     this.cancel('');
@@ -98,7 +99,8 @@ export class Registrar {
     this.askForPoint();
   }
 
-  // Called when the person has touched a point, in the headset's space with Z up.
+  // This function is called when the person has touched a point. The point is given in the
+  // headset's space with Z up.
   touch(touched: Vec3, spec: SceneSpec, state: State) {
     if (!this.touching) return;
     const {points, pairs} = this.touching;
@@ -115,7 +117,7 @@ export class Registrar {
     this.mounting = {leftMs: kMountMs, samples: {left: [], right: []}};
   }
 
-  // Call this in each frame with the head's position in the headset's space (Z up).
+  // Call this function in each frame with the head's position in the headset's space (Z up).
   update(nowMs: number, controllers: Controllers, head: Vec3, spec: SceneSpec, state: State) {
     this.drift = NaN;
     this.driftAlarm = false;
@@ -227,9 +229,9 @@ export class Registrar {
     this.pending = false;
   }
 
-  // A hand that holds a real handle stays at the place where it gripped the handle. If the sensor
-  // still reports a grip, but the tracked hand or controller leaves the handle or was never near
-  // it, the worlds have drifted apart.
+  // A hand that holds a real handle stays at the place where it gripped the handle. The real and
+  // the virtual world have drifted apart if the sensor still reports a grip, but the tracked hand
+  // or controller leaves the handle or was never near it.
   private watchHeld(nowMs: number, controllers: Controllers, state: State) {
     for (const side of kSides) {
       const {present, gripping, real} = state.hands[side];

@@ -20,8 +20,9 @@ export interface PointPair {
   known: Vec3;    // the same point in W
 }
 
-// Computes least squares over all pairs, which minimise Σ |R(yaw) known + t − touched|². Throws an
-// Error with a message for the person if the points do not determine the rotation.
+// Computes the least-squares solution for all pairs, which minimises Σ |R(yaw) known + t −
+// touched|². Throws an Error with a message for the person if the points do not determine the
+// rotation.
 export function fit(pairs: PointPair[]): Registration {
   const n = pairs.length;
   if (n < 2) throw new Error('At least two points are needed.');
@@ -56,9 +57,10 @@ export function fit(pairs: PointPair[]): Registration {
   return {yaw, t, residual: Math.sqrt(squares.reduce((x, y) => x + y) / n)};
 }
 
-// Places W so that a person at the space's origin who looks ahead is at `eye`, on the ground below
-// it, and faces along `forward` (horizontal). `ground` is the height of the ground in W [m]. This
-// pose applies until the person registers the world.
+// Places W for a person who is at the origin of the headset's space and looks ahead. In W, the
+// person's eyes are then at `eye`, and the person stands on the ground below and faces along the
+// horizontal direction `forward`. `ground` is the height of the ground in W [m]. This pose applies
+// until the person registers the world.
 export function standAt(eye: Vec3, forward: Vec3, ground: number): Registration {
   const yaw = Math.PI / 2 - Math.atan2(forward[1], forward[0]);
   const p = turn([eye[0], eye[1], 0], yaw);
@@ -91,7 +93,8 @@ export function clearFrom(root: Object3D) {
   root.rotation.set(0, 0, 0);
 }
 
-// Returns the registration stored for a scene, or null if there is none or it cannot be read.
+// Returns the registration that is stored for a scene, or null if none is stored or the stored one
+// cannot be read.
 export function load(scene: string): Registration | null {
   try {
     const value = JSON.parse(localStorage.getItem(kKey(scene)) ?? 'null') as Registration | null;

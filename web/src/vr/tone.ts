@@ -1,10 +1,12 @@
-// Plays a tone at a stop: two falling beeps, loud enough to be noticed in a headset.
+// Plays a tone at a stop. The tone consists of two falling beeps, which are loud enough to be
+// noticed in a headset.
 
 export class Tone {
   played = 0;
   private context: AudioContext | null = null;
 
-  // Browsers allow sound only after a user action, so this must be called in one.
+  // Browsers allow sound only after a user action, so this function must be called during such an
+  // action.
   unlock() {
     this.context ??= new AudioContext();
     void this.context.resume();
