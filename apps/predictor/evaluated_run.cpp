@@ -40,6 +40,24 @@ void RefuseUnknown(const Scenario& scenario, const std::string& file) {
                   "'operator.stance={ground: [1, 0, -0.85], facing: 180 deg}'.");
 }
 
+// Returns no track if no head was measured during the run.
+std::optional<tracks::BodyTrack> HeadOf(const RecordingReader& reader) {
+  tracks::PartTrack head;
+  for (const RecordedHead& recorded : reader.ReadHeads()) {
+    if (!head.times.empty() && recorded.time <= head.times.back()) continue;
+    const auto& [p, q] = std::pair(recorded.head.p, recorded.head.q);
+    head.times.push_back(recorded.time);
+    head.p.emplace_back(p[0], p[1], p[2]);
+    head.q.push_back(Quaternion(q[0], q[1], q[2], q[3]));
+  }
+  if (head.times.empty()) return {};
+  tracks::BodyTrack track;
+  track.source = "the headset";
+  track.of_the_run = true;
+  track.head = std::move(head);
+  return track;
+}
+
 EvaluatedRun OpenTicks(const std::string& file, const PersonOptions& options) {
   RecordingReader reader(file);
   const RecordingHeader& header = reader.header();
@@ -60,6 +78,7 @@ EvaluatedRun OpenTicks(const std::string& file, const PersonOptions& options) {
   run.masses = MassesOf(header);
   if (run.masses) run.object_mass = run.masses->object;
   run.start_unix = 1e-9 * static_cast<double>(header.start_unix_ns);
+  if (auto head = HeadOf(reader)) run.tracks.push_back(std::move(*head));
   return run;
 }
 
@@ -93,7 +112,10 @@ EvaluatedRun OpenRun(const std::string& file, const PersonOptions& options,
   EvaluatedRun run =
       tracks::IsPersonFile(file) ? OpenImported(file, options) : OpenTicks(file, options);
   run.file = std::filesystem::path(file).filename().string();
-  for (const std::string& track : tracks) run.tracks.push_back(tracks::LoadBodyTrack(track));
+  std::vector<tracks::BodyTrack> given;
+  for (const std::string& track : tracks) given.push_back(tracks::LoadBodyTrack(track));
+  run.tracks.insert(run.tracks.begin(), std::make_move_iterator(given.begin()),
+                    std::make_move_iterator(given.end()));
   return run;
 }
 

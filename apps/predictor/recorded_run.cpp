@@ -23,9 +23,10 @@ namespace {
 
 constexpr double kSnapshotTime = 10;  // time between saved states [s]
 
-RecorderOptions Options(const EvaluationBoard* person = nullptr) {
+RecorderOptions Options(const EvaluationBoard* person = nullptr, const HeadRing* heads = nullptr) {
   RecorderOptions options;
   options.person = person;
+  options.heads = heads;
   options.snapshot_bytes = kStateBytes;
   options.notify = [](const std::string& text) { TheScreen().Print(text); };
   return options;
@@ -33,6 +34,7 @@ RecorderOptions Options(const EvaluationBoard* person = nullptr) {
 
 std::vector<JsonChannel> ChannelsOf(const Emulator& emulator, const EvaluationBoard* person) {
   auto channels = RecordedScene(emulator.scenario(), emulator.setup().object_start);
+  channels.push_back(HeadChannel());
   if (person) channels.push_back(PersonChannel());
   return channels;
 }
@@ -130,10 +132,10 @@ std::string VirtualRecording::Summary() const {
 }
 
 RunRecording::RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board,
-                           const EvaluationBoard* person)
+                           const EvaluationBoard* person, const HeadRing& heads)
     : board_(board),
       file_(options.file.empty() ? NewRecordingName(emulator.scenario()) : options.file),
-      recorder_(file_, HeaderOf(emulator, options), board->records, Options(person),
+      recorder_(file_, HeaderOf(emulator, options), board->records, Options(person, &heads),
                 ChannelsOf(emulator, person)),
       open_(std::in_place, file_, [this] { Close(false, false); }) {
   Look();

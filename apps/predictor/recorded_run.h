@@ -71,9 +71,10 @@ class RunRecording final : public SnapshotSink {
   // Records everything that is published on the board after this call. The file is `options.file`
   // or, if this name is empty, the file of NewRecordingName. The board shows whether the recorder
   // is recording. `person` is the board of the evaluator's states, which are also recorded, or
-  // null. Both boards are borrowed. Throws InputError.
+  // null. `heads` are the measured heads, which are also recorded. The boards and the heads are
+  // borrowed. Throws InputError.
   RunRecording(const Emulator& emulator, const RecordOptions& options, RunBoard* board,
-               const EvaluationBoard* person);
+               const EvaluationBoard* person, const HeadRing& heads);
 
   std::span<std::byte> AcquireBuffer() noexcept override { return recorder_.SnapshotBuffer(); }
   void Commit(std::uint64_t tick, std::size_t bytes) noexcept override {

@@ -178,7 +178,7 @@ class Run {
     evaluation_.emplace(serve.evaluation, scenario, board_, show);
     if (!record.off) {
       options.MakeRoom(record.file);
-      recording_.emplace(emulator_, record, &*board_, evaluation_->board());
+      recording_.emplace(emulator_, record, &*board_, evaluation_->board(), mailbox_->heads);
     }
     if (machine) {
       watchdog_.emplace(*machine, std::array{scenario.Has(0), scenario.Has(1)}, board_, show);

@@ -185,24 +185,44 @@ void CheckUnique(const MeasuredBody& body) {
                                        ". Map this part in only one of the files.");
 }
 
+void AddTrack(const tracks::BodyTrack& track, const PersonSetup& setup, double start_unix,
+              std::vector<PersonSample>* samples, MeasuredBody* body) {
+  const UsedTrack used = Relate(track, start_unix, *samples);
+  CheckOverlap(track, used, *samples);
+  body->tracks.push_back(used);
+  for (const std::string& warning : track.warnings)
+    body->warnings.push_back(used.source + ": " + warning);
+  if (track.head) AddHead(*track.head, used, setup, samples, body);
+  for (int hand = 0; hand < kHands; ++hand)
+    if (const auto& elbow = track.elbows[static_cast<std::size_t>(hand)])
+      AddElbow(*elbow, hand, used, setup, samples, body);
+  AddSignals(track, used, *samples, body);
+  AddEmg(track, used.offset, *samples, &body->emg);
+  CheckUnique(*body);
+}
+
+void AddTrackOfTheRun(const tracks::BodyTrack& track, const PersonSetup& setup, double start_unix,
+                      std::vector<PersonSample>* samples, MeasuredBody* body) {
+  std::vector<PersonSample> with = *samples;
+  MeasuredBody measured = *body;
+  try {
+    AddTrack(track, setup, start_unix, &with, &measured);
+  } catch (const InputError& error) {
+    body->warnings.push_back(std::string("The measurement in the recording is not used: ") +
+                             error.what());
+    return;
+  }
+  *samples = std::move(with);
+  *body = std::move(measured);
+}
+
 }  // namespace
 
 MeasuredBody AddTracks(std::span<const tracks::BodyTrack> tracks, const PersonSetup& setup,
                        double start_unix, std::vector<PersonSample>* samples) {
   MeasuredBody body;
   for (const tracks::BodyTrack& track : tracks) {
-    const UsedTrack used = Relate(track, start_unix, *samples);
-    CheckOverlap(track, used, *samples);
-    body.tracks.push_back(used);
-    for (const std::string& warning : track.warnings)
-      body.warnings.push_back(used.source + ": " + warning);
-    if (track.head) AddHead(*track.head, used, setup, samples, &body);
-    for (int hand = 0; hand < kHands; ++hand)
-      if (const auto& elbow = track.elbows[static_cast<std::size_t>(hand)])
-        AddElbow(*elbow, hand, used, setup, samples, &body);
-    AddSignals(track, used, *samples, &body);
-    AddEmg(track, used.offset, *samples, &body.emg);
-    CheckUnique(body);
+    (track.of_the_run ? AddTrackOfTheRun : AddTrack)(track, setup, start_unix, samples, &body);
   }
   body.warnings.insert(body.warnings.end(), body.emg.warnings.begin(), body.emg.warnings.end());
   return body;

@@ -53,7 +53,9 @@ struct MeasuredBody {
 // measurement during the run. Also throws InputError if the offset of a track's clock cannot be
 // estimated, or if most positions of a track are impossible for this person at this place (wrong
 // unit, frame or marker). If only a few positions are impossible, these positions are left out and
-// counted. Electromyograms are converted by AddEmg.
+// counted. Electromyograms are converted by AddEmg. A track of the run itself
+// (BodyTrack::of_the_run) is left out with a warning instead of an error. Pass this track after the
+// others, so that a file that measures the same part is used.
 MeasuredBody AddTracks(std::span<const tracks::BodyTrack> tracks, const PersonSetup& setup,
                        double start_unix, std::vector<PersonSample>* samples);
 

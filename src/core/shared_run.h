@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/head_record.h"
 #include "core/person_state.h"
 #include "core/record.h"
 #include "core/ring.h"
@@ -25,6 +26,9 @@ struct RunBoard {
   RecordRing records;
 };
 
+inline constexpr std::size_t kHeadRing = 256;  // at least four seconds
+using HeadRing = RingStorage<HeadRecord, kHeadRing>;
+
 // The viewer's process writes the mailbox. The run validates everything that it reads from the
 // mailbox.
 struct RunMailbox {
@@ -39,6 +43,9 @@ struct RunMailbox {
   std::atomic<std::uint32_t> clients{0};
   std::atomic<std::uint32_t> immersive{0};           // headsets in an immersive session
   std::atomic<std::uint64_t> immersive_frame_ns{0};  // monotonic clock at the headsets' last report
+  // Measured heads of the person. The tick does not read them. The recorder does, and does not
+  // trust their content.
+  HeadRing heads;
 };
 
 // The ROS-TCP server's process writes this mailbox, and the run reads it. The server's clients may

@@ -8,6 +8,7 @@
 
 #include "core/person_json.h"
 #include "recording/cdr.h"
+#include "recording/head_stream.h"
 
 namespace predictor::recording {
 namespace {
@@ -82,9 +83,11 @@ Encoder::Encoder(const RecordingHeader& header, std::vector<JsonChannel> scene)
       start_ns_(static_cast<std::uint64_t>(header.start_unix_ns)),
       scene_(std::move(scene)),
       now_ns_(start_ns_) {
-  for (std::size_t i = 0; i < scene_.size(); ++i)
-    if (scene_[i].topic == kPersonTopic)
-      person_channel_ = static_cast<std::uint16_t>(kFirstJsonChannel + i);
+  for (std::size_t i = 0; i < scene_.size(); ++i) {
+    const auto channel = static_cast<std::uint16_t>(kFirstJsonChannel + i);
+    if (scene_[i].topic == kPersonTopic) person_channel_ = channel;
+    if (scene_[i].topic == kHeadTopic) head_channel_ = channel;
+  }
 }
 
 // Uses the clock time if the record contains one, and otherwise (in virtual time) the number of the
@@ -150,6 +153,13 @@ void Encoder::AddPerson(const PersonState& state) {
   if (first_wall_ns_ != 0 && state.wall_ns >= first_wall_ns_)
     time = std::min(time, start_ns_ + (state.wall_ns - first_wall_ns_));
   chunk_.Add(person_channel_, static_cast<std::uint32_t>(state.tick), time, PersonJson(state));
+}
+
+void Encoder::AddHead(const HeadRecord& head, std::uint64_t tick) {
+  if (head_channel_ == 0 || first_wall_ns_ == 0 || head.wall_ns < first_wall_ns_) return;
+  const std::uint64_t time = start_ns_ + (head.wall_ns - first_wall_ns_);
+  if (time <= now_ns_)
+    chunk_.Add(head_channel_, static_cast<std::uint32_t>(tick), time, HeadJson(head));
 }
 
 void Encoder::AddSnapshot(std::uint64_t tick, std::span<const std::byte> data) {

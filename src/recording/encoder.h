@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/head_record.h"
 #include "core/person_state.h"
 #include "core/tick_fields.h"
 #include "recording/chunk.h"
@@ -40,6 +41,9 @@ class Encoder {
   void AddEvent(const RecordingEvent& event);  // sets the event's time
   // Adds a state of the person if the recording has a topic for them.
   void AddPerson(const PersonState& state);
+  // Adds a measured head, at the newest tick, if the recording has a topic for heads. A head from
+  // before the first tick or after the newest one is left out.
+  void AddHead(const HeadRecord& head, std::uint64_t tick);
 
   // Returns whether a chunk should be taken.
   bool Due() const;
@@ -55,7 +59,7 @@ class Encoder {
   double dt_;
   std::uint64_t start_ns_;
   std::vector<JsonChannel> scene_;
-  std::uint16_t person_channel_ = 0;  // 0: none
+  std::uint16_t person_channel_ = 0, head_channel_ = 0;  // 0: none
   RunEvents run_events_;
   ChunkBuilder chunk_;
   std::uint64_t first_wall_ns_ = 0;

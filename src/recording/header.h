@@ -47,6 +47,10 @@ struct JsonChannel {
 // The topic of the person's states (core/person_json.h), with at most 100 messages per second.
 inline constexpr const char* kPersonTopic = "/person/state";
 JsonChannel PersonChannel();
+// The topic of the measured poses of the person's head (recording/head_stream.h), at most 60 per
+// second.
+inline constexpr const char* kHeadTopic = "/person/head";
+JsonChannel HeadChannel();
 
 // An event, for example a marker, lost ticks or a stop.
 struct RecordingEvent {

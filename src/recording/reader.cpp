@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "recording/encoder.h"
+#include "recording/head_stream.h"
 #include "recording/input.h"
 #include "recording/opening.h"
 #include "recording/preamble.h"
@@ -25,7 +26,9 @@ namespace {
 constexpr std::size_t kMaxLoggedEvents = 200'000;
 constexpr std::size_t kMaxEventBytes = 64U << 20U;
 constexpr std::size_t kLongestEvent = 64 * 1024;  // [bytes]
+constexpr std::size_t kLongestHead = 4 * 1024;    // [bytes]
 constexpr std::size_t kMaxSnapshots = 1'000'000;
+constexpr std::size_t kMaxHeads = 1'000'000;      // more than four hours
 constexpr std::uint64_t kReadAtOnce = 1U << 20U;  // [bytes]
 
 }  // namespace
@@ -47,6 +50,7 @@ struct RecordingReader::Impl {
   void FindOthers();
   void FindOthersIn(std::size_t chunk);
   void TakeEvent(std::size_t chunk, const Message& message);
+  void TakeHead(std::size_t chunk, const Message& message, std::vector<RecordedHead>* heads) const;
   void CheckIndexes(const mcap::ChunkIndex& index) const;
 
   InputFile file;
@@ -207,6 +211,19 @@ void RecordingReader::Impl::TakeEvent(std::size_t i, const Message& message) {
   events.push_back(std::move(event));
 }
 
+void RecordingReader::Impl::TakeHead(std::size_t i, const Message& message,
+                                     std::vector<RecordedHead>* heads) const {
+  if (heads->size() == kMaxHeads)
+    file.Fail(chunks[i].offset, "The recording contains too many poses of the head.");
+  const auto start = static_cast<std::uint64_t>(opening.header.start_unix_ns);
+  RecordedHead head;
+  if (message.time < start || message.data.size() > kLongestHead ||
+      !recording::ParseHead(message.data, &head.head))
+    file.Fail(chunks[i].offset, "This chunk contains an invalid pose of the head.");
+  head.time = 1e-9 * static_cast<double>(message.time - start);
+  heads->push_back(head);
+}
+
 void RecordingReader::Impl::FindOthersIn(std::size_t i) {
   const std::string bytes = ReadChunk(file, chunks[i]);
   std::string_view from = bytes;
@@ -362,6 +379,25 @@ std::vector<RecordingEvent> RecordingReader::gaps() {
   for (const RecordingEvent& event : events())
     if (event.kind == "loss") gaps.push_back(event);
   return gaps;
+}
+
+std::vector<RecordedHead> RecordingReader::ReadHeads() const {
+  const Impl& r = *impl_;
+  std::uint16_t channel = recording::kFirstJsonChannel;
+  for (const JsonChannel& json : r.opening.scene) {
+    if (json.topic == kHeadTopic) break;
+    ++channel;
+  }
+  std::vector<RecordedHead> heads;
+  for (std::size_t i = 0; i < r.chunks.size(); ++i) {
+    if (r.complete && !r.chunks[i].indexes.contains(channel)) continue;
+    const std::string bytes = ReadChunk(r.file, r.chunks[i]);
+    std::string_view from = bytes;
+    for (Message message; TakeMessage(&from, &message);)
+      if (message.channel == channel) r.TakeHead(i, message, &heads);
+  }
+  std::ranges::stable_sort(heads, {}, &RecordedHead::time);
+  return heads;
 }
 
 void RecordingReader::Check() {

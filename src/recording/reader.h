@@ -7,10 +7,16 @@
 #include <string>
 #include <vector>
 
+#include "core/head_record.h"
 #include "core/record.h"
 #include "recording/header.h"
 
 namespace predictor {
+
+struct RecordedHead {
+  double time = 0;  // since the start of the recording [s]
+  HeadRecord head;  // without wall_ns and client
+};
 
 struct RecordedSnapshot {
   std::uint64_t tick = 0;  // tick after which the state was saved
@@ -59,6 +65,10 @@ class RecordingReader {
   std::uint64_t more_events();  // number of further events in the file
   // Returns the events about lost ticks.
   std::vector<RecordingEvent> gaps();
+
+  // Reads the measured poses of the head, in the order of their times. Returns none if the
+  // recording has no such stream. Throws InputError.
+  std::vector<RecordedHead> ReadHeads() const;
 
   // Reads the whole file and verifies the CRC of the file, each chunk, and each message against its
   // index. Throws InputError at the first error.

@@ -134,6 +134,7 @@ struct Recorder::Impl {
         queue(options.max_queued),
         disk(options) {
     if (options.person) persons.emplace(options.person->states);
+    if (options.heads) heads.emplace(*options.heads);
     free_bytes = file.FreeBytes();
     encodes = ContainedThread(
         "record encode", [this] { Encode(); }, [this](const char* why) { EncodingFailed(why); });
@@ -152,6 +153,7 @@ struct Recorder::Impl {
   void NoteLoss(std::uint64_t tick);
   void TakeMarks();
   void TakePersons(bool all);
+  void TakeHeads(bool all);
   bool Pass(bool all);
 
   // ---- writing ----------------------------------------------------------------------------------
@@ -173,14 +175,17 @@ struct Recorder::Impl {
   const RecorderOptions options;
   RingReader<TickRecord, kRecordRing> reader;
   std::optional<RingReader<PersonState, kPersonRing>> persons;
+  std::optional<RingReader<HeadRecord, kHeadRing>> heads;
   SnapshotBox snapshot;
   recording::McapFile file;
   recording::Encoder encoder;
   ChunkQueue queue;
 
   // Only the thread that encodes uses the following members.
-  std::uint64_t newest = 0;               // tick
-  std::optional<PersonState> waiting;     // the person's next state
+  std::uint64_t newest = 0;            // tick
+  std::uint64_t newest_ns = 0;         // its monotonic clock
+  std::optional<PersonState> waiting;  // the person's next state
+  std::optional<HeadRecord> next_head;
   std::uint64_t seen = 0;                 // number of lost ticks noticed so far
   std::uint64_t noted = 0;                // number of them that an event in the file reports
   std::uint64_t holes = 0;                // gaps covered by one event
@@ -215,6 +220,7 @@ void Recorder::Impl::Encode() {
     if (last && holes > 0) NoteLoss(newest);
     TakeMarks();
     TakePersons(last);
+    TakeHeads(last);
     snapshot.MoveTo(&encoder);
     if (wants_snapshot && snapshot.Want()) wants_snapshot = false;
     if (!Pass(last)) break;
@@ -238,6 +244,7 @@ void Recorder::Impl::Drain() {
     FollowLoss(record);
     encoder.Add(record);
     newest = record.tick;
+    newest_ns = record.wall_ns;
     const auto now = Clock::now();
     if (!asked || now - *asked >= options.snapshot_period) {
       asked = now;
@@ -293,6 +300,18 @@ void Recorder::Impl::TakePersons(bool all) {
     if (!waiting || (!all && waiting->tick > newest)) return;
     encoder.AddPerson(*waiting);
     waiting.reset();
+  }
+}
+
+// A head that was measured after the newest tick waits, because the encoder relates its clock to
+// the ticks. An implausible head is left out, because another process measured the head.
+void Recorder::Impl::TakeHeads(bool all) {
+  for (std::size_t k = 0; heads && k < kHeadRing; ++k) {
+    HeadRecord head;
+    if (!next_head && heads->Next(&head)) next_head = head;
+    if (!next_head || (!all && next_head->wall_ns > newest_ns)) return;
+    if (IsPlausible(*next_head)) encoder.AddHead(*next_head, newest);
+    next_head.reset();
   }
 }
 

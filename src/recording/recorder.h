@@ -31,7 +31,8 @@ struct RecorderOptions : DiskRules {
   std::size_t max_queued = 64U << 20U;     // maximum size of the chunks that wait for the disk
                                            // [bytes]
   const EvaluationBoard* person =
-      nullptr;  // source of the person's states to record; null: none; borrowed
+      nullptr;                      // source of the person's states to record; null: none; borrowed
+  const HeadRing* heads = nullptr;  // source of the measured heads to record; null: none; borrowed
 };
 
 // The first thread reads the ring, encodes and compresses. The second thread writes, and the third

@@ -55,8 +55,10 @@ class Recovery {
  public:
   Recovery(const InputFile& in, const Opening& opening, bool person, McapFile* out)
       : in_(in), channels_(kEventChannel + opening.scene.size()), person_(person), out_(out) {
-    for (std::size_t i = 0; i < opening.scene.size(); ++i)
+    for (std::size_t i = 0; i < opening.scene.size(); ++i) {
       if (opening.scene[i].topic == kPersonTopic) states_ = kEventChannel + 1 + i;
+      if (opening.scene[i].topic == kHeadTopic) heads_ = kEventChannel + 1 + i;
+    }
   }
 
   RecoverReport Run(std::uint64_t at) {
@@ -138,7 +140,9 @@ class Recovery {
       case TickDecoder::Result::kOther:
         if (!trusted) return;
         if (!person_ && IsOfPerson(message)) {
-          ++(message.channel == states_ ? report_.left_out_states : report_.left_out_markers);
+          ++(message.channel == states_  ? report_.left_out_states
+             : message.channel == heads_ ? report_.left_out_heads
+                                         : report_.left_out_markers);
           return;
         }
         report_.snapshots += message.channel == kSnapshotChannel;
@@ -147,10 +151,10 @@ class Recovery {
     }
   }
 
-  // Returns whether a message is a state of the person, or an event with a text of a person or a
-  // program. All other messages are derived from the ticks.
+  // Returns whether a message is a state or a head of the person, or an event with a text of a
+  // person or a program. All other messages are derived from the ticks.
   bool IsOfPerson(const Message& message) const {
-    if (message.channel == states_) return true;
+    if (message.channel == states_ || message.channel == heads_) return true;
     RecordingEvent event;
     return message.channel == kEventChannel && ParseEvent(message.data, &event) &&
            (event.kind == "marker" || event.kind == "event");
@@ -191,6 +195,7 @@ class Recovery {
   const InputFile& in_;
   std::size_t channels_;
   std::size_t states_ = 0;  // channel of the person's states; 0: none
+  std::size_t heads_ = 0;   // channel of the measured heads; 0: none
   bool person_;
   McapFile* out_;
   RecoverReport report_;

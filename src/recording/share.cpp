@@ -53,6 +53,8 @@ std::vector<std::string> WriteShared(const std::string& in, const std::string& o
     removed.push_back(std::to_string(report.left_out_markers) + " markers");
   if (report.left_out_states > 0)
     removed.push_back(std::to_string(report.left_out_states) + " states of the person");
+  if (report.left_out_heads > 0)
+    removed.push_back(std::to_string(report.left_out_heads) + " measured poses of the head");
   return removed;
 }
 

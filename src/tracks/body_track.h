@@ -70,6 +70,9 @@ struct BodyTrack {
   std::vector<SignalTrack> signals;
   std::vector<EmgTrack> emg;
   std::vector<std::string> warnings;
+  // Whether the run's own recording contains this track. The user did not choose it for the
+  // evaluation, so if it cannot be used, the evaluation continues without it.
+  bool of_the_run = false;
 };
 
 // Applies a mapping. Throws InputError if a channel is missing, a position has no unit, a rotation

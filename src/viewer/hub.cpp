@@ -17,6 +17,7 @@ constexpr double kDenialRate = 5;
 constexpr double kLatencyRate = 2;
 constexpr double kMarkRate = 2;
 constexpr double kHeadRate = 12;  // rate at which a headset's pose is forwarded to the other pages
+constexpr double kMeasuredHeadRate = 60;  // rate at which a head is recorded and evaluated
 // Slots of the states of the run and of the person. The slot of a head's message is the number of
 // its client.
 constexpr std::uint32_t kStates = 0, kPerson = ~0U;
@@ -121,8 +122,11 @@ class Hub::Client : public Session {
   void On(const ImmersiveRequest& request) {
     experimenter_ = experimenter_ && !request.active;  // the wearer is the subject
     hub_->See(id_, request);
-    if (role_ == Role::kLook || !(request.has_head || !request.active)) return;
-    if (heads_.Take(hub_->clock_())) hub_->ShowHead(id_, request);
+    if (role_ == Role::kLook) return;
+    const std::uint64_t now = hub_->clock_();
+    if (request.active ? request.has_head && heads_.Take(now) : goodbyes_.Take(now))
+      hub_->ShowHead(id_, request);
+    if (measured_.Take(now)) hub_->MeasureHead(id_, request);
   }
 
   Hub* hub_;
@@ -136,7 +140,8 @@ class Hub::Client : public Session {
   bool experimenter_ = false;
   LatencyRequest latency_;
   RateLimit messages_{kMessageRate}, flood_{kFloodRate}, pings_{kPingRate}, denials_{kDenialRate},
-      latencies_{kLatencyRate}, heads_{kHeadRate}, marks_{kMarkRate};
+      latencies_{kLatencyRate}, heads_{kHeadRate}, goodbyes_{kHeadRate},
+      measured_{kMeasuredHeadRate}, marks_{kMarkRate};
   std::array<RateLimit, kHands> hands_ = {RateLimit(kHandRate), RateLimit(kHandRate)};
 };
 

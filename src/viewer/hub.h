@@ -102,6 +102,7 @@ class Hub {
   void See(std::uint32_t client, const ImmersiveRequest& request);
   void ShowHead(std::uint32_t client, const ImmersiveRequest& request);
   void PublishHeadsets();
+  void MeasureHead(std::uint32_t client, const ImmersiveRequest& request);
 
   HubSetup setup_;
   Admission* admission_;

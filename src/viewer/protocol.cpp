@@ -17,6 +17,7 @@ constexpr double kLargestTime = 1e15;    // [ms]
 constexpr double kMaxReplaySteps = 1e6;  // maximum number of steps in one request to a replay
 constexpr double kMaxReplaySpeed = 64;   // maximum speed of a replay
 constexpr double kLargestClock = 9e18;   // [ns]
+constexpr double kLargestYaw = 10;       // [rad]
 
 // Reads the members of a message. `good` becomes false when a member is missing or invalid.
 class Reader {
@@ -72,6 +73,13 @@ class Reader {
     return found.value_or(typename decltype(find(std::string()))::value_type{});
   }
 
+  // Returns an empty object if the member is missing or no object.
+  Json Object(const char* name) {
+    const Json* value = Find(name);
+    if (value && value->is_object()) return *value;
+    good_ = false;
+    return Json::object();
+  }
   bool Has(const char* name) const { return message_.contains(name); }
   void Require(bool what) { good_ = good_ && what; }
   bool good() const { return good_; }
@@ -155,12 +163,23 @@ HandRequest ReadHand(Reader* r) {
   return hand;
 }
 
+HeadRegistration ReadRegistration(const Json& object, Reader* message) {
+  Reader r(object);
+  const HeadRegistration registration{r.Number("yaw", kLargestYaw),
+                                      r.Numbers<3>("t", kFarthestHead),
+                                      r.Number("residual", kWorstHeadResidual)};
+  message->Require(r.good() && registration.residual >= 0);
+  return registration;
+}
+
 ImmersiveRequest ReadImmersive(Reader* r) {
   ImmersiveRequest headset;
   headset.active = r->Flag("active");
   if (r->Has("drawn")) headset.drawn_ns = r->Clock("drawn");
   headset.has_head = r->Has("p") || r->Has("q");
   if (headset.has_head) ReadPose(r, &headset);
+  if (r->Has("posed")) headset.posed_ns = r->Clock("posed");
+  if (r->Has("registration")) headset.registration = ReadRegistration(r->Object("registration"), r);
   return headset;
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <variant>
 
+#include "core/head_record.h"
 #include "core/run_input.h"
 #include "viewer/admission.h"
 #include "viewer/leases.h"
@@ -66,8 +67,10 @@ struct ImmersiveRequest {
   std::uint64_t drawn_ns = 0;  // TickRecord::wall_ns of the newest drawn state; 0: none yet
   // The pose of the head, if the page sends it.
   bool has_head = false;
-  std::array<double, 3> p = {};            // position in W [m]
-  std::array<double, 4> q = {1, 0, 0, 0};  // unit, scalar first
+  std::array<double, 3> p = {};                  // position in W [m]
+  std::array<double, 4> q = {1, 0, 0, 0};        // unit, scalar first
+  std::uint64_t posed_ns = 0;                    // server's clock at the pose; 0: not known
+  std::optional<HeadRegistration> registration;  // if the person registered W, and it is valid
 };
 using PageRequest =
     std::variant<HelloRequest, HeartbeatRequest, LeaseRequest, StopRequest, ExperimenterRequest,

@@ -229,5 +229,41 @@ TEST(MeasuredBody, FindsAnUnknownClockByTheHand) {
   EXPECT_NEAR(a.measured.tracks[0].offset, -3.21, 0.005);
 }
 
+// The user did not choose the head in the recording, so the evaluation must continue without it.
+TEST(MeasuredBody, LeavesOutAnUnusableHeadOfTheRun) {
+  const Truth truth = TruthOf(MadeRun());
+  const Assessment hands = JudgeWith({});
+  tracks::BodyTrack recorded = TrackOf(truth, true, false);
+  recorded.of_the_run = true;
+  const Assessment used = JudgeWith({recorded});
+  EXPECT_EQ(used.measured.parts.size(), 2u);
+
+  const auto refused = [&](const tracks::BodyTrack& track, const char* why) {
+    const Assessment a = JudgeWith({track});
+    EXPECT_TRUE(a.measured.parts.empty());
+    EXPECT_TRUE(std::ranges::any_of(a.warnings, [why](const std::string& warning) {
+      return warning.find("is not used") != std::string::npos &&
+             warning.find(why) != std::string::npos;
+    })) << why;
+    EXPECT_EQ(a.quantities.front().mean, hands.quantities.front().mean);
+  };
+  tracks::BodyTrack high = recorded, late = recorded;
+  for (Vector3& p : high.head->p) p.z() += 5;
+  refused(high, "impossible");
+  for (double& t : late.head->times) t += 100;
+  refused(late, "The file covers");
+}
+
+// A file that the user gives is preferred.
+TEST(MeasuredBody, PrefersAGivenHeadToThatOfTheRun) {
+  const Truth truth = TruthOf(MadeRun());
+  tracks::BodyTrack recorded = TrackOf(truth, true, false);
+  recorded.source = "the headset";
+  recorded.of_the_run = true;
+  const Assessment a = JudgeWith({TrackOf(truth, true, false), recorded});
+  ASSERT_EQ(a.measured.parts.size(), 2u);
+  EXPECT_EQ(a.measured.parts[0].source, "body.csv");
+}
+
 }  // namespace
 }  // namespace predictor::assessment

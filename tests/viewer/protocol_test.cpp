@@ -54,6 +54,13 @@ TEST(Protocol, UnderstandsEveryMessage) {
       Parsed<ImmersiveRequest>(R"({"type":"immersive","active":true,"p":[1,2,3],"q":[1,0,0,0]})");
   EXPECT_TRUE(head.has_head);
   EXPECT_EQ(head.p[2], 3);
+  EXPECT_FALSE(head.registration.has_value());
+  const auto measured = Parsed<ImmersiveRequest>(
+      R"({"type":"immersive","active":true,"p":[1,2,3],"q":[1,0,0,0],"posed":"9007199254740993",)"
+      R"("registration":{"yaw":-1,"t":[4,5,6],"residual":0.002}})");
+  EXPECT_EQ(measured.posed_ns, 9007199254740993u);
+  EXPECT_EQ(measured.registration->t[2], 6);
+  EXPECT_EQ(measured.registration->residual, 0.002);
 }
 
 TEST(Protocol, UnderstandsNothingElse) {
@@ -93,6 +100,14 @@ TEST(Protocol, UnderstandsNothingElse) {
       R"({"type":"immersive","active":true,"drawn":"99999999999999999999"})",
       R"({"type":"immersive","active":true,"drawn":1e300})",
       R"({"type":"immersive","active":true,"drawn":[]})",
+      R"({"type":"immersive","active":true,"posed":true})",
+      R"({"type":"immersive","active":true,"registration":[]})",
+      R"({"type":"immersive","active":true,"registration":{"yaw":1,"t":[0,0,0]}})",
+      R"({"type":"immersive","active":true,"registration":{"yaw":1,"t":[0,0],"residual":0}})",
+      R"({"type":"immersive","active":true,"registration":{"yaw":11,"t":[0,0,0],"residual":0}})",
+      R"({"type":"immersive","active":true,"registration":{"yaw":1,"t":[0,0,1e9],"residual":0}})",
+      R"({"type":"immersive","active":true,"registration":{"yaw":1,"t":[0,0,0],"residual":-1}})",
+      R"({"type":"immersive","active":true,"registration":{"yaw":1,"t":[0,0,0],"residual":null}})",
       R"({"type":"immersive","active":"yes"})"};
   for (const char* text : wrong) EXPECT_FALSE(ParsePageRequest(text)) << text;
   EXPECT_FALSE(ParsePageRequest(R"({"type":"stop","x":")" + std::string(1100, 'x') + "\"}"));

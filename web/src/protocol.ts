@@ -204,7 +204,8 @@ export type PageMessage =
   | {type: 'hand'; hand: Side; grip: boolean; p: Vec3; q: Quat}
   | {type: 'ping'; page_ms: number}
   | {type: 'latency'; offset_ms: number; received_ms: number; rendered_ms: number}
-  | {type: 'immersive'; active: boolean; drawn?: number; p?: Vec3; q?: Quat};
+  | {type: 'immersive'; active: boolean; drawn?: number; p?: Vec3; q?: Quat;
+     posed?: number; registration?: {yaw: number; t: Vec3; residual: number}};
 
 export const kSubprotocol = 'predictor.v1';
 

@@ -79,6 +79,11 @@ export class Registrar {
     return this.registration !== null && !this.unchecked && !this.recentred;
   }
 
+  // Returns whether the pose of the head in W can be trusted.
+  get valid(): boolean {
+    return this.checked && !this.driftAlarm;
+  }
+
   get waitsForTouch(): boolean {
     return this.touching !== null;
   }
