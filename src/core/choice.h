@@ -1,4 +1,4 @@
-// Decisions about a whole run that a page may make. They require simulated arms.
+// The decisions that a page may make about a whole run. They require simulated arms.
 #pragma once
 
 #include "core/status.h"

@@ -162,7 +162,7 @@ void WalkParts(V& v, ParameterKinds parts, YamlNode* all) {
 ParameterKinds Controllers() noexcept;
 void DeclareControllers(ParameterKinds kinds) noexcept;
 
-// Returns the hazards that an event may bring about, which the simulation declares.
+// Returns the hazards that an event may trigger. The simulation declares these hazards.
 ParameterKinds Hazards() noexcept;
 void DeclareHazards(ParameterKinds kinds) noexcept;
 

@@ -159,7 +159,8 @@ void ControlledScene::AddPayload(JointVector* torque) const noexcept {
   torque->noalias() += J.transpose().lazyProduct(weight);
 }
 
-// Adds the load at E and the friction that the controller compensates although they do not exist.
+// Adds the effect of a load at E and of friction for which the controller compensates although
+// neither of them exists.
 void ControlledScene::AddModelErrors(JointVector* torque) const noexcept {
   const Disturbance& d = disturbance_;
   if (d.payload != 0) {

@@ -77,7 +77,7 @@ function turn(p: Vec3, yaw: number): Vec3 {
   return [c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]];
 }
 
-// Converts from three.js's axes (Y up) of the headset's space to Z up, and back.
+// Converts coordinates from the headset's space (axes of three.js, Y up) to axes with Z up, and back.
 export function zUp(x: number, y: number, z: number): Vec3 {
   return [x, -z, y];
 }
