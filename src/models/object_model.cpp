@@ -111,10 +111,10 @@ ObjectModel MakeObject(const UrdfModel& urdf) {
   Merge(urdf, PlaceLinks(urdf), &object);
   CheckMeshSizes(object);
   if (object.mass <= 0 || object.inertia.determinant() <= 0) {
-    throw InputError(
-        urdf.file.string(),
-        "The object " + Quote(urdf.name) + " has the mass " + FormatNumber(object.mass) +
-            " kg, but it needs a mass and an inertia about all axes. Give the link of the object an <inertial>.");
+    throw InputError(urdf.file.string(), "The object " + Quote(urdf.name) + " has the mass " +
+                                             FormatNumber(object.mass) +
+                                             " kg, but it needs a mass and an inertia about all "
+                                             "axes. Give the link of the object an <inertial>.");
   }
   return object;
 }
@@ -145,7 +145,8 @@ ObjectModel LoadObject(const ObjectSpec& spec, const std::filesystem::path& fold
                        const std::string& key) {
   if (spec.model.empty()) {
     if (spec.primitive) return MakeObject(*spec.primitive, key);
-    throw InputError::At(key, key + " has neither a model nor a primitive. Give a model or a primitive.");
+    throw InputError::At(
+        key, key + " has neither a model nor a primitive. Give a model or a primitive.");
   }
   try {
     const std::filesystem::path from = folder.empty() ? "." : folder;
