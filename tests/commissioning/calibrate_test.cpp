@@ -178,7 +178,7 @@ TEST(MeasureBases, WithoutATipAsksWhetherTheEndEffectorTouches) {
     EXPECT_NE(why.find(answer == 'n' ? "Start again with --tip X Y Z" : "Cancelled"),
               std::string::npos)
         << why;
-    EXPECT_NE(person.All().find("of the left arm: " + bench.scenario.arm(0).end_effector),
+    EXPECT_NE(person.All().find("of the left arm is " + bench.scenario.arm(0).end_effector),
               std::string::npos)
         << person.All();
   }
