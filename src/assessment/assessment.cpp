@@ -247,8 +247,7 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
       std::string("For RULA and REBA, the postures are ") + (work.repeated ? "" : "not ") +
           "repeated four times a minute and " + (work.held ? "" : "not ") +
           "held for more than a minute, and the handles are easy to grip.",
-      "The lifting index assumes that lifts occur as often as in this run, and for at most one "
-      "hour.",
+      "The lifting index assumes lifts at the rate of this run, and for at most one hour.",
       std::string("Strength is the mean for the person's sex") +
           (work.strength == WorkPattern().strength ? "" : ", times operator.body.strength") +
           ", for flexion and extension only."};

@@ -188,14 +188,14 @@ TEST_F(GeneratedUrdf, OfRandomBytes) {
 
 TEST_F(GeneratedUrdf, ThatIsAPipe) {
   ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
-  ExpectRefused(file_, "is not a file");
+  ExpectRefused(file_, "is not a regular file");
 }
 
 TEST_F(GeneratedUrdf, ThatDoesNotExist) { ExpectRefused(file_, "does not exist"); }
 
 TEST_F(GeneratedUrdf, ThatIsAFolder) {
   fs::create_directory(file_);
-  ExpectRefused(file_, "is not a file");
+  ExpectRefused(file_, "is not a regular file");
 }
 
 // A valid file is cut at each point. The parser must refuse it, or read it if only white space is

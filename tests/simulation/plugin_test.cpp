@@ -202,12 +202,12 @@ TEST(Plugin, WhatDoesNotFitIsRefusedWithPlaceAndRemedy) {
   ExpectError(Plugin("no_symbol"), key, "does not export predictor_controller. Define");
   ExpectError(Plugin("no_table"), key, "returns NULL from predictor_controller");
   ExpectError(Plugin("no_compute"), key, "lacks create, destroy or compute");
-  ExpectError(Plugin("version"), key, "has version 3 of the controller interface");
+  ExpectError(Plugin("version"), key, "has version 4 of the controller interface");
   ExpectError(Plugin("long_memory"), key,
               "has a memory of 129 numbers; it must have from 0 to 128");
   ExpectError(Plugin("joint_impedance", "rigidity=5"), key,
               "refuses this scenario. \"rigidity=5\" is not one of its parameters");
-  ExpectError(Plugin("joint_impedance", "5"), "cobot.controller.parameters", "Write key=value");
+  ExpectError(Plugin("joint_impedance", "5"), "cobot.controller.parameters", "Write each parameter as key=value");
   const test::TemporaryFolder folder;
   std::ofstream(folder / "text.so") << "no library";
   Scenario s = BallScene({"plugin", {}});

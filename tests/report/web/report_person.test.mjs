@@ -37,7 +37,7 @@ test('the body is drawn with its loads, and every plot has its intervals', async
     await files.bring(page, id);
     const {lines, bars} = await drawn(page, id, '--c0');
     assert.ok(lines.length > 0, id);
-    const says = (await page.locator(`#${id}`).textContent()).includes('Areas:');
+    const says = (await page.locator(`#${id}`).textContent()).includes('shaded areas');
     assert.equal(bars > 0, says, id);
     if (says) ++intervals;
   }
