@@ -115,7 +115,7 @@ test('the same person answers after the other run; the two are compared', async 
   await agreeWithAll(page, 2);
   await page.click('#send');
   await page.waitForSelector('#problem', {state: 'visible'});
-  assert.match(await page.locator('#problem').textContent(), /what you used/);
+  assert.match(await page.locator('#problem').textContent(), /system that you used/);
   await page.check('#condition input[value=real]');
   const wrong = (pseudonym[0] === 'A' ? 'B' : 'A') + pseudonym.slice(1);
   await page.fill('#pseudonym', wrong.toLowerCase());
