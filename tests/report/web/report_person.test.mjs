@@ -65,7 +65,7 @@ test('a report states which data is missing', async () => {
             '--record', unknown);
   predictor('report', unknown, '-o', page, '--quiet');
   const opened = await files.open(its.browser, page);
-  assert.match(await opened.locator('#person .warning').innerText(), /Not evaluable.*where the operator stands is not known/s);
+  assert.match(await opened.locator('#person .warning').innerText(), /cannot be evaluated.*where the operator stands is not known/s);
   assert.equal(await opened.locator('#person figure').count(), 0);
   await opened.close();
 });
