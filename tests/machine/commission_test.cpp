@@ -78,7 +78,8 @@ TEST_F(Commissioning, TheHandleIsFoundInPosesToWhichAPersonGuides) {
                              {0, -1.2, 0}, {0.8, 1, 0}, {-0.7, 0.9, 1}, {1.9, -0.4, -1}};
   Terminal terminal = Predictor({"calibrate", "handle", "--arm", "left", "--json", ResultFile()});
   for (int pose = 1; pose <= 8; ++pose) {
-    ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + ": press Enter")) << terminal.Screen();
+    ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + ": press Enter"))
+        << terminal.Screen();
     JointVector q = start;
     for (int j = 0; j < 3; ++j) q[3 + j] += tilts[pose - 1][j];
     Lead("left", q);
@@ -127,7 +128,8 @@ TEST_F(Commissioning, PosesThatAreTooAlikeAreRefusedAndNothingIsWritten) {
   Terminal terminal = Predictor({"calibrate", "handle", "--arm", "left"});
   JointVector q = Joints("left");
   for (int pose = 1; pose <= 6; ++pose) {
-    ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + ": press Enter")) << terminal.Screen();
+    ASSERT_TRUE(terminal.Says("Pose " + std::to_string(pose) + ": press Enter"))
+        << terminal.Screen();
     q[5] += 0.3;  // a rotation about the vertical keeps the direction of gravity
     Lead("left", q);
     terminal.Type("\n");
@@ -135,7 +137,7 @@ TEST_F(Commissioning, PosesThatAreTooAlikeAreRefusedAndNothingIsWritten) {
   }
   terminal.Type("d");
   EXPECT_TRUE(terminal.Says("too alike")) << terminal.Screen();
-  ASSERT_TRUE(terminal.Says("Pose 7: Enter")) << terminal.Screen();
+  ASSERT_TRUE(terminal.Says("Pose 7: press Enter")) << terminal.Screen();
   terminal.Type("q");
   EXPECT_EQ(terminal.Wait(), kBadInput);
   EXPECT_NE(terminal.Screen().find("Cancelled. The machine file was not changed any further."),

@@ -207,7 +207,8 @@ TEST(Plugin, WhatDoesNotFitIsRefusedWithPlaceAndRemedy) {
               "has a memory of 129 numbers; it must have from 0 to 128");
   ExpectError(Plugin("joint_impedance", "rigidity=5"), key,
               "refuses this scenario. \"rigidity=5\" is not one of its parameters");
-  ExpectError(Plugin("joint_impedance", "5"), "cobot.controller.parameters", "Write each parameter as key=value");
+  ExpectError(Plugin("joint_impedance", "5"), "cobot.controller.parameters",
+              "Write each parameter as key=value");
   const test::TemporaryFolder folder;
   std::ofstream(folder / "text.so") << "no library";
   Scenario s = BallScene({"plugin", {}});
