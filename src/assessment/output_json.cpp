@@ -109,7 +109,7 @@ Json ToJson(const MeasuredPart& part) {
           {"origin", Name(Origin::kMeasured)},
           {"source", part.source},
           {"share_of_time", part.share},
-          {"misfit_m", part.misfit ? Json(*part.misfit) : Json(nullptr)}};
+          {"misfit_m", OptionalNumber(part.misfit)}};
 }
 
 Json ToJson(const MeasuredSignal& signal) {
@@ -149,11 +149,10 @@ Json ListOf(const std::vector<T>& list) {
 Json ToJson(const Comparison& comparison) {
   Json json = {{"recording", comparison.b}, {"warning", comparison.warning}};
   for (const Difference& d : comparison.differences)
-    json["quantities"][d.kind->path] = {
-        {"tail", NumberOrNull(d.a)},
-        {"tail_of_other", NumberOrNull(d.b)},
-        {"difference_interval_90", ToJson(d.interval)},
-        {"share_better", d.share_better ? Json(*d.share_better) : Json(nullptr)}};
+    json["quantities"][d.kind->path] = {{"tail", NumberOrNull(d.a)},
+                                        {"tail_of_other", NumberOrNull(d.b)},
+                                        {"difference_interval_90", ToJson(d.interval)},
+                                        {"share_better", OptionalNumber(d.share_better)}};
   return json;
 }
 

@@ -7,7 +7,6 @@ namespace predictor {
 namespace {
 
 constexpr double kQuaternionSlip = 1e-6;  // tolerance of the squared norm
-constexpr double kLargestYaw = 10;        // [rad]
 
 // The comparison is false for NaN.
 bool Within(double x, double limit) { return std::abs(x) <= limit; }
@@ -20,7 +19,7 @@ bool IsPlausible(const HeadRecord& head) {
   for (const double x : head.q) norm += x * x;
   const HeadRegistration& r = head.registration;
   return std::ranges::all_of(head.p, near) && std::ranges::all_of(r.t, near) &&
-         Within(norm - 1, kQuaternionSlip) && Within(r.yaw, kLargestYaw) &&
+         Within(norm - 1, kQuaternionSlip) && Within(r.yaw, kLargestHeadYaw) &&
          Within(r.residual, kWorstHeadResidual) && Within(head.delay, kLongestHeadDelay);
 }
 

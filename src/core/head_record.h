@@ -25,6 +25,7 @@ struct HeadRecord {
 };
 
 inline constexpr double kFarthestHead = 100;       // from the origin of W, on each axis [m]
+inline constexpr double kLargestHeadYaw = 10;      // of a registration [rad]
 inline constexpr double kWorstHeadResidual = 1;    // of a registration [m]
 inline constexpr double kLongestHeadDelay = 0.25;  // [s]
 

@@ -82,13 +82,9 @@ Encoder::Encoder(const RecordingHeader& header, std::vector<JsonChannel> scene)
     : dt_(header.dt),
       start_ns_(static_cast<std::uint64_t>(header.start_unix_ns)),
       scene_(std::move(scene)),
-      now_ns_(start_ns_) {
-  for (std::size_t i = 0; i < scene_.size(); ++i) {
-    const auto channel = static_cast<std::uint16_t>(kFirstJsonChannel + i);
-    if (scene_[i].topic == kPersonTopic) person_channel_ = channel;
-    if (scene_[i].topic == kHeadTopic) head_channel_ = channel;
-  }
-}
+      person_channel_(ChannelOf(scene_, kPersonTopic)),
+      head_channel_(ChannelOf(scene_, kHeadTopic)),
+      now_ns_(start_ns_) {}
 
 // Uses the clock time if the record contains one, and otherwise (in virtual time) the number of the
 // tick. The time never decreases.

@@ -59,7 +59,7 @@ class Encoder {
   double dt_;
   std::uint64_t start_ns_;
   std::vector<JsonChannel> scene_;
-  std::uint16_t person_channel_ = 0, head_channel_ = 0;  // 0: none
+  std::uint16_t person_channel_, head_channel_;  // 0: none
   RunEvents run_events_;
   ChunkBuilder chunk_;
   std::uint64_t first_wall_ns_ = 0;

@@ -121,6 +121,12 @@ void AddTopics(const std::vector<JsonChannel>& scene, PreambleBuilder* preamble)
 
 }  // namespace
 
+std::uint16_t ChannelOf(const std::vector<JsonChannel>& scene, std::string_view topic) {
+  for (std::size_t i = 0; i < scene.size(); ++i)
+    if (scene[i].topic == topic) return static_cast<std::uint16_t>(kFirstJsonChannel + i);
+  return 0;
+}
+
 const std::string& Beginning() {
   static const std::string kBeginning =
       std::string(mcap::kMagic) +

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/tick_fields.h"
@@ -22,6 +23,8 @@ constexpr std::uint16_t ChannelOf(TickGroup group) {
 inline constexpr std::uint16_t kSnapshotChannel = kTickGroupCount + 1;
 inline constexpr std::uint16_t kEventChannel = kTickGroupCount + 2;
 inline constexpr std::uint16_t kFirstJsonChannel = kTickGroupCount + 3;
+// Returns the channel ID of a topic of the scene, or 0 if the recording has no such topic.
+std::uint16_t ChannelOf(const std::vector<JsonChannel>& scene, std::string_view topic);
 
 // The names of the metadata and attachments, and of the parts of the preamble that contain these
 // metadata and attachments.

@@ -383,11 +383,8 @@ std::vector<RecordingEvent> RecordingReader::gaps() {
 
 std::vector<RecordedHead> RecordingReader::ReadHeads() const {
   const Impl& r = *impl_;
-  std::uint16_t channel = recording::kFirstJsonChannel;
-  for (const JsonChannel& json : r.opening.scene) {
-    if (json.topic == kHeadTopic) break;
-    ++channel;
-  }
+  const std::uint16_t channel = recording::ChannelOf(r.opening.scene, kHeadTopic);
+  if (channel == 0) return {};  // also spares a truncated recording from being read completely
   std::vector<RecordedHead> heads;
   for (std::size_t i = 0; i < r.chunks.size(); ++i) {
     if (r.complete && !r.chunks[i].indexes.contains(channel)) continue;

@@ -54,12 +54,12 @@ std::string DecompressSome(const InputFile& file, std::uint64_t offset, std::uin
 class Recovery {
  public:
   Recovery(const InputFile& in, const Opening& opening, bool person, McapFile* out)
-      : in_(in), channels_(kEventChannel + opening.scene.size()), person_(person), out_(out) {
-    for (std::size_t i = 0; i < opening.scene.size(); ++i) {
-      if (opening.scene[i].topic == kPersonTopic) states_ = kEventChannel + 1 + i;
-      if (opening.scene[i].topic == kHeadTopic) heads_ = kEventChannel + 1 + i;
-    }
-  }
+      : in_(in),
+        channels_(kEventChannel + opening.scene.size()),
+        states_(ChannelOf(opening.scene, kPersonTopic)),
+        heads_(ChannelOf(opening.scene, kHeadTopic)),
+        person_(person),
+        out_(out) {}
 
   RecoverReport Run(std::uint64_t at) {
     MarkFinder finder(in_, std::string(kMark), kMarkAt, mcap::Op::kChunk);
@@ -194,8 +194,8 @@ class Recovery {
 
   const InputFile& in_;
   std::size_t channels_;
-  std::size_t states_ = 0;  // channel of the person's states; 0: none
-  std::size_t heads_ = 0;   // channel of the measured heads; 0: none
+  std::uint16_t states_;  // channel of the person's states; 0: none
+  std::uint16_t heads_;   // channel of the measured heads; 0: none
   bool person_;
   McapFile* out_;
   RecoverReport report_;

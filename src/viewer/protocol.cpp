@@ -17,7 +17,6 @@ constexpr double kLargestTime = 1e15;    // [ms]
 constexpr double kMaxReplaySteps = 1e6;  // maximum number of steps in one request to a replay
 constexpr double kMaxReplaySpeed = 64;   // maximum speed of a replay
 constexpr double kLargestClock = 9e18;   // [ns]
-constexpr double kLargestYaw = 10;       // [rad]
 
 // Reads the members of a message. `good` becomes false when a member is missing or invalid.
 class Reader {
@@ -165,7 +164,7 @@ HandRequest ReadHand(Reader* r) {
 
 HeadRegistration ReadRegistration(const Json& object, Reader* message) {
   Reader r(object);
-  const HeadRegistration registration{r.Number("yaw", kLargestYaw),
+  const HeadRegistration registration{r.Number("yaw", kLargestHeadYaw),
                                       r.Numbers<3>("t", kFarthestHead),
                                       r.Number("residual", kWorstHeadResidual)};
   message->Require(r.good() && registration.residual >= 0);
