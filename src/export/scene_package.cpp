@@ -198,8 +198,8 @@ Check it with `ign sdf -k scene.sdf`, and open it with Gazebo (Fortress or newer
 scene.sdf` or `gz sim scene.sdf`. No controller is part of it, so the cobot falls.
 
 The attachment is a ball joint if it is spherical. Gazebo Fortress ignores the damping of ball
-joints; Ionic knows it. Frames stand for links without mass, and only the object, the floor, the
-table and the fixtures collide. The meshes come from the models of the robot and the object; their licences apply.
+joints; Ionic knows it. Frames stand for links without mass. Only the object, the movable objects
+(movable_0, movable_1, …), the floor, the table and the fixtures collide. The meshes come from the models of the robot and the object; their licences apply.
 )";
 
 constexpr const char* kBallJoint =
@@ -232,6 +232,8 @@ std::string Readme(const Scenario& scenario, const SceneTree& tree,
       << " kg m^2, because some readers refuse zero.\n"
          "Gravity of the scenario: "
       << FormatNumber(scenario.environment.gravity) << " m/s^2.\n";
+  if (!tree.movables.empty())
+    out << "The movable objects are omitted, because a URDF is one tree. An SDF contains them.\n";
   if (!left_out.empty()) out << "\nNot found and therefore omitted: " << Join(left_out) << ".\n";
   return out.str();
 }

@@ -50,12 +50,14 @@ class SdfWriter {
     AddParts(model);
     for (const SceneLink& link : tree_.links)
       if (IsSurroundings(link)) AddStaticModel(world, link);
+    for (const SceneBody& body : tree_.movables) AddFreeModel(world, body);
     tinyxml2::XMLPrinter printer;
     doc.Print(&printer);
     return printer.CStr();
   }
 
  private:
+  // Only these bodies have a friction of their own.
   static bool IsSurroundings(const SceneLink& link) { return link.friction.has_value(); }
   // In the tree, a ball joint consists of three axes with two links between them.
   bool IsBall() const { return tree_.attachment_joints.size() == 3; }
@@ -186,7 +188,7 @@ class SdfWriter {
 
   void AddShapes(XmlElement* element, const SceneLink& link) {
     AddVisuals(element, link, "");
-    // Only the object, the floor and the table have collision shapes.
+    // Only the object, the movable objects and the surroundings have collision shapes.
     if (link.name != "object" && !IsSurroundings(link)) return;
     int count = 0;
     for (const SceneShape& shape : link.collisions) {
@@ -252,6 +254,16 @@ class SdfWriter {
     XmlElement* element = Add(model, "link");
     Set(element, "name", "link");
     AddShapes(element, link);
+  }
+
+  void AddFreeModel(XmlElement* world, const SceneBody& body) {
+    XmlElement* model = Add(world, "model");
+    Set(model, "name", body.link.name);
+    AddPose(model, body.X_WL);
+    XmlElement* element = Add(model, "link");
+    Set(element, "name", "link");
+    AddInertia(element, body.link);
+    AddShapes(element, body.link);
   }
 
   const SceneTree& tree_;

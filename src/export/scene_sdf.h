@@ -10,7 +10,8 @@
 namespace predictor::scene_export {
 
 // The result is a world with steps of 1 ms. The world contains the model "predictor_scene", which
-// is the cobot with the object, and the models "floor" and "table". A link with mass becomes a
+// is the cobot with the object, the models "floor", "table" and "fixture_…", which never move, and
+// the models "movable_…". A link with mass becomes a
 // <link> at the pose that it has with all joints at 0. A link without mass becomes a <frame>,
 // unless a joint moves it. A spherical attachment is a ball joint. The limits come from the
 // scenario's simulation.joint_limits and velocity_limits. Meshes are added to `meshes`. Throws the

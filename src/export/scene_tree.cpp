@@ -163,6 +163,7 @@ class Composer {
     AddObject(AddAttachment());
     AddHandles();
     AddSurroundings();
+    AddMovables();
     return std::move(tree_);
   }
 
@@ -306,26 +307,34 @@ class Composer {
 
   void AddObject(const std::string& parent) {
     const ObjectSpec& spec = scenario_.object;
-    const ObjectModel model = LoadObject(spec, scenario_.folder());
+    Join("object_joint", parent, ObjectLink("object", spec, "object"),
+         spec.attachment.on_object.ToPose().Inverse());
+  }
+
+  // `key` is the object's place in the scenario.
+  SceneLink ObjectLink(const std::string& name, const ObjectSpec& spec,
+                       const std::string& key) const {
+    const ObjectModel model = LoadObject(spec, scenario_.folder(), key);
     SceneLink link;
-    link.name = "object";
+    link.name = name;
     link.mass = model.mass;
     link.com = model.com;
     link.inertia = model.inertia;
     link.collisions = Uncolored(model.collisions);
-    if (spec.model.empty()) {
-      for (const ModelShape& shape : model.visuals) link.visuals.push_back({shape, true, {}});
-    } else {
-      link.visuals = ObjectVisuals(model);
-    }
-    Join("object_joint", parent, link, spec.attachment.on_object.ToPose().Inverse());
+    link.visuals = ObjectVisuals(model, spec.model);
+    return link;
   }
 
   // Returns the shapes of the merged links, in order and with the materials from the object's file.
-  std::vector<SceneShape> ObjectVisuals(const ObjectModel& model) const {
-    const UrdfModel urdf = ReadUrdf(ResolveModelPath(scenario_.object.model, scenario_.folder()),
-                                    {}, scenario_.folder());
+  // If `file` is empty, the object is a primitive.
+  std::vector<SceneShape> ObjectVisuals(const ObjectModel& model, const std::string& file) const {
     std::vector<SceneShape> merged;
+    if (file.empty()) {
+      for (const ModelShape& shape : model.visuals) merged.push_back({shape, true, {}});
+      return merged;
+    }
+    const UrdfModel urdf =
+        ReadUrdf(ResolveModelPath(file, scenario_.folder()), {}, scenario_.folder());
     for (const std::vector<SceneShape>& of_link : VisualsOf(urdf, scenario_.folder()))
       for (SceneShape shape : of_link) {
         shape.shape.X_LG = model.visuals[merged.size()].X_LG;
@@ -379,6 +388,21 @@ class Composer {
     for (std::size_t i = 0; i < environment.fixtures.size(); ++i)
       if (EventsOfFixture(scenario_, i) == 0)
         AddFixture(kFixturePrefix + std::to_string(i), environment.fixtures[i]);
+  }
+
+  void AddMovables() {
+    const EnvironmentSpec& environment = scenario_.environment;
+    for (std::size_t i = 0; i < environment.objects.size(); ++i) {
+      const MovableSpec& movable = environment.objects[i];
+      const std::string index = std::to_string(i);
+      SceneLink link = ObjectLink("movable_" + index, {movable.model, movable.primitive, {}},
+                                  "environment.objects." + index);
+      link.friction = movable.friction.value_or(environment.friction);
+      if (movable.model.empty())
+        for (SceneShape& shape : link.visuals)
+          shape.shape.color = {movable.color.x(), movable.color.y(), movable.color.z(), 1};
+      tree_.movables.push_back({link, movable.X_WM()});
+    }
   }
 
   const Scenario& scenario_;

@@ -1,5 +1,5 @@
-// Represents a scenario's virtual scene as one tree of links: cobot, attachment, object, handles,
-// floor and table.
+// Represents a scenario's virtual scene as one tree of links (cobot, attachment, object, handles,
+// floor, table and fixtures) and as free bodies, which are the movable objects.
 #pragma once
 
 #include <array>
@@ -52,6 +52,12 @@ struct SceneJoint {
   double friction = 0;              // Coulomb [N·m] or [N]
 };
 
+// A body that nothing holds.
+struct SceneBody {
+  SceneLink link;  // its friction is that of its contacts
+  Pose X_WL;       // at the start
+};
+
 // Parents come before children, and the first link is the root, "world".
 struct SceneTree {
   std::vector<SceneLink> links;
@@ -59,6 +65,7 @@ struct SceneTree {
   std::vector<std::string> cobot_joints;       // moving joints, in RobotModel's order
   std::vector<std::string> attachment_joints;  // moving joints, from the cobot to the object
   std::string end_effector;                    // link
+  std::vector<SceneBody> movables;             // named movable_0, movable_1, …
 };
 
 // The cobot's links and joints keep their names. Only a link with the name of one of the scene's

@@ -148,6 +148,35 @@ TEST_P(SdfScene, HasTheFixturesAsBodiesThatNeverMove) {
   }
 }
 
+TEST_P(SdfScene, HasTheMovableObjectsAsFreeModels) {
+  std::map<std::string, const XMLElement*> bodies;
+  for (const XMLElement* e = world->FirstChildElement("model"); e;
+       e = e->NextSiblingElement("model"))
+    if (std::string(e->Attribute("name")).starts_with("movable_")) bodies[e->Attribute("name")] = e;
+  const std::vector<MovableSpec>& objects = scenario.environment.objects;
+  ASSERT_EQ(bodies.size(), objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const XMLElement* body = bodies.at("movable_" + std::to_string(i));
+    EXPECT_EQ(body->FirstChildElement("static"), nullptr);
+    EXPECT_LT((PoseIn(*body).p - objects[i].xyz).norm(), 1e-12);
+    EXPECT_LT(RotationError(PoseIn(*body).q, objects[i].X_WM().q).norm(), 1e-7);
+    const XMLElement* link = body->FirstChildElement("link");
+    const ObjectModel object =
+        LoadObject({objects[i].model, objects[i].primitive, {}}, scenario.folder());
+    EXPECT_NEAR(
+        std::stod(link->FirstChildElement("inertial")->FirstChildElement("mass")->GetText()),
+        object.mass, 1e-12);
+    const XMLElement* collision = link->FirstChildElement("collision");
+    ASSERT_NE(collision, nullptr);
+    EXPECT_DOUBLE_EQ(collision->FirstChildElement("surface")
+                         ->FirstChildElement("friction")
+                         ->FirstChildElement("ode")
+                         ->FirstChildElement("mu")
+                         ->DoubleText(),
+                     objects[i].friction.value_or(scenario.environment.friction));
+  }
+}
+
 TEST_P(SdfScene, IsValidForGazebosChecker) {
   if (std::system("ign sdf --versions >/dev/null 2>&1") != 0 && !fs::exists("/usr/bin/ign"))
     GTEST_SKIP() << "ign is missing: apt-get install libsdformat-dev ignition-tools";
@@ -172,8 +201,8 @@ std::string SceneNameOf(const testing::TestParamInfo<const char*>& scene) { retu
 INSTANTIATE_TEST_SUITE_P(Scenes, SdfScene,
                          testing::Values("box_9kg", "bar_circle", "dual_ur5", "linear_axis",
                                          "mobile_base", "hybrid_force_position", "slide_on_table",
-                                         "drill", "odd_spherical", "odd_fixed", "odd_revolute",
-                                         "odd_prismatic"),
+                                         "drill", "push_boxes", "odd_spherical", "odd_fixed",
+                                         "odd_revolute", "odd_prismatic"),
                          SceneNameOf);
 
 }  // namespace
