@@ -105,6 +105,7 @@ export class App {
           this.plots.element, this.results.element),
         this.pairing.element);
     this.stage = new Stage(scene, (words) => this.overlay.warn(words));
+    this.stage.camera.covered = () => this.personCard.covered(scene);
     this.invitation = new Invitation(this.connection, this.hands, this.stage);
     scene.append(this.invitation.gauges, this.personCard.element, this.overlay.hud, this.invitation.element);
     this.mouse = new MouseHand(this.stage, this.hands, () => this.mayGrip);
@@ -325,6 +326,9 @@ export class App {
     }
     this.reason = reason;
     this.watch.reset();
+    // On a slow computer, the last states of a run arrive after the last drawn one.
+    const {latest} = this.player;
+    if ((phase === 'ended' || phase === 'results') && latest && this.spec) this.overlay.showTime(latest, this.spec);
     if (!['open', 'results', 'ended'].includes(phase)) {
       this.player.reset();
       this.person.reset();

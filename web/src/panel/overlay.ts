@@ -115,8 +115,7 @@ export class Overlay {
     setText(this.instruction, text);
     this.instruction.hidden = text === '';
     this.recording.hidden = !state.recording;
-    setText(this.time, spec.duration > 0 ? `${state.runTime.toFixed(1)} / ${spec.duration.toFixed(0)} s` :
-                                           `${state.runTime.toFixed(1)} s`);
+    this.showTime(state, spec);
     this.guidance.hidden = !Number.isFinite(guidanceError) || score !== null;
     setText(this.guidance, `Off the path: ${(1000 * guidanceError).toFixed(0)} mm`);
     this.score.hidden = score === null;
@@ -129,7 +128,12 @@ export class Overlay {
     setText(this.hazards, hazards);
     if (state.attachment > 0) this.grip.hidden = false;
     setText(this.grip, gripWords(state));
-    const part = Math.min(state.runTime / lengthOf(spec), 1);
+  }
+
+  showTime({runTime}: State, spec: SceneSpec) {
+    setText(this.time, spec.duration > 0 ? `${runTime.toFixed(1)} / ${spec.duration.toFixed(0)} s` :
+                                           `${runTime.toFixed(1)} s`);
+    const part = Math.min(runTime / lengthOf(spec), 1);
     this.progressBar.style.width = `${100 * part}%`;
     setAttribute(this.progress, 'aria-valuenow', (100 * part).toFixed(0));
   }

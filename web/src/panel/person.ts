@@ -33,7 +33,7 @@ export const kGaugeLooks: Record<GaugeName, GaugeLook> = {
   right_hand_force: force('Right hand'),
   lower_back_compression: {words: 'Back, compression', unit: 'N', factor: 1, decimals: 0, low: 0, high: 4200},
   lower_back_shear: {words: 'Back, shear', unit: 'N', factor: 1, decimals: 0, low: 0, high: 850},
-  lower_back_moment: {words: 'Back, moment', unit: 'N m', factor: 1, decimals: 0, low: 0, high: 200},
+  lower_back_moment: {words: 'Back, moment', unit: 'N·m', factor: 1, decimals: 0, low: 0, high: 200},
   left_shoulder_use: share('Left shoulder'),
   right_shoulder_use: share('Right shoulder'),
   left_elbow_use: share('Left elbow'),
@@ -169,6 +169,13 @@ export class PersonCard {
     this.element = h(
         'div', {class: 'person', id: 'person', hidden: true}, this.warnings,
         h('details', {open}, h('summary', {}, h('b', {}, 'Person'), this.short), this.why, this.operator, this.body));
+  }
+
+  // Returns the share of the scene's width that the open card covers, from the left.
+  covered(scene: HTMLElement): number {
+    if (!this.element.querySelector('details')!.open) return 0;
+    return this.element.offsetWidth === 0 ? 0 :
+      (this.element.offsetLeft + this.element.offsetWidth) / Math.max(scene.clientWidth, 1);
   }
 
   build(spec: SceneSpec) {

@@ -179,7 +179,8 @@ export class Plot {
       },
       scales: {x: {time: false}, y: {range: (u) => [0, this.upperEnd(u)]}},
       axes: [
-        {...axis, size: 20, gap: 2, splits: (u, _i, min, max) => this.ticks(u, min, max),
+        // The gap keeps the first time clear of the zero of the other axis.
+        {...axis, size: 23, gap: 6, splits: (u, _i, min, max) => this.ticks(u, min, max),
          values: (u, ticks) => ticks.map((t) => this.agoText(u, t))},
         {...axis, size: 38, gap: 3, space: 26},
       ],

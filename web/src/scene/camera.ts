@@ -4,6 +4,7 @@ import {Object3D, PerspectiveCamera, Vector3} from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {Pose, SceneSpec, Vec3} from '../protocol';
 import {matrix} from './frames';
+import {frame, Place, pointsToShow} from './framing';
 
 export type View = 'free' | 'front' | 'side' | 'top' | 'operator' | 'headset';
 export const kViews: readonly View[] = ['free', 'front', 'side', 'top', 'operator'];
@@ -11,20 +12,18 @@ export const kViews: readonly View[] = ['free', 'front', 'side', 'top', 'operato
 const kMoveMs = 450;
 const kFieldOfView = 42;          // vertical [°]
 const kHeadsetFieldOfView = 75;   // [°]
-
-interface Place {
-  eye: Vector3;
-  target: Vector3;
-}
+const kInstructionHeight = 60;    // of the scene's top edge [px]
+const kNearest = 1.6, kFarthest = 3.8;  // distance of a view that contains the body [m]
 
 export class CameraRig {
   readonly camera = new PerspectiveCamera(kFieldOfView, 1, 0.02, 40);
   readonly controls: OrbitControls;
   view: View = 'free';
+  covered: () => number = () => 0;  // share of the picture's width that a card at its left covers
   private move: {from: Place; to: Place; startMs: number} | null = null;
   private headset: Pose | null = null;
 
-  constructor(element: HTMLElement, private readonly world: Object3D) {
+  constructor(private readonly element: HTMLElement, private readonly world: Object3D) {
     this.controls = new OrbitControls(this.camera, element);
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.12;
@@ -111,20 +110,20 @@ export class CameraRig {
 
   private placeOf(view: View, spec: SceneSpec, object: Vec3): Place {
     const base = spec.cobot.base.p;
-    // The views contain the body, unless a pointer needs large handles.
-    const judged = spec.person?.judged === true && spec.operator !== 'browser';
-    const middle: Vec3 = [
-      (base[0] + object[0]) / 2 + (judged ? 0.2 : 0.08), (base[1] + object[1]) / 2, base[2] + (judged ? 0.2 : 0.42),
-    ];
+    const middle: Vec3 = [(base[0] + object[0]) / 2 + 0.08, (base[1] + object[1]) / 2, base[2] + 0.42];
     const at = (eye: Vec3, target: Vec3): Place => ({
       eye: this.toThree(eye),
       target: this.toThree(target),
     });
     const from = (x: number, y: number, z: number) =>
       at([middle[0] + x, middle[1] + y, middle[2] + z], middle);
+    // The views contain the body, unless a pointer needs large handles.
+    const judged = spec.person?.judged === true && spec.operator !== 'browser';
+    const around = (x: number, y: number, z: number) =>
+      this.placeAround(pointsToShow(spec, object), middle, [x, y, z]);
     switch (view) {
-      case 'front': return from(1.8, 0, 0.2);
-      case 'side': return judged ? from(0.2, -2.6, 0.25) : from(0, -1.8, 0.15);
+      case 'front': return judged ? around(1.8, 0, 0.6) : from(1.8, 0, 0.2);
+      case 'side': return judged ? around(0.2, -2.6, 0.25) : from(0, -1.8, 0.15);
       case 'top': return from(-0.001, 0, 1.9);
       case 'operator': {
         const {eye, forward} = spec.viewpoint;
@@ -132,8 +131,22 @@ export class CameraRig {
           object[0] + 0.1 * forward[0], object[1] + 0.1 * forward[1], object[2] + 0.05,
         ]);
       }
-      default: return judged ? from(0.7, -2.6, 0.7) : from(0.97, -1.04, 0.54);
+      default: return judged ? around(0.7, -2.6, 0.7) : from(0.97, -1.04, 0.54);
     }
+  }
+
+  // Returns a place in the given direction from the middle, from which the camera sees all points
+  // beside the card and below the instruction.
+  private placeAround(points: Vec3[], middle: Vec3, direction: Vec3): Place {
+    const toEye = this.toThree(direction).normalize();
+    const tangent = Math.tan((kFieldOfView * Math.PI) / 360);
+    const covered = {
+      left: Math.min(this.covered(), 0.4),
+      top: Math.min(kInstructionHeight / Math.max(this.element.clientHeight, 1), 0.3),
+    };
+    const {eye, target, distance} = frame(
+        points.map((p) => this.toThree(p)), this.toThree(middle), toEye, tangent, this.camera.aspect, covered);
+    return {eye: eye.addScaledVector(toEye, Math.min(Math.max(distance, kNearest), kFarthest) - distance), target};
   }
 
   // While no one uses a headset, the page's world has a fixed pose.
