@@ -259,10 +259,13 @@ export function gripWords(state: State): string {
   return words === undefined ? '' : `The gripper ${words}.`;
 }
 
-// While an event acts, describes the effect of the event that began last. Also describes whether
-// the virtual cobot has stopped itself.
+// While events act, describes the effect of the one that began last. If that one is already over,
+// describes another one. Also describes whether the virtual cobot has stopped itself.
 export function hazardWords(state: State, spec: SceneSpec): string {
-  const meaning = state.events === 0 ? undefined : spec.hazards?.[state.latestEvent - 1];
+  const acts = (i: number) => ((state.events >> i) & 1) === 1;
+  const latest = state.latestEvent - 1;
+  const acting = latest >= 0 && acts(latest) ? latest : 31 - Math.clz32(state.events);  // the last in the list
+  const meaning = spec.hazards?.[acting];
   const words = meaning === undefined ? [] : [`Event: ${meaning}.`];
   if (state.cobotStop > 0) words.push('The cobot has stopped itself.');
   return words.join(' ');

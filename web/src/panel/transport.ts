@@ -63,7 +63,7 @@ export class Transport {
     this.follow(place, nowMs);
     if (nowMs - this.touchedMs > kHandsOffMs) this.slider.value = String(place);
     setText(this.time, `${place.toFixed(3)} / ${this.replay.duration.toFixed(1)} s · tick ${state.tick}`);
-    setText(this.playButton, this.playing ? '⏸ Pause' : '▶ Play');
+    setText(this.playButton, this.playing ? '❚❚ Pause' : '▶ Play');
     setAttribute(this.slider, 'aria-valuetext', `${place.toFixed(2)} s`);
     const may = this.connection.hasControl;
     for (const control of [this.playButton, this.slider, this.speed, ...this.buttons]) {
