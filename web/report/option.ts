@@ -136,6 +136,11 @@ function frameOf({plot, width}: View): {left: number; width: number} {
   return {left, width: width - left - kRight};
 }
 
+// Returns the position of x as a share of the axis, from 0 to 1.
+function shareOf(x: number, {low, high}: Range, log: boolean): number {
+  return log ? Math.log(x / low) / Math.log(high / low) : (x - low) / (high - low);
+}
+
 // Distributes the notes to rows above the first panel, so that no two overlap in a row.
 function placeNotes(view: View, {low, high}: Range): Note[] {
   const {plot} = view;
@@ -143,7 +148,7 @@ function placeNotes(view: View, {low, high}: Range): Note[] {
   const ends: number[] = [];
   return plot.notes.filter(({x}) => x >= low && x <= high).map(({x, label}) => {
     const width = widthOf(label) + 8;
-    const at = frame.left + (x - low) / (high - low) * frame.width;
+    const at = frame.left + shareOf(x, {low, high}, plot.x.log) * frame.width;
     const left = Math.max(frame.left, Math.min(at + 3, frame.left + frame.width - width));
     let row = ends.findIndex((end) => end <= left);
     if (row < 0) row = ends.push(0) - 1;
@@ -310,7 +315,7 @@ function marksOption(layout: Layout, i: number, color: Colors) {
   const spans = plot.spans.map(({from, to, label}) => ({
     label, from: Math.max(from, x.low), to: Math.min(to, x.high)})).filter(({from, to}) => from < to);
   const fits = (from: number, to: number, label: string) =>
-      (to - from) / (x.high - x.low) * panel.grid.width > widthOf(label) + 6;
+      (shareOf(to, x, plot.x.log) - shareOf(from, x, plot.x.log)) * panel.grid.width > widthOf(label) + 6;
   return {
     id: `marks-${i}`, type: 'line', data: [], xAxisIndex: i, yAxisIndex: i, silent: true, animation: false,
     markLine: {symbol: 'none', silent: true, animation: false, data: [...limits, ...notes]},

@@ -105,6 +105,14 @@ test('no line crosses the text of a limit, and no texts overlap', () => {
   }
 });
 
+test('a note is beside its line on a logarithmic axis', () => {
+  const plot = {...simple(), notes: [{x: 5, label: 'here'}], x: axis('Mass [kg]', {log: true, low: 1, high: 100})};
+  const svg = svgOf(plot, {x: [1, 5, 20, 100], y: [0, 10, 15, 20]});
+  const [note] = placeOf(svg, 'here');
+  const bottom = placeOf(svg, '5').sort((a, b) => b.y - a.y)[0];  // the tick below the plot
+  assert.ok(note.x >= bottom.x && note.x < bottom.x + 6, `${note.x}, tick at ${bottom.x}`);
+});
+
 test('notes that are close to each other are drawn in several rows', () => {
   const svg = svgOf(simple());
   assert.ok(Math.abs(placeOf(svg, 'one')[0].y - placeOf(svg, 'another beside it')[0].y) >= 14);
