@@ -56,6 +56,21 @@ TEST(ContactCollector, ARigidFixtureHasNoModelledForce) {
   EXPECT_NEAR(collector.facts()[0].depth, 0.001, 1e-6);
 }
 
+// Movable objects that rest on a fixture are not contact of the carried object.
+TEST(ContactCollector, IgnoresMovableObjectsOnAFixture) {
+  const Scenario s = Load("push_boxes.yaml");
+  const double table = s.environment.fixtures[0].xyz.z() + s.environment.fixtures[0].size.z() / 2;
+  ContactCollector collector(s);
+  TickRecord record = Pressed(-0.01, 0);
+  record.object.pose.p = {0.465, 0, table + kHalfHeight + 0.01};
+  collector.Add(record);
+  EXPECT_EQ(collector.facts()[0].time, 0);
+  record.object.pose.p[2] = table + kHalfHeight - 0.001;
+  collector.Add(record);
+  EXPECT_NEAR(collector.facts()[0].time, 0.001, 1e-12);
+  EXPECT_NEAR(collector.facts()[0].depth, 0.001, 1e-6);
+}
+
 // An obstacle counts only after it has appeared, not while it waits because it overlaps the object.
 TEST(ContactCollector, AnObstacleIsThereWhenItHasAppeared) {
   const Scenario s = Load(

@@ -55,7 +55,9 @@ void ContactCollector::Place(const TickRecord& record) {
 
 void ContactCollector::AddPoint(const Contact& contact, const FrameMotion& O,
                                 std::vector<Touch>* touches) const {
-  if (contact.fixture < 0 || !contact.link.empty() || contact.depth <= 0) return;
+  // The body is the carried object, not the cobot or a movable object.
+  if (contact.fixture < 0 || !contact.link.empty() || contact.body >= 0) return;
+  if (contact.depth <= 0) return;
   const auto i = static_cast<std::size_t>(contact.fixture);
   Touch& touch = (*touches)[i];
   if (contact.depth > touch.depth) {
