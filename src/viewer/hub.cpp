@@ -312,7 +312,7 @@ void Hub::Client::On(const HandRequest& request) {
     return Deny("hand",
                 "In this scenario, a page cannot be the operator. Set operator.type: browser.");
   if (!hub_->leases_.Holds(LeaseKind::kOperator, id_))
-    return Deny("hand", "Become the operator first.");
+    return Deny("hand", "Take the operator's hands first.");
   if (!hub_->setup_.present.Has(request.hand)) return Deny("hand", "This handle does not exist.");
   if (!hands_[request.hand].Take(now)) return;
   RunInput input;

@@ -176,6 +176,19 @@ TEST(Scene, GivesInstructionsInWords) {
             "Lower the object by 5 cm and put it down.");
   EXPECT_EQ(reported("rotate", {"rotate_by=[0, 0, -0.349]"}),
             "Turn the object by 20° clockwise, as seen from above.");
+  // A right-handed rotation about the axis that points away from the person raises the left side.
+  const std::vector<std::string> tilt = {"rotate_by=[0.4363, 0, 0]"};
+  EXPECT_EQ(reported("rotate", tilt), "Tilt the object by 25° so that its left side rises.");
+  EXPECT_EQ(reported("rotate", tilt, std::numbers::pi),
+            "Tilt the object by 25° so that its right side rises.");
+  EXPECT_EQ(reported("rotate", tilt, std::numbers::pi / 2),
+            "Tilt the object by 25° so that its far side rises.");
+  EXPECT_EQ(reported("rotate", {"rotate_by=[0.2, 0, 0.2]"}),
+            "Turn the object by 16.2° about the axis (0.71, 0, 0.71).");
+  EXPECT_EQ(reported("push", {"force=[0, 0, -20]"}), "Push the handles down with 20 N.");
+  EXPECT_EQ(reported("push", {"force=[45, 0, 0]", "hand=left"}, std::numbers::pi),
+            "Push the left handle back with 45 N.");
+  EXPECT_EQ(reported("push", {"force=[3, 0, 4]"}), "Push the handles with 5 N.");
   EXPECT_EQ(reported("release", {"hand=left"}), "Let go of the left handle.");
   EXPECT_EQ(reported("grip", {}), "Grip the handles.");
   EXPECT_EQ(reported("circle", {}), "Follow the circle of 15 cm radius, 4 turns, 8 s each.");

@@ -12,6 +12,7 @@ namespace predictor {
 namespace {
 
 constexpr double kMinDistance = 5e-4;  // a shorter displacement is not mentioned [m]
+constexpr double kAligned = 0.999;  // cosine of the angle between two directions of the same name
 
 // Returns a text such as "30 cm to the left" for each direction with a significant displacement.
 std::vector<std::string> Horizontal(const Vector3& by, double facing) {
@@ -51,6 +52,15 @@ std::string MoveSentence(const Vector3& by, double facing) {
   if (!horizontal.empty())
     text += (vertical ? " and move it " : "Move the object ") + Join(horizontal, " and ");
   return text + ".";
+}
+
+std::string DirectionWords(const Vector3& direction, double facing) {
+  const double forward = direction.x() * std::cos(facing) + direction.y() * std::sin(facing);
+  const double left = direction.y() * std::cos(facing) - direction.x() * std::sin(facing);
+  if (std::abs(direction.z()) > kAligned) return direction.z() > 0 ? "up" : "down";
+  if (std::abs(forward) > kAligned) return forward > 0 ? "forward" : "back";
+  if (std::abs(left) > kAligned) return left > 0 ? "to the left" : "to the right";
+  return "";
 }
 
 }  // namespace predictor

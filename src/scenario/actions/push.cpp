@@ -33,8 +33,10 @@ class Push final : public Action {
         rise_(std::max(p.rise_time, 1e-9)),
         total_(Time(p)) {}
   static double Time(const PushParameters& p) { return 2 * p.rise_time + p.duration; }
-  static std::string Sentence(const PushParameters& p, double) {
-    return "Push " + HandlesOf(p.hand) + " with " + WithUnit(p.force.norm(), " N") + ".";
+  static std::string Sentence(const PushParameters& p, double facing) {
+    const std::string where = DirectionWords(p.force.normalized(), facing);
+    return "Push " + HandlesOf(p.hand) + (where.empty() ? "" : " " + where) + " with " +
+           WithUnit(p.force.norm(), " N") + ".";
   }
   void Begin(Intent*) noexcept override { time_ = 0; }
   bool Advance(double dt, double, Intent* intent) noexcept override {

@@ -27,16 +27,30 @@ class Rotate final : public Transport {
  public:
   explicit Rotate(const RotateParameters& p)
       : Transport(p.duration, Vector3::Zero(), NotZero("rotate_by", p.rotate_by)) {}
-  static std::string Sentence(const RotateParameters& p, double);
+  static std::string Sentence(const RotateParameters& p, double facing);
 };
 
-std::string Rotate::Sentence(const RotateParameters& p, double) {
+// Returns the side of the object that rises when the object tilts about a horizontal axis, as seen
+// by the person, or "" if no single side rises.
+std::string RisingSide(const Vector3& axis, double facing) {
+  const std::string along = DirectionWords(axis, facing);
+  if (along == "forward") return "left";
+  if (along == "back") return "right";
+  if (along == "to the left") return "near";
+  return along == "to the right" ? "far" : "";
+}
+
+std::string Rotate::Sentence(const RotateParameters& p, double facing) {
   const double angle = p.rotate_by.norm();
   if (angle < kMinAngle) return "Hold the object as it is.";
   const Vector3 axis = p.rotate_by / angle;
-  if (std::abs(axis.z()) > 0.999)
+  const std::string along = DirectionWords(axis, facing);
+  if (along == "up" || along == "down")
     return "Turn the object by " + InDegrees(angle) +
-           (axis.z() > 0 ? " counter-clockwise" : " clockwise") + ", as seen from above.";
+           (along == "up" ? " counter-clockwise" : " clockwise") + ", as seen from above.";
+  const std::string side = RisingSide(axis, facing);
+  if (!side.empty())
+    return "Tilt the object by " + InDegrees(angle) + " so that its " + side + " side rises.";
   char text[64];
   std::snprintf(text, sizeof text, " about the axis (%.2g, %.2g, %.2g).", axis.x(), axis.y(),
                 axis.z());
