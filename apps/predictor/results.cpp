@@ -46,6 +46,19 @@ constexpr HandsRow kHandsRows[] = {
     {"Largest tracking error", "tracking.whole_run.", ".translation_m", &Statistics::max, 1},
 };
 
+std::string Millimetres(double length) { return Formatted("%.0f mm", 1e3 * length); }
+
+// Adds what became of the cobot's grip, if the grip ever opened or slipped.
+void AddGripper(const Summary& s, Json* rows) {
+  const double open = s.Get<double>("gripper.open_s"),
+               slipping = s.Get<double>("gripper.slipping_s");
+  if (open + slipping == 0) return;
+  rows->push_back(
+      {{"name", "Gripper at the end"}, {"value", s.Get<std::string>("gripper.at_end")}});
+  if (open > 0) rows->push_back({{"name", "Gripper open for"}, {"value", Time(open)}});
+  if (slipping > 0) rows->push_back({{"name", "Gripper slipped for"}, {"value", Time(slipping)}});
+}
+
 Json Figures(const Summary& s) {
   Json rows = Json::array();
   rows.push_back({{"name", "Duration"}, {"value", Time(s.duration())}});
@@ -61,8 +74,12 @@ Json Figures(const Summary& s) {
                     result.unit.shown);
     }
   }
-  rows.push_back({{"name", "Object lifted by"},
-                  {"value", Formatted("%.0f mm", 1e3 * s.Get<double>("object.lift_m"))}});
+  const double lowered =
+      s.Get<double>("object.height_m.initial") - s.Get<double>("object.height_m.min");
+  rows.push_back(
+      {{"name", "Object lifted by"}, {"value", Millimetres(s.Get<double>("object.lift_m"))}});
+  rows.push_back({{"name", "Object lowered by"}, {"value", Millimetres(lowered)}});
+  AddGripper(s, &rows);
   rows.push_back({{"name", "Late cycles"},
                   {"value", Formatted("%llu of %llu", static_cast<unsigned long long>(s.overruns),
                                       static_cast<unsigned long long>(s.ticks()))}});
