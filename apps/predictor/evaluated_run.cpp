@@ -1,5 +1,6 @@
 #include "evaluated_run.h"
 
+#include "assessment/measured_head.h"
 #include "core/error.h"
 #include "models/object_model.h"
 #include "models/urdf.h"
@@ -43,13 +44,8 @@ void RefuseUnknown(const Scenario& scenario, const std::string& file) {
 // Returns no track if no head was measured during the run.
 std::optional<tracks::BodyTrack> HeadOf(const RecordingReader& reader) {
   tracks::PartTrack head;
-  for (const RecordedHead& recorded : reader.ReadHeads()) {
-    if (!head.times.empty() && recorded.time <= head.times.back()) continue;
-    const auto& [p, q] = std::pair(recorded.head.p, recorded.head.q);
-    head.times.push_back(recorded.time);
-    head.p.emplace_back(p[0], p[1], p[2]);
-    head.q.push_back(Quaternion(q[0], q[1], q[2], q[3]));
-  }
+  for (const RecordedHead& recorded : reader.ReadHeads())
+    assessment::AppendMeasured(recorded.head, recorded.time, &head);
   if (head.times.empty()) return {};
   tracks::BodyTrack track;
   track.source = "the headset";

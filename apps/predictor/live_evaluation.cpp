@@ -8,6 +8,7 @@
 namespace predictor {
 
 LiveEvaluation::LiveEvaluation(bool wanted, const Scenario& scenario, const Shared<RunBoard>& board,
+                               const Shared<RunMailbox>* mailbox,
                                const std::function<void(const std::string&)>& show) {
   if (!wanted) {
     why_not_ = "The evaluation of the person was switched off with --no-evaluation.";
@@ -19,7 +20,7 @@ LiveEvaluation::LiveEvaluation(bool wanted, const Scenario& scenario, const Shar
   }
   try {
     states_.emplace();
-    process_.emplace(scenario, board, *states_, show);
+    process_.emplace(scenario, board, *states_, mailbox, show);
   } catch (const std::exception& error) {
     why_not_ = std::string("The person is not evaluated: ") + error.what();
     show(why_not_);

@@ -14,8 +14,10 @@ class LiveEvaluation {
  public:
   // Starts the evaluator if the user wants an evaluation and the scenario describes the person
   // sufficiently. If the evaluator cannot start, the run continues. why_not() returns the reason
-  // and, if the reason is an error, `show` receives it. `board` is borrowed.
+  // and, if the reason is an error, `show` receives it. `board` is borrowed. So is `mailbox`, which
+  // contains the measured heads, or is null in a replay.
   LiveEvaluation(bool wanted, const Scenario& scenario, const Shared<RunBoard>& board,
+                 const Shared<RunMailbox>* mailbox,
                  const std::function<void(const std::string&)>& show);
 
   // Returns null if the person is not judged.

@@ -195,7 +195,8 @@ int ReplayCommand(const std::string& recording, const ServeOptions& options) {
   Shared<RunMailbox> mailbox;
   Player player(&reader, &*board, &*mailbox);
   const auto show = [](const std::string& text) { TheScreen().Print(text); };
-  const LiveEvaluation evaluation(options.evaluation, scenario, board, show);
+  // A head in the mailbox is that of a person who watches the replay.
+  const LiveEvaluation evaluation(options.evaluation, scenario, board, nullptr, show);
   viewer::ViewerOptions page = options.page;
   page.why_not_judged = evaluation.why_not();
   page.secret = viewer::NewAdmissionSecret();

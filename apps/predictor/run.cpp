@@ -175,7 +175,7 @@ class Run {
         emulator_(scenario, std::move(device)) {
     PrintSetup(emulator_, options.quiet);
     const auto show = [](const std::string& text) { TheScreen().Print(text); };
-    evaluation_.emplace(serve.evaluation, scenario, board_, show);
+    evaluation_.emplace(serve.evaluation, scenario, board_, &mailbox_, show);
     if (!record.off) {
       options.MakeRoom(record.file);
       recording_.emplace(emulator_, record, &*board_, evaluation_->board(), mailbox_->heads);

@@ -48,7 +48,10 @@ SampleBuilder::SampleBuilder(const Scenario& scenario)
 }
 
 std::optional<PersonSample> SampleBuilder::Add(const TickRecord& record) {
-  if (!start_) start_ = record.tick;
+  if (!start_) {
+    start_ = record.tick;
+    start_ns_ = record.wall_ns;
+  }
   const bool follows = !last_time_ || record.run_time < *last_time_ + 1.5 * dt_;
   if (!record.ran || !follows) {
     // A partial sample is dropped, because it would have a different bandwidth.
@@ -67,6 +70,8 @@ PersonSample SampleBuilder::Close() {
   PersonSample sample = SampleOf(pending_);
   const std::size_t middle = pending_.size() / 2;
   sample.recorded = dt_ * static_cast<double>(pending_[middle].tick - *start_);
+  const std::uint64_t ns = pending_[middle].wall_ns;
+  sample.by_clock = ns > start_ns_ ? 1e-9 * static_cast<double>(ns - start_ns_) : sample.recorded;
   const std::array<bool, kHands> present = {sample.body.hands[0].present,
                                             sample.body.hands[1].present};
   sample.continues = !interrupted_ && (!present_ || *present_ == present);

@@ -19,7 +19,8 @@ std::size_t TicksPerSample(double rate);
 
 struct PersonSample {
   person::BodySample body;
-  double recorded = 0;                         // time since the first tick of the recording [s]
+  double recorded = 0;  // time since the first tick of the recording, from the number of ticks [s]
+  double by_clock = 0;  // the same by the monotonic clock, which includes missed ticks [s]
   std::array<double, kHands> peak_force = {};  // largest over the ticks of the sample [N]
   // The value is false if, immediately before this sample, simulated time was paused, ticks were
   // lost, or a hand gripped or let go.
@@ -39,6 +40,8 @@ class SampleBuilder {
   // Returns the record of the first tick in RUN. Before the first tick in RUN, the `tick` of this
   // record is 0.
   const TickRecord& first() const { return first_; }
+  // Returns the monotonic clock at the first tick of the recording [ns].
+  std::uint64_t start_ns() const { return start_ns_; }
 
  private:
   PersonSample Close();
@@ -46,6 +49,7 @@ class SampleBuilder {
   std::uint64_t ticks_per_sample_;
   double dt_;
   std::optional<std::uint64_t> start_;  // first tick of the recording
+  std::uint64_t start_ns_ = 0;
   TickRecord first_{};
   std::vector<TickRecord> pending_;
   std::optional<double> last_time_;                  // time of the last tick in RUN [s]

@@ -110,7 +110,9 @@ void LivePerson::Take(PersonSample sample) {
   exposure_.Write(false, &state_);
 }
 
-void LivePerson::TakeHeld(const PersonSample& sample) {
+void LivePerson::TakeHeld(PersonSample sample) {
+  const double start = 1e-9 * static_cast<double>(builder_.start_ns());
+  state_.head = head_.AddTo(&sample, start + sample.by_clock, *setup_);
   chain_->Add(sample);
   const person::Posture& posture = chain_->newest();
   state_.status = PersonStatus::kJudged;

@@ -8,6 +8,7 @@
 #include "assessment/live_chain.h"
 #include "assessment/live_exposure.h"
 #include "assessment/live_values.h"
+#include "assessment/measured_head.h"
 #include "core/person_state.h"
 
 namespace predictor::assessment {
@@ -21,6 +22,9 @@ class LivePerson {
   // tick is ignored. If an earlier tick follows, damage and fatigue start again. Throws InputError
   // if place, grips and handles contradict one another.
   bool Add(const TickRecord& record);
+  // The measured head. Before you add a tick, add the heads that arrived, and wait while a head of
+  // this tick is awaited (LiveHead::IsAwaited).
+  LiveHead& head() { return head_; }
   const PersonState& state() const { return state_; }
 
  private:
@@ -28,7 +32,7 @@ class LivePerson {
   void Begin();
   bool Wait(const TickRecord& record);
   void Take(PersonSample sample);
-  void TakeHeld(const PersonSample& sample);
+  void TakeHeld(PersonSample sample);
   void Judge(bool all);
   void Rest(PersonStatus status);
 
@@ -38,6 +42,7 @@ class LivePerson {
   std::optional<PersonSetup> setup_;  // set in the first tick in RUN
   SampleBuilder builder_;
   HeldFilter held_;
+  LiveHead head_;
   std::optional<LiveChain> chain_;
   std::optional<LiveIntervals> intervals_;
   LiveExposure exposure_;

@@ -111,6 +111,7 @@ void ForgetValues(PersonState* state) {
   state->scores = {};
   for (PartState& part : state->parts) part.load = kUnknown;
   state->sampled_reached = kUnknown;
+  state->head = HeadSource::kModelled;
   state->reached = 0;
   state->miss = 0;
   state->warnings = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "assessment/measured_head.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "core/text.h"
@@ -12,32 +13,28 @@
 namespace predictor::assessment {
 namespace {
 
-// Limits of possible positions, as shares of the person's height (design choices). These limits
-// only need to reveal a wrong unit, frame or marker.
-constexpr double kLowest = 0.1, kHighest = 1.25, kFarthest = 1.0;
+// A share of the person's height (design choice), which only needs to reveal a wrong frame.
 constexpr double kElbowToHandle = 0.4;
 
 struct Finding {
-  std::size_t measured = 0, impossible = 0;
+  PositionCount count;
   std::vector<double> heights, distances;  // the impossible positions, in S [m]
+
+  void AddImpossible(const PersonSetup& setup, const Vector3& p_W) {
+    const Vector3 p = setup.stance.X_WS.Inverse() * p_W;
+    heights.push_back(p.z());
+    distances.push_back(std::hypot(p.x(), p.y()));
+  }
 };
 
-bool IsPossible(const PersonSetup& setup, const Vector3& p_W, Finding* finding) {
-  const Vector3 p = setup.stance.X_WS.Inverse() * p_W;
-  const double height = setup.body.height, distance = std::hypot(p.x(), p.y());
-  ++finding->measured;
-  if (p.z() > kLowest * height && p.z() < kHighest * height && distance < kFarthest * height)
-    return true;
-  ++finding->impossible;
-  finding->heights.push_back(p.z());
-  finding->distances.push_back(distance);
-  return false;
+double Share(std::size_t count, std::size_t all) {
+  return static_cast<double>(count) / static_cast<double>(all);
 }
 
 void Judge(const Finding& finding, const std::string& what, const std::string& source,
            const PersonSetup& setup, MeasuredBody* body) {
-  if (finding.impossible == 0) return;
-  if (2 * finding.impossible > finding.measured)
+  if (finding.count.impossible == 0) return;
+  if (finding.count.MostlyImpossible())
     throw InputError(
         source,
         Formatted("The %s is %.2f m above the operator's ground and %.2f m beside the feet, which "
@@ -45,15 +42,10 @@ void Judge(const Finding& finding, const std::string& what, const std::string& s
                   "mapping, and operator.stance.",
                   what.c_str(), Median(finding.heights), Median(finding.distances),
                   setup.body.height));
-  body->warnings.push_back(Formatted(
-      "%s: %.1f %% of the positions of the %s are impossible and are left out.",
-      Printable(source).c_str(),
-      100 * static_cast<double>(finding.impossible) / static_cast<double>(finding.measured),
-      what.c_str()));
-}
-
-double Share(std::size_t count, std::size_t all) {
-  return static_cast<double>(count) / static_cast<double>(all);
+  body->warnings.push_back(
+      Formatted("%s: %.1f %% of the positions of the %s are impossible and are left out.",
+                Printable(source).c_str(),
+                100 * Share(finding.count.impossible, finding.count.measured), what.c_str()));
 }
 
 void AddHead(const tracks::PartTrack& head, const UsedTrack& track, const PersonSetup& setup,
@@ -61,14 +53,12 @@ void AddHead(const tracks::PartTrack& head, const UsedTrack& track, const Person
   Finding finding;
   std::size_t positions = 0, rotations = 0;
   for (PersonSample& sample : *samples) {
-    const double time = sample.recorded - track.offset;
-    const auto p = head.PositionAt(time);
-    if (!p || !IsPossible(setup, *p, &finding)) continue;
-    const auto q = head.RotationAt(time);
-    sample.body.X_WHead = Pose{*p, q.value_or(Quaternion::Identity())};
-    sample.body.head_rotation_measured = q.has_value();
+    const double time = track.by_clock ? sample.by_clock : sample.recorded - track.offset;
+    const HeadSource source = AddHeadAt(time, head, setup, &sample, &finding.count);
+    if (source == HeadSource::kImpossible) finding.AddImpossible(setup, *head.PositionAt(time));
+    if (source != HeadSource::kMeasured) continue;
     ++positions;
-    rotations += q ? 1 : 0;
+    rotations += sample.body.head_rotation_measured ? 1 : 0;
   }
   Judge(finding, "head", track.source, setup, body);
   body->parts.push_back({"head", track.source, Share(positions, samples->size()), {}});
@@ -85,7 +75,13 @@ void AddElbow(const tracks::PartTrack& elbow, int hand, const UsedTrack& track,
   std::size_t positions = 0;
   for (PersonSample& sample : *samples) {
     const auto p = elbow.PositionAt(sample.recorded - track.offset);
-    if (!p || !IsPossible(setup, *p, &finding)) continue;
+    if (!p) continue;
+    ++finding.count.measured;
+    if (!IsPossible(setup, *p)) {
+      ++finding.count.impossible;
+      finding.AddImpossible(setup, *p);
+      continue;
+    }
     if (sample.body.hands[h].present)
       to_handle.push_back((*p - sample.body.hands[h].X_WD.p).norm());
     sample.body.p_WElbow[h] = *p;
@@ -137,7 +133,8 @@ tracks::ClockOffset Estimate(const tracks::BodyTrack& track,
 
 UsedTrack Relate(const tracks::BodyTrack& track, double start_unix,
                  const std::vector<PersonSample>& samples) {
-  UsedTrack used{std::filesystem::path(track.source).filename().string(), track.offset, {}};
+  UsedTrack used{
+      std::filesystem::path(track.source).filename().string(), track.offset, {}, track.of_the_run};
   if (track.clock == tracks::TrackClock::kUnix) used.offset -= start_unix;
   if (track.clock == tracks::TrackClock::kAuto) {
     used.estimate = Estimate(track, samples);

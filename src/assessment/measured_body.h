@@ -21,6 +21,7 @@ struct UsedTrack {
   std::string source;
   double offset = 0;                            // added to the file's times [s]
   std::optional<tracks::ClockOffset> estimate;  // empty if the offset was given
+  bool by_clock = false;  // the track's times are those of PersonSample::by_clock
 };
 
 struct MeasuredPart {

@@ -23,4 +23,10 @@ bool IsPlausible(const HeadRecord& head) {
          Within(r.residual, kWorstHeadResidual) && Within(head.delay, kLongestHeadDelay);
 }
 
+bool IsCredible(const HeadRecord& head, std::uint64_t newest_ns) {
+  constexpr auto kLead = static_cast<std::uint64_t>(1e9 * kLongestHeadLead);
+  const bool is_near = head.wall_ns <= newest_ns || head.wall_ns - newest_ns < kLead;
+  return is_near && IsPlausible(head);
+}
+
 }  // namespace predictor

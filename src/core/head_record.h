@@ -12,6 +12,7 @@ struct HeadRegistration {
   double yaw = 0;             // [rad]
   std::array<double, 3> t{};  // origin of W in the headset's space [m]
   double residual = 0;        // root mean square of the residuals of the touched points [m]
+  bool operator==(const HeadRegistration&) const = default;
 };
 
 struct HeadRecord {
@@ -28,9 +29,14 @@ inline constexpr double kFarthestHead = 100;       // from the origin of W, on e
 inline constexpr double kLargestHeadYaw = 10;      // of a registration [rad]
 inline constexpr double kWorstHeadResidual = 1;    // of a registration [m]
 inline constexpr double kLongestHeadDelay = 0.25;  // [s]
+inline constexpr double kLongestHeadLead = 1;      // of a head, ahead of the newest tick [s]
 
 // Returns whether all numbers are finite and within these limits, and `q` is a unit quaternion. A
 // record may come from another process or from a file.
 bool IsPlausible(const HeadRecord& head);
+// Returns whether the head is plausible and at most kLongestHeadLead later than `newest_ns`, the
+// monotonic clock at the newest tick. Otherwise, a head from a far future would keep all later
+// heads waiting.
+bool IsCredible(const HeadRecord& head, std::uint64_t newest_ns);
 
 }  // namespace predictor

@@ -20,6 +20,14 @@ enum class PersonStatus : std::uint8_t {
 inline constexpr std::array kPersonStatusNames = {"judged", "waiting", "no_hand", "below_ground"};
 inline constexpr std::size_t kPersonStatuses = kPersonStatusNames.size();
 
+// The origin of the head of the nominal posture.
+enum class HeadSource : std::uint8_t {
+  kModelled,    // follows from the hands
+  kMeasured,    // by the headset
+  kImpossible,  // modelled, because this person's head cannot be where the headset measured it
+};
+inline constexpr std::array kHeadSourceNames = {"modelled", "measured", "impossible"};
+
 // Points of the body, for drawing. Most are joints. The points of the eyes and of the head are at
 // their centres. The point of the hand is at the knuckles, and the point of the toes is at the
 // front of the foot, on the ground.
@@ -235,7 +243,8 @@ struct PersonState {
   std::uint16_t warnings = 0;        // bits by PersonWarning
   float miss = 0;                    // largest distance by which a hand misses its handle [m]
   float sampled_reached = kUnknown;  // share of the possible people who reach both handles
-  float reserved = 0;
+  HeadSource head = HeadSource::kModelled;  // of the points
+  std::array<std::uint8_t, 3> reserved = {};
   std::array<std::array<float, 3>, kBodyPoints> points = {};  // in W [m]; see status
   std::array<PartState, kBodyParts> parts;
   std::array<GaugeState, kPersonGauges> gauges;
@@ -312,6 +321,8 @@ void VisitPerson(V& v, S& s) {
   v.Number("since", "s", "start of damage and fatigue", s.since);
   v.Word("status", "whether the person is judged, or why not", kPersonStatusNames,
          static_cast<std::size_t>(s.status));
+  v.Word("head", "origin of the head of the points; impossible: modelled despite a measurement",
+         kHeadSourceNames, static_cast<std::size_t>(s.head));
   v.Flag("reached", "both hands reach their handles", s.reached);
   v.Number("miss", "m", "largest distance between a hand and its handle", s.miss);
   v.Number("sampled_reached", "", "share of the possible people who reach both", s.sampled_reached);

@@ -43,8 +43,8 @@ struct RunMailbox {
   std::atomic<std::uint32_t> clients{0};
   std::atomic<std::uint32_t> immersive{0};           // headsets in an immersive session
   std::atomic<std::uint64_t> immersive_frame_ns{0};  // monotonic clock at the headsets' last report
-  // Measured heads of the person. The tick does not read them. The recorder does, and does not
-  // trust their content.
+  // Measured heads of the person. The tick does not read them. The recorder and the evaluator do,
+  // and do not trust their content.
   HeadRing heads;
 };
 

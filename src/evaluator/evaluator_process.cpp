@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -25,15 +26,41 @@ bool WaitAWhile() {
 
 class Evaluator {
  public:
-  Evaluator(const Scenario& scenario, const RunBoard& board, EvaluationBoard* out)
-      : person_(scenario, {}), reader_(board.records), out_(out) {}
+  // `heads` may be null.
+  Evaluator(const Scenario& scenario, const RunBoard& board, const HeadRing* heads,
+            EvaluationBoard* out)
+      : person_(scenario, {}), records_(&board.records), reader_(board.records), out_(out) {
+    if (heads) heads_.emplace(*heads);
+  }
 
+  // A tick whose head may still arrive stays in the ring, so later calls evaluate it.
   void Look() {
-    for (TickRecord record; !failed_ && reader_.Next(&record);)
-      if (Add(record)) out_->states.Publish(person_.state());
+    while (!failed_) {
+      TickRecord record;
+      if (!next_ && reader_.Next(&record)) next_ = record;
+      if (!next_) return;
+      TakeHeads();
+      if (heads_ && person_.head().IsAwaited(next_->wall_ns, NewestTick())) return;
+      if (Add(*next_)) out_->states.Publish(person_.state());
+      next_.reset();
+    }
   }
 
  private:
+  void TakeHeads() {
+    HeadRecord head;
+    for (std::size_t k = 0; heads_ && k < kHeadRing && heads_->Next(&head); ++k)
+      person_.head().Take(head, NewestTick());
+  }
+
+  // Returns the monotonic clock at the newest tick [ns], which is at least that of the next tick.
+  std::uint64_t NewestTick() const {
+    TickRecord newest;
+    const std::uint64_t written = records_->written();
+    if (written == 0 || !records_->Get(written - 1, &newest)) newest = *next_;
+    return std::max(newest.wall_ns, next_->wall_ns);
+  }
+
   // A contradiction in the input would persist, so the evaluator reports it once and stops judging.
   bool Add(const TickRecord& record) {
     try {
@@ -47,17 +74,28 @@ class Evaluator {
   }
 
   assessment::LivePerson person_;
+  const RecordRing* records_;
   RingReader<TickRecord, kRecordRing> reader_;
+  std::optional<RingReader<HeadRecord, kHeadRing>> heads_;
+  std::optional<TickRecord> next_;  // the tick to be evaluated next
   EvaluationBoard* out_;
   bool failed_ = false;
 };
+
+Json StartLine(const Scenario& scenario, bool heads) {
+  Json line = RunLine(scenario, Vector3::Zero());
+  line["heads"] = heads;
+  return line;
+}
 
 void Serve(const Json& start) {
   setpriority(PRIO_PROCESS, 0, kPriority);
   Prepare({});  // starts the sandbox before the scenario is parsed
   AttachedRun run(start);
   Shared<EvaluationBoard> states(kMailboxDescriptor, true);
-  Evaluator evaluator(run.scenario, *run.board, &*states);
+  std::optional<const Shared<RunMailbox>> mailbox;
+  if (start["heads"]) mailbox.emplace(kReadDescriptor, false);
+  Evaluator evaluator(run.scenario, *run.board, mailbox ? &(**mailbox).heads : nullptr, &*states);
   GiveUpRights(start, "The evaluator");
   SendLine(kControlDescriptor, {{"ready", "judges"}}, false);
   while (WaitAWhile()) evaluator.Look();
@@ -66,9 +104,16 @@ void Serve(const Json& start) {
 }  // namespace
 
 EvaluatorProcess::EvaluatorProcess(const Scenario& scenario, const Shared<RunBoard>& board,
-                                   const Shared<EvaluationBoard>& states, Notify show)
-    : process_({"The evaluator", kEvaluatorSubcommand, RunLine(scenario, Vector3::Zero()),
-                board.descriptor(), states.descriptor(), std::move(show), [](const Json&) {}}) {}
+                                   const Shared<EvaluationBoard>& states,
+                                   const Shared<RunMailbox>* mailbox, Notify show)
+    : process_({.name = "The evaluator",
+                .subcommand = kEvaluatorSubcommand,
+                .start = StartLine(scenario, mailbox != nullptr),
+                .board = board.descriptor(),
+                .mailbox = states.descriptor(),
+                .notify = std::move(show),
+                .hear = [](const Json&) {},
+                .reads = mailbox ? mailbox->read_only_descriptor() : -1}) {}
 
 int EvaluatorMain() { return ChildMain("evaluator", Serve); }
 

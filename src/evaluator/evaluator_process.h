@@ -23,11 +23,13 @@ class EvaluatorProcess {
   // `states` and is not permitted to do anything else. The evaluator runs at a lower priority than
   // the run's threads, and the run never waits for the evaluator. If the evaluator ends
   // unexpectedly, a message reports this, and the evaluator is restarted. Damage and fatigue then
-  // start from zero again. The caller continues to own the descriptors of `board` and `states`.
-  // Throws InputError if the body or the stance is missing or impossible. Throws std::runtime_error
-  // if no process can be started.
+  // start from zero again. The caller continues to own the descriptors of `board`, `states` and
+  // `mailbox`. The evaluator reads the measured heads in `mailbox`, which is null if no head of
+  // this person can be measured, for instance in a replay. Throws InputError if the body or the
+  // stance is missing or impossible. Throws std::runtime_error if no process can be started.
   EvaluatorProcess(const Scenario& scenario, const Shared<RunBoard>& board,
-                   const Shared<EvaluationBoard>& states, Notify show);
+                   const Shared<EvaluationBoard>& states, const Shared<RunMailbox>* mailbox,
+                   Notify show);
   int pid() const { return process_.pid(); }  // 0 while no process is running
 
  private:

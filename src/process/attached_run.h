@@ -8,12 +8,12 @@
 namespace predictor {
 
 // The file descriptors that a process alongside the run inherits. Each kind of process may write
-// only into its own mailbox. The last descriptor is for reading the evaluator's states.
+// only into its own mailbox. The last descriptor is for reading the memory of another such process.
 enum : int {
   kBoardDescriptor = 3,
   kMailboxDescriptor = 4,
   kControlDescriptor = 5,
-  kEvaluationDescriptor = 6
+  kReadDescriptor = 6
 };
 
 // Returns the first line that is sent to every process alongside the run. The line contains the

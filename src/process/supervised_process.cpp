@@ -88,7 +88,7 @@ pid_t Spawn(std::string subcommand, const std::array<int, 4>& descriptors) {
     aside.emplace_back(fcntl(descriptors[i], F_DUPFD_CLOEXEC, kSafeDescriptor));
     posix_spawn_file_actions_adddup2(&actions, aside.back().get(), child);
   }
-  posix_spawn_file_actions_addclosefrom_np(&actions, kEvaluationDescriptor + 1);
+  posix_spawn_file_actions_addclosefrom_np(&actions, kReadDescriptor + 1);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -188,7 +188,7 @@ void SupervisedProcess::Impl::Start() {
     start = setup.start;
   }
   const pid_t child =
-      Spawn(setup.subcommand, {setup.board, setup.mailbox, theirs.get(), setup.evaluation});
+      Spawn(setup.subcommand, {setup.board, setup.mailbox, theirs.get(), setup.reads});
   SendLine(ours.get(), start, true);
   heartbeat = {};
   silent = false;

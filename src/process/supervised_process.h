@@ -35,7 +35,7 @@ struct ChildSetup {
   const std::atomic<std::uint32_t>* beats = nullptr;
   std::string without = "the run continues";  // describes the state of the run while there is no
                                               // such process
-  int evaluation = -1;  // descriptor of the evaluator's states, for reading; -1: none
+  int reads = -1;  // descriptor of another process's memory, for reading; not owned; -1: none
 };
 
 class SupervisedProcess {

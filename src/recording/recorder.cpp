@@ -26,7 +26,6 @@ constexpr milliseconds kPause{10};         // pause between polls of the ring
 constexpr milliseconds kChunkPeriod{500};  // longest time that a chunk waits for more data
 // interval between two events about lost ticks [ns]
 constexpr std::uint64_t kLossPeriod = 1'000'000'000;
-constexpr std::uint64_t kLongestWait = 1'000'000'000;  // of a head for the ticks [ns]
 
 constexpr int kThrown = -1;  // means an exception where an errno value is expected
 
@@ -305,17 +304,15 @@ void Recorder::Impl::TakePersons(bool all) {
 }
 
 // A head that was measured after the newest tick waits, because the encoder relates its clock to
-// the ticks. An implausible head is left out, because another process measured the head.
-// So is a head from a far future, which would keep all later heads waiting.
+// the ticks. A head that is not credible is left out, because another process measured the head.
 void Recorder::Impl::TakeHeads(bool all) {
   for (std::size_t k = 0; heads && k < kHeadRing; ++k) {
     HeadRecord head;
     if (!next_head && heads->Next(&head)) next_head = head;
     if (!next_head) return;
-    const bool is_later = next_head->wall_ns > newest_ns;
-    const bool is_credible = !is_later || next_head->wall_ns - newest_ns < kLongestWait;
-    if (is_later && is_credible && !all) return;
-    if (is_credible && IsPlausible(*next_head)) encoder.AddHead(*next_head, newest);
+    const bool is_credible = IsCredible(*next_head, newest_ns);
+    if (is_credible && next_head->wall_ns > newest_ns && !all) return;
+    if (is_credible) encoder.AddHead(*next_head, newest);
     next_head.reset();
   }
 }

@@ -195,7 +195,7 @@ void Serve(const Json& start) {
   Shared<RunMailbox> mailbox(kMailboxDescriptor, true);
   const Site site(start, machine_names);
   std::optional<const Shared<EvaluationBoard>> states;
-  if (start["judged"]) states.emplace(kEvaluationDescriptor, false);
+  if (start["judged"]) states.emplace(kReadDescriptor, false);
   AppSetup setup;
   setup.states = states ? &**states : nullptr;
   setup.why_not_judged = start["why_not_judged"];

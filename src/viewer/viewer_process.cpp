@@ -75,7 +75,7 @@ Json ToJson(const Scenario& scenario, const ViewerOptions& o, bool judged) {
 }
 
 ChildSetup WithStates(ChildSetup setup, const Shared<EvaluationBoard>* states) {
-  if (states) setup.evaluation = states->read_only_descriptor();
+  if (states) setup.reads = states->read_only_descriptor();
   return setup;
 }
 

@@ -9,6 +9,8 @@
 #include <csignal>
 #include <fstream>
 #include <mutex>
+#include <set>
+#include <thread>
 
 #include "assessment/samples.h"
 #include "core/error.h"
@@ -30,15 +32,36 @@ Scenario Box() {
 class EvaluatorProcessTest : public testing::Test {
  protected:
   void Start(const Scenario& scenario) {
-    evaluator_ = std::make_unique<EvaluatorProcess>(scenario, board_, states_,
+    evaluator_ = std::make_unique<EvaluatorProcess>(scenario, board_, states_, &mailbox_,
                                                     [this](const std::string& text) {
                                                       const std::lock_guard lock(mutex_);
                                                       reported_ += text + "\n";
                                                     });
   }
   void Run(std::uint64_t first, std::uint64_t last, double height = 1) {
-    for (std::uint64_t tick = first; tick <= last; ++tick)
-      board_->records.Publish(RecordOf(tick, height, 20));
+    for (std::uint64_t tick = first; tick <= last; ++tick) {
+      TickRecord record = RecordOf(tick, height, 20);
+      record.wall_ns = WallOf(tick);
+      board_->records.Publish(record);
+    }
+  }
+  static std::uint64_t WallOf(std::uint64_t tick) { return 5'000'000'000 + 1'000'000 * tick; }
+  // The person looks down at the handles.
+  void MeasureHeadAt(std::uint64_t tick) {
+    HeadRecord head;
+    head.wall_ns = WallOf(tick);
+    head.p = {0.75, 0, 0.75};
+    head.q = {0, 0, 0, 1};  // looks along -x
+    mailbox_->heads.Publish(head);
+  }
+  // Returns the origins of the head in the states of the ticks `first` to `last`.
+  std::set<HeadSource> HeadsOf(std::uint64_t first, std::uint64_t last) const {
+    std::set<HeadSource> heads;
+    PersonState state;
+    for (std::uint64_t i = 0; i < (*states_).states.written(); ++i)
+      if ((*states_).states.Get(i, &state) && state.tick >= first && state.tick <= last)
+        heads.insert(state.head);
+    return heads;
   }
   // Returns the newest state. Before the process has written the first state, the returned state
   // has tick 0.
@@ -57,6 +80,7 @@ class EvaluatorProcessTest : public testing::Test {
 
   Shared<RunBoard> board_;
   Shared<EvaluationBoard> states_;
+  Shared<RunMailbox> mailbox_;
   std::mutex mutex_;
   std::string reported_;
   std::unique_ptr<EvaluatorProcess> evaluator_;
@@ -73,6 +97,43 @@ TEST_F(EvaluatorProcessTest, JudgesEachHundredthOfASecond) {
   EXPECT_GT(state.gauges[0].value, 100);
   EXPECT_LT(state.gauges[0].low, state.gauges[0].value);
   EXPECT_GT(state.gauges[0].high, state.gauges[0].value);
+}
+
+// A head arrives later than its tick, so the evaluator waits for it.
+TEST_F(EvaluatorProcessTest, UsesTheHeadThatArrivesAfterItsTick) {
+  Start(Box());
+  Run(1, 10);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 10; }));
+  MeasureHeadAt(10);
+  Run(11, 100);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  for (std::uint64_t tick = 40; tick <= 100; tick += 30) MeasureHeadAt(tick);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 100; }));
+  EXPECT_EQ(HeadsOf(1, 10), std::set{HeadSource::kModelled});
+  EXPECT_EQ(HeadsOf(20, 100), std::set{HeadSource::kMeasured});
+  EXPECT_EQ((*states_).states.written(), 10u);  // no state was left out
+}
+
+TEST_F(EvaluatorProcessTest, ModelsTheHeadAgainWhenTheHeadsetFallsSilent) {
+  Start(Box());
+  for (std::uint64_t tick = 0; tick <= 100; tick += 20) MeasureHeadAt(tick);
+  Run(1, 100);
+  // The last tick is more than 0.3 s after the last head.
+  Run(101, 410);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 410; }));
+  EXPECT_EQ(HeadsOf(10, 100), std::set{HeadSource::kMeasured});
+  EXPECT_EQ(HeadsOf(110, 410), std::set{HeadSource::kModelled});
+}
+
+TEST_F(EvaluatorProcessTest, IgnoresAHeadFromAFarFuture) {
+  Start(Box());
+  MeasureHeadAt(100'000);
+  Run(1, 50);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 50; }));
+  for (std::uint64_t tick = 60; tick <= 120; tick += 20) MeasureHeadAt(tick);
+  Run(51, 100);
+  ASSERT_TRUE(Becomes([&] { return Newest().tick == 100; }));
+  EXPECT_EQ(HeadsOf(80, 100), std::set{HeadSource::kMeasured});
 }
 
 TEST_F(EvaluatorProcessTest, HasNoRightsAndWritesItsStatesOnly) {

@@ -98,6 +98,14 @@ export const kWhyNot: Record<Exclude<PersonState['status'], 'judged'>, string> =
   below_ground: 'The handles are below the ground: correct operator.stance.ground.',
 };
 
+// Describes the origin of the head of the drawn body. An older server does not send this origin.
+export const kHeadWords: Record<PersonState['head'], string> = {
+  measured: 'The headset measures the head.',
+  modelled: 'The head is modelled.',
+  impossible: 'The head is modelled, because the headset measures it where this person’s head cannot be: ' +
+      'register again, or correct operator.stance.',
+};
+
 // Lists the damage and fatigue of the shoulders and elbows of both sides, under the names of the
 // parts in the state.
 export const kArmParts = kSides.flatMap((side: Side) => [`${side}_shoulder`, `${side}_elbow`] as const);

@@ -8,6 +8,7 @@ export interface PersonState {
   interval_time: number | null;  // [s] time of intervals and probabilities
   since: number | null;  // [s] start of damage and fatigue
   status: 'judged' | 'waiting' | 'no_hand' | 'below_ground';  // whether the person is judged, or why not
+  head: 'modelled' | 'measured' | 'impossible';  // origin of the head of the points; impossible: modelled despite a measurement
   reached: boolean;  // both hands reach their handles
   miss: number | null;  // [m] largest distance between a hand and its handle
   sampled_reached: number | null;  // share of the possible people who reach both

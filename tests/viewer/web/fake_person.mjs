@@ -69,8 +69,8 @@ function gauges(t, lean, wrenches) {
 }
 
 // Returns the message `person` at the run time t [s]. `status` is 'judged', or the reason why
-// nothing is judged.
-export function personMessage(spec, t, tick, hands, wrenches, status = 'judged') {
+// nothing is judged. `head` is the origin of the head.
+export function personMessage(spec, t, tick, hands, wrenches, status = 'judged', head = 'modelled') {
   const judged = status === 'judged';
   const {points, lean} = pointsOf(spec.viewpoint, hands);
   const known = gauges(t, lean, wrenches);
@@ -82,7 +82,7 @@ export function personMessage(spec, t, tick, hands, wrenches, status = 'judged')
   const warns = judged && known.left_shoulder_use.value > 0.5;
   return {
     type: 'person', tick, run_time: t, load_time: t - 0.1, interval_time: t - 0.2, since: 0, status,
-    reached: true, miss: 0, sampled_reached: 1, warnings: warns ? ['left_shoulder'] : [],
+    head: judged ? head : 'modelled', reached: true, miss: 0, sampled_reached: 1, warnings: warns ? ['left_shoulder'] : [],
     points: judged ? points : nothing(points),
     parts: {
       lower_back: part(known.lower_back_compression.value / 3400, null),

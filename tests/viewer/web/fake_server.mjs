@@ -76,6 +76,7 @@ export class FakeServer {
     this.full = false;     // refuses another page
     this.file = 'made_up'; // the scenario's file
     this.personStatus = 'judged';
+    this.personHead = 'modelled';  // origin of the person's head
     this.sendingPerson = true;
     this.parameters = [1, 1, 1, 30, 5];
     this.targets = [...this.parameters];
@@ -393,7 +394,8 @@ export class FakeServer {
     if (this.options.person || this.options.older || !this.sendingPerson) return;
     const hands = Object.fromEntries(kSides.map((side) => [side, position(this.handlePose(side))]));
     const wrenches = Object.fromEntries(kSides.map((side) => [side, this.wrench(side)]));
-    this.broadcast(personMessage(this.scene, this.runTime, this.tick, hands, wrenches, this.personStatus));
+    this.broadcast(personMessage(this.scene, this.runTime, this.tick, hands, wrenches, this.personStatus,
+                                 this.personHead));
   }
 
   advance(dt) {

@@ -60,6 +60,17 @@ test('gauges, scores, damage and fatigue show the values in the message and thei
   for (const origin of ['measured', 'modelled', 'standard', 'operator is simulated']) assert.ok(words.includes(origin), origin);
 });
 
+test('the card states whether the headset measures the head', async () => {
+  const head = page.locator('#person-head');
+  await waitForText(head, /^The head is modelled\.$/);
+  server.personHead = 'measured';
+  await waitForText(head, /^The headset measures the head\.$/);
+  server.personHead = 'impossible';
+  await waitForText(head, /register again/);
+  server.personHead = 'modelled';
+  await waitForText(head, /^The head is modelled\.$/);
+});
+
 test('a warning appears while it is active in the evaluation', async () => {
   server.frozen = false;
   const warning = page.locator('[data-warning=left_shoulder]');
