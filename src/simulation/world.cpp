@@ -284,7 +284,8 @@ struct World::Impl {
     if (!copy->Prepare() || !copy->ComputeAccelerations(false)) return support;
     for (int i = 0; i < copy->contact_count(); ++i) {
       const Contact contact = copy->contact(i);
-      if (!contact.link.empty()) continue;
+      const bool of_object = contact.link.empty() && contact.body < 0;
+      if (!of_object) continue;
       const bool is_floor = contact.fixture < 0 && contact.p_W.z() < kFloorHeight;
       (is_floor ? support.floor : support.other) += contact.force_W.z();
     }

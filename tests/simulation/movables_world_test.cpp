@@ -84,6 +84,15 @@ TEST(MovableObject, DoesNotChangeTheStart) {
   EXPECT_LT((Brick(with).X_W.p - start).norm(), 1e-4);
 }
 
+// The table carries the brick, and nothing of the box that hangs beside it.
+TEST(MovableObject, IsNotCountedAsSupportOfTheBox) {
+  Scenario s = WithABrick();
+  s.environment.objects[0].xyz.z() -= 1e-5;  // so that it touches the table whatever the rounding
+  const ObjectSupport support = World(s).SupportAtStart();
+  EXPECT_EQ(support.floor, 0);
+  EXPECT_EQ(support.other, 0);
+}
+
 TEST(MovableObject, ReturnsToItsStartOnAReset) {
   const Scenario s = WithABrick();
   World world(s);
