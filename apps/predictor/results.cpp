@@ -79,6 +79,9 @@ Json Figures(const Summary& s) {
   rows.push_back(
       {{"name", "Object lifted by"}, {"value", Millimetres(s.Get<double>("object.lift_m"))}});
   rows.push_back({{"name", "Object lowered by"}, {"value", Millimetres(lowered)}});
+  if (const Result& moved = s.At("movables.moved_m"); !IsMissing(moved.value))
+    rows.push_back({{"name", "Movable object moved by"},
+                    {"value", Millimetres(std::get<double>(moved.value))}});
   AddGripper(s, &rows);
   rows.push_back({{"name", "Late cycles"},
                   {"value", Formatted("%llu of %llu", static_cast<unsigned long long>(s.overruns),
@@ -158,7 +161,7 @@ Json ResultsJson(const Summary& summary, const ResultCurves& curves, const std::
           {"remark", remark}};
 }
 
-std::filesystem::path WriteRunReport(const std::string& recording, double duration,
+std::filesystem::path WriteRunReport(const std::string& recording, double duration, bool force,
                                      std::string* remark) {
   if (recording.empty()) {
     *remark = "This run was not recorded, so there is no report.";
@@ -176,6 +179,7 @@ std::filesystem::path WriteRunReport(const std::string& recording, double durati
     options.recordings = {recording};
     options.output = file.string();
     options.quiet = true;
+    options.force = force;
     ReportCommand(options);
   } catch (const InputError& error) {
     *remark = std::string("The report could not be made: ") + error.what();

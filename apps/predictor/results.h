@@ -45,9 +45,10 @@ nlohmann::ordered_json ResultsJson(const Summary& summary, const ResultCurves& c
                                    const std::string& remark);
 
 // Writes the report of a recording to the folder of the recording. Returns the report's file, or an
-// empty path and the reason in `remark`. `duration` is the duration of the run [s]. For long runs,
-// the user must make the report with `predictor report`.
-std::filesystem::path WriteRunReport(const std::string& recording, double duration,
+// empty path and the reason in `remark`. `duration` is the duration of the run [s]. If `force` is
+// true, the program replaces an existing report. For long runs, the user must make the report with
+// `predictor report`.
+std::filesystem::path WriteRunReport(const std::string& recording, double duration, bool force,
                                      std::string* remark);
 
 }  // namespace predictor

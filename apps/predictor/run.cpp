@@ -286,7 +286,7 @@ class Run {
     std::string remark;
     const std::string recording = recording_ ? recording_->file() : "";
     ServeOptions serve = serve_;
-    serve.page.report = WriteRunReport(recording, summary.duration(), &remark);
+    serve.page.report = WriteRunReport(recording, summary.duration(), options_.force, &remark);
     if (recording_ && !remark.empty() && !options_.quiet) TheScreen().Print(remark);
     serve.page.results = ResultsJson(summary, curves, how, recording, remark).dump();
     serve.page.object_start = emulator_.setup().object_start;

@@ -14,6 +14,7 @@
   add(kObjectHeight)           \
   add(kEnergy)                 \
   add(kGrip)                   \
+  add(kMovableObjects)         \
   add(kCobotLimits)            \
   add(kRendering)              \
   add(kControllerAnswers)      \
