@@ -79,6 +79,10 @@ ReadableUnit UnitOf(Quantity quantity) {
       return {1e3, " mm/s"};
     case Quantity::kAngularSpeed:
       return {kDegrees, "°/s"};
+    case Quantity::kAcceleration:
+      return {1, " m/s²"};
+    case Quantity::kAngularAcceleration:
+      return {1, " rad/s²"};
     case Quantity::kTime:
     case Quantity::kArmAge:
     case Quantity::kSensorAge:

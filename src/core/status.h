@@ -35,20 +35,23 @@ const char* Name(StopCause cause);
 
 // Quantity to which a measured value and its limit belong.
 enum class Quantity : std::uint8_t {
-  kNone,          // no number
-  kCount,         // of ticks, readings or joints
-  kForce,         // [N]
-  kTorque,        // [N·m]
-  kLength,        // [m]
-  kAngle,         // [rad]
-  kSpeed,         // [m/s]
-  kAngularSpeed,  // [rad/s]
-  kTime,          // [s]
-  kArmAge,        // of an arm's sample [s]
-  kSensorAge,     // of a force sensor's reading [s]
-  kVibration,     // amplitude of a force's vibration [N]
+  kNone,                 // no number
+  kCount,                // of ticks, readings or joints
+  kForce,                // [N]
+  kTorque,               // [N·m]
+  kLength,               // [m]
+  kAngle,                // [rad]
+  kSpeed,                // [m/s]
+  kAngularSpeed,         // [rad/s]
+  kTime,                 // [s]
+  kArmAge,               // of an arm's sample [s]
+  kSensorAge,            // of a force sensor's reading [s]
+  kVibration,            // amplitude of a force's vibration [N]
+  kAcceleration,         // [m/s²]
+  kAngularAcceleration,  // [rad/s²]
+  kNotFinite,            // no number, because the simulation step has no finite result
 };
-inline constexpr int kQuantities = 12;
+inline constexpr int kQuantities = 15;
 
 // Returns the quantity that belongs to a cause. The Status of the cause may name another quantity,
 // which then takes precedence.

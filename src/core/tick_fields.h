@@ -24,8 +24,14 @@
 namespace predictor {
 
 inline constexpr std::array<const char*, kQuantities> kQuantityNames = {
-    "none",  "count",         "force", "torque",  "length",     "angle",
-    "speed", "angular_speed", "time",  "arm_age", "sensor_age", "vibration"};
+    "none",         "count",
+    "force",        "torque",
+    "length",       "angle",
+    "speed",        "angular_speed",
+    "time",         "arm_age",
+    "sensor_age",   "vibration",
+    "acceleration", "angular_acceleration",
+    "not_finite"};
 static_assert(kQuantityNames.back() != nullptr);  // a name for each quantity
 
 struct TickField {

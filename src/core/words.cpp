@@ -63,17 +63,21 @@ std::string CobotStopWords(CobotStop stop) {
 }
 
 std::string MeasuredWords(const Status& status) {
-  if (status.quantity == Quantity::kNone && status.cause != StopCause::kPhysics) return "";
+  if (status.quantity == Quantity::kNone) return "";
+  if (status.quantity == Quantity::kNotFinite) return Message("value.not_finite");
   const std::string measured = SeenAndAllowed(status.value, status.limit, status.quantity);
   if (status.cause != StopCause::kPhysics) return measured;
-  const bool is_acceleration = status.quantity == Quantity::kNone && status.limit > 0;
-  if (!std::isfinite(status.value) || (status.quantity == Quantity::kNone && !is_acceleration))
-    return Message("value.not_finite");
-  if (is_acceleration) return Message("value.joint_acceleration", {{"value", measured}});
-  if (status.quantity == Quantity::kCount)
-    return Message("value.torques", {{"count", Formatted("%.0f", status.value)}});
-  if (status.quantity == Quantity::kTime) return Message("value.silence", {{"value", measured}});
-  return Message("value.joint_speed", {{"value", measured}});
+  switch (status.quantity) {
+    case Quantity::kCount:
+      return Message("value.torques", {{"count", Formatted("%.0f", status.value)}});
+    case Quantity::kTime:
+      return Message("value.silence", {{"value", measured}});
+    case Quantity::kAcceleration:
+    case Quantity::kAngularAcceleration:
+      return Message("value.acceleration", {{"value", measured}});
+    default:
+      return Message("value.speed", {{"value", measured}});
+  }
 }
 
 std::string CauseWords(const Status& status) {

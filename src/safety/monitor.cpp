@@ -262,7 +262,7 @@ Status Monitor::CheckNumbers(const MonitorInput& input) const noexcept {
       return NotFinite(StopCause::kSensor, hand);
     }
     if (!IsFinite(input.virtual_[i]) || (input.world && !input.world->coupling[i].allFinite())) {
-      return NotFinite(StopCause::kPhysics, hand);
+      return {StopCause::kPhysics, static_cast<std::int8_t>(hand), 0, 0, Quantity::kNotFinite};
     }
     if (input.render && !input.render->v[i].allFinite()) return NotFinite(StopCause::kQp, hand);
   }

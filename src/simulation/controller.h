@@ -78,7 +78,8 @@ class Controller {
   // Returns the outcome of the last Compute, and the status if the step was refused.
   virtual ControllerOutcome outcome() const noexcept { return ControllerOutcome::kComputed; }
   virtual Status failure() const noexcept {
-    return {StopCause::kPhysics, -1, std::numeric_limits<double>::quiet_NaN(), 0, Quantity::kNone};
+    return {StopCause::kPhysics, -1, std::numeric_limits<double>::quiet_NaN(), 0,
+            Quantity::kNotFinite};
   }
   // In real time, a controller outside the program has a deadline. In virtual time, the program
   // waits for the controller.

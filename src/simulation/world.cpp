@@ -21,23 +21,25 @@ constexpr double kMaxAcceleration = 1e6;  // of a joint [rad/s², m/s²]
 constexpr double kMaxMovableVelocity = 1000;  // [rad/s, m/s]
 constexpr double kFloorHeight = 1e-3;  // contacts below it are with the floor, not a table [m]
 
-double Largest(const Eigen::Ref<const Eigen::VectorXd>& values) {
+// Returns the largest absolute value and its index. The first NaN counts as the largest.
+double Largest(const Eigen::Ref<const Eigen::VectorXd>& values, Eigen::Index* index) {
   double largest = 0;
-  for (const double value : values) {
-    const double x = std::fabs(value);
-    if (!(x <= largest)) largest = x;  // keeps NaN
-    if (std::isnan(x)) return x;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    const double x = std::fabs(values[i]);
+    if (x <= largest) continue;
+    largest = x;
+    *index = i;
+    if (std::isnan(x)) break;
   }
   return largest;
 }
 
-Status Failure(double value, double limit, Quantity quantity = Quantity::kNone) {
-  Status status;
-  status.cause = StopCause::kPhysics;
-  status.value = value;
-  status.limit = limit;
-  status.quantity = quantity;
-  return status;
+Status NotFinite() { return {StopCause::kPhysics, -1, std::nan(""), 0, Quantity::kNotFinite}; }
+
+// Returns the failure of a step whose largest velocity or acceleration is above its limit.
+Status Diverged(double value, double limit, Quantity quantity) {
+  if (!std::isfinite(value)) return NotFinite();
+  return {StopCause::kPhysics, -1, value, limit, quantity};
 }
 
 }  // namespace
@@ -197,34 +199,44 @@ struct World::Impl {
     Engine& world = engine();
     if (!controlled.StepController(world.time())) return controlled.failure();
     ApplyWrenches(input);
-    if (!controlled.HoldObject()) return Failure(std::nan(""), 0);
-    if (!world.Advance()) return Failure(std::nan(""), 0);
-    const double velocity = Largest(world.velocities());
-    if (!(velocity <= kMaxVelocity)) return Failure(velocity, kMaxVelocity, FastestQuantity());
-    const double acceleration = Largest(world.accelerations());
-    if (!(acceleration <= kMaxAcceleration)) return Failure(acceleration, kMaxAcceleration);
-    if (!std::isfinite(Largest(world.positions()))) return Failure(std::nan(""), 0);
-    const double movable = Largest(world.movable_velocities());
-    if (!(movable <= kMaxMovableVelocity)) return Failure(movable, kMaxMovableVelocity);
+    if (!controlled.HoldObject() || !world.Advance()) return NotFinite();
+    if (const Status status = CheckResult(); !status.ok()) return status;
     controlled.SenseWrist();
-    if (!controlled.Update(&world)) return Failure(std::nan(""), 0);
+    if (!controlled.Update(&world)) return NotFinite();
     controlled.FollowObject();
     controlled.AdvanceController(world.time());
     UpdateMotion(1 / world.step());
     return Status::Ok();
   }
 
-  // Returns the kind of quantity that the largest velocity describes.
-  Quantity FastestQuantity() const noexcept {
-    const Engine::Values v = engine().velocities();
+  // Returns whether the engine's last step diverged, and what shows it.
+  Status CheckResult() const noexcept {
+    Engine& world = engine();
     Eigen::Index i = 0;
-    if (!std::isfinite(v.cwiseAbs().maxCoeff(&i)) || !v.allFinite()) return Quantity::kNone;
+    const double velocity = Largest(world.velocities(), &i);
+    if (!(velocity <= kMaxVelocity))
+      return Diverged(velocity, kMaxVelocity,
+                      Translates(i) ? Quantity::kSpeed : Quantity::kAngularSpeed);
+    const double acceleration = Largest(world.accelerations(), &i);
+    if (!(acceleration <= kMaxAcceleration))
+      return Diverged(acceleration, kMaxAcceleration,
+                      Translates(i) ? Quantity::kAcceleration : Quantity::kAngularAcceleration);
+    if (!world.positions().allFinite()) return NotFinite();
+    const double movable = Largest(world.movable_velocities(), &i);
+    if (!(movable <= kMaxMovableVelocity))  // each one has a linear velocity, then an angular one
+      return Diverged(movable, kMaxMovableVelocity,
+                      i % 6 < 3 ? Quantity::kSpeed : Quantity::kAngularSpeed);
+    return Status::Ok();
+  }
+
+  // Returns whether velocity i of the engine is that of a translation.
+  bool Translates(Eigen::Index i) const noexcept {
     const Engine::Layout& at = engine().layout();
-    const bool translates = at.object_v >= 0 && i >= at.object_v && i < at.object_v + 3;
+    if (at.object_v >= 0 && i >= at.object_v && i < at.object_v + 3) return true;
     const RobotModel& robot = controlled.robot();
     for (int j = 0; j < robot.dof(); ++j)
-      if (at.v[static_cast<std::size_t>(j)] == i && robot.is_prismatic(j)) return Quantity::kSpeed;
-    return translates ? Quantity::kSpeed : Quantity::kAngularSpeed;
+      if (at.v[static_cast<std::size_t>(j)] == i) return robot.is_prismatic(j);
+    return false;
   }
 
   // Applies the wrenches of the hands and of the coupling as one wrench on the object's body. All

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "core/message_catalogue.h"
@@ -48,9 +49,7 @@ TEST(StopMessage, NamesCauseAdviceAndNextStepOfEachCause) {
     const std::string id = std::string("stop.") + Name(record.cause);
     ASSERT_NE(Text(id + ".cause"), "") << id;
     ASSERT_NE(Text(id + ".advice"), "") << id;
-    const bool physics = record.cause == StopCause::kPhysics;
-    EXPECT_EQ(StopCauseWords(record), Capitalised(Text(id + ".cause")) +
-                                          (physics ? " (" + Text("value.not_finite") + ")." : "."));
+    EXPECT_EQ(StopCauseWords(record), Capitalised(Text(id + ".cause")) + ".");
     const bool device = record.cause == StopCause::kDevice;
     EXPECT_EQ(StopAdvice(record),
               Text(id + ".advice") + " " + Text(device ? "next.restart" : "next.reset"));
@@ -101,6 +100,22 @@ TEST(StopMessage, NamesHandAndNumbers) {
   EXPECT_EQ(StopCauseWords(record),
             Message("hand.right", {{"text", Text("stop.force.cause")}}) + " (31.2 N, limit 30 N).");
   EXPECT_EQ(StopAdvice(record), Text("stop.force.advice") + " " + Text("next.reset"));
+}
+
+TEST(StopMessage, OfThePhysicsStatesWhatDiverged) {
+  const auto words = [](Quantity quantity, double value, double limit) {
+    return CauseWords({StopCause::kPhysics, -1, value, limit, quantity});
+  };
+  const std::string cause = Capitalised(Text("stop.physics.cause"));
+  EXPECT_EQ(words(Quantity::kSpeed, 150, 100),
+            cause + " (largest speed: 150000 mm/s, limit 100000 mm/s)");
+  EXPECT_EQ(words(Quantity::kAcceleration, 2e6, 1e6),
+            cause + " (largest acceleration: 2000000 m/s², limit 1000000 m/s²)");
+  EXPECT_EQ(words(Quantity::kAngularAcceleration, 2e6, 1e6),
+            cause + " (largest acceleration: 2000000 rad/s², limit 1000000 rad/s²)");
+  EXPECT_EQ(words(Quantity::kNotFinite, std::nan(""), 0),
+            cause + " (" + Text("value.not_finite") + ")");
+  EXPECT_EQ(words(Quantity::kNone, 0, 0), cause);
 }
 
 TEST(StopMessage, NamesTheFaultThatEscalatedItToPowerOff) {

@@ -176,6 +176,14 @@ TEST(World, ResetRepeatsBitForBit) {
   EXPECT_TRUE(Same(another.state(), first));
 }
 
+// A stop by the simulation states a value above its limit, or that there is none.
+void ExpectSaysWhatDiverged(const Status& status) {
+  EXPECT_NE(status.quantity, Quantity::kNone);
+  if (status.quantity == Quantity::kNotFinite) return;
+  EXPECT_TRUE(std::isfinite(status.value));
+  EXPECT_GT(status.value, status.limit);
+}
+
 TEST(World, DiscardsAStepThatIsNotFiniteOrDiverges) {
   const Scenario s = BoxScene(9);
   for (const double force : {1e12, 1e300, std::nan(""), std::numeric_limits<double>::infinity()}) {
@@ -185,11 +193,40 @@ TEST(World, DiscardsAStepThatIsNotFiniteOrDiverges) {
     const WorldState before = world.state();
     const Status status = world.Step(Push(s, {force, 0, 0}), 0.002);
     EXPECT_EQ(status.cause, StopCause::kPhysics);
+    ExpectSaysWhatDiverged(status);
     EXPECT_TRUE(Same(world.state(), before));
     Simulate(&world, Push(s, {5, -3, 10}), 0.2);
     Simulate(&reference, Push(s, {5, -3, 10}), 0.2);
     EXPECT_TRUE(Same(world.state(), reference.state()));
   }
+}
+
+TEST(World, SaysThatANumberOfAStepIsNotFinite) {
+  const Scenario s = BoxScene(9);
+  World world(s);
+  for (const double force : {std::nan(""), std::numeric_limits<double>::infinity()})
+    EXPECT_EQ(world.Step(Push(s, {force, 0, 0}), 0.002).quantity, Quantity::kNotFinite);
+}
+
+// The friction in the joints is so large that the implicit integrator turns a very large
+// acceleration into a small change of the velocity. At rest, an acceleration is nearly proportional
+// to a large force, so the first refused one exceeds its limit by little more than a step of the
+// force.
+TEST(World, StatesTheAccelerationThatIsTooLarge) {
+  Scenario s = FlangeScene("cartesian_impedance", {});
+  s.cobot.joint_friction.viscous = {1e5};
+  World world(s);
+  Status status;
+  for (double force = 1e3; status.ok(); force *= 1.1) {
+    ASSERT_LT(force, 1e9);
+    world.Reset();
+    status = world.Step(Push(s, {force, 0, 0}), 0.001);
+  }
+  EXPECT_EQ(status.cause, StopCause::kPhysics);
+  EXPECT_EQ(status.quantity, Quantity::kAngularAcceleration);
+  EXPECT_EQ(status.limit, 1e6);
+  EXPECT_GT(status.value, 1e6);
+  EXPECT_LT(status.value, 1.15e6);
 }
 
 TEST(World, JointTorquesStayWithinTheEffortLimits) {

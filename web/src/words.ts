@@ -121,7 +121,7 @@ export function readable(value: number, quantity: Quantity, more = 0): string {
   const degrees = (value * 180) / Math.PI;
   const d = 1 + more;
   switch (quantity) {
-    case 'none': return '';
+    case 'none': case 'not_finite': return '';
     case 'count': return value.toFixed(0);
     case 'force': case 'vibration': return `${value.toFixed(d)} N`;
     case 'torque': return `${value.toFixed(d + 1)} N·m`;
@@ -129,6 +129,8 @@ export function readable(value: number, quantity: Quantity, more = 0): string {
     case 'angle': return `${degrees.toFixed(d)}°`;
     case 'speed': return `${(value * 1000).toFixed(d)} mm/s`;
     case 'angular_speed': return `${degrees.toFixed(d)}°/s`;
+    case 'acceleration': return `${value.toFixed(more)} m/s²`;
+    case 'angular_acceleration': return `${value.toFixed(more)} rad/s²`;
     case 'time': return value >= 10 ? `${value.toFixed(d)} s` : `${(value * 1000).toFixed(d)} ms`;
     case 'arm_age': case 'sensor_age': return `${(value * 1000).toFixed(d)} ms`;
   }
@@ -144,15 +146,16 @@ function beyond(value: number, limit: number, quantity: Quantity): string {
 
 // Describes the measured quantity, like MeasuredWords in the program.
 function measured({cause, value, limit, quantity}: Reason): string {
+  if (quantity === 'none') return '';
+  if (quantity === 'not_finite') return message('value.not_finite');
   const numbers = beyond(value, limit, quantity);
   if (cause !== 'physics') return numbers;
-  if (quantity === 'count') return message('value.torques', {count: fixed(value, 0)});
-  if (!Number.isFinite(value) || (quantity === 'none' && !(limit > 0)))
-    return message('value.not_finite');
-  if (quantity === 'none')
-    return message('value.joint_acceleration',
-      {value: message('value', {value: value.toFixed(0), limit: limit.toFixed(0)})});
-  return message(quantity === 'time' ? 'value.silence' : 'value.joint_speed', {value: numbers});
+  switch (quantity) {
+    case 'count': return message('value.torques', {count: fixed(value, 0)});
+    case 'time': return message('value.silence', {value: numbers});
+    case 'acceleration': case 'angular_acceleration': return message('value.acceleration', {value: numbers});
+    default: return message('value.speed', {value: numbers});
+  }
 }
 
 function capital(text: string): string {
@@ -167,8 +170,8 @@ export function sideWords(side: Side): string {
 function sentence(why: Reason): string {
   const id = stopId(why);
   const text = id ? message(`stop.${id}.cause`) : '';
-  const silent = why.quantity === 'none' && why.cause !== 'physics';
-  const numbers = silent ? '' : ` (${measured(why)})`;
+  const amount = measured(why);
+  const numbers = amount ? ` (${amount})` : '';
   return (why.hand ? message(`hand.${why.hand}`, {text}) : capital(text)) + numbers + '.';
 }
 
