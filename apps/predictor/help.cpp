@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "command_line.h"
+#include "core/text.h"
 
 namespace predictor {
 namespace {
@@ -109,15 +110,13 @@ std::string Groff(const std::string& text) {
   return out;
 }
 
-// Removes the indentation of options without a short form.
-std::string Trimmed(const std::string& text) { return text.substr(text.find_first_not_of(' ')); }
-
 std::string ManCommand(const CLI::App& app) {
   std::string text = ".SS " + Groff(PathOf(app)) + "\n" + Groff(app.get_description()) + "\n.PP\n" +
                      Groff(UsageOf(app, PathOf(app))) + "\n";
   for (const bool positional : {true, false})
     for (const CLI::Option* option : OptionsOf(app, positional))
-      text += ".TP\n\\fB" + Groff(Trimmed(NameOf(*option))) + "\\fR\n" +
+      // Options without a short form are indented.
+      text += ".TP\n\\fB" + Groff(std::string(Trimmed(NameOf(*option)))) + "\\fR\n" +
               Groff(DescriptionOf(*option)) + "\n";
   if (!app.get_footer().empty()) text += ".PP\n.nf\n" + Groff(app.get_footer()) + "\n.fi\n";
   for (const CLI::App* command : CommandsOf(app)) text += ManCommand(*command);

@@ -67,9 +67,7 @@ std::string OriginWords() {
 
 std::string NumberText(const Unit& unit, double x) {
   if (!std::isfinite(x)) return "–";
-  const std::string text = Formatted("%.*f", unit.decimals, unit.factor * x);
-  return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1)
-                                                                              : text;
+  return Fixed(unit.factor * x, unit.decimals);
 }
 
 std::string ValueText(const QuantityKind& kind, double x) { return NumberText(kind.unit, x); }

@@ -25,6 +25,12 @@ void AppendArguments(std::string* text, const char* format, va_list arguments) {
 
 }  // namespace
 
+std::string Fixed(double x, int decimals) {
+  const std::string text = Formatted("%.*f", decimals, x);
+  const bool is_minus_zero = text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos;
+  return is_minus_zero ? text.substr(1) : text;
+}
+
 std::string LocalTime(const char* format, std::time_t time) {
   std::tm local{};
   char text[64];

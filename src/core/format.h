@@ -15,6 +15,9 @@ __attribute__((format(printf, 2, 3))) void Append(std::string* text, const char*
 // Appends text in the same way as Append, and then a newline.
 __attribute__((format(printf, 2, 3))) void AppendLine(std::string* text, const char* format, ...);
 
+// Formats a value with this number of decimals. A value that is rounded to zero has no minus sign.
+std::string Fixed(double x, int decimals);
+
 // Returns the local time in the format of strftime.
 std::string LocalTime(const char* format, std::time_t time);
 

@@ -129,6 +129,27 @@ std::string Quote(std::string_view x) {
   return "\"" + Printable(x.substr(0, end)) + "...\"";
 }
 
+std::string_view Trimmed(std::string_view text) {
+  constexpr std::string_view kWhite = " \t\r\n";
+  text.remove_prefix(std::min(text.find_first_not_of(kWhite), text.size()));
+  return text.substr(0, text.find_last_not_of(kWhite) + 1);
+}
+
+std::vector<std::string_view> CellsOf(std::string_view line, char separator) {
+  std::vector<std::string_view> cells;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    std::size_t end = begin;
+    for (bool quoted = false; end < line.size() && (quoted || line[end] != separator); ++end)
+      if (line[end] == '"') quoted = !quoted;
+    std::string_view cell = Trimmed(line.substr(begin, end - begin));
+    if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
+      cell = Trimmed(cell.substr(1, cell.size() - 2));
+    cells.push_back(cell);
+    begin = end + 1;
+  }
+  return cells;
+}
+
 std::string Join(const std::vector<std::string>& words, std::string_view separator) {
   std::string joined;
   for (const std::string& word : words) {

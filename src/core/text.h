@@ -53,6 +53,13 @@ std::string Printable(std::string_view text, Lines lines = Lines::kOne);
 // bytes.
 std::string Quote(std::string_view x);
 
+// Returns the text without the spaces, tabs and line ends around it.
+std::string_view Trimmed(std::string_view text);
+
+// Returns the cells of one line of a table, without the white space and the quotation marks around
+// them. A separator inside quotation marks belongs to its cell.
+std::vector<std::string_view> CellsOf(std::string_view line, char separator = ',');
+
 // Returns "a, b, c".
 std::string Join(const std::vector<std::string>& words, std::string_view separator = ", ");
 

@@ -15,24 +15,9 @@ namespace {
 constexpr std::string_view kEdition = "edition";
 constexpr std::size_t kMaxBytes = 1u << 20;
 
-std::string_view Trimmed(std::string_view text) {
-  const std::size_t first = std::min(text.find_first_not_of(" \t\r"), text.size());
-  return text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
-}
-
-std::vector<std::string> CellsOfLine(std::string_view line) {
-  std::vector<std::string> cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    cells.emplace_back(Trimmed(line.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  return cells;
-}
-
 void CheckCount(const std::vector<std::string>& cells, std::string_view columns,
                 const std::string& place) {
-  const std::size_t count = CellsOfLine(columns).size();
+  const std::size_t count = CellsOf(columns).size();
   if (cells.size() != count)
     throw InputError(place, "this row has " + std::to_string(cells.size()) +
                                 " values. Give one for each of the " + std::to_string(count) +
@@ -51,7 +36,8 @@ LimitTable ParseLimitTable(const std::string& text, const std::string& name,
     const std::string place = name + ":" + std::to_string(++number);
     const std::string_view content = Trimmed(line);
     if (content.empty() || content.starts_with('#')) continue;
-    const std::vector<std::string> cells = CellsOfLine(content);
+    const std::vector<std::string_view> views = CellsOf(content);
+    const std::vector<std::string> cells(views.begin(), views.end());
     if (table.edition.empty()) {
       if (cells.size() < 2 || cells[0] != kEdition || cells[1].empty())
         throw InputError(place,

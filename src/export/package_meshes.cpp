@@ -36,12 +36,6 @@ std::string Plain(std::string name) {
   return name;
 }
 
-std::string Trim(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
-
 // In COLLADA, the name of an image file is in <init_from> (version 1.4) or in the <ref> of
 // <init_from> (version 1.5).
 std::string RewriteCollada(const std::string& text, const Rename& rename) {
@@ -56,7 +50,7 @@ std::string RewriteCollada(const std::string& text, const Rename& rename) {
     const std::size_t value = text.find('>', tag) + 1;
     const std::size_t value_end = text.find('<', value);
     if (value_end == std::string::npos) break;
-    const std::string uri = Trim(text.substr(value, value_end - value));
+    const std::string uri(Trimmed(std::string_view(text).substr(value, value_end - value)));
     out.append(text, at, value - at);
     out += uri.empty() ? text.substr(value, value_end - value) : rename(uri);
     at = value_end;
@@ -73,7 +67,7 @@ std::string FileOfLine(const std::string& line, bool is_library) {
   if (!is_library) {
     std::string rest;
     std::getline(words, rest);
-    return word == "mtllib" ? Trim(rest) : "";
+    return word == "mtllib" ? std::string(Trimmed(rest)) : "";
   }
   const bool names_file = word.rfind("map_", 0) == 0 || word == "bump" || word == "disp" ||
                           word == "decal" || word == "refl" || word == "norm";

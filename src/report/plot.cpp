@@ -6,16 +6,6 @@
 #include "core/format.h"
 
 namespace predictor {
-namespace {
-
-std::string Fixed(double x, int decimals) {
-  const std::string text = Formatted("%.*f", decimals, x);
-  // A value that is rounded to zero must have no minus sign.
-  return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1)
-                                                                              : text;
-}
-
-}  // namespace
 
 std::string Significant(double x, int digits, int decimals) {
   if (std::isnan(x)) return "–";

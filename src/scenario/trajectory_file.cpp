@@ -29,20 +29,14 @@ YamlNode NodeAt(Kind kind, const Place& place, std::string key = "") {
   return node;
 }
 
-// Returns the cells of a line, without spaces around them.
-std::vector<YamlNode> CellsOf(std::string_view line, Place place) {
-  std::vector<YamlNode> cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    std::string_view text = line.substr(begin, end - begin);
-    const std::size_t first = std::min(text.find_first_not_of(" \t"), text.size());
-    text = text.substr(first, text.find_last_not_of(" \t") + 1 - first);
-    place.column = static_cast<int>(begin + first) + 1;
-    cells.push_back(NodeAt(Kind::kScalar, place));
-    cells.back().text = text;
-    begin = end + 1;
+std::vector<YamlNode> NodesOf(std::string_view line, Place place) {
+  std::vector<YamlNode> nodes;
+  for (const std::string_view cell : CellsOf(line)) {
+    place.column = static_cast<int>(cell.data() - line.data()) + 1;
+    nodes.push_back(NodeAt(Kind::kScalar, place));
+    nodes.back().text = cell;
   }
-  return cells;
+  return nodes;
 }
 
 YamlNode ListOfThree(const char* key, const std::vector<YamlNode>& cells, std::size_t first) {
@@ -91,8 +85,8 @@ YamlNode ParseWaypoints(const std::string& text, const std::string& name) {
     if (line.ends_with('\r')) line.remove_suffix(1);
     begin = end + 1;
     ++place.line;
-    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
-    std::vector<YamlNode> cells = CellsOf(line, place);
+    if (Trimmed(line).empty()) continue;
+    std::vector<YamlNode> cells = NodesOf(line, place);
     if (columns == 0) {
       CheckHeader(cells, place);
       columns = cells.size();

@@ -40,7 +40,7 @@ class CsvReader {
     TextLines lines(text);
     for (std::string_view line; lines.Next(&line);) {
       line_ = lines.number();
-      if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+      if (Trimmed(line).empty()) continue;
       if (file_.series.empty() && line.starts_with('#'))
         file_.comments.emplace_back(line.substr(1));
       else

@@ -7,17 +7,6 @@
 #include "tracks/series.h"
 
 namespace predictor::tracks {
-namespace {
-
-std::string_view Trimmed(std::string_view text) {
-  constexpr const char* kSpaces = " \t\r";
-  const std::size_t first = std::min(text.find_first_not_of(kSpaces), text.size());
-  text.remove_prefix(first);
-  return text.substr(0, text.find_last_not_of(kSpaces) + 1);
-}
-
-}  // namespace
-
 TextLines::TextLines(std::string_view text) : rest_(text) {
   if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
 }
@@ -30,21 +19,6 @@ bool TextLines::Next(std::string_view* line) {
   if (line->ends_with('\r')) line->remove_suffix(1);
   ++number_;
   return true;
-}
-
-std::vector<std::string_view> CellsOf(std::string_view line, char separator) {
-  std::vector<std::string_view> cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    std::size_t end = begin;
-    for (bool quoted = false; end < line.size() && (quoted || line[end] != separator); ++end)
-      if (line[end] == '"') quoted = !quoted;
-    std::string_view cell = Trimmed(line.substr(begin, end - begin));
-    if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
-      cell = Trimmed(cell.substr(1, cell.size() - 2));
-    cells.push_back(cell);
-    begin = end + 1;
-  }
-  return cells;
 }
 
 std::optional<double> NumberIn(std::string_view cell) {

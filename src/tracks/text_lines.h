@@ -1,10 +1,9 @@
-// Splits text files into lines and cells.
+// Splits text files into lines, and reads the numbers in their cells.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace predictor::tracks {
 
@@ -21,9 +20,6 @@ class TextLines {
   std::string_view rest_;
   int number_ = 0;
 };
-
-// Returns the cells between separators, without spaces and quotation marks around them.
-std::vector<std::string_view> CellsOf(std::string_view line, char separator);
 
 // Returns NaN for an empty cell and for "nan" in any spelling, and no value if the text is not a
 // number.

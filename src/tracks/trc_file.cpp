@@ -35,7 +35,7 @@ class TrcReader {
         case 5:  // X1, Y1, Z1, ...
           break;
         default:
-          if (line.find_first_not_of(" \t") != std::string_view::npos) ReadRow(CellsOf(line, '\t'));
+          if (!Trimmed(line).empty()) ReadRow(CellsOf(line, '\t'));
       }
     }
     if (line_ < 5) Fail("The file ends within its header. Export it again.");

@@ -11,6 +11,8 @@
 #include <tuple>
 #include <vector>
 
+#include "core/text.h"
+
 namespace predictor {
 namespace {
 
@@ -222,15 +224,10 @@ std::set<Edge> EdgesOfCode() {
   return edges;
 }
 
-std::string Trim(const std::string& s) {
-  const auto first = s.find_first_not_of(' '), last = s.find_last_not_of(' ');
-  return first == std::string::npos ? "" : s.substr(first, last - first + 1);
-}
-
 std::vector<std::string> Split(const std::string& s, char at) {
   std::vector<std::string> parts;
   std::istringstream in(s);
-  for (std::string part; std::getline(in, part, at);) parts.push_back(Trim(part));
+  for (std::string part; std::getline(in, part, at);) parts.emplace_back(Trimmed(part));
   return parts;
 }
 
@@ -273,8 +270,8 @@ TEST(StatesPage, DiagramIsTheCodes) {
       if (id == "RECOVERY_HELD") return std::string("RECOVERY (after a stop)");
       return id == "STOPPING_OFF" ? std::string("STOPPING (power off)") : id;
     };
-    const std::string from = name(Trim(line.substr(0, arrow)));
-    const std::string to = name(Trim(line.substr(arrow + 5, colon - arrow - 5)));
+    const std::string from = name(std::string(Trimmed(line.substr(0, arrow))));
+    const std::string to = name(std::string(Trimmed(line.substr(arrow + 5, colon - arrow - 5))));
     for (const std::string& event : Split(line.substr(colon + 2), ',')) {
       EXPECT_TRUE(edges.emplace(from, event, to).second);
     }
