@@ -78,9 +78,6 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
                    ? MakeStandby(ContextOf(*scenario.cobot.standby_controller, scenario, *robot_,
                                            end_effector_, posture_))
                    : nullptr),
-      taped_(controller_->taped()),
-      has_wrist_sensor_(controller_->uses_wrist_sensor() ||
-                        (standby_ && standby_->uses_wrist_sensor())),
       joint_(scenario.object.attachment.joint),
       payload_(scenario.cobot.payload),
       carried_(MakeEngine(scenario, *robot_, has_wrist_sensor(), Holding::kJoint)),

@@ -60,7 +60,9 @@ class ControlledScene {
   void AdvanceController(double t) noexcept;
 
   // The linearisation needs the states of sensor and controller, and their rates.
-  bool has_wrist_sensor() const noexcept { return has_wrist_sensor_; }
+  bool has_wrist_sensor() const noexcept {
+    return controller_->uses_wrist_sensor() || (standby_ && standby_->uses_wrist_sensor());
+  }
   WristSensor& wrist() { return wrist_; }
   std::span<double> memory() { return controller_->memory(); }
   const ControlTiming& timing() const { return timing_; }
@@ -107,7 +109,7 @@ class ControlledScene {
   void SetRealTime(bool real_time) noexcept { controller_->SetRealTime(real_time); }
   std::string PrioritiseProcess(bool on) { return controller_->PrioritiseProcess(on); }
   // Returns null unless the controller is outside the program.
-  TapedController* taped() const noexcept { return taped_; }
+  TapedController* taped() const noexcept { return controller_->taped(); }
   void Archive(StateArchive& a) noexcept;
 
   const JointVector& q() const { return q_; }            // of the cobot [rad]
@@ -154,9 +156,7 @@ class ControlledScene {
   double gravity_;  // [m/s²]
   JointVector posture_;
   std::unique_ptr<Controller> controller_, standby_;  // standby_ may be null
-  TapedController* const taped_;                      // may be null
-  const bool has_wrist_sensor_;
-  JointType joint_;  // of the attachment
+  JointType joint_;                                   // of the attachment
   std::optional<PayloadSpec> payload_;
   std::unique_ptr<Engine> carried_;
   std::unique_ptr<LooseObject> loose_;  // may be null
