@@ -12,8 +12,7 @@ constexpr CalibrateStep kCalibrateSteps[] = {
     {"handle", "Weigh the handle in six poses or more; this program does not move the arm",
      "Which arm (required if there are two)",
      "For each pose, guide the arm in its own free-drive mode, take your hands off and press "
-     "Enter. "
-     "Tilt the handle differently each time.\n"
+     "Enter. Tilt the handle differently each time.\n"
      "Needs: the arm's address, a warm sensor, and approximate base.rpy and sensor.pose.\n"
      "Writes: payload (mass and centre of mass).\n"
      "Example:\n"
@@ -23,8 +22,7 @@ constexpr CalibrateStep kCalibrateSteps[] = {
      "move the arms",
      "Arm whose base is written [default: right]",
      "Guide the arms in their own free-drive modes. Touch three or more marks (six are better) "
-     "with the "
-     "same tip: first all with one arm, then all with the other, in the same order.\n"
+     "with the same tip: first all with one arm, then all with the other, in the same order.\n"
      "Needs: both arms; marks that are far apart, not on a line and not all at one height; and the "
      "position of the tip (--tip). Without --tip, the program asks whether the end-effector's "
      "origin touches the marks.\n"

@@ -25,8 +25,7 @@ const char* RigConsole::Help() const {
   if (enabling_device_)
     return "Hold the enabling device. Key a aligns, then s starts; r recovers. Releasing the "
            "device stops the arms. Key z resets. Key : begins a command (Enter executes it; Esc "
-           "stops the arms). "
-           "Any other key stops the arms.";
+           "stops the arms). Any other key stops the arms.";
   return "Keys: hold a to align, then hold s to start and run; hold r to recover. Releasing the "
          "key stops the arms. Key z resets. Key : begins a command (Enter executes it; Esc stops "
          "the arms). Any other key stops the arms.";
@@ -106,11 +105,10 @@ void RigConsole::ReportIgnored(const Asking& asking, KeySign sign) {
     TheScreen().Print(
         Formatted("Key %c had no effect, because it was only tapped. Hold it down.", key));
   if (sign == KeySign::kLate)
-    TheScreen().Print(Formatted(
-        "Key %c had no effect, because the presses of this key arrived late and all at once. %s it "
-        "again. If the "
-        "connection stalls, use the keyboard of this computer.",
-        key, asking.by_touch ? "Tap" : "Hold"));
+    TheScreen().Print(
+        Formatted("Key %c had no effect, because the presses of this key arrived late and all at "
+                  "once. %s it again. If the connection stalls, use the keyboard of this computer.",
+                  key, asking.by_touch ? "Tap" : "Hold"));
 }
 
 // While a command is typed, keys that do not belong to text (Esc, Tab, an arrow) stop the run, too.

@@ -241,8 +241,7 @@ void AddMisfit(std::span<const person::Posture> postures, MeasuredBody* measured
     if (*part.misfit > kMaxMisfit)
       warnings->push_back(
           Formatted("The modelled body stays %.0f mm away from the measured %s in %s. Check the "
-                    "frame in the mapping, "
-                    "operator.stance and operator.body.",
+                    "frame in the mapping, operator.stance and operator.body.",
                     1e3 * *part.misfit, part.what.c_str(), Printable(part.source).c_str()));
   }
 }

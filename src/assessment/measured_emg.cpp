@@ -229,9 +229,8 @@ void AddEmgWords(const std::vector<MeasuredEmg>& channels, std::vector<std::stri
   if (used)
     assumptions->emplace_back(
         "The model keeps the activations of measured muscles close to the measured activations. "
-        "The "
-        "torques "
-        "of the joints stay the same, so the activations of the arm's other muscles change.");
+        "The torques of the joints stay the same, so the activations of the arm's other muscles "
+        "change.");
 }
 
 std::string PathOf(const MeasuredEmg& channel) {

@@ -58,8 +58,7 @@ std::string LooksLike(const Readings& readings) {
   if (R.isApprox(-Matrix3::Identity()))
     return "All signs are reversed: the readings are the force that the sensor exerts on the "
            "handle, not the force that the handle exerts on the sensor. Check sensor.make in the "
-           "machine file, and check that the "
-           "sensor is not mounted back to front.";
+           "machine file, and check that the sensor is not mounted back to front.";
   const double determinant = R.determinant();
   if (determinant > 0.5)
     return "The sensor appears to be " + TurnOf(R) +

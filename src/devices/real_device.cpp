@@ -38,11 +38,11 @@ RealDevice::RealDevice(std::unique_ptr<Network> network, std::array<RealSide, kH
           side.arm->facts().name +
           " does not measure a wrench at its handle. Add a force/torque sensor to this arm.");
   if (enabling_ && arm_facts(enabling_->hand) == nullptr)
-    throw DeviceError(std::string("The enabling device is wired to the ") +
-                      kHandNames[static_cast<std::size_t>(enabling_->hand)] +
-                      " arm, but this scenario has no handle there. Wire the enabling device to "
-                      "the other arm. Otherwise, remove "
-                      "enabling from the machine file and hold a key at the console.");
+    throw DeviceError(
+        std::string("The enabling device is wired to the ") +
+        kHandNames[static_cast<std::size_t>(enabling_->hand)] +
+        " arm, but this scenario has no handle there. Wire the enabling device to the other arm. "
+        "Otherwise, remove enabling from the machine file and hold a key at the console.");
 }
 
 RealDevice::~RealDevice() = default;

@@ -135,8 +135,7 @@ const std::array<Statement, kStatements>& Statements() {
        "The physical emulator is easy-to-use for the human-robot collaboration task."},
       {"S2", "Subjective realism",
        "The realism level of visual rendering of the emulation of the human-robot collaboration "
-       "task "
-       "is very good compared to the real task."},
+       "task is very good compared to the real task."},
       {"S3", "Subjective realism",
        "The realism level of haptic rendering/feedback of the emulation of the human-robot "
        "collaboration task is very good compared to the real task."},

@@ -270,9 +270,8 @@ Plot EnergyPlot(const RunCurves& curves) {
   plot.panels.push_back(std::move(stored));
   plot.caption =
       "The plots show integrals of force times velocity and torque times angular velocity. The "
-      "stored energy is "
-      "the kinetic energy, the potential energy of the object, and the energy of the controller's "
-      "springs.";
+      "stored energy is the kinetic energy, the potential energy of the object, and the energy of "
+      "the controller's springs.";
   return plot;
 }
 

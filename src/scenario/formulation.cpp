@@ -36,8 +36,7 @@ constexpr RepairEntry kTable[] = {
      "joint damping grows near a singularity", "constant damping of 1e-5"},
     {Repair::kHandleSpeedCap, "handle_speed_cap", "(9)",
      "reference velocities are scaled to safety.handle_speed",
-     "reference velocities are used as "
-     "they are"},
+     "reference velocities are used as they are"},
 };
 static_assert(std::size(kTable) == kRepairs);
 

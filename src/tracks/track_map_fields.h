@@ -82,8 +82,7 @@ template <class V>
 void TrackFields(V& v, TrackMap& s) {
   v("time", s.time,
     Word("table: the column with the times; \"\": time or timestamp. Bag: received selects the "
-         "times at "
-         "which the messages were received, instead of their own stamps"));
+         "times at which the messages were received, instead of their own stamps"));
   v("time_unit", s.time_unit, Word("\"\": as the header states it, otherwise s"));
   v("rate", s.rate,
     Number("Hz", "rate of the rows of a table without times; 0: the table has times",

@@ -77,8 +77,7 @@ double MeanInNumbersFile(const std::string& experiment, const ReproducedNumber& 
 void ExpectAsInNumbersFile(const ReproducedExperiment& experiment) {
   SCOPED_TRACE(
       "docs/numbers.csv is not what the program computes now. If that is intended: predictor "
-      "reproduce, "
-      "copy its numbers.csv there, tests/documents/figures.py . --update");
+      "reproduce, copy its numbers.csv there, tests/documents/figures.py . --update");
   const std::map<std::string, Row> rows = RowsOf(experiment.name);
   EXPECT_EQ(rows.size(), experiment.numbers.size());
   for (const ReproducedNumber& n : experiment.numbers) {

@@ -174,8 +174,7 @@ TEST(FitLoop, FindsTheLoopOfTheRigAtAnyRateOfSamples) {
         }
   std::printf(
       "largest errors: bandwidth %.2f %%, damping ratio %.2f %%, delay %.3f ms; correct intervals: "
-      "%d of "
-      "%d\n",
+      "%d of %d\n",
       100 * worst_bandwidth, 100 * worst_damping, 1000 * worst_delay, held, intervals);
   EXPECT_GE(held, 0.85 * intervals);
 }

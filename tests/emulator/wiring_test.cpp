@@ -152,8 +152,7 @@ const Case kCases[] = {
      "--set device.arms.left.posture: device.arms.left.posture has 1 values; the arm has 7 joints"},
     {"device.arms.left.posture=[0, -90, 0, -2.3, 0, 1.8, 0]",
      "--set device.arms.left.posture:1:5: device.arms.left.posture.1: joint \"panda_joint2\" at "
-     "-90 "
-     "rad is outside its limits"},
+     "-90 rad is outside its limits"},
     {"device.arms.right.posture=[1]", "--set device.arms.right.posture: device.arms.right.posture"},
     {"device.arms.right.velocity_limit=[1, 2]",
      "--set device.arms.right.velocity_limit: device.arms.right.velocity_limit has 2 values; the "

@@ -126,8 +126,7 @@ class Judge {
       Warn(
           Formatted("After events.%zu (%s), the object may be loose. The reach, stability and "
                     "torques in this report apply only while the object is attached to the cobot. "
-                    "Simulate the scenario to see what "
-                    "follows the event.",
+                    "Simulate the scenario to see what follows the event.",
                     i, kind.name));
     }
   }

@@ -14,8 +14,7 @@ std::string Reduction(const SampledLoop& loop) {
     return Formatted(
         "The damping is too large for such a light joint. At this joint, the damping is %.3g "
         "N·m·s/rad, but only up to about %.2g would be stable. Reduce the damping, or make it "
-        "proportional to the mass "
-        "matrix.",
+        "proportional to the mass matrix.",
         loop.damping, loop.stable_damping * loop.damping);
   if (loop.stable_stiffness > 0)
     return Formatted(

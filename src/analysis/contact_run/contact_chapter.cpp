@@ -119,11 +119,10 @@ constexpr const char* kPredictionWords =
     "Against a wall that is stiffer than <i>stable up to</i>, the loop oscillates at the frequency "
     "in brackets. The first of two numbers is what the arms render, the second what the virtual "
     "world requests. In motion, the lag of the arms turns stiffness into damping, so a wall feels "
-    "dull, and a part of the "
-    "inertia into negative damping, which feeds energy into the hands. The contact of a rigid "
-    "fixture has a stiffness and an inertia in the simulation, which the plot contains. For it, "
-    "<i>stable up to</i> applies to a spring without damping in its place. The prediction assumes "
-    "that the arms do not bend, so real arms render less at rest.</p>\n";
+    "dull, and a part of the inertia into negative damping, which feeds energy into the hands. The "
+    "contact of a rigid fixture has a stiffness and an inertia in the simulation, which the plot "
+    "contains. For it, <i>stable up to</i> applies to a spring without damping in its place. The "
+    "prediction assumes that the arms do not bend, so real arms render less at rest.</p>\n";
 
 constexpr const char* kFactsWords =
     "<h3>Contact in this run</h3>\n<p>Penetration and forces are the largest ones of the run. Time "

@@ -233,8 +233,7 @@ ArmResponses MeanResponses(const ArmResponses& r, const Eigen::VectorXd& weight)
   if (!(std::abs(S.determinant()) > 1e-3 * S.trace() * S.trace()))
     throw InputError(
         "The displacements lie along one line, but identification of the arm needs displacements "
-        "in a plane. Record "
-        "displacements in at least four directions.");
+        "in a plane. Record displacements in at least four directions.");
   const Eigen::MatrixX2d share = weighted * S.inverse();
   ArmResponses result;
   result.dt = r.dt;

@@ -61,8 +61,7 @@ void ArmIdentifier::Begin(const Scenario& scenario, double dt) {
   if (scenario.mode == Mode::kDirect)
     throw InputError(
         "The recording was made in mode: direct, in which no force sensor measures a hand. Record "
-        "an "
-        "emulation.");
+        "an emulation.");
   if (dt > kMaxTick)
     throw InputError("The recording has a tick of " + FormatNumber(1e3 * dt) +
                      " ms, which is too long to see the arm's inertia. Record at 500 Hz or more.");
@@ -107,9 +106,8 @@ std::string ArmIdentifier::Impl::WhyRefused(const ArmOfHand& arm) const {
            " were taken back because of a force above perturbation.force, or had a gap.";
   return why +
          " Record a longer run, or several runs, in which the hands hold the object and hardly "
-         "move it. "
-         "A displacement begins only if each hand exerts at least 0.5 N, the object is slower than "
-         "perturbation.speed, and the expected force is below perturbation.force.";
+         "move it. A displacement begins only if each hand exerts at least 0.5 N, the object is "
+         "slower than perturbation.speed, and the expected force is below perturbation.force.";
 }
 
 ArmOfHand ArmIdentifier::Impl::Hand(std::size_t hand) const {

@@ -19,8 +19,7 @@ const schema::Words kWords = {
      {"mass_kg", "mass of the body [kg]"},
      {"strength",
       "as multiples of the mean for the person's sex: elbow flexion and extension, shoulder "
-      "flexion "
-      "and extension"},
+      "flexion and extension"},
      {"stiffness", "stiffness of the arm's joints, as a multiple of the published mean"},
      {"designs", "what the people performed"},
      {"name", "name of the design"},

@@ -67,13 +67,12 @@ ReproducedExperiment ReproduceQuestionnaire(ReproduceRuns* runs) {
       "No participants were asked for this reproduction. The table lists every set of 17 integer "
       "answers from −2 to 2 that matches the mean and the sample standard deviation in Table 1. "
       "For S2, S3, S4 and S8, the set also matches the lowest answer that the text states. Fig. 11 "
-      "is redrawn from these sets, not from the "
-      "printed figure. To ask people yourself, use predictor survey ask.");
+      "is redrawn from these sets, not from the printed figure. To ask people yourself, use "
+      "predictor survey ask.");
   e.Add(HtmlTable(rows.table));
   e.Add(LikertPlot(rows.plots), "fig11", "Distributions behind Table 1 (Fig. 11)",
         "The plot shows a cross for each answer. Where Table 1 allows only one distribution, both "
-        "solutions are "
-        "the same.");
+        "solutions are the same.");
   return e;
 }
 

@@ -90,9 +90,8 @@ void AddSnapshots(const ReproducedRun& run, const std::string& prefix, const cha
       ")</h3>\n"
       "<p>The virtual cobot with the box, and the two haptic arms (pale) at their places. The arms "
       "do not collide with the virtual box, so the box can hide a hand in the picture. Arrows: "
-      "forces of the hands, 1 cm per "
-      "newton; orange above half the threshold, red above 80 %. Drawn from the collision shapes of "
-      "the models.</p>\n"
+      "forces of the hands, 1 cm per newton; orange above half the threshold, red above 80 %. "
+      "Drawn from the collision shapes of the models.</p>\n"
       "<div style=\"display:grid;grid-template-columns:repeat(auto-fit,minmax(290px,1fr));gap:0 "
       "12px\">\n";
   constexpr const char* kPanels[] = {"A, D", "B, E", "C, F"};
@@ -215,8 +214,7 @@ ReproducedExperiment ReproduceBox(const BoxExperiment& box, ReproduceRuns* runs)
   e.Add(ForcePlot({RunCurves(task.ours.data)}), std::string("fig8-") + box.name,
         "Forces and torques of the hands, and the distance of the elbows (Fig. 8)",
         "Our defaults. The thresholds are the thresholds of the paper: 30 N, 5 N·m, 0.7 m and 0.3 "
-        "m. For "
-        "scenario 1, the paper prints curves but no numbers.");
+        "m. For scenario 1, the paper prints curves but no numbers.");
   e.Add(forces);
   AddSnapshots(task.ours, std::string("snapshot-") + box.name, box.snapshots, box.moments, &e);
   return e;

@@ -111,8 +111,7 @@ ReproducedExperiment ReproduceTuning(ReproduceRuns* runs) {
   e.AddParagraph(
       "The scenario gives each joint of the cobot an effort limit of 200 N·m. The scenario also "
       "raises the cobot's base by 0.4 m, because the object sags by 0.35 m. If the base stood on "
-      "the floor, the box would "
-      "start and end on the floor.");
+      "the floor, the box would start and end on the floor.");
   for (const auto* numbers : {&underdamped, &sight, &heavy}) e.Add(*numbers);
   return e;
 }

@@ -140,8 +140,7 @@ std::string Assumptions(const StabilityMap& map) {
   std::string html =
       "<p>The prediction applies to small motions about the start. The prediction does not apply "
       "where something limits the motion. A simulated boundary is compared with it unless one of "
-      "these "
-      "conditions, fixed beforehand, occurs in the simulations near the boundary:</p><ul>";
+      "these conditions, fixed beforehand, occurs in the simulations near the boundary:</p><ul>";
   html += Formatted("<li>on the stable side, without a tap, for more than %.0f %% of the time:",
                     100 * kLimitedShare);
   for (int k = 0; k < kLimitings; ++k)

@@ -253,9 +253,9 @@ void AddWalls(const StabilityMap& map, ReportPage* page) {
       "delays of the arms' velocity loops, from the command to the motion.</p>\n<p>These values "
       "are <b>predicted</b> for small motions that stay in contact, at one point. The lead is the "
       "one that a run with the delay of the line uses. A fixture that does not yield is replaced "
-      "by springs without damping. A test "
-      "compares such predictions with simulations. <code>predictor check</code> states smaller "
-      "values, because it adds 1.5 ticks of delay as a reserve for real devices.</p>\n");
+      "by springs without damping. A test compares such predictions with simulations. "
+      "<code>predictor check</code> states smaller values, because it adds 1.5 ticks of delay as a "
+      "reserve for real devices.</p>\n");
   for (std::size_t k = 0; k < map.walls.size(); ++k) {
     page->Figure(WallPlot(map, k));
     page->Html(Table(map.walls[k]));

@@ -83,8 +83,7 @@ SafetyTable StopTable(const StopJudgement& judged) {
       "The change caused by the stop is the largest change of the torque after the decision to "
       "stop. The column \"90 %\" contains the 90 % interval of this change over 64 possible "
       "postures and bodies. The last column gives the largest torque as a percentage of the mean "
-      "strength "
-      "for the person's sex, if a verified source for this strength exists.");
+      "strength for the person's sex, if a verified source for this strength exists.");
   return table;
 }
 

@@ -232,8 +232,7 @@ class Setup {
     if (setup_.state.runtime != kUrStopped)
       Refuse(
           "is running or pausing a program. Stop this program at the pendant. (A program that an "
-          "earlier run "
-          "of this software left waiting ends by itself within half a minute.)");
+          "earlier run of this software left waiting ends by itself within half a minute.)");
     // Older controllers and the CB3 do not support this query.
     if (dashboard_.Ask("is in remote control").starts_with("false"))
       Refuse("is in local control. Choose Remote Control at the top right of the pendant.");
