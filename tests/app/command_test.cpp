@@ -4,8 +4,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "child.h"
@@ -42,6 +44,30 @@ TEST(ExitCode, ShowsHowItEnded) {
   for (const auto& c : cases) {
     Child child(c.arguments);
     EXPECT_EQ(child.Wait(), c.code) << testing::PrintToString(c.arguments) << child.errors();
+  }
+}
+
+// A file with an error is not an impossible combination of a controller and a hazard.
+TEST(ExitCode, OfAHazardStudyNamesTheFileWithAnErrorAndLeavesAnEarlierStudyAlone) {
+  const test::TemporaryFolder folder;
+  const std::string wrong = folder / "wrong.yaml";
+  std::ifstream right(Scenario("single_arm"));
+  std::string text{std::istreambuf_iterator<char>(right), {}};
+  text.replace(text.find("model: "), std::string("model: ").size(), "model: nowhere.urdf  # ");
+  std::ofstream(wrong) << text;
+  std::ofstream(folder / "hazards.csv") << "earlier\n";
+  const std::string missing = Scenario("no_such_scenario");
+  const std::pair<std::string, const char*> cases[] = {{missing, "no_such_scenario.yaml"},
+                                                       {wrong, "nowhere.urdf"}};
+  for (const auto& [file, named] : cases) {
+    Child child({"hazards", Scenario("single_arm"), file, "--seeds", "1", "--quiet", "--force",
+                 "-o", folder.path().string()});
+    EXPECT_EQ(child.Wait(), 2) << file;
+    EXPECT_TRUE(child.errors().starts_with("predictor: error: ")) << child.errors();
+    EXPECT_NE(child.errors().find(named), std::string::npos) << child.errors();
+    std::ifstream earlier(folder / "hazards.csv");
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(earlier), {}), "earlier\n");
+    EXPECT_FALSE(fs::exists(folder / "runs.csv"));
   }
 }
 

@@ -85,6 +85,12 @@ void SetGrip(Scenario* scenario) {
       Formatted("slip_force=%.9g", kGripShare * object.mass * scenario->environment.gravity));
 }
 
+// Throws the InputError of a file that cannot be simulated even without the study's changes. In the
+// study, such an error would look like a combination that is impossible.
+void CheckFiles(const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files) Emulator(LoadScenario(file));
+}
+
 Piece PieceOf(const std::filesystem::path& file, const StudyChoice& controller,
               const StudyChoice& hazard, double duration) {
   Piece piece;
@@ -182,6 +188,7 @@ HazardRun RunWithHazard(Scenario scenario, std::uint64_t seed) {
 }
 
 HazardStudy MakeHazardStudy(const HazardStudyOptions& options) {
+  CheckFiles(options.scenarios);
   std::filesystem::create_directories(options.folder);
   HazardRunStore store(options.folder / "runs.csv");
   const unsigned workers = options.workers > 0 ? static_cast<unsigned>(options.workers)

@@ -46,7 +46,7 @@ struct HazardRun {
 // All runs of one scenario, controller and hazard.
 struct HazardCell {
   std::string scenario, controller, hazard;
-  std::string impossible;       // why the cell is empty
+  std::string impossible;       // why a valid scenario has no such combination; "": it has it
   double speed_cap = 0;         // cap of the handles' commanded speed [m/s]
   double travel_budget = 0;     // travel allowed for a stop, as `check` computes it [m]
   std::vector<HazardRun> runs;  // by seed
@@ -77,7 +77,8 @@ HazardRun RunWithHazard(Scenario scenario, std::uint64_t seed);
 
 // Executes the runs that the folder's runs.csv does not contain yet. Each finished run is appended
 // to runs.csv, with a hash of its scenario and of the program's behaviour. Writes hazards.csv and
-// hazards.md. Throws InputError.
+// hazards.md. Throws InputError. If a scenario file is missing or has an error, throws before
+// anything is written.
 HazardStudy MakeHazardStudy(const HazardStudyOptions& options);
 
 // Returns a table with one row per cell.
