@@ -124,6 +124,31 @@ void TakeEnabling(const std::atomic<std::uint32_t>& enabling, std::uint32_t* see
   if (emulator->Submit(input)) *seen = now;
 }
 
+// The inputs of the loop: requests from other threads, and what the loop itself observes.
+class LoopInputs {
+ public:
+  explicit LoopInputs(const RealTimeOptions& options) : options_(options) {}
+
+  // Submits all inputs of a tick. `now` is in [ns]. If a page selected a scenario, sets `scenario`.
+  void Take(std::uint64_t now, Emulator* emulator, std::optional<std::size_t>* scenario) noexcept {
+    WatchForSuspend(now, &suspends_, emulator);
+    if (options_.watchdog) WatchTheWatchdog(*options_.watchdog, now, &watchdog_, emulator);
+    if (options_.enabling) TakeEnabling(*options_.enabling, &enabled_, emulator);
+    if (options_.stops) TakeStop(options_.stops->stops, nullptr, &ros_stops_, emulator);
+    if (!options_.mailbox) return;
+    if (options_.watch_headsets) WatchHeadsets(*options_.mailbox, now, emulator);
+    TakeInputs(options_.mailbox, &page_stops_, emulator,
+               options_.allow_scenario_switch ? scenario : nullptr);
+  }
+
+ private:
+  const RealTimeOptions& options_;
+  // Numbers of requests that were already processed.
+  std::uint32_t page_stops_ = 0, ros_stops_ = 0, enabled_ = 0;
+  Heartbeat watchdog_;
+  SuspendWatch suspends_;
+};
+
 void SaveSnapshot(Emulator* emulator, SnapshotSink* sink) noexcept {
   const std::span<std::byte> to = sink->AcquireBuffer();
   if (!to.empty()) sink->Commit(emulator->record().tick, emulator->SaveState(to));
@@ -175,24 +200,12 @@ RunEnd RunRealTime(Emulator* emulator, const RealTimeOptions& options,
   const auto period = static_cast<std::uint64_t>(dt * 1e9);
   std::uint64_t due = Now() + period;
   int missed = 0;
-  // Numbers of stop requests in the mailboxes that were already processed.
-  std::uint32_t page_stops = 0, ros_stops = 0;
-  std::uint32_t enabled = 0;
-  Heartbeat watchdog;
-  SuspendWatch suspends;
+  LoopInputs inputs(options);
   bool began = false;  // RUN was reached; from then on there is no automatic start
   for (double t = 0;; t += dt) {
     WaitUntil(due);
     const std::uint64_t woke = Now();
-    WatchForSuspend(woke, &suspends, emulator);
-    if (options.watchdog) WatchTheWatchdog(*options.watchdog, woke, &watchdog, emulator);
-    if (options.enabling) TakeEnabling(*options.enabling, &enabled, emulator);
-    if (options.stops) TakeStop(options.stops->stops, nullptr, &ros_stops, emulator);
-    if (options.mailbox) {
-      if (options.watch_headsets) WatchHeadsets(*options.mailbox, woke, emulator);
-      TakeInputs(options.mailbox, &page_stops, emulator,
-                 options.allow_scenario_switch ? &report->scenario : nullptr);
-    }
+    inputs.Take(woke, emulator, &report->scenario);
     lateness->Add(static_cast<double>(woke - due) * 1e-3);
     emulator->Tick(woke, missed);
     ring->Publish(emulator->record());
