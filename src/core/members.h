@@ -23,9 +23,9 @@ consteval std::size_t MemberCount() {
 template <class T, class Visit>
 constexpr void VisitMembers(T& x, Visit&& visit) {
   constexpr std::size_t n = MemberCount<T>();
-  static_assert(
-      n == 1 || n == 2 || n == 3 || n == 10 || n == 11 || n == 13 || n == 14 || n == 15 || n == 16,
-      "write a branch for this number of members below");
+  static_assert(n == 1 || n == 2 || n == 3 || n == 4 || n == 10 || n == 11 || n == 13 || n == 14 ||
+                    n == 15 || n == 16,
+                "write a branch for this number of members below");
   if constexpr (n == 1) {
     auto& [a] = x;
     visit(a);
@@ -35,6 +35,9 @@ constexpr void VisitMembers(T& x, Visit&& visit) {
   } else if constexpr (n == 3) {
     auto& [a, b, c] = x;
     visit(a, b, c);
+  } else if constexpr (n == 4) {
+    auto& [a, b, c, d] = x;
+    visit(a, b, c, d);
   } else if constexpr (n == 10) {
     auto& [a, b, c, d, e, f, g, h, i, j] = x;
     visit(a, b, c, d, e, f, g, h, i, j);

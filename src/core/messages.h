@@ -102,6 +102,8 @@ struct MovableMotion {
 struct Movables {
   int count = 0;
   std::array<MovableMotion, kMaxMovables> motion;
+  int held = -1;  // the one that the carried object holds; −1: none
+  AttachmentState grip = AttachmentState::kOpen;  // the state of this grip
 };
 
 // The virtual world after a step. The simulation writes this struct.

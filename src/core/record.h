@@ -108,7 +108,9 @@ struct TickRecord {
   std::uint8_t latest_event;   // 1 + number of the hazard that began last; 0: none
   std::uint8_t attachment;     // AttachmentState of the cobot's grip on the object
   std::uint8_t movable_count;  // entries of the scenario's environment.objects
-  std::array<std::uint8_t, 3> reserved;
+  std::uint8_t held;           // 1 + the movable object that the carried object holds; 0: none
+  std::uint8_t held_grip;      // AttachmentState of this grip
+  std::array<std::uint8_t, 1> reserved;
   StatusRecord read, written;  // result of the device's read and write
   // Latched fault that escalated a stop from hold (S2) to power-off (S1).
   StatusRecord harder;

@@ -238,6 +238,13 @@ constexpr void VisitMovables(V& v, R& r) {
   v.Value({"count", "", "", "entries of the scenario's environment.objects"}, r.movable_count);
   v.Poses({"poses", "", "W", "of the scenario's environment.objects, in their order", "movables"},
           r.movables, r.movable_count);
+  v.Value(
+      {"held", "", "", "1 + entry of environment.objects that the carried object holds; 0 none"},
+      r.held);
+  v.Value({"held_grip", "", "",
+           "the carried object's grip on a movable one: 0 holds, 1 slips, 2 open, 3 open, because "
+           "the movable object was too far away to be picked up"},
+          r.held_grip);
 }
 
 template <class V, class R>

@@ -97,6 +97,9 @@ void FillWorld(const TickData& data, TickRecord* record) noexcept {
   r.latest_event = data.after->latest_event;
   r.cobot_stop = data.after->cobot_stop;
   r.attachment = static_cast<std::uint8_t>(data.after->attachment);
+  r.held = static_cast<std::uint8_t>(data.after->movables.held + 1);
+  r.held_grip =
+      r.movable_count > 0 ? static_cast<std::uint8_t>(data.after->movables.grip) : std::uint8_t{0};
 }
 
 void FillDecisions(const RecordSources& from, TickRecord* record) noexcept {

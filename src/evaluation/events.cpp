@@ -37,8 +37,9 @@ void EventLog::Follow(const TickRecord& record, std::size_t i) {
   const bool acts = (record.events >> i & 1U) != 0;
   if (acts && !event.begin) {
     event.begin = run_time_;
-    event.missed = event.event == "grasp_object" &&
-                   record.attachment == static_cast<std::uint8_t>(AttachmentState::kMissed);
+    constexpr auto kMissed = static_cast<std::uint8_t>(AttachmentState::kMissed);
+    event.missed = (event.event == "grasp_object" && record.attachment == kMissed) ||
+                   (event.event == "pick_up" && record.held_grip == kMissed);
   }
   if (!event.begin) return;
   if (!acts && !event.end) event.end = run_time_;

@@ -28,7 +28,8 @@ bool IsZero(const HandRecord& hand) {
 
 bool HasMovables(const TickRecord& record) {
   static constexpr std::array<PoseRecord, kMaxMovables> kNone{};
-  return record.movable_count != 0 || !SameBits(record.movables, kNone);
+  return record.movable_count != 0 || record.held != 0 || record.held_grip != 0 ||
+         !SameBits(record.movables, kNone);
 }
 
 bool HasInputs(const TickRecord& record) {

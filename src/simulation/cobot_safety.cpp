@@ -43,15 +43,18 @@ void CobotSafety::Reset(const ControllerInput& input) noexcept {
   F_E_W_ = WrenchOf(input, external_);
   payload_ = F_E_W_;
   load_ = 1;
+  further_.setZero();
   q_stop_ = *input.q;
   v_stop_ = *input.v;
   fade_ = fade_rate_ = 0;
 }
 
-void CobotSafety::SetLoad(const ControllerInput& input, double share) noexcept {
-  if (share == load_) return;
-  const Wrench change = (share - load_) * payload_;
+void CobotSafety::SetLoad(const ControllerInput& input, double share,
+                          const Wrench& further) noexcept {
+  if (share == load_ && further == further_) return;
+  const Wrench change = (share - load_) * payload_ + further - further_;
   load_ = share;
+  further_ = further;
   input.data->FrameJacobian(*input.model, input.end_effector, &J_);
   external_.noalias() += J_.transpose().lazyProduct(change);
   F_E_W_ += change;
@@ -142,7 +145,8 @@ void CobotSafety::StopTorque(const ControllerInput& input, double dt,
 void CobotSafety::Archive(StateArchive& a) noexcept {
   if (!is_on()) return;
   int stop = static_cast<int>(stop_);
-  a(stop, v_before_, external_, F_E_W_, payload_, load_, q_stop_, v_stop_, fade_, fade_rate_);
+  a(stop, v_before_, external_, F_E_W_, payload_, load_, further_);
+  a(q_stop_, v_stop_, fade_, fade_rate_);
   if (stop < 0 || stop >= kCobotStops) return a.Fail();
   stop_ = static_cast<CobotStop>(stop);
 }

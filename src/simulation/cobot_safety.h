@@ -34,8 +34,9 @@ class CobotSafety {
   // Takes the velocities [rad/s] after a sub-step in which closed brakes held the joints.
   void Skip(const JointVector& v) noexcept { v_before_ = v; }
   // Sets the share of its payload that the cobot carries from now on, which is 0 after it put the
-  // object down. The estimates change at once, whereas the observer alone would change them slowly.
-  void SetLoad(const ControllerInput& input, double share) noexcept;
+  // object down, and the wrench of a further load on E, about E, in axes of W [N, N·m]. The
+  // estimates change at once, whereas the observer alone would change them slowly.
+  void SetLoad(const ControllerInput& input, double share, const Wrench& further) noexcept;
   // Caps the controller's torques. A protective stop lasts until Reset. During the stop, the
   // function replaces these torques.
   void Limit(const ControllerInput& input, double dt, JointVector* torque) noexcept;
@@ -43,7 +44,7 @@ class CobotSafety {
   void Archive(StateArchive& a) noexcept;
 
  private:
-  Wrench load() const noexcept { return load_ * payload_; }
+  Wrench load() const noexcept { return load_ * payload_ + further_; }
   JointVector Friction(const JointVector& v) const noexcept;
   Wrench WrenchOf(const ControllerInput& input, const JointVector& torque) noexcept;
   CobotStop Exceeded(const ControllerInput& input) noexcept;
@@ -59,6 +60,7 @@ class CobotSafety {
   JointVector v_before_, external_;                           // [rad/s], [N·m]
   Wrench F_E_W_ = Wrench::Zero(), payload_ = Wrench::Zero();  // estimated
   double load_ = 1;                                           // share of payload_ that is there
+  Wrench further_ = Wrench::Zero();                           // of the further load
   JointVector q_stop_, v_stop_;                               // reference of the stop
   double fade_ = 0, fade_rate_ = 0;                           // of v_stop_ [1], [1/s]
   Jacobian J_;                                                // workspace

@@ -2,7 +2,6 @@
 
 #include "core/error.h"
 #include "core/motion.h"
-#include "core/text.h"
 #include "models/arm_model.h"
 #include "scenario/operating_rules.h"
 #include "simulation/landing.h"
@@ -83,6 +82,7 @@ ControlledScene::ControlledScene(const Scenario& scenario, const EventSequence& 
       carried_(MakeEngine(scenario, *robot_, has_wrist_sensor(), Holding::kJoint)),
       loose_(events.loosens_attachment() ? std::make_unique<LooseObject>(scenario, *robot_)
                                          : nullptr),
+      pick_up_(events.picks_up() ? std::make_unique<PickUp>(carried_.get()) : nullptr),
       wrist_(scenario.cobot.wrist_sensor, carried_->step(), scenario.seed),
       timing_(scenario.cobot.control, carried_->step(), events.longest_delay()),
       effort_limit_(EffortLimit(scenario.cobot, *robot_)),
@@ -131,7 +131,7 @@ bool ControlledScene::ApplyController(double t, Engine* engine) noexcept {
 bool ControlledScene::ComputeTorque(double t, JointVector* torque) noexcept {
   Acting().Compute(Input(t), torque);
   if (!torque->allFinite()) return false;
-  if (payload_) AddPayload(torque);
+  if (payload_ || pick_up_) AddPayload(torque);
   AddModelErrors(torque);
   *torque = torque->cwiseMin(effort_limit_).cwiseMax(-effort_limit_);
   return Acting().outcome() != ControllerOutcome::kFailed;
@@ -150,10 +150,22 @@ void ControlledScene::AddPayload(JointVector* torque) const noexcept {
   const Pose& X_WE = E_.X_W;
   Jacobian J;
   robot_data_.FrameJacobian(*robot_, end_effector_, &J);
+  if (payload_) {
+    Wrench weight = Wrench::Zero();
+    weight[2] = PayloadShare() * payload_->mass * gravity_;
+    weight = ShiftWrench(weight, X_WE.q * payload_->center_of_mass);
+    torque->noalias() += J.transpose().lazyProduct(weight);
+  }
+  if (pick_up_) torque->noalias() -= J.transpose().lazyProduct(PickedLoad());
+}
+
+// Returns the weight that the cobot's program says that the object holds, on E, about E, in W.
+Wrench ControlledScene::PickedLoad() const noexcept {
   Wrench weight = Wrench::Zero();
-  weight[2] = PayloadShare() * payload_->mass * gravity_;
-  weight = ShiftWrench(weight, X_WE.q * payload_->center_of_mass);
-  torque->noalias() += J.transpose().lazyProduct(weight);
+  if (!pick_up_) return weight;
+  weight[2] = -pick_up_->load() * gravity_;
+  return ShiftWrench(weight,
+                     X_WO_ * pick_up_->p_OL() - robot_data_.FramePose(*robot_, end_effector_).p);
 }
 
 // Adds the effect of a load at E and of friction for which the controller compensates although
@@ -245,7 +257,8 @@ void ControlledScene::Disturb(const Disturbance& disturbance, double t) noexcept
   if (disturbance.standby != before.standby) Acting().TakeOver(Input(t));
   if (loose_) loose_->attachment.SetLimits(disturbance.grip);
   if (is_loose_) loose_->attachment.Command(disturbance.gripper);
-  if (safety_.is_on()) safety_.SetLoad(Input(t), PayloadShare());
+  if (pick_up_ && pick_up_->Command(disturbance.pick_up)) Update(&engine());
+  if (safety_.is_on()) safety_.SetLoad(Input(t), PayloadShare(), PickedLoad());
   if (absent_ != (obstacles_ & ~disturbance.obstacles)) PlaceObstacles();
 }
 
@@ -254,27 +267,19 @@ void ControlledScene::RemoveFixtures() noexcept {
   if (loose_) loose_->engine->RemoveFixtures(absent_);
 }
 
-// Removes and adds fixtures as the events require. A fixture that overlaps the object or the cobot
-// is added only when the overlap has ended, because the contact would otherwise push the bodies
-// apart violently.
+// Removes and adds fixtures as the events require. A fixture that overlaps the object, the cobot or
+// a movable object is added only when the overlap has ended.
 void ControlledScene::PlaceObstacles() noexcept {
   const std::uint64_t before = absent_;
-  const std::uint64_t wanted = obstacles_ & ~disturbance_.obstacles;
-  absent_ = wanted;
+  absent_ = AbsentFixtures(obstacles_, disturbance_.obstacles, 0, 0);
   RemoveFixtures();
   Update(&engine());
-  if (!IsBlocked(before & ~wanted)) return;
-  absent_ = before | wanted;
+  const std::uint64_t absent =
+      AbsentFixtures(obstacles_, disturbance_.obstacles, before, TouchedFixtures(engine()));
+  if (absent == absent_) return;
+  absent_ = absent;
   RemoveFixtures();
   Update(&engine());
-}
-
-bool ControlledScene::IsBlocked(std::uint64_t fixtures) const noexcept {
-  for (int i = 0; i < engine().contact_count(); ++i) {
-    const Contact contact = engine().contact(i);
-    if (contact.fixture >= 0 && (fixtures >> contact.fixture & 1U) != 0) return true;
-  }
-  return false;
 }
 
 void ControlledScene::Resume(const Disturbance& disturbance) noexcept {
@@ -282,6 +287,10 @@ void ControlledScene::Resume(const Disturbance& disturbance) noexcept {
   SetBrakes(disturbance.brakes);
   timing_.AddDelay(disturbance.delay);
   if (loose_) loose_->attachment.SetLimits(disturbance.grip);
+  if (pick_up_) {
+    if (disturbance.pick_up.picked == HUGE_VAL) pick_up_->Reset();
+    pick_up_->Resume();
+  }
   if (obstacles_ == 0) return;
   if (disturbance.obstacles == 0) absent_ = obstacles_;
   RemoveFixtures();
@@ -305,15 +314,19 @@ void ControlledScene::Loosen() noexcept {
   is_loose_ = true;
   WriteTorque(&loose);
   Update(&loose);
-  loose_->attachment.Grip();
+  loose_->attachment.Close();
   loose_->attachment.Command(disturbance_.gripper);
   loose_->landing = LandingHeight(loose.object_com().z());
 }
 
-bool ControlledScene::HoldObject() noexcept { return !is_loose_ || loose_->attachment.Hold(); }
+bool ControlledScene::Hold(const Wrench& object_wrench) noexcept {
+  if (is_loose_) return loose_->attachment.Hold(object_wrench);
+  return !pick_up_ || pick_up_->Hold(object_wrench);
+}
 
-void ControlledScene::FollowObject() noexcept {
+bool ControlledScene::Follow() noexcept {
   if (is_loose_) loose_->attachment.Follow();
+  return !pick_up_ || !pick_up_->Follow() || Update(&engine());
 }
 
 Wrench ControlledScene::LandingOf(const FrameMotion& object) const noexcept {
@@ -328,80 +341,6 @@ void ControlledScene::SetBrakes(bool closed) noexcept {
     carried_->SetJointFriction(j, friction);
     if (loose_) loose_->engine->SetJointFriction(j, friction);
   }
-}
-
-void ControlledScene::CheckEvents(const EventSequence& events) const {
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    const std::string path = "events." + std::to_string(i) + ".event";
-    CheckAttachmentEvent(events, i);
-    const std::string missing = Missing(events.kind(i).needs);
-    if (missing.empty()) continue;
-    throw InputError::At(
-        path, Join({path, " is ", events.kind(i).name, ", which would have no effect, because ",
-                    missing, ". Remove the event, or change the cobot."},
-                   ""));
-  }
-}
-
-void ControlledScene::CheckAttachmentEvent(const EventSequence& events, std::size_t i) const {
-  const HazardKind& kind = events.kind(i);
-  const std::string path = "events." + std::to_string(i);
-  const std::string is = path + ".event is " + kind.name;
-  const bool can_slip = joint_ == JointType::kFixed || joint_ == JointType::kSpherical;
-  if (kind.needs == HazardNeeds::kRelease || kind.needs == HazardNeeds::kGrasp)
-    return CheckGripper(events, i);
-  if (kind.needs == HazardNeeds::kSlipping && !can_slip)
-    throw InputError::At(path + ".event",
-                         is + ", but only a fixed or a spherical attachment can slip. Change "
-                              "object.attachment.joint, or use object_breaks_loose.");
-  if (kind.needs == HazardNeeds::kNoEnd && events.duration(i) > 0)
-    throw InputError::At(path + ".duration",
-                         is + " with a duration, but an object that broke loose does not return to "
-                              "the cobot. Remove the duration, or use object_slips.");
-}
-
-void ControlledScene::CheckGripper(const EventSequence& events, std::size_t i) const {
-  const std::string path = "events." + std::to_string(i);
-  const std::string is = path + ".event is " + events.kind(i).name;
-  const bool grasps = events.kind(i).needs == HazardNeeds::kGrasp;
-  if (events.duration(i) > 0)
-    throw InputError::At(
-        path + ".duration",
-        is + " with a duration, but a gripper " +
-            (grasps ? "stays closed until an event opens it. Remove the duration, and add an event "
-                      "release_object."
-                    : "stays open until an event closes it. Remove the duration, and add an event "
-                      "grasp_object."));
-  if (!grasps) return;
-  if (joint_ != JointType::kFixed && joint_ != JointType::kSpherical)
-    throw InputError::At(path + ".event",
-                         is +
-                             ", but only a fixed or a spherical attachment can close again. Change "
-                             "object.attachment.joint, or remove the event.");
-  if (!events.releases_object())
-    throw InputError::At(path + ".event", is + ", but the gripper is closed from the start. Add an "
-                                               "event release_object before this event.");
-}
-
-// Returns the part that an event needs and this cobot lacks, or "" if it lacks nothing.
-std::string ControlledScene::Missing(HazardNeeds needs) const {
-  switch (needs) {
-    case HazardNeeds::kWristSensor:
-      if (has_wrist_sensor()) break;
-      return "cobot.controller does not use a wrist sensor";
-    case HazardNeeds::kSetPoint:
-      if (controller_->has_set_point()) break;
-      return "cobot.controller has no Cartesian set-point";
-    case HazardNeeds::kSprings:
-      if (controller_->has_springs()) break;
-      return "cobot.controller has no springs and dampers";
-    case HazardNeeds::kStandby:
-      if (standby_) break;
-      return "cobot.standby_controller is missing";
-    default:
-      break;
-  }
-  return "";
 }
 
 Wrench ControlledScene::WristWrench(const Engine& engine) const noexcept {
@@ -429,6 +368,7 @@ void ControlledScene::AdvanceController(double t) noexcept {
 void ControlledScene::Archive(StateArchive& a) noexcept {
   a(torque_, timing_, computed_, tuning_, safety_);
   if (obstacles_ != 0) a(absent_);
+  a(pick_up_);
   if (has_wrist_sensor()) a(wrist_);
   a(loose_);
   for (Controller* controller : {controller_.get(), standby_.get()}) {
@@ -447,6 +387,7 @@ double ControlledScene::Energy(double t) const noexcept {
     const Pose& X_WE = E_.X_W;
     energy -= PayloadShare() * payload_->mass * gravity_ * (X_WE * payload_->center_of_mass).z();
   }
+  if (pick_up_) energy -= pick_up_->load() * gravity_ * (X_WO_ * pick_up_->p_OL()).z();
   return energy;
 }
 

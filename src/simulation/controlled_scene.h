@@ -14,6 +14,7 @@
 #include "simulation/disturbance.h"
 #include "simulation/engine.h"
 #include "simulation/event_sequence.h"
+#include "simulation/pick_up.h"
 #include "simulation/wrist_sensor.h"
 
 namespace predictor {
@@ -82,6 +83,8 @@ class ControlledScene {
     return is_loose_ ? loose_->attachment.state() : AttachmentState::kHolds;
   }
   bool is_loose() const noexcept { return is_loose_; }
+  // Returns null unless an event lets the object pick up a movable object.
+  const PickUp* pick_up() const noexcept { return pick_up_.get(); }
   // Returns whether the present events require the scene with a free object.
   bool must_loosen() const noexcept {
     return !is_loose_ && (disturbance_.grip != GripLimits() || disturbance_.gripper.was_opened());
@@ -93,12 +96,13 @@ class ControlledScene {
   void Loosen() noexcept;
   // Call this function before a state of the scene with the free object is restored.
   void SetLoose(bool loose) noexcept { is_loose_ = loose && loose_; }
-  // For a free object, these functions are called in each sub-step. HoldObject adds the
-  // attachment's forces after all others are applied, and returns false on an error of the engine.
-  // FollowObject is called after Update. LandingOf returns the wrench that ends a fall, about the
-  // object's centre of mass.
-  bool HoldObject() noexcept;
-  void FollowObject() noexcept;
+  // These functions are called in each sub-step. Hold adds the forces of the grips after all others
+  // are applied. A grip acts on a free object, or as the object's grip on a movable object.
+  // `object_wrench` is the wrench that was set by SetObjectWrench. Follow is called after Update.
+  // Both return false on an error of the engine. LandingOf returns the wrench that ends a fall of a
+  // free object, about its centre of mass.
+  bool Hold(const Wrench& object_wrench) noexcept;
+  bool Follow() noexcept;
   Wrench LandingOf(const FrameMotion& object) const noexcept;
   // Returns the outcome of the last step of the controller that acts, and the status if the step
   // was refused.
@@ -137,6 +141,7 @@ class ControlledScene {
   bool ComputeTorque(double t, JointVector* torque) noexcept;
   double PayloadShare() const noexcept;
   void AddPayload(JointVector* torque) const noexcept;
+  Wrench PickedLoad() const noexcept;
   void AddModelErrors(JointVector* torque) const noexcept;
   void SetGains(double t, bool keeps_force) noexcept;
   void SetBrakes(bool closed) noexcept;
@@ -144,9 +149,9 @@ class ControlledScene {
   std::string Missing(HazardNeeds needs) const;
   void PlaceObstacles() noexcept;
   void RemoveFixtures() noexcept;
-  bool IsBlocked(std::uint64_t fixtures) const noexcept;
   void CheckAttachmentEvent(const EventSequence& events, std::size_t i) const;
   void CheckGripper(const EventSequence& events, std::size_t i) const;
+  static void CheckPickUp(const EventSequence& events, std::size_t i);
   Controller& Acting() const noexcept { return disturbance_.standby ? *standby_ : *controller_; }
   double step() const noexcept { return carried_->step(); }
   void WriteTorque(Engine* engine) const noexcept;
@@ -161,6 +166,7 @@ class ControlledScene {
   std::unique_ptr<Engine> carried_;
   std::unique_ptr<LooseObject> loose_;  // may be null
   bool is_loose_ = false;
+  std::unique_ptr<PickUp> pick_up_;  // null unless an event picks up a movable object
   WristSensor wrist_;
   ControlTiming timing_;
   Wrench wrist_at_start_ = Wrench::Zero();

@@ -32,6 +32,20 @@ struct GripperCommands {
   bool is_open() const noexcept { return released < grasped; }
 };
 
+// The last commands to the gripper that the cobot carries as its object. Times as above.
+struct PickUpCommands {
+  double let_go = HUGE_VAL, picked = HUGE_VAL;
+  // Of the last command to pick up: which movable object, how far its shapes may be from those of
+  // the gripper [m], the limits of the grip, the mass that the cobot then compensates [kg], and how
+  // long it takes to do so [s].
+  int movable = -1;
+  double gap = 0;
+  GripLimits grip;
+  double mass = 0, load_time = 0;
+
+  bool is_open() const noexcept { return movable < 0 || let_go < picked; }
+};
+
 // The default values are those of an undisturbed cobot.
 struct Disturbance {
   bool brakes = false;                  // the brakes are closed, and the motors give no torque
@@ -47,7 +61,17 @@ struct Disturbance {
   ControllerTuning gains;               // factors of the controller's values
   GripLimits grip;                      // of the attachment
   GripperCommands gripper;
+  PickUpCommands pick_up;
   std::uint64_t obstacles = 0;  // fixtures that are there now: bit = number of the fixture
 };
+
+// Returns the fixtures that are absent. `obstacles` are those that events let appear, and `present`
+// those of them that should be there now. One that was `absent` before and overlaps what could
+// touch it (`touched`) stays absent, because the contact would push the other body away violently.
+// Bit: number of the fixture.
+constexpr std::uint64_t AbsentFixtures(std::uint64_t obstacles, std::uint64_t present,
+                                       std::uint64_t absent, std::uint64_t touched) {
+  return obstacles & (~present | (absent & touched));
+}
 
 }  // namespace predictor

@@ -6,6 +6,15 @@
 
 namespace predictor {
 
+std::uint64_t TouchedFixtures(const Engine& engine) noexcept {
+  std::uint64_t touched = 0;
+  for (int i = 0; i < engine.contact_count(); ++i) {
+    const int fixture = engine.contact(i).fixture;
+    if (fixture >= 0) touched |= std::uint64_t{1} << fixture;
+  }
+  return touched;
+}
+
 std::unique_ptr<Engine> MakeEngine(const Scenario& scenario, const RobotModel& cobot,
                                    bool wrist_sensor, Holding holding) {
   switch (scenario.simulation.engine) {

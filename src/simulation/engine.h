@@ -23,7 +23,14 @@ namespace predictor {
 // the end-effector, or it is a free body.
 enum class Holding { kJoint, kFree };
 
-enum class SceneBody { kEndEffector, kObject };  // their frames are E and O
+// Bodies with the frames E, O and M. kMovable is the first movable object, and others follow it.
+enum class SceneBody { kEndEffector, kObject, kMovable };
+constexpr SceneBody BodyOfMovable(int i) {
+  return static_cast<SceneBody>(static_cast<int>(SceneBody::kMovable) + i);
+}
+constexpr int NumberOfMovable(SceneBody body) {  // negative: another body
+  return static_cast<int>(body) - static_cast<int>(SceneBody::kMovable);
+}
 
 // The Coulomb friction of a joint of the cobot, and a measure of how little this friction creeps (1
 // means no creep).
@@ -114,7 +121,10 @@ class Engine {
   // which is 0 at z = 0 [J].
   virtual Values movable_positions() noexcept { return {nullptr, 0}; }
   virtual Values movable_velocities() noexcept { return {nullptr, 0}; }
+  virtual Values movable_forces() noexcept { return {nullptr, 0}; }  // one for each velocity
+  virtual Values all_velocities() noexcept { return velocities(); }  // and those of movable objects
   virtual Movables movables() const noexcept { return {}; }
+  virtual Vector3 movable_com(int) const noexcept { return Vector3::Zero(); }  // in W [m]
   virtual double MovablePotential() const noexcept { return 0; }
   // Puts everything at rest at the model's zero, and the movable objects in the places where they
   // start. This function also repairs the state after an error.
@@ -130,6 +140,8 @@ class Engine {
   virtual bool ComputeAccelerations(bool load) noexcept = 0;
 
   // ---- kinematics and forces, at the last Prepare ----------------------------------------------
+  // Jacobian, JacobianRate, StepMatrix, Forces and AddReactions write values for all_velocities()
+  // if their result is as large. AddReactions otherwise eliminates the movable objects.
 
   virtual Pose PoseOf(SceneBody body) const noexcept = 0;           // in W
   virtual FrameMotion MotionOf(SceneBody body) const noexcept = 0;  // A_W is zero
@@ -178,6 +190,13 @@ class Engine {
   // fixture is the number of its bit. Prepare must follow this call.
   virtual void RemoveFixtures(std::uint64_t which) noexcept = 0;
 
+  // Returns the distance [m] between the shapes of the object and of movable object i, or `most` if
+  // it is larger.
+  virtual double GapTo(int, double most) noexcept { return most; }
+  // Lets the object and movable object i pass through each other, because the object holds it. −1
+  // means none. Prepare must follow this call.
+  virtual void SetHeldMovable(int) noexcept {}
+
   // In direct mode, the mass of a hand [kg]. The hand moves with its handle and has no weight.
   // SetHandMass returns whether the mass changed; if so, Prepare must follow. Other modes: 0.
   virtual double HandMass(int hand) const noexcept = 0;
@@ -204,6 +223,10 @@ class Engine {
  protected:
   Layout layout_;
 };
+
+// Returns the fixtures that something touches at the last Prepare. The number of a fixture is the
+// number of its bit.
+std::uint64_t TouchedFixtures(const Engine& engine) noexcept;
 
 // Composes the scene of a scenario (cobot, object, handles, floor and table) for the engine that
 // simulation.engine selects. The object collides with floor and table. `wrist_sensor` states

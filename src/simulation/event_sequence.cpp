@@ -21,22 +21,37 @@ constexpr const ParameterKind* kHazardKinds[] = {PREDICTOR_HAZARDS(PREDICTOR_ENT
 
 constexpr double kGrip = 0.5;  // force of a hand that grips [N]
 
-// The fixture that an event names. Bit: its number.
-std::uint64_t BitOfFixture(const Scenario& scenario, std::size_t event) {
-  const std::string path = "events." + std::to_string(event) + ".fixture";
-  const YamlNode* named = scenario.events[event].parameters.Find("fixture");
+// Returns the number of the entry of `bodies` that an event names by its parameter `key`. `what` is
+// the word for such a body, and `missing` the advice if none has a name.
+template <class Bodies>
+int NumberOf(const Scenario& scenario, std::size_t event, const char* key, const Bodies& bodies,
+             const char* what, const char* missing) {
+  const std::string path = "events." + std::to_string(event) + "." + key;
+  const YamlNode* named = scenario.events[event].parameters.Find(key);
   const std::string name = named ? named->text : "";
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < scenario.environment.fixtures.size(); ++i) {
-    const std::string& of_fixture = scenario.environment.fixtures[i].name;
-    if (of_fixture.empty()) continue;
-    if (of_fixture == name) return std::uint64_t{1} << i;
-    names.push_back(of_fixture);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].name.empty()) continue;
+    if (bodies[i].name == name) return static_cast<int>(i);
+    names.push_back(bodies[i].name);
   }
-  throw InputError::At(
-      path, path + ": no fixture has the name " + Quote(name) + ". " +
-                (names.empty() ? "In environment.fixtures, give a name to the fixture that appears."
-                               : Suggestion(name, names)));
+  throw InputError::At(path, path + ": no " + what + " has the name " + Quote(name) + ". " +
+                                 (names.empty() ? missing : Suggestion(name, names)));
+}
+
+// Returns the fixture that an event names, as the bit with the fixture's number.
+std::uint64_t FixtureOf(const Scenario& scenario, std::size_t event, HazardNeeds needs) {
+  if (needs != HazardNeeds::kFixture) return 0;
+  return std::uint64_t{1} << NumberOf(
+             scenario, event, "fixture", scenario.environment.fixtures, "fixture",
+             "In environment.fixtures, give a name to the fixture that appears.");
+}
+
+// Returns the number of the movable object that an event names, or −1 for none.
+int MovableOf(const Scenario& scenario, std::size_t event, HazardNeeds needs) {
+  if (needs != HazardNeeds::kMovable) return -1;
+  return NumberOf(scenario, event, "object", scenario.environment.objects, "movable object",
+                  "Add the movable object to environment.objects.");
 }
 
 }  // namespace
@@ -63,7 +78,7 @@ EventSequence::EventSequence(const Scenario& scenario) {
     events_.push_back({kind, std::move(parameters), spec.trigger, spec.duration,
                        RandomStream(scenario.seed, "event " + std::to_string(i)),
                        static_cast<std::uint8_t>(place - std::begin(kHazardKinds) + 1),
-                       kind->needs == HazardNeeds::kFixture ? BitOfFixture(scenario, i) : 0});
+                       FixtureOf(scenario, i, kind->needs), MovableOf(scenario, i, kind->needs)});
   }
   Reset();
 }
@@ -94,10 +109,22 @@ bool EventSequence::releases_object() const {
   });
 }
 
+bool EventSequence::picks_up() const {
+  return std::ranges::any_of(events_, [](const Event& event) { return event.movable >= 0; });
+}
+
 std::uint64_t EventSequence::obstacles() const {
   std::uint64_t all = 0;
   for (const Event& event : events_) all |= event.obstacles;
   return all;
+}
+
+std::uint64_t EventSequence::Absent(std::uint16_t active, std::uint64_t absent,
+                                    std::uint64_t touched) const noexcept {
+  std::uint64_t present = 0;
+  for (std::size_t i = 0; i < events_.size(); ++i)
+    if ((active >> i & 1U) != 0) present |= events_[i].obstacles;
+  return AbsentFixtures(obstacles(), present, absent, touched);
 }
 
 void EventSequence::Reset() noexcept {
@@ -148,10 +175,16 @@ Disturbance EventSequence::disturbance() const noexcept {
   Disturbance d;
   for (const Event& event : events_) {
     if (!event.begun || event.ended) continue;
-    event.kind->disturb(*event.parameters, time_ - event.begin, &d);
-    d.obstacles |= event.obstacles;
+    AddTo(&d, event, time_ - event.begin);
   }
   return d;
+}
+
+void EventSequence::AddTo(Disturbance* d, const Event& event, double elapsed) const noexcept {
+  const double picked = d->pick_up.picked;
+  event.kind->disturb(*event.parameters, elapsed, d);
+  if (d->pick_up.picked < picked) d->pick_up.movable = event.movable;
+  d->obstacles |= event.obstacles;
 }
 
 std::uint16_t EventSequence::active() const noexcept {

@@ -23,11 +23,14 @@ class EventSequence {
   double longest_delay() const;     // sum of all that events add [s]
   bool loosens_attachment() const;  // an event lets the object slip, break loose or be put down
   bool releases_object() const;     // an event opens the gripper
+  bool picks_up() const;            // an event lets the object pick up a movable object
   // The fixtures that appear through all events together. The number of a fixture is the number of
   // its bit.
   std::uint64_t obstacles() const;
-  // The fixtures that appear through event i, as bits in the same way.
-  std::uint64_t obstacles(std::size_t i) const { return events_[i].obstacles; }
+  // Returns AbsentFixtures while these events are active. The number of an event is the number of
+  // its bit.
+  std::uint64_t Absent(std::uint16_t active, std::uint64_t absent,
+                       std::uint64_t touched) const noexcept;
 
   // Returns to the state in which no event has begun. Draws new times for the events, because the
   // person knows the times of the last run.
@@ -53,10 +56,12 @@ class EventSequence {
     RandomStream random;
     std::uint8_t number;      // 1 + that of the hazard
     std::uint64_t obstacles;  // that it lets appear: bit = number of the fixture
+    int movable;              // that it picks up; −1: none
     double earliest = 0;      // [s]
     bool begun = false, ended = false;
     double begin = 0;  // [s]
   };
+  void AddTo(Disturbance* d, const Event& event, double elapsed) const noexcept;
   bool Begins(const Event& event, const WorldState& world, const WorldInput& input) const noexcept;
 
   std::vector<Event> events_;

@@ -198,12 +198,10 @@ struct World::Impl {
   Status SubStep(const WorldInput& input) noexcept {
     Engine& world = engine();
     if (!controlled.StepController(world.time())) return controlled.failure();
-    ApplyWrenches(input);
-    if (!controlled.HoldObject() || !world.Advance()) return NotFinite();
+    if (!controlled.Hold(ApplyWrenches(input)) || !world.Advance()) return NotFinite();
     if (const Status status = CheckResult(); !status.ok()) return status;
     controlled.SenseWrist();
-    if (!controlled.Update(&world)) return NotFinite();
-    controlled.FollowObject();
+    if (!controlled.Update(&world) || !controlled.Follow()) return NotFinite();
     controlled.AdvanceController(world.time());
     UpdateMotion(1 / world.step());
     return Status::Ok();
@@ -239,9 +237,9 @@ struct World::Impl {
     return false;
   }
 
-  // Applies the wrenches of the hands and of the coupling as one wrench on the object's body. All
-  // these wrenches act at the handles D.
-  void ApplyWrenches(const WorldInput& input) noexcept {
+  // Applies the wrenches of the hands and of the coupling as one wrench on the object's body, and
+  // returns that wrench. All wrenches of hands and coupling act at the handles D.
+  Wrench ApplyWrenches(const WorldInput& input) noexcept {
     const Vector3 com = engine().object_com();
     Wrench sum = controlled.is_loose() ? controlled.LandingOf(object) : Wrench::Zero();
     for (Wrench& wrench : state.coupling) wrench.setZero();
@@ -252,6 +250,7 @@ struct World::Impl {
       sum += ShiftWrench(input.F_H_W[h] + state.coupling[h], D.X_W.p - com);
     }
     engine().SetObjectWrench(sum);
+    return sum;
   }
 
   // Updates poses and twists. Computes the accelerations as the changes of the twists since the
@@ -281,6 +280,10 @@ struct World::Impl {
     state.cobot_stop = static_cast<std::uint8_t>(controlled.cobot_stop());
     state.attachment = controlled.attachment();
     if (engine().movable_positions().size() > 0) state.movables = engine().movables();
+    if (const PickUp* pick_up = controlled.pick_up()) {
+      state.movables.held = pick_up->held();
+      state.movables.grip = pick_up->state();
+    }
     state.energy = controlled.Energy(engine().time());
     state.controller = controlled.outcome();
   }

@@ -166,14 +166,22 @@ TEST_F(VerifyTest, ARunWithAnyHazardIsTheSameAgain) {
   for (const ParameterKind* kind : Hazards()) {
     const std::string name = kind->name;
     SCOPED_TRACE(name);
-    const bool has_end =
-        name != "object_breaks_loose" && name != "release_object" && name != "grasp_object";
+    const bool picks_up = name == "pick_up" || name == "let_go";
+    const bool has_end = name != "object_breaks_loose" && name != "release_object" &&
+                         name != "grasp_object" && !picks_up;
     std::string event = "{event: " + name + ", trigger: {after: 0.3, window: 0.2}";
     if (has_end) event += ", duration: 0.7";
     if (name == "object_slips") event += ", slip_force: 60";
     if (name == "obstacle_appears") event += ", fixture: wall";
     if (name == "grasp_object") event += "}, {event: release_object, trigger: {after: 0.1}";
+    if (name == "pick_up") event += ", object: brick, grasp_gap: 1";
+    if (name == "let_go")
+      event += "}, {event: pick_up, object: brick, grasp_gap: 1, trigger: {after: 0.1}";
     std::vector<std::string> set = kNoStops;
+    if (picks_up)
+      set.emplace_back(
+          "environment.objects=[{name: brick, primitive: {size: [0.1, 0.1, 0.1]}, "
+          "xyz: [0.46, 0.5, 0.3]}]");
     if (name == "obstacle_appears")
       set.emplace_back(
           "environment.fixtures=[{name: wall, shape: box, size: [0.3, 0.05, 0.5], "

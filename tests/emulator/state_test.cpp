@@ -107,6 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"push", std::vector<std::string>{}},
                     std::pair{"underdamped", std::vector<std::string>{}},
                     std::pair{"push_boxes", std::vector<std::string>{}},
+                    std::pair{"lift_crates", std::vector<std::string>{}},
                     std::pair{"bar_circle", std::vector<std::string>{}},
                     std::pair{"single_arm", std::vector<std::string>{}},
                     std::pair{"dual_ur5", std::vector<std::string>{}},

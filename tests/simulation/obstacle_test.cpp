@@ -74,6 +74,30 @@ TEST(Obstacle, WaitsUntilItsPlaceIsFree) {
   EXPECT_NEAR(world.state().object.X_W.p.x() - start, kWallGap, 2e-3);
 }
 
+// Wall and gate appear at the same time. The box is where the wall would be and meets the gate.
+TEST(Obstacle, OnlyTheOneWhosePlaceIsTakenWaits) {
+  constexpr double kBegin = 0.5;  // [s]
+  Scenario s = WithWall(kBegin);
+  const Vector3 start = World(s).state().object.X_W.p;
+  FixtureSpec gate;
+  gate.size = {2, 0.1, 2};
+  gate.xyz = start + Vector3(0, 0.19 + kWallGap + 0.05, 0);
+  gate.name = "gate";
+  const auto moved = [&start](const Scenario& scenario) -> Vector3 {
+    World world(scenario);
+    RunWith(&world, Push(scenario, {15, 0, 0}), kBegin + 0.1);
+    RunWith(&world, Push(scenario, {15, 15, 0}), 1);
+    return world.state().object.X_W.p - start;
+  };
+  const Vector3 without = moved(s);
+  s.environment.fixtures.push_back(gate);
+  s.events.push_back(Event("obstacle_appears", kBegin, {"fixture=gate"}));
+  const Vector3 with = moved(s);
+  EXPECT_GT(without.y(), 2 * kWallGap);
+  EXPECT_LT(with.y(), kWallGap + 0.01);
+  EXPECT_GT(with.x(), kWallGap + 0.02);  // the wall is not there
+}
+
 TEST(Obstacle, ASavedStateContinuesBitForBit) {
   const Scenario s = WithWall(0.2);
   const WorldInput push = Push(s, {15, 2, 0});

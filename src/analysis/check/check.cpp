@@ -80,6 +80,7 @@ class Judge {
     Controller();
     for (std::string& line : StartWarnings(report_->start)) Warn(std::move(line));
     LooseObject();
+    MovableObjects();
     Script();
     if (!report_->reach) return;
     for (std::size_t h = 0; h < kHands; ++h)
@@ -120,6 +121,12 @@ class Judge {
     const EventSequence events(s_);
     for (std::size_t i = 0; i < events.size(); ++i) {
       const HazardKind& kind = events.kind(i);
+      if (kind.needs == HazardNeeds::kMovable)
+        Warn(Formatted(
+            "After events.%zu (%s), the object may hold a movable object. Reach, stability "
+            "and torques here are those without it. Simulate the scenario to see what "
+            "follows the event.",
+            i, kind.name));
       if (kind.needs != HazardNeeds::kSlipping && kind.needs != HazardNeeds::kNoEnd &&
           kind.needs != HazardNeeds::kRelease)
         continue;
@@ -129,6 +136,17 @@ class Judge {
                     "Simulate the scenario to see what follows the event.",
                     i, kind.name));
     }
+  }
+
+  // The linear model contains no movable object.
+  void MovableObjects() {
+    const auto& objects = s_.environment.objects;
+    if (std::none_of(objects.begin(), objects.end(),
+                     [](const MovableSpec& object) { return object.Touches("object"); }))
+      return;
+    Warn(
+        "The object may push a movable object (environment.objects). Stability and torques here "
+        "are those without this contact. Simulate the scenario to see what a push does.");
   }
 
   void Script() {

@@ -40,7 +40,7 @@ ContactCollector::ContactCollector(const Scenario& scenario)
       events_(scenario),
       engine_(FreeObject(scenario)),
       facts_(scenario.environment.fixtures.size()),
-      present_(~events_.obstacles()) {}
+      absent_(events_.obstacles()) {}
 
 // Moves the engine's bodies to the poses in the record.
 void ContactCollector::Place(const TickRecord& record) {
@@ -51,13 +51,19 @@ void ContactCollector::Place(const TickRecord& record) {
   O.X_W = FromRecord(record.object.pose);
   O.V_W = Eigen::Map<const Vector6>(record.object.twist.data());
   engine_->MoveObject(O);
+  constexpr std::size_t kPositions = 7;  // of a movable object
+  Engine::Values movables = engine_->movable_positions();
+  for (std::size_t i = 0; i < record.movable_count; ++i) {
+    const Pose X = FromRecord(record.movables[i]);
+    movables.segment<kPositions>(static_cast<Eigen::Index>(kPositions * i)) << X.p, X.q.w(),
+        X.q.vec();
+  }
 }
 
 void ContactCollector::AddPoint(const Contact& contact, const FrameMotion& O,
                                 std::vector<Touch>* touches) const {
-  // The body is the carried object, not the cobot or a movable object.
-  if (contact.fixture < 0 || !contact.link.empty() || contact.body >= 0) return;
-  if (contact.depth <= 0) return;
+  const bool of_object = contact.link.empty() && contact.body < 0;
+  if (contact.fixture < 0 || !of_object || contact.depth <= 0) return;
   const auto i = static_cast<std::size_t>(contact.fixture);
   Touch& touch = (*touches)[i];
   if (contact.depth > touch.depth) {
@@ -71,22 +77,6 @@ void ContactCollector::AddPoint(const Contact& contact, const FrameMotion& O,
       std::max(0.0, *fixture.stiffness * contact.depth - fixture.damping * contact.normal_W.dot(v));
 }
 
-// Returns the fixtures that are present. As in the simulation, a fixture that appears because of an
-// event is added only when this fixture does not overlap the object.
-std::uint64_t ContactCollector::Present(const TickRecord& record,
-                                        const std::vector<Touch>& touches) {
-  const std::uint64_t all = events_.obstacles();
-  if (all == 0) return present_;
-  std::uint64_t wanted = ~all;
-  for (std::size_t i = 0; i < events_.size(); ++i)
-    if ((record.events >> i & 1U) != 0) wanted |= events_.obstacles(i);
-  std::uint64_t blocked = 0;
-  for (std::size_t i = 0; i < touches.size(); ++i)
-    if (touches[i].depth > 0) blocked |= BitOf(i) & ~present_;
-  present_ = wanted & ~blocked;
-  return present_;
-}
-
 void ContactCollector::Add(const TickRecord& record) {
   if (!record.ran) return;
   Place(record);
@@ -94,10 +84,10 @@ void ContactCollector::Add(const TickRecord& record) {
   const FrameMotion O = engine_->MotionOf(SceneBody::kObject);
   std::vector<Touch> touches(facts_.size());
   for (int k = 0; k < engine_->contact_count(); ++k) AddPoint(engine_->contact(k), O, &touches);
-  const std::uint64_t present = Present(record, touches);
+  absent_ = events_.Absent(record.events, absent_, TouchedFixtures(*engine_));
   for (std::size_t i = 0; i < facts_.size(); ++i) {
     const Touch& touch = touches[i];
-    if (touch.depth <= 0 || (present & BitOf(i)) == 0) continue;
+    if (touch.depth <= 0 || (absent_ & BitOf(i)) != 0) continue;
     ContactFacts& facts = facts_[i];
     facts.time += 1 / scenario_.rate;
     facts.depth = std::max(facts.depth, touch.depth);

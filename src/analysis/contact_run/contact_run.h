@@ -48,13 +48,12 @@ class ContactCollector {
   };
   void Place(const TickRecord& record);
   void AddPoint(const Contact& contact, const FrameMotion& O, std::vector<Touch>* touches) const;
-  std::uint64_t Present(const TickRecord& record, const std::vector<Touch>& touches);
 
   Scenario scenario_;
   EventSequence events_;
   std::unique_ptr<Engine> engine_;
   std::vector<ContactFacts> facts_;
-  std::uint64_t present_;  // fixtures: bit = number
+  std::uint64_t absent_;  // fixtures: bit = number
 };
 
 // The chapter's content.

@@ -12,7 +12,9 @@ namespace predictor {
 // effect, an attachment that can slip (kSlipping), or an effect that lasts until the end of the run
 // (kNoEnd). Commands to the gripper have no end either (kRelease), and a command to grasp needs
 // another event that releases the object (kGrasp). With kFixture, the hazard's parameter `fixture`
-// names one of environment.fixtures.
+// names one of environment.fixtures. With kMovable, the hazard's parameter `object` names one of
+// environment.objects. With kPickUp, another event must pick up a movable object. Hazards with
+// kMovable or kPickUp have no end either.
 enum class HazardNeeds {
   kNothing,
   kWristSensor,
@@ -23,7 +25,9 @@ enum class HazardNeeds {
   kNoEnd,
   kRelease,
   kGrasp,
-  kFixture
+  kFixture,
+  kMovable,
+  kPickUp
 };
 
 // The registry's description of a hazard. The sentence states what happens, for use in a report

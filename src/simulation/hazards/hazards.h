@@ -22,7 +22,9 @@
   add(kObjectSlips)            \
   add(kObstacleAppears)        \
   add(kReleaseObject)          \
-  add(kGraspObject)
+  add(kGraspObject)            \
+  add(kPickUp)                 \
+  add(kLetGo)
 // clang-format on
 
 namespace predictor::hazards {

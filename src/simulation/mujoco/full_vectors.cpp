@@ -17,7 +17,7 @@ FullVectors::FullVectors(const Scene& scene)
 
 void FullVectors::Jacobian(JacobianOf function, const mjModel* model, const mjData* data,
                            const Vector3& p_W, int body, Engine::Jacobian6 J) noexcept {
-  if (same_)
+  if (J.cols() == all_)
     return function(model, data, J.data(), J.data() + 3 * J.outerStride(), p_W.data(), body);
   function(model, data, J_.data(), J_.data() + 3 * all_, p_W.data(), body);
   J = J_.leftCols(own_);
@@ -25,7 +25,7 @@ void FullVectors::Jacobian(JacobianOf function, const mjModel* model, const mjDa
 
 void FullVectors::MassMatrix(const mjModel* model, const mjData* data, Matrix M) const noexcept {
   // The matrix is symmetric, so the storage order does not matter.
-  if (same_) return mj_fullM(model, data, M.data());
+  if (M.cols() == all_) return mj_fullM(model, data, M.data());
   mj_fullM(model, data, M_.data());
   M = M_.topLeftCorner(own_, own_);
 }
@@ -41,7 +41,8 @@ void FullVectors::TimesMass(const mjModel* model, const mjData* data, const doub
 
 void FullVectors::AddWrench(const mjModel* model, mjData* data, const double* wrench,
                             const double* p_W, int body, Vector forces) noexcept {
-  if (same_) return mj_applyFT(model, data, wrench, wrench + 3, p_W, body, forces.data());
+  if (forces.size() == all_)
+    return mj_applyFT(model, data, wrench, wrench + 3, p_W, body, forces.data());
   to_.setZero();
   mj_applyFT(model, data, wrench, wrench + 3, p_W, body, to_.data());
   forces += to_.head(own_);
@@ -51,7 +52,8 @@ void FullVectors::AddWrench(const mjModel* model, mjData* data, const double* wr
 // acceleration along its row.
 void FullVectors::AddReactions(const mjModel* model, const mjData* data, Matrix M) const noexcept {
   const Eigen::Index movable = all_ - own_;
-  if (!same_) {
+  const bool is_whole = M.cols() == all_;
+  if (!is_whole) {
     mj_fullM(model, data, M_.data());
     coupling_.setZero();
   }
@@ -59,9 +61,9 @@ void FullVectors::AddReactions(const mjModel* model, const mjData* data, Matrix 
   for (int i = 0; i < data->nefc; ++i) {
     if (data->efc_state[i] != mjCNSTRSTATE_QUADRATIC) continue;
     const Engine::ConstValues row(data->efc_J + i * all_, all_);
-    const auto own = row.head(own_);
+    const auto own = row.head(M.cols());
     M += data->efc_D[i] * own.lazyProduct(own.transpose());
-    if (same_) continue;
+    if (is_whole) continue;
     const auto other = row.tail(movable);
     M_.bottomRightCorner(movable, movable) += data->efc_D[i] * other.lazyProduct(other.transpose());
     coupling_ += data->efc_D[i] * other.lazyProduct(own.transpose());

@@ -10,8 +10,9 @@
 
 namespace predictor {
 
-// Calls the engine's functions. Without movable objects, both sets of coordinates are the same, and
-// the functions write to the caller's memory. This class does not use the heap after its
+// Calls the engine's functions. If the caller's vector or matrix has room for all coordinates, the
+// functions write to the caller's memory. This is always so without movable objects. Otherwise, the
+// functions write only the first coordinates. This class does not use the heap after its
 // construction.
 class FullVectors {
  public:
@@ -31,7 +32,7 @@ class FullVectors {
                  int body, Vector forces) noexcept;
   // Adds what the active constraints contribute to a matrix M with M · acceleration = force. The
   // coordinates of the movable objects on which these constraints act are eliminated (Schur
-  // complement).
+  // complement) unless M contains them.
   void AddReactions(const mjModel* model, const mjData* data, Matrix M) const noexcept;
   void Displace(const mjModel* model, mjData* data, const double* change, double scale) noexcept;
 

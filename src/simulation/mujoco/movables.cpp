@@ -124,6 +124,32 @@ bool MovablesTouch(const Scene& scene) noexcept {
          scene.model->pair_margin[scene.movable_pairs.front()] > kNoContact;
 }
 
+void LetPass(const Scene& scene, int movable) noexcept {
+  const mjModel& model = *scene.model;
+  for (const int pair : scene.movable_pairs) {
+    const int a = model.geom_bodyid[model.pair_geom1[pair]],
+              b = model.geom_bodyid[model.pair_geom2[pair]];
+    if (a != scene.object && b != scene.object) continue;
+    const int of = std::max(scene.movable_of[static_cast<std::size_t>(a)],
+                            scene.movable_of[static_cast<std::size_t>(b)]);
+    model.pair_margin[pair] = of == movable ? kNoContact : 0;
+  }
+}
+
+double GapBetween(const Scene& scene, mjData* data, int movable, double most) noexcept {
+  const mjModel& model = *scene.model;
+  const int body = scene.movables[static_cast<std::size_t>(movable)].body;
+  double nearest = most;
+  for (int a = 0; a < model.ngeom; ++a) {
+    if (model.geom_bodyid[a] != scene.object) continue;
+    for (int b = 0; b < model.ngeom; ++b) {
+      if (model.geom_bodyid[b] != body) continue;
+      nearest = std::min(nearest, mj_geomDistance(&model, data, a, b, most, nullptr));
+    }
+  }
+  return nearest;
+}
+
 // The engine's free joint has the linear velocity of the frame in axes of W and the angular
 // velocity in its own axes.
 Movables MotionOfMovables(const Scene& scene, const mjData& data) noexcept {

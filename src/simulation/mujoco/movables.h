@@ -39,6 +39,10 @@ void FindMovables(std::size_t count, Scene* scene);
 void SetMovablesTouch(const Scene& scene, bool touch) noexcept;
 bool MovablesTouch(const Scene& scene) noexcept;
 
+// See Engine::SetHeldMovable and Engine::GapTo.
+void LetPass(const Scene& scene, int movable) noexcept;
+double GapBetween(const Scene& scene, mjData* data, int movable, double most) noexcept;
+
 // Returns the motion of all movable objects. The twist follows from the state alone.
 Movables MotionOfMovables(const Scene& scene, const mjData& data) noexcept;
 

@@ -83,6 +83,17 @@ class MujocoEngine final : public Engine {
   Values movable_velocities() noexcept override {
     return {data_->qvel + dof(), model_->nv - dof()};
   }
+  Values movable_forces() noexcept override {
+    return {data_->qfrc_applied + dof(), model_->nv - dof()};
+  }
+  Values all_velocities() noexcept override { return {data_->qvel, model_->nv}; }
+  Vector3 movable_com(int i) const noexcept override {
+    return At(data_->xipos + 3 * scene_->movables[static_cast<std::size_t>(i)].body);
+  }
+  double GapTo(int movable, double most) noexcept override {
+    return GapBetween(*scene_, data(), movable, most);
+  }
+  void SetHeldMovable(int i) noexcept override { LetPass(*scene_, i); }
   Movables movables() const noexcept override { return MotionOfMovables(*scene_, *data_); }
   double MovablePotential() const noexcept override {
     double energy = 0;
@@ -136,10 +147,10 @@ class MujocoEngine final : public Engine {
   void StepMatrix(Eigen::Ref<Eigen::MatrixXd> M) const noexcept override {
     MassMatrix(M);
     // The engine integrates the joints' damping implicitly.
-    for (int i = 0; i < dof(); ++i) M(i, i) += model_->opt.timestep * model_->dof_damping[i];
+    for (int i = 0; i < M.cols(); ++i) M(i, i) += model_->opt.timestep * model_->dof_damping[i];
   }
   void Forces(Eigen::Ref<Eigen::VectorXd> forces) noexcept override {
-    const auto map = [this](const double* x) { return ConstValues(x, dof()); };
+    const auto map = [&](const double* x) { return ConstValues(x, forces.size()); };
     forces = map(data_->qfrc_passive) - map(data_->qfrc_bias) + map(data_->qfrc_applied);
     if (data_->nefc > 0) forces += map(data_->qfrc_constraint);
     const double* wrench = data_->xfrc_applied + 6 * scene_->object;
@@ -202,6 +213,8 @@ class MujocoEngine final : public Engine {
  private:
   mjData* data() const noexcept { return data_.get(); }
   int Index(SceneBody body) const noexcept {
+    const int movable = NumberOfMovable(body);
+    if (movable >= 0) return scene_->movables[static_cast<std::size_t>(movable)].body;
     return body == SceneBody::kObject ? scene_->object : scene_->end_effector;
   }
   // If a contact or constraint does not fit into the engine's memory, the engine omits it with a
