@@ -1,6 +1,7 @@
 #include "assessment/measured_head.h"
 
 #include <cmath>
+#include <utility>
 
 namespace predictor::assessment {
 namespace {
@@ -70,7 +71,7 @@ HeadSource LiveHead::AddTo(PersonSample* sample, double clock, const PersonSetup
   const HeadSource source = AddHeadAt(clock, track_, setup, &with, &count_);
   if (source == HeadSource::kModelled) return source;
   if (count_.MostlyImpossible()) return HeadSource::kImpossible;
-  *sample = with;
+  *sample = std::move(with);
   return source;
 }
 
