@@ -9,7 +9,7 @@
 #include "scenario/scenario.h"
 #include "simulation/disturbance.h"
 #include "simulation/engine.h"
-#include "simulation/grip.h"
+#include "simulation/limited_grip.h"
 
 namespace predictor {
 
@@ -32,7 +32,7 @@ class Attachment {
   // Whether the last command to grasp found the object too far away.
   bool missed() const noexcept { return missed_; }
 
-  // See Grip.
+  // See LimitedGrip.
   bool Hold(const Wrench& object_wrench) noexcept { return grip_.Hold(object_wrench); }
   void Follow() noexcept { grip_.Follow(); }
   const Wrench& load() const noexcept { return grip_.load(); }
@@ -44,7 +44,7 @@ class Attachment {
 
   Vector3 p_OA_;
   bool is_fixed_;
-  Grip grip_;
+  LimitedGrip grip_;
   Pose start_;               // place of the grip at the start of the run
   bool missed_ = false;      // the last grasp found nothing
   double tried_ = HUGE_VAL;  // how long ago that grasp was commanded [s]

@@ -8,7 +8,7 @@
 #include "core/types.h"
 #include "simulation/disturbance.h"
 #include "simulation/engine.h"
-#include "simulation/grip.h"
+#include "simulation/limited_grip.h"
 
 namespace predictor {
 
@@ -34,7 +34,8 @@ class PickUp {
     return held_ < 0 ? AttachmentState::kOpen : grip_.state();
   }
 
-  // See Grip. Follow returns whether Prepare must follow, because the movable object left the grip.
+  // See LimitedGrip. Follow returns whether Prepare must follow, because the movable object left
+  // the grip.
   bool Hold(const Wrench& object_wrench) noexcept;
   bool Follow() noexcept;
 
@@ -49,7 +50,7 @@ class PickUp {
   bool Release() noexcept;
 
   Engine& engine_;
-  Grip grip_;
+  LimitedGrip grip_;
   int held_ = -1;
   bool missed_ = false;      // the last command found nothing
   bool ignored_ = false;     // the last command came while it held something

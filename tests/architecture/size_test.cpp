@@ -201,7 +201,7 @@ std::string ContentOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// Returns the sources that people write.
+// Returns the sources that we write. Packages of others are in folders named node_modules.
 std::vector<fs::path> Sources(const std::vector<std::string>& folders,
                               const std::set<std::string>& extensions) {
   const fs::path root = PREDICTOR_SOURCE_DIR;
@@ -209,6 +209,7 @@ std::vector<fs::path> Sources(const std::vector<std::string>& folders,
   for (const std::string& folder : folders)
     for (const auto& entry : fs::recursive_directory_iterator(root / folder))
       if (extensions.contains(entry.path().extension().string()) &&
+          entry.path().string().find("/node_modules/") == std::string::npos &&
           !ContentOf(entry.path()).starts_with("// Generated "))
         files.push_back(entry.path().lexically_relative(root));
   return files;

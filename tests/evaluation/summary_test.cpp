@@ -144,26 +144,6 @@ TEST(Summary, ComputesMeansDeviationsAndTheReleasedPartApart) {
   EXPECT_NEAR(s.Get<double>("object.lift_m"), 0.002, 1e-12);
 }
 
-TEST(Summary, MeasuresTheMovableObjectThatWasMovedFarthest) {
-  SummaryBuilder builder(Named("pushed", 1));
-  builder.Add(Running(0.001, 0, 0));
-  EXPECT_TRUE(std::isnan(builder.summary().Get<double>("movables.moved_m")));
-  SummaryBuilder pushed(Named("pushed", 1));
-  TickRecord record = Running(0.001, 0, 0);
-  record.movable_count = 2;
-  record.movables[0].p = {1, 2, 3};
-  record.movables[1].p = {4, 5, 6};
-  pushed.Add(record);
-  record.movables[0].p = {9, 9, 9};  // the way there does not count
-  pushed.Add(record);
-  record.movables[0].p = {1, 2, 3.1};
-  record.movables[1].p = {4.03, 5, 6.04};
-  pushed.Add(record);
-  EXPECT_NEAR(pushed.summary().Get<double>("movables.moved_m"), 0.1, 1e-12);
-  record.movable_count = 255;  // a damaged record
-  pushed.Add(record);
-}
-
 // A rotation of the left handle about its own origin keeps the distance between the handles. In the
 // left handle's frame, this rotation moves the right handle by the chord of the arc. A common
 // translation of both handles changes neither value.

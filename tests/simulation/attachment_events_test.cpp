@@ -296,7 +296,7 @@ TEST(Slips, TheGripTightensWithoutAJolt) {
   s.events.push_back(Event("brakes_close"));
   World world(s);
   RunWith(&world, HandsOff(s), 0.2);
-  const double v0 = -world.state().object.V_W.z(), rate = Grip::kForceRate / kMass;
+  const double v0 = -world.state().object.V_W.z(), rate = LimitedGrip::kForceRate / kMass;
   const double a = kGravity - kLimit / kMass;
   ASSERT_NEAR(v0, 0.1 * a, 0.003);
   const double rest = (a + std::sqrt(a * a + 2 * rate * v0)) / rate;
@@ -326,7 +326,7 @@ TEST(Slips, AnOpenGripClosesWhereTheObjectIs) {
   for (int k = 0; k < longest / kTick; ++k) {
     ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
     const WorldState& now = world.state();
-    const double force = std::min(Grip::kForceRate * (k + 1) * kTick, 200.0);
+    const double force = std::min(LimitedGrip::kForceRate * (k + 1) * kTick, 200.0);
     EXPECT_LT((now.object.V_W.head<3>() - v).norm(), (force / kMass + kGravity) * kTick) << k;
     v = now.object.V_W.head<3>(), w = now.object.V_W.tail<3>();
   }

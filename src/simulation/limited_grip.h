@@ -30,7 +30,7 @@ struct GripJoint {
 //
 // The end-effector can hold a free object, and the object can hold a movable object. No other grip
 // may act in the same step.
-class Grip {
+class LimitedGrip {
  public:
   // The rates at which a grip tightens [N/s], [N·m/s]. About 100 N within 0.1 s is a design choice.
   static constexpr double kForceRate = 1000, kTorqueRate = 100;
@@ -39,7 +39,7 @@ class Grip {
 
   // `engine` must outlive this. `velocities` is the number of velocities on which both bodies
   // depend: engine->dof(), or all if the held body is a movable object. At most kMaxDof.
-  Grip(SceneBody holder, GripJoint joint, Engine* engine, Eigen::Index velocities);
+  LimitedGrip(SceneBody holder, GripJoint joint, Engine* engine, Eigen::Index velocities);
 
   // Holds `held` at its point p_HA [m] from now on, where it is. A grip that is not `tight` begins
   // without force and tightens.

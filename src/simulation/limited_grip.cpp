@@ -1,4 +1,4 @@
-#include "simulation/grip.h"
+#include "simulation/limited_grip.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -35,14 +35,14 @@ Vector3 MinimumInBall(const Matrix3& A, const Vector3& b, double radius, bool* a
 
 }  // namespace
 
-Grip::Grip(SceneBody holder, GripJoint joint, Engine* engine, Eigen::Index velocities)
+LimitedGrip::LimitedGrip(SceneBody holder, GripJoint joint, Engine* engine, Eigen::Index velocities)
     : engine_(*engine), holder_(holder), joint_(joint) {
   J_.setZero(6, velocities);
   other_.setZero(6, velocities);
   M_.setZero(velocities, velocities);
 }
 
-void Grip::Close(SceneBody held, const Vector3& p_HA, bool tight) noexcept {
+void LimitedGrip::Close(SceneBody held, const Vector3& p_HA, bool tight) noexcept {
   held_ = held;
   p_HA_ = p_HA;
   place_ = Place();
@@ -54,13 +54,13 @@ void Grip::Close(SceneBody held, const Vector3& p_HA, bool tight) noexcept {
   load_.setZero();
 }
 
-Pose Grip::Place() const noexcept {
+Pose LimitedGrip::Place() const noexcept {
   const Pose X_BH = engine_.PoseOf(holder_).Inverse() * engine_.PoseOf(held_);
   return {X_BH * p_HA_, X_BH.q};
 }
 
 // Lower limits apply at once. What slid in the last step is held at most a step's share tighter.
-void Grip::Tighten() noexcept {
+void LimitedGrip::Tighten() noexcept {
   const double dt = engine_.step();
   const bool open = is_open();
   const auto next = [dt](bool loose, double now, double rate, double wanted) {
@@ -72,7 +72,7 @@ void Grip::Tighten() noexcept {
              next(slides, limits_.reach, 0, wanted_.reach)};
 }
 
-bool Grip::Hold(const Wrench& object_wrench) noexcept {
+bool LimitedGrip::Hold(const Wrench& object_wrench) noexcept {
   Tighten();
   slides_ = turns_ = false;
   object_wrench_ = object_wrench;
@@ -107,7 +107,7 @@ bool Grip::Hold(const Wrench& object_wrench) noexcept {
 
 // The wrench on an object that holds something is an external one, because the wrist sensor does
 // not measure forces of joints.
-void Grip::Apply() noexcept {
+void LimitedGrip::Apply() noexcept {
   if (held_ == SceneBody::kObject) {
     Engine::Values applied = engine_.joint_forces();
     applied = others_;
@@ -120,7 +120,7 @@ void Grip::Apply() noexcept {
 }
 
 // Computes the Jacobian, its rate and the inertia in the present state.
-void Grip::Prepare() noexcept {
+void LimitedGrip::Prepare() noexcept {
   p_WA_ = engine_.PoseOf(held_) * p_HA_;
   engine_.JacobianRate(holder_, p_WA_, J_);
   engine_.JacobianRate(held_, p_WA_, other_);
@@ -134,7 +134,7 @@ void Grip::Prepare() noexcept {
 }
 
 // Computes G, including the contacts and the friction that are active at present.
-void Grip::UpdateMobility() noexcept {
+void LimitedGrip::UpdateMobility() noexcept {
   holding_ = M_;
   engine_.AddReactions(holding_);
   holding_factor_.compute(holding_);
@@ -146,7 +146,7 @@ void Grip::UpdateMobility() noexcept {
 
 // Returns the wrench on B about A. It assumes that contacts and friction react to the change from
 // the present wrench_ as UpdateMobility determined.
-Wrench Grip::Solve() noexcept {
+Wrench LimitedGrip::Solve() noexcept {
   const double dt = engine_.step();
   DofVector force(M_.rows());
   engine_.Forces(force);
@@ -175,7 +175,7 @@ Wrench Grip::Solve() noexcept {
 
 // Minimises ½ λᵀ G λ + bᵀ λ within the limits, starting from a given λ, alternately over force and
 // torque.
-Wrench Grip::WithinLimits(const Vector6& b, Wrench wrench) noexcept {
+Wrench LimitedGrip::WithinLimits(const Vector6& b, Wrench wrench) noexcept {
   const double torque = joint_.is_fixed ? limits_.torque : HUGE_VAL;
   for (int i = 0; i < kMaxTurns; ++i) {
     const Wrench before = wrench;
@@ -190,7 +190,7 @@ Wrench Grip::WithinLimits(const Vector6& b, Wrench wrench) noexcept {
   return wrench;
 }
 
-void Grip::Follow() noexcept {
+void LimitedGrip::Follow() noexcept {
   if (is_lost_) return;
   const Pose now = Place();
   const bool open = is_open();
