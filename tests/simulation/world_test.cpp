@@ -176,7 +176,7 @@ TEST(World, ResetRepeatsBitForBit) {
   EXPECT_TRUE(Same(another.state(), first));
 }
 
-// A stop by the simulation states a value above its limit, or that there is none.
+// A stop by the simulation states a value that exceeds its limit, or no value.
 void ExpectSaysWhatDiverged(const Status& status) {
   EXPECT_NE(status.quantity, Quantity::kNone);
   if (status.quantity == Quantity::kNotFinite) return;
