@@ -26,7 +26,7 @@ target_compile_options(predictor_options INTERFACE
 if(PREDICTOR_WERROR)
   target_compile_options(predictor_options INTERFACE -Werror)
 endif()
-if(PREDICTOR_SANITIZE OR PREDICTOR_FUZZ)
+if(PREDICTOR_SANITIZE_ALL OR PREDICTOR_FUZZ)
   set(PREDICTOR_HARDEN OFF)  # sanitizers have their own checks, which are incompatible with these
 endif()
 if(PREDICTOR_HARDEN)
@@ -39,18 +39,27 @@ if(PREDICTOR_HARDEN)
   add_link_options(-Wl,-z,relro -Wl,-z,now)
 endif()
 if(PREDICTOR_SANITIZE)
-  add_compile_options(-fsanitize=${PREDICTOR_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${PREDICTOR_SANITIZE})
-  if(PREDICTOR_SANITIZE MATCHES undefined AND NOT PREDICTOR_SANITIZE_ALL)
-    # These checks of each pointer and call take a third of the compiler's time in CI. Without them, the address
-    # sanitizer still reports a null pointer, an access outside an object and a vector instruction on a misaligned
-    # address. The complete build (./dev soak asan) has them.
-    add_compile_options(-fno-sanitize=null,alignment,object-size,vptr,pointer-overflow,nonnull-attribute)
-    add_compile_options(-fno-sanitize=returns-nonnull-attribute)
-  endif()
+  set(PREDICTOR_SANITIZER_OPTIONS -fsanitize=${PREDICTOR_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+endif()
+if(PREDICTOR_SANITIZE AND PREDICTOR_SANITIZE_ALL)
+  add_compile_options(${PREDICTOR_SANITIZER_OPTIONS})
   if(PREDICTOR_SANITIZE STREQUAL thread)
     # The thread sanitizer does not support std::atomic_thread_fence, which Boost.Asio uses twice. Without this
     # option, the compiler would warn in each file.
     add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-tsan>)
   endif()
+elseif(PREDICTOR_SANITIZE)
+  # Only some modules and their tests are compiled with these options (PREDICTOR_SANITIZED in Modules.cmake). All other
+  # objects are those of the release build, so that the compiler cache has them. The options undo what the release
+  # build adds. That build shows the warnings. All objects must free Eigen's memory alike, and Eigen assumes less about
+  # malloc under a sanitizer.
+  list(APPEND PREDICTOR_SANITIZER_OPTIONS -O1 -g1 -UNDEBUG -U_FORTIFY_SOURCE -fno-stack-protector -w -DEIGEN_MALLOC_ALREADY_ALIGNED=1)
+  # In tests, only memory is checked, because the other checks find defects in the tested code alone.
+  set(PREDICTOR_SANITIZER_TEST_OPTIONS ${PREDICTOR_SANITIZER_OPTIONS} -fno-sanitize=undefined -O0)
+  # These checks of each pointer and call take a third of the compiler's time in CI. Without them, the address
+  # sanitizer still reports a null pointer, an access outside an object and a vector instruction on a misaligned
+  # address. The complete build (./dev soak asan) has them.
+  list(APPEND PREDICTOR_SANITIZER_OPTIONS -fno-sanitize=null,alignment,object-size,vptr,pointer-overflow
+       -fno-sanitize=nonnull-attribute,returns-nonnull-attribute)
 endif()

@@ -43,6 +43,16 @@ endfunction()
 # These libraries consist of headers. A program that links an installed module does not need them.
 set(PREDICTOR_HEADER_LIBRARIES pinocchio::pinocchio nlohmann_json::nlohmann_json boost_headers message_table)
 set(PREDICTOR_LIGHT_OPTIONS -O1 -Wno-maybe-uninitialized)  # false positives for std::optional
+
+# Under a sanitizer, these modules, which parse, store and decide, are compiled and tested with it. Other modules' tests
+# exercise that code only indirectly, and slowly. With PREDICTOR_SANITIZE_ALL, the sanitizer covers every module.
+set(PREDICTOR_SANITIZED core devices models process recording ros_tcp safety scenario viewer watchdog)
+# These have no tests of their own under the sanitizer, but fuzz targets.
+set(PREDICTOR_SANITIZED_LIBRARIES ${PREDICTOR_SANITIZED} evaluation export foxglove)
+set(PREDICTOR_SANITIZE_SOME OFF)
+if(PREDICTOR_SANITIZE AND NOT PREDICTOR_SANITIZE_ALL)
+  set(PREDICTOR_SANITIZE_SOME ON)
+endif()
 function(predictor_module NAME)
   cmake_parse_arguments(ARG "LIGHT" "" "PUBLIC;PRIVATE" ${ARGN})
   file(GLOB_RECURSE SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/${NAME}/*.cpp)
@@ -51,7 +61,10 @@ function(predictor_module NAME)
     add_library(predictor_${NAME} STATIC ${SOURCES})
     target_link_libraries(predictor_${NAME} PRIVATE $<BUILD_INTERFACE:predictor_options>)
     predictor_unite(predictor_${NAME})
-    if(ARG_LIGHT)
+    if(PREDICTOR_SANITIZE_SOME AND NAME IN_LIST PREDICTOR_SANITIZED_LIBRARIES)
+      target_compile_options(predictor_${NAME} PRIVATE ${PREDICTOR_SANITIZER_OPTIONS})
+      predictor_precompile(predictor_${NAME} precompiled_sanitized)
+    elseif(ARG_LIGHT)
       target_compile_options(predictor_${NAME} PRIVATE ${PREDICTOR_LIGHT_OPTIONS})
       predictor_precompile(predictor_${NAME} precompiled_light)
     else()
@@ -80,13 +93,10 @@ function(predictor_module NAME)
 endfunction()
 
 set(PREDICTOR_TEST_OPTIONS -O0 -U_FORTIFY_SOURCE)  # the tested code is optimized, which FORTIFY needs
-
-# These targets are built and run under a sanitizer unless PREDICTOR_SANITIZE_ALL is set. They are
-# the tests of the modules that parse, store and decide. Other modules' tests exercise that code
-# only indirectly, and slowly. The target `sanitized` builds them.
-option(PREDICTOR_SANITIZE_ALL "Run every module's tests under the sanitizer" OFF)
-set(PREDICTOR_SANITIZED core devices models process recording ros_tcp safety scenario viewer watchdog)
-add_custom_target(sanitized)
+if(PREDICTOR_SANITIZE_SOME)
+  set(PREDICTOR_TEST_OPTIONS ${PREDICTOR_SANITIZER_TEST_OPTIONS})
+endif()
+add_custom_target(sanitized)  # builds the tests that run under a sanitizer
 
 # PROCESSORS of a test counts quarters of a processor (./dev test runs ctest -j with five per
 # processor). Most tests take a whole one. Tests that mostly wait take a quarter and start first.
@@ -111,7 +121,7 @@ function(predictor_test NAME)
   target_compile_options(test_${NAME} PRIVATE ${PREDICTOR_TEST_OPTIONS})
   predictor_precompile(test_${NAME} precompiled_test)
   predictor_unite(test_${NAME})
-  if(PREDICTOR_SANITIZE AND NOT PREDICTOR_SANITIZE_ALL AND NOT NAME IN_LIST PREDICTOR_SANITIZED)
+  if(PREDICTOR_SANITIZE_SOME AND NOT NAME IN_LIST PREDICTOR_SANITIZED)
     return()
   endif()
   add_dependencies(sanitized test_${NAME})
