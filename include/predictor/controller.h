@@ -84,7 +84,8 @@ typedef struct PredictorControllerConfig {
  *
  * All functions except `create` and `destroy` run in the control loop, once per millisecond: they
  * must not allocate, lock, wait, read or write files, print, or throw C++ exceptions, and must
- * return within a few microseconds. If one does not return, PREDICTOR ends with a message. */
+ * return within a few microseconds. If one does not return, PREDICTOR ends with a message. If one
+ * allocates or frees heap memory after the run has been prepared, PREDICTOR stops the run. */
 typedef struct PredictorController {
   uint32_t version;    /* PREDICTOR_CONTROLLER_VERSION */
   uint32_t input_size; /* sizeof(PredictorControllerInput) */

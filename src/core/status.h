@@ -50,8 +50,9 @@ enum class Quantity : std::uint8_t {
   kAcceleration,         // [m/s²]
   kAngularAcceleration,  // [rad/s²]
   kNotFinite,            // no number, because the simulation step has no finite result
+  kAllocations,          // of heap memory: calls that allocate or free it
 };
-inline constexpr int kQuantities = 15;
+inline constexpr int kQuantities = 16;
 
 // Returns the quantity that belongs to a cause. The Status of the cause may name another quantity,
 // which then takes precedence.

@@ -31,7 +31,7 @@ inline constexpr std::array<const char*, kQuantities> kQuantityNames = {
     "time",         "arm_age",
     "sensor_age",   "vibration",
     "acceleration", "angular_acceleration",
-    "not_finite"};
+    "not_finite",   "allocations"};
 static_assert(kQuantityNames.back() != nullptr);  // a name for each quantity
 
 struct TickField {

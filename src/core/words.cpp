@@ -22,6 +22,8 @@ std::string StopId(StopCause cause, Quantity quantity) {
   if (cause == StopCause::kDeadline && quantity == Quantity::kTime) return "stop.suspended";
   if (cause == StopCause::kPhysics && quantity == Quantity::kCount) return "stop.controller";
   if (cause == StopCause::kPhysics && quantity == Quantity::kTime) return "stop.controller_late";
+  if (cause == StopCause::kPhysics && quantity == Quantity::kAllocations)
+    return "stop.controller_allocates";
   if (SaysRestless(cause, quantity)) return "stop.no_rest";
   return std::string("stop.") + Name(cause);
 }
@@ -70,6 +72,8 @@ std::string MeasuredWords(const Status& status) {
   switch (status.quantity) {
     case Quantity::kCount:
       return Message("value.torques", {{"count", Formatted("%.0f", status.value)}});
+    case Quantity::kAllocations:
+      return Message("value.allocations", {{"count", Formatted("%.0f", status.value)}});
     case Quantity::kTime:
       return Message("value.silence", {{"value", measured}});
     case Quantity::kAcceleration:

@@ -96,6 +96,12 @@ void StopLog::FollowEnd(const TickRecord& record) {
 
 namespace {
 
+// Returns whether the quantity of a stop by the physics is that of a fault of the controller.
+bool IsOfController(Quantity quantity) {
+  return quantity == Quantity::kCount || quantity == Quantity::kTime ||
+         quantity == Quantity::kAllocations;
+}
+
 // Returns −1 if no joint moves.
 int FastestJoint(const TickRecord& record) {
   double fastest = 0;
@@ -120,8 +126,7 @@ void StopLog::Begin(const TickRecord& record) {
   stop.quantity = record.cause_quantity;
   stop.time = before_ + record.run_time;
   stop.harder = record.harder;
-  if (stop.cause == StopCause::kPhysics && stop.quantity != Quantity::kCount &&
-      stop.quantity != Quantity::kTime)
+  if (stop.cause == StopCause::kPhysics && !IsOfController(stop.quantity))
     stop.fastest_joint = FastestJoint(record);
   const auto& crossed = stop.cause == StopCause::kForce ? force_crossed_ : torque_crossed_;
   if ((stop.cause == StopCause::kForce || stop.cause == StopCause::kTorque) && stop.hand >= 0 &&

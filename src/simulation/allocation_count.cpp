@@ -18,8 +18,8 @@ namespace {
 
 thread_local std::int64_t allocation_calls = 0;
 
-// These pointers refer to the C library's own functions. In this program, the usual names refer to
-// the functions that count allocations.
+// These pointers refer to the C library's own functions, and are set once. In this program, the
+// usual names refer to the functions that count allocations.
 void* (*real_malloc)(std::size_t);
 void* (*real_calloc)(std::size_t, std::size_t);
 void* (*real_realloc)(void*, std::size_t);
@@ -68,6 +68,15 @@ Counted CountedAs(const char* name, F* counting, F** real) {
 
 using Functions = std::array<Counted, 6>;
 
+Functions FindFunctions() {
+  return {CountedAs("malloc", CountedMalloc, &real_malloc),
+          CountedAs("calloc", CountedCalloc, &real_calloc),
+          CountedAs("realloc", CountedRealloc, &real_realloc),
+          CountedAs("free", CountedFree, &real_free),
+          CountedAs("aligned_alloc", CountedAlignedAlloc, &real_aligned_alloc),
+          CountedAs("posix_memalign", CountedPosixMemalign, &real_posix_memalign)};
+}
+
 // The tables of a loaded library that contain the addresses of functions of other libraries.
 struct Tables {
   const ElfW(Sym) * symbols = nullptr;
@@ -95,6 +104,7 @@ Tables TablesOf(const dl_phdr_info& library) {
 }
 
 void Replace(void** place, void* with) {
+  if (*place == with) return;
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   const std::uintptr_t start = reinterpret_cast<std::uintptr_t>(place) / page * page;
   if (mprotect(reinterpret_cast<void*>(start), page, PROT_READ | PROT_WRITE) == 0) *place = with;
@@ -122,13 +132,9 @@ int CountIn(dl_phdr_info* library, std::size_t, void* functions) {
 
 }  // namespace
 
+// The loader calls CountIn under its own lock, so only one thread at a time changes the tables.
 void BeginAllocationCount() {
-  Functions functions = {CountedAs("malloc", CountedMalloc, &real_malloc),
-                         CountedAs("calloc", CountedCalloc, &real_calloc),
-                         CountedAs("realloc", CountedRealloc, &real_realloc),
-                         CountedAs("free", CountedFree, &real_free),
-                         CountedAs("aligned_alloc", CountedAlignedAlloc, &real_aligned_alloc),
-                         CountedAs("posix_memalign", CountedPosixMemalign, &real_posix_memalign)};
+  static Functions functions = FindFunctions();
   dl_iterate_phdr(CountIn, &functions);
 }
 

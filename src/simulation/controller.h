@@ -81,6 +81,9 @@ class Controller {
     return {StopCause::kPhysics, -1, std::numeric_limits<double>::quiet_NaN(), 0,
             Quantity::kNotFinite};
   }
+  // The scene is being set up, which is not part of the control loop: the controller may then
+  // allocate memory. A new controller is in this phase.
+  virtual void SetUp(bool) noexcept {}
   // In real time, a controller outside the program has a deadline. In virtual time, the program
   // waits for the controller.
   virtual void SetRealTime(bool) noexcept {}

@@ -85,11 +85,14 @@ void ExternalController::Compute(const ControllerInput& input, JointVector* torq
   const Answer answer = Ask(Fill(input), answered.data());
   const Eigen::Map<const Eigen::VectorXd> computed(answered.data(), dof);
   outcome_ = answer.came ? ControllerOutcome::kComputed : ControllerOutcome::kFellBack;
-  if (answer.came && computed.allFinite()) {
+  const bool is_usable = answer.came && computed.allFinite();
+  if (is_usable && answer.allocations == 0) {
     *torque = computed;
     return;
   }
-  if (answer.came)
+  if (is_usable)
+    Fail(static_cast<double>(answer.allocations), 0, Quantity::kAllocations);
+  else if (answer.came)
     Fail(static_cast<double>(dof - computed.array().isFinite().count()), 0, Quantity::kCount);
   else if (answer.silence >= longest_silence())
     Fail(answer.silence, longest_silence(), Quantity::kTime);

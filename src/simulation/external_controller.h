@@ -56,10 +56,12 @@ class ExternalController : public Controller {
 
  protected:
   // Requests the torques. The answer states whether torques arrived and, if not, for how long none
-  // have arrived [s].
+  // have arrived [s]. `allocations` is the number of calls since the last answer with which the
+  // controller allocated or freed heap memory in the control loop.
   struct Answer {
     bool came = true;
     double silence = 0;
+    std::int64_t allocations = 0;
   };
   virtual Answer Ask(const PredictorControllerInput& input, double* torque) noexcept = 0;
   const PredictorControllerInput& Fill(const ControllerInput& input) const noexcept {

@@ -26,6 +26,11 @@ TapedController::TapedController(std::vector<double> tape, int dof) : tape_(std:
   answer_.torque.setZero(dof);
 }
 
+void TapedController::SetUp(bool begins) noexcept {
+  sets_up_ = begins;
+  if (controller_) controller_->SetUp(begins);
+}
+
 void TapedController::Tape(std::span<double> answer) const noexcept {
   if (!sets_up_) return;
   if (controller_) {

@@ -22,7 +22,7 @@ class TapedController final : public Controller {
   TapedController(std::vector<double> tape, int dof);
 
   TapedController* taped() noexcept override { return this; }
-  void SetUp(bool begins) noexcept { sets_up_ = begins; }
+  void SetUp(bool begins) noexcept override;
   std::span<const double> tape() const noexcept { return tape_; }
   // Sets the answer of the next tick. This function is for replays only.
   void Play(const ControllerAnswer& answer) noexcept { answer_ = answer; }

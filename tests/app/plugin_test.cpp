@@ -73,6 +73,18 @@ TEST_F(FailingController, ThatReturnsNoNumberStopsTheRun) {
   ExpectStop("the cobot's controller gave torques that are not finite. Correct the plug-in");
 }
 
+TEST_F(FailingController, ThatAllocatesStopsTheRun) {
+  for (const char* command : {"simulate", "run"}) {
+    ASSERT_EQ(Run(Library("allocate"), command), 1) << said_;
+    const std::string said = said_;
+    ExpectStop(
+        "the cobot's controller allocated or freed heap memory in the control loop. Correct the "
+        "plug-in");
+    EXPECT_NE(said.find("malloc, free and the like: 2."), std::string::npos) << said;
+    std::filesystem::remove(file_);
+  }
+}
+
 TEST_F(FailingController, ThatEndsAsAProcessStopsTheRun) {
   ASSERT_EQ(Run(Program("crash")), 1) << said_;
   ExpectStop(

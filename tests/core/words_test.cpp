@@ -116,6 +116,9 @@ TEST(StopMessage, OfThePhysicsStatesWhatDiverged) {
   EXPECT_EQ(words(Quantity::kNotFinite, std::nan(""), 0),
             cause + " (" + Text("value.not_finite") + ")");
   EXPECT_EQ(words(Quantity::kNone, 0, 0), cause);
+  EXPECT_EQ(words(Quantity::kAllocations, 2, 0),
+            Capitalised(Text("stop.controller_allocates.cause")) + " (" +
+                Message("value.allocations", {{"count", "2"}}) + ")");
 }
 
 TEST(StopMessage, NamesTheFaultThatEscalatedItToPowerOff) {

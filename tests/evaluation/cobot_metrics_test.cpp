@@ -135,6 +135,9 @@ TEST(StopByPhysics, OfAControllerSaysWhatWasCounted) {
   ExpectText(not_finite, "by cause 'physics': number of torques that are not finite: 7.");
   EXPECT_EQ(SummaryTable(not_finite).find("limit 0"), std::string::npos);
   EXPECT_EQ(SummaryTable(not_finite).find("fastest joint"), std::string::npos);
+  const Summary allocates = StoppedBy(Quantity::kAllocations, 2, 0);
+  ExpectText(allocates, "by cause 'physics': number of calls of malloc, free and the like: 2.");
+  EXPECT_EQ(SummaryTable(allocates).find("fastest joint"), std::string::npos);
   const Summary late = StoppedBy(Quantity::kTime, 0.102, 0.1);
   ExpectText(late, "by cause 'physics': no answer for 102 ms, limit 100 ms.");
   ExpectText(late, "Explanation: the cobot's controller ended, or did not answer in time.");

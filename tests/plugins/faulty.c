@@ -15,12 +15,14 @@
 #define AT_TIME 6
 
 /* A controller of kind AT_TIME carries the cobot's weight until the time "at" and then fails as
- * "fault" states. With the fault "create", it hangs while it is created. */
+ * "fault" states. With the fault "create", it hangs while it is created. With the fault
+ * "allocate_once", it allocates memory in its first call. */
 typedef struct {
   double at;
   char fault[16];
   double damping, posture[PREDICTOR_MAX_JOINTS];
   uint32_t reads;
+  int was_called;
   volatile int zero;     /* always 0 */
   volatile int* nowhere; /* always NULL */
 } Faulty;
@@ -59,10 +61,18 @@ static void* create(const PredictorControllerConfig* config, char* error, size_t
   return self;
 }
 
+static void Allocate(void) {
+  static void* volatile taken;
+  taken = malloc(64);
+  free(taken);
+}
+
 static void compute(void* self_, const PredictorControllerInput* input, double* torque) {
-  const Faulty* self = self_;
+  Faulty* self = self_;
   for (int j = 0; j < input->dof; ++j)
     torque[j] = input->g[j] + 400 * (self->posture[j] - input->q[j]) - self->damping * input->v[j];
+  if (strcmp(self->fault, "allocate_once") == 0 && !self->was_called) Allocate();
+  self->was_called = 1;
   if (input->time < self->at) return;
   if (strcmp(self->fault, "nan") == 0) torque[1] = torque[3] = NAN;
   if (strcmp(self->fault, "h") == 0) memcpy(torque, input->h, sizeof input->X_WO);
@@ -73,11 +83,7 @@ static void compute(void* self_, const PredictorControllerInput* input, double* 
   if (strcmp(self->fault, "access") == 0) *self->nowhere = 1;
   if (strcmp(self->fault, "divide") == 0) torque[0] = 7 / self->zero; /* 1 / x needs no division */
   while (strcmp(self->fault, "hang") == 0) sleep(1);
-  if (strcmp(self->fault, "allocate") == 0) {
-    static void* volatile taken;
-    taken = malloc(64);
-    free(taken);
-  }
+  if (strcmp(self->fault, "allocate") == 0) Allocate();
 }
 
 static uint32_t reads(void* self) { return ((Faulty*)self)->reads; }

@@ -296,6 +296,25 @@ TEST(Plugin, TorquesThatAreNotFiniteAreRefused) {
   }
 }
 
+TEST(Plugin, AStepInWhichALibraryAllocatesIsRefused) {
+  const Scenario s = BallScene(Plugin("at_time", "fault=allocate at=0.05"));
+  World world(s);
+  const Status status = FirstFailure(s, &world);
+  EXPECT_EQ(status.cause, StopCause::kPhysics);
+  EXPECT_EQ(status.quantity, Quantity::kAllocations);
+  EXPECT_EQ(status.value, 2);  // one malloc and one free
+  EXPECT_EQ(world.state().controller, ControllerOutcome::kFailed);
+  world.Reset();
+  EXPECT_TRUE(world.Step(HandsOff(s), kTick).ok());
+}
+
+// The first call of a function often prepares something.
+TEST(Plugin, ALibraryMayAllocateWhileTheSceneIsSetUp) {
+  const Scenario s = BallScene(Plugin("at_time", "fault=allocate_once"));
+  World world(s);
+  for (int k = 0; k < 60; ++k) ASSERT_TRUE(world.Step(HandsOff(s), kTick).ok());
+}
+
 // If the process could shorten the shared memory, the control loop would end with a bus error.
 TEST(Plugin, AProcessCannotShortenTheSharedMemory) {
   World world(BallScene(Faulty("shorten")));

@@ -19,7 +19,7 @@ export type StopCause = (typeof kStopCauses)[number];
 export const kQuantities = [
   'none', 'count', 'force', 'torque', 'length', 'angle',
   'speed', 'angular_speed', 'time', 'arm_age', 'sensor_age', 'vibration',
-  'acceleration', 'angular_acceleration', 'not_finite',
+  'acceleration', 'angular_acceleration', 'not_finite', 'allocations',
 ] as const;
 export type Quantity = (typeof kQuantities)[number];
 

@@ -93,6 +93,7 @@ function stopId({cause, quantity}: Reason): StopId | null {
   if (cause === 'deadline' && quantity === 'time') return 'suspended';
   if (cause === 'physics' && quantity === 'count') return 'controller';
   if (cause === 'physics' && quantity === 'time') return 'controller_late';
+  if (cause === 'physics' && quantity === 'allocations') return 'controller_allocates';
   if (cause === 'device' && (quantity === 'speed' || quantity === 'time')) return 'no_rest';
   return cause;
 }
@@ -122,7 +123,7 @@ export function readable(value: number, quantity: Quantity, more = 0): string {
   const d = 1 + more;
   switch (quantity) {
     case 'none': case 'not_finite': return '';
-    case 'count': return value.toFixed(0);
+    case 'count': case 'allocations': return value.toFixed(0);
     case 'force': case 'vibration': return `${value.toFixed(d)} N`;
     case 'torque': return `${value.toFixed(d + 1)} N·m`;
     case 'length': return `${(value * 1000).toFixed(d)} mm`;
@@ -152,6 +153,7 @@ function measured({cause, value, limit, quantity}: Reason): string {
   if (cause !== 'physics') return numbers;
   switch (quantity) {
     case 'count': return message('value.torques', {count: fixed(value, 0)});
+    case 'allocations': return message('value.allocations', {count: fixed(value, 0)});
     case 'time': return message('value.silence', {value: numbers});
     case 'acceleration': case 'angular_acceleration': return message('value.acceleration', {value: numbers});
     default: return message('value.speed', {value: numbers});

@@ -2,14 +2,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
 #include "core/text.h"
 #include "scenario/paths.h"
 #include "scenario/trial_note.h"
+#include "simulation/allocation_count.h"
 #include "simulation/controllers/controllers.h"
 #include "simulation/external_controller.h"
 #include "simulation/plugin_calls.h"
@@ -60,10 +63,12 @@ class Plugin final : public ExternalController {
         self_(Make(context, parameters), Destroyer{this}) {
     if (functions_.memory) FindMemory(parameters);
     AskForInput();
+    BeginAllocationCount();  // now all libraries that this library needs are loaded
   }
 
   std::span<double> memory() noexcept override { return memory_; }
   bool uses_wrist_sensor() const noexcept override { return uses_wrist_sensor_; }
+  void SetUp(bool begins) noexcept override { is_set_up_ = !begins; }
   void Start(const ControllerInput& input) noexcept override {
     failed_ = false;
     if (functions_.start) Guard("start", [&] { functions_.start(self_.get(), &Fill(input)); });
@@ -83,19 +88,24 @@ class Plugin final : public ExternalController {
   Answer Ask(const PredictorControllerInput& input, double* torque) noexcept override {
     Guard("compute", [&] { functions_.compute(self_.get(), &input, torque); });
     if (failed_ || !std::all_of(memory_.begin(), memory_.end(), IsUsable)) torque[0] = std::nan("");
-    return {};
+    Answer answer;
+    answer.allocations = std::exchange(allocations_, 0);
+    return answer;
   }
 
   // A C++ exception must not leave the library. If an exception leaves the library, the program
-  // refuses the library's next torques.
+  // refuses the library's next torques. The allocations are counted, because a function that
+  // allocates memory may wait for a lock or for the system.
   template <class Call>
   void Guard(const char* function, Call call) const noexcept {
     const PluginCall running(&calls_, function);
+    const std::int64_t before = AllocationCalls();
     try {
       call();
     } catch (...) {
       failed_ = true;
     }
+    if (is_set_up_) allocations_ += AllocationCalls() - before;
   }
 
   void* Make(const ControllerContext& context, const PluginParameters& given);
@@ -116,7 +126,9 @@ class Plugin final : public ExternalController {
   std::unique_ptr<void, Destroyer> self_;
   std::span<double> memory_;
   bool uses_wrist_sensor_ = false;
-  mutable bool failed_ = false;  // since the last Start
+  mutable bool failed_ = false;           // since the last Start
+  bool is_set_up_ = false;                // the control loop calls the functions
+  mutable std::int64_t allocations_ = 0;  // in the loop, since the last Ask
 };
 
 void* Plugin::Make(const ControllerContext& context, const PluginParameters& given) {

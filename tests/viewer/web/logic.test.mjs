@@ -264,6 +264,8 @@ test('a stop by the simulation states what diverged', () => {
   assert.equal(cause('speed', 150, 100), `${diverged} (${measured('value.speed', '150000.0 mm/s', '100000.0 mm/s')}).`);
   assert.equal(cause('not_finite', NaN, 0), `${diverged} (${message('value.not_finite')}).`);
   assert.equal(cause('none', 0, 0), `${diverged}.`);
+  assert.equal(cause('allocations', 2, 0),
+               `${capitalised('stop.controller_allocates.cause')} (${message('value.allocations', {count: '2'})}).`);
 });
 
 test('a hand that real arms still press on is reported', () => {
@@ -312,10 +314,10 @@ test('power that an arm keeps is reported first', () => {
   assert.match(page.dangerWords(kept, false), /still loaded: right handle, 30 N/);
 });
 
-// Only the simulation measures accelerations and has steps without a finite result.
+// Only the simulation measures accelerations, has steps without a finite result and counts allocations.
 function mayMeasure(cause, quantity) {
   return page.kStopCauses[cause] === 'physics' ||
-    !['acceleration', 'angular_acceleration', 'not_finite'].includes(page.kQuantities[quantity]);
+    !['acceleration', 'angular_acceleration', 'not_finite', 'allocations'].includes(page.kQuantities[quantity]);
 }
 
 // Generates the texts of a stop with the longest possible numbers, for every pair of a cause and a
