@@ -4,6 +4,7 @@
 
 #include "core/format.h"
 #include "core/units.h"
+#include "scenario/event_words.h"
 #include "screen.h"
 
 namespace predictor {
@@ -41,6 +42,8 @@ void PrintSetup(const Emulator& emulator, bool quiet) {
   if (quiet) return;
   const EmulatorSetup& setup = emulator.setup();
   TheScreen().Print("Device    " + setup.device);
+  for (const std::string& sentence : EventsAfterTheEnd(emulator.scenario()))
+    TheScreen().Print("Warning: " + sentence);
   if (emulator.scenario().mode == Mode::kDirect) return;
   const double margin = setup.lead.margin.gain;
   std::string text =

@@ -28,4 +28,18 @@ std::string TriggerWords(const TriggerSpec& trigger) {
   return text + "when " + Join(conditions, " and ");
 }
 
+std::vector<std::string> EventsAfterTheEnd(const Scenario& scenario) {
+  std::vector<std::string> sentences;
+  if (scenario.duration == 0) return sentences;  // a person ends the run
+  for (std::size_t i = 0; i < scenario.events.size(); ++i) {
+    const EventSpec& event = scenario.events[i];
+    if (event.trigger.after < scenario.duration) continue;
+    sentences.push_back(Formatted(
+        "events.%zu (%s) never begins: its trigger.after is %g s, but the run ends at %g s. Reduce "
+        "it, or increase duration.",
+        i, event.event.c_str(), event.trigger.after, scenario.duration));
+  }
+  return sentences;
+}
+
 }  // namespace predictor

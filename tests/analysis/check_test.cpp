@@ -180,6 +180,33 @@ TEST(Check, StatesThatItDescribesTheObjectOnTheCobot) {
   }
 }
 
+TEST(Check, AnEventThatCannotBeginWarns) {
+  const auto warnings = [](const std::string& trigger) {
+    return Check(Load("box_9kg.yaml", {"events=[{event: power_loss, trigger: " + trigger + "}]"}),
+                 NoSearch())
+        .warnings;
+  };
+  EXPECT_TRUE(warnings("{after: 29.9}").empty());
+  EXPECT_TRUE(Mentions(warnings("{after: 30}"),
+                       "events.0 (power_loss) never begins: its trigger.after is 30 s, but the run "
+                       "ends at 30 s."));
+  // The script moves the object by (0, 0.3, 0.1) m until 9 s, and later back to y = 0.
+  EXPECT_TRUE(warnings("{place: {center: [0, 0.3, 0.1], radius: 0.01}}").empty());
+  const char* never = "events.0 (power_loss) may never begin";
+  EXPECT_TRUE(
+      Mentions(warnings("{after: 13, place: {center: [0, 0.3, 0.1], radius: 0.01}}"), never));
+  EXPECT_TRUE(Mentions(warnings("{place: {center: [0, 0.3, 5.1], radius: 0.01}}"),
+                       "no nearer than 5 m to trigger.place.center"));
+  // A person may move the object anywhere.
+  EXPECT_FALSE(
+      Mentions(Check(Load("box_9kg.yaml",
+                          {"operator.type=browser",
+                           "events=[{event: power_loss, trigger: {place: {center: [5, 0, 0]}}}]"}),
+                     NoSearch())
+                   .warnings,
+               "events.0"));
+}
+
 TEST(Check, AScriptWithoutEffectOrCutShortWarns) {
   EXPECT_TRUE(Check(Load("box_9kg.yaml"), NoSearch()).warnings.empty());
   EXPECT_TRUE(Mentions(Check(Load("box_9kg.yaml", {"operator.script=[]"}), NoSearch()).warnings,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "analysis/check/controller_advice.h"
+#include "analysis/check/event_advice.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "core/units.h"
@@ -82,6 +83,7 @@ class Judge {
     LooseObject();
     MovableObjects();
     Script();
+    for (std::string& line : EventWarnings(s_, report_->models.X_WO)) Warn(std::move(line));
     if (!report_->reach) return;
     for (std::size_t h = 0; h < kHands; ++h)
       if (report_->reach->arms[h]) Arm(h, *report_->reach->arms[h]);
