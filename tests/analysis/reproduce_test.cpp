@@ -179,7 +179,7 @@ TEST_F(ReproduceTest, AblationOfTheBarIsInTheNumbersFile) {
 
 TEST_F(ReproduceTest, NumbersFileIsWhatTheProgramComputesSoak) {
   std::vector<std::string> names = {"bar_circle"};
-  if (InFull()) names = {"bar_circle", "box_18kg", "tuning", "arms", "circle"};
+  if (InFull()) names = {"bar_circle", "box_18kg", "ablation", "tuning", "arms", "circle"};
   for (const std::string& name : names) {
     options_.only = name;
     const ReproducedExperiment e = Reproduce(options_).experiments.at(0);
