@@ -12,6 +12,7 @@
 #include "simulation/controlled_scene.h"
 #include "simulation/world.h"
 #include "simulation/wrist_sensor.h"
+#include "support/find_plugins.h"
 
 namespace predictor {
 namespace {
@@ -170,12 +171,18 @@ const WithMemory kWithMemory[] = {
     {"load_sharing", {"object_mass=2", "share=1", "inertia_share=0.5"}},
     {"minimum_jerk_intention"},
     {"variable_impedance", {"adaptation=intention"}},
+    {"plugin", {"library=package://plugins/following_spring.so", "parameters=yielding=0.02"}},
 };
 
 std::string TypeOf(const testing::TestParamInfo<WithMemory>& info) { return info.param.type; }
 
+Scenario SceneOf(const WithMemory& controller) {
+  test::FindPlugins();
+  return FlangeScene(controller.type, controller.parameters);
+}
+
 Scenario Everything(const WithMemory& controller) {
-  Scenario s = FlangeScene(controller.type, controller.parameters);
+  Scenario s = SceneOf(controller);
   s.cobot.control.rate = 500;
   s.cobot.control.delay = 0.002;
   s.cobot.wrist_sensor.noise_force = 0.3;
@@ -241,9 +248,7 @@ void ExpectLinearMotion(const Scenario& s, double tolerance) {
   EXPECT_LT(worst, tolerance * largest) << "of " << largest << " m/s";
 }
 
-TEST_P(ControllerMemory, IsInTheLinearModel) {
-  ExpectLinearMotion(FlangeScene(GetParam().type, GetParam().parameters), 0.03);
-}
+TEST_P(ControllerMemory, IsInTheLinearModel) { ExpectLinearMotion(SceneOf(GetParam()), 0.03); }
 
 TEST(Linearisation, DescribesPeriodAndDelay) {
   Scenario s = AdmittanceScene({"inner_frequency=5"});
