@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "core/error.h"
@@ -15,6 +16,7 @@
 #include "progress.h"
 #include "recording/columns.h"
 #include "recording/reader.h"
+#include "restored_scenario.h"
 #include "screen.h"
 
 namespace predictor {
@@ -79,6 +81,11 @@ std::string Row(const std::vector<Column>& columns, const TickRecord& record) {
   return line + "\n";
 }
 
+// Replaces the units "rad or m" by those of the recorded cobot's joints, if its model is known.
+void FindUnits(const RecordingHeader& header, std::vector<Column>* columns) {
+  SetJointUnits(RestoredScenario(header).PrismaticJoints(), columns);
+}
+
 // Returns the columns that match the patterns. Columns of inputs are included only if a pattern
 // names them explicitly.
 std::vector<Column> Chosen(const std::vector<std::string>& channels, const TickRecord& record) {
@@ -128,7 +135,9 @@ int ListChannelsCommand(const RecordingOptions& options) {
   RecordingReader reader(options.recording);
   std::string text;
   nlohmann::json list = nlohmann::json::array();
-  for (const Column& column : ColumnsOf(FirstRecord(options, &reader), InputColumns::kIncluded)) {
+  std::vector<Column> columns = ColumnsOf(FirstRecord(options, &reader), InputColumns::kIncluded);
+  FindUnits(reader.header(), &columns);
+  for (const Column& column : columns) {
     text += column.name + (column.unit.empty() ? "" : "  [" + column.unit + "]") +
             (column.frame.empty() ? "" : "  in " + column.frame) +
             (column.meaning.empty() ? "" : "  # " + column.meaning) + "\n";
@@ -162,7 +171,8 @@ int ExportEventsCommand(const RecordingOptions& options) {
 int ExportDataCommand(const RecordingOptions& options) {
   RecordingReader reader(options.recording);
   TickRecord record = FirstRecord(options, &reader);
-  const std::vector<Column> columns = Chosen(options.channels, record);
+  std::vector<Column> columns = Chosen(options.channels, record);
+  FindUnits(reader.header(), &columns);
   options.RefuseToReplace(options.output);
   Table out(options.output);
   Progress progress("Exporting", CountOrNothing(&reader), options.quiet);

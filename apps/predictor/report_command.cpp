@@ -13,12 +13,12 @@
 #include "core/file.h"
 #include "core/format.h"
 #include "evaluate.h"
-#include "models/arm_model.h"
 #include "recorded_run.h"
 #include "recording/provenance.h"
 #include "recording/reader.h"
 #include "report/report.h"
 #include "report/run_names.h"
+#include "restored_scenario.h"
 
 namespace predictor {
 namespace {
@@ -34,33 +34,6 @@ struct ReportedRun {
   ContactRun contact;
 };
 
-// The recorded scenario, with those of its model files that the recording still contains.
-class RestoredScenario {
- public:
-  explicit RestoredScenario(const RecordingHeader& header) {
-    try {
-      scenario_ = RestoreScenario(header, folder_.path());
-    } catch (const InputError& error) {
-      problem_ = error.what();
-    }
-  }
-  const std::optional<Scenario>& scenario() const { return scenario_; }
-  const std::string& problem() const { return problem_; }
-
- private:
-  TemporaryFolder folder_;
-  std::optional<Scenario> scenario_;
-  std::string problem_;
-};
-
-// Returns which joints of the recorded cobot are prismatic. If the recording has lost the model of
-// the cobot, the list is empty.
-std::vector<bool> PrismaticJointsOf(const RestoredScenario& restored) try {
-  return restored.scenario() ? PrismaticJoints(*restored.scenario()) : std::vector<bool>();
-} catch (const InputError&) {
-  return {};
-}
-
 RunInfo Describe(const std::string& file, const RestoredScenario& restored,
                  RecordingReader* reader) {
   const RecordingHeader& header = reader->header();
@@ -70,7 +43,7 @@ RunInfo Describe(const std::string& file, const RestoredScenario& restored,
   info.scenario_yaml = header.scenario_yaml;
   info.program_version = header.program_version;
   info.labels = header.labels;
-  info.prismatic = PrismaticJointsOf(restored);
+  info.prismatic = restored.PrismaticJoints();
   info.loop = header.loop;
   if (header.start_unix_ns > 0)
     info.date = LocalTime("%Y-%m-%d %H:%M:%S", header.start_unix_ns / 1'000'000'000);

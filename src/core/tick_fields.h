@@ -36,7 +36,9 @@ static_assert(kQuantityNames.back() != nullptr);  // a name for each quantity
 
 struct TickField {
   const char* name;
-  const char* unit = "";   // "" for counts, ratios, flags and enumerations
+  // "" for counts, ratios, flags and enumerations; "A or B" is A for a revolute joint and B for a
+  // prismatic joint.
+  const char* unit = "";
   const char* frame = "";  // frame whose axes the components refer to
   const char* meaning = "";
   // Name of the field in the states that are sent to pages. It is appended to the names of the
@@ -215,13 +217,13 @@ constexpr void VisitHand(V& v, H& h) {
 template <class V, class R>
 constexpr void VisitCobot(V& v, R& r) {
   v.Value({"dof", "", "", "joints of the cobot"}, r.cobot_dof);
-  v.Joints({"q", "rad", "", "joint positions; in m for a prismatic joint", "cobot_q"}, r.cobot_q,
+  v.Joints({"q", "rad or m", "", "joint positions; in m for a prismatic joint", "cobot_q"},
+           r.cobot_q, r.cobot_dof);
+  v.Joints({"v", "rad/s or m/s", "", "joint velocities; in m/s for a prismatic joint"}, r.cobot_v,
            r.cobot_dof);
-  v.Joints({"v", "rad/s", "", "joint velocities; in m/s for a prismatic joint"}, r.cobot_v,
-           r.cobot_dof);
-  v.Joints(
-      {"torque", "N m", "", "torques that the controller commands; in N for a prismatic joint"},
-      r.cobot_torque, r.cobot_dof);
+  v.Joints({"torque", "N m or N", "",
+            "torques that the controller commands; in N for a prismatic joint"},
+           r.cobot_torque, r.cobot_dof);
   v.Message({"end_effector", "", "", "E", "end_effector"}, "predictor_msgs/Motion",
             [&](auto& inner) { VisitMotion(inner, r.end_effector); });
 }

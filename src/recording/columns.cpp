@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -178,6 +179,19 @@ std::vector<Column> ColumnsOf(const TickRecord& record, InputColumns inputs) {
     if (column.ExistsIn(record) && (inputs == InputColumns::kIncluded || !column.of_input))
       columns.push_back(column);
   return columns;
+}
+
+void SetJointUnits(const std::vector<bool>& prismatic, std::vector<Column>* columns) {
+  constexpr std::string_view kOr = " or ";
+  for (Column& column : *columns) {
+    const std::size_t at = column.unit.find(kOr);
+    const std::size_t bracket = column.name.rfind('[');
+    if (at == std::string::npos || bracket == std::string::npos) continue;
+    const std::size_t joint = std::stoul(column.name.substr(bracket + 1));
+    if (joint >= prismatic.size()) continue;
+    column.unit =
+        prismatic[joint] ? column.unit.substr(at + kOr.size()) : column.unit.substr(0, at);
+  }
 }
 
 std::vector<Column> Select(const std::vector<Column>& columns,

@@ -35,6 +35,11 @@ struct Column {
   }
 };
 
+// Gives each column of a cobot's joint the unit of this joint. prismatic[j] states whether joint j
+// is prismatic. Without this call, such a column has the units of both kinds of joints ("rad or
+// m").
+void SetJointUnits(const std::vector<bool>& prismatic, std::vector<Column>* columns);
+
 // Returns all numbers of a record in the order of its messages (core/tick_fields.h).
 const std::vector<Column>& AllColumns();
 

@@ -145,6 +145,21 @@ TEST_F(RecordedProgram, DamagedIsReadAsFarAsItIsWhole) {
       << said_;
 }
 
+// The first three joints of this cobot belong to its mobile base.
+TEST_F(RecordedProgram, ChannelsHaveTheUnitsOfTheirJoints) {
+  ASSERT_EQ(
+      Do({"simulate", Scenario("mobile_base"), "--quiet", "--duration", "0.1", "--record", file_}),
+      0)
+      << said_;
+  ASSERT_EQ(Do({"export", "data", file_, "cobot.*[1]", "cobot.*[2]", "--quiet"}), 0) << said_;
+  EXPECT_TRUE(printed_.starts_with(
+      "run.tick,run.run_time [s],cobot.q[1] [m],cobot.v[1] [m/s],cobot.torque[1] [N],"
+      "cobot.q[2] [rad],cobot.v[2] [rad/s],cobot.torque[2] [N m]\n"))
+      << printed_.substr(0, 300);
+  ASSERT_EQ(Do({"export", "channels", file_}), 0) << said_;
+  EXPECT_NE(printed_.find("\ncobot.q[1]  [m]"), std::string::npos);
+}
+
 TEST_F(RecordedProgram, ChannelsAreNumbersAsTheyWere) {
   ASSERT_EQ(
       Do({"simulate", Scenario("single_arm"), "--quiet", "--duration", "1", "--record", file_}), 0);

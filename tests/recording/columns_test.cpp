@@ -84,6 +84,28 @@ TEST(Columns, OfARecordLeaveOutWhatIsAbsent) {
   EXPECT_FALSE(has("hands.right.wrench.force.x"));
 }
 
+TEST(Columns, OfTheCobotHaveTheUnitOfTheirJoint) {
+  std::vector<Column> columns =
+      Select(ColumnsOf(Sample()), {"cobot.q[0]", "cobot.v[1]", "cobot.*[2]", "hands.left.q[0]"});
+  const auto units = [&] {
+    std::string text;
+    for (const Column& column : columns) text += column.name + " " + column.unit + "; ";
+    return text;
+  };
+  EXPECT_EQ(
+      units(),
+      "cobot.q[0] rad or m; cobot.v[1] rad/s or m/s; cobot.q[2] rad or m; cobot.v[2] rad/s or "
+      "m/s; cobot.torque[2] N m or N; hands.left.q[0] rad; ");
+  SetJointUnits({false, true}, &columns);  // the model of joint 2 is not known
+  EXPECT_EQ(units(),
+            "cobot.q[0] rad; cobot.v[1] m/s; cobot.q[2] rad or m; cobot.v[2] rad/s or m/s; "
+            "cobot.torque[2] N m or N; hands.left.q[0] rad; ");
+  SetJointUnits({true, true, true}, &columns);
+  EXPECT_EQ(units(),
+            "cobot.q[0] rad; cobot.v[1] m/s; cobot.q[2] m; cobot.v[2] m/s; cobot.torque[2] N; "
+            "hands.left.q[0] rad; ");
+}
+
 TEST(Columns, OfInputsExistIfRequested) {
   const std::vector<Column> columns = ColumnsOf(Sample(), InputColumns::kIncluded);
   const std::size_t inputs = Sample().inputs.size();

@@ -54,7 +54,7 @@ export interface RunQuantities {
   harderCauseValue: number;  // measured value of the cause, SI
   harderCauseLimit: number;  // limit of that value, SI
   parameters: number[];  // factors of translational stiffness, rotational stiffness and damping; thresholds of force [N] and torque [N m]
-  cobotQ: number[];  // [rad] joint positions; in m for a prismatic joint
+  cobotQ: number[];  // [rad or m] joint positions; in m for a prismatic joint
   endEffector: Pose;  // [m] in W
   object: Pose;  // [m] in W
   movables: Pose[];  // [m] in W of the scenario's environment.objects, in their order
