@@ -49,7 +49,7 @@ def numbers(value):
 
 
 def problem_of(root, schema, place, text):
-    """Returns what is wrong with a row, or "" if nothing is."""
+    """Returns the error of a row, or "" for a correct row."""
     written = [float(n) for n in NUMBER.findall(text)]
     if match := CONSTANT.fullmatch(place):
         defined = constant(root, *match.groups())
