@@ -104,40 +104,6 @@ TEST_F(Loads, GroundCarriesTheWholeBodyUnderItsCentre) {
   EXPECT_LT(Static(q, Pushing(q, 150 * ahead)).balance.margin, 0);
 }
 
-// Wilke et al. 1999 measured the pressure in a lumbar disc of a person (72 kg, 1.74 m) who lifted
-// or held 20 kg. The pressure was 2.3 MPa during a lift with a round back, 1.7 MPa during a lift
-// with bent knees, and 1.1 MPa when the load was held close to the body. We chose the angles of the
-// postures. The ratios between these three loads agree with the model within 25 %. The ratios of
-// these three loads to the load of relaxed standing (0.5 MPa) do not agree, because the model
-// neglects co-contraction (docs/concepts/person.md).
-TEST(LowerBack, LoadsHaveTheRatiosOfMeasuredPressures) {
-  BodySpec spec;
-  spec.height = 1.74;
-  spec.mass = 72;
-  const BodyModel model(spec);
-  const Stance stance = SomeStance();
-  const auto compression = [&](double tilt, double flexion, double shoulder, double elbow) {
-    BodyMotion motion;
-    motion.q[kPelvisTilt] = tilt;
-    motion.q[kTorsoFlexion] = flexion;
-    for (int hand = 0; hand < kHands; ++hand) {
-      motion.q[Of(hand, ArmJoint::kShoulderFlexion)] = shoulder;
-      motion.q[Of(hand, ArmJoint::kElbowFlexion)] = elbow;
-    }
-    BodySample sample = SampleAt(model, stance, motion.q);
-    for (HandSample& hand : sample.hands) hand.F_D_W.z() = 10 * kG;
-    return BodyDynamics(model, stance).Evaluate(motion, sample).l5s1.compression;
-  };
-  // In the first two postures, the trunk is inclined by 70° and 45°, and the arms hang. In the
-  // third posture, the trunk is upright and the forearms are level.
-  const double round_back = compression(0.50, 0.72, 1.22, 0);
-  const double bent_knees = compression(0.30, 0.50, 0.80, 0);
-  const double close = compression(0, 0, 0, 1.57);
-  EXPECT_NEAR(round_back / bent_knees, 2.3 / 1.7, 0.25 * 2.3 / 1.7);
-  EXPECT_NEAR(round_back / close, 2.3 / 1.1, 0.25 * 2.3 / 1.1);
-  EXPECT_NEAR(bent_knees / close, 1.7 / 1.1, 0.25 * 1.7 / 1.1);
-}
-
 // The power of the joints must equal the rate of change of the body's energy: τ v = d(kinetic +
 // potential)/dt.
 TEST_F(Loads, TorquesDoTheWorkOfTheMotion) {
