@@ -9,6 +9,7 @@
 #include "analysis/population/run_store.h"
 #include "analysis/scenarios.h"
 #include "core/error.h"
+#include "core/random.h"
 #include "evaluation/statistics_samples.h"
 #include "rig/person.h"
 #include "scenario/scenario_io.h"
@@ -113,15 +114,107 @@ TEST(Comparison, FindsTheShiftForTheSamePeople) {
   }
 }
 
-TEST(Comparison, LeavesOutPeopleWhoseRunWasStopped) {
+// Stops the runs of some people in the second design. Their values become bounds.
+void StopRuns(int people, double bound, PopulationStudy* study) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(people); ++i) {
+    PopulationRun& run = study->designs[1].runs[i];
+    run.cause = StopCause::kForce;
+    for (std::size_t q = 0; q < run.values.size(); ++q)
+      run.values[q] = StudyQuantities()[q].bad == assessment::Bad::kHigh ? bound : -bound;
+  }
+}
+
+TEST(Comparison, CountsPeopleWithoutAValueInNoStatistic) {
   PopulationStudy study = MadeUp(30, 5);
-  for (std::size_t i = 0; i < 10; ++i) study.designs[1].runs[i].cause = StopCause::kForce;
+  StopRuns(10, 0, &study);
   study.designs[0].runs[29].values[0] = std::nan("");
   Compare(&study);
-  EXPECT_EQ(study.summaries[0][1].people, 30);
-  EXPECT_EQ(study.summaries[1][1].people, 20);
-  EXPECT_EQ(study.differences[0].better.of, 19);
-  EXPECT_EQ(study.differences[1].better.of, 20);
+  EXPECT_EQ(study.summaries[0][0].people, 29);
+  EXPECT_EQ(study.summaries[1][0].people, 30);
+  EXPECT_EQ(study.summaries[1][0].stopped, 10);
+  EXPECT_EQ(study.differences[0].better.of, 29);
+  EXPECT_EQ(study.differences[1].better.of, 30);
+}
+
+// The values 1, 2, 3, 4, 5, of which 2 and 5 are lower bounds. By hand, the shares above 1, 3 and 4
+// are 4/5, 4/5 · 2/3 = 8/15 and 8/15 · 1/2 = 4/15. Half of the people are therefore above 3 but not
+// above 4, and more than 5 % are above each value.
+TEST(Comparison, HasTheQuantilesOfCensoredValues) {
+  PopulationStudy study = MadeUp(5, 0);
+  for (std::size_t i = 0; i < 5; ++i) {
+    PopulationRun& run = study.designs[0].runs[i];
+    if (i == 1 || i == 4) run.cause = StopCause::kForce;
+    for (std::size_t q = 0; q < run.values.size(); ++q)
+      run.values[q] = (StudyQuantities()[q].bad == assessment::Bad::kHigh ? 1.0 : -1.0) *
+                      static_cast<double>(i + 1);
+  }
+  Compare(&study);
+  for (std::size_t q = 0; q < StudyQuantities().size(); ++q) {
+    const bool high = StudyQuantities()[q].bad == assessment::Bad::kHigh;
+    const DesignSummary& s = study.summaries[0][q];
+    EXPECT_EQ(s.median.value, high ? 4 : -4) << q;
+    EXPECT_FALSE(s.median.at_least);
+    const CensoredValue& worst = high ? s.p95 : s.p5;
+    EXPECT_TRUE(worst.at_least) << q;
+    EXPECT_GE(std::abs(worst.value), 4) << q;
+  }
+}
+
+// If the truth behind the bounds is anything that the bounds permit, the results of the true values
+// must lie in the results of the bounds.
+TEST(Comparison, CoversEveryTruthBehindStoppedRuns) {
+  PopulationStudy stopped = MadeUp(30, 5);
+  StopRuns(4, 12, &stopped);
+  Compare(&stopped);
+  RandomStream random(5, "truth");
+  for (int trial = 0; trial < 20; ++trial) {
+    PopulationStudy truth = stopped;
+    for (PopulationRun& run : truth.designs[1].runs) {
+      if (run.cause == StopCause::kNone) continue;
+      run.cause = StopCause::kNone;
+      for (std::size_t q = 0; q < run.values.size(); ++q)
+        run.values[q] += (StudyQuantities()[q].bad == assessment::Bad::kHigh ? 1 : -1) * 200 *
+                         std::pow(random.Uniform(), 3);
+    }
+    Compare(&truth);
+    for (std::size_t i = 0; i < stopped.differences.size(); ++i) {
+      const PairedDifference &bounds = stopped.differences[i], &d = truth.differences[i];
+      EXPECT_LE(bounds.shift.lower, d.shift.lower);
+      EXPECT_GE(bounds.shift.upper, d.shift.upper);
+      EXPECT_GE(bounds.p, d.p);
+      EXPECT_LE(bounds.better.low, d.better.low);
+      EXPECT_GE(bounds.better.high, d.better.high);
+    }
+  }
+}
+
+// The complete run of a person exceeds each value for at least as long as its first part.
+TEST(Comparison, BoundsOfTheFirstPartOfARunHoldForTheWholeRun) {
+  assessment::Assessment whole, part;
+  RandomStream random(6, "part");
+  const auto kinds = assessment::Quantities();
+  for (const assessment::QuantityKind& kind : kinds) {
+    assessment::QuantityResult q;
+    q.kind = &kind;
+    for (int i = 0; i < 400; ++i) q.values.push_back(random.Normal());
+    whole.quantities.push_back(q);
+    q.values.resize(100);
+    part.quantities.push_back(q);
+  }
+  whole.reached = 0.7;
+  part.reached = 0.4;  // the body missed for 60 of 400 samples in the first part
+  int compared = 0;
+  for (const StudyQuantity& quantity : StudyQuantities()) {
+    const double value = quantity.of(whole, kTailShare);
+    const double bound = quantity.of(part, 4 * kTailShare);
+    if (!std::isfinite(value)) continue;
+    ++compared;
+    if (quantity.bad == assessment::Bad::kHigh)
+      EXPECT_LE(bound, value) << quantity.path;
+    else
+      EXPECT_GE(bound, value) << quantity.path;
+  }
+  EXPECT_GE(compared, 7);
 }
 
 TEST(Comparison, CountsPeopleBeyondALimit) {

@@ -38,9 +38,12 @@ std::size_t QuantityAt(const std::string& path) {
       all.begin());
 }
 
-bool Counts(const PopulationRun& run, std::size_t quantity) {
-  return run.cause == StopCause::kNone && quantity < run.values.size() &&
-         std::isfinite(run.values[quantity]);
+bool HasValue(const PopulationRun& run, std::size_t quantity) {
+  return quantity < run.values.size() && std::isfinite(run.values[quantity]);
+}
+
+bool IsWhole(const PopulationRun& run, std::size_t quantity) {
+  return run.cause == StopCause::kNone && HasValue(run, quantity);
 }
 
 // Places dots of equal height side by side. Values are grouped into rows, and the dots of a row are
@@ -66,10 +69,13 @@ std::vector<std::string> DesignNames(const PopulationStudy& study) {
   return names;
 }
 
-std::vector<double> ValuesOf(const PopulationDesign& design, std::size_t quantity, double factor) {
+// Returns the values of whole runs, or the bounds that stopped runs give.
+std::vector<double> ValuesOf(const PopulationDesign& design, std::size_t quantity, bool whole,
+                             double factor) {
   std::vector<double> values;
   for (const PopulationRun& run : design.runs)
-    if (Counts(run, quantity)) values.push_back(factor * run.values[quantity]);
+    if (HasValue(run, quantity) && IsWhole(run, quantity) == whole)
+      values.push_back(factor * run.values[quantity]);
   return values;
 }
 
@@ -87,12 +93,16 @@ PlotPanel PeoplePanel(const PopulationStudy& study, std::size_t quantity) {
   const double factor = kind.unit.factor;
   PlotPanel panel;
   panel.y = {.label = kind.label, .unit = kind.unit.shown};
-  Points people, medians;
+  Points people, stopped, medians;
   for (std::size_t i = 0; i < study.designs.size(); ++i) {
-    AddCloud(static_cast<double>(i), ValuesOf(study.designs[i], quantity, factor), &people);
-    medians.Add(static_cast<double>(i), factor * study.summaries[i][quantity].median);
+    const auto at = static_cast<double>(i);
+    AddCloud(at, ValuesOf(study.designs[i], quantity, true, factor), &people);
+    AddCloud(at, ValuesOf(study.designs[i], quantity, false, factor), &stopped);
+    medians.Add(at, factor * study.summaries[i][quantity].median.value);
   }
   panel.series.push_back(Series("one person each", SeriesKind::kMarkers, 0, people));
+  if (!stopped.x.empty())
+    panel.series.push_back(Series("bound of a stopped run", SeriesKind::kMarkers, 2, stopped));
   PlotSeries middle = Series("median", SeriesKind::kMarkers, 1, medians);
   middle.symbol = PlotSymbol::kDiamond;
   panel.series.push_back(middle);
@@ -119,9 +129,11 @@ Plot DifferencePlot(const PopulationStudy& study, std::size_t quantity) {
   Plot plot;
   plot.id = std::string("differences-") + std::to_string(quantity);
   plot.title = std::string(kind.label) + ": difference for the same person";
-  plot.caption = "Each dot is one person's value minus the same person's value in '" +
-                 study.designs.front().name +
-                 "'. The diamonds show the Hodges-Lehmann estimate with its 95 % interval.";
+  plot.caption =
+      "Each dot is one person's value minus the same person's value in '" +
+      study.designs.front().name +
+      "'. People with a stopped run have no dot. The diamonds show the Hodges-Lehmann "
+      "estimate with its 95 % interval, which includes what the stopped runs leave open.";
   Points people, shifts;
   std::vector<std::string> names;
   for (const PairedDifference& d : study.differences) {
@@ -132,7 +144,7 @@ Plot DifferencePlot(const PopulationStudy& study, std::size_t quantity) {
     for (std::size_t i = 0; i < study.people.size(); ++i) {
       const PopulationRun& a = study.designs[d.a].runs[i];
       const PopulationRun& b = study.designs[d.b].runs[i];
-      if (Counts(a, quantity) && Counts(b, quantity))
+      if (IsWhole(a, quantity) && IsWhole(b, quantity))
         values.push_back(factor * (a.values[quantity] - b.values[quantity]));
     }
     AddCloud(at, values, &people);
@@ -177,9 +189,9 @@ Plot HeightPlot(const PopulationStudy& study, std::size_t quantity) {
     for (const std::size_t i : ByHeight(study, scenario)) {
       const DesignSummary& s = study.summaries[i][quantity];
       const double at = *study.designs[i].height;
-      median.Add(at, factor * s.median);
-      high.Add(at, factor * s.p95);
-      low.Add(at, factor * s.p5);
+      median.Add(at, factor * s.median.value);
+      high.Add(at, factor * s.p95.value);
+      low.Add(at, factor * s.p5.value);
     }
     PlotSeries area =
         Series(scenario + ", 90 % of the people", SeriesKind::kArea, color, std::move(high));
@@ -199,7 +211,9 @@ Plot RulaPlot(const PopulationStudy& study) {
   Plot plot;
   plot.id = "rula-shares";
   plot.title = "RULA: how long the people spend in each class";
-  plot.caption = "Share of time at each action level, averaged over the people.";
+  plot.caption =
+      "Share of time at each action level, averaged over the people whose run was not "
+      "stopped.";
   plot.x = DesignAxis(DesignNames(study));
   PlotPanel panel;
   panel.y = {.label = "Share of time", .unit = "%", .low = 0, .high = 100};
@@ -239,8 +253,10 @@ std::string SummaryTable(const PopulationStudy& study) {
     std::vector<std::string> row = {EscapeMarkup(WithUnit(kind.label, kind.unit))};
     for (std::size_t i = 0; i < study.designs.size(); ++i) {
       const DesignSummary& s = study.summaries[i][q];
-      const auto value = [&](double x) {
-        return Formatted("%.*f", kind.unit.decimals, kind.unit.factor * x);
+      const auto value = [&](const CensoredValue& x) {
+        const char* bound = kind.bad == assessment::Bad::kHigh ? "≥ " : "≤ ";
+        return (x.at_least ? bound : "") +
+               Formatted("%.*f", kind.unit.decimals, kind.unit.factor * x.value);
       };
       std::string cell = value(s.median) + " (" + value(s.p5) + " to " + value(s.p95) + ")";
       if (kind.has_limit()) cell += Formatted("; %.0f %% beyond", 100 * s.beyond.value());
@@ -265,8 +281,9 @@ std::string PopulationPage(const PopulationStudy& study, const std::string& prog
   page.Paragraph(
       "For each person's 95th percentile over time (5th percentile for balance), the table shows "
       "the median over the people and, in brackets, the range of 90 % of the people. The column "
-      "\"Beyond\" shows the share of the people who exceed the limit. People whose run the "
-      "emulator stopped are left out.");
+      "\"Beyond\" shows the share of the people who exceed the limit. If the emulator stopped a "
+      "run, only a bound of the person's value is known. The quantiles are those of Kaplan and "
+      "Meier, and a quantile that is itself only a bound has the sign ≥ or ≤.");
   const bool has_heights = std::ranges::any_of(study.designs, [&](const PopulationDesign& design) {
     return ByHeight(study, design.scenario).size() > 1;
   });

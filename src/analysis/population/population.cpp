@@ -59,7 +59,12 @@ PopulationRun Perform(Scenario scenario, double object_mass, const SampledPerson
   const Summary result = summary.summary();
   if (!result.stops.empty()) run.cause = result.stops.front().cause;
   run.held = a.held;
-  for (const StudyQuantity& quantity : StudyQuantities()) run.values.push_back(quantity.of(a));
+  // The time for which a stopped run exceeded a value is a lower bound of the time for which the
+  // whole run would have exceeded it.
+  const double tail =
+      run.cause == StopCause::kNone ? kTailShare : kTailShare * scenario.duration / a.held;
+  for (const StudyQuantity& quantity : StudyQuantities())
+    run.values.push_back(quantity.of(a, tail));
   for (const assessment::WorksheetResult& w : a.worksheets)
     if (std::string(w.kind->name) == "RULA")
       std::copy_n(w.share.begin(), kRulaScores, run.rula_share.begin());
@@ -142,7 +147,7 @@ PopulationStudy MakePopulationStudy(const PopulationOptions& options) {
         Prepared& prepared = designs[i % designs.size()];
         const SampledPerson& person = study.people[i / designs.size()];
         PopulationRun& run = prepared.design.runs[i / designs.size()];
-        const std::string key = prepared.key + Formatted("/%llu", options.seed * 1ULL);
+        const std::string key = prepared.key + Formatted("/bounds/%llu", options.seed * 1ULL);
         run.person = person.number;
         if (store.Find(key, &run)) {
           ++kept;

@@ -14,6 +14,7 @@
 #include "analysis/population/people.h"
 #include "assessment/assessment.h"
 #include "core/status.h"
+#include "evaluation/censored.h"
 #include "evaluation/metric.h"
 #include "evaluation/statistics_signed_rank.h"
 
@@ -25,7 +26,9 @@ struct StudyQuantity {
   const char* label;  // text for people
   Unit unit;
   assessment::Origin origin;
-  double (*of)(const assessment::Assessment&);
+  // Returns the value that is exceeded, in the bad direction, for the share `tail` of the judged
+  // time, or NaN. Damage, which only grows, does not depend on `tail`.
+  double (*of)(const assessment::Assessment&, double tail);
   double limit = 0;             // in SI units; a value beyond it counts as exceeding it; without a
                                 // limit_name, there is no limit
   const char* limit_name = "";  // source of the limit
@@ -35,15 +38,19 @@ struct StudyQuantity {
   bool Exceeds(double x) const { return bad == assessment::Bad::kHigh ? x > limit : x < limit; }
 };
 std::span<const StudyQuantity> StudyQuantities();
+// A person's value in a whole run is exceeded for this share of the time.
+inline constexpr double kTailShare = 0.05;
 
 inline constexpr std::size_t kRulaScores = 8;  // index = score; 0 is not a score
 
 // One person in one design.
 struct PopulationRun {
   int person = 0;
-  StopCause cause = StopCause::kNone;               // cause of the emulator's first stop
-  double held = 0;                                  // time that was judged [s]
-  std::vector<double> values;                       // in the order of StudyQuantities()
+  StopCause cause = StopCause::kNone;  // cause of the emulator's first stop
+  double held = 0;                     // time that was judged [s]
+  // In the order of StudyQuantities(). If the run was stopped, the values are bounds: the values of
+  // the whole run would have been at least as bad. NaN: no value, or no bound.
+  std::vector<double> values;
   std::array<double, kRulaScores> rula_share = {};  // share of time at each score
 };
 
@@ -56,27 +63,34 @@ struct PopulationDesign {
   std::vector<PopulationRun> runs;  // by person
 };
 
-// A share with its 95 % Wilson score interval (Wilson 1927).
+// A share with its 95 % Wilson score interval (Wilson 1927). People are undecided if a stopped run
+// does not show whether they count. The interval covers both answers.
 struct Share {
-  int count = 0, of = 0;
+  int count = 0, of = 0, undecided = 0;
   double low = 0, high = 1;
   double value() const { return of > 0 ? static_cast<double>(count) / of : 0; }
 };
-Share ShareOf(int count, int of);
+Share ShareOf(int count, int of, int undecided = 0);
 
-// One quantity in one design, over the people whose run was not stopped.
+// One quantity in one design. Values of stopped runs are censored observations. The quantiles are
+// those of Kaplan and Meier (CensoredQuantile). If a quantile is itself only a bound, `at_least`
+// means that the true quantile is at least as bad.
 struct DesignSummary {
-  int people = 0;
-  double median = 0, p5 = 0, p95 = 0;
+  int people = 0, stopped = 0;  // all people; those whose value is a bound
+  CensoredValue median, p5, p95;
   Share beyond;  // the limit
 };
 
-// One quantity in two designs, over the people whose run was not stopped in either design. The
-// difference is positive if design a has larger values.
+// One quantity in two designs. The difference is positive if design a has larger values. If a run
+// was stopped, only a range of the person's difference is known. The interval and p are the widest
+// and the largest that differences within these ranges give. They do not require that the stops
+// are independent of the values.
 struct PairedDifference {
   std::size_t a = 0, b = 0;  // designs
   std::size_t quantity = 0;
-  ShiftEstimate shift;       // shift of a - b by Hodges and Lehmann, with its 95 % interval
+  // Shift of a - b by Hodges and Lehmann, with its 95 % interval. The estimate is the middle of its
+  // possible values. An end that the stopped runs leave open is infinite.
+  ShiftEstimate shift;
   double p = 1, p_holm = 1;  // of the signed-rank test; p_holm is adjusted for all differences of
                              // the study
   Share better;              // people for whom a is better than b

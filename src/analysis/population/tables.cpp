@@ -22,6 +22,22 @@ std::string Shown(const StudyQuantity& kind, double x) {
   return std::isfinite(x) ? Formatted("%.*f", kind.unit.decimals, kind.unit.factor * x) : "–";
 }
 
+// Marks a value of which only a bound is known.
+std::string Shown(const StudyQuantity& kind, const CensoredValue& x) {
+  const std::string value = Shown(kind, x.value);
+  if (!x.at_least || !std::isfinite(x.value)) return value;
+  return (kind.bad == assessment::Bad::kHigh ? "≥ " : "≤ ") + value;
+}
+
+// Returns the names of the quantiles that are only bounds, separated by spaces.
+std::string BoundsIn(const DesignSummary& s) {
+  std::vector<std::string> names;
+  if (s.median.at_least) names.emplace_back("median");
+  if (s.p5.at_least) names.emplace_back("p5");
+  if (s.p95.at_least) names.emplace_back("p95");
+  return Join(names, " ");
+}
+
 std::string Percent(const Share& share) {
   return Formatted("%.0f %% (%.0f to %.0f)", 100 * share.value(), 100 * share.low,
                    100 * share.high);
@@ -34,16 +50,21 @@ int StopsOf(const PopulationDesign& design) {
 }
 
 Json ToJson(const Share& share) {
-  return {{"count", share.count}, {"of", share.of}, {"interval_95", {share.low, share.high}}};
+  return {{"count", share.count},
+          {"of", share.of},
+          {"undecided", share.undecided},
+          {"interval_95", {share.low, share.high}}};
 }
 
 Json SummaryJson(const StudyQuantity& kind, const DesignSummary& s) {
   return {{"unit", kind.unit.si},
           {"origin", assessment::Name(kind.origin)},
           {"people", s.people},
-          {"median", NumberOrNull(s.median)},
-          {"p5", NumberOrNull(s.p5)},
-          {"p95", NumberOrNull(s.p95)},
+          {"known_as_bounds", s.stopped},
+          {"median", NumberOrNull(s.median.value)},
+          {"p5", NumberOrNull(s.p5.value)},
+          {"p95", NumberOrNull(s.p95.value)},
+          {"bounds", BoundsIn(s)},
           {"limit", kind.has_limit() ? Json(kind.limit) : Json(nullptr)},
           {"beyond_limit", kind.has_limit() ? ToJson(s.beyond) : Json(nullptr)}};
 }
@@ -137,8 +158,9 @@ std::string PersonsCsv(const PopulationStudy& study) {
 
 std::string DesignsCsv(const PopulationStudy& study) {
   std::string csv =
-      "design,scenario,handle_height_m,stopped,quantity,unit,origin,people,median,p5,p95,limit,"
-      "beyond,beyond_low,beyond_high\n";
+      "design,scenario,handle_height_m,stopped,quantity,unit,origin,people,known_as_bounds,median,"
+      "p5,p95,"
+      "bounds,limit,beyond,undecided,beyond_low,beyond_high\n";
   for (std::size_t i = 0; i < study.designs.size(); ++i) {
     const PopulationDesign& design = study.designs[i];
     for (std::size_t q = 0; q < StudyQuantities().size(); ++q) {
@@ -152,14 +174,17 @@ std::string DesignsCsv(const PopulationStudy& study) {
                                       kind.unit.si,
                                       assessment::Name(kind.origin),
                                       std::to_string(s.people),
-                                      Cell(s.median),
-                                      Cell(s.p5),
-                                      Cell(s.p95)};
+                                      std::to_string(s.stopped),
+                                      Cell(s.median.value),
+                                      Cell(s.p5.value),
+                                      Cell(s.p95.value),
+                                      BoundsIn(s)};
       if (kind.has_limit())
-        row.insert(row.end(), {Cell(kind.limit), Cell(s.beyond.value()), Cell(s.beyond.low),
-                               Cell(s.beyond.high)});
+        row.insert(row.end(),
+                   {Cell(kind.limit), Cell(s.beyond.value()), std::to_string(s.beyond.undecided),
+                    Cell(s.beyond.low), Cell(s.beyond.high)});
       else
-        row.insert(row.end(), 4, "");
+        row.insert(row.end(), 5, "");
       csv += Join(row, ",") + "\n";
     }
   }
@@ -168,14 +193,15 @@ std::string DesignsCsv(const PopulationStudy& study) {
 
 std::string DifferencesCsv(const PopulationStudy& study) {
   std::string csv =
-      "design,against,quantity,unit,people,shift,low,high,p,p_holm,better,better_low,"
+      "design,against,quantity,unit,people,shift,low,high,p,p_holm,better,undecided,better_low,"
       "better_high\n";
   for (const PairedDifference& d : study.differences) {
     const StudyQuantity& kind = StudyQuantities()[d.quantity];
     csv += Join({CsvCell(study.designs[d.a].name), CsvCell(study.designs[d.b].name), kind.path,
                  kind.unit.si, std::to_string(d.better.of), Cell(d.shift.estimate),
                  Cell(d.shift.lower), Cell(d.shift.upper), Cell(d.p), Cell(d.p_holm),
-                 Cell(d.better.value()), Cell(d.better.low), Cell(d.better.high)},
+                 Cell(d.better.value()), std::to_string(d.better.undecided), Cell(d.better.low),
+                 Cell(d.better.high)},
                 ",") +
            "\n";
   }
@@ -218,8 +244,10 @@ std::string PopulationText(const PopulationStudy& study) {
   text +=
       "\nThe shift is the Hodges-Lehmann estimate of the difference for the same person, with its "
       "95 % interval. The value p comes from Wilcoxon's signed-rank test. Holm's method adjusts p "
-      "for the number of differences in the study. Shares have 95 % intervals. People whose run "
-      "the emulator stopped are not compared.\n";
+      "for the number of differences in the study. Shares have 95 % intervals. If the emulator "
+      "stopped a run, only a bound of the person's value is known (≥ or ≤). The quantiles are "
+      "those of Kaplan and Meier. The intervals of shifts and shares, and p, cover everything that "
+      "the stopped runs leave open.\n";
   return text;
 }
 
