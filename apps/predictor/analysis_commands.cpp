@@ -79,7 +79,8 @@ void AddEvaluate(CLI::App* app, Request* r) {
       app, kAnalysisGroup, "evaluate",
       "Judge the person in a recording: posture, joint loads, scores, lifts, damage, fatigue", r,
       [o] { return EvaluateCommand(*o); });
-  AddRecording(evaluate, &o->recording);
+  evaluate->add_option("recordings", o->recordings, "Recordings (MCAP), or imported files")
+      ->required();
   AddPerson(evaluate, o);
   AddOption(evaluate, "Person", "--against", &o->against, "RECORDING",
             "Also compare with this recording of another design, for the same person");
@@ -114,7 +115,8 @@ void AddEvaluate(CLI::App* app, Request* r) {
             "Limits of force on the body for unintended contact, in the form of "
             "assets/contact_limits_template.csv");
   AddOption(evaluate, "Output", "-o,--output", &o->page, "FILE.html",
-            "Page to write [default: NAME.person.html]");
+            "Page to write [default: NAME.person.html]. With several recordings, -o, --csv and "
+            "--json name folders");
   AddOption(evaluate, "Output", "--csv", &o->csv, "FILE.csv", "Also write all values over time");
   AddOutput(evaluate, o);
   evaluate->footer(

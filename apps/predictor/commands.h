@@ -148,6 +148,8 @@ struct PersonOptions : OutputOptions {
 
 // Input and output of `evaluate`.
 struct EvaluateOptions : PersonOptions {
+  // With several recordings, `page`, `csv` and `json` name folders.
+  std::vector<std::string> recordings;
   std::string against;                      // a recording of another design; empty: none
   std::vector<std::string> against_tracks;  // further measurements of its person
   bool intervals = true;

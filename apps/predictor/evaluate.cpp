@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -95,7 +96,13 @@ assessment::PersonOfRun PersonIn(const std::string& file, double duration,
   return person;
 }
 
-int EvaluateCommand(const EvaluateOptions& options) {
+namespace {
+
+std::string StemOf(const std::string& recording) {
+  return std::filesystem::path(recording).replace_extension("").filename().string();
+}
+
+int EvaluateOne(const EvaluateOptions& options) {
   const std::string stem = std::filesystem::path(options.recording).replace_extension("").string();
   const std::string page = options.page.empty() ? stem + ".person.html" : options.page;
   options.CheckWritable();
@@ -112,6 +119,50 @@ int EvaluateCommand(const EvaluateOptions& options) {
   if (!options.csv.empty()) WriteWholeFile(options.csv, AssessmentCsv(result));
   options.Write(text + "Wrote " + page + ". Open it in a browser.\n",
                 AssessmentJson(result, comparison ? &*comparison : nullptr));
+  return kFinished;
+}
+
+// Throws InputError if an option belongs to one recording, or if results would get the same name.
+void RefuseForSeveral(const EvaluateOptions& options) {
+  if (!options.tracks.empty())
+    throw InputError(
+        "--track: A track belongs to one recording. Evaluate the recordings one by one.");
+  if (options.json == "-")
+    throw InputError("--json: With several recordings, give the name of a folder.");
+  std::set<std::string> stems;
+  for (const std::string& recording : options.recordings)
+    if (!stems.insert(StemOf(recording)).second)
+      throw InputError(recording,
+                       "Another recording has the same name, so their results would have the same "
+                       "name, too. Rename one of the recordings.");
+}
+
+// Returns the options for one of several recordings. The outputs of the options are folders.
+EvaluateOptions OptionsFor(const std::string& recording, const EvaluateOptions& options) {
+  EvaluateOptions one = options;
+  one.recording = recording;
+  const auto name_in = [&](const char* ending, std::string* folder) {
+    if (folder->empty()) return;
+    std::filesystem::create_directories(*folder);
+    *folder = std::filesystem::path(*folder) / (StemOf(recording) + ".person" + ending);
+  };
+  name_in(".html", &one.page);
+  name_in(".csv", &one.csv);
+  name_in(".json", &one.json);
+  return one;
+}
+
+}  // namespace
+
+int EvaluateCommand(const EvaluateOptions& options) {
+  if (options.recordings.size() == 1) {
+    EvaluateOptions one = options;
+    one.recording = options.recordings.front();
+    return EvaluateOne(one);
+  }
+  RefuseForSeveral(options);
+  for (const std::string& recording : options.recordings)
+    EvaluateOne(OptionsFor(recording, options));
   return kFinished;
 }
 

@@ -93,6 +93,26 @@ TEST_F(Evaluate, ComparesTwoDesigns) {
   EXPECT_TRUE(json["against"]["quantities"].contains("lower_back.compression_n"));
 }
 
+TEST_F(Evaluate, OfSeveralRecordingsWritesTheResultsOfEach) {
+  const std::string light = Record("box_9kg"), heavy = Record("box_18kg");
+  const fs::path out = folder_.path() / "out";
+  Child child({"evaluate", light, heavy, "--no-intervals", "-o", out, "--csv", out, "--json", out});
+  ASSERT_EQ(child.Wait(), 0) << child.errors();
+  for (const char* name : {"box_9kg", "box_18kg"}) {
+    const std::string stem = out / (std::string(name) + ".person");
+    EXPECT_TRUE(fs::exists(stem + ".html"));
+    EXPECT_TRUE(fs::exists(stem + ".csv"));
+    std::ifstream json(stem + ".json");
+    EXPECT_EQ(nlohmann::json::parse(json)["recording"], std::string(name) + ".mcap");
+  }
+  Child one_track({"evaluate", light, heavy, "--track", "head.csv"});
+  EXPECT_EQ(one_track.Wait(), 2);
+  EXPECT_NE(one_track.errors().find("one by one"), std::string::npos) << one_track.errors();
+  Child same_name({"evaluate", light, light, "--no-intervals", "--force"});
+  EXPECT_EQ(same_name.Wait(), 2);
+  EXPECT_NE(same_name.errors().find("Rename"), std::string::npos) << same_name.errors();
+}
+
 TEST_F(Evaluate, OfAnUnknownPlaceIsRefusedWithTheRemedy) {
   const std::string recording = Record("box_9kg", {"--set", "operator.stance=null"});
   Child child({"evaluate", recording});
