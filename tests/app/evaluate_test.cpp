@@ -1,9 +1,11 @@
 // Tests `predictor evaluate` with recordings that the program made.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -159,6 +161,36 @@ TEST_F(Evaluate, JudgesAnImportedLogAndExportsIt) {
   Child exported({"export", "person", person, "-o", folder_.path() / "opensim"});
   ASSERT_EQ(exported.Wait(), 0) << exported.errors();
   EXPECT_TRUE(fs::exists(folder_.path() / "opensim" / "person.osim"));
+}
+
+// Measurements of other people's laboratory (examples/handover/README.md). The mean force and the
+// duration were computed from the table.
+TEST_F(Evaluate, JudgesAHandoverThatOthersMeasured) {
+  const fs::path data = fs::path(PREDICTOR_SOURCE_DIR) / "examples/handover";
+  std::ifstream table(data / "handover.csv");
+  std::string line;
+  std::getline(table, line);
+  double sum = 0, rows = 0;
+  while (std::getline(table, line)) {
+    std::istringstream cells(line);
+    std::vector<double> row;
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+    ASSERT_EQ(row.size(), 23u);
+    sum += std::hypot(row[7], row[8], row[9]);
+    ++rows;
+  }
+  const std::string person = folder_.path() / "handover.person.csv";
+  Child import({"import", data / "handover.csv", "--map", data / "handover.yaml", "-o", person});
+  ASSERT_EQ(import.Wait(), 0) << import.errors();
+  Child child({"evaluate", person, "--json", "-"});
+  ASSERT_EQ(child.Wait(), 0) << child.errors();
+  const auto json = nlohmann::json::parse(child.output());
+  EXPECT_FALSE(json["person"]["simulated"].get<bool>());
+  EXPECT_EQ(json["person"]["reached"], 1);
+  EXPECT_NEAR(json["held_s"].get<double>(), rows / 120, 0.02);
+  EXPECT_NEAR(json["quantities"]["hands.right.force_n"]["mean"].get<double>(), sum / rows, 0.05);
+  ASSERT_EQ(json["measured"]["parts"].size(), 3u);
+  for (const auto& part : json["measured"]["parts"]) EXPECT_EQ(part["share_of_time"], 1);
 }
 
 // The table contains a head that rests above the place where the operator stands.
