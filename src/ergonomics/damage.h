@@ -17,8 +17,8 @@
 //   are not the risk of a person.
 //
 // Some methods are omitted because no source could be verified. These are Potvin's maximum
-// acceptable effort (public copies differ in a constant), ACGIH's hand activity level, the revised
-// strain index and RCRA.
+// acceptable effort (public copies differ in a constant), the revised strain index and RCRA.
+// ACGIH's hand activity level is omitted because no sensor measures the effort of the grip.
 #pragma once
 
 #include <span>
