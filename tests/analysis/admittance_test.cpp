@@ -23,7 +23,8 @@ namespace {
 // A mode that grows faster than this rate counts as unstable [1/s].
 constexpr double kUnstableRate = 0.05;
 constexpr double kLightest = 0.1, kHeaviest = 12;  // hands [kg]
-constexpr double kBand = 0.2;  // permitted relative error of a predicted critical mass
+constexpr double kHighest = 30;  // frequency up to which LoopModel::kExact is valid [Hz]
+constexpr double kBand = 0.2;    // permitted relative error of a predicted critical mass
 
 struct Point {
   double virtual_mass;     // M_d [kg]
@@ -42,19 +43,27 @@ struct Point {
 //   2 ω/s · (1 + m/M_d) M_c/(M_c + m) · e^−sT.
 // If M_d < M_c, heavier hands increase the gain, and the loop becomes unstable when the gain times
 // 2 ωT reaches about 1.2. The critical mass therefore decreases with T and increases with M_d.
-// Values of 2 ωT from 0.34 to 0.45 and of M_d from 0.8 to 1.2 kg put the critical mass well inside
+// Values of 2 ωT from 0.30 to 0.45 and of M_d from 0.8 to 1.2 kg put the critical mass well inside
 // the range of human hands, from about 0.5 to 2.5 kg. The sensor's cut-off is one time near the
 // resulting oscillation of about 20 Hz and one time far above it.
 //
 // These points were chosen by this reasoning and by the linear model, before the first simulation.
+// Two of the 24 points of this grid were replaced after the first simulation, because the linear
+// model predicts oscillations of 32 Hz there, and LoopModel::kExact is valid up to about 30 Hz
+// only. At one of these two points, the simulated critical mass was more than 20 % above the
+// predicted one.
 std::vector<Point> Points() {
   std::vector<Point> points;
   for (const double mass : {0.8, 1.0, 1.2})
     for (const double frequency : {6.0, 9.0})
-      for (const double cutoff : {20.0, 60.0})
+      for (const double cutoff : {20.0, 60.0}) {
+        if (mass == 0.8 && frequency == 9 && cutoff == 60) continue;  // 32 Hz
         for (const double delay :
              frequency == 6 ? std::array{0.005, 0.006} : std::array{0.003, 0.004})
           points.push_back({mass, frequency, cutoff, delay});
+      }
+  points.push_back({0.8, 6, 20, 0.004});
+  points.push_back({0.8, 6, 60, 0.004});
   return points;
 }
 
@@ -120,6 +129,15 @@ std::optional<double> CriticalMass(const LinearModel& world, const Scenario& s) 
   return stable;
 }
 
+// Returns the frequency of the fastest growing mode [Hz].
+double FrequencyOf(const Scenario& s, double mass) {
+  HandSpec hand = s.operator_.hand;
+  hand.mass = mass;
+  double frequency = 0;
+  HapticLoop(Complete(s), s, 1 / s.rate, LoopModel::kExact).GrowthRate(hand, 0, 1, &frequency);
+  return frequency;
+}
+
 bool Grows(Scenario s, double mass) {
   s.operator_.hand.mass = mass;
   const Growth growth = MeasureGrowth(s, 0);
@@ -139,6 +157,7 @@ TEST(Admittance, CriticalHandMassIsAsPredictedSoak) {
     const Scenario s = LoopAt(points[i]);
     const std::optional<double> critical = CriticalMass(Complete(s), s);
     ASSERT_TRUE(critical) << "point " << i;
+    EXPECT_LT(FrequencyOf(s, 1.05 * *critical), kHighest) << "point " << i;
     EXPECT_FALSE(Grows(s, (1 - kBand) * *critical)) << "point " << i << ", " << *critical << " kg";
     EXPECT_TRUE(Grows(s, (1 + kBand) * *critical)) << "point " << i << ", " << *critical << " kg";
     // Each simpler model predicts that the loop is stable with this mass.
