@@ -394,9 +394,11 @@ void Hub::PublishEvents(const std::string& text) {
     if (client->admitted()) client->SendEvents();
 }
 
-void Hub::PublishFixtures(const Json& fixtures) {
-  setup_.scene["fixtures"] = fixtures;
-  SendToAll(FixturesText(fixtures));
+void Hub::ChangeScene(const char* key, const Json& value) {
+  Json& present = setup_.scene[key];
+  if (present == value) return;
+  present = value;
+  SendToAll(SceneText(key, value));
 }
 
 void Hub::Tick() {

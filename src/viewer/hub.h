@@ -63,9 +63,9 @@ class Hub {
   // Sends the message `events` to the experimenter's pages if it has changed. Until the first call,
   // no page may be an experimenter's page.
   void PublishEvents(const std::string& text);
-  // Sends the fixtures that are present now to all clients. From now on, the scene contains these
-  // fixtures.
-  void PublishFixtures(const Json& fixtures);
+  // Sends a changed entry of the scene to all clients. From now on, the scene contains this value.
+  // Does nothing if the scene already contains it.
+  void ChangeScene(const char* key, const Json& value);
   // Ends expired leases and waiting times. Call this at least ten times per second.
   void Tick();
   // The operator at the console uses this function to end a lease.

@@ -265,8 +265,8 @@ std::string LeasesText(const Leases& leases, std::size_t clients) {
   return json.dump();
 }
 
-std::string FixturesText(const Json& fixtures) {
-  return Json{{"type", "fixtures"}, {"fixtures", fixtures}}.dump();
+std::string SceneText(const char* key, const Json& value) {
+  return Json{{"type", key}, {key, value}}.dump();
 }
 
 Json FrameJson() {

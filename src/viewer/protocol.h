@@ -96,8 +96,8 @@ std::string HeadsetText(std::uint32_t client, const ImmersiveRequest& headset);
 // Returns the holders of the leases as {"control": 3 | null, ...}, as in `leases` and `welcome`.
 Json LeasesJson(const Leases& leases, std::size_t clients);
 std::string LeasesText(const Leases& leases, std::size_t clients);
-// Returns the message `fixtures`. `fixtures` are the fixtures that are present now, as in `scene`.
-std::string FixturesText(const Json& fixtures);
+// Returns the message `key`, which replaces the entry `key` of the scene: `fixtures` or `acting`.
+std::string SceneText(const char* key, const Json& value);
 Json FrameJson();  // FrameFields() as JSON
 
 }  // namespace predictor::viewer

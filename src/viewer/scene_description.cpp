@@ -1,5 +1,6 @@
 #include "viewer/scene_description.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/text.h"
@@ -126,14 +127,6 @@ Json DescribeViewpoint(const Scenario& scenario, const Viewpoint& viewpoint) {
           {"feet", stance.value_or(StanceSpec()).feet_apart}};
 }
 
-// Describes what each hazard does. The description does not list the events of this scenario,
-// because a subject's page also receives it.
-Json DescribeHazards() {
-  Json json = Json::array();
-  for (const ParameterKind* kind : Hazards()) json.push_back(kind->doc);
-  return json;
-}
-
 Json DescribeSurroundings(const Scenario& scenario, const Vector3& object_start) {
   const auto& table = scenario.environment.table;
   const SafetySpec& safety = scenario.safety;
@@ -141,6 +134,7 @@ Json DescribeSurroundings(const Scenario& scenario, const Vector3& object_start)
           {"table", table ? Json{{"size", ToJson(table->size)}, {"top", ToJson(table->top)}}
                           : Json(nullptr)},
           {"fixtures", DescribeFixtures(scenario, 0)},
+          {"acting", DescribeActing(scenario, 0, 0)},
           {"guidance",
            {{"type", scenario.guidance.type},
             {"center", ToJson(object_start + scenario.guidance.center)},
@@ -167,6 +161,21 @@ nlohmann::ordered_json DescribeFixtures(const Scenario& scenario, std::uint16_t 
                     {"color", ToJson(fixtures[i].color)}});
   }
   return json;
+}
+
+nlohmann::ordered_json DescribeActing(const Scenario& scenario, std::uint16_t events,
+                                      std::uint8_t latest_event) {
+  const ParameterKinds kinds = Hazards();
+  Json before = Json::array(), last = Json::array();
+  for (std::size_t i = 0; i < scenario.events.size(); ++i) {
+    if ((events >> i & 1U) == 0) continue;
+    const std::string& event = scenario.events[i].event;
+    const ParameterKind* kind = FindKind(kinds, event);
+    const auto number = std::ranges::find(kinds, kind) - kinds.begin() + 1;
+    (number == latest_event ? last : before).push_back(kind ? kind->doc : event);
+  }
+  before.insert(before.end(), last.begin(), last.end());
+  return before;
 }
 
 nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& object_start,
@@ -196,7 +205,6 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
   const Viewpoint viewpoint = ViewpointOf(scenario, object_start);
   json["viewpoint"] = DescribeViewpoint(scenario, viewpoint);
   json["script"] = DescribeScript(scenario, viewpoint.facing);
-  json["hazards"] = DescribeHazards();
   return json;
 }
 

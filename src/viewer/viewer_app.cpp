@@ -237,14 +237,15 @@ Peaks ViewerApp::SeeRecords(std::uint64_t first, std::uint64_t end) {
   return peaks;
 }
 
-// The experimenter's pages receive an event at any time. The other pages receive a fixture that
-// appears through an event only when the event acts.
+// The experimenter's pages receive an event at any time. The other pages receive an event, and a
+// fixture that appears through an event, only when the event acts.
 void ViewerApp::ShowEvents(const TickRecord& record) {
   if (plans_) hub_->PublishEvents(plan_.Text());
-  const std::uint16_t before = std::exchange(events_, record.events);
-  if (before == record.events) return;
-  const Json now = DescribeFixtures(scenario_, record.events);
-  if (now != DescribeFixtures(scenario_, before)) hub_->PublishFixtures(now);
+  const std::uint16_t events = std::exchange(events_, record.events);
+  const std::uint8_t latest = std::exchange(latest_event_, record.latest_event);
+  if (events == record.events && latest == record.latest_event) return;
+  hub_->ChangeScene("fixtures", DescribeFixtures(scenario_, record.events));
+  hub_->ChangeScene("acting", DescribeActing(scenario_, record.events, record.latest_event));
 }
 
 // If pages may not start a run, only the console states why a request was refused.

@@ -84,8 +84,9 @@ class ViewerApp : public Application {
   Scenario scenario_;
   RefusalWords refusals_{scenario_.rate};
   EventPlan plan_{scenario_};
-  bool plans_ = false;        // the run can still have events to come
-  std::uint16_t events_ = 0;  // bits: events that acted when a record was last shown
+  bool plans_ = false;             // the run can still have events to come
+  std::uint16_t events_ = 0;       // bits: events that acted when a record was last shown
+  std::uint8_t latest_event_ = 0;  // as in that record
   AssetStore assets_;
   Admission admission_;
   const RunBoard* board_;

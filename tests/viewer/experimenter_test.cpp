@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "scenario/own_parameters.h"
 #include "viewer/hub_fixture.h"
 #include "viewer/scene_description.h"
 #include "viewer/test_server.h"
@@ -84,9 +85,15 @@ TEST_F(EventsOnThePage, NoByteForASubjectMentionsAnEventBeforeItBegins) {
     received_.clear();
     Tick(&page, 0, 0);
     Tick(&page, 2, 0);
-    Tick(&page, 4, kPowerLoss);
     ASSERT_NE(received_.find("\"welcome\""), std::string::npos);
     EXPECT_FALSE(MentionsAnEvent(received_)) << received_;
+    received_.clear();
+    // Without the simulation, the description of a hazard is its name.
+    Tick(&page, 4, kPowerLoss);
+    const std::string acting = R"({"type":"acting","acting":["power_loss"]})";
+    const std::size_t at = received_.find(acting);
+    ASSERT_NE(at, std::string::npos) << received_;
+    EXPECT_FALSE(MentionsAnEvent(received_.erase(at, acting.size()))) << received_;
     // The wall has now appeared, so the page must draw it.
     Tick(&page, 5, kWallAppears);
     EXPECT_NE(received_.find("0.4321"), std::string::npos);
@@ -95,6 +102,7 @@ TEST_F(EventsOnThePage, NoByteForASubjectMentionsAnEventBeforeItBegins) {
     const std::string welcome = later.Hello(server_.code());
     ASSERT_FALSE(welcome.empty());
     EXPECT_FALSE(MentionsAnEvent(welcome)) << welcome;
+    EXPECT_EQ(Json::parse(welcome)["scene"]["acting"], Json::array());
   }
 }
 
@@ -155,6 +163,35 @@ TEST(Scene, IsTheSameWithAndWithoutEventsBeforeTheyBegin) {
   EXPECT_TRUE(DescribeFixtures(planned, kPowerLoss).empty());
   EXPECT_EQ(DescribeFixtures(planned, kWallAppears),
             DescribeFixtures(LoadScenario(file, kFixture), 0));
+}
+
+// The bits of a record's `events` number the entries of the scenario, and `latest_event` numbers
+// the hazards. Here each entry has a number that differs from that of its hazard, and the entries
+// are not in the order of the hazards.
+TEST(Scene, DescribesTheEventsThatActWithTheOneThatBeganLastAtTheEnd) {
+  const ParameterKind brakes = {"brakes_close", "the brakes close", nullptr};
+  const ParameterKind friction = {"wrong_friction", "the friction is wrong", nullptr};
+  const ParameterKind opens = {"release_object", "the gripper opens", nullptr};
+  const ParameterKind* kinds[] = {&brakes, &friction, &opens};
+  const ParameterKinds declared = Hazards();
+  DeclareHazards(kinds);
+  Scenario scenario;
+  scenario.events.resize(3);
+  scenario.events[0].event = opens.name;     // hazard 3
+  scenario.events[1].event = brakes.name;    // hazard 1
+  scenario.events[2].event = friction.name;  // hazard 2
+  const auto acting = [&](std::uint16_t events, std::uint8_t latest) {
+    return DescribeActing(scenario, events, latest).dump();
+  };
+  EXPECT_EQ(acting(0b000, 0), "[]");
+  EXPECT_EQ(acting(0b000, 3), "[]");
+  EXPECT_EQ(acting(0b001, 3), R"(["the gripper opens"])");
+  EXPECT_EQ(acting(0b010, 1), R"(["the brakes close"])");
+  EXPECT_EQ(acting(0b100, 2), R"(["the friction is wrong"])");
+  EXPECT_EQ(acting(0b011, 3), R"(["the brakes close","the gripper opens"])");
+  EXPECT_EQ(acting(0b011, 1), R"(["the gripper opens","the brakes close"])");
+  EXPECT_EQ(acting(0b011, 2), R"(["the gripper opens","the brakes close"])");  // 2 is over
+  DeclareHazards(declared);
 }
 
 // A plan that begins in the middle of a run does not contain the events that are already over.

@@ -76,6 +76,7 @@ export class App {
       headset: (headset) => this.headsetMoved(headset),
       person: (person, receivedMs) => this.person.add(person, receivedMs),
       fixtures: (fixtures) => this.stage.setFixtures(fixtures),
+      acting: (acting) => (this.overlay.acting = acting),
       plan: (plan) => this.eventsCard.show(plan),
     }, isExperimentersAddress());
     this.latency = new LatencyLedger(this.connection.clock);

@@ -33,6 +33,7 @@ export interface ConnectionEvents {
   headset(headset: Headset): void;
   person(person: PersonState, receivedMs: number): void;
   fixtures(fixtures: FixtureSpec[]): void;
+  acting(acting: string[]): void;
   plan(plan: EventPlan): void;
 }
 
@@ -163,6 +164,7 @@ export class Connection {
       case 'headset': return this.events.headset(message);
       case 'person': return this.events.person(message, nowMs);
       case 'fixtures': return this.events.fixtures(message.fixtures);
+      case 'acting': return this.events.acting(message.acting);
       case 'events': return this.events.plan(message);
     }
   }

@@ -92,7 +92,7 @@ export interface SceneSpec {
   };
   parameters: Partial<Record<ParameterName, ParameterSpec>>;
   script: Action[];
-  hazards?: string[];  // what each one does; older servers omit it
+  acting?: string[];  // what each acting event does, the newest last; older servers omit it
   scenarios: {name: string; title: string}[];  // scenarios that may be chosen at rest
   notice?: string;                             // error of the last choice, if it failed
   person?: {judged: boolean; why?: string};        // whether messages `person` come; older servers omit it
@@ -182,6 +182,7 @@ export type ServerMessage =
   | {type: 'token'; token: string}
   | Headset
   | {type: 'fixtures'; fixtures: FixtureSpec[]}
+  | {type: 'acting'; acting: string[]}
   | EventPlan
   | PersonState;
 

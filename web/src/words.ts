@@ -1,6 +1,6 @@
 // Provides states, causes of stops and advice as texts from the catalogue.
 import {message, MessageId} from './messages';
-import {kSides, Quantity, Reason, RunState, SceneSpec, Side, State} from './protocol';
+import {kSides, Quantity, Reason, RunState, Side, State} from './protocol';
 
 export interface StateWords {
   title: string;
@@ -264,13 +264,10 @@ export function gripWords(state: State): string {
   return words === undefined ? '' : `The gripper ${words}.`;
 }
 
-// While events act, describes the effect of the one that began last. If that one is already over,
-// describes another one. Also describes whether the virtual cobot has stopped itself.
-export function hazardWords(state: State, spec: SceneSpec): string {
-  const acts = (i: number) => ((state.events >> i) & 1) === 1;
-  const latest = state.latestEvent - 1;
-  const acting = latest >= 0 && acts(latest) ? latest : 31 - Math.clz32(state.events);  // the last in the list
-  const meaning = spec.hazards?.[acting];
+// Describes the effect of the last event in `acting`, which is the one that began last. Also
+// describes whether the virtual cobot has stopped itself.
+export function hazardWords(state: State, acting: string[]): string {
+  const meaning = acting.at(-1);
   const words = meaning === undefined ? [] : [`Event: ${meaning}.`];
   if (state.cobotStop > 0) words.push('The cobot has stopped itself.');
   return words.join(' ');

@@ -168,7 +168,7 @@ export class FakeServer {
                    force: {min: 5, max: 30, value: 30}, torque: {min: 1, max: 5, value: 5}},
       script: preset.script.map(([action, start, duration, text]) =>
         ({action, start, duration, hand: 'both', text})),
-      hazards: ['the cobot stumbles'],
+      ...(!options.older && {acting: []}),
       ...(!options.older && {person: options.person ? {judged: false, why: options.person} : {judged: true}}),
       scenarios: ['made_up', 'made_up_too'].map((name) => ({name, title: preset.name})),
     };

@@ -36,6 +36,7 @@ export class Overlay {
   readonly bar: HTMLElement;
   readonly tools: HTMLElement;
   readonly hud: HTMLElement;
+  acting: string[] = [];  // what each acting event does, the newest last
   readonly banner = h('div', {class: 'banner', id: 'banner', role: 'alert', hidden: true});
   readonly vrButton: HTMLButtonElement;
   private readonly bodyButton: HTMLButtonElement;
@@ -95,6 +96,7 @@ export class Overlay {
 
   build(spec: SceneSpec) {
     setText(this.name, spec.name);
+    this.acting = spec.acting ?? [];
     this.grip.hidden = true;
     document.title = `${spec.name} · PREDICTOR`;
     this.mode.hidden = spec.simulated && spec.mode === 'emulate';
@@ -123,7 +125,7 @@ export class Overlay {
       setText(this.score, `Off the circle on average ${millimetres(score.mean)}, ` +
           `at most ${millimetres(score.largest)}`);
     }
-    const hazards = hazardWords(state, spec);
+    const hazards = hazardWords(state, this.acting);
     this.hazards.hidden = hazards === '';
     setText(this.hazards, hazards);
     if (state.attachment > 0) this.grip.hidden = false;
