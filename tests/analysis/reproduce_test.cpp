@@ -18,6 +18,8 @@
 #include "emulator/emulator.h"
 #include "numbers_file.h"
 #include "scenario/scenario_io.h"
+#include "simulation/dart/dart_process.h"
+#include "simulation/engine_version.h"
 #include "support/soak.h"
 
 namespace predictor {
@@ -132,6 +134,27 @@ TEST_F(ReproduceTest, ShowsTheStops) {
   EXPECT_LT(Find(e, "time of the decision", "Underdamped").mean,
             Find(e, "time of the decision", "Underdamped, no monitor").mean);
   ExpectAsInNumbersFile(e);
+}
+
+// The shortest experiment is enough, because --set changes all runs alike.
+TEST_F(ReproduceTest, RunsInDartAndNamesTheEngineWithItsVelocityLimits) {
+  if (!HasDart()) GTEST_SKIP() << "This build has no DART.";
+  options_.only = "responsiveness";
+  for (const auto& [limits, words] :
+       {std::pair{"off", "without limits"}, {"hard", "with hard limits"}}) {
+    options_.set = {"simulation.engine=dart", std::string("simulation.velocity_limits=") + limits,
+                    "duration=1"};
+    const Reproduction r = Reproduce(options_);
+    EXPECT_NE(r.experiments.at(0).numbers.at(0).command.find("--set simulation.engine=dart"),
+              std::string::npos);
+    const std::string engine =
+        EngineVersion(EngineKind::kDart) + ", " + words + " of the cobot's joint velocities";
+    EXPECT_EQ(r.engine, engine);
+    EXPECT_NE(ReproductionPage(r).find("; engine: DART "), std::string::npos);
+    EXPECT_NE(ReproductionJson(r).find("\"engine\": \"" + engine + "\""), std::string::npos);
+  }
+  options_.set = {"duration=1"};
+  EXPECT_EQ(Reproduce(options_).engine.find("MuJoCo "), 0u);
 }
 
 // box_18kg needs a higher effort limit than the Panda's. With the Panda's own limits, the error

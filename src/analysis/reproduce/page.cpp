@@ -67,8 +67,9 @@ std::string Overview(const Reproduction& reproduction) {
 std::string ReproductionPage(const Reproduction& reproduction) {
   ReportPage page(
       "The paper's experiments, repeated",
-      "<p>PREDICTOR " + EscapeMarkup(reproduction.program_version) +
-          " · virtual time; computing times measured on: " + EscapeMarkup(reproduction.machine) +
+      "<p>PREDICTOR " + EscapeMarkup(reproduction.program_version) + " · virtual time" +
+          (reproduction.engine.empty() ? "" : "; engine: " + EscapeMarkup(reproduction.engine)) +
+          "; computing times measured on: " + EscapeMarkup(reproduction.machine) +
           "</p>\n<p>The paper: PREDICTOR: A Physical emulatoR enabling safEty anD ergonomICs "
           "evaluation and Training of physical human-rObot collaboRation, Frontiers in "
           "Neurorobotics 17 (2023).</p>\n");
@@ -104,6 +105,7 @@ std::string ReproductionPage(const Reproduction& reproduction) {
 std::string ReproductionJson(const Reproduction& reproduction) {
   Json json = {{"program_version", reproduction.program_version},
                {"machine", reproduction.machine},
+               {"engine", reproduction.engine},
                {"experiments", Json::array()}};
   for (const ReproducedExperiment& e : reproduction.experiments) {
     Json numbers = Json::array();

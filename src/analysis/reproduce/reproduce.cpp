@@ -8,6 +8,8 @@
 #include "analysis/reproduce/runs.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "scenario/scenario_io.h"
+#include "simulation/engine_version.h"
 
 namespace predictor {
 namespace {
@@ -66,6 +68,18 @@ void CheckName(const std::string& only) {
                    Suggestion(only, names));
 }
 
+// Names the engine that simulates the runs. The options change it in all scenarios alike.
+std::string EngineOf(const ReproduceOptions& options) {
+  const std::filesystem::path file = options.scenarios / "box_9kg.yaml";
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return "";
+  const SimulationSpec simulation = LoadScenario(file, options.set).simulation;
+  const bool is_limited = simulation.velocity_limits == VelocityLimits::kHard;
+  return EngineVersion(simulation.engine) +
+         (is_limited ? ", with hard limits" : ", without limits") +
+         " of the cobot's joint velocities";
+}
+
 }  // namespace
 
 std::vector<std::string> ReproducibleExperiments() {
@@ -79,6 +93,7 @@ Reproduction Reproduce(const ReproduceOptions& options) {
   MakeWritable(options.folder);
   Reproduction result;
   result.machine = ProcessorModel();
+  result.engine = EngineOf(options);
   result.program_version = options.program_version;
   double before = 0;
   for (const ExperimentEntry& entry : kExperiments) {

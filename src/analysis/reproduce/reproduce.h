@@ -82,6 +82,8 @@ std::vector<std::string> ReproducibleExperiments();
 struct Reproduction {
   std::vector<ReproducedExperiment> experiments;
   std::string machine;  // processor's model
+  std::string engine;   // physics engine of the runs, and its limits of the joints' velocities;
+                        // empty if no scenario was found, and thus nothing was simulated
   std::string program_version;
 };
 
