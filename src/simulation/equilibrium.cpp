@@ -30,7 +30,7 @@ constexpr double kMaxDepth = 1e-5;
 // than in the last iteration.
 constexpr double kDeeper = 2;
 constexpr int kHalvings = 30;            // of an iteration that enters a fixture deeper
-constexpr double kDeepestStart = 0.001;  // in a fixture [m]
+constexpr double kDeepestStart = 0.001;  // in a fixture, the table or the floor [m]
 constexpr double kUnstable = -0.01;  // eigenvalue of M⁻¹ H below which the scene is unstable [1/s²]
 constexpr double kNudge = 0.01;      // away from an unstable equilibrium [rad, m]
 
@@ -201,13 +201,20 @@ std::string Millimetres(double metres) {
   return FormatNumber(std::round(metres * 1e4) / 10) + " mm";
 }
 
+// Returns whether a body that has entered the floor or the table has entered the table. A body
+// touches the floor below the plane z = 0.
+bool IsInTable(const Contact& contact, const EnvironmentSpec& environment) {
+  return environment.table && (!environment.floor || contact.p_W.z() > 0);
+}
+
 // Throws InputError for a movable object that overlaps its surroundings or another movable object.
-void RefuseOverlap(const Contact& contact) {
+void RefuseOverlap(const Contact& contact, const EnvironmentSpec& environment) {
   const std::string key = KeyOfMovable(contact.body);
   const std::string other = contact.movable >= 0 ? KeyOfMovable(contact.movable)
                             : contact.fixture >= 0
                                 ? "environment.fixtures." + std::to_string(contact.fixture)
-                                : "the floor or the table";
+                            : IsInTable(contact, environment) ? "environment.table"
+                                                              : "the floor";
   throw InputError::At(key + ".xyz", key + ".xyz: at the start, this object is " +
                                          Millimetres(contact.depth) + " inside " + other +
                                          ". Move it away by at least this distance.");
@@ -223,31 +230,43 @@ void RefuseTouch(Engine* engine) {
     if (contact.movable < 0 || contact.body >= 0) continue;
     const std::string key = KeyOfMovable(contact.movable);
     const std::string other =
-        contact.link.empty() ? "the object" : "the cobot's link " + Quote(contact.link);
-    std::string text = key + ".xyz: at the start, after the cobot sagged under its load, ";
-    text += other + " touches this object, and is " + Millimetres(contact.depth);
-    text += " inside it. Leave a gap between them, for example 1 mm.";
-    throw InputError::At(key + ".xyz", text);
+        contact.link.empty() ? "the carried object" : "the cobot's link " + Quote(contact.link);
+    throw InputError::At(key + ".xyz",
+                         key + ".xyz: at the start, after the cobot sagged under its load, this " +
+                             "movable object touches " + other + " (overlap " +
+                             Millimetres(contact.depth) +
+                             "). Leave a gap between them, for example 1 mm.");
   }
+}
+
+// Throws InputError for a fixture that the object or a link of the cobot has entered.
+void RefuseFixture(const Contact& contact) {
+  const std::string key = "environment.fixtures." + std::to_string(contact.fixture);
+  const bool is_object = contact.link.empty();
+  throw InputError::At(
+      key, key + ": at cobot.posture, " +
+               (is_object ? "the object" : "the cobot's link " + Quote(contact.link)) + " is " +
+               Millimetres(contact.depth) +
+               " inside this fixture. Move the fixture, or change cobot.posture" +
+               (is_object ? "." : ", or remove cobot from the fixture's touches."));
 }
 
 // Without this check, the search would push the bodies apart, and the run would not start as the
 // scenario describes.
-void CheckStart(Engine* engine) {
+void CheckStart(Engine* engine, const EnvironmentSpec& environment) {
   engine->Prepare();
   for (int i = 0; i < engine->contact_count(); ++i) {
     const Contact contact = engine->contact(i);
     if (contact.depth <= kDeepestStart) continue;
-    if (contact.body >= 0) RefuseOverlap(contact);
-    if (contact.fixture < 0) continue;
-    const std::string key = "environment.fixtures." + std::to_string(contact.fixture);
-    const bool is_object = contact.link.empty();
-    throw InputError::At(
-        key, key + ": at cobot.posture, " +
-                 (is_object ? "the object" : "the cobot's link " + Quote(contact.link)) + " is " +
-                 FormatNumber(std::round(contact.depth * 1e4) / 10) +
-                 " mm inside this fixture. Move the fixture, or change cobot.posture" +
-                 (is_object ? "." : ", or remove cobot from the fixture's touches."));
+    if (contact.body >= 0) RefuseOverlap(contact, environment);
+    if (contact.movable >= 0) continue;  // RefuseTouch
+    if (contact.fixture >= 0) RefuseFixture(contact);
+    const bool table = IsInTable(contact, environment);
+    const std::string key = table ? "environment.table" : "environment.floor";
+    throw InputError::At(key, key + ": at cobot.posture, the object is " +
+                                  Millimetres(contact.depth) + " inside the " +
+                                  (table ? "table. Lower the table" : "floor. Raise cobot.base") +
+                                  ", or change cobot.posture.");
   }
 }
 
@@ -262,13 +281,13 @@ void RefuseContact(Engine* engine) {
 
 }  // namespace
 
-void FindEquilibrium(ControlledScene* scene) {
+void FindEquilibrium(const EnvironmentSpec& environment, ControlledScene* scene) {
   Engine& engine = scene->engine();
   engine.Clear();
   Engine::Values q = engine.positions();
   for (int j = 0; j < scene->posture().size(); ++j)
     q[engine.layout().q[static_cast<std::size_t>(j)]] = scene->posture()[j];
-  CheckStart(&engine);
+  CheckStart(&engine, environment);
   const double residual = EquilibriumSearch(scene).Run();
   Obstacle obstacle = ObstacleIn(*scene);
   if (residual < kTolerance && obstacle.text.empty()) {

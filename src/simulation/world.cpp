@@ -49,7 +49,7 @@ struct World::Impl {
       : events(scenario), controlled(scenario, events), hands(scenario.hands()) {
     for (const int h : hands) X_OD[h] = scenario.handle(h).pose.ToPose();
     SetCoupling(scenario);
-    FindEquilibrium(&controlled);
+    FindEquilibrium(scenario.environment, &controlled);
     controlled.StartController();
     start.resize(engine().state_size());
     saved.resize(start.size());

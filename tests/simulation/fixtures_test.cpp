@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <regex>
 #include <string>
 
 #include "core/error.h"
 #include "event_fixtures.h"
+#include "scenario/paths.h"
 #include "simulation/controlled_scene.h"
 #include "support/allocation_guard.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -219,6 +224,63 @@ TEST(Fixtures, AStartInsideOneIsRefused) {
             std::string::npos)
       << StartError(s);
   EXPECT_NE(StartError(s).find("remove cobot from the fixture's touches"), std::string::npos);
+}
+
+TEST(Fixtures, AStartInsideTheTableOrTheFloorIsRefused) {
+  Scenario s = BoxScene(kBoxMass);
+  const Vector3 bottom = BottomOf(s);
+  s.environment.table = TableSpec{};
+  s.environment.table->top = bottom + Vector3(0, 0, 0.062);
+  EXPECT_EQ(StartError(s),
+            "environment.table: at cobot.posture, the object is 62 mm inside the table. Lower the "
+            "table, or change cobot.posture.");
+  s.environment.floor = true;  // far below
+  EXPECT_EQ(StartError(s).find("environment.table: "), 0u) << StartError(s);
+  s.environment.table->top = bottom + Vector3(0, 0, 0.0005);
+  EXPECT_EQ(StartError(s), "");
+  s.cobot.base.xyz.z() -= bottom.z() + 0.025;
+  s.environment.table->top.z() = -0.5;
+  EXPECT_EQ(StartError(s),
+            "environment.floor: at cobot.posture, the object is 25 mm inside the floor. Raise "
+            "cobot.base, or change cobot.posture.");
+}
+
+TEST(Fixtures, OneThatNothingCouldTouchIsRefused) {
+  const test::TemporaryFolder folder;
+  Scenario s = OnATable(0.3);
+  s.file = folder / "test.yaml";
+  const auto write = [&](const char* name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+  };
+  write("bare.urdf",
+        R"(<robot name="bare"><link name="bare"><inertial><mass value="2"/>)"
+        R"(<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>)"
+        R"(<visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual></link></robot>)");
+  s.object.primitive.reset();
+  s.object.model = "bare.urdf";
+  const std::string file = (folder / "bare.urdf").string();
+  EXPECT_EQ(StartError(s),
+            "environment.fixtures.0.touches contains object, but " + file +
+                " has no <collision>, so nothing would collide. Add <collision> to the links in "
+                "this file, or remove this fixture.");
+  s.environment.fixtures[0].touches = {"cobot"};
+  s.environment.fixtures[0].size.head<2>() = Eigen::Vector2d(0.3, 0.3);  // far from its foot
+  EXPECT_EQ(StartError(s), "");
+
+  std::ifstream panda(ResolveModelPath(s.cobot.model, folder));
+  const std::string urdf((std::istreambuf_iterator<char>(panda)), {});
+  ASSERT_NE(urdf.find("<collision>"), std::string::npos);
+  write("panda.urdf",
+        std::regex_replace(urdf, std::regex("<collision>[\\s\\S]*?</collision>"), ""));
+  s.cobot.model = "panda.urdf";
+  s.environment.fixtures[0].touches = {"object", "cobot"};
+  s.object.model.clear();
+  s.object.primitive = BoxScene(kBoxMass).object.primitive;
+  EXPECT_EQ(StartError(s),
+            "environment.fixtures.0.touches contains cobot, but " +
+                (folder / "panda.urdf").string() +
+                " has no <collision> in a link that a joint moves, so nothing would collide. Add "
+                "<collision> to the links in this file, or remove cobot from this list.");
 }
 
 TEST(Fixtures, OneTooStiffForTheStepOfTheSimulationIsRefused) {

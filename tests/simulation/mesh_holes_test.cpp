@@ -5,6 +5,7 @@
 #include <array>
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "support/temporary_folder.h"
@@ -61,6 +62,50 @@ TEST(MeshHoles, FollowFromEulersFormula) {
   AddFrame(3, &mesh);
   EXPECT_EQ(ThroughHoles(mesh), 2);
   EXPECT_EQ(ThroughHoles(WithRepeatedVertices(mesh)), 2);
+}
+
+// STL files repeat each vertex, and some programs round the copies differently.
+TEST(MeshHoles, VerticesThatDifferByARoundingErrorAreOne) {
+  CollisionMesh frame;
+  AddFrame(0, &frame);
+  for (const auto& [error, holes] : {std::pair{1e-6F, 1}, {1e-3F, 0}}) {
+    CollisionMesh mesh = WithRepeatedVertices(frame);
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+      mesh.vertices[i] += error * static_cast<float>(i * 7 % 5) / 4;  // differs between copies
+    EXPECT_EQ(ThroughHoles(mesh), holes) << error;
+  }
+}
+
+// The outer box of the frame has the volume 2 · 2 · 0.1, and its hole the volume 1 · 1 · 0.1.
+TEST(MeshHoles, TheHullsExcessIsTheVolumeOfHolesAndRecesses) {
+  EXPECT_NEAR(HullExcess(Tetrahedron()), 1, 1e-6);
+  CollisionMesh mesh;
+  AddFrame(0, &mesh);
+  EXPECT_NEAR(HullExcess(mesh), 4.0 / 3, 1e-5);
+  EXPECT_NEAR(HullExcess(WithRepeatedVertices(mesh)), 4.0 / 3, 1e-5);
+  std::swap(mesh.faces[0], mesh.faces[1]);  // one triangle faces inwards
+  EXPECT_EQ(HullExcess(mesh), 1);
+}
+
+// A bottom closes the hole of the frame at z = 0, so the mesh has a recess instead of a hole.
+TEST(MeshHoles, ARecessIsNotAHoleButTheHullFillsIt) {
+  CollisionMesh cup;
+  AddFrame(0, &cup);
+  // The bottom of the frame becomes a plate with the four outer corners only.
+  CollisionMesh with_bottom{cup.vertices, {}};
+  for (std::size_t f = 0; f < cup.faces.size(); f += 3) {
+    const auto is_low = [&](std::size_t i) {
+      return cup.vertices[static_cast<std::size_t>(3 * cup.faces[f + i] + 2)] == 0;
+    };
+    if (is_low(0) && is_low(1) && is_low(2)) continue;
+    for (std::size_t i = 0; i < 3; ++i) with_bottom.faces.push_back(cup.faces[f + i]);
+  }
+  AddQuadrilateral({3, 2, 1, 0}, &with_bottom);  // the outer face of the bottom
+  // The inner ring at z = 0 is lifted to the inner face of the bottom.
+  for (int v = 4; v < 8; ++v) with_bottom.vertices[static_cast<std::size_t>(3 * v + 2)] = 0.02F;
+  AddQuadrilateral({4, 5, 6, 7}, &with_bottom);
+  EXPECT_EQ(ThroughHoles(with_bottom), 0);
+  EXPECT_NEAR(HullExcess(with_bottom), 0.4 / (0.4 - 0.08), 1e-5);
 }
 
 TEST(MeshHoles, AnOpenSurfaceCountsAsWithout) {

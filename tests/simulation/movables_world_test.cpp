@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
 #include "event_fixtures.h"
+#include "support/temporary_folder.h"
 
 namespace predictor {
 namespace {
@@ -201,7 +204,11 @@ TEST(MovableObject, ThatStartsInsideAnotherBodyIsAnError) {
   s.environment.fixtures.clear();
   s.environment.floor = true;
   s.environment.objects[0].xyz.z() = 0.1 - 0.0015;
-  EXPECT_NE(ErrorOfStart(s).find("is 1.5 mm inside the floor or the table."), std::string::npos);
+  EXPECT_NE(ErrorOfStart(s).find("is 1.5 mm inside the floor."), std::string::npos);
+  s.environment.table = TableSpec{};
+  s.environment.table->top = s.environment.objects[0].xyz - Vector3(0, 0, 0.1 - 0.0025);
+  s.environment.objects[0].xyz.z() += 0.2, s.environment.table->top.z() += 0.2;
+  EXPECT_NE(ErrorOfStart(s).find("is 2.5 mm inside environment.table."), std::string::npos);
   s = WithABrick();
   s.environment.objects.push_back(s.environment.objects[0]);
   s.environment.objects[0].xyz.y() += 0.297;
@@ -213,10 +220,32 @@ TEST(MovableObject, ThatStartsInsideAnotherBodyIsAnError) {
 TEST(MovableObject, ThatTouchesTheCarriedObjectAtTheStartIsAnError) {
   EXPECT_EQ(ErrorOfStart(WithABrick(0.0005)), "");
   const std::string error = ErrorOfStart(WithABrick(-0.0005));
-  EXPECT_NE(error.find("after the cobot sagged under its load, the object touches this object, and "
-                       "is 0.5 mm inside it. Leave a gap between them"),
+  EXPECT_NE(error.find("after the cobot sagged under its load, this movable object touches the "
+                       "carried object (overlap 0.5 mm). Leave a gap between them"),
             std::string::npos)
       << error;
+}
+
+TEST(MovableObject, WithoutCollisionShapesIsAnErrorThatNamesItsFile) {
+  const test::TemporaryFolder folder;
+  Scenario s = WithABrick();
+  s.file = folder / "test.yaml";
+  std::ofstream(folder / "bare.urdf")
+      << R"(<robot name="bare"><link name="bare"><inertial><mass value="2"/>)"
+      << R"(<inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>)"
+      << R"(</link></robot>)";
+  s.environment.objects[0].primitive.reset();
+  s.environment.objects[0].model = "bare.urdf";
+  EXPECT_EQ(RefusalOf(s), "environment.objects.0.model | environment.objects.0.model: " +
+                              (folder / "bare.urdf").string() +
+                              " has no <collision>, so this movable object would fall through "
+                              "everything. Add <collision> to the links in this file.");
+  std::swap(s.environment.objects[0].model, s.object.model);
+  s.environment.objects[0].primitive = std::exchange(s.object.primitive, {});
+  EXPECT_EQ(RefusalOf(s).find("environment.objects.0.touches | environment.objects.0.touches "
+                              "contains object, but "),
+            0u)
+      << RefusalOf(s);
 }
 
 TEST(MovableObject, WithAnImpossibleModelIsAnErrorThatNamesIt) {

@@ -6,6 +6,7 @@
 
 #include "analysis/check/controller_advice.h"
 #include "analysis/check/event_advice.h"
+#include "analysis/check/hulls.h"
 #include "core/error.h"
 #include "core/format.h"
 #include "core/units.h"
@@ -80,6 +81,7 @@ class Judge {
     Torques();
     Controller();
     for (std::string& line : StartWarnings(report_->start)) Warn(std::move(line));
+    for (std::string& line : HullWarnings(s_)) Warn(std::move(line));
     LooseObject();
     MovableObjects();
     Script();

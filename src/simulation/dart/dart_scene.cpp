@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "models/robot_impl.h"
+#include "simulation/touches.h"
 
 namespace predictor {
 namespace {
@@ -190,6 +191,7 @@ SceneData DartScene(const Scenario& scenario, const RobotModel& cobot, const Obj
   scene.end_effector = PoseFor(E.X_JF);
   AddAttachment(scenario, object, holding, &scene);
   AddSurroundings(scenario.environment, &scene);
+  RequireShapes(scenario, Toucher::kObject, object.collisions.size());
   AddShapes(object, &scene);
   return scene;
 }

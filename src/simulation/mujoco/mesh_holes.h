@@ -1,4 +1,4 @@
-// Finds holes in a mesh, which the mesh's convex hull would fill.
+// Finds holes and recesses in a mesh, which the mesh's convex hull would fill.
 #pragma once
 
 #include <string>
@@ -11,8 +11,14 @@ namespace predictor {
 // Returns the number of holes through a mesh. This is the sum of the genus g of its closed parts,
 // which follows from Euler's formula V − E + F = 2 − 2 g for each part. Parts with an open edge, or
 // with an edge that belongs to more than two triangles, are treated as if they had no hole. A hole
-// that does not go through the mesh is not counted.
+// that does not go through the mesh is not counted. Vertices nearer to each other than 1e-5 of the
+// mesh's diagonal are treated as one vertex.
 int ThroughHoles(const CollisionMesh& mesh);
+
+// Returns the volume of the convex hull of a mesh, divided by the volume that the mesh encloses. A
+// few missing triangles hardly change this volume. Returns 1 if the triangles do not have a common
+// orientation, so that the volume is unknown.
+double HullExcess(const CollisionMesh& mesh);
 
 // Throws InputError if the shape is a mesh with a hole through it. `key`: of the scenario.
 void CheckHull(const ModelShape& shape, const std::string& key);

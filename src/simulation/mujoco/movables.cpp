@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string>
 
+#include "core/error.h"
+#include "scenario/paths.h"
 #include "simulation/mujoco/fixtures.h"
 #include "simulation/mujoco/mesh_holes.h"
 #include "simulation/mujoco/shapes.h"
@@ -51,6 +53,12 @@ MovableModels LoadMovables(const Scenario& scenario) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     models.push_back(
         LoadObject({objects[i].model, objects[i].primitive, {}}, scenario.folder(), Key(i)));
+    if (models.back().collisions.empty())
+      throw InputError::At(
+          Key(i) + ".model",
+          Key(i) + ".model: " + ResolveModelPath(objects[i].model, scenario.folder()).string() +
+              " has no <collision>, so this movable object would fall through everything. Add "
+              "<collision> to the links in this file.");
     for (const ModelShape& shape : models.back().collisions) CheckHull(shape, Key(i) + ".model");
   }
   return models;

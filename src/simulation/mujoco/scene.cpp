@@ -13,6 +13,7 @@
 #include "simulation/mujoco/mesh_holes.h"
 #include "simulation/mujoco/movables.h"
 #include "simulation/mujoco/shapes.h"
+#include "simulation/touches.h"
 
 namespace predictor {
 namespace {
@@ -134,6 +135,7 @@ std::vector<std::string> AddCobotShapes(mjSpec* spec, const Scenario& scenario) 
     mjsBody* body = mjs_findBody(spec, (kCobotPrefix + link.name).c_str());
     if (!moves[child] || body == nullptr) continue;
     for (std::size_t i = 0; i < link.collisions.size(); ++i) {
+      CheckHull(link.collisions[i], "cobot.model");
       names.push_back(kCobotPrefix + link.name + "/" + std::to_string(i));
       mjsGeom* geom = AddShape(spec, body, link.collisions[i], names.back(), "cobot.model");
       geom->contype = geom->conaffinity = 0;
@@ -157,7 +159,11 @@ void AddAllContacts(mjSpec* spec, const Scenario& scenario, const ObjectModel& o
                     const MovableModels& movables) {
   const EnvironmentSpec& environment = scenario.environment;
   std::vector<std::string> cobot, carried;
-  if (TouchesAny(environment, "cobot")) cobot = AddCobotShapes(spec, scenario);
+  if (TouchesAny(environment, "cobot")) {
+    cobot = AddCobotShapes(spec, scenario);
+    RequireShapes(scenario, Toucher::kCobot, cobot.size());
+  }
+  RequireShapes(scenario, Toucher::kObject, object.collisions.size());
   for (std::size_t i = 0; i < object.collisions.size(); ++i) carried.push_back(ObjectShape(i));
   if (TouchesAny(environment, "object"))
     for (const ModelShape& shape : object.collisions) CheckHull(shape, "object.model");

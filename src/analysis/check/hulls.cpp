@@ -1,0 +1,65 @@
+#include "analysis/check/hulls.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "core/format.h"
+#include "models/object_model.h"
+#include "scenario/paths.h"
+#include "simulation/mujoco/mesh_holes.h"
+
+namespace predictor {
+namespace {
+
+constexpr double kMuchLarger = 1.3;  // volume of a hull divided by that of its mesh
+
+void AddWarnings(const std::vector<ModelShape>& shapes, const std::string& key,
+                 std::vector<std::string>* warnings) {
+  for (const ModelShape& shape : shapes) {
+    if (shape.kind != ShapeKind::kMesh) continue;
+    const double excess = HullExcess(ReadCollisionMesh(shape, key));
+    if (excess <= kMuchLarger) continue;
+    warnings->push_back(Formatted(
+        "%s: %s: The convex hull of the mesh %s collides instead of the mesh, and is %.1f times "
+        "as large. Nothing can enter the recesses that the hull fills. If something should enter "
+        "them, build the part from several <collision> boxes and cylinders.",
+        key.c_str(), shape.place.c_str(), shape.mesh.c_str(), excess));
+  }
+}
+
+// Adds warnings about the links of the cobot that its joints move.
+void AddCobotWarnings(const Scenario& s, std::vector<std::string>* warnings) {
+  const UrdfModel urdf =
+      ReadUrdf(ResolveModelPath(s.cobot.model, s.folder()), s.cobot.remove_links, s.folder());
+  std::vector<bool> moves(urdf.links.size(), false);
+  for (const UrdfJoint& joint : urdf.joints) {  // parents come before children
+    const auto child = static_cast<std::size_t>(joint.child);
+    moves[child] =
+        joint.type != UrdfJointType::kFixed || moves[static_cast<std::size_t>(joint.parent)];
+    if (moves[child]) AddWarnings(urdf.links[child].collisions, "cobot.model", warnings);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> HullWarnings(const Scenario& s) {
+  const EnvironmentSpec& environment = s.environment;
+  const auto touches = [&](const char* what) {
+    const auto touched = [what](const auto& body) { return body.Touches(what); };
+    return std::ranges::any_of(environment.fixtures, touched) ||
+           std::ranges::any_of(environment.objects, touched);
+  };
+  std::vector<std::string> warnings;
+  if (touches("object"))
+    AddWarnings(LoadObject(s.object, s.folder()).collisions, "object.model", &warnings);
+  if (touches("cobot")) AddCobotWarnings(s, &warnings);
+  for (std::size_t i = 0; i < environment.objects.size(); ++i) {
+    const std::string key = "environment.objects." + std::to_string(i);
+    const MovableSpec& movable = environment.objects[i];
+    AddWarnings(LoadObject({movable.model, movable.primitive, {}}, s.folder(), key).collisions,
+                key + ".model", &warnings);
+  }
+  return warnings;
+}
+
+}  // namespace predictor

@@ -1,0 +1,45 @@
+#include "simulation/touches.h"
+
+#include <string>
+
+#include "core/error.h"
+#include "scenario/paths.h"
+
+namespace predictor {
+namespace {
+
+// `key` is that of a fixture or a movable object, and `what` is the word for it.
+template <class Body>
+void RefuseWithoutShape(const Body& body, const std::string& key, const std::string& what,
+                        Toucher toucher, const Scenario& scenario) {
+  const bool is_object = toucher == Toucher::kObject;
+  const std::string word = is_object ? "object" : "cobot";
+  if (!body.Touches(word.c_str())) return;
+  const std::string shapes = is_object ? "<collision>" : "<collision> in a link that a joint moves";
+  const auto file =
+      ResolveModelPath(is_object ? scenario.object.model : scenario.cobot.model, scenario.folder());
+  const std::string remedy =
+      body.touches.size() > 1 ? word + " from this list." : "this " + what + ".";
+  throw InputError::At(key + ".touches", key + ".touches contains " + word + ", but " +
+                                             file.string() + " has no " + shapes +
+                                             ", so nothing would collide. Add <collision> to the "
+                                             "links in this file, or remove " +
+                                             remedy);
+}
+
+}  // namespace
+
+void RequireShapes(const Scenario& scenario, Toucher toucher, std::size_t shapes) {
+  if (shapes > 0) return;
+  const EnvironmentSpec& environment = scenario.environment;
+  for (std::size_t i = 0; i < environment.objects.size(); ++i)
+    RefuseWithoutShape(environment.objects[i], "environment.objects." + std::to_string(i),
+                       "movable object", toucher, scenario);
+  // For a fixture, the word "object" also stands for the movable objects.
+  if (toucher == Toucher::kObject && !environment.objects.empty()) return;
+  for (std::size_t i = 0; i < environment.fixtures.size(); ++i)
+    RefuseWithoutShape(environment.fixtures[i], "environment.fixtures." + std::to_string(i),
+                       "fixture", toucher, scenario);
+}
+
+}  // namespace predictor

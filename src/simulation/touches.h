@@ -1,0 +1,17 @@
+// Checks that the bodies which a scenario lets collide have collision shapes.
+#pragma once
+
+#include <cstddef>
+
+#include "scenario/scenario.h"
+
+namespace predictor {
+
+enum class Toucher { kObject, kCobot };  // the words of `touches`
+
+// Throws InputError if the scenario lets a fixture or a movable object touch the carried object or
+// the cobot, but this body has no collision shape, so that nothing would ever touch. `shapes` is
+// the number of its collision shapes.
+void RequireShapes(const Scenario& scenario, Toucher toucher, std::size_t shapes);
+
+}  // namespace predictor
