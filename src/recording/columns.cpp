@@ -146,11 +146,9 @@ bool Matches(std::string_view name, std::string_view pattern) {
          Matches(name.substr(1), pattern.substr(1));
 }
 
-// Returns whether the pattern is this name, a matching pattern, or the name of a group.
+// Returns whether the pattern matches this name or a group that contains it.
 bool IsMeant(const std::string& name, const std::string& pattern) {
-  if (Matches(name, pattern)) return true;
-  return name.starts_with(pattern) && name.size() > pattern.size() &&
-         (name[pattern.size()] == '.' || name[pattern.size()] == '[');
+  return Matches(name, pattern) || Matches(name, pattern + ".*") || Matches(name, pattern + "[*");
 }
 
 }  // namespace

@@ -118,6 +118,9 @@ TEST(Columns, AreSelectedByPatternAndGroup) {
   const std::vector<Column> columns = ColumnsOf(Sample());
   EXPECT_EQ(Select(columns, {"hands.left.wrench.force"}).size(), 3U);
   EXPECT_EQ(Select(columns, {"*.wrench.*.z"}).size(), 2U);
+  // A pattern may match groups, as in the example of `predictor export data --help`.
+  EXPECT_EQ(Select(columns, {"hands.*.wrench"}).size(), 6U);
+  EXPECT_EQ(Select(columns, {"hands.*ft.q"}).size(), 6U);
   EXPECT_EQ(Select(columns, {"cobot.q"}).size(), 7U);
   EXPECT_EQ(Select(columns, {"cobot.q[1]", "run.tick"}).front().name, "cobot.q[1]");
   EXPECT_THROW(Select(columns, {"cobot.x"}), InputError);
