@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/json_schema.h"
+#include "core/tick_fields.h"
 #include "core/words.h"
 #include "evaluation/summary.h"
 
@@ -29,6 +30,8 @@ ResultValue HandName(int hand) {
   return kHandNames[static_cast<std::size_t>(hand)];
 }
 
+const char* NameOf(Quantity quantity) { return kQuantityNames[static_cast<std::size_t>(quantity)]; }
+
 // ---- lists of results -------------------------------------------------------------------------
 
 std::vector<Result> ResultsOf(const StopSummary& stop) {
@@ -42,6 +45,8 @@ std::vector<Result> ResultsOf(const StopSummary& stop) {
       Entry("hand", HandName(stop.hand), "hand that caused it"),
       Entry("value", stop.value, "measured value that caused the stop, SI"),
       Entry("limit", stop.limit, "its limit, SI"),
+      Entry("quantity", NameOf(stop.quantity),
+            "quantity of that value and limit; it is vibration if the force vibrated"),
       Entry("fastest_joint",
             stop.fastest_joint >= 0 ? 1.0 + stop.fastest_joint
                                     : std::numeric_limits<double>::quiet_NaN(),
@@ -55,7 +60,9 @@ std::vector<Result> ResultsOf(const StopSummary& stop) {
             "fault that removed the power at the end of the stop"),
       Entry("power_off_by.hand", if_hardened(HandName(harder.hand)), "hand of that fault"),
       Entry("power_off_by.value", if_hardened(harder.value), "measured value of that fault, SI"),
-      Entry("power_off_by.limit", if_hardened(harder.limit), "its limit, SI")};
+      Entry("power_off_by.limit", if_hardened(harder.limit), "its limit, SI"),
+      Entry("power_off_by.quantity", if_hardened(NameOf(harder.quantity)),
+            "quantity of that value and limit")};
 }
 
 std::vector<Result> ResultsOf(const EventSummary& event) {

@@ -204,6 +204,7 @@ TEST(Summary, ReportsTheStopAndWhenTheTruthCrossedTheThreshold) {
   const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
   EXPECT_EQ(json["stop"]["cause"], "force");
   EXPECT_EQ(json["stop"]["hand"], "right");
+  EXPECT_EQ(json["stop"]["quantity"], "force");
   EXPECT_EQ(json["stop"]["time_s"], 0.005);
   EXPECT_TRUE(json["stop"]["power_off_by"].is_null());
   // The statistics of the force must include the value that caused the stop.
@@ -230,6 +231,7 @@ TEST(Summary, ReportsWhatMadeTheEndOfAStopHarder) {
   EXPECT_EQ(json["stop"]["power_off_by"]["cause"], "stale");
   EXPECT_EQ(json["stop"]["power_off_by"]["hand"], "left");
   EXPECT_EQ(json["stop"]["power_off_by"]["value"], 0.0214);
+  EXPECT_EQ(json["stop"]["power_off_by"]["quantity"], "arm_age");
   EXPECT_NE(SummaryTable(builder.summary()).find("Power-off was requested because: Left"),
             std::string::npos);
 }
