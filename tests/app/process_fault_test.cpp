@@ -142,7 +142,8 @@ TEST(UnreadOutput, DoesNotKeepARunFromEnding) {
   run.Send(SIGINT);
   EXPECT_TRUE(test::Becomes([&] { return test::StatusOf(run.pid(), "State").starts_with("Z"); }));
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
-  std::printf("It ended after %.1f s\n", time.count());
+  // This time is the requirement. The program waits 1 s for the reader (patient_output.cpp).
+  EXPECT_LT(time.count(), 5);
   run.Send(SIGKILL);  // in case it did not end
   EXPECT_EQ(run.Wait(), 0);
   EXPECT_TRUE(nlohmann::json::parse(run.output())["stop"].is_null());
