@@ -108,7 +108,8 @@ export class App {
     this.stage = new Stage(scene, (words) => this.overlay.warn(words));
     this.stage.camera.covered = () => this.personCard.covered(scene);
     this.invitation = new Invitation(this.connection, this.hands, this.stage);
-    scene.append(this.invitation.gauges, this.personCard.element, this.overlay.hud, this.invitation.element);
+    this.overlay.hud.append(this.invitation.element);
+    scene.append(this.invitation.gauges, this.personCard.element, this.overlay.hud);
     this.mouse = new MouseHand(this.stage, this.hands, () => this.mayGrip);
     this.keyboard = new KeyboardHand(this.stage, this.hands, () => this.mayGrip);
     this.immersive = new Immersive(

@@ -80,6 +80,32 @@ test('the handles invite the visitor to drag, and the first drag shows force and
   await shows(page, '#gauge-left', false);
 });
 
+// Returns the distance of an element from the square around a handle's ring, in px. It is below 0 if they overlap.
+async function distanceFromRing(selector, side) {
+  const box = await page.locator(selector).boundingBox();
+  const {x, y} = await handleOnScreen(page, side);
+  const radius = await predictor('ringOnScreen', side);
+  const dx = Math.max(box.x - x, x - box.x - box.width), dy = Math.max(box.y - y, y - box.y - box.height);
+  return Math.max(dx, dy) - radius;
+}
+
+test('the invitation covers no ring', async () => {
+  for (const viewport of [kSmall, {width: 1280, height: 800}]) {
+    await fresh({operator: 'browser'}, viewport);
+    for (const view of ['front', 'side', 'operator']) {
+      await look(page, view);
+      for (const side of ['left', 'right']) {
+        const distance = await distanceFromRing('#invitation', side);
+        assert.ok(distance > 0, `${viewport.width} x ${viewport.height}, ${view}, ${side}: ${distance} px`);
+      }
+    }
+  }
+  await fresh({operator: 'browser'});
+  await page.click('#take-hands');
+  await shows(page, '#take-hands', false);
+  for (const side of ['left', 'right']) assert.ok(await distanceFromRing('#invitation', side) > 0, side);
+});
+
 test('the page with the hands can end the run, which has no duration', async () => {
   assert.match(await page.locator('#run-time').textContent(), /^\d+\.\d s$/, 'no end time is shown');
   await page.click('#end');
