@@ -101,10 +101,7 @@ export class App {
       picture: () => void this.savePicture(),
     });
     const scene = h('section', {class: 'scene', 'aria-label': 'Scene'});
-    root.append(
-        h('div', {class: 'viewer'}, this.overlay.bar, this.overlay.tools, scene, this.panel.element,
-          this.plots.element, this.results.element),
-        this.pairing.element);
+    this.addParts(root, scene);
     this.stage = new Stage(scene, (words) => this.overlay.warn(words));
     this.stage.camera.covered = () => this.personCard.covered(scene);
     this.invitation = new Invitation(this.connection, this.hands, this.stage);
@@ -124,6 +121,17 @@ export class App {
       this.results.repaint();
     });
     this.stage.paint(this.theme.theme);
+    this.listen();
+  }
+
+  private addParts(root: HTMLElement, scene: HTMLElement) {
+    root.append(
+        h('div', {class: 'viewer'}, this.overlay.bar, this.overlay.tools, scene, this.panel.element,
+          this.plots.element, this.results.element),
+        this.pairing.element);
+  }
+
+  private listen() {
     window.addEventListener('keydown', (event) => this.key(event), {capture: true});
     window.addEventListener('keyup', (event) => this.keyUp(event), {capture: true});
     window.setInterval(() => this.sendLatency(), 1000);

@@ -6,23 +6,12 @@ import {kSteps, Step} from './latency';
 import {Pose, Side, State, Vec3} from './protocol';
 import {PlateName} from './vr/board';
 
-export function inspection(app: App) {
-  const {connection, stage, panel, overlay, plots, hands, latency, immersive} = app;
+// What the scene and the headset show.
+function inspectionOfScene(app: App) {
+  const {stage, immersive} = app;
   return {
-    phase: () => connection.phase,
-    client: () => connection.client,
-    role: () => connection.role,
-    leases: () => ({...connection.leases}),
-    counters: () => ({
-      ...connection.counters, frames: stage.frames, points: plots.points,
-      trail: stage.guidance.trailLength, trailMarks: stage.guidance.trailMarks,
-    }),
-    ready: () => stage.settled && app.shown !== null,
     ghostsReady: () => stage.ghostsLoaded,
     firstRenderMs: () => stage.firstRenderMs,
-    // The newest state as received, and the drawn (interpolated) state.
-    state: (): State | null => app.player.latest,
-    shown: (): State | null => app.shown,
     // Returns the drawn pose in W of a link of the cobot, of 'object', of 'movable:NAME', of 'left:LINK'
     // (an arm), or of 'left:handle'.
     linkPose: (name: string): Pose | null => stage.linkPose(name),
@@ -35,33 +24,17 @@ export function inspection(app: App) {
     arrowColour: (side: Side, of: 'force' | 'torque' = 'force') => stage.arrows[side][of].level,
     arrowVisible: (side: Side, of: 'force' | 'torque' = 'force') =>
       stage.arrows[side].group.visible && stage.arrows[side][of].group.visible,
-    // The newest state of the person as received, and the points and colours of the body as drawn.
-    person: () => app.person.latest,
-    personCount: () => app.person.count,
+    // The points and colours of the body as drawn.
     body: () => ({
       points: app.person.sample(performance.now()), colors: {...stage.body.colors},
       visible: stage.body.group.visible,
       mirror: stage.mirror.group.visible && stage.mirror.body.group.visible,
     }),
-    scene: () => app.spec?.name ?? null,
-    stateText: () => panel.stateText,
-    stopText: () => panel.stopText,
-    instruction: () => overlay.instructionText,
-    guidanceError: () => (app.shown ? stage.guidance.error(app.shown.object.p) : NaN),
     view: () => stage.camera.view,
     cameraPosition: (): Vec3 => stage.camera.camera.position.toArray(),
     project: (p: Vec3) => stage.project(p),
-    handTargets: () => ({...hands.targets}),
-    hovered: () => app.mouse.hovered,
     // The radius of a handle's ring on the page [px].
     ringOnScreen: (side: Side) => stage.ringOnScreen(side),
-    plotRange: () => plots.shownRange(),
-    plotsPaused: () => plots.paused,
-    plotTable: () => plots.table(),
-    latency: () => Object.fromEntries(
-        kSteps.map((step: Step) => [step, latency.figures(step)])),
-    clock: () => ({offsetMs: connection.clock.offsetMs, roundTripMs: connection.clock.roundTripMs}),
-    theme: () => app.theme.theme,
     immersive: () => ({
       active: immersive.session !== null, ...immersive.counters, tones: immersive.tone.played,
       board: immersive.board.content, registration: immersive.registrar.registration,
@@ -78,6 +51,46 @@ export function inspection(app: App) {
     drawCalls: () => stage.renderer.info.render.calls,
     triangles: () => stage.renderer.info.render.triangles,
   };
+}
+
+// The state of the connection, the run and the page around the scene.
+function inspectionOfPage(app: App) {
+  const {connection, stage, panel, overlay, plots, hands, latency} = app;
+  return {
+    phase: () => connection.phase,
+    client: () => connection.client,
+    role: () => connection.role,
+    leases: () => ({...connection.leases}),
+    counters: () => ({
+      ...connection.counters, frames: stage.frames, points: plots.points,
+      trail: stage.guidance.trailLength, trailMarks: stage.guidance.trailMarks,
+    }),
+    ready: () => stage.settled && app.shown !== null,
+    // The newest state as received, and the drawn (interpolated) state.
+    state: (): State | null => app.player.latest,
+    shown: (): State | null => app.shown,
+    // The newest state of the person as received.
+    person: () => app.person.latest,
+    personCount: () => app.person.count,
+    scene: () => app.spec?.name ?? null,
+    stateText: () => panel.stateText,
+    stopText: () => panel.stopText,
+    instruction: () => overlay.instructionText,
+    guidanceError: () => (app.shown ? stage.guidance.error(app.shown.object.p) : NaN),
+    handTargets: () => ({...hands.targets}),
+    hovered: () => app.mouse.hovered,
+    plotRange: () => plots.shownRange(),
+    plotsPaused: () => plots.paused,
+    plotTable: () => plots.table(),
+    latency: () => Object.fromEntries(
+        kSteps.map((step: Step) => [step, latency.figures(step)])),
+    clock: () => ({offsetMs: connection.clock.offsetMs, roundTripMs: connection.clock.roundTripMs}),
+    theme: () => app.theme.theme,
+  };
+}
+
+export function inspection(app: App) {
+  return {...inspectionOfPage(app), ...inspectionOfScene(app)};
 }
 
 declare global {
