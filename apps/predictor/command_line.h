@@ -34,6 +34,7 @@ struct Request {
   DevicesOptions devices;
   CalibrateOptions calibrate;
   InitOptions init;
+  OutputOptions printed;  // of the commands that print one line
   std::vector<double> tip;
   bool search = true;
   CheckMap map;

@@ -119,13 +119,18 @@ double CountOrNothing(RecordingReader* reader) {
   }
 }
 
-std::string EventRow(const RecordingEvent& event, std::uint64_t first, double dt) {
+struct EventRow {
+  std::uint64_t tick;
+  double time;  // since the recording's first tick [s]
+  std::string kind, text;
+};
+
+EventRow RowOf(const RecordingEvent& event, std::uint64_t first, double dt) {
   const double time = dt * (static_cast<double>(event.tick) - static_cast<double>(first));
   const std::string text = event.text.empty() && event.lost > 0
                                ? std::to_string(event.lost) + " ticks before this tick are missing"
                                : event.text;
-  return std::to_string(event.tick) + "," + Formatted("%.9g", time) + "," + CsvCell(event.kind) +
-         "," + CsvCell(text) + "\n";
+  return {event.tick, time, event.kind, text};
 }
 
 }  // namespace
@@ -150,16 +155,25 @@ int ListChannelsCommand(const RecordingOptions& options) {
   return kFinished;
 }
 
-// Times are relative to the recording's first tick.
 int ExportEventsCommand(const RecordingOptions& options) {
+  options.CheckWritable();
   RecordingReader reader(options.recording);
   const std::uint64_t first = FirstRecord(options, &reader).tick;
   options.RefuseToReplace(options.output);
   std::string text = "tick,time [s],kind,text\n";
-  for (const RecordingEvent& event : reader.events())
-    text += EventRow(event, first, reader.header().dt);
-  Table out(options.output);
-  out.Finish(out.Add(text));
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const RecordingEvent& event : reader.events()) {
+    const EventRow row = RowOf(event, first, reader.header().dt);
+    text += std::to_string(row.tick) + "," + Formatted("%.9g", row.time) + "," + CsvCell(row.kind) +
+            "," + CsvCell(row.text) + "\n";
+    list.push_back(
+        {{"tick", row.tick}, {"time_s", row.time}, {"kind", row.kind}, {"text", row.text}});
+  }
+  options.WriteJson(list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  if (options.json != "-" || !options.output.empty()) {
+    Table out(options.output);
+    out.Finish(out.Add(text));
+  }
   if (reader.more_events() > 0)
     TheScreen().Print(
         Formatted("%llu events are missing, because the file has more events than the program "

@@ -67,6 +67,17 @@ const Object& ObjectNamed(const std::string& name) {
   return *std::ranges::find_if(kObjects, [&](const Object& o) { return name == o.name; });
 }
 
+// Returns a word that a shell reads as `text`.
+std::string ShellWord(const std::string& text) {
+  const bool plain = text.find_first_not_of(
+                         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                         "0123456789_-./") == std::string::npos;
+  if (plain) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
+  return word + "'";
+}
+
 std::string List(const std::vector<double>& values) {
   std::vector<std::string> words;
   for (const double value : values) words.push_back(Formatted("%.4g", value));
@@ -99,9 +110,10 @@ std::string CobotText(const InitOptions& o, const Draft& draft) {
           ? ""
           : Formatted("  base: {xyz: [0, 0, %g]}  # on a pedestal, above the floor [m]\n",
                       cobot.base_height);
+  const std::string name = fs::path(o.name).filename(), file = ShellWord(o.name + ".yaml");
   return Formatted(
-      "# %s: a scenario to start from. Check it with `predictor check %s.yaml`, run it with\n"
-      "# `predictor run %s.yaml`. `predictor schema scenario` lists all keys.\n"
+      "# %s: a scenario to start from. Check it with `predictor check %s`, run it with\n"
+      "# `predictor run %s`. `predictor schema scenario` lists all keys.\n"
       "predictor: 1\n"
       "name: %s\n"
       "mode: emulate\n"
@@ -119,7 +131,7 @@ std::string CobotText(const InitOptions& o, const Draft& draft) {
       "    stiffness: {translation: [5, 5, %g], rotation: [100, 100, 100]}  # [N/m], [N·m/rad]\n"
       "    damping_ratio: %g\n"
       "\n",
-      o.name.c_str(), o.name.c_str(), o.name.c_str(), fs::path(o.name).filename().c_str(),
+      o.name.c_str(), file.c_str(), file.c_str(), nlohmann::json(name).dump().c_str(),
       cobot.model.c_str(), removed.c_str(), base.c_str(), cobot.end_effector.c_str(),
       List(cobot.posture).c_str(), kInitStiffness, draft.damping_ratio);
 }
@@ -278,7 +290,8 @@ std::string ResultText(const InitOptions& o, const Draft& draft, const std::stri
            "from the base by %.0f°.\n",
            kDegrees * cobot.tilt);
   if (!draft.problems.empty()) return text + "Wrote " + file + ", which does not pass its check.\n";
-  return text + "Wrote " + file + ". Next: predictor check " + file + "; predictor run " + file +
+  const std::string word = ShellWord(file);
+  return text + "Wrote " + file + ". Next: predictor check " + word + "; predictor run " + word +
          "\n";
 }
 
@@ -290,6 +303,10 @@ int InitCommand(const InitOptions& given) {
     if (options.name.ends_with(ending))
       options.name.resize(options.name.size() - std::strlen(ending));
   const std::string file = options.name + ".yaml";
+  if (fs::path(options.name).filename().empty() || Printable(options.name) != options.name)
+    throw InputError("The name " + Quote(options.name) +
+                     " cannot be the name of a file. Give the scenario a name of letters, digits, "
+                     "- or _, for example first.");
   options.CheckWritable();
   options.RefuseToReplace(file);
   if (options.urdf.empty() && !options.end_effector.empty())

@@ -1,5 +1,6 @@
 // The commands that convert recordings and print descriptions.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "analysis/check/check.h"
 #include "analysis/continuation/continuation.h"
@@ -49,6 +50,7 @@ void AddExport(CLI::App* app, Request* r) {
                  r, [o] { return ExportEventsCommand(*o); });
   AddRecording(events, &o->recording);
   AddTable(events, o);
+  AddJson(events, o);
   events->footer("Example:\n  predictor export events run.mcap -o events.csv\n");
 
   CLI::App* channels = AddCommand(all, "Commands", "channels", "Names and units of the channels", r,
@@ -150,6 +152,21 @@ CLI::App* AddPrint(CLI::App* app, const char* group, const char* name, const cha
   });
 }
 
+// Adds a command that prints one line or writes it as the JSON value `key`.
+CLI::App* AddLine(CLI::App* app, const char* name, const char* what, const char* key, Request* r,
+                  std::function<std::string()> line) {
+  CLI::App* command = AddCommand(app, kToolGroup, name, what, r, [=, line = std::move(line)] {
+    r->printed.CheckWritable();
+    const std::string text = line();
+    if (r->printed.json != "-") WriteOut(text + "\n");
+    r->printed.WriteJson(nlohmann::json{{key, text}}.dump(2) + "\n");
+    return kFinished;
+  });
+  AddJson(command, &r->printed);
+  AddForce(command, &r->printed);
+  return command;
+}
+
 void AddSchema(CLI::App* app, Request* r) {
   CLI::App* schema =
       app->add_subcommand("schema", "Print the JSON Schema of a file format, for editors")
@@ -179,7 +196,8 @@ int ShowHelp(const CLI::App* app, const std::vector<std::string>& words) {
     }
     app = *found;
   }
-  WriteOut(app->help());
+  // CLI11's App::help would print the help of the command that was parsed, which is `help` itself.
+  WriteOut(app->get_formatter()->make_help(app, "", CLI::AppFormatMode::Normal));
   return kFinished;
 }
 
@@ -191,15 +209,16 @@ void AddToolCommands(CLI::App* app, Request* r) {
   AddRepair(app, r);
   AddShare(app, r);
   AddForget(app, r);
-  AddPrint(app, kToolGroup, "pseudonym", "Draw a new pseudonym for a person in a study", r, [] {
-    return DrawPseudonym() + "\n";
-  })->footer("Example:\n  predictor pseudonym\n");
+  AddLine(app, "pseudonym", "Draw a new pseudonym for a person in a study", "pseudonym", r,
+          DrawPseudonym)
+      ->footer("Example:\n  predictor pseudonym\n");
   AddSchema(app, r);
   CLI::App* help = AddCommand(app, kToolGroup, "help", "Show the help of a command", r,
                               [app, r] { return ShowHelp(app, r->help); });
-  help->add_option("command", r->help, "Command, for example survey report");
-  AddPrint(app, kToolGroup, "version", "Show version, commit, recording format and physics engines",
-           r, [] { return VersionText() + "\n"; });
+  help->add_option("command", r->help,
+                   "Command, for example survey report [default: list of all commands]");
+  AddLine(app, "version", "Show version, commit, recording format and physics engines", "version",
+          r, VersionText);
   AddPrint(app, kToolGroup, "man", "Print the manual page: predictor man | man -l -", r,
            [app] { return ManPage(*app); });
   CLI::App* completion =

@@ -79,13 +79,19 @@ std::string UsageError(const CLI::App& app, const CLI::ParseError& error) {
   if (!commands.empty()) {
     const auto word = std::ranges::find_if(
         unknown, [](const std::string& it) { return it.empty() || it[0] != '-'; });
-    if (word != unknown.end()) return UnknownCommand(command, *word);
+    if (word < option) return UnknownCommand(command, *word);
+    if (word != unknown.end())
+      return Text("there is no option " + Quote(*option) + " before the command.",
+                  "Give the command first. " + help);
     if (option == unknown.end())
       return Text("a command is missing.", "The commands are " + Join(commands) + ".");
   }
   if (option != unknown.end()) {
     const std::string name = option->substr(0, option->find('='));
     const std::string nearest = Nearest(name, OptionNames(command));
+    if (nearest == name)
+      return Text("there is no option " + Quote(name) + " before the command.",
+                  "Write " + name + " after `" + PathOf(command) + "`.");
     return Text("there is no option " + Quote(name) + ".",
                 nearest.empty() ? help : "Did you mean " + nearest + "?");
   }

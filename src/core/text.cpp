@@ -35,6 +35,13 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
   return last[b.size()];
 }
 
+// Returns whether `word` is `text` without some of its letters.
+bool Contains(std::string_view text, std::string_view word) {
+  for (const char c : text)
+    if (!word.empty() && Lower(c) == Lower(word[0])) word.remove_prefix(1);
+  return word.empty();
+}
+
 // Returns whether a character is a C1 control character, changes the text direction or breaks the
 // line.
 bool IsHidden(char32_t c) {
@@ -75,7 +82,9 @@ std::string Nearest(const std::string& word, const std::vector<std::string>& can
     if (candidate.size() > kLongestName) continue;
     const std::size_t distance = EditDistance(word, candidate);
     const std::size_t longer = std::max(word.size(), candidate.size());
-    if (distance < least && 3 * distance <= std::max<std::size_t>(longer, 3)) {
+    const bool nearer = distance < least || (distance == least && Contains(candidate, word) &&
+                                             !Contains(nearest, word));
+    if (nearer && 3 * distance <= std::max<std::size_t>(longer, 3)) {
       least = distance;
       nearest = candidate;
     }

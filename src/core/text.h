@@ -13,7 +13,7 @@ namespace predictor {
 // Returns the candidate with the smallest edit distance to `word`. The edits are to insert, delete
 // or replace a letter and to swap neighbours. A change of case costs nothing. Returns "" if more
 // than a third of the longer word's letters would have to change. If several candidates are equally
-// close, the first one is returned.
+// close, one that only needs letters added to `word` is preferred, and otherwise the first one.
 std::string Nearest(const std::string& word, const std::vector<std::string>& candidates);
 
 // Returns "Did you mean X?", or "The known names are: a, b, c." if no candidate is close.

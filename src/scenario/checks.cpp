@@ -124,6 +124,10 @@ void Checker::Body(const std::string& model, const std::optional<PrimitiveSpec>&
          "has a zero among the first " + std::to_string(used) + " entries, the dimensions of a " +
              NamesOf(primitive->shape)[static_cast<std::size_t>(primitive->shape)] +
              ". The dimensions must be greater than 0.");
+  Unless(primitive->size.tail(3 - used).isZero(0), path + ".primitive.size",
+         "has more than the " + std::to_string(used) + (used == 1 ? " dimension" : " dimensions") +
+             " of a " + NamesOf(primitive->shape)[static_cast<std::size_t>(primitive->shape)] +
+             ", and the others have no effect. Write 0 in their place.");
   if (primitive->inertia) Inertia(*primitive->inertia, path + ".primitive.inertia");
 }
 
@@ -255,7 +259,8 @@ void Checker::Operator() const {
   const bool is_person = s_.operator_.type == "person";
   Unless(!needs_person || is_person, "operator.type",
          "is " + s_.operator_.type + ", but the arms are real (device.type is " +
-             Quote(s_.device.type) + ", which --machine sets), so a person must hold them. Set " +
+             Quote(s_.device.type) +
+             ", set by the scenario or by --machine), so a person must hold them. Set " +
              "operator.type: person, or add --set operator.type=person.");
   Unless(needs_person || !is_person, "operator.type",
          "is person, but there are no real arms to hold. Set operator.type: virtual or browser, " +

@@ -46,6 +46,16 @@ bool ReadInUnit(const YamlNode& node, const Rule& rule, double* number) {
   return KindOf(node) == ScalarKind::kNumber && ReadNumber(node.text, number);
 }
 
+// Returns a sentence about units for a text that is not a number where an angle is possible.
+// Otherwise, returns "".
+std::string UnitHint(const YamlNode& node, const Rule& rule) {
+  if (!TakesAngles(rule) || node.kind != Kind::kScalar || KindOf(node) != ScalarKind::kString)
+    return "";
+  return rule.unit == kAngleOrLength
+             ? " Write an angle as 0.5 (radians) or 30 deg, and a length as 0.3 m."
+             : " Write an angle as 0.5 (radians) or 30 deg.";
+}
+
 // Reads a number within the rule's range. If the number is invalid, reports a problem and returns
 // false.
 bool ReadOne(const PathNode& at, const Rule& rule, Problems* problems, double* value) {
@@ -54,7 +64,7 @@ bool ReadOne(const PathNode& at, const Rule& rule, Problems* problems, double* v
   const bool is_step = rule.steps.empty() ||
                        std::find(rule.steps.begin(), rule.steps.end(), number) != rule.steps.end();
   if (!is_number || !std::isfinite(number)) {
-    Complain(at, rule, "a finite number, " + Allowed(rule), problems);
+    Complain(at, rule, "a finite number, " + Allowed(rule), problems, UnitHint(at.node, rule));
   } else if (!rule.range.Contains(number) || !is_step) {
     Complain(at, rule, Allowed(rule), problems,
              TakesAngles(rule) ? DegreesHint(number, rule.range.low, rule.range.high) : "");
@@ -249,7 +259,9 @@ const std::vector<YamlNode>* Entries(const PathNode& at, const Rule& rule, Probl
                                  : std::to_string(rule.least) + " to " + std::to_string(rule.most);
   const std::string of = rule.unit.empty() ? " entries" : " numbers [" + rule.unit + "]";
   const std::string one = rule.one_for_all ? "one number or " : "";
-  Complain(at, rule, one + "a list of " + number + of, problems);
+  const bool needs_brackets = at.node.kind == Kind::kNull && rule.least == 0;
+  Complain(at, rule, one + "a list of " + number + of, problems,
+           needs_brackets ? " For an empty list, write []." : "");
   return nullptr;
 }
 

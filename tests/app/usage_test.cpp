@@ -1,6 +1,7 @@
 // Tests the command line: help, misspelt words, existing files, and a first scenario.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -36,6 +37,15 @@ TEST(Usage, AMisspeltNameGetsASuggestion) {
       {{"simulate", "x.yaml", "--duraton=1"},
        "there is no option \"--duraton\".",
        "Did you mean --duration?"},
+      {{"simulate", "x.yaml", "--sed", "1"},
+       "there is no option \"--sed\".",
+       "Did you mean --seed?"},
+      {{"--seed", "1", "simulate", "x.yaml"},
+       "there is no option \"--seed\" before the command.",
+       "Write --seed after `predictor simulate`."},
+      {{"--sed", "1"},
+       "there is no option \"--sed\" before the command.",
+       "Give the command first. `predictor --help` shows how to use it."},
       {{"calibrate"}, "a command is missing.", "The commands are handle, bases, loop, push."},
       {{"help", "chek"}, "there is no command \"chek\".", "Did you mean `predictor check`?"},
       {{"simulate"}, "SCENARIO is missing.", "`predictor simulate --help` shows how to use it."},
@@ -70,6 +80,13 @@ TEST(Help, ListsCommandsInGroupsAndEnvironmentAndExitCodes) {
   for (const char* text : {"\nRun:\n", "\nAnalyse:\n", "\nRig:\n", "\nTools:\n",
                            "Exit codes:", "PREDICTOR_PACKAGE_PATH", "Examples:"})
     EXPECT_NE(child.output().find(text), std::string::npos) << text << child.output();
+}
+
+TEST(Help, WithoutACommandIsTheListOfCommands) {
+  Child list({"--help"}), help({"help"});
+  EXPECT_EQ(list.Wait(), 0);
+  EXPECT_EQ(help.Wait(), 0);
+  EXPECT_EQ(help.output(), list.output());
 }
 
 TEST(Help, OfEachCommandHasExamplesAndDefaultsAndFitsTheTerminal) {
@@ -209,10 +226,25 @@ TEST_F(Written, ResultsAreJsonOnRequest) {
   EXPECT_NE(said_.find("bit for bit"), std::string::npos) << said_;
   ASSERT_EQ(Do({"export", "channels", recording, "--json", "-q"}), 0);
   EXPECT_EQ(nlohmann::json::parse(printed_)[0]["name"], "run.tick");
+  ASSERT_EQ(Do({"export", "events", recording, "--json"}), 0);
+  EXPECT_EQ(nlohmann::json::parse(printed_)[0]["kind"], "state");
+  ASSERT_EQ(Do({"export", "events", recording, "-o", Path("e.csv"), "--json"}), 0);
+  EXPECT_FALSE(nlohmann::json::parse(printed_).empty());
+  EXPECT_TRUE(fs::exists(Path("e.csv")));
   ASSERT_EQ(Do({"repair", recording, "--json", Path("r.json"), "-q"}), 0);
   EXPECT_EQ(printed_ + said_, "");
   std::ifstream in(Path("r.json"));
   EXPECT_EQ(nlohmann::json::parse(in)["was_complete"], true);
+}
+
+TEST_F(Written, OneLineIsJsonOnRequest) {
+  ASSERT_EQ(Do({"version"}), 0);
+  const std::string version = printed_;
+  ASSERT_EQ(Do({"version", "--json"}), 0);
+  EXPECT_EQ(nlohmann::json::parse(printed_)["version"].get<std::string>() + "\n", version);
+  ASSERT_EQ(Do({"pseudonym", "--json", Path("p.json")}), 0);
+  std::ifstream in(Path("p.json"));
+  EXPECT_EQ(nlohmann::json::parse(in)["pseudonym"].get<std::string>() + "\n", printed_);
 }
 
 TEST_F(Written, TheResultOfInitIsJsonOnRequest) {
@@ -259,6 +291,20 @@ TEST_F(Written, FirstScenariosPassTheirCheckAndRun) {
     EXPECT_NE(printed_.find("Wrote " + name + ".yaml."), std::string::npos) << printed_;
     EXPECT_EQ(Do({"check", name + ".yaml", "--no-search"}), 0) << printed_ << said_;
     EXPECT_EQ(Do({"simulate", name + ".yaml"}), 0) << printed_ << said_;
+  }
+}
+
+TEST_F(Written, InitQuotesANameWithSpacesAndRefusesAnUnusableOne) {
+  const std::string name = Path("it's: mine");
+  ASSERT_EQ(Do({"init", name}), 0) << said_;
+  const std::string prefix = "Next: predictor check ";
+  const std::size_t start = printed_.find(prefix) + prefix.size();
+  const std::string word = printed_.substr(start, printed_.find("; predictor run") - start);
+  EXPECT_EQ(std::system(("test -f " + word).c_str()), 0) << word;
+  EXPECT_EQ(Do({"check", name + ".yaml", "--no-search"}), 0) << printed_ << said_;
+  for (const std::string bad : {"", "two\nlines", "folder/"}) {
+    EXPECT_EQ(Do({"init", bad}), kBadInput) << bad;
+    EXPECT_NE(said_.find("cannot be the name of a file"), std::string::npos) << said_;
   }
 }
 

@@ -29,6 +29,7 @@ TEST(Nearest, IsSilentWhenNothingIsNear) {
 
 TEST(Nearest, ShortNamesAllowOneChange) {
   EXPECT_EQ(Nearest("kq", {"kp", "ko"}), "kp");
+  EXPECT_EQ(Nearest("sed", {"set", "seed"}), "seed");  // a letter is missing, none is wrong
   EXPECT_EQ(Nearest("xy", {"kp", "ko"}), "");
 }
 

@@ -31,6 +31,12 @@ void AddModels(const CheckReport& report, std::string* text) {
           m.arms[h]->reach);
 }
 
+// Returns the time of a worst value and the joint concerned, or "" if no joint moves.
+std::string WhenAndWhere(const CheckReport& report, std::size_t hand, const Extreme& worst) {
+  if (worst.joint < 0) return "";
+  return Formatted(" at %5.2f s (%s)", worst.time, report.JointName(hand, worst.joint).c_str());
+}
+
 void AddArm(const CheckReport& report, const Reach& reach, std::size_t h, std::string* text) {
   const ArmReach& r = *reach.arms[h];
   // Just before an arm loses its handle, the arm is stretched or at a joint limit. The figures of
@@ -41,14 +47,13 @@ void AddArm(const CheckReport& report, const Reach& reach, std::size_t h, std::s
                kHandNames[h], *r.lost, 100 * r.reached);
     return;
   }
-  AppendLine(
-      text,
-      "  %-5s            %8.3f m  at %5.2f s   %8.2f rad at %5.2f s (%s)   %s at %5.2f s (%s)",
-      kHandNames[h], r.singular_value.value, r.singular_value.time, r.joint_margin.value,
-      r.joint_margin.time, report.JointName(h, r.joint_margin.joint).c_str(),
-      std::isfinite(r.joint_speed.value) ? Formatted("%4.0f %%", 100 * r.joint_speed.value).c_str()
-                                         : "blocked",
-      r.joint_speed.time, report.JointName(h, r.joint_speed.joint).c_str());
+  AppendLine(text, "  %-5s            %8.3f m  at %5.2f s   %8.2f rad%s   %s%s", kHandNames[h],
+             r.singular_value.value, r.singular_value.time, r.joint_margin.value,
+             WhenAndWhere(report, h, r.joint_margin).c_str(),
+             std::isfinite(r.joint_speed.value)
+                 ? Formatted("%4.0f %%", 100 * r.joint_speed.value).c_str()
+                 : "blocked",
+             WhenAndWhere(report, h, r.joint_speed).c_str());
 }
 
 void AddReach(const CheckReport& report, const Reach& reach, const char* title, std::string* text) {
