@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/joint_twist.h"
 #include "core/motion.h"
 #include "emulator/placement.h"
 #include "emulator/start_refusal.h"
@@ -13,12 +14,6 @@ namespace predictor {
 namespace {
 
 constexpr double kMaxStopSampleAge = 0.010;  // an older sample does not correct a stop [s]
-
-Twist TwistOf(const Jacobian& J, const JointVector& v) {
-  Twist V = Twist::Zero();
-  for (int j = 0; j < J.cols(); ++j) V += J.col(j) * v[j];
-  return V;
-}
 
 }  // namespace
 

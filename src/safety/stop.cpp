@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/joint_twist.h"
 #include "core/motion.h"
 
 namespace predictor {
@@ -165,12 +166,6 @@ void StopController::Next(std::array<JointVector, kHands>* v, int ticks) noexcep
 }
 
 namespace {
-
-Twist TwistOf(const Jacobian& J, const JointVector& v) noexcept {
-  Twist V = Twist::Zero();
-  for (Eigen::Index j = 0; j < J.cols(); ++j) V += v[j] * J.col(j);
-  return V;
-}
 
 // Returns joint velocities that add `V` to the handle's twist, by damped least squares.
 JointVector JointsFor(const Twist& V, const Jacobian& J) noexcept {
