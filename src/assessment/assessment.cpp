@@ -13,6 +13,8 @@
 namespace predictor::assessment {
 namespace {
 
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
 // Returns the smallest score that is exceeded during at most 5 % of the time. The element
 // share[score] is the share of time with that score.
 int ScoreExceededRarely(const std::vector<double>& share) {
@@ -26,14 +28,21 @@ int ScoreExceededRarely(const std::vector<double>& share) {
 // Values of one quantity: values[time][person].
 using Table = std::vector<std::vector<double>>;
 
-// Returns one value for each person, from that person's values over time.
+std::vector<double> KnownOf(std::vector<double> values) {
+  std::erase_if(values, [](double x) { return !std::isfinite(x); });
+  return values;
+}
+
+// Returns one value for each person, from that person's known values over time. The value is not a
+// number if the person has no known value.
 std::vector<double> OfEachPerson(const Table& table,
                                  double (*of_time)(const std::vector<double>&)) {
   std::vector<double> results;
   for (std::size_t person = 0; person < table.front().size(); ++person) {
     std::vector<double> values;
     for (const auto& row : table) values.push_back(row[person]);
-    results.push_back(of_time(values));
+    values = KnownOf(std::move(values));
+    results.push_back(values.empty() ? kNotKnown : of_time(values));
   }
   return results;
 }
@@ -45,28 +54,23 @@ void AddIntervals(const SampledChain& sampled, std::span<const PersonSample> sam
     std::vector<double>& row = table.emplace_back();
     for (const Frame& frame : sampled.frames[k])
       row.push_back(result->kind->of({frame, samples[sampled.at[k]]}));
-    std::vector<double> sorted = row;
-    const person::Interval interval = person::IntervalOf(sorted);
-    result->low.push_back(interval.low);
-    result->high.push_back(interval.high);
+    const auto interval = IntervalOfKnown(row);
+    result->low.push_back(interval ? interval->low : kNotKnown);
+    result->high.push_back(interval ? interval->high : kNotKnown);
   }
-  std::vector<double> means =
-      OfEachPerson(table, [](const std::vector<double>& x) { return Mean(x); });
-  result->mean_interval = person::IntervalOf(means);
+  result->mean_interval =
+      IntervalOfKnown(OfEachPerson(table, [](const std::vector<double>& x) { return Mean(x); }));
   result->person_tail =
       result->kind->bad == Bad::kHigh
           ? OfEachPerson(table, [](const std::vector<double>& x) { return Quantile(x, 0.95); })
           : OfEachPerson(table, [](const std::vector<double>& x) { return Quantile(x, 0.05); });
-  std::vector<double> sorted = result->person_tail;
-  result->tail_interval = person::IntervalOf(sorted);
+  result->tail_interval = IntervalOfKnown(result->person_tail);
 }
 
 // Uses only the times that have a value. If no time has a value, the results are not a number.
 void SummariseOverTime(QuantityResult* result) {
-  std::vector<double> values;
-  for (const double x : result->values)
-    if (std::isfinite(x)) values.push_back(x);
-  if (values.empty()) values.push_back(std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> values = KnownOf(result->values);
+  if (values.empty()) values.push_back(kNotKnown);
   result->mean = Mean(values);
   result->p5 = Quantile(values, 0.05);
   result->p95 = Quantile(values, 0.95);
@@ -87,20 +91,23 @@ QuantityResult QuantityOf(const QuantityKind& kind, const NominalChain& nominal,
   return result;
 }
 
+// The mean over the times with known postures.
 void AddProbabilities(const SampledChain& sampled, WorksheetResult* result) {
+  double times = 0;
   for (const std::vector<Frame>& frames : sampled.frames) {
     std::vector<double> scores;
-    const double weight =
-        1.0 / (static_cast<double>(frames.size()) * static_cast<double>(sampled.frames.size()));
-    for (const Frame& frame : frames) {
-      const int score = result->kind->of(frame);
-      result->probability[static_cast<std::size_t>(score)] += weight;
-      scores.push_back(score);
-    }
-    const person::Interval interval = person::IntervalOf(scores);
-    result->likely_low.push_back(interval.low);
-    result->likely_high.push_back(interval.high);
+    for (const Frame& frame : frames)
+      if (frame.known) scores.push_back(result->kind->of(frame));
+    times += scores.empty() ? 0 : 1;
+    for (const double score : scores)
+      result->probability[static_cast<std::size_t>(score)] +=
+          1.0 / static_cast<double>(scores.size());
+    scores.resize(frames.size(), kNotKnown);
+    const auto interval = IntervalOfKnown(scores);
+    result->likely_low.push_back(interval ? interval->low : kNotKnown);
+    result->likely_high.push_back(interval ? interval->high : kNotKnown);
   }
+  for (double& probability : result->probability) probability /= std::max(1.0, times);
 }
 
 WorksheetResult WorksheetOf(const WorksheetKind& kind, const NominalChain& nominal,
@@ -110,11 +117,11 @@ WorksheetResult WorksheetOf(const WorksheetKind& kind, const NominalChain& nomin
   const auto classes = static_cast<std::size_t>(kind.most) + 1;
   result.share.assign(classes, 0);
   result.probability.assign(sampled.at.empty() ? 0 : classes, 0);
+  const auto known = static_cast<double>(std::ranges::count_if(nominal.frames, &Frame::known));
   for (const Frame& frame : nominal.frames) {
     const int score = kind.of(frame);
     result.values.push_back(score);
-    result.share[static_cast<std::size_t>(score)] +=
-        1.0 / static_cast<double>(nominal.frames.size());
+    if (frame.known) result.share[static_cast<std::size_t>(score)] += 1.0 / known;
   }
   result.worst = *std::max_element(result.values.begin(), result.values.end());
   result.p95 = ScoreExceededRarely(result.share);
@@ -136,19 +143,37 @@ std::vector<double> OverRun(const std::vector<double>& held, std::span<const Per
   return load;
 }
 
+// Returns the load over the whole run, or nothing if the load is unknown for too long. In this
+// case, `what` cannot be evaluated.
+std::optional<std::vector<double>> LoadOverRun(const std::string& what, const NominalChain& nominal,
+                                               double (*of)(const Frame&),
+                                               std::span<const PersonSample> all, Assessment* a) {
+  const std::vector<double> held = SeriesOf(nominal, of);
+  if (const auto whole = WithoutGaps(held)) return OverRun(*whole, all);
+  const auto known = static_cast<double>(KnownOf(held).size());
+  a->not_evaluable.push_back(
+      {what,
+       Formatted("the load is unknown for %.1f %% of the time, which is more than %.0f %%",
+                 100 * (1 - known / static_cast<double>(held.size())), 100 * kMaxUnknownShare)});
+  return {};
+}
+
 void AddDamage(const Scenario& scenario, const NominalChain& nominal,
                std::span<const PersonSample> all, Assessment* a) {
-  const std::vector<double> back = SeriesOf(nominal, LiftMoment);
-  a->damage.push_back(DamageOfMoment("LiFFT", "lower back", OverRun(back, all),
-                                     ergonomics::LiftDamage, ergonomics::kLiftRisk));
+  const auto add = [&](const char* tool, const std::string& part, double (*moment)(const Frame&),
+                       double (*per_cycle)(double), const ergonomics::DamageRisk& risk) {
+    const auto load = LoadOverRun(std::string("damage of the ") + part + " (" + tool + ")", nominal,
+                                  moment, all, a);
+    if (load) a->damage.push_back(DamageOfMoment(tool, part, *load, per_cycle, risk));
+  };
+  add("LiFFT", "lower back", LiftMoment, ergonomics::LiftDamage, ergonomics::kLiftRisk);
   for (int hand = 0; hand < kHands; ++hand) {
     if (!scenario.Has(hand)) continue;
     double (*const moment)(const Frame&) =
-        hand == 0 ? [](const Frame& f) { return f.loads.shoulder_moment[0]; }
-                  : [](const Frame& f) { return f.loads.shoulder_moment[1]; };
-    a->damage.push_back(DamageOfMoment("Shoulder Tool", std::string(HandName(hand)) + " shoulder",
-                                       OverRun(SeriesOf(nominal, moment), all),
-                                       ergonomics::ShoulderDamage, ergonomics::kShoulderRisk));
+        hand == 0 ? [](const Frame& f) { return ShoulderMoment(f, 0); }
+                  : [](const Frame& f) { return ShoulderMoment(f, 1); };
+    add("Shoulder Tool", std::string(HandName(hand)) + " shoulder", moment,
+        ergonomics::ShoulderDamage, ergonomics::kShoulderRisk);
   }
 }
 
@@ -157,8 +182,9 @@ void AddFatigue(const Scenario& scenario, const NominalChain& nominal,
   using ergonomics::FatigueJoint;
   const auto add = [&](int hand, const char* joint, FatigueJoint kind,
                        double (*use)(const Frame&)) {
-    if (scenario.Has(hand))
-      a->fatigue.push_back(FatigueOfLoad(joint, kind, OverRun(SeriesOf(nominal, use), all)));
+    if (!scenario.Has(hand)) return;
+    if (const auto load = LoadOverRun(std::string("fatigue of the ") + joint, nominal, use, all, a))
+      a->fatigue.push_back(FatigueOfLoad(joint, kind, *load));
   };
   add(0, "left shoulder", FatigueJoint::kShoulder,
       [](const Frame& f) { return f.shoulder_use[0]; });
@@ -169,8 +195,8 @@ void AddFatigue(const Scenario& scenario, const NominalChain& nominal,
 }
 
 // Throws InputError if the place of the person is impossible, because every result would then be
-// wrong.
-void CheckPlace(std::span<const PersonSample> samples, Assessment* a) {
+// wrong. Returns the mean horizontal distance of the handles from the feet [m].
+double CheckPlace(std::span<const PersonSample> samples, Assessment* a) {
   Vector3 mean = Vector3::Zero();  // mean position of the gripping hands, in S
   double hands = 0, highest = 0;
   for (const PersonSample& sample : samples)
@@ -189,10 +215,33 @@ void CheckPlace(std::span<const PersonSample> samples, Assessment* a) {
                   -mean.z()));
   if (mean.x() < 0)
     a->warnings.emplace_back("The handles are behind the operator. Check operator.stance.facing.");
-  if (std::hypot(mean.x(), mean.y()) > 0.8)
+  const double distance = std::hypot(mean.x(), mean.y());
+  if (distance > 0.8)
     a->warnings.push_back(Formatted(
         "The handles are %.2f m away from the operator's feet. Check operator.stance.ground.",
-        std::hypot(mean.x(), mean.y())));
+        distance));
+  return distance;
+}
+
+// Throws OutOfReach if no posture is known.
+void CheckReach(const NominalChain& nominal, double distance, Assessment* a) {
+  const auto unknown = static_cast<double>(
+      std::ranges::count_if(nominal.frames, [](const Frame& f) { return !f.known; }));
+  const double share = unknown / static_cast<double>(nominal.frames.size());
+  if (share == 1) {
+    const auto nearest = std::ranges::min_element(
+        nominal.postures, {}, [](const person::Posture& posture) { return posture.miss(); });
+    throw OutOfReach(Formatted(
+        "The operator's body never reaches the handles: a hand misses its handle by at least "
+        "%.2f m. The handles are %.2f m away from the operator's feet. Correct "
+        "operator.stance.ground, operator.stance.facing or operator.body.",
+        nearest->miss(), distance));
+  }
+  if (share > 0)
+    a->not_evaluable.push_back(
+        {Formatted("posture, loads and scores for %.1f %% of the time", 100 * share),
+         Formatted("a hand of the modelled body misses its handle by more than %.0f cm",
+                   100 * kLargestMiss)});
 }
 
 void AddStopWarning(const PersonRun& run, Assessment* a) {
@@ -218,7 +267,7 @@ void AddReach(const NominalChain& nominal, const SampledChain& sampled, Assessme
   std::size_t reaching = 0;
   for (const person::Posture& posture : nominal.postures) {
     reaching += posture.reached ? 1 : 0;
-    a->worst_miss = std::max({a->worst_miss, posture.position_error[0], posture.position_error[1]});
+    a->worst_miss = std::max(a->worst_miss, posture.miss());
   }
   a->reached = static_cast<double>(reaching) / static_cast<double>(nominal.postures.size());
   double reached = 0, all = 0;
@@ -258,8 +307,9 @@ void AddWords(const Scenario& scenario, const WorkPattern& work, Assessment* a) 
   if (scenario.operator_.type == "person")
     a->assumptions.emplace_back(
         "The hands held the handles throughout: real arms cannot sense whether a hand is there.");
-  a->not_evaluable = {{"DUET (hand and forearm)", "the effort of the grip is not measured"},
-                      {"raised shoulders", "the shoulder girdle does not move in the model"}};
+  a->not_evaluable.push_back({"DUET (hand and forearm)", "the effort of the grip is not measured"});
+  a->not_evaluable.push_back(
+      {"raised shoulders", "the shoulder girdle does not move in the model"});
   if (scenario.operator_.type == "browser")
     a->not_evaluable.push_back({"the person at the page",
                                 "a mouse moved the handles, so the posture is that of an imaginary "
@@ -292,7 +342,7 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass, c
   a.duration = static_cast<double>(run.samples.size()) / kSampleRate;
   a.held = static_cast<double>(samples.size()) / kSampleRate;
   a.warnings = options.notes;
-  CheckPlace(samples, &a);
+  const double distance = CheckPlace(samples, &a);
   AddStopWarning(run, &a);
   a.measured = AddTracks(options.tracks, a.setup, options.start_unix, &samples);
   a.warnings.insert(a.warnings.end(), a.measured.warnings.begin(), a.measured.warnings.end());
@@ -302,6 +352,7 @@ Assessment Assess(const Scenario& scenario, std::optional<double> object_mass, c
   work.strength = a.setup.body.strength;
   NominalChain nominal =
       RunNominal(a.setup, samples, work, [&](double done) { options.progress(share * done); });
+  CheckReach(nominal, distance, &a);
   AddMuscles(a.setup, samples, options.arm, &a.measured.emg.channels, &nominal);
   SampledChain sampled;
   if (options.intervals)

@@ -19,6 +19,7 @@
 #include "assessment/quantities.h"
 #include "assessment/safety/safety.h"
 #include "assessment/user_limits.h"
+#include "core/error.h"
 #include "person/posture_samples.h"
 
 namespace predictor::assessment {
@@ -87,9 +88,16 @@ struct AssessOptions {
   std::function<void(double share)> progress = [](double) {};
 };
 
+// The body never reaches the handles, so the person did not stand where the scenario states.
+class OutOfReach : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 // Judges the samples of a run. Throws InputError if the body or the place of the person is unknown,
 // no adult has such a body, there are no samples, or a track does not belong to this run
-// (AddTracks).
+// (AddTracks). Throws OutOfReach if a hand misses its handle by more than kLargestMiss at all
+// times.
 Assessment Assess(const Scenario& scenario, std::optional<double> object_mass, const PersonRun& run,
                   const AssessOptions& options);
 

@@ -19,14 +19,16 @@ Difference DifferenceOf(const QuantityResult& a, const QuantityResult& b) {
   Difference result = {a.kind, a.tail(), b.tail(), {}, {}};
   if (a.person_tail.empty() || a.person_tail.size() != b.person_tail.size()) return result;
   std::vector<double> differences;
-  const auto n = static_cast<double>(a.person_tail.size());
   const double sign = a.kind->bad == Bad::kHigh ? 1 : -1;
   double better = 0;
   for (std::size_t i = 0; i < a.person_tail.size(); ++i) {
-    differences.push_back(a.person_tail[i] - b.person_tail[i]);
-    better += sign * differences.back() < 0 ? 1 / n : 0;
+    const double difference = a.person_tail[i] - b.person_tail[i];
+    if (!std::isfinite(difference)) continue;
+    differences.push_back(difference);
+    better += sign * difference < 0 ? 1 : 0;
   }
-  result.share_better = better;
+  if (2 * differences.size() < a.person_tail.size()) return result;
+  result.share_better = better / static_cast<double>(differences.size());
   result.interval = person::IntervalOf(differences);
   return result;
 }

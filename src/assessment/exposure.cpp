@@ -1,6 +1,8 @@
 #include "assessment/exposure.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <ranges>
@@ -41,6 +43,18 @@ std::vector<double> Smooth(std::span<const double> values, double cutoff) {
 }
 
 }  // namespace
+
+std::optional<std::vector<double>> WithoutGaps(std::vector<double> load) {
+  const auto known = [](double x) { return std::isfinite(x); };
+  const auto first = std::ranges::find_if(load, known);
+  const auto unknown = std::ranges::count_if(load, std::not_fn(known));
+  if (first == load.end() ||
+      static_cast<double>(unknown) > kMaxUnknownShare * static_cast<double>(load.size()))
+    return {};
+  double last = *first;
+  for (double& x : load) last = x = known(x) ? x : last;
+  return load;
+}
 
 DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
                             std::span<const double> moment, double (*per_cycle)(double),

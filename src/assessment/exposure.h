@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,6 +32,13 @@ DamageResult DamageOfMoment(const std::string& tool, const std::string& part,
 inline constexpr double kDamageCutoff = 1;     // [Hz]
 inline constexpr double kMinRange = 5;         // [N·m]
 inline constexpr double kMinRangeShare = 0.2;  // share of the largest range
+
+// The share of the time for which a load may be unknown. If it is unknown for longer, damage and
+// fatigue are not evaluated (design choice).
+inline constexpr double kMaxUnknownShare = 0.05;
+// Replaces each unknown load (not a number) by the load before it, and by the first known load at
+// the start. Returns nothing if more than kMaxUnknownShare of the loads are unknown.
+std::optional<std::vector<double>> WithoutGaps(std::vector<double> load);
 
 // Computes the fatigue of one joint sample by sample with the 3CC-r model.
 class FatigueTracker {

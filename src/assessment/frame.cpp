@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace predictor::assessment {
@@ -78,18 +79,38 @@ double UseOf(double torque, StrengthDirection flexion, StrengthDirection extensi
   return std::abs(torque) / std::max(strength, 1e-9);
 }
 
+Frame UnknownFrame() {
+  constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();
+  Frame frame;
+  frame.known = false;
+  person::ForEachAngle(frame.angles, [](const char*, double& angle) { angle = kUnknownValue; });
+  frame.loads.torque.setConstant(kUnknownValue);
+  frame.loads.overload.setConstant(kUnknownValue);
+  frame.loads.shoulder_moment.fill(kUnknownValue);
+  person::ForEachBodyValue(frame.loads, [](const char*, double& load) { load = kUnknownValue; });
+  frame.elbow_use.fill(kUnknownValue);
+  frame.shoulder_use.fill(kUnknownValue);
+  return frame;
+}
+
 }  // namespace
 
 double LiftMoment(const Frame& frame) {
   return std::abs(frame.loads.overload[person::kTorsoFlexion]);
 }
 
+double ShoulderMoment(const Frame& frame, std::size_t hand) {
+  return frame.loads.shoulder_moment[hand];
+}
+
 Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,
-              const person::BodyLoads& loads, bool reached, Sex sex, const WorkPattern& work) {
+              const person::BodyLoads& loads, const Reach& reach, Sex sex,
+              const WorkPattern& work) {
+  if (reach.miss > kLargestMiss) return UnknownFrame();
   Frame frame;
   frame.angles = angles;
   frame.loads = loads;
-  frame.reached = reached;
+  frame.reached = reach.reached;
   Score(input, work, &frame);
   for (int hand = 0; hand < kHands; ++hand) {
     const auto h = static_cast<std::size_t>(hand);

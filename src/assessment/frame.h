@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "assessment/muscle_use.h"
 #include "ergonomics/owas.h"
@@ -23,7 +24,14 @@ struct WorkPattern {
   std::array<double, ergonomics::kStrengthDirections> strength = {1, 1, 1, 1};
 };
 
+// If a hand of the modelled body misses its handle by more than this distance, the person did not
+// stand as operator.stance states, so nothing is concluded from the posture (design choice) [m].
+inline constexpr double kLargestMiss = 0.05;
+
+// If `known` is false, a hand misses its handle by more than kLargestMiss. In this case, the scores
+// are 0 and no other value is a number.
 struct Frame {
+  bool known = true;
   person::PostureAngles angles;
   person::BodyLoads loads;
   // The scores of the arm with the worse score, among the arms that hold a handle. The scores use
@@ -44,12 +52,21 @@ struct FrameInput {
   std::array<double, kHands> force_rate;  // rate of change of each hand's force, over 0.1 s [N/s]
 };
 
+// Where the hands of a posture are.
+struct Reach {
+  bool reached = false;
+  double miss = 0;  // largest distance by which a hand misses its handle [m]
+};
+
 Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,
-              const person::BodyLoads& loads, bool reached, Sex sex, const WorkPattern& work);
+              const person::BodyLoads& loads, const Reach& reach, Sex sex, const WorkPattern& work);
 
 // Returns the moment of the hands' forces about the lower back, without the weight of the trunk
 // [N·m].
 double LiftMoment(const Frame& frame);
+
+// Returns the magnitude of the moment at the shoulder [N·m], or not a number if it is unknown.
+double ShoulderMoment(const Frame& frame, std::size_t hand);
 
 // In RULA and REBA, a force that rises faster than this counts as a shock (design choice) [N/s].
 inline constexpr double kShockRate = 300;

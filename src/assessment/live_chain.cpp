@@ -31,8 +31,8 @@ bool LiveChain::Next(bool all, JudgedSample* judged) {
   judged->sample = samples_[next_];
   judged->force_rate = ForceRates(samples_, next_);
   judged->motion = MotionsOfPart(q)[next_ - begin];
-  judged->frame = person_.Judge({judged->sample.body, judged->force_rate}, judged->motion,
-                                postures_[next_].reached);
+  judged->frame =
+      person_.Judge({judged->sample.body, judged->force_rate}, judged->motion, postures_[next_]);
   muscles_.Add(judged->sample.body, judged->motion, &judged->frame);
   ++next_;
   return true;

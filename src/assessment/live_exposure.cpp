@@ -1,6 +1,7 @@
 #include "assessment/live_exposure.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace predictor::assessment {
 namespace {
@@ -9,6 +10,19 @@ namespace {
 constexpr std::size_t kMaxSamples = 8 * 3600 * 100;  // a shift
 
 }  // namespace
+
+double LiveExposure::Gaps::Fill(double load) {
+  ++count_;
+  if (std::isfinite(load))
+    last_ = load;
+  else
+    ++unknown_;
+  return last_;
+}
+
+bool LiveExposure::Gaps::TooLong() const {
+  return static_cast<double>(unknown_) > kMaxUnknownShare * static_cast<double>(count_);
+}
 
 LiveExposure::LiveExposure(const Scenario& scenario) {
   Part& back = parts_[static_cast<std::size_t>(BodyPart::kLowerBack)];
@@ -34,11 +48,13 @@ void LiveExposure::Add(const Frame* frame) {
     const std::size_t hand = i == 0 ? 0 : (i - 1) % 2;
     const bool elbow = i >= static_cast<std::size_t>(BodyPart::kLeftElbow);
     if (part.fatigue)
-      part.fatigue->Add(!frame ? 0 : elbow ? frame->elbow_use[hand] : frame->shoulder_use[hand]);
+      part.fatigue->Add(
+          frame ? part.fatigue_gaps.Fill(elbow ? frame->elbow_use[hand] : frame->shoulder_use[hand])
+                : 0);
     if (part.damage_per_cycle)
-      part.moment.push_back(!frame   ? 0
-                            : i == 0 ? LiftMoment(*frame)
-                                     : frame->loads.shoulder_moment[hand]);
+      part.moment.push_back(
+          frame ? part.moment_gaps.Fill(i == 0 ? LiftMoment(*frame) : ShoulderMoment(*frame, hand))
+                : 0);
   }
 }
 
@@ -50,8 +66,14 @@ void LiveExposure::Write(bool now, PersonState* state) {
   for (std::size_t i = 0; i < kBodyParts; ++i) {
     Part& part = parts_[i];
     PartState& to = state->parts[i];
-    if (part.fatigue) to.capacity = static_cast<float>(part.fatigue->capacity());
+    if (part.fatigue)
+      to.capacity =
+          part.fatigue_gaps.TooLong() ? kUnknown : static_cast<float>(part.fatigue->capacity());
     if (!part.damage_per_cycle || counted_ == 0) continue;
+    if (part.moment_gaps.TooLong()) {
+      to.damage = to.day_share = kUnknown;
+      continue;
+    }
     if (due) part.damage = DamageOfMoment("", "", part.moment, part.damage_per_cycle, *part.risk);
     to.damage = static_cast<float>(part.damage.per_run);
     to.day_share = static_cast<float>(part.damage.day_share);

@@ -24,12 +24,25 @@ class LiveExposure {
   void Write(bool now, PersonState* state);
 
  private:
+  // Fills the gaps of a load as WithoutGaps does, except at the start, where the load is 0.
+  class Gaps {
+   public:
+    // Returns the load of a sample in which a hand holds a handle.
+    double Fill(double load);
+    // Returns whether more than kMaxUnknownShare of the loads are unknown.
+    bool TooLong() const;
+
+   private:
+    double last_ = 0;
+    std::size_t count_ = 0, unknown_ = 0;
+  };
   struct Part {
     std::optional<FatigueTracker> fatigue;
     double (*damage_per_cycle)(double) = nullptr;  // null if there is no tool
     const ergonomics::DamageRisk* risk = nullptr;
     std::vector<double> moment;  // [N·m]
     DamageResult damage;
+    Gaps moment_gaps, fatigue_gaps;
   };
 
   std::array<Part, kBodyParts> parts_;

@@ -117,7 +117,7 @@ void LivePerson::TakeHeld(PersonSample sample) {
   const person::Posture& posture = chain_->newest();
   state_.status = PersonStatus::kJudged;
   state_.reached = posture.reached ? 1 : 0;
-  state_.miss = static_cast<float>(std::max(posture.position_error[0], posture.position_error[1]));
+  state_.miss = static_cast<float>(posture.miss());
   state_.points = PointsOf(*chain_);
   Judge(false);
   exposure_.Write(false, &state_);

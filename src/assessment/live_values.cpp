@@ -1,7 +1,9 @@
 #include "assessment/live_values.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "assessment/picture.h"
 #include "assessment/quantities.h"
@@ -91,16 +93,18 @@ void WriteIntervals(std::span<const Frame> frames, const PersonSample& sample, P
       continue;
     std::vector<double> values;
     for (const Frame& frame : frames) values.push_back(kGaugeValues[i]({frame, sample}));
-    const person::Interval interval = person::IntervalOf(values);
-    gauge.low = static_cast<float>(interval.low);
-    gauge.high = static_cast<float>(interval.high);
+    const std::optional<person::Interval> interval = IntervalOfKnown(std::move(values));
+    if (!interval) continue;
+    gauge.low = static_cast<float>(interval->low);
+    gauge.high = static_cast<float>(interval->high);
   }
+  const auto known = std::ranges::count_if(frames, [](const Frame& f) { return f.known; });
   for (std::size_t i = 0; i < kPersonScores; ++i) {
     auto& probability = state->scores[i].probability;
-    probability.fill(0);
+    probability.fill(known > 0 ? 0 : kUnknown);
     for (const Frame& frame : frames)
       if (const std::size_t level = ScoreOf(i, frame).level; level > 0)
-        probability[level - 1] += 1.0F / static_cast<float>(frames.size());
+        probability[level - 1] += 1.0F / static_cast<float>(known);
   }
   const auto reached = std::ranges::count_if(frames, [](const Frame& f) { return f.reached; });
   state->sampled_reached = static_cast<float>(reached) / static_cast<float>(frames.size());
@@ -149,7 +153,7 @@ std::uint16_t WarningKeeper::Update(const Frame& frame, double time) {
     const double value = kWarningValues[i](frame);
     const bool low_is_bad = row.on < row.off;
     const bool beyond = low_is_bad ? value <= row.on : value >= row.on;
-    const bool calm = low_is_bad ? value >= row.off : value <= row.off;
+    const bool calm = !std::isfinite(value) || (low_is_bad ? value >= row.off : value <= row.off);
     if (entry.on ? calm : beyond) {
       if (!entry.since) entry.since = time;
       if (time - *entry.since > (entry.on ? kCalmAfter : kWarnAfter) - kRounding) {

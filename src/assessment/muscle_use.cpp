@@ -148,6 +148,7 @@ ArmMuscles::ArmMuscles(const PersonSetup& setup,
 
 void ArmMuscles::Add(const person::BodySample& sample, const person::BodyMotion& motion,
                      Frame* frame, const std::array<MeasuredActivations, kHands>& measured) const {
+  if (!frame->known) return;
   const auto wrenches = person::WrenchesOn(sample, stance_);
   for (std::size_t h = 0; h < kHands; ++h)
     if (sample.hands[h].present)

@@ -44,12 +44,13 @@ std::string AssessmentCsv(const Assessment& a) {
       text += ',';
       if (std::isfinite(q.values[i])) Append(&text, "%.6g", q.values[i]);
       if (q.low.empty()) continue;
-      if (sampled)
-        Append(&text, ",%.6g,%.6g", q.low[k], q.high[k]);
-      else
-        text += ",,";
+      for (const std::vector<double>* end : {&q.low, &q.high}) {
+        text += ',';
+        if (sampled && std::isfinite((*end)[k])) Append(&text, "%.6g", (*end)[k]);
+      }
     }
-    for (const WorksheetResult& w : a.worksheets) Append(&text, ",%d", w.values[i]);
+    for (const WorksheetResult& w : a.worksheets)
+      text += w.values[i] > 0 ? Formatted(",%d", w.values[i]) : ",";
     for (const MeasuredSignal& signal : a.measured.signals)
       text += std::isfinite(signal.values[i]) ? Formatted(",%.9g", signal.values[i]) : ",";
     for (const MeasuredEmg& emg : a.measured.emg.channels)

@@ -91,6 +91,14 @@ Plot GroupPlot(const Assessment& a, const std::string& group, const std::string&
   return plot;
 }
 
+// Returns the scores over time, with gaps where the posture is unknown.
+std::vector<double> ScoresOf(const WorksheetResult& w) {
+  std::vector<double> scores;
+  for (const int score : w.values)
+    scores.push_back(score > 0 ? score : std::numeric_limits<double>::quiet_NaN());
+  return scores;
+}
+
 Plot ScorePlot(const Assessment& a) {
   Plot plot;
   plot.id = "person-scores";
@@ -108,8 +116,7 @@ Plot ScorePlot(const Assessment& a) {
       panel.series.push_back(AreaOf("90 % of the possible postures", color,
                                     Interrupted(a.sampled_times, w.likely_high, 1),
                                     Interrupted(a.sampled_times, w.likely_low, 1)));
-    panel.series.push_back(
-        LineOf("nominal", color++, Interrupted(a.times, {w.values.begin(), w.values.end()}, 1)));
+    panel.series.push_back(LineOf("nominal", color++, Interrupted(a.times, ScoresOf(w), 1)));
     plot.panels.push_back(panel);
   }
   return plot;

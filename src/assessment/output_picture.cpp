@@ -106,10 +106,13 @@ bool Judged(const Assessment& a, std::size_t part) {
   return hand < 0 || a.hands[static_cast<std::size_t>(hand)];
 }
 
+// An unknown load is not judged.
+std::string ColorOf(double load) { return std::isfinite(load) ? LoadColor(load) : kNotJudged; }
+
 Colors ColorsOf(const Assessment& a, const PartLoads& loads) {
   const auto color = [&](BodyPart part) {
     const auto k = static_cast<std::size_t>(part);
-    return Judged(a, k) ? LoadColor(loads[k]) : kNotJudged;
+    return Judged(a, k) ? ColorOf(loads[k]) : kNotJudged;
   };
   return {color(BodyPart::kLowerBack),
           {color(BodyPart::kLeftShoulder), color(BodyPart::kRightShoulder)},
@@ -193,7 +196,9 @@ void DrawForces(const BodyPicture& picture, Drawing* d) {
   }
 }
 
-std::string WholePercent(double share) { return Formatted("%.0f %%", 100 * share); }
+std::string WholePercent(double share) {
+  return std::isfinite(share) ? Formatted("%.0f %%", 100 * share) : "–";
+}
 
 // Writes the loads next to the body parts in the front view.
 void DrawWords(const Assessment& a, const BodyPicture& picture, Drawing* d) {
@@ -242,7 +247,7 @@ std::string LoadTable(const Assessment& a) {
     const auto& interval = a.worst.intervals[part];
     rows.push_back(
         {Formatted("<i class=\"patch\" style=\"background: %s\"></i>%s",
-                   LoadColor(a.worst.loads[part]).c_str(), kind.name),
+                   ColorOf(a.worst.loads[part]).c_str(), kind.name),
          WholePercent(a.worst.loads[part]),
          interval ? WholePercent(interval->low) + " … " + WholePercent(interval->high) : "–"});
   }

@@ -1,5 +1,7 @@
 #include "assessment/person_chain.h"
 
+#include <cmath>
+
 #include "person/body_model.h"
 
 namespace predictor::assessment {
@@ -47,9 +49,10 @@ person::Posture NominalPerson::Solve(const PersonSample& sample) {
 }
 
 Frame NominalPerson::Judge(const FrameInput& input, const person::BodyMotion& motion,
-                           bool reached) const {
+                           const person::Posture& posture) const {
   return FrameOf(input, person::AnglesOf(model(), motion.q, setup_.stance.width),
-                 dynamics_.Evaluate(motion, input.sample), reached, setup_.body.sex, work_);
+                 dynamics_.Evaluate(motion, input.sample), {posture.reached, posture.miss()},
+                 setup_.body.sex, work_);
 }
 
 std::vector<person::BodyMotion> MotionsOfPart(std::span<const person::BodyVector> postures) {
@@ -87,13 +90,13 @@ NominalChain RunNominal(const PersonSetup& setup, std::span<const PersonSample> 
   chain.motions = MotionsOf(chain.postures, samples);
   for (std::size_t i = 0; i < samples.size(); ++i)
     chain.frames.push_back(person.Judge({samples[i].body, ForceRates(samples, i)}, chain.motions[i],
-                                        chain.postures[i].reached));
+                                        chain.postures[i]));
   return chain;
 }
 
 Frame FrameOfPerson(const person::SampledPosture& person, const FrameInput& input, Sex sex,
                     const WorkPattern& work) {
-  return FrameOf(input, person.angles, person.loads, person.reached, sex, work);
+  return FrameOf(input, person.angles, person.loads, {person.reached, person.miss}, sex, work);
 }
 
 SampledChain RunSampled(const PersonSetup& setup, std::span<const PersonSample> samples,
@@ -108,6 +111,13 @@ SampledChain RunSampled(const PersonSetup& setup, std::span<const PersonSample> 
     progress(static_cast<double>(i + 1) / static_cast<double>(samples.size()));
   }
   return chain;
+}
+
+std::optional<person::Interval> IntervalOfKnown(std::vector<double> values) {
+  const std::size_t all = values.size();
+  std::erase_if(values, [](double x) { return !std::isfinite(x); });
+  if (values.empty() || 2 * values.size() < all) return {};
+  return person::IntervalOf(values);
 }
 
 PossiblePersons PossibleAt(const PersonSetup& setup, std::span<const PersonSample> samples,

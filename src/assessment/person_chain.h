@@ -23,8 +23,9 @@ class NominalPerson {
   NominalPerson(const PersonSetup& setup, const WorkPattern& work);
   // Returns the posture of the next sample. The solver starts from the previous posture.
   person::Posture Solve(const PersonSample& sample);
-  // `motion` is the smoothed motion of the posture at this sample.
-  Frame Judge(const FrameInput& input, const person::BodyMotion& motion, bool reached) const;
+  // `posture` is the posture of this sample, and `motion` its smoothed motion.
+  Frame Judge(const FrameInput& input, const person::BodyMotion& motion,
+              const person::Posture& posture) const;
   const person::BodyModel& model() const { return solver_.model(); }
   const PersonSetup& setup() const { return setup_; }
 
@@ -71,6 +72,11 @@ struct SampledChain {
 SampledChain RunSampled(const PersonSetup& setup, std::span<const PersonSample> samples,
                         const NominalChain& nominal, std::size_t stride, const WorkPattern& work,
                         const std::function<void(double)>& progress);
+
+// Returns the interval of the values that are known (see Frame), or no interval if fewer than half
+// of the values are known. An interval of fewer people would describe the people who reach the
+// handles, rather than the uncertainty.
+std::optional<person::Interval> IntervalOfKnown(std::vector<double> values);
 
 // All possible people at a single sample `i`, with their joints in S.
 struct PossiblePersons {

@@ -1,6 +1,7 @@
 #include "assessment/picture.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace predictor::assessment {
 namespace {
@@ -22,8 +23,9 @@ PartLoads LoadsOf(const Frame& frame) {
 
 std::size_t WorstSample(const NominalChain& nominal) {
   const auto highest = [](const Frame& frame) {
-    const PartLoads loads = LoadsOf(frame);
-    return *std::ranges::max_element(loads);
+    double most = -1;  // below every known load
+    for (const double load : LoadsOf(frame)) most = std::fmax(most, load);
+    return most;
   };
   const auto worst = std::ranges::max_element(nominal.frames, {}, highest);
   return static_cast<std::size_t>(worst - nominal.frames.begin());
@@ -48,7 +50,7 @@ BodyPicture PictureAt(const PersonSetup& setup, std::span<const PersonSample> sa
   for (std::size_t part = 0; part < kBodyParts; ++part) {
     std::vector<double> loads;
     for (const Frame& frame : persons.frames) loads.push_back(LoadsOf(frame)[part]);
-    picture.intervals[part] = person::IntervalOf(loads);
+    picture.intervals[part] = IntervalOfKnown(loads);
   }
   return picture;
 }

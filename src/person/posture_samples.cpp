@@ -137,6 +137,7 @@ SampledPosture PostureSampler::EvaluatePerson(std::size_t i, const BodySample& s
   SampledPosture one;
   one.q = posture.q;
   one.reached = posture.reached;
+  one.miss = posture.miss();
   one.angles = AnglesOf(person.solver.model(), posture.q, person.solver.stance().width);
   one.loads = person.dynamics.Evaluate({posture.q, nominal.v, nominal.a}, sample);
   return one;

@@ -46,6 +46,7 @@ struct SampledPosture {
   PostureAngles angles;
   BodyLoads loads;
   bool reached = false;  // the hands reach the handles
+  double miss = 0;       // largest distance by which a hand misses its handle [m]
 };
 
 template <class T>

@@ -2,6 +2,7 @@
 // (inverse kinematics).
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "person/body_sample.h"
@@ -43,6 +44,9 @@ struct Posture {
   // `reached` is true if the errors of both hands are at most 1e-6 m and 1e-6 rad. If the errors
   // are larger, the posture is the nearest one found.
   bool reached = false;
+
+  // Returns the largest distance by which a hand misses its handle [m].
+  double miss() const { return std::max(position_error[0], position_error[1]); }
 };
 
 // Solves in two stages: first the weighted compromise of all tasks and the prior, then the shortest

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "assessment/output.h"
@@ -116,6 +118,67 @@ TEST(Assessment, WarnsAboutAnImpossiblePlace) {
   EXPECT_NE(judge().warnings[0].find("behind the operator"), std::string::npos);
   scenario.operator_.stance->ground.z() = kGround + 1.5;
   EXPECT_THROW(judge(), InputError);
+}
+
+// Nothing is concluded from a posture in which the hands are not at the handles.
+TEST(Assessment, AnAbsurdPlaceIsRefused) {
+  Scenario scenario = PersonScenario();
+  const SampleCollector run =
+      Collect(scenario, 0.2, [&](std::uint64_t tick) { return RecordOf(tick, 1.0, 5); });
+  for (const double distance : {2.0, 100.0}) {
+    scenario.operator_.stance->ground.x() = 0.5 + distance;
+    try {
+      Assess(scenario, 9, RunOf(run), {.intervals = false});
+      FAIL() << distance << " m";
+    } catch (const OutOfReach& error) {
+      const std::string text = error.what();
+      EXPECT_NE(text.find(distance == 2 ? "2.00 m away" : "100.00 m away"), std::string::npos)
+          << text;
+      EXPECT_NE(text.find("operator.stance.ground"), std::string::npos) << text;
+    }
+  }
+}
+
+// For a tenth of the time, the handles are 3 m to the side.
+Assessment JudgeWithJump(bool intervals) {
+  const Scenario scenario = PersonScenario();
+  const SampleCollector run = Collect(scenario, 2, [&](std::uint64_t tick) {
+    // Lost ticks before and after it keep the smoothed motion free of the jumps.
+    const std::uint64_t lost = tick > 1200 ? 1000 : tick > 1000 ? 500 : 0;
+    TickRecord record = RecordOf(tick + lost, 1.0, 20);
+    if (tick > 1000 && tick <= 1200)
+      for (HandRecord& hand : record.hands) hand.real.pose.p[1] += 3;
+    return record;
+  });
+  return Assess(scenario, 9, RunOf(run), {.intervals = intervals});
+}
+
+TEST(Assessment, APostureThatMissesTheHandlesHasNoValues) {
+  const Assessment a = JudgeWithJump(true);
+  for (const QuantityResult& q : a.quantities) {
+    if (q.kind->origin == Origin::kMeasured) continue;
+    EXPECT_FALSE(std::isfinite(q.values[110])) << q.kind->path;
+    EXPECT_TRUE(std::isfinite(q.values[50])) << q.kind->path;
+    EXPECT_TRUE(std::isfinite(q.mean)) << q.kind->path;
+  }
+  // The mean does not contain the part without values: it is the mean of a still posture.
+  EXPECT_NEAR(Find(a, "trunk.flexion_rad").mean, Find(Judge(20), "trunk.flexion_rad").mean, 1e-6);
+  EXPECT_EQ(a.worksheets[0].values[110], 0);
+  EXPECT_EQ(a.worksheets[0].share[0], 0);
+  EXPECT_EQ(a.worksheets[0].probability[0], 0);
+  const auto gap = [&](const char* what) {
+    return std::ranges::any_of(a.not_evaluable, [&](const NotEvaluable& n) {
+      return n.what.find(what) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(gap("posture, loads and scores for 10.0 % of the time"));
+  // A tenth is too long for the damage, which has no value for a part of the time.
+  EXPECT_TRUE(a.damage.empty());
+  EXPECT_TRUE(a.fatigue.empty());
+  EXPECT_TRUE(gap("damage of the lower back (LiFFT)"));
+  EXPECT_TRUE(gap("fatigue of the left elbow"));
+  EXPECT_EQ(AssessmentCsv(a).find("nan"), std::string::npos);
+  EXPECT_EQ(AssessmentPage(a, "").find(">nan"), std::string::npos);
 }
 
 // The output must omit the quantities of a handle that the scenario does not have.

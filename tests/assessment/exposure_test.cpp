@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/random.h"
@@ -53,6 +54,20 @@ TEST(Exposure, NoiseAndTremorHardlyChangeTheDamage) {
 TEST(Exposure, ASteadyMomentIsOneLift) {
   const std::vector<double> moment(3000, 50);
   EXPECT_NEAR(OfBack(moment).per_run / ergonomics::LiftDamage(50), 1, 0.01);
+}
+
+TEST(Exposure, AShortGapIsFilledAndALongOneIsNot) {
+  const double gap = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> load(100, 3);
+  load[0] = load[50] = gap;
+  load[49] = 7;
+  const auto filled = WithoutGaps(load);
+  ASSERT_TRUE(filled);
+  EXPECT_EQ((*filled)[0], 3);
+  EXPECT_EQ((*filled)[50], 7);
+  for (std::size_t i = 60; i < 64; ++i) load[i] = gap;
+  EXPECT_FALSE(WithoutGaps(load));  // 6 of 100
+  EXPECT_FALSE(WithoutGaps({gap}));
 }
 
 // Compares the computation with the closed form of 3CC-r under a constant load.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
+#include <string_view>
 #include <thread>
 
 #include "analysis/parallel.h"
@@ -53,11 +55,21 @@ PopulationRun Perform(Scenario scenario, double object_mass, const SampledPerson
   });
   assessment::AssessOptions how;
   how.intervals = false;
-  const assessment::Assessment a = Assess(scenario, object_mass, samples, how);
   PopulationRun run;
   run.person = person.number;
   const Summary result = summary.summary();
   if (!result.stops.empty()) run.cause = result.stops.front().cause;
+  assessment::Assessment a;
+  try {
+    a = Assess(scenario, object_mass, samples, how);
+  } catch (const assessment::OutOfReach&) {
+    // The only known value of such a person is that the body reaches the handles for no time.
+    for (const StudyQuantity& quantity : StudyQuantities())
+      run.values.push_back(std::string_view(quantity.path) == "reached_share"
+                               ? 0
+                               : std::numeric_limits<double>::quiet_NaN());
+    return run;
+  }
   run.held = a.held;
   // The time for which a stopped run exceeded a value is a lower bound of the time for which the
   // whole run would have exceeded it.
