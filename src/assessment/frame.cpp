@@ -11,6 +11,8 @@ namespace {
 using ergonomics::StrengthDirection;
 using person::ArmJoint;
 
+constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();
+
 ergonomics::BodyPosture BodyOf(const person::PostureAngles& a) {
   ergonomics::BodyPosture body;
   body.neck_flexion = a.neck_flexion;
@@ -34,7 +36,7 @@ ergonomics::ArmPosture ArmOf(const person::ArmAngles& a) {
   arm.wrist_flexion = a.wrist_flexion;
   arm.wrist_deviation = a.wrist_deviation;
   arm.across_or_out = a.hand_beside_midline < 0 || a.hand_beside_shoulder > kOutside;
-  arm.over_shoulder = a.upper_arm_elevation > std::numbers::pi / 2;
+  arm.over_shoulder = IsRaised(a);
   return arm;
 }
 
@@ -80,7 +82,6 @@ double UseOf(double torque, StrengthDirection flexion, StrengthDirection extensi
 }
 
 Frame UnknownFrame() {
-  constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();
   Frame frame;
   frame.known = false;
   person::ForEachAngle(frame.angles, [](const char*, double& angle) { angle = kUnknownValue; });
@@ -99,8 +100,19 @@ double LiftMoment(const Frame& frame) {
   return std::abs(frame.loads.overload[person::kTorsoFlexion]);
 }
 
+bool IsRaised(const person::ArmAngles& arm) {
+  return arm.upper_arm_elevation > std::numbers::pi / 2;
+}
+
+double TorqueOf(const Frame& frame, int hand, ArmJoint joint) {
+  if (joint <= ArmJoint::kShoulderRotation &&
+      IsRaised(frame.angles.arms[static_cast<std::size_t>(hand)]))
+    return kUnknownValue;
+  return frame.loads.torque[person::Of(hand, joint)];
+}
+
 double ShoulderMoment(const Frame& frame, std::size_t hand) {
-  return frame.loads.shoulder_moment[hand];
+  return IsRaised(frame.angles.arms[hand]) ? kUnknownValue : frame.loads.shoulder_moment[hand];
 }
 
 Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,
@@ -120,6 +132,7 @@ Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,
     frame.shoulder_use[h] = UseOf(loads.torque[person::Of(hand, ArmJoint::kShoulderFlexion)],
                                   StrengthDirection::kShoulderFlexion,
                                   StrengthDirection::kShoulderExtension, sex, angles.arms[h], work);
+    if (IsRaised(angles.arms[h])) frame.shoulder_use[h] = kUnknownValue;
   }
   return frame;
 }

@@ -40,7 +40,8 @@ struct Frame {
   ergonomics::RebaScores reba;
   ergonomics::OwasScore owas;
   // The torque divided by the strength in the torque's direction (flexion or extension). This
-  // strength is the mean for the person's sex times WorkPattern::strength.
+  // strength is the mean for the person's sex times WorkPattern::strength. The value of a raised
+  // shoulder (see IsRaised) is not a number.
   std::array<double, kHands> elbow_use = {}, shoulder_use = {};
   bool reached = false;  // whether the hands reach the handles in this posture
   // The use of the muscles is computed for the nominal person only.
@@ -65,7 +66,15 @@ Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,
 // [N·m].
 double LiftMoment(const Frame& frame);
 
-// Returns the magnitude of the moment at the shoulder [N·m], or not a number if it is unknown.
+// Returns whether the upper arm is raised above 90°. Models of the shoulder then disagree with
+// measurements (Bergmann et al. 2011), so nothing is concluded about the shoulder.
+bool IsRaised(const person::ArmAngles& arm);
+
+// Returns the torque of an arm's joint [N·m], or not a number if it is unknown or if the joint
+// belongs to a raised shoulder.
+double TorqueOf(const Frame& frame, int hand, person::ArmJoint joint);
+// Returns the magnitude of the moment at the shoulder [N·m], or not a number if it is unknown or if
+// the shoulder is raised.
 double ShoulderMoment(const Frame& frame, std::size_t hand);
 
 // In RULA and REBA, a force that rises faster than this counts as a shock (design choice) [N/s].

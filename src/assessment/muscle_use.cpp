@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "assessment/measured_emg.h"
@@ -52,9 +51,9 @@ void SetReserve(const ArmVector& reserve, const ArmVector& torque, ArmMuscleUse*
 // Muscles of one arm at one time.
 ArmMuscleUse MusclesOf(const muscles::ArmModel& arm, const person::BodyMotion& motion,
                        const person::BodyVector& torques, const person::ExternalWrench& wrench,
-                       double elevation, const MeasuredActivations& measured) {
+                       bool raised, const MeasuredActivations& measured) {
   ArmMuscleUse use;
-  use.raised = elevation > std::numbers::pi / 2;
+  use.raised = raised;
   const ArmVector q = muscles::ArmOf(motion.q, arm.hand());
   const ArmVector torque = muscles::ArmOf(torques, arm.hand());
   const muscles::MuscleLines lines = arm.LinesAt(q);
@@ -153,7 +152,7 @@ void ArmMuscles::Add(const person::BodySample& sample, const person::BodyMotion&
   for (std::size_t h = 0; h < kHands; ++h)
     if (sample.hands[h].present)
       frame->muscles[h] = MusclesOf(arms_[h], motion, frame->loads.torque, wrenches[h],
-                                    frame->angles.arms[h].upper_arm_elevation, measured[h]);
+                                    IsRaised(frame->angles.arms[h]), measured[h]);
 }
 
 void AddMuscles(const PersonSetup& setup, std::span<const PersonSample> samples,
@@ -198,7 +197,8 @@ void AddMuscleWords(const NominalChain& chain, std::vector<std::string>* warning
           "arm in the model: up to %.1f N·m are missing, and the activations shown are too low.",
           100 * weak / judged, HandName(hand), most));
     if (raised > 0)
-      gaps->push_back({std::string("muscles of the ") + HandName(hand) + " shoulder for " +
+      gaps->push_back({std::string("strength, torques and muscles of the ") + HandName(hand) +
+                           " shoulder for " +
                            Formatted("%.1f %% of the time", 100 * raised / (judged + raised)),
                        "the upper arm is raised above 90°, where models of the shoulder disagree "
                        "with measurements"});

@@ -83,6 +83,16 @@ TEST(MuscleUse, RaisedArmsHaveNoConclusionsAboutTheShoulder) {
   for (const char* value : {"largest", "shoulder_flexors", "rotator_cuff", "reserve_nm"})
     EXPECT_TRUE(std::isnan(Row(a, std::string("muscles.left.") + value).mean)) << value;
   EXPECT_TRUE(std::isfinite(Row(a, "muscles.left.elbow_extensors").mean));
+  // Neither the strength nor the damage and the fatigue of the shoulder have values.
+  EXPECT_TRUE(std::isnan(Row(a, "strength.left_shoulder").mean));
+  EXPECT_TRUE(std::isfinite(Row(a, "strength.left_elbow").mean));
+  ASSERT_EQ(a.damage.size(), 1U);
+  EXPECT_EQ(a.damage[0].part, "lower back");
+  ASSERT_EQ(a.fatigue.size(), 2U);
+  for (const FatigueResult& f : a.fatigue) EXPECT_NE(f.joint.find("elbow"), std::string::npos);
+  for (const char* gap :
+       {"damage of the left shoulder (Shoulder Tool)", "fatigue of the right shoulder"})
+    EXPECT_TRUE(HasGap(a, gap)) << gap;
   EXPECT_TRUE(HasGap(a, "muscles of the left shoulder for 100.0 % of the time"));
   const auto json = nlohmann::json::parse(AssessmentJson(a));
   EXPECT_TRUE(json.at("quantities").at("muscles.left.largest").at("mean").is_null());

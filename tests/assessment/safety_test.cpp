@@ -163,15 +163,53 @@ TEST(StopLoads, ChangeByTheForceThatTheStopAdds) {
   for (int hand = 0; hand < kHands; ++hand)
     for (int k = 0; k < person::kArmJoints; ++k) {
       const StopLoad& load = judged.loads[static_cast<std::size_t>(hand * person::kArmJoints + k)];
-      EXPECT_NEAR(load.change,
-                  std::abs(expected[person::Of(hand, static_cast<person::ArmJoint>(k))]), 1e-4)
+      EXPECT_NEAR(load.change, expected[person::Of(hand, static_cast<person::ArmJoint>(k))], 1e-4)
           << load.joint;
       ASSERT_TRUE(load.change_90) << load.joint;
-      EXPECT_LE(load.change_90->low, load.change_90->high) << load.joint;
+      EXPECT_LE(load.change_90->low, load.change) << load.joint;
+      EXPECT_GE(load.change_90->high, load.change) << load.joint;
     }
   EXPECT_EQ(judged.loads[0].joint, "left shoulder flexion");
   EXPECT_TRUE(judged.loads[0].use);
-  EXPECT_FALSE(judged.loads[1].use);  // there is no verified strength for abduction
+  EXPECT_FALSE(judged.loads[1].use);  // the program has no strength for abduction
+}
+
+// The force of a hand that lets go decays with 40 ms, so its change differs between samples.
+TEST(StopLoads, IntervalContainsTheValueOfADecayingForce) {
+  const Scenario scenario = PersonScenario();
+  for (const double before : {25.0, -40.0}) {
+    const auto run = CollectSafety(scenario, 1500, [&](std::uint64_t t) {
+      const double since = 1e-3 * (static_cast<double>(t) - static_cast<double>(kDecision));
+      const double rising = before * std::min(1.0, static_cast<double>(t) / kDecision);
+      return StopRecord(t, rising, before * std::exp(-std::max(0.0, since) / 0.04));
+    });
+    const StopJudgement judged = JudgeStop(MadeUpSetup(scenario), run.stops().windows()[0], true);
+    ASSERT_EQ(judged.loads.size(), 2U * person::kArmJoints);
+    for (const StopLoad& load : judged.loads) {
+      ASSERT_TRUE(load.change_90) << load.joint;
+      EXPECT_LE(load.change_90->low, load.change) << load.joint;
+      EXPECT_GE(load.change_90->high, load.change) << load.joint;
+    }
+  }
+}
+
+TEST(StopLoads, OfARaisedShoulderHaveNoValue) {
+  const Scenario scenario = PersonScenario();
+  const auto run = CollectSafety(scenario, 1500, [](std::uint64_t t) {
+    TickRecord record = StopRecord(t, 10, 25);
+    for (HandRecord& hand : record.hands) hand.real.pose.p[2] = kGround + 1.85;
+    return record;
+  });
+  const SafetyAssessment safety = JudgeSafety(scenario, MadeUpSetup(scenario), run, {});
+  ASSERT_EQ(safety.stops[0].loads.size(), 2U * person::kArmJoints);
+  for (const StopLoad& load : safety.stops[0].loads) {
+    const bool shoulder = load.joint.find("shoulder") != std::string::npos;
+    EXPECT_EQ(std::isfinite(load.change), !shoulder) << load.joint;
+    EXPECT_EQ(load.change_90.has_value(), !shoulder) << load.joint;
+    EXPECT_EQ(load.use.has_value(), load.joint.find("elbow") != std::string::npos) << load.joint;
+  }
+  EXPECT_TRUE(SafetyJson(safety)["stops"][0]["joints"][0]["change_nm"].is_null());
+  EXPECT_NE(SafetyText(safety).find("raised above 90°"), std::string::npos);
 }
 
 TEST(StopLoads, OfHandsThatHoldNothingAreNotJudged) {

@@ -1,4 +1,4 @@
-// Scripts use the names in the summary. The values in the summary must match the records.
+// Scripts use the summary's names. The values must match the records.
 #include "evaluation/summary.h"
 
 #include <gtest/gtest.h>
@@ -227,17 +227,16 @@ TEST(Summary, ReportsWhatMadeTheEndOfAStopHarder) {
   TickRecord reset = Running(0, 0, 1);
   reset.state = RunState::kIdle;
   builder.Add(reset);
-  const auto json = nlohmann::json::parse(SummaryJson(builder.summary()));
-  EXPECT_EQ(json["stop"]["power_off_by"]["cause"], "stale");
-  EXPECT_EQ(json["stop"]["power_off_by"]["hand"], "left");
-  EXPECT_EQ(json["stop"]["power_off_by"]["value"], 0.0214);
-  EXPECT_EQ(json["stop"]["power_off_by"]["quantity"], "arm_age");
-  EXPECT_NE(SummaryTable(builder.summary()).find("Power-off was requested because: Left"),
-            std::string::npos);
+  const auto by = nlohmann::json::parse(SummaryJson(builder.summary()))["stop"]["power_off_by"];
+  EXPECT_EQ(by["cause"], "stale");
+  EXPECT_EQ(by["hand"], "left");
+  EXPECT_EQ(by["value"], 0.0214);
+  EXPECT_EQ(by["quantity"], "arm_age");
+  const std::string table = SummaryTable(builder.summary());
+  EXPECT_TRUE(table.find("Power-off was requested because: Left") != std::string::npos);
 }
 
-// The summary must contain the reason even if the reason occurs in the tick of the decision and no
-// record follows.
+// The summary must contain the reason even if it occurs in the tick of the last record.
 TEST(Summary, ReportsWhatMadeAStopHarderInItsOwnTick) {
   SummaryBuilder builder(Named("name", 1));
   TickRecord stop = Running(0.001, 0, 1);
@@ -251,8 +250,7 @@ TEST(Summary, ReportsWhatMadeAStopHarderInItsOwnTick) {
   EXPECT_EQ(builder.stops().stops().front().harder.value, 0.0214);
 }
 
-// If the arms did not come to rest, the table must not claim that they did. The cause or the end of
-// the stop can show that the arms did not come to rest.
+// The table must not claim rest if the cause or the end of the stop excludes it.
 TEST(Summary, StatesThatArmsDidNotRest) {
   const auto rested = [](StopCause cause, Quantity quantity, const StatusRecord& harder) {
     SummaryBuilder builder(Named("name", 1));

@@ -67,8 +67,7 @@ export class App {
       phase: (phase, reason) => this.phaseChanged(phase, reason),
       welcome: (welcome) => this.welcomed(welcome),
       state: (state, receivedMs) => this.received(state, receivedMs),
-      // The page handles the message immediately and does not wait for the next frame, because the
-      // browser rarely draws a page in the background.
+      // Does not wait for the next frame, because a page in the background is rarely drawn.
       leases: () => this.invite(),
       denied: (_what, reason) => this.overlay.notify(reason),
       notice: (text) => this.overlay.warn(text),

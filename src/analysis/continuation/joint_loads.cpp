@@ -1,6 +1,7 @@
 #include "analysis/continuation/joint_loads.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "analysis/parallel.h"
 #include "assessment/hand_samples.h"
@@ -22,8 +23,10 @@ double JointUse(const assessment::PersonSetup& setup, const TickRecord& stop,
   if (!frame.reached) return kUndefined;
   double use = 0;
   for (std::size_t h = 0; h < kHands; ++h)
-    if (samples[1].body.hands[h].present)
+    if (samples[1].body.hands[h].present) {
+      if (!std::isfinite(frame.shoulder_use[h])) return kUndefined;  // raised above 90°
       use = std::max({use, frame.elbow_use[h], frame.shoulder_use[h]});
+    }
   return use;
 }
 

@@ -42,11 +42,11 @@ Json ToJson(const Result& result) {
 
 Json ToJson(const StopLoad& load) {
   return {{"joint", load.joint},
-          {"before_nm", load.before},
-          {"change_nm", load.change},
+          {"before_nm", NumberOrNull(load.before)},
+          {"change_nm", NumberOrNull(load.change)},
           {"change_90_nm",
            load.change_90 ? Json({load.change_90->low, load.change_90->high}) : Json(nullptr)},
-          {"largest_nm", load.peak},
+          {"largest_nm", NumberOrNull(load.peak)},
           {"share_of_strength", load.use ? Json(*load.use) : Json(nullptr)}};
 }
 
@@ -113,10 +113,12 @@ std::string MeaningOf(const std::string& key) {
       {"meaning", "how it was computed"},
       {"joint", "joint of an arm"},
       {"before_nm", "torque when the stop was decided [N·m]"},
-      {"change_nm", "largest change of the torque since then: what the stop caused [N·m]"},
+      {"change_nm",
+       "change of the torque since then with the largest magnitude: what the stop caused; null: "
+       "raised shoulder or unknown posture [N·m]"},
       {"change_90_nm", "90 % interval of that change over the possible postures [N·m]"},
       {"largest_nm", "largest magnitude of the torque since then [N·m]"},
-      {"share_of_strength", "largest share of mean strength; null: no verified strength"},
+      {"share_of_strength", "largest share of mean strength; null: no strength of this joint"},
       {"time_s", "run time [s]"},
       {"cause", "cause of the stop"},
       {"duration_s", "from the decision to rest [s]"},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "assessment/person_chain.h"
@@ -10,8 +11,6 @@ namespace predictor::assessment {
 namespace {
 
 using person::ArmJoint;
-
-constexpr std::size_t kStopStride = 2;  // samples between two evaluations of all possible people
 
 std::size_t SamplesIn(double time) {
   return static_cast<std::size_t>(std::lround(time * kSampleRate));
@@ -23,35 +22,47 @@ std::string LabelOf(int joint) {
   return label;
 }
 
-// The largest magnitudes of the joint's torque and of the change in this torque since the decision
-// to stop.
+// The largest magnitude of the joint's torque since the decision to stop, and the change in this
+// torque that has the largest magnitude. Neither is a number if the torque is unknown at any time.
 struct Peaks {
   double torque = 0, change = 0;
 };
-template <class LoadsAt>
-Peaks PeaksOf(int joint, std::size_t decided, std::size_t end, const LoadsAt& loads_at) {
-  const double before = loads_at(decided - 1).torque[joint];
+template <class TorqueAt>
+Peaks PeaksOf(std::size_t decided, std::size_t end, const TorqueAt& torque_at) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const double before = torque_at(decided - 1);
   Peaks peaks;
   for (std::size_t i = decided; i < end; ++i) {
-    const double torque = loads_at(i).torque[joint];
-    peaks.torque = std::max(peaks.torque, std::abs(torque));
-    peaks.change = std::max(peaks.change, std::abs(torque - before));
+    const double change = torque_at(i) - before;
+    if (!std::isfinite(change)) return {kNone, kNone};
+    peaks.torque = std::max(peaks.torque, std::abs(torque_at(i)));
+    if (std::abs(change) > std::abs(peaks.change)) peaks.change = change;
   }
   return peaks;
 }
 
 std::optional<double> UseOf(int hand, ArmJoint joint, std::span<const Frame> stopping) {
   const auto h = static_cast<std::size_t>(hand);
-  double use = 0;
+  if (joint != ArmJoint::kShoulderFlexion && joint != ArmJoint::kElbowFlexion) return {};
+  double most = 0;
   for (const Frame& frame : stopping) {
-    if (joint == ArmJoint::kShoulderFlexion)
-      use = std::max(use, frame.shoulder_use[h]);
-    else if (joint == ArmJoint::kElbowFlexion)
-      use = std::max(use, frame.elbow_use[h]);
-    else
-      return {};
+    const double use =
+        joint == ArmJoint::kShoulderFlexion ? frame.shoulder_use[h] : frame.elbow_use[h];
+    if (!std::isfinite(use)) return {};
+    most = std::max(most, use);
   }
-  return use;
+  return most;
+}
+
+// Returns the change for each possible person.
+std::vector<double> ChangesOfPeople(const SampledChain& sampled, std::size_t decided, int hand,
+                                    ArmJoint joint) {
+  std::vector<double> changes;
+  for (std::size_t p = 0; p < sampled.frames[0].size(); ++p)
+    changes.push_back(PeaksOf(decided, sampled.at.size(), [&](std::size_t i) {
+                        return TorqueOf(sampled.frames[i][p], hand, joint);
+                      }).change);
+  return changes;
 }
 
 }  // namespace
@@ -112,33 +123,23 @@ StopJudgement JudgeStop(const PersonSetup& setup, const StopWindow& window, bool
   WorkPattern work;
   work.strength = setup.body.strength;
   const NominalChain nominal = RunNominal(setup, samples, work, [](double) {});
+  // The people are evaluated at every sample, because the reference is the last sample before the
+  // decision, and the force changes within a few samples.
   SampledChain sampled;
-  if (intervals) sampled = RunSampled(setup, samples, nominal, kStopStride, work, [](double) {});
-  const auto first =
-      static_cast<std::size_t>(std::ranges::lower_bound(sampled.at, decided) - sampled.at.begin());
+  if (intervals) sampled = RunSampled(setup, samples, nominal, 1, work, [](double) {});
   for (int hand = 0; hand < kHands; ++hand) {
     if (!samples[decided - 1].body.hands[static_cast<std::size_t>(hand)].present) continue;
     for (int k = 0; k < person::kArmJoints; ++k) {
       const auto kind = static_cast<ArmJoint>(k);
-      const int joint = person::Of(hand, kind);
       const Peaks peaks = PeaksOf(
-          joint, decided,
-          end, [&](std::size_t i) -> const auto& { return nominal.frames[i].loads; });
-      StopLoad load{.joint = LabelOf(joint),
-                    .before = nominal.frames[decided - 1].loads.torque[joint],
+          decided, end, [&](std::size_t i) { return TorqueOf(nominal.frames[i], hand, kind); });
+      StopLoad load{.joint = LabelOf(person::Of(hand, kind)),
+                    .before = TorqueOf(nominal.frames[decided - 1], hand, kind),
                     .peak = peaks.torque,
                     .change = peaks.change,
                     .use = UseOf(hand, kind, std::span(nominal.frames).subspan(decided))};
-      if (first >= 1 && first < sampled.at.size()) {
-        std::vector<double> changes;
-        for (std::size_t p = 0; p < sampled.frames[0].size(); ++p)
-          changes.push_back(
-              PeaksOf(
-                  joint, first, sampled.at.size(),
-                  [&](std::size_t i) -> const auto& { return sampled.frames[i][p].loads; })
-                  .change);
-        load.change_90 = person::IntervalOf(changes);
-      }
+      if (intervals && std::isfinite(load.change))
+        load.change_90 = IntervalOfKnown(ChangesOfPeople(sampled, decided, hand, kind));
       judgement.loads.push_back(std::move(load));
     }
   }

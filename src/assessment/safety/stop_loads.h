@@ -56,16 +56,18 @@ class StopWindows {
   std::vector<Cut> cuts_;          // one for each of the first kMaxCuts stops
 };
 
-// The torque of one joint during a stop.
+// The torque of one joint during a stop. No value is a number if the joint belongs to a shoulder
+// that is raised during the stop (see IsRaised), or if a posture is unknown (see Frame).
 struct StopLoad {
   std::string joint;  // "left shoulder flexion"
   double before = 0;  // torque when the stop was decided [N·m]
   double peak = 0;    // largest magnitude since the decision [N·m]
-  double change = 0;  // largest change of the torque since the decision, which
-                      // the stop caused [N·m]
+  // Change of the torque since the decision that has the largest magnitude, which the stop caused
+  // [N·m].
+  double change = 0;
   std::optional<person::Interval> change_90;  // 90 % interval over the possible postures [N·m]
-  std::optional<double> use;                  // largest share of mean strength; empty if no
-                                              // strength from a verified source exists
+  std::optional<double> use;                  // largest share of mean strength; empty if the
+                                              // program has no strength for this joint
 };
 
 struct StopJudgement {

@@ -59,6 +59,10 @@ SafetyTable HandTable(const std::vector<Result>& results) {
   return table;
 }
 
+std::string TorqueText(double torque) {
+  return std::isfinite(torque) ? Formatted("%.1f", torque) : "–";
+}
+
 SafetyTable StopTable(const StopJudgement& judged) {
   const StopSummary& stop = judged.stop;
   SafetyTable table{.title = Formatted("What the stop at %.2f s did to the joints", stop.time),
@@ -76,14 +80,22 @@ SafetyTable StopTable(const StopJudgement& judged) {
       {"", "before [N·m]", "caused by the stop [N·m]", "90 %", "largest [N·m]", "of strength"});
   for (const StopLoad& load : judged.loads)
     table.rows.push_back(
-        {load.joint, Formatted("%.1f", load.before), Formatted("%.1f", load.change),
+        {load.joint, TorqueText(load.before), TorqueText(load.change),
          load.change_90 ? Formatted("%.1f … %.1f", load.change_90->low, load.change_90->high) : "–",
-         Formatted("%.1f", load.peak), load.use ? PercentText(*load.use) : "–"});
+         TorqueText(load.peak), load.use ? PercentText(*load.use) : "–"});
   table.notes.emplace_back(
-      "The change caused by the stop is the largest change of the torque after the decision to "
-      "stop. The column \"90 %\" contains the 90 % interval of this change over 64 possible "
+      "The change caused by the stop is the change of the torque after the decision to stop that "
+      "has the largest magnitude. The column \"90 %\" contains the 90 % interval of this change "
+      "over 64 possible "
       "postures and bodies. The last column gives the largest torque as a percentage of the mean "
-      "strength for the person's sex, if a verified source for this strength exists.");
+      "strength for the person's sex, if the program has a strength for this joint. These "
+      "strengths were "
+      "recalled from the literature, not verified.");
+  if (std::ranges::any_of(judged.loads, [](const StopLoad& l) { return !std::isfinite(l.change); }))
+    table.notes.emplace_back(
+        "Not evaluable: the joints without values. The upper arm is raised above 90°, where models "
+        "of the shoulder disagree with measurements, or a hand of the modelled body misses its "
+        "handle by more than 5 cm.");
   return table;
 }
 
