@@ -231,11 +231,13 @@ void RefuseTouch(Engine* engine) {
     const std::string key = KeyOfMovable(contact.movable);
     const std::string other =
         contact.link.empty() ? "the carried object" : "the cobot's link " + Quote(contact.link);
-    throw InputError::At(key + ".xyz",
-                         key + ".xyz: at the start, after the cobot sagged under its load, this " +
-                             "movable object touches " + other + " (overlap " +
-                             Millimetres(contact.depth) +
-                             "). Leave a gap between them, for example 1 mm.");
+    std::string text = key;
+    text +=
+        ".xyz: at the start, after the cobot sagged under its load, this movable object touches ";
+    text += other;
+    text += " (overlap " + Millimetres(contact.depth) +
+            "). Leave a gap between them, for example 1 mm.";
+    throw InputError::At(key + ".xyz", text);
   }
 }
 
