@@ -38,8 +38,7 @@ std::vector<std::string> EventWarnings(const Scenario& s, const Pose& X_WO) {
     if (nearest <= trigger.place->radius) continue;
     warnings.push_back(Formatted(
         "events.%zu (%s) may never begin: on the path of the operator's script, the object comes "
-        "no "
-        "nearer than %.3g m to trigger.place.center, but trigger.place.radius is %g m. Give the "
+        "no nearer than %.3g m to trigger.place.center, but trigger.place.radius is %g m. Give the "
         "centre as an offset from the object's start, in m along the axes of W.",
         i, s.events[i].event.c_str(), nearest, trigger.place->radius));
   }
