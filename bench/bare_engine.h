@@ -11,7 +11,7 @@ namespace predictor::bench {
 // The scene at its equilibrium, with the torques that keep it there.
 struct Still {
   explicit Still(const Scenario& scenario) : scene(scenario, EventSequence(scenario)) {
-    FindEquilibrium(&scene);
+    FindEquilibrium(scenario.environment, &scene);
     scene.Update(&scene.engine());
     scene.ApplyController(0, &scene.engine());
     start.resize(scene.engine().state_size());

@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 
 #include "recording/scene.h"
@@ -17,12 +16,6 @@ struct Cost {
   double us = 0;     // CPU time per tick
   double bytes = 0;  // per minute
 };
-
-double CpuSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 Cost Measure(const Recording& run, const std::vector<JsonChannel>& scene) {
   const std::filesystem::path path =

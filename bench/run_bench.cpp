@@ -1,5 +1,3 @@
-#include <ctime>
-
 #include "emulator/emulator.h"
 #include "emulator/run_loop.h"
 #include "evaluation/summary.h"
@@ -7,16 +5,6 @@
 #include "sections.h"
 
 namespace predictor::bench {
-namespace {
-
-// Returns the CPU time of this process [s].
-double CpuSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-}  // namespace
 
 RunTimes TimeRuns(const std::string& scenario, int runs) {
   std::array<std::vector<double>, kStages> p50, p99;

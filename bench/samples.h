@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,13 @@ inline double Quantile(std::vector<double> samples, double p) {
   return samples[static_cast<std::size_t>(rank)];
 }
 inline double Median(const std::vector<double>& samples) { return Quantile(samples, 0.5); }
+
+// Returns the CPU time of this process [s].
+inline double CpuSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 // Returns the wall-clock time of a call [µs].
 template <typename Function>

@@ -83,10 +83,11 @@ TEST(VibrationRun, LoopsThatVibratedUnseenStop) {
   }
 }
 
-// A line of tests/vibration/combinations.txt.
+// A line of a file in tests/vibration.
 struct Combination {
   std::string kind, scenario;
   double mass, stiffness, bandwidth, delay, lead, rate, frequency;
+  std::size_t seed = 0;  // of the operator and the sensors; 0: that of the scenario
 
   Settings Set() const {
     const auto text = [](double x) { return std::to_string(x); };
@@ -99,6 +100,7 @@ struct Combination {
                     "rendering.lead=" + text(lead / 1e3)};
     // If the doubling time of a vibration is 20 s, the test needs a long run and a constant
     // posture.
+    if (seed > 0) set.push_back("seed=" + std::to_string(seed));
     if (kind == "slow")
       set.insert(set.end(),
                  {"operator.script=[{action: grip, start: 0, duration: 0.5}]", "duration=150"});
@@ -114,8 +116,9 @@ void PrintCount(long runs) {
   if (InFull()) std::printf("soak: count=%ld\n", runs);
 }
 
-std::vector<Combination> Combinations(const std::string& kind) {
-  std::ifstream file(std::string(PREDICTOR_SOURCE_DIR) + "/tests/vibration/combinations.txt");
+std::vector<Combination> Combinations(const std::string& kind,
+                                      const std::string& name = "combinations") {
+  std::ifstream file(std::string(PREDICTOR_SOURCE_DIR) + "/tests/vibration/" + name + ".txt");
   std::vector<Combination> found;
   for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);
@@ -134,8 +137,7 @@ struct Misses {
 };
 
 // Counts the loops that do not stop and those that stop only at 5 N or more.
-Misses Unstable(const std::string& kind, std::size_t step) {
-  const std::vector<Combination> all = Combinations(kind);
+Misses Unstable(const std::vector<Combination>& all, std::size_t step) {
   Misses count;
   for (std::size_t i = 0; i < all.size(); i += step) {
     const Combination& c = all[i];
@@ -148,25 +150,39 @@ Misses Unstable(const std::string& kind, std::size_t step) {
     count.by_another += outcome.by_another() && !late ? 1 : 0;
     if (missed || late || outcome.by_another())
       std::printf("%s %zu %s: rate %.2f 1/s at %.1f Hz, stop %d at %.2f s, peak %.2f N\n",
-                  kind.c_str(), i, c.scenario.c_str(), c.rate, c.frequency,
+                  c.kind.c_str(), i, c.scenario.c_str(), c.rate, c.frequency,
                   static_cast<int>(outcome.cause), outcome.time, outcome.peak);
   }
   PrintCount(count.runs);
-  std::printf("%s: %ld runs, %ld not stopped, %ld at 5 N or more, %ld stopped by another cause\n",
-              kind.c_str(), count.runs, count.missed, count.late, count.by_another);
+  std::printf("%ld runs, %ld not stopped, %ld at 5 N or more, %ld stopped by another cause\n",
+              count.runs, count.missed, count.late, count.by_another);
   return count;
 }
 
 TEST(VibrationRun, AnyLoopThatDoublesWithinTwoSecondsStopsBeforeFiveNewtonSoak) {
-  const Misses count = Unstable("fast", Step(8));
+  const Misses count = Unstable(Combinations("fast"), Step(8));
   ASSERT_GE(count.runs, 25);
   EXPECT_EQ(count.missed, 0);
   EXPECT_EQ(count.late, 0);
   EXPECT_EQ(count.by_another, 0);
 }
 
+// These loops were drawn after the detector's thresholds had been fixed, and each has another seed.
+// The detector misses the requirement in one of them, in which the force reaches 6.2 N
+// (docs/concepts/vibration.md). The test allows no second one.
+TEST(VibrationRun, FreshLoopsStopBeforeFiveNewtonWithOneExceptionSoak) {
+  std::vector<Combination> all = Combinations("fast", "fresh_combinations");
+  ASSERT_EQ(all.size(), 200U);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].seed = i + 1;
+  const Misses count = Unstable(all, Step(25));
+  ASSERT_GE(count.runs, 8);
+  EXPECT_EQ(count.missed, 0);
+  EXPECT_LE(count.late, 1);
+  EXPECT_EQ(count.by_another, 0);
+}
+
 TEST(VibrationRun, SlowerLoopsStopBeforeFiveNewtonSoak) {
-  const Misses count = Unstable("slow", Step(12));
+  const Misses count = Unstable(Combinations("slow"), Step(12));
   ASSERT_GE(count.runs, 9);
   EXPECT_LE(20 * (count.missed + count.late), count.runs);
   EXPECT_EQ(count.by_another, 0);
