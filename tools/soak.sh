@@ -8,6 +8,7 @@ soak() {
     tsan) soak_tsan; return ;;
     asan) PRESET=asan-all run_tests; return ;;
     extending) soak_extending "${@:2}"; return ;;
+    package) soak_package; return ;;
   esac
   need_spin
   [ -n "${1:-}" ] || need_browser
@@ -46,6 +47,16 @@ soak_extending() {
   setup
   tests/extending/run.sh "$@" || code=$?
   [ $# -gt 0 ] || add_row extending $code
+  return $code
+}
+
+# Installs, runs and removes the package in a bare Debian 12.
+soak_package() {
+  local code=0
+  need_packages deps/apt-bare.txt
+  package
+  tests/package/bare_debian.sh build/package/predictor_*.deb || code=$?
+  add_row package $code
   return $code
 }
 
