@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {FakeServer, kFrame} from './fake_server.mjs';
 import {Client, Program} from './program.mjs';
+import {skipPart} from './skip.mjs';
 
 let program, fake, real, made;
 let judges;  // the program judges the person during the run
@@ -63,7 +64,7 @@ test('answers have the same members', async () => {
 });
 
 test('messages about the person have the same members', async (t) => {
-  if (!judges) return t.skip('this program judges no person during a run');
+  if (!judges) return skipPart(t, 'this program judges no person during a run');
   const whole = (client) => client.messages.findLast(
       (m) => m.type === 'person' && m.status === 'judged' && m.scores.rula.probability && m.parts.lower_back.damage !== null);
   for (let k = 0; k < 600 && !(whole(real) && whole(made)); k++) await new Promise((r) => setTimeout(r, 50));

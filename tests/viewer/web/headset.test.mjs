@@ -6,6 +6,7 @@ import {near, take, until, waitFor} from './harness.mjs';
 import {Headset, withHeadset} from './headset.mjs';
 import {Rig} from './rig.mjs';
 import {capitalised} from './messages.mjs';
+import {skipPart} from './skip.mjs';
 
 const kSides = ['left', 'right'];
 const kLift = 0.06;       // [m]
@@ -81,7 +82,7 @@ test('both controllers take the handles and lift the box', async (t) => {
   const frameMs = await headset.frameMs();
   if (frameMs > kSlowestMs) {
     slow = `a frame takes this computer ${frameMs.toFixed(0)} ms; a headset that slow lets go`;
-    return t.skip(slow);
+    return skipPart(t, slow);
   }
   const start = newest().object[2];
   const {hands} = await predictor('shown');
@@ -103,7 +104,7 @@ test('both controllers take the handles and lift the box', async (t) => {
 });
 
 test('opening the hands releases the handles, and the box sinks', async (t) => {
-  if (slow) return t.skip(slow);
+  if (slow) return skipPart(t, slow);
   const top = Math.max(...states.map((s) => s.object[2]));
   for (const side of kSides) await headset.button(side, 'squeeze', 0);
   await waitFor(() => kSides.every((side) => newest()[`${side}_gripping`] === 0), 'letting go');
