@@ -351,7 +351,7 @@ class Composer {
       SceneLink link = Massless(std::string(kHandNames[h]) + "_handle");
       link.visuals = {
           Plain(ShapeKind::kCylinder, {kHandleRadius, kHandleLength, 0}, X_DG, kHandleColors[h])};
-      Join(link.name + "_joint", "object", link, scenario_.handle(hand).pose.ToPose());
+      Join(link.name + "_joint", "object", link, HandlePose(scenario_, hand));
     }
   }
 

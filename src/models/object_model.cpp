@@ -1,5 +1,6 @@
 #include "models/object_model.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -101,6 +102,17 @@ ModelShape ShapeOf(const PrimitiveSpec& p, const std::string& key) {
   return shape;
 }
 
+// Reads the URDF of an object that has a model. Throws InputError within `key`.
+UrdfModel ReadObjectUrdf(const ObjectSpec& spec, const std::filesystem::path& folder,
+                         const std::string& key) {
+  try {
+    const std::filesystem::path from = folder.empty() ? "." : folder;
+    return ReadUrdf(ResolveModelPath(spec.model, from), {}, from);
+  } catch (const InputError& error) {
+    throw error.Within(key + ".model");
+  }
+}
+
 }  // namespace
 
 ObjectModel ReadObject(const std::filesystem::path& file) { return MakeObject(ReadUrdf(file)); }
@@ -148,12 +160,28 @@ ObjectModel LoadObject(const ObjectSpec& spec, const std::filesystem::path& fold
     throw InputError::At(
         key, key + " has neither a model nor a primitive. Give a model or a primitive.");
   }
+  const UrdfModel urdf = ReadObjectUrdf(spec, folder, key);
   try {
-    const std::filesystem::path from = folder.empty() ? "." : folder;
-    return MakeObject(ReadUrdf(ResolveModelPath(spec.model, from), {}, from));
+    return MakeObject(urdf);
   } catch (const InputError& error) {
     throw error.Within(key + ".model");
   }
+}
+
+Pose HandlePose(const Scenario& scenario, int hand) {
+  const HandleSpec& handle = scenario.handle(hand);
+  if (handle.link.empty()) return handle.pose.ToPose();
+  const UrdfModel urdf = ReadObjectUrdf(scenario.object, scenario.folder(), "object");
+  const std::vector<std::string> names = urdf.LinkNames();
+  const auto link = std::find(names.begin(), names.end(), handle.link);
+  if (link == names.end()) {
+    const std::string key = std::string("handles.") + HandName(hand) + ".link";
+    throw InputError::At(key, key + " is " + Quote(handle.link) + ", but the object " +
+                                  Quote(urdf.name) + " has no such link. " +
+                                  Suggestion(handle.link, names));
+  }
+  const auto i = static_cast<std::size_t>(link - names.begin());
+  return PlaceLinks(urdf)[i] * handle.pose.ToPose();
 }
 
 }  // namespace predictor

@@ -40,4 +40,9 @@ ObjectModel MakeObject(const PrimitiveSpec& primitive, const std::string& key = 
 ObjectModel LoadObject(const ObjectSpec& spec, const std::filesystem::path& folder,
                        const std::string& key = "object");
 
+// Returns the pose X_OD of an existing handle. If the scenario gives it relative to a link
+// (handles.*.link), this function reads the object's URDF. Throws InputError at this key if the
+// URDF has no such link.
+Pose HandlePose(const Scenario& scenario, int hand);
+
 }  // namespace predictor

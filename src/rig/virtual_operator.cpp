@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "models/object_model.h"
 #include "rig/hand.h"
 #include "rig/operator.h"
 #include "rig/operator_body.h"
@@ -83,7 +84,7 @@ VirtualOperator::VirtualOperator(const Scenario& scenario, HandInertia inertia)
       script_(scenario.operator_.script) {
   CheckHand(spec_);
   for (int i = 0; i < kHands; ++i) {
-    if (scenario.Has(i)) X_OD_[static_cast<std::size_t>(i)] = scenario.handle(i).pose.ToPose();
+    if (scenario.Has(i)) X_OD_[static_cast<std::size_t>(i)] = HandlePose(scenario, i);
   }
   if (scenario.operator_.embodied) body_.emplace(scenario);
 }

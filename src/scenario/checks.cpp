@@ -217,7 +217,12 @@ void Checker::Handles() const {
          "is empty. Give handles.left, handles.right or both.");
   for (int hand = 0; hand < kHands; ++hand) {
     const std::string path = std::string("handles.") + HandName(hand);
-    if (!s_.Has(hand) || !s_.object.primitive) continue;
+    if (!s_.Has(hand)) continue;
+    const std::string& link = s_.handle(hand).link;
+    Unless(link.empty() || !s_.object.model.empty(), path + ".link",
+           "is " + Quote(link) + ", but object.model is empty, and a primitive has no links. " +
+               "Remove this key.");
+    if (!s_.object.primitive) continue;
     const double distance = DistanceFrom(*s_.object.primitive, s_.handle(hand).pose.xyz);
     Unless(distance <= kMaxHandleDistance, path + ".xyz",
            "is " + FormatNumber(distance) +

@@ -217,6 +217,8 @@ void Fields(V& v, GripSpec& s) {
 template <class V>
 void Fields(V& v, HandleSpec& s) {
   Fields(v, s.pose);
+  v("link", s.link,
+    Word("link of the object's URDF in whose frame the pose is; empty: the object's frame"));
   v("grip", s.grip, Part("how the hand holds it"));
 }
 

@@ -174,7 +174,8 @@ struct GripSpec {
 };
 
 struct HandleSpec {
-  PoseSpec pose;  // X_OD on the object
+  PoseSpec pose;     // on the object; HandlePose (models/object_model.h) returns X_OD
+  std::string link;  // of the object's URDF, in whose frame the pose is; empty: O
   GripSpec grip;
 };
 

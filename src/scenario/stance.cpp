@@ -10,19 +10,21 @@ constexpr double kDistance = 0.62;         // horizontal distance of eyes and ob
 constexpr double kEyesAboveObject = 0.55;  // a guess [m]
 
 // Returns the direction for which the left handle is on the left.
-double FacingOf(const Scenario& scenario, const Vector3& object_start) {
+double FacingOf(const Scenario& scenario, const Vector3& object_start,
+                const std::array<Vector3, kHands>& handles) {
   Vector3 forward = scenario.cobot.base.xyz - object_start;
   if (scenario.Has(0) && scenario.Has(1))
-    forward = (scenario.handle(0).pose.xyz - scenario.handle(1).pose.xyz).cross(Vector3::UnitZ());
+    forward = (handles[0] - handles[1]).cross(Vector3::UnitZ());
   forward.z() = 0;
   return forward.norm() < 1e-6 ? std::numbers::pi : std::atan2(forward.y(), forward.x());
 }
 
 }  // namespace
 
-Viewpoint ViewpointOf(const Scenario& scenario, const Vector3& object_start) {
+Viewpoint ViewpointOf(const Scenario& scenario, const Vector3& object_start,
+                      const std::array<Vector3, kHands>& handles) {
   const std::optional<StanceSpec>& stance = scenario.operator_.stance;
-  const double facing = stance ? stance->facing : FacingOf(scenario, object_start);
+  const double facing = stance ? stance->facing : FacingOf(scenario, object_start, handles);
   if (stance && scenario.operator_.body) {
     const double height = kEyeHeight * scenario.operator_.body->height;
     return {stance->ground + Vector3(0, 0, height), facing, false};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/motion.h"
+#include "models/object_model.h"
 #include "simulation/controlled_scene.h"
 #include "simulation/coupling.h"
 #include "simulation/equilibrium.h"
@@ -47,7 +48,7 @@ Status Diverged(double value, double limit, Quantity quantity) {
 struct World::Impl {
   explicit Impl(const Scenario& scenario)
       : events(scenario), controlled(scenario, events), hands(scenario.hands()) {
-    for (const int h : hands) X_OD[h] = scenario.handle(h).pose.ToPose();
+    for (const int h : hands) X_OD[h] = HandlePose(scenario, h);
     SetCoupling(scenario);
     FindEquilibrium(scenario.environment, &controlled);
     controlled.StartController();

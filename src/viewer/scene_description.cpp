@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "models/object_model.h"
 #include "models/robot.h"
 #include "scenario/action_time.h"
 #include "scenario/actions/action.h"
@@ -147,6 +148,14 @@ Json DescribeSurroundings(const Scenario& scenario, const Vector3& object_start)
             {"influence_distance", scenario.rendering.influence_distance}}}};
 }
 
+// Returns the places of the existing handles in O [m].
+std::array<Vector3, kHands> PlacesOfHandles(const Scenario& scenario) {
+  std::array<Vector3, kHands> places = {Vector3::Zero(), Vector3::Zero()};
+  for (const int h : scenario.hands())
+    places[static_cast<std::size_t>(h)] = HandlePose(scenario, h).p;
+  return places;
+}
+
 }  // namespace
 
 nlohmann::ordered_json DescribeFixtures(const Scenario& scenario, std::uint16_t events) {
@@ -195,14 +204,13 @@ nlohmann::ordered_json DescribeScene(const Scenario& scenario, const Vector3& ob
   json["arms"] = Json::object();
   for (int h = 0; h < kHands; ++h) {
     const char* side = HandName(h);
-    json["handles"][side] =
-        scenario.Has(h) ? ToJson(scenario.handle(h).pose.ToPose()) : Json(nullptr);
+    json["handles"][side] = scenario.Has(h) ? ToJson(HandlePose(scenario, h)) : Json(nullptr);
     json["arms"][side] = DescribeArm(scenario, h, assets);
   }
   json.update(DescribeSurroundings(scenario, object_start));
   json["movables"] = DescribeMovables(scenario, assets);
   json["parameters"] = DescribeParameters(scenario);
-  const Viewpoint viewpoint = ViewpointOf(scenario, object_start);
+  const Viewpoint viewpoint = ViewpointOf(scenario, object_start, PlacesOfHandles(scenario));
   json["viewpoint"] = DescribeViewpoint(scenario, viewpoint);
   json["script"] = DescribeScript(scenario, viewpoint.facing);
   return json;

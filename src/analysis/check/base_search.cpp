@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "models/object_model.h"
+
 namespace predictor {
 namespace {
 
@@ -24,7 +26,10 @@ class Search {
  public:
   Search(const Scenario& s, const DeviceReach& device, const TaskPathList& paths,
          const OnProgress& progress)
-      : s_(s), device_(device), paths_(Thinned(paths)), progress_(progress) {}
+      : s_(s), device_(device), paths_(Thinned(paths)), progress_(progress) {
+    for (const int i : s.hands())
+      handles_[static_cast<std::size_t>(i)] = paths_[0][0].X_WO * HandlePose(s, i).p;
+  }
 
   std::array<Vector3, kHands> Run() {
     best_ = Place(Present());
@@ -39,7 +44,7 @@ class Search {
   }
 
  private:
-  Vector3 Handle(int hand) const { return paths_[0][0].X_WO * s_.handle(hand).pose.xyz; }
+  const Vector3& Handle(int hand) const { return handles_[static_cast<std::size_t>(hand)]; }
 
   // Returns rounded positions, mirrored for the right arm.
   std::array<Vector3, kHands> Bases(const Vector3& offset) const {
@@ -114,6 +119,7 @@ class Search {
   const Scenario& s_;
   const DeviceReach& device_;
   TaskPathList paths_;
+  std::array<Vector3, kHands> handles_;  // at the start, in W [m]
   const OnProgress& progress_;
   Placed best_;
   double done_ = 0;

@@ -12,6 +12,7 @@
 #include "core/units.h"
 #include "emulator/stop_reach.h"
 #include "models/arm_model.h"
+#include "models/object_model.h"
 #include "scenario/action_time.h"
 #include "scenario/located.h"
 #include "simulation/event_sequence.h"
@@ -64,7 +65,7 @@ void DescribeArms(const Scenario& s, const DeviceReach& device, ModelsReport* re
     arm.mass = model.mass();
     arm.joints = model.dof();
     arm.payload_mass = s.arm(i).payload.mass;
-    arm.reach = ((report->X_WO * s.handle(i).pose.ToPose()).p - s.X_WB(i).p).norm();
+    arm.reach = ((report->X_WO * HandlePose(s, i)).p - s.X_WB(i).p).norm();
     for (int j = 0; j < model.dof(); ++j) arm.joint_names.push_back(model.joint_name(j));
     report->arms[static_cast<std::size_t>(i)] = arm;
   }

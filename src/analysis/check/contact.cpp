@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "models/object_model.h"
 #include "simulation/mujoco/contact_law.h"
 
 namespace predictor {
@@ -112,7 +113,7 @@ std::vector<FixtureWall> WallsOf(const Scenario& s, const LinearModel& world, co
     if (!fixtures[i].Touches("object")) continue;
     Wall wall;
     wall.hand = *s.hands().begin();
-    wall.p_DC = X_WO.p - X_WO * s.handle(wall.hand).pose.xyz;
+    wall.p_DC = X_WO.p - X_WO * HandlePose(s, wall.hand).p;
     wall.normal = NormalToward(fixtures[i], X_WO.p);
     const auto same = std::find_if(walls.begin(), walls.end(), [&](const FixtureWall& w) {
       return w.wall.normal.dot(wall.normal) > kSameNormal &&

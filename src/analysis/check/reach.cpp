@@ -7,6 +7,7 @@
 #include "emulator/placement.h"
 #include "haptics/approach_speed.h"
 #include "haptics/link_pairs.h"
+#include "models/object_model.h"
 
 namespace predictor {
 namespace {
@@ -45,7 +46,7 @@ ArmFollower::ArmFollower(const Scenario& s, int hand)
     : spec_(s.arm(hand)),
       rendering_(s.rendering),
       start_offset_(s.rig.start_offset),
-      X_OD_(s.handle(hand).pose.ToPose()),
+      X_OD_(HandlePose(s, hand)),
       model_(LoadArm(s, hand)),
       handle_(model_->Frame(spec_.end_effector, spec_.handle.ToPose())),
       limits_(LimitsOf(spec_, *model_)) {}
@@ -168,10 +169,10 @@ Reach DeviceReach::Over(const std::vector<std::vector<IntendedSample>>& paths,
         Merge(track[h].reach, &*reach.arms[h]);
       else
         reach.arms[h] = track[h].reach;
-      const Pose X_OD = scenario_.handle(static_cast<int>(h)).pose.ToPose();
+      const Vector3& p_OD = arms_[h]->X_OD().p;
       for (const IntendedSample& sample : path) {
         if (!sample.held) continue;
-        const Twist V = ShiftTwist(sample.V_WO, sample.X_WO.q * X_OD.p);
+        const Twist V = ShiftTwist(sample.V_WO, sample.X_WO.q * p_OD);
         reach.handles[h].speed.Raise(V.head<3>().norm(), sample.time);
         reach.handles[h].rotation_speed.Raise(V.tail<3>().norm(), sample.time);
       }

@@ -72,6 +72,7 @@ class ArmFollower {
   ArmFollower(const Scenario& scenario, int hand);
 
   const std::shared_ptr<const RobotModel>& model() const { return model_; }
+  const Pose& X_OD() const { return X_OD_; }  // of the handle
   // Sets the links whose positions Follow stores.
   void Watch(const std::vector<FrameId>& links) { links_ = links; }
 

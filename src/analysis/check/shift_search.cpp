@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/object_model.h"
+
 namespace predictor {
 namespace {
 
@@ -28,7 +30,8 @@ class ShiftSearch {
     const double arms = s.hands().count();
     for (const int i : s.hands()) {
       bases_ += s.arm(i).base.xyz / arms;
-      handles_ += paths[0][0].X_WO * s.handle(i).pose.xyz / arms;
+      places_[static_cast<std::size_t>(i)] = HandlePose(s, i).p;
+      handles_ += paths[0][0].X_WO * places_[static_cast<std::size_t>(i)] / arms;
     }
   }
 
@@ -63,8 +66,7 @@ class ShiftSearch {
       return turns;
     }
     const Vector3 bases = scenario_.arm(1).base.xyz - scenario_.arm(0).base.xyz;
-    const Vector3 handles =
-        paths_[0][0].X_WO.q * Vector3(scenario_.handle(1).pose.xyz - scenario_.handle(0).pose.xyz);
+    const Vector3 handles = paths_[0][0].X_WO.q * Vector3(places_[1] - places_[0]);
     if (bases.head<2>().norm() < kShortLine || handles.head<2>().norm() < kShortLine)
       return {present};
     return {present, std::atan2(bases.y(), bases.x()) - std::atan2(handles.y(), handles.x())};
@@ -112,8 +114,9 @@ class ShiftSearch {
   const Scenario& scenario_;
   TaskPathList paths_;
   const OnProgress& progress_;
-  Vector3 bases_ = Vector3::Zero();    // their middle, in R [m]
-  Vector3 handles_ = Vector3::Zero();  // their middle at the start, in W [m]
+  Vector3 bases_ = Vector3::Zero();     // their middle, in R [m]
+  std::array<Vector3, kHands> places_;  // of the existing handles in O [m]
+  Vector3 handles_ = Vector3::Zero();   // their middle at the start, in W [m]
   Candidate best_;
   double done_ = 0;
 };

@@ -36,17 +36,29 @@ PrimitiveSpec ScaledObject(const Scenario& s, double mass) {
   body.shape = Shape::kBox;
   body.size.setConstant(0.02);  // also for the handles, which must be on the object
   for (int i = 0; i < kHands; ++i)
-    if (s.Has(i)) body.size = body.size.cwiseMax(2 * s.handle(i).pose.xyz.cwiseAbs());
+    if (s.Has(i)) body.size = body.size.cwiseMax(2 * HandlePose(s, i).p.cwiseAbs());
   body.mass = mass;
   body.center_of_mass = object.com;
   body.inertia = mass / object.mass * object.inertia.diagonal();
   return body;
 }
 
+// Gives the handles' poses in the object's frame instead of relative to links.
+void FixHandles(Scenario* s) {
+  for (int i = 0; i < kHands; ++i) {
+    std::optional<HandleSpec>& handle = i == 0 ? s->left_handle : s->right_handle;
+    if (!handle || handle->link.empty()) continue;
+    const Pose X_OD = HandlePose(*s, i);
+    handle->pose = {X_OD.p, RpyOf(X_OD.q)};
+    handle->link.clear();
+  }
+}
+
 // Replaces the object and moves the bases of the arms together with the object's handles.
 void ReplaceObject(Scenario* s, double mass) {
   const World before(*s);
   s->object.primitive = ScaledObject(*s, mass);
+  FixHandles(s);  // the primitive has no links
   s->object.model.clear();
   const World after(*s);
   const Quaternion R_RW = s->environment.shift.value_or(PoseSpec()).ToPose().q;

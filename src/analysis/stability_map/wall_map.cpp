@@ -7,6 +7,7 @@
 
 #include "core/format.h"
 #include "core/text.h"
+#include "models/object_model.h"
 
 namespace predictor {
 namespace {
@@ -31,7 +32,7 @@ FixtureWall AssumedWall(const MapBase& base) {
   FixtureWall assumed;
   assumed.yields = true;
   assumed.wall.hand = *s.hands().begin();
-  assumed.wall.p_DC = base.X_WO.p - base.X_WO * s.handle(assumed.wall.hand).pose.xyz;
+  assumed.wall.p_DC = base.X_WO.p - base.X_WO * HandlePose(s, assumed.wall.hand).p;
   return assumed;
 }
 

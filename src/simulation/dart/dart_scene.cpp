@@ -74,7 +74,7 @@ void AddAttachment(const Scenario& scenario, const ObjectModel& object, Holding 
   scene->has_hand_masses = scenario.mode == Mode::kDirect ? 1 : 0;
   scene->hand_radius = kBallRadius;
   for (int hand = 0; hand < kHands; ++hand)
-    if (scenario.Has(hand)) CopyVector(scenario.handle(hand).pose.xyz, scene->handle[hand]);
+    if (scenario.Has(hand)) CopyVector(HandlePose(scenario, hand).p, scene->handle[hand]);
   scene->lower = -kUnlimited, scene->upper = kUnlimited;
   CopyVector(Vector3::UnitZ(), scene->axis);
   if (holding == Holding::kFree) {

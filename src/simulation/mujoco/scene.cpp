@@ -229,7 +229,7 @@ void AddWristSensor(mjSpec* spec, mjsBody* object, const AttachmentSpec& attachm
 }
 
 void AddHandle(mjsBody* object, const Scenario& scenario, int hand) {
-  const Pose X_OD = scenario.handle(hand).pose.ToPose();
+  const Pose X_OD = HandlePose(scenario, hand);
   const auto h = static_cast<std::size_t>(hand);
   mjsSite* site = mjs_addSite(object, nullptr);
   mjs_setName(site->element, kHandleSites[h]);
