@@ -62,6 +62,7 @@ std::string ComparisonText(const Comparison& comparison) {
   AppendLine(&text, "%-52s %8s %8s  %-19s %s", "", "this", "other", "difference (90 %)",
              "better for");
   for (const Difference& d : comparison.differences) {
+    if (d.kind->of_joint) continue;
     const Unit& unit = d.kind->unit;
     const auto value = [&](double x) { return ValueText(*d.kind, x); };
     const std::string name = WithUnit(std::string(d.kind->group) + ", " + d.kind->label, unit);
@@ -82,7 +83,7 @@ std::string ComparisonText(const Comparison& comparison) {
   text +=
       "The values are 95th percentiles over time (5th percentile for balance). The column \"Better "
       "for\" contains the share of 64 possible postures and bodies for which this recording has "
-      "the better value.\n";
+      "the better value. With --json, the comparison also contains the joints of the arms.\n";
   return text;
 }
 

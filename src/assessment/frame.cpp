@@ -72,13 +72,38 @@ void Score(const FrameInput& input, const WorkPattern& work, Frame* frame) {
   frame->owas = ergonomics::AssessOwas(body, arms[0], arms[1], exertion.load);
 }
 
-double UseOf(double torque, StrengthDirection flexion, StrengthDirection extension, Sex sex,
-             const person::ArmAngles& arm, const WorkPattern& work) {
+struct StrengthUse {
+  double use = kUnknownValue;      // torque divided by strength
+  double capable = kUnknownValue;  // share of people who are strong enough
+};
+
+StrengthUse UseOf(double torque, StrengthDirection flexion, StrengthDirection extension, Sex sex,
+                  const person::ArmAngles& arm, const WorkPattern& work) {
   const StrengthDirection direction = torque > 0 ? flexion : extension;
   const double mean = ergonomics::MeanStrength(direction, sex, std::numbers::pi - arm.elbow_flexion,
                                                arm.upper_arm_flexion);
   const double strength = mean * work.strength[static_cast<std::size_t>(direction)];
-  return std::abs(torque) / std::max(strength, 1e-9);
+  return {std::abs(torque) / std::max(strength, 1e-9),
+          ergonomics::ShareCapable(std::abs(torque), mean)};
+}
+
+void AddStrength(Sex sex, const WorkPattern& work, Frame* frame) {
+  for (int hand = 0; hand < kHands; ++hand) {
+    const auto h = static_cast<std::size_t>(hand);
+    const person::ArmAngles& arm = frame->angles.arms[h];
+    const StrengthUse elbow =
+        UseOf(frame->loads.torque[person::Of(hand, ArmJoint::kElbowFlexion)],
+              StrengthDirection::kElbowFlexion, StrengthDirection::kElbowExtension, sex, arm, work);
+    const StrengthUse shoulder =
+        IsRaised(arm) ? StrengthUse()
+                      : UseOf(frame->loads.torque[person::Of(hand, ArmJoint::kShoulderFlexion)],
+                              StrengthDirection::kShoulderFlexion,
+                              StrengthDirection::kShoulderExtension, sex, arm, work);
+    frame->elbow_use[h] = elbow.use;
+    frame->elbow_capable[h] = elbow.capable;
+    frame->shoulder_use[h] = shoulder.use;
+    frame->shoulder_capable[h] = shoulder.capable;
+  }
 }
 
 Frame UnknownFrame() {
@@ -91,7 +116,16 @@ Frame UnknownFrame() {
   person::ForEachBodyValue(frame.loads, [](const char*, double& load) { load = kUnknownValue; });
   frame.elbow_use.fill(kUnknownValue);
   frame.shoulder_use.fill(kUnknownValue);
+  frame.elbow_capable.fill(kUnknownValue);
+  frame.shoulder_capable.fill(kUnknownValue);
   return frame;
+}
+
+// Returns the value of an arm's joint, or not a number if it belongs to a raised shoulder.
+double KnownAt(const Frame& frame, int hand, ArmJoint joint, const person::BodyVector& values) {
+  const bool raised = IsRaised(frame.angles.arms[static_cast<std::size_t>(hand)]);
+  return raised && joint <= ArmJoint::kShoulderRotation ? kUnknownValue
+                                                        : values[person::Of(hand, joint)];
 }
 
 }  // namespace
@@ -105,10 +139,11 @@ bool IsRaised(const person::ArmAngles& arm) {
 }
 
 double TorqueOf(const Frame& frame, int hand, ArmJoint joint) {
-  if (joint <= ArmJoint::kShoulderRotation &&
-      IsRaised(frame.angles.arms[static_cast<std::size_t>(hand)]))
-    return kUnknownValue;
-  return frame.loads.torque[person::Of(hand, joint)];
+  return KnownAt(frame, hand, joint, frame.loads.torque);
+}
+
+double OverloadOf(const Frame& frame, int hand, ArmJoint joint) {
+  return KnownAt(frame, hand, joint, frame.loads.overload);
 }
 
 double ShoulderMoment(const Frame& frame, std::size_t hand) {
@@ -124,16 +159,7 @@ Frame FrameOf(const FrameInput& input, const person::PostureAngles& angles,
   frame.loads = loads;
   frame.reached = reach.reached;
   Score(input, work, &frame);
-  for (int hand = 0; hand < kHands; ++hand) {
-    const auto h = static_cast<std::size_t>(hand);
-    frame.elbow_use[h] = UseOf(loads.torque[person::Of(hand, ArmJoint::kElbowFlexion)],
-                               StrengthDirection::kElbowFlexion, StrengthDirection::kElbowExtension,
-                               sex, angles.arms[h], work);
-    frame.shoulder_use[h] = UseOf(loads.torque[person::Of(hand, ArmJoint::kShoulderFlexion)],
-                                  StrengthDirection::kShoulderFlexion,
-                                  StrengthDirection::kShoulderExtension, sex, angles.arms[h], work);
-    if (IsRaised(angles.arms[h])) frame.shoulder_use[h] = kUnknownValue;
-  }
+  AddStrength(sex, work, &frame);
   return frame;
 }
 

@@ -43,6 +43,9 @@ struct Frame {
   // strength is the mean for the person's sex times WorkPattern::strength. The value of a raised
   // shoulder (see IsRaised) is not a number.
   std::array<double, kHands> elbow_use = {}, shoulder_use = {};
+  // The share of people of the operator's sex, 0 … 1, who are strong enough for the same torques.
+  // This share does not depend on WorkPattern::strength.
+  std::array<double, kHands> elbow_capable = {}, shoulder_capable = {};
   bool reached = false;  // whether the hands reach the handles in this posture
   // The use of the muscles is computed for the nominal person only.
   std::array<ArmMuscleUse, kHands> muscles;
@@ -73,6 +76,8 @@ bool IsRaised(const person::ArmAngles& arm);
 // Returns the torque of an arm's joint [N·m], or not a number if it is unknown or if the joint
 // belongs to a raised shoulder.
 double TorqueOf(const Frame& frame, int hand, person::ArmJoint joint);
+// Returns the part of this torque that the hands' wrenches cause [N·m].
+double OverloadOf(const Frame& frame, int hand, person::ArmJoint joint);
 // Returns the magnitude of the moment at the shoulder [N·m], or not a number if it is unknown or if
 // the shoulder is raised.
 double ShoulderMoment(const Frame& frame, std::size_t hand);

@@ -70,8 +70,11 @@ ArmMuscleUse MusclesOf(const muscles::ArmModel& arm, const person::BodyMotion& m
   const MuscleVector active = result.activation.cwiseProduct(forces.active);
   const muscles::HandPoint point = muscles::HandPointAt(
       arm.body(), person::Place(arm.body(), motion.q), arm.hand(), wrench.p, wrench.F.head<3>());
-  const auto stiffness = muscles::EndpointStiffness(
-      muscles::JointStiffness(arm, q, active, active + forces.passive), point);
+  const muscles::ArmMatrix of_joints =
+      muscles::JointStiffness(arm, q, active, active + forces.passive);
+  for (int i = 0; i < person::kArmJoints; ++i)
+    use.joint_stiffness[static_cast<std::size_t>(i)] = of_joints(i, i);
+  const auto stiffness = muscles::EndpointStiffness(of_joints, point);
   if (stiffness) {
     const Vector3 principal = muscles::PrincipalStiffness(*stiffness);
     ValueOf(&use, kSoftest) = principal[0];

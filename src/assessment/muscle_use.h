@@ -47,11 +47,15 @@ inline constexpr double kReserveShare = 0.05;  // (design choice)
 struct ArmMuscleUse {
   std::array<double, kMuscleValues> values;
   muscles::MuscleVector activation;  // activation of each muscle, 0 ... 1
+  // Stiffness of each joint while the other joints do not move [N·m/rad]: the diagonal of
+  // muscles::JointStiffness, in the order of person::ArmJoint.
+  std::array<double, person::kArmJoints> joint_stiffness;
   bool raised = false;
 
   ArmMuscleUse() {
     values.fill(std::numeric_limits<double>::quiet_NaN());
     activation.setConstant(std::numeric_limits<double>::quiet_NaN());
+    joint_stiffness.fill(std::numeric_limits<double>::quiet_NaN());
   }
 };
 

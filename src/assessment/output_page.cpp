@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "assessment/joint_quantities.h"
 #include "assessment/output.h"
 #include "assessment/output_picture.h"
 #include "assessment/safety/output.h"
@@ -148,6 +149,7 @@ std::string QuantityTable(const Assessment& a) {
       {"Quantity", "Mean", "p5", "p95", "Worst", "Tail, 90 %", "Limit", "Origin"}};
   for (const QuantityResult& q : a.quantities) {
     const QuantityKind& kind = *q.kind;
+    if (kind.of_joint) continue;
     const auto value = [&](double x) { return ValueText(kind, x); };
     const std::string name = std::string(kind.group) + ", " + kind.label;
     rows.push_back({EscapeMarkup(WithUnit(name, kind.unit)), value(q.mean), value(q.p5),
@@ -251,12 +253,23 @@ void AddGroups(const Assessment& a, Outline* outline) {
   std::string group;
   int number = 0;
   for (const QuantityResult& q : a.quantities) {
-    if (group == q.kind->group) continue;
+    // The table shows the other quantities of the joints, and the CSV file contains them over time.
+    const bool only_table = q.kind->of_joint && q.kind->group != std::string_view(kJointTorques);
+    if (group == q.kind->group || only_table) continue;
     group = q.kind->group;
     const std::string id = "group-" + std::to_string(++number);
     outline->Begin(id, group);
     outline->page().Figure(GroupPlot(a, group, "person-plot-" + id));
   }
+}
+
+void AddJoints(const Assessment& a, Outline* outline) {
+  outline->Begin("joints", "Joints of the arms (modelled)");
+  auto rows = JointTable(a);
+  for (auto& row : rows)
+    for (std::string& cell : row) cell = EscapeMarkup(cell);
+  outline->page().Html(HtmlTable(rows));
+  outline->page().Paragraph(JointTableWords());
 }
 
 void AddSummary(const Assessment& a, ReportPage* page) {
@@ -303,6 +316,7 @@ void AddParts(const Assessment& a, Outline* outline) {
       "contains the 90 % interval of p95 (of p5 for balance) over 64 possible postures and "
       "bodies.");
   page.Paragraph(OriginWords() + ".");
+  AddJoints(a, outline);
   outline->Begin("worksheets", "Scores (standard)");
   page.Html(ScoreBars(a));
   page.Html(ScoreTable(a));
@@ -334,6 +348,7 @@ void AddComparison(std::span<const PersonOfRun> runs, ReportPage* page) {
     }
   if (rows[0].size() < 2) return;
   for (const QuantityKind& kind : Quantities()) {
+    if (kind.of_joint) continue;
     std::vector<std::string> row = {
         EscapeMarkup(WithUnit(std::string(kind.group) + ", " + kind.label, kind.unit) + ", " +
                      Name(kind.origin))};

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 
+#include "assessment/joint_quantities.h"
 #include "assessment/output.h"
 #include "assessment/safety/output.h"
 #include "core/format.h"
@@ -15,6 +17,7 @@ void AppendQuantities(const Assessment& a, std::string* text) {
   std::string group;
   for (const QuantityResult& q : a.quantities) {
     const QuantityKind& kind = *q.kind;
+    if (kind.of_joint) continue;
     if (group != kind.group) AppendLine(text, "%s", kind.group);
     group = kind.group;
     const std::string name = WithUnit(std::string("  ") + kind.label, kind.unit);
@@ -23,6 +26,30 @@ void AppendQuantities(const Assessment& a, std::string* text) {
                ValueText(kind, q.p95).c_str(), ValueText(kind, q.worst()).c_str(),
                RangeText(kind, q.tail_interval).c_str(), Name(kind.origin));
   }
+}
+
+// Returns the number of characters of a UTF-8 text.
+std::size_t WidthOf(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+void AppendJoints(const Assessment& a, std::string* text) {
+  const auto rows = JointTable(a);
+  if (rows.size() < 2) return;
+  AppendLine(text, "\nJoints of the arms (modelled)");
+  std::vector<std::size_t> widths(rows[0].size(), 0);
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], WidthOf(row[i]));
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      line += "  " + row[i];
+      if (i + 1 < row.size()) line.append(widths[i] - WidthOf(row[i]), ' ');
+    }
+    AppendLine(text, "%s", line.c_str());
+  }
+  AppendLine(text, "%s", JointTableWords().c_str());
 }
 
 void AppendWorksheets(const Assessment& a, std::string* text) {
@@ -143,6 +170,7 @@ std::string AssessmentText(const Assessment& a) {
       "Tail contains the 90 % interval of p95 (of p5 for balance) over 64 possible postures and "
       "bodies.\n\n";
   AppendQuantities(a, &text);
+  AppendJoints(a, &text);
   AppendWorksheets(a, &text);
   AppendSentences("Limits of your files (standard)", a.limits, &text);
   AppendSentences("Lifts (standard)", a.lifts, &text);

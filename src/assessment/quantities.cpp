@@ -6,6 +6,7 @@
 #include <iterator>
 #include <vector>
 
+#include "assessment/joint_quantities.h"
 #include "core/person_state.h"
 
 namespace predictor::assessment {
@@ -66,6 +67,8 @@ constexpr QuantityKind kQuantities[] = {
      "Gallagher & Marras's limit for frequent shear"},
     {"lower_back.flexion_moment_nm", kBack, "extensor moment", kMoment, Origin::kModelled,
      [](const Moment& m) { return m.frame.loads.l5s1.flexion_moment; }},
+    {"lower_back.moment_by_hands_nm", kBack, "moment caused by the hands", kMoment,
+     Origin::kModelled, [](const Moment& m) { return LiftMoment(m.frame); }},
     {"strength.left_shoulder", kStrength, "left shoulder flexion", kPercent, Origin::kModelled,
      ShoulderUse<0>, 0, "", 0},
     {"strength.right_shoulder", kStrength, "right shoulder flexion", kPercent, Origin::kModelled,
@@ -123,8 +126,8 @@ const char* Name(Origin origin) {
 std::span<const QuantityKind> Quantities() {
   static const std::vector<QuantityKind> kAll = [] {
     std::vector<QuantityKind> all(std::begin(kQuantities), std::end(kQuantities));
-    const std::vector<QuantityKind> muscles = MuscleQuantities();
-    all.insert(all.end(), muscles.begin(), muscles.end());
+    for (const auto& more : {JointQuantities(), MuscleQuantities()})
+      all.insert(all.end(), more.begin(), more.end());
     return all;
   }();
   return kAll;

@@ -37,6 +37,7 @@ struct QuantityKind {
   int hand = -1;                // the hand that the quantity belongs to; -1: neither
   Bad bad = Bad::kHigh;
   bool nominal_only = false;  // not computed for the possible postures
+  bool of_joint = false;  // a cell in the table of joints (see JointTable), not a row of its own
 };
 std::span<const QuantityKind> Quantities();
 

@@ -278,6 +278,7 @@ TEST(AssessmentOutput, TextAndPageLabelEveryNumber) {
   const Assessment a = Judge(20, true);
   const std::string text = AssessmentText(a), page = AssessmentPage(a, "1.0");
   for (const QuantityResult& q : a.quantities) {
+    if (q.kind->of_joint) continue;  // the title of their table labels them
     const std::size_t row = text.find(q.kind->label);
     ASSERT_NE(row, std::string::npos) << q.kind->label;
     const std::string line = text.substr(row, text.find('\n', row) - row);
